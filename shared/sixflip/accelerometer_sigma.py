@@ -1,0 +1,70 @@
+"""Standard errors of the accelerometer's parameters, and what the residuals should be.
+
+Two things move a pose mean: the sensor's noise, and the box never lying twice the same
+(about 0.05 degrees, 0.9 mg across gravity and almost nothing along it, METHOD 1). The noise
+is measured within the poses. The scatter is found from the residuals of the faces' means,
+which flips leave over: 18 numbers for 12 parameters. Of six left over, four see the scatter,
+so its part is widened as Student's t with four degrees of freedom asks for.
+"""
+
+import math
+
+from sixflip.face_residuals import face_residuals, influence, residual_variance
+from sixflip.faces import AXIS, face_of_code
+from sixflip.scale_form import scale_form
+
+# t(4) at 95 % is 2.78; two sigma should reach as far.
+STUDENT = 1.39
+
+
+def mean_variance(noise, n):
+    """Variance of the mean of n samples in counts2, noise in counts as measured.
+
+    White noise, plus the error of rounding, which little noise does not average out:
+    (1/pi) exp(-2 pi2 s2) counts at most (Widrow, Kollar: Quantization Noise, 2008, ch. 4).
+    """
+    s2 = noise * noise - 1.0 / 12.0
+    rounding = math.exp(-19.74 * s2) / math.pi if s2 > 0.0 else 1.0 / math.pi
+    return noise * noise / n + 0.5 * rounding * rounding
+
+
+def _scatter(r, h):
+    """Variance of placing the box, g2, from the residuals beyond the noise; never below 0."""
+    found = noise = weight = 0.0
+    for _face, n, left, kept in face_residuals(r, h):
+        for axis in range(3):
+            v, s = residual_variance(r, kept, axis, 1.0)
+            found += n * left[axis] * left[axis]
+            noise += n * v
+            weight += n * s
+    return max(0.0, found - noise) / weight if weight > 0.0 else 0.0
+
+
+def spread(r, used, lsb_per_g):
+    """Fill noise_g, variance, scatter_g, sigma_P, sigma_scale, sigma_v of a solve in g."""
+    r.variance = [[mean_variance(p.noise[k], p.n) / (lsb_per_g * lsb_per_g) for k in range(3)]
+                  for p in used]
+    total = sum([p.noise[k] * p.noise[k] for p in used for k in range(3)])
+    r.noise_g = math.sqrt(total / (3 * len(used))) / lsb_per_g
+    h = influence(r)
+    found = _scatter(r, h)
+    r.scatter_g = math.sqrt(found)
+    found *= STUDENT * STUDENT
+    _, _, v, inverse = scale_form(r.P)
+    P = [[0.0] * 3 for _ in range(4)]
+    u = [0.0] * 3
+    for i in range(len(h)):
+        # First order: the error of v is A^-1 times that of the corrected vector at -v.
+        at_v = h[i][3] - h[i][0] * v[0] - h[i][1] * v[1] - h[i][2] * v[2]
+        for j in range(3):
+            d = r.variance[i][j]
+            if AXIS[face_of_code(r.poses[i])] != j:
+                d += found
+            u[j] += at_v * at_v * d
+            for k in range(4):
+                P[k][j] += h[i][k] * h[i][k] * d
+    r.sigma_P = [[math.sqrt(x) * (r.g if k == 3 else 1.0) for x in P[k]] + [0.0]
+                 for k in range(4)]
+    r.sigma_scale = [r.sigma_P[k][k] for k in range(3)]
+    r.sigma_v = [r.g * math.sqrt(sum([inverse[i][j] * inverse[i][j] * u[j] for j in range(3)]))
+                 for i in range(3)]

@@ -1,0 +1,159 @@
+"""Reads the raw capture of capture_blocks.py: whole, cut off anywhere, or damaged."""
+
+import binascii
+import struct
+from array import array
+
+from sixflip import capture_blocks as cb
+from sixflip.faces import LEANING, MOST_LEANING
+from sixflip.placement import Placement
+
+NAMES = ("ax", "ay", "az", "gx", "gy", "gz", "temp", "mx", "my", "mz")
+
+
+class Blocks:
+    """meta_bytes, columns (mask), names of the columns;
+    t_us          array('q'): microseconds since the start of the session
+    rows          array('h'): samples one after the other, len(names) counts each
+    placements    in force, in the order they were accepted
+    withdrawn     codes of the poses that were taken back
+    notes         texts
+    samples       number taken (with sums_only more than are here)
+    ended         the last block is there; complete: and says that no pose is missing
+    truncated_at  offset of the first byte that is not part of a whole block, or None
+    damage        a sentence about it, or ""
+    """
+
+    def __init__(self, meta_bytes, columns):
+        self.meta_bytes = meta_bytes
+        self.columns = columns
+        self.names = [NAMES[i] for i in cb.places(columns)]
+        self.t_us = array("q")
+        self.rows = array("h")
+        self.placements = []
+        self.withdrawn = []
+        self.notes = []
+        self.samples = 0
+        self.ended = False
+        self.complete = False
+        self.sums_only = False
+        self.truncated_at = None
+        self.damage = ""
+
+
+def _header(data):
+    size = struct.calcsize(cb.HEAD)
+    if data[:4] != cb.MAGIC:
+        raise ValueError("this is no capture of a board: it does not begin with %r" % cb.MAGIC)
+    if len(data) < size:
+        raise ValueError("the capture is cut off in its header")
+    magic, version, columns, length = struct.unpack(cb.HEAD, data[:size])
+    if version != cb.VERSION:
+        raise ValueError("capture version %d: expected %d" % (version, cb.VERSION))
+    end = size + length
+    if len(data) < end + 4:
+        raise ValueError("the capture is cut off in its header")
+    if struct.unpack("<I", data[end : end + 4])[0] != binascii.crc32(data[:end]):
+        raise ValueError("the header of the capture is damaged: its CRC does not match")
+    if columns & ~15 or not columns:
+        raise ValueError("the capture has the column mask %d: expected 1 to 15" % columns)
+    return Blocks(bytes(data[size:end]), columns), end + 4
+
+
+def _unpack(form, payload):
+    if len(payload) != struct.calcsize(form):
+        raise ValueError("%d bytes where %d belong" % (len(payload), struct.calcsize(form)))
+    return struct.unpack(form, payload)
+
+
+def _samples(blocks, payload):
+    width = len(blocks.names)
+    seconds, us, count = _unpack(cb.TIME, payload[:10])
+    if us >= cb.US or count == 0 or len(payload) != 10 + count * (2 + 2 * width):
+        raise ValueError("a block of samples contradicts itself")
+    t = seconds * cb.US + us
+    if len(blocks.t_us) and t < blocks.t_us[-1]:
+        raise ValueError("time runs backwards")
+    form = "<H%dh" % width
+    at = 10
+    for _ in range(count):
+        row = struct.unpack(form, payload[at : at + 2 + 2 * width])
+        t += row[0]
+        blocks.t_us.append(t)
+        blocks.rows.extend(array("h", row[1:]))
+        at += 2 + 2 * width
+
+
+def _pose(blocks, payload):
+    v = _unpack(cb.PLACEMENT, payload)
+    if not 0 < v[0] <= LEANING + MOST_LEANING or v[2] == 0:
+        raise ValueError("pose %d of %d samples" % (v[0], v[2]))
+    blocks.placements.append(
+        Placement(v[0], v[1], v[2], list(v[4:11]), list(v[11:17]), v[3])
+    )
+
+
+def _withdrawn(blocks, payload):
+    code, first = _unpack("<HI", payload) if len(payload) == 6 else _unpack("<H", payload) + (-1,)
+    blocks.withdrawn.append(code)
+    blocks.placements = [p for p in blocks.placements
+                         if p.pose != code or (first >= 0 and p.first != first)]
+
+
+def _end(blocks, payload):
+    blocks.samples, flags = _unpack(cb.FINISH, payload)
+    blocks.ended = True
+    blocks.sums_only = bool(flags & cb.SUMS_ONLY)
+    if not blocks.sums_only and blocks.samples != len(blocks.t_us):
+        raise ValueError(
+            "%d samples were taken and %d are here" % (blocks.samples, len(blocks.t_us))
+        )
+    blocks.complete = bool(flags & cb.COMPLETE)
+
+
+def _take(blocks, kind, payload):
+    if kind == cb.SAMPLES:
+        _samples(blocks, payload)
+    elif kind == cb.POSE:
+        _pose(blocks, payload)
+    elif kind == cb.WITHDRAWN:
+        _withdrawn(blocks, payload)
+    elif kind == cb.NOTE:
+        blocks.notes.append(str(bytes(payload), "utf-8", "replace"))
+    elif kind == cb.END:
+        _end(blocks, payload)
+
+
+def read(data):
+    """Blocks of the bytes of a capture; ValueError with a sentence if there is no header.
+
+    Reading stops at the first block that is cut off or damaged; what came before it counts.
+    """
+    data = memoryview(data)
+    blocks, at = _header(data)
+    while at < len(data) and not blocks.damage:
+        if blocks.ended:
+            blocks.damage = "there are bytes after its end"
+            break
+        if at + 4 > len(data):
+            blocks.damage = "it is cut off"
+            break
+        kind, zero, length = struct.unpack(cb.BLOCK, data[at : at + 4])
+        end = at + 4 + length
+        if end + 4 > len(data):
+            blocks.damage = "it is cut off, or the length of a block is damaged"
+        elif struct.unpack("<I", data[end : end + 4])[0] != binascii.crc32(data[at:end]):
+            blocks.damage = "a block is damaged: its CRC does not match"
+        else:
+            try:
+                _take(blocks, kind, data[at + 4 : end])
+                at = end + 4
+            except ValueError as error:
+                blocks.damage = "a block is wrong: %s" % error
+    if not blocks.ended:
+        blocks.samples = max(blocks.samples, len(blocks.t_us))
+        blocks.damage = blocks.damage or "its end is missing"
+    if blocks.damage:
+        blocks.truncated_at = at
+        blocks.complete = False
+    return blocks

@@ -1,0 +1,68 @@
+"""Goes through a capture's file block by block: what a board can hold of it, without samples."""
+
+import binascii
+import struct
+
+from sixflip import capture_blocks as cb
+from sixflip.capture_reader import _header, _take
+
+MOST_META = 4096
+
+
+def go_on(writer, samples, seconds, us):
+    """For a BlockWriter: so many samples are in the file, and the time is that."""
+    writer.samples = samples
+    writer._seconds = seconds
+    writer._us = us
+
+
+class Scan:
+    """blocks() of an open file; afterwards .blocks is a capture_reader.Blocks without samples.
+
+    seconds, us  time of the last sample; ValueError when the file has no readable header
+    """
+
+    def __init__(self, stream):
+        self._stream = stream
+        head = stream.read(struct.calcsize(cb.HEAD))
+        length = struct.unpack(cb.HEAD, head)[3] if len(head) == struct.calcsize(cb.HEAD) else 0
+        if length > MOST_META:
+            raise ValueError("its metadata has %d bytes, %d is the most" % (length, MOST_META))
+        self.blocks = _header(head + stream.read(length + 4))[0]
+        self.seconds = self.us = 0
+
+    def each(self):
+        """(kind, the whole block in bytes) of every good block up to the end or the damage."""
+        blocks = self.blocks
+        while not blocks.ended:
+            head = self._stream.read(4)
+            if len(head) < 4:
+                return
+            kind, _, length = struct.unpack(cb.BLOCK, head)
+            block = head + self._stream.read(length + 4)
+            end = 4 + length
+            if len(block) != end + 4 or \
+                    struct.unpack("<I", block[end:])[0] != binascii.crc32(block[:end]):
+                return
+            if kind == cb.SAMPLES:
+                self._time(block, end)
+            elif kind == cb.END:
+                blocks.ended = True
+                blocks.samples, flags = struct.unpack(cb.FINISH, block[4:end])
+                blocks.sums_only = bool(flags & cb.SUMS_ONLY)
+            else:
+                try:
+                    _take(blocks, kind, block[4:end])
+                except ValueError:
+                    return
+            yield kind, block
+
+    def _time(self, block, end):
+        """Count the samples of a block and add up their intervals; no sample is unpacked."""
+        seconds, us, count = struct.unpack(cb.TIME, block[4:14])
+        width = 2 + 2 * len(self.blocks.names)
+        for at in range(14, end, width):
+            us += block[at] | block[at + 1] << 8
+        self.blocks.samples += count
+        self.seconds = seconds + us // cb.US
+        self.us = us % cb.US

@@ -1,0 +1,105 @@
+"""Analog Devices ADXL345, an accelerometer. Source: datasheet rev. E, register map table 19."""
+
+from sixflip.chips.registers import Registers
+
+try:
+    from micropython import const
+except ImportError:
+    def const(value):
+        return value
+
+DEVID = const(0x00)
+OFSX = const(0x1E)              # three offset registers which the chip adds: kept at 0
+BW_RATE = const(0x2C)
+POWER_CTL = const(0x2D)         # bit 3: measure
+INT_ENABLE = const(0x2E)
+INT_SOURCE = const(0x30)        # bit 7: data ready
+DATA_FORMAT = const(0x31)       # bit 3 FULL_RES, bits 1:0 range
+DATAX0 = const(0x32)            # burst of 6: x y z, little-endian
+FIFO_CTL = const(0x38)
+DEVICE_ID = const(0xE5)
+MEASURE = const(0x08)
+FULL_RES_16_G = const(0x0B)
+BURST = const(6)
+
+# FULL_RES: 256 counts per g in every range, 13 bits at ±16 g (table 1).
+LSB_PER_G = const(256)
+RANGE_G = const(16)
+RAIL = const(4095)
+RANGES_G = (2, 4, 8, 16)
+# (output rate in Hz, code in BW_RATE); bandwidth is half the rate (table 7). 800 Hz is the
+# most that a 400 kHz bus carries.
+OUTPUT_RATES = ((25, 8), (50, 9), (100, 10), (200, 11), (400, 12), (800, 13))
+
+
+class ADXL345(Registers):
+    """Alone it is an imu without gyro and thermometer; in a GY-85 it is half of one."""
+
+    chip = "ADXL345"
+    sensor = "adxl345"
+    name = "ADXL345 (0xe5)"
+    who_am_i = (DEVICE_ID, 0)
+    has_gyro = False
+    has_temp = False
+    accel_lsb_per_g = LSB_PER_G
+    accel_range_g = RANGE_G
+    accel_rail = RAIL
+    gyro_lsb_per_dps = 0
+    gyro_range_dps = 0
+    gyro_rail = 0
+    temp_lsb_per_c = 0
+    temp_offset_c = 0
+    shown = (BW_RATE, POWER_CTL, DATA_FORMAT)   # registers in a capture's header
+
+    def __init__(self, i2c, address=0x53, sleep_ms=None):
+        Registers.__init__(self, i2c, address, sleep_ms)
+        self.rate_hz = 0
+        self.output_rate_hz = self.filter_hz = 0
+        self._burst = bytearray(BURST)
+        self._setup = bytearray(2)      # BW_RATE and POWER_CTL as they should read
+        self._found = bytearray(2)
+
+    def configure(self, rate_hz):
+        """Set up for polling at rate_hz at 256 counts per g; OSError when a register does
+        not take its value. The chip has no reset bit: everything that matters is written."""
+        if not 1 <= rate_hz <= 400:
+            raise ValueError("rate_hz is %s, expected 1 to 400" % rate_hz)
+        output_rate, code = [o for o in OUTPUT_RATES if o[0] >= 2 * rate_hz][0]
+        self._set(POWER_CTL, 0)
+        for register, value in ((BW_RATE, code), (DATA_FORMAT, FULL_RES_16_G), (FIFO_CTL, 0),
+                                (INT_ENABLE, 0), (OFSX, 0), (OFSX + 1, 0), (OFSX + 2, 0),
+                                (POWER_CTL, MEASURE)):
+            self._set(register, value)
+        self._setup[0] = code
+        self._setup[1] = MEASURE
+        self.output_rate_hz = output_rate
+        self.filter_hz = output_rate / 2
+        self.rate_hz = rate_hz
+        if self._sleep_ms is not None:
+            self._sleep_ms(20)      # turn-on time 11.1 ms at 100 Hz (table 1, note 7)
+
+    def answers(self, i2c):
+        """Whether the chip answers on this bus, to be used from now on, as what it is."""
+        return self._answers(i2c, DEVID, DEVICE_ID)
+
+    def awake(self):
+        """Whether rate, measure bit and data format are still as configured. After a
+        brown-out POWER_CTL reads 0: standby. Two short reads, no allocation."""
+        self._i2c.readfrom_mem_into(self.address, BW_RATE, self._found)
+        return self._found == self._setup and self._read(DATA_FORMAT) == FULL_RES_16_G
+
+    def read_into(self, sample):
+        """One burst into sample, array('h', 7): ax ay az in counts, the others 0. False
+        when all three are 0 or all are -1, which no working accelerometer reads."""
+        burst = self._burst
+        self._i2c.readfrom_mem_into(self.address, DATAX0, burst)
+        ones = 0
+        zeros = 0xFFFF
+        for i in range(3):
+            word = burst[2 * i + 1] << 8 | burst[2 * i]
+            ones |= word
+            zeros &= word
+            sample[i] = (word ^ 0x8000) - 0x8000
+            sample[i + 3] = 0
+        sample[6] = 0
+        return ones != 0 and zeros != 0xFFFF

@@ -1,0 +1,82 @@
+"""InvenSense ITG-3205, a gyro with a thermometer. Source: datasheet PS-ITG-3205A-00 rev. 1.0."""
+
+from sixflip.chips.registers import Registers, filter_code, rate_divider
+
+try:
+    from micropython import const
+except ImportError:
+    def const(value):
+        return value
+
+WHO_AM_I = const(0x00)          # bits 6:1 = 110100, the others may read anything
+SMPLRT_DIV = const(0x15)
+DLPF_FS = const(0x16)           # bits 4:3 FS_SEL, bits 2:0 filter
+INT_STATUS = const(0x1A)        # bit 0: data ready, cleared by reading
+TEMP_OUT_H = const(0x1B)        # burst of 8: temperature, gyro x y z, big-endian
+PWR_MGM = const(0x3E)           # bit 7 reset, bit 6 sleep, bits 2:0 clock
+RESET = const(0x80)
+SLEEP = const(0x40)
+CLOCK_GYRO_X = const(0x01)
+ID_MASK = const(0x7E)
+ID = const(0x68)
+FS_2000 = const(0x18)           # FS_SEL = 3; it is 0, "reserved", after power-up
+BURST = const(8)
+
+LSB_PER_DPS = 14.375
+RANGE_DPS = const(2000)
+RAIL = const(32767)
+BANDWIDTH_HZ = (256, 188, 98, 42, 20, 10, 5)
+# °C = counts / 280 + 82.142857: -13200 counts at 35 °C (section 3.3).
+TEMPERATURE = (280.0, 82.142857)
+
+
+class ITG3205(Registers):
+    """The gyro half of a GY-85; it is no imu by itself."""
+
+    chip = "ITG3205"
+    shown = (SMPLRT_DIV, DLPF_FS, PWR_MGM)      # registers in a capture's header
+
+    def __init__(self, i2c, address=0x68, sleep_ms=None):
+        Registers.__init__(self, i2c, address, sleep_ms)
+        self._burst = bytearray(BURST)
+        self._setup = bytearray(2)      # SMPLRT_DIV and DLPF_FS as they should read
+        self._found = bytearray(2)
+
+    def configure(self, rate_hz):
+        """Reset, wake and set up for polling at rate_hz; OSError when a register does not
+        take its value."""
+        divider = rate_divider(rate_hz)
+        dlpf_fs = FS_2000 | filter_code(BANDWIDTH_HZ, rate_hz)
+        self._write(PWR_MGM, RESET)
+        self._wait_clear(PWR_MGM, RESET)
+        self._set(PWR_MGM, CLOCK_GYRO_X)
+        self._set(SMPLRT_DIV, divider)
+        self._set(DLPF_FS, dlpf_fs)
+        self._setup[0] = divider
+        self._setup[1] = dlpf_fs
+        if self._sleep_ms is not None:
+            self._sleep_ms(70)      # start-up 50 ms (section 3.1), filter settling
+
+    def answers(self, i2c, who_am_i):
+        """Whether the chip answers on this bus, to be used from now on, as to the probe."""
+        return self._answers(i2c, WHO_AM_I, who_am_i)
+
+    def awake(self):
+        """Whether the chip is awake and set up as configured (FS_SEL is 0 after a
+        brown-out). Two short reads, no allocation."""
+        self._i2c.readfrom_mem_into(self.address, SMPLRT_DIV, self._found)
+        return self._found == self._setup and self._read(PWR_MGM) == CLOCK_GYRO_X
+
+    def read_into(self, sample):
+        """One burst into sample, array('h', 7): gx gy gz temp at 3..6, the others left as
+        they are. False when every bit is 0 or every bit is 1."""
+        burst = self._burst
+        self._i2c.readfrom_mem_into(self.address, TEMP_OUT_H, burst)
+        ones = 0
+        zeros = 0xFFFF
+        for i in range(4):
+            word = burst[2 * i] << 8 | burst[2 * i + 1]
+            ones |= word
+            zeros &= word
+            sample[i + 2 if i else 6] = (word ^ 0x8000) - 0x8000
+        return ones != 0 and zeros != 0xFFFF

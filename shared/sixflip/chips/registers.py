@@ -1,0 +1,86 @@
+"""Eight-bit registers behind an I2C address: read, write, and write with a check."""
+
+import errno
+
+
+class Registers:
+    """Base of the drivers. `i2c` is handed in and has machine.I2C's method names.
+
+    sleep_ms waits for a number of milliseconds; without one the driver waits by reading,
+    a bounded number of times (a register read takes 0.1 ms at 400 kHz).
+    """
+
+    chip = "chip"
+
+    def __init__(self, i2c, address, sleep_ms=None):
+        self.address = address
+        self._i2c = i2c
+        self._sleep_ms = sleep_ms
+        self._one = bytearray(1)
+
+    def _answers(self, i2c, register, expected):
+        """From now on on this bus. Whether the ID register reads as it did to the probe."""
+        self._i2c = i2c
+        return self._read(register) == expected
+
+    def _read(self, register):
+        self._i2c.readfrom_mem_into(self.address, register, self._one)
+        return self._one[0]
+
+    def _write(self, register, value):
+        self._one[0] = value
+        self._i2c.writeto_mem(self.address, register, self._one)
+
+    def _set(self, register, value):
+        """Write and read back: SoftI2C returns as if all were well when data is not
+        acknowledged. Three attempts, then OSError saying what was expected."""
+        for _ in range(3):
+            self._write(register, value)
+            found = self._read(register)
+            if found == value:
+                return
+        raise OSError(errno.EIO, "%s at 0x%02x: register 0x%02x reads 0x%02x, expected 0x%02x"
+                      % (self.chip, self.address, register, found, value))
+
+    def metadata(self):
+        """What a capture's header says of the sensor."""
+        from sixflip.chips.header import metadata  # once a session: not kept in the heap
+        return metadata(self)
+
+    def _wait_clear(self, register, mask):
+        """Wait until the bits of mask read 0 (end of a reset), else OSError. A chip may
+        leave its address unanswered while it resets, so errors count as "not yet"."""
+        tries = 2000 if self._sleep_ms is None else 50
+        found = -1
+        for _ in range(tries):
+            if self._sleep_ms is not None:
+                self._sleep_ms(5)
+            try:
+                found = self._read(register)
+            except OSError:
+                continue
+            if found & mask == 0:
+                return
+        if found < 0:
+            raise OSError(errno.EIO, "%s at 0x%02x: no answer after its reset"
+                          % (self.chip, self.address))
+        raise OSError(errno.EIO, "%s at 0x%02x: reset not finished, register 0x%02x reads "
+                      "0x%02x, expected bits 0x%02x clear"
+                      % (self.chip, self.address, register, found, mask))
+
+
+def filter_code(bandwidths_hz, rate_hz):
+    """Index of the widest filter not wider than half the polling rate (the narrowest one
+    if none is). bandwidths_hz falls with the index; index 0, the unfiltered one, is out."""
+    for code in range(1, len(bandwidths_hz)):
+        if 2 * bandwidths_hz[code] <= rate_hz:
+            return code
+    return len(bandwidths_hz) - 1
+
+
+def rate_divider(rate_hz):
+    """SMPLRT_DIV of InvenSense chips behind their 1 kHz filter: output rate is
+    1000 / (1 + divider), at least twice the polling rate so no poll sees a sample twice."""
+    if not 1 <= rate_hz <= 500:
+        raise ValueError("rate_hz is %s, expected 1 to 500" % rate_hz)
+    return min(int(500 // rate_hz) - 1, 255)

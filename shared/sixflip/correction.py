@@ -1,0 +1,64 @@
+"""Raw counts to m/s2 and rad/s with what a correction record holds."""
+
+import math
+
+from sixflip.scale_form import inverse3
+
+
+class Correction:
+    """Everything in one 4 x 3 matrix for the accelerometer and one for the gyro.
+
+    [c0 c1 c2 1] M, c in raw counts: correction P, unit, gyro bias of the last rest and
+    mounting are multiplied out once. A part that was not measured is left nominal.
+    """
+
+    def __init__(self, record):
+        self.record = record
+        identity = [[1.0 if i == j else 0.0 for j in range(3)] for i in range(4)]
+        P = record.accel["P"] if record.accel else identity
+        W = record.gyro["P"] if record.gyro else identity
+        offset = W[3]
+        if record.gyro_bias:
+            # The newest rest wins over the bias of the session: Li finds it differs at each
+            # switching-on. [b 1] W must be zero.
+            b = [math.radians(x) for x in record.gyro_bias["bias_dps"]]
+            offset = [-sum([b[k] * W[k][j] for k in range(3)]) for j in range(3)]
+        turn = None
+        if record.mounting:
+            from sixflip.mounting import compensation  # most boards have none
+            turn = compensation(record.mounting)
+        lsb = record.accel_lsb_per_g
+        self.accel = _multiplied(P, P[3], record.g / lsb if lsb else 0.0, turn)
+        lsb = record.gyro_lsb_per_dps
+        self.gyro = _multiplied(W, offset, math.radians(1.0) / lsb if lsb else 0.0, turn)
+
+    def apply(self, sample, out):
+        """sample: seven counts; out: ax ay az in m/s2, gx gy gz in rad/s. Returns out."""
+        for k, M in ((0, self.accel), (3, self.gyro)):
+            x = sample[k]
+            y = sample[k + 1]
+            z = sample[k + 2]
+            for j in range(3):
+                out[k + j] = x * M[0][j] + y * M[1][j] + z * M[2][j] + M[3][j]
+        return out
+
+    def set_gyro_bias(self, counts):
+        """A new rest: mean counts of gx gy gz at which the corrected rate is zero."""
+        M = self.gyro
+        for j in range(3):
+            M[3][j] = -sum([counts[k] * M[k][j] for k in range(3)])
+
+
+def gyro_bias_dps(P):
+    """The measured rate in deg/s that P maps to zero: b A = -o."""
+    A = inverse3([[P[i][j] for j in range(3)] for i in range(3)])
+    return [math.degrees(-sum([P[3][k] * A[k][j] for k in range(3)])) for j in range(3)]
+
+
+def _multiplied(P, offset, unit, turn):
+    rows = [[P[i][j] * unit for j in range(3)] for i in range(3)] + [[offset[j] for j in range(3)]]
+    if unit == 0.0:
+        rows[3] = [0.0] * 3
+    if turn is None:
+        return rows
+    return [[sum([row[k] * turn[j][k] for k in range(3)]) for j in range(3)] for row in rows]

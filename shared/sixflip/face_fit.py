@@ -1,0 +1,102 @@
+"""Do the six faces agree? What noise, placing by hand and the flips leave unexplained."""
+
+import math
+
+from sixflip.face_residuals import PLACING, face_residuals, influence, residual_variance
+from sixflip.faces import AXIS, FACES, face_of_code, pose_name
+
+# chi2 of three numbers: 1 good session in 2000 lies beyond on one of three pairs of faces.
+DOUBT = 19.0
+CROOKED_DEG = 1.0
+FLIP_ERROR = math.radians(0.4)
+# What a bias wanders between captures minutes apart, g: flicker of an ordinary MEMS part.
+WANDER = 2e-4
+# Nonlinearity is 0.5 % of 2 g in the data sheets; a box on its edge leaves more.
+ALONG_G = 0.01
+
+
+def judge_fit(r):
+    """("doubtful" | "refused", sentence) about the worst disagreement, or None."""
+    found = [x for x in (_judge_spread(r), _judge_squareness(r), _judge_along(r)) if x]
+    for one in found:       # a doubt must not hide what is to be refused
+        if one[0] == "refused":
+            return one
+    return found[0] if found else None
+
+
+def _judge_spread(r):
+    """One table, six tilts: placing moves each tilt by 0.05/sqrt(2) degrees and its noise."""
+    if len(r.tilts) < 6:
+        return None
+    noise = max([v for row in r.variance for v in row])
+    across = math.degrees(math.sqrt(0.5 * (PLACING * PLACING + noise)))
+    # Range of six, each a length in the plane: 5.5 sigma is passed by 1 in 2000.
+    limit = 5.5 * across + 0.02 * r.tilt_deg
+    if r.tilt_spread_deg <= limit:
+        return None
+    tilts = sorted(r.tilts.values())
+    middle = 0.5 * (tilts[2] + tilts[3])
+    face = max(r.tilts, key=lambda f: abs(r.tilts[f] - middle))
+    off = abs(r.tilts[face] - middle)
+    # A capture that leans by x shifts the face's tilt by x/2.
+    crooked = 2.0 * off if off == off else 180.0
+    return ("refused" if not crooked <= CROOKED_DEG else "doubtful",
+            "face %s does not lie like the others: its tilt is off by %.2f degrees, the faces "
+            "may differ by %.2f; one capture is crooked or moved" % (FACES[face], off, limit))
+
+
+def _judge_squareness(r):
+    """Even residuals: what a and b of a face have in common and the model cannot take.
+
+    Opposite faces share it: a crooked X+ and an equally crooked X- cannot be told apart by
+    the fit. A third of a single face's angle is left as its residual.
+    """
+    tilt = math.radians(r.tilt_deg or 0.0)
+    placing = math.sqrt(PLACING * PLACING + 0.5 * tilt * tilt * FLIP_ERROR * FLIP_ERROR)
+    h = influence(r)
+    worst, face, size = 0.0, None, 0.0
+    along = [0.0, 0]
+    for f, _, left, kept in face_residuals(r, h):
+        chi2 = across = 0.0
+        for k in range(3):
+            noise, scatter = residual_variance(r, kept, k, placing)
+            chi2 += left[k] * left[k] / (noise + scatter + WANDER * WANDER / 4)
+            if k != AXIS[f]:
+                across += left[k] * left[k]
+        if not chi2 <= worst:
+            worst = chi2
+        if not across <= size * size:
+            face, size = f, math.sqrt(across)
+        if abs(left[AXIS[f]]) > along[0]:
+            along = [abs(left[AXIS[f]]), f]
+    if worst <= DOUBT:
+        return None
+    if along[0] > 1.5 * size and r.level != "no flips":
+        return ("refused" if not along[0] <= ALONG_G else "doubtful",
+                "faces %s and %s leave %.1f mg along their axis that noise does not explain: the "
+                "sensor is not linear, or its temperature changed"
+                % (FACES[along[1] & 6], FACES[along[1] | 1], along[0] * 1000.0))
+    from sixflip.crooked_face import describe  # most boxes are square
+    return describe(r, face, size)
+
+
+def _judge_along(r):
+    """Along gravity placing hardly moves a pose: a and b of a face differ by noise alone."""
+    if r.level == "no flips":
+        return None
+    tilt = math.radians(r.tilt_deg)
+    for i in range(len(r.poses)):
+        pose = r.poses[i]
+        face = face_of_code(pose)
+        k = AXIS[face]
+        v = r.variance[i][k] + WANDER * WANDER + 2.0 * (tilt * PLACING) ** 2 + PLACING ** 4
+        other = r.residual.get(pose + 1 if pose & 1 else pose - 1)
+        if other is None:
+            continue
+        gap = abs(r.residual[pose][k] - other[k])
+        limit = 4.5 * math.sqrt(2.0 * v) + 5e-5
+        if not gap <= limit:
+            return "doubtful", ("%s and its flip differ by %.1f mg along gravity, %.1f is the "
+                                "limit: one was knocked, or the temperature changed"
+                                % (pose_name(pose), 1000.0 * gap, 1000.0 * limit))
+    return None

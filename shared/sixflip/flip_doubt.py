@@ -1,0 +1,87 @@
+"""Half turns were assumed: what the gyro's view of the same flips says about that.
+
+Six flips short by one angle look like another tilt to the accelerometer. To the gyro they are
+a scale no chip of its kind has; and one flip off the others shows in any case.
+"""
+
+import math
+
+from sixflip.faces import AXIS, FACES
+
+APART_DEG = 3.0
+MATTERS_MG = 1.0
+
+
+def scale_off(r, tolerance):
+    """(scale of the gyro, degrees by which its flips then were short) where it is beyond what
+    its data sheet allows, or None. r a GyroscopeResult; tolerance None: not known."""
+    worst = None
+    for k in range(3):
+        if k in r.missing or tolerance is None:
+            continue
+        s = math.sqrt(sum([r.P[i][k] * r.P[i][k] for i in range(3)]))
+        if abs(s - 1.0) > tolerance + 2.0 * r.sigma[k][k] and (
+                worst is None or abs(s - 1.0) > abs(worst - 1.0)):
+            worst = s
+    return worst and (worst, 180.0 * (1.0 - 1.0 / worst))
+
+
+def scale_doubt(r, tolerance):
+    """The sentence about a gyro whose scale is beyond its tolerance, or ""."""
+    off = scale_off(r, tolerance)
+    if not off:
+        return ""
+    return ("gyro scale %.3f, %.0f %% off is the data sheet's limit: the chip is off, or every "
+            "flip was %s by %.0f degrees" % (off[0], 100 * tolerance, _side(off[1]), abs(off[1])))
+
+
+def error_mg(tilt_deg, off_deg):
+    """About the error of a corrected vector when a flip was off half a turn by so much."""
+    return 1000.0 * math.sin(math.radians(tilt_deg)) * math.radians(off_deg) / 2.0
+
+
+def apart(r, axis):
+    """(degrees by which the flips about an axis differ, the face farther off) or None."""
+    if axis in r.missing:
+        return None     # what a gyro shows of which no turn counts may be anything
+    turned = {}
+    for face in range(6):
+        flip = r.flips.get(FACES[face])
+        if AXIS[face] == axis and flip and (
+                flip["used"] or flip["reason"].startswith("turned")):
+            turned[FACES[face]] = (abs(flip["angle_deg"] - 180.0), flip["angle_deg"])
+    if not turned:
+        return None
+    angle = [a[1] for a in turned.values()]
+    if len(angle) < 2:
+        angle.append(180.0)
+    return max(angle) - min(angle), max(turned, key=lambda f: turned[f][0])
+
+
+def accelerometer_doubt(r, tolerance, tilt_deg, known=()):
+    """The sentence about flips that were no half turns where the table's tilt makes that
+    matter, or "".
+
+    known  faces 0..5 whose turn was measured by another gyro scale and taken into account
+    """
+    if tilt_deg is None or r.verdict == "refused":
+        return ""
+    for axis in range(3):
+        found = apart(r, axis)
+        if found and FACES.index(found[1]) not in known and found[0] > APART_DEG:
+            mg = error_mg(tilt_deg, found[0])
+            if mg > MATTERS_MG:
+                return ("the flip of %s or of the opposite face was off half a turn by %.1f "
+                        "degrees, %.0f is the limit: about %.1f mg at %.1f degrees of tilt"
+                        % (found[1], found[0], APART_DEG, mg, tilt_deg))
+    off = None if len(known) == 6 else scale_off(r, tolerance)
+    if off and error_mg(tilt_deg, abs(off[1])) > MATTERS_MG:
+        return ("gyro scale %.3f: the chip is off, or every flip was %s by %.0f degrees, that "
+                "is about %.1f mg at %.1f degrees of tilt" % (
+                    off[0], _side(off[1]), abs(off[1]), error_mg(tilt_deg, abs(off[1])),
+                    tilt_deg))
+    return ""
+
+
+def _side(short_deg):
+    return "short" if short_deg > 0 else "too long"

@@ -1,0 +1,122 @@
+"""The half turns of a session as the gyro's integral saw them, and which of them count.
+
+An integral is the exact sum of counts over n samples, divided by n, times the time that
+really passed: rad in measured units, bias still in it.
+"""
+
+import math
+
+from sixflip.faces import AXIS, SIGN, face_of_code
+
+ACROSS_DEG = 5.0
+# A gyro misaligned by this much is believed when the flips of both faces show the same.
+COMMON_DEG = 15.0
+OFF_HALF_TURN_DEG = 40.0
+# A gap this many times the mean interval hides part of the turn.
+GAP = 5
+
+
+def integral(sums, n, duration_us, lsb_per_dps):
+    """[Ix Iy Iz] in rad and T in s from the counts of gx gy gz summed over n samples."""
+    T = duration_us * 1e-6
+    f = math.radians(T / (n * lsb_per_dps))
+    return [s * f for s in sums], T
+
+
+def mean_rate(placements, lsb_per_dps):
+    """The gyro's mean over all rests, rad/s: its bias. ValueError without a rest."""
+    n = sum([p.n for p in placements])
+    if not n:
+        raise ValueError("no rest: the gyro's bias is not known")
+    f = math.radians(1.0 / (n * lsb_per_dps))
+    return [sum([p.sums[3 + k] for p in placements]) * f for k in range(3)]
+
+
+class Flip:
+    """A move from one capture of a face to the other.
+
+    face; turned [3] rad without bias; T in s; angle rad from a to b, right-handed about the
+    face's axis, 0..2 pi; along: +1 or -1, the way it was turned; lean_deg: part across the
+    axis; used, reason
+    """
+
+
+def find_flips(placements, moves, lsb_per_dps, bias, rotation=None):
+    """A Flip for every move between the two captures of a face.
+
+    bias      rad/s, taken out
+    rotation  3 x 3 that takes the chip's axes to the box's (rows are images of the chip's
+              axes), for a chip which does not sit straight in its box; the accelerometer's P
+    """
+    flips = []
+    for move in moves:
+        if move.before < 0 or move.after < 0 or not move.n > 0:
+            continue
+        a, b = placements[move.before].pose, placements[move.after].pose
+        if face_of_code(a) < 0 or a == b or face_of_code(a) != face_of_code(b):
+            continue
+        flips.append(_flip(move, a, b, lsb_per_dps, bias, rotation))
+    _misaligned_not_leaning(flips)
+    return flips
+
+
+def _flip(move, a, b, lsb_per_dps, bias, rotation):
+    flip = Flip()
+    flip.face = face_of_code(a)
+    measured, flip.T = integral(move.gyro_sums, move.n, move.duration_us, lsb_per_dps)
+    flip.turned = [measured[k] - bias[k] * flip.T for k in range(3)]
+    about = SIGN[flip.face] * flip.turned[AXIS[flip.face]]
+    flip.along = 1 if about >= 0.0 else -1
+    flip.angle = (about if b > a else -about) % (2.0 * math.pi)
+    flip.lean_deg = _lean(flip, rotation)
+    flip.reason = _why_not(move, flip, abs(math.degrees(about)))
+    flip.used = not flip.reason
+    return flip
+
+
+def _why_not(move, flip, turn):
+    if move.saturated:
+        return "the gyro was saturated: turn the box more slowly"
+    if move.drops:
+        return "%d samples are missing" % move.drops
+    if move.largest_gap_us * move.n > GAP * move.duration_us:
+        return "a gap of %d ms in the samples" % (move.largest_gap_us // 1000)
+    if not abs(turn - 180.0) <= OFF_HALF_TURN_DEG:
+        return "turned by %.0f degrees, expected 140 to 220" % turn
+    if not flip.lean_deg <= ACROSS_DEG:
+        return ("did not stay flat: %.1f degrees across the axis, %.0f is the limit"
+                % (flip.lean_deg, ACROSS_DEG))
+    return ""
+
+
+def _lean(flip, rotation):
+    """Degrees across the axis, as read or with the chip turned straight, whichever is less."""
+    k = AXIS[flip.face]
+    t = flip.turned
+    lean = _across(t, k)
+    if rotation:
+        lean = min(lean, _across([sum([t[i] * rotation[i][j] for i in range(3)])
+                                  for j in range(3)], k))
+    return lean
+
+
+def _across(turned, k):
+    return math.degrees(math.sqrt(sum([turned[i] * turned[i] for i in range(3) if i != k])))
+
+
+def _misaligned_not_leaning(flips):
+    """Two flips about one axis that lean alike show a misaligned gyro: what P is to take."""
+    for f in flips:
+        if f.used or not f.reason.startswith("did not stay flat") or f.lean_deg > COMMON_DEG:
+            continue
+        k = AXIS[f.face]
+        for other in flips:
+            if other is f or AXIS[other.face] != k or not other.turned[k]:
+                continue
+            if not (other.used or other.reason.startswith("did not stay flat")):
+                continue
+            ratio = f.turned[k] / other.turned[k]
+            apart = [f.turned[i] - ratio * other.turned[i] for i in range(3)]
+            if _across(apart, k) <= ACROSS_DEG:
+                f.used, f.reason = True, ""
+                break

@@ -1,0 +1,40 @@
+"""Good, doubtful or refused, and the sentence that says why: the gyro."""
+
+SCALE_OFF = 0.2
+ANGLE_OFF_DEG = 3.0
+
+
+def judge_gyroscope(r):
+    """("good" | "doubtful" | "refused", sentence) about a GyroscopeResult; NaN never passes."""
+    if r.wrong_axes:
+        return "refused", r.wrong_axes
+    for row in r.P:
+        for x in row:
+            if not abs(x) < 1e6:
+                return "refused", "the solve did not end in finite numbers"
+    for k in range(3):
+        if not abs(r.P[k][k] - 1.0) <= SCALE_OFF:
+            return "refused", ("gyro scale of axis %s is %.3f, 0.8 to 1.2 is the limit: wrong "
+                               "range or LSB?" % ("xyz"[k], r.P[k][k]))
+    left_out = ["%s (%s)" % (face, r.flips[face]["reason"]) for face in sorted(r.flips)
+                if not r.flips[face]["used"]]
+    tail = "; left out: " + ", ".join(left_out) if left_out else ""
+    unseen = ["xyz"[k] for k in range(3) if k not in r.signs_seen]
+    if unseen:
+        tail += "; sign of %s not seen, no quarter turn about it" % " and ".join(unseen)
+    if len(r.missing) == 3:
+        return "refused", "no usable flip about any axis" + tail
+    if r.missing:
+        return "doubtful", ("no usable flip about axis %s, its old values are kept"
+                            % " and ".join(["xyz"[k] for k in r.missing])) + tail
+    for face in sorted(r.flips):
+        angle = r.flips[face]["angle_deg"]
+        if r.flips[face]["used"] and not abs(angle - 180.0) <= ANGLE_OFF_DEG:
+            return "doubtful", ("the flips of an axis disagree: %s turned by %.1f degrees if "
+                                "the others were half turns, 3 is the limit" % (face, angle))
+    scale = max([r.sigma[k][k] for k in range(3)])
+    if not scale <= 0.01:
+        return "doubtful", "the scale is known to %.1f %% only, 1 is the limit" % (100 * scale)
+    used = len([1 for face in r.flips if r.flips[face]["used"]])
+    return "good", ("%d flips, scale known to %.2f %%, bias to %.3f degrees/s"
+                    % (used, 100 * scale, max(r.sigma_bias_dps))) + tail

@@ -1,0 +1,45 @@
+"""What a session yields: still placements of the box and the moves between them."""
+
+
+class Placement:
+    """One unbroken rest of the box in one pose; the unit of replication of every solve.
+
+    pose         code of faces.py (1..12 a face with a or b, 12 + k the k-th leaning pose)
+    first, n     index of its first sample in the session, number of samples
+    sums         seven exact integers: counts of ax ay az gx gy gz temp summed over n samples
+    noise        six floats: standard deviation within the pose, counts, ax ay az gx gy gz
+    duration_us  the time the n samples span, n times the mean interval
+    """
+
+    def __init__(self, pose, first, n, sums, noise, duration_us):
+        self.pose = pose
+        self.first = first
+        self.n = n
+        self.sums = sums
+        self.noise = noise
+        self.duration_us = duration_us
+
+
+class Move:
+    """The interval between two consecutive placements, rests at both ends included.
+
+    before, after    indices into the list of placements (-1: none)
+    first, n         index of its first sample, number of samples
+    gyro_sums        three exact integers: counts of gx gy gz summed over n samples
+    duration_us      true elapsed time from the device's timestamps
+    drops            samples missing in between, judged by the timestamps
+    saturated        True when a gyro axis touched full scale
+    largest_gap_us   the longest interval between two samples
+    """
+
+    def __init__(self, before, after, first, n, gyro_sums, duration_us, drops, saturated,
+                 largest_gap_us):
+        self.before = before
+        self.after = after
+        self.first = first
+        self.n = n
+        self.gyro_sums = gyro_sums
+        self.duration_us = duration_us
+        self.drops = drops
+        self.saturated = saturated
+        self.largest_gap_us = largest_gap_us

@@ -1,0 +1,58 @@
+"""Which pose a rest is, in any order: the face from gravity, a or b from the gyro."""
+
+CROOKED_DEG = 15.0  # live limit: a raw bias of 112 mg alone tilts gravity by 6.4 degrees
+LEANING_DEG = 30.0  # from here on it rests on no face at all
+HALF_TURN_DEG = 140.0  # 180 less 40: from here on a flip
+SAME_DEG = 40.0  # up to here the box was put back as it was
+
+
+def turned_deg(move, bias, lsb_per_dps, axis):
+    """Degrees in 0..180 the box turned about an axis of its own, whole turns left out."""
+    if move.n == 0:
+        return 0.0
+    mean = move.gyro_sums[axis] / move.n - bias[axis]
+    angle = abs(mean / lsb_per_dps * (move.duration_us / 1e6)) % 360
+    return min(angle, 360 - angle)
+
+
+class PoseLabel:
+    """code of the pose (0: refused), and reason, value, limit, unit of a refusal.
+
+    last: code of the placement this rest follows on the same face, or 0; done: codes already
+    there; turned: degrees since, 180 where there is no gyro; saturated: the gyro was.
+    """
+
+    def __init__(self, face, off_deg, last, done, turned, saturated):
+        self.code = 0
+        self.reason = ""
+        if self.off_face(off_deg):
+            return
+        a = 1 + 2 * face
+        code = a if a not in done else a + 1
+        if last and turned <= SAME_DEG and not saturated:
+            self.code = last
+        elif last and self.no_flip(turned, saturated):
+            return
+        elif code in done:
+            self.refuse("already done", 2, 2, "placements")
+        else:
+            self.code = code
+
+    def refuse(self, reason, value, limit, unit):
+        self.reason = reason
+        self.value = value
+        self.limit = limit
+        self.unit = unit
+
+    def off_face(self, off_deg):
+        if off_deg > CROOKED_DEG:
+            reason = "crooked" if off_deg <= LEANING_DEG else "leaning"
+            self.refuse(reason, off_deg, CROOKED_DEG, "deg")
+        return off_deg > CROOKED_DEG
+
+    def no_flip(self, turned, saturated):
+        """Refuse an angle that should have been a half turn; False where it was one."""
+        if turned < HALF_TURN_DEG:
+            reason = "saturated" if saturated else "not a flip"
+            self.refuse(reason, turned, HALF_TURN_DEG, "deg")
+        return turned < HALF_TURN_DEG
