@@ -1,0 +1,18 @@
+"""What the board runs at power-up. Ctrl-C ends it: only Exception is caught here."""
+
+
+def main():
+    from sixflip_device import power_up
+    power_up.main()
+
+
+try:
+    main()
+except Exception as e:  # noqa: BLE001 - the last resort: say it, leave the board usable
+    import sys
+    print('{"event": "error", "what": "the firmware stopped: %s", "expected": "a report"}'
+          % repr(e).replace("\\", "/").replace('"', "'"))
+    if hasattr(sys, "print_exception"):
+        sys.print_exception(e)
+    else:
+        sys.excepthook(type(e), e, e.__traceback__)

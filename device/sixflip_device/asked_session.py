@@ -1,0 +1,64 @@
+"""What sampling does otherwise when a plan, or a face of the session before, was asked for."""
+
+from sixflip import capture_blocks
+
+from .capture_meta import columns, meta_bytes
+from .capture_store import CaptureStore
+from .flash_files import NEW
+
+
+class ContinuedStore(CaptureStore):
+    """Goes on with the file that again.py has begun; asked is what it found."""
+
+    def __init__(self, root, meta, mask, asked):
+        self._asked = asked
+        CaptureStore.__init__(self, root, meta, mask, 0)
+
+    def _open(self, meta):
+        asked, self._asked = self._asked, None
+        if asked is None:  # once more, without samples
+            return CaptureStore._open(self, meta)
+        from sixflip.capture_scan import go_on
+        if asked.sums_only:
+            self._short(asked.reason)
+        self.bytes, self.kept = asked.bytes, asked.kept
+        try:
+            self._file = open(self._root + NEW, "ab")  # noqa: SIM115 - open for a session
+        except OSError as e:
+            self._fail(e)
+        self._writer = capture_blocks.BlockWriter(self._write, None, self._columns,
+                                                  sums_only=self.sums_only)
+        go_on(self._writer, asked.samples, asked.seconds, asked.us)
+        return None
+
+
+def store_of(unit, taken):
+    """The CaptureStore; taken.session becomes that of the file that goes on."""
+    asked = unit.taken
+    mask = columns(unit.sensor.imu)
+    if asked.face >= 0:
+        taken.session = asked.session
+        return ContinuedStore(unit.board.root, meta_bytes(unit, taken.session), mask, asked)
+    rate_hz = unit.settings["rate_hz"]
+    # six seconds of handling a pose
+    samples = sum(asked.lengths) + (6 * len(asked.lengths) + 2 * asked.hold_s) * rate_hz
+    width = 2 + 2 * len(capture_blocks.places(mask))
+    return CaptureStore(unit.board.root, meta_bytes(unit, taken.session), mask,
+                        samples * width * 11 // 10)
+
+
+def session(unit, chip, store):
+    """The session.Session; chip: what it wants to know of the sensor."""
+    asked = unit.taken
+    settings = unit.settings
+    if asked.wanted:
+        from sixflip.planned_session import PlannedSession
+        return PlannedSession(chip, asked.wanted, asked.lengths, asked.hold_s,
+                              settings["timeout_s"])
+    from sixflip.resumed_session import resume
+    from sixflip.session import Session
+    made = Session(*chip, pose_samples=settings["pose_samples"], timeout_s=settings["timeout_s"])
+    resume(made, asked.placements, asked.samples)
+    for code in made.redo(asked.face):
+        store.withdraw(code)
+    return made

@@ -1,0 +1,102 @@
+"""A board with MicroPython's machine module: pins, I2C, stdin as the host's line."""
+
+import os
+import select
+import sys
+
+import machine
+
+from .board import Board, LineReader
+
+HALF_CLOCK_US = 5  # 100 kHz, slow enough for any chip on the bus
+
+
+class MachineBoard(Board):
+    """make_i2c() -> a new machine.I2C; scl, sda, led, button: pin numbers, names or None.
+
+    The button is wired from the pin to ground
+    unless pressed=1 says that pressing gives a high level.
+    """
+
+    def __init__(self, name, make_i2c, scl, sda, led=None, button=None, led_on=1, pressed=0):
+        self.name = name
+        self._make_i2c = make_i2c
+        self._scl = scl
+        self._sda = sda
+        pull = machine.Pin.PULL_DOWN if pressed else machine.Pin.PULL_UP
+        self._led = _pin(led, machine.Pin.OUT)
+        self._led_on = led_on
+        self._button = _pin(button, machine.Pin.IN, pull)
+        self._pressed = pressed
+        cwd = os.getcwd()  # "/" on most boards, "/flash" on STM32
+        self.root = cwd if cwd.endswith("/") else cwd + "/"
+        self.unique_id = "".join(["%02x" % b for b in machine.unique_id()])
+        self._poll = select.poll()
+        self._poll.register(sys.stdin, select.POLLIN)
+        self._reader = LineReader()
+        self.i2c = make_i2c()
+
+    def reopen_i2c(self):
+        # pins that were driven by hand have lost their I2C function
+        self.i2c = self._make_i2c()
+        return self.i2c
+
+    def _open_drain(self, pin):
+        return machine.Pin(pin, machine.Pin.OPEN_DRAIN, value=1)
+
+    def scl_pulse(self):
+        """One clock pulse with SDA released: lets a chip shift out what it still holds."""
+        scl = self._open_drain(self._scl)
+        self._open_drain(self._sda)
+        scl.value(0)
+        self.sleep_us(HALF_CLOCK_US)
+        scl.value(1)
+        self.sleep_us(HALF_CLOCK_US)
+
+    def stop_condition(self):
+        """SDA rises while SCL is high: every chip on the bus goes back to waiting."""
+        scl = self._open_drain(self._scl)
+        sda = self._open_drain(self._sda)
+        scl.value(0)
+        sda.value(0)
+        self.sleep_us(HALF_CLOCK_US)
+        scl.value(1)
+        self.sleep_us(HALF_CLOCK_US)
+        sda.value(1)
+        self.sleep_us(HALF_CLOCK_US)
+
+    def led(self, on):
+        if self._led is not None:
+            self._led.value(self._led_on if on else 1 - self._led_on)
+
+    def button(self):
+        return self._button is not None and self._button.value() == self._pressed
+
+    def read_line(self):
+        while self._poll.poll(0):
+            ch = sys.stdin.read(1)
+            if not ch:
+                return None
+            line = self._reader.feed(ch)
+            if line is not None:
+                return line
+        return None
+
+    def reset(self):
+        machine.reset()
+
+
+def _pin(identity, mode, pull=-1):
+    """The pin, or None: boards of one family differ in which of them have an LED."""
+    if identity is None:
+        return None
+    try:
+        return machine.Pin(identity, mode, pull)
+    except ValueError:
+        return None
+
+
+def choose(settings, name, default):
+    """The setting, or the board's own default where it is not given."""
+    value = settings[name]
+    return default if value is None else value

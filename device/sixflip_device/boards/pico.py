@@ -1,0 +1,19 @@
+"""Raspberry Pi Pico and Pico W (rp2): I2C0 on GP4/GP5, the LED on the board."""
+
+import machine
+
+from .machine_board import MachineBoard, choose
+
+
+def make(settings):
+    bus = choose(settings, "i2c", 0)
+    scl = choose(settings, "scl", 5)
+    sda = choose(settings, "sda", 4)
+    freq = settings["freq"]
+
+    def make_i2c():
+        return machine.I2C(bus, scl=machine.Pin(scl), sda=machine.Pin(sda), freq=freq)
+
+    # "LED" is GP25 on a Pico and a pin of the radio chip on a Pico W
+    return MachineBoard("pico", make_i2c, scl, sda, led=choose(settings, "led", "LED"),
+                        button=settings["button"])

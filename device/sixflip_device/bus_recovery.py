@@ -1,0 +1,120 @@
+"""A bus that fails while sampling: retry, free it, identify the chip, configure it again.
+
+The usual cause is a reset in mid-read: the chip holds SDA low until it has been clocked out,
+up to nine pulses. The other one is a chip that lost its power for a moment and came back
+asleep; it answers, with frozen numbers, so awake() is asked now and then.
+
+Only the chip that was there is had back, by its ID register: in mid-session a small heap has
+no room for the prober. Once it is given up, the start phase probes for whatever is there.
+"""
+
+RETRIES = 3
+RETRY_US = 500
+PAUSES_MS = (10, 100, 500, 1000, 2000, 4000)  # before each recovery; then it is given up
+
+READ = 0       # a fresh sample is in the buffer
+RECOVERED = 1  # the chip was set up anew: what was being captured must be thrown away
+
+
+class BusLost(OSError):
+    """The sensor cannot be had back; the sentence says what was tried."""
+
+
+def free_bus(board):
+    """Nine clock pulses and a STOP where pins can be driven; always a new bus object."""
+    if board.scl_pulse is not None:
+        for _ in range(9):
+            board.scl_pulse()
+        board.stop_condition()
+    board.reopen_i2c()
+
+
+def sleeper(board):
+    """For the drivers, which know no board."""
+    def sleep_ms(ms):
+        board.sleep_us(ms * 1000)
+    return sleep_ms
+
+
+class Sensor:
+    """The IMU, .imu, behind a bus that may fail.
+
+    .errors counts failed transfers, .recoveries how often the chip was set up anew.
+    """
+
+    def __init__(self, board, imu, settings, events):
+        self._board = board
+        self._settings = settings
+        self._events = events
+        self.imu = imu
+        self.errors = 0
+        self.recoveries = 0
+
+    def read_into(self, sample):
+        """READ or RECOVERED (then sample is not to be used); BusLost when it is hopeless."""
+        try:
+            if self.imu.read_into(sample):
+                return READ
+            error = None  # all zeros or all ones: no sensor at work reads like that
+        except OSError as e:
+            error = e
+        if error is None:
+            return self.check()
+        return self._retry(error, sample)
+
+    def check(self):
+        """READ when the chip is as it was configured, else RECOVERED or BusLost."""
+        error = None
+        for _ in range(RETRIES):
+            try:
+                # a wrong answer may be a glitch on the bus: ask again before believing it
+                if self.imu.awake() or self.imu.awake():
+                    return READ
+                self._report(None, "the chip was reset or fell asleep; configuring it again")
+                self.imu.configure(self._settings["rate_hz"])
+                self.recoveries += 1
+                return RECOVERED
+            except OSError as e:
+                error = e
+                self.errors += 1
+                self._board.sleep_us(RETRY_US)
+        return self._recover(error)
+
+    def _report(self, error, action):
+        number = None if error is None or not error.args else error.args[0]
+        self._events.emit("bus_error", errno=number, count=self.errors, action=action)
+
+    def _retry(self, error, sample):
+        self.errors += 1
+        for _ in range(RETRIES):
+            self._board.sleep_us(RETRY_US)
+            try:
+                self.imu.read_into(sample)
+            except OSError as e:
+                error = e
+                self.errors += 1
+                continue
+            self._report(error, "read again")
+            return READ
+        return self._recover(error)
+
+    def _recover(self, error):
+        imu = self.imu
+        for pause in PAUSES_MS:
+            self._report(error, "freeing the bus and asking the chip again")
+            self._board.sleep_us(pause * 1000)
+            try:
+                free_bus(self._board)
+                if not imu.answers(self._board.i2c):
+                    raise OSError(5, "another ID than that of the %s" % imu.name)
+                imu.configure(self._settings["rate_hz"])
+            except OSError as e:
+                error = e
+                self.errors += 1
+                continue
+            self.recoveries += 1
+            self._report(error, "recovered")
+            return RECOVERED
+        self._report(error, "given up")
+        raise BusLost("the sensor no longer answers (%s); recovered %d times before"
+                      % (error, self.recoveries))

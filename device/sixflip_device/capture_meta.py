@@ -1,0 +1,27 @@
+"""What stands in a capture's header."""
+
+import json
+
+import sixflip
+from sixflip import capture_blocks
+
+
+def meta_bytes(unit, number, resumed=0):
+    """The capture's metadata, JSON in bytes: what the driver says, and who and how.
+
+    resumed: so many samples are of a session before, whose moves nobody summed up
+    """
+    meta = unit.sensor.imu.metadata()
+    if resumed:
+        meta["resumed_at"] = resumed
+    meta.update({"g": unit.settings["g"], "device_id": unit.board.unique_id,
+                 "board": unit.board.name, "firmware": sixflip.__version__, "session": number,
+                 "float_bits": 64 if 1.0 + 1e-9 != 1.0 else 32})
+    return json.dumps(meta).encode()
+
+
+def columns(imu):
+    mask = capture_blocks.ACCEL
+    mask |= capture_blocks.GYRO if imu.has_gyro else 0
+    mask |= capture_blocks.TEMP if imu.has_temp else 0
+    return mask

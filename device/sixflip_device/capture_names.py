@@ -1,0 +1,40 @@
+"""A session's capture finds its name when it is known what became of the session."""
+
+import os
+
+from .flash_files import GOOD, NEW, REFUSED, remove, size
+
+
+def move(source, target):
+    remove(target)
+    os.rename(source, target)
+
+
+def finish_interrupted(root, session):
+    """A power cut after the record was saved may have left its capture unnamed."""
+    try:
+        with open(root + NEW, "rb") as f:
+            head = f.read(1200)
+        if ('"session": %d' % session).encode() in head:
+            move(root + NEW, root + GOOD)
+    except OSError:
+        pass
+
+
+def keep(root):
+    """The session's record is saved: its capture takes the place of the one before, and of
+    one that was refused earlier."""
+    move(root + NEW, root + GOOD)
+    remove(root + REFUSED)
+
+
+def refuse(root):
+    move(root + NEW, root + REFUSED)
+
+
+def refuse_longer(root):
+    """A session that a Ctrl-C ended, perhaps one nobody asked for, replaces no longer one."""
+    if size(root + NEW) >= size(root + REFUSED):
+        refuse(root)
+    else:
+        remove(root + NEW)

@@ -1,0 +1,14 @@
+"""Is a gyro axis inverted or exchanged? Asked of the moves, before the gyro is judged."""
+
+from sixflip.flip_turns import mean_rate
+from sixflip.gyro_axes import wrong_axes
+
+
+def run(unit):
+    taken = unit.taken
+    r = taken.gyro
+    lsb_per_dps = taken.record.gyro_lsb_per_dps
+    r.wrong_axes, r.signs_seen = wrong_axes(taken.placements, taken.moves, lsb_per_dps,
+                                            mean_rate(taken.placements, lsb_per_dps))
+    taken.placements = taken.moves = None
+    return "judging_gyro"

@@ -1,0 +1,25 @@
+"""What the gyro saw of the flips reaches both verdicts: a good one becomes doubtful."""
+
+from sixflip import flip_doubt
+from sixflip.chips.gyro_tolerance import GYRO_SCALE
+
+
+def run(unit):
+    taken = unit.taken
+    record = taken.record
+    r = taken.gyro
+    taken.gyro = None
+    tolerance = GYRO_SCALE.get(record.chip)
+    if r.verdict == "good":
+        said = flip_doubt.scale_doubt(r, tolerance)
+        if said:
+            for answer in (taken.facts["gyro"], record.gyro):
+                answer["verdict"], answer["reason"] = "doubtful", said
+    if taken.verdict != "refused":
+        known = taken.angles or ()
+        said = flip_doubt.accelerometer_doubt(r, tolerance, record.accel["tilt_deg"], known)
+        if said:
+            taken.reason = said if taken.verdict == "good" else taken.reason + "; " + said
+            taken.verdict = "doubtful"
+            record.accel["verdict"], record.accel["reason"] = "doubtful", taken.reason
+    return "saving"

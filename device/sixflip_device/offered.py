@@ -1,0 +1,38 @@
+"""A record that a host has put on the flash: checked, then the newest, or refused.
+
+It comes as offered.bin, is looked at once and is gone afterwards, whatever came of it.
+"""
+
+from .blank_record import blank_record
+from .flash_files import OFFERED, remove
+from .in_force import misfit
+
+
+def _take(unit, name):
+    """(slot, record); ValueError or OSError when it is not to be had."""
+    from sixflip.correction_record import decode
+
+    from .record_slots import RecordSlots
+    with open(name, "rb") as f:
+        record = decode(f.read())
+    reason = misfit(blank_record(unit))(record)
+    if reason:
+        raise ValueError(reason)
+    from sixflip.correction import Correction
+    Correction(record)  # it can be calculated with
+    return RecordSlots(unit.board.root).save(record), record
+
+
+def take(unit):
+    name = unit.board.root + OFFERED
+    reason = ""
+    try:
+        slot, record = _take(unit, name)
+    except (ValueError, OSError, ArithmeticError) as e:
+        reason = str(e)
+    remove(name)  # before a host hears of it and lets go of the board
+    if reason:
+        unit.events.emit("not_restored", reason=reason)
+    else:
+        unit.events.emit("restored", slot=slot, sequence=record.sequence,
+                         session=record.session, measured=record.measured())

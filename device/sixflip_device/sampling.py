@@ -1,0 +1,70 @@
+"""Second phase: a guided session, its raw capture streamed to flash.
+
+The old correction is out of force while samples are taken (power_up.py): raw means raw.
+"""
+
+import os
+
+import sixflip.session  # noqa: F401 - the longest source first, while there is room
+from sixflip import capture_blocks
+
+from .capture_store import CaptureStore
+from .flash_files import FLAG, remove
+from .guided_session import GuidedSession
+from .power_up import free
+from .session_teller import names
+
+
+class Taken:
+    """What is left of sampling.
+
+    session     the random number that names it in capture and record
+    how, ended  "complete", "timed out", "stopped" or "bus lost", and a sentence
+    placements, moves, missing (names)
+    kept        the capture's file is whole
+    """
+
+
+def _store(unit, number):
+    from .capture_meta import columns, meta_bytes
+    mask = columns(unit.sensor.imu)
+    width = 2 + 2 * len(capture_blocks.places(mask))
+    # twelve poses with six seconds of handling each
+    samples = 12 * (unit.settings["pose_samples"] + 6 * unit.settings["rate_hz"])
+    return CaptureStore(unit.board.root, meta_bytes(unit, number), mask,
+                        samples * width * 11 // 10)
+
+
+def run(unit):
+    remove(unit.board.root + FLAG)
+    unit.asked = False
+    taken = Taken()
+    taken.session = int.from_bytes(os.urandom(4), "little")
+    if unit.taken is None:
+        store = _store(unit, taken.session)
+    else:
+        from .asked_session import store_of
+        store = store_of(unit, taken)
+    free(("sixflip_device.capture_meta", "sixflip.chips.header"))
+    guided = GuidedSession(unit, store)
+    unit.taken = None
+    unit.events.emit("calibrating", missing=names(guided.session.missing()),
+                     plan=guided.session.wanted is not None,
+                     session=taken.session, sums_only=store.sums_only, reason=store.reason)
+    taken.how = "interrupted"
+    try:
+        taken.how = guided.run()
+    finally:
+        # after Ctrl-C too: what was captured stays readable
+        taken.kept = store.finish(taken.how == "complete", guided.session.placements)
+        if taken.how == "interrupted" and taken.kept:
+            from .capture_names import refuse_longer
+            refuse_longer(unit.board.root)
+    taken.ended = guided.ended
+    taken.placements = guided.session.placements
+    taken.moves = guided.session.moves
+    taken.missing = names(guided.session.missing())
+    unit.events.emit("capture", samples=store.samples, kept=store.kept,
+                     sums_only=store.sums_only, bytes=store.bytes, reason=store.reason)
+    unit.taken = taken
+    return "checking" if taken.how == "complete" else "saving"

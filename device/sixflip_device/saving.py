@@ -1,0 +1,68 @@
+"""Last phase of a calibration: what came of it is told, and the record goes to flash.
+
+A refused session replaces nothing: its capture is kept as refused.bin, and the record
+before goes on.
+"""
+
+from .capture_names import keep, refuse
+
+
+def _file_away(unit, how):
+    """how: keep or refuse. A capture that cannot be renamed stays as capture.new."""
+    if unit.taken.kept:
+        try:
+            how(unit.board.root)
+        except OSError as e:
+            unit.events.error("the capture stays as capture.new: %s" % e, "a rename that works")
+
+
+def _tell(unit):
+    """The solved event; True when there is something to save."""
+    taken = unit.taken
+    if taken.how != "complete":
+        unit.events.emit("solved", verdict="refused", reason=taken.ended,
+                         missing=taken.missing)
+        return False
+    unit.events.emit("solved", verdict=taken.verdict, reason=taken.reason, **taken.facts)
+    taken.facts = None
+    return taken.verdict != "refused"
+
+
+def _save(unit, new):
+    """Writes it if it says anything new; sets unit.record and unit.slot."""
+    from .in_force import again
+    again(unit, new)
+    old = unit.record
+    if old is not None:
+        new.mounting = old.mounting  # the box has moved, the sensor in it has not
+        from .record_change import unchanged
+        if unchanged(old, new):
+            unit.events.emit("saved", slot=unit.slot, sequence=old.sequence, written=False,
+                             reason="no number changed by more than its uncertainty: the "
+                             "record and its capture stay")
+            return _file_away(unit, refuse)
+    from .record_slots import RecordSlots
+    unit.record = new
+    try:
+        unit.slot = RecordSlots(unit.board.root).save(new)
+    except OSError as e:
+        unit.slot = None
+        unit.events.error("the record could not be written: %s; it is in force until the "
+                          "power goes" % e, "room for 1 KB on the flash")
+        return _file_away(unit, refuse)
+    _file_away(unit, keep)
+    return unit.events.emit("saved", slot=unit.slot, sequence=new.sequence, written=True)
+
+
+def run(unit):
+    taken = unit.taken
+    taken.placements = taken.moves = None
+    if _tell(unit):
+        _save(unit, taken.record)
+    else:
+        _file_away(unit, refuse)
+    unit.taken = None
+    if taken.how == "bus lost":
+        unit.events.error(taken.ended, "the sensor that was there a moment ago")
+        return "start"
+    return "resume"

@@ -1,0 +1,47 @@
+"""Roll, pitch and yaw of the corrected samples (sixflip.heading, Li Eq. 8) in the stream.
+
+Every sample is integrated, not only those that are sent. Angles in degrees, yaw from where the
+stream began and not wrapped. "heading" in sixflip.json may hold gain and lever_arm.
+"""
+
+import math
+from array import array
+
+from sixflip.heading import Heading
+
+
+class HeadingOutput:
+    """As lines, {"event": "heading", "t_us", "roll_deg", "pitch_deg", "yaw_deg"}, or frames."""
+
+    def __init__(self, unit):
+        self._unit = unit
+        self._heading = _heading(unit)
+        self._out = array("f", [0.0] * 6)
+        self._angles = (0.0, 0.0, 0.0)
+        self._frames = None
+        if unit.binary:
+            from sixflip.stream_frame import HEADING, FrameWriter
+            self._frames = FrameWriter(HEADING)
+
+    def step(self, sample, dt_us):
+        out = self._unit.correction.apply(sample, self._out)
+        self._angles = self._heading.step(out[:3], out[3:], dt_us * 1e-6)
+
+    def send(self, t_us, sample):
+        roll, pitch, yaw = [math.degrees(x) for x in self._angles]
+        if self._frames:
+            self._unit.board.write_bytes(self._frames.frame(t_us, (roll, pitch, yaw)))
+        else:
+            self._unit.events.emit("heading", t_us=t_us, roll_deg=roll, pitch_deg=pitch,
+                                   yaw_deg=yaw)
+
+
+def _heading(unit):
+    given = unit.settings["heading"] or {}
+    g = unit.settings["g"]
+    try:
+        return Heading(given.get("gain", -0.02), given.get("lever_arm"), g)
+    except (TypeError, ValueError) as e:
+        unit.events.error("heading in sixflip.json: %s" % e,
+                          "a gain above -1 and up to 0; -0.02 is used")
+        return Heading(g=g)
