@@ -1,0 +1,120 @@
+"""The board's machine module: one simulated I2C bus, pins, resets. boot.py sets the world."""
+
+import raw_repl
+
+world = None
+_id = b"\x00" * 8
+_wiring = {}
+_levels = {}
+
+PWRON_RESET, HARD_RESET, WDT_RESET, DEEPSLEEP_RESET, SOFT_RESET = 1, 2, 3, 4, 5
+cause = PWRON_RESET
+
+
+def start(a_world, board_id, wiring):
+    global world, _id, _wiring
+    world = a_world
+    _id = board_id
+    _wiring = wiring
+
+
+def unique_id():
+    return _id
+
+
+def freq(hz=None):
+    return 125000000
+
+
+def reset_cause():
+    return cause
+
+
+def reset():
+    raise raw_repl.Restart(raw_repl.HARD_RESET)
+
+
+def soft_reset():
+    raise raw_repl.Restart(raw_repl.SOFT_RESET)
+
+
+def disable_irq():
+    return 0
+
+
+def enable_irq(state):
+    pass
+
+
+def idle():
+    world.clock.sleep_us(100)
+
+
+def I2C(*identity, **options):
+    """The one bus of the world, whatever its number and pins.
+
+    On an STM32 the pins belong to the bus: naming them is a ValueError, as there.
+    """
+    if world.spec["flavour"] == "stm32" and ("scl" in options or "sda" in options):
+        raise ValueError("extra keyword arguments given")
+    return world.i2c
+
+
+SoftI2C = I2C
+
+
+class Pin:
+    IN, OUT, OPEN_DRAIN, ALT = 0, 1, 2, 3
+    PULL_UP, PULL_DOWN = 1, 2
+
+    def __init__(self, identity, mode=-1, pull=-1, value=None):
+        self.identity = identity
+        self.mode = mode
+        if value is not None:
+            self.value(value)
+        elif pull == Pin.PULL_UP:
+            _levels.setdefault(identity, 1)
+
+    def init(self, mode=-1, pull=-1, value=None):
+        self.__init__(self.identity, mode, pull, value)
+
+    def value(self, level=None):
+        """Read or set. Pins of the bus are driven through to it, a held button reads 0."""
+        if level is None:
+            if self.identity == _wiring.get("button_pin") and _wiring.get("button_held"):
+                return 0
+            return _levels.get(self.identity, 0)
+        self._drive(level)
+        return None
+
+    def _drive(self, level):
+        before = _levels.get(self.identity, 1)
+        _levels[self.identity] = 1 if level else 0
+        if self.identity == _wiring.get("scl_pin", 5) and not before and level:
+            world.i2c.pulse_scl()
+
+    __call__ = value
+
+    def on(self):
+        self.value(1)
+
+    def off(self):
+        self.value(0)
+
+    high = on
+    low = off
+
+    def toggle(self):
+        self.value(1 - self.value())
+
+
+class LED(Pin):
+    pass
+
+
+class WDT:
+    def __init__(self, identity=0, timeout=5000):
+        self.timeout = timeout
+
+    def feed(self):
+        pass
