@@ -1,0 +1,186 @@
+"""What a planned capture can tell apart: projection, ranks and the alias index.
+
+Everything is linear algebra on the rows of a plan. The signature of an effect is its columns
+(one a coefficient) after the nominal parameters have been projected out; an effect without
+anything left is silent. The alias index A(a|b) = |P_b S_a|^2 / |S_a|^2 is the share of a's
+signature that b can reproduce, averaged over a's coefficients with equal weight.
+"""
+import numpy as np
+
+from sixflip import faces
+from sixflip_sim.effects.library import EFFECTS
+
+NEGLIGIBLE = 1e-9  # of the largest singular value, or of the energy before projection
+# Which effects have a signature in rests and turns; the order is that of the printed table.
+ACCEL = ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic",
+         "cross_quadratic", "cubic", "asymmetry", "vibration_rectification", "saturation",
+         "hysteresis", "creep", "box_tilt", "table_tilt", "local_gravity", "supply")
+GYRO = ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic", "cubic",
+        "asymmetry", "saturation", "g_sensitivity", "hysteresis", "earth_rate", "supply")
+# Shapes at which a signature is looked at: a supply that differs, a rail below 1 g, a vibration.
+SHAPES = {"supply": {"volts": 3.4}, "vibration_rectification": {"vibration_mg": 300.0},
+          "saturation": {"level": 0.95}}
+GYRO_SHAPES = {"saturation": {"level": 50.0}}
+
+
+def basis(columns):
+    """Orthonormal basis (m, r) of the span of columns (m, k)."""
+    if columns.shape[1] == 0:
+        return columns
+    u, s, _ = np.linalg.svd(columns, full_matrices=False)
+    return u[:, s > NEGLIGIBLE * max(s[0], 1e-300)] if len(s) else u
+
+
+def without(space, columns):
+    """columns (m, k) with their part in the span of the orthonormal `space` removed, twice:
+    once leaves rounding of the size that decides ranks."""
+    for _ in range(2):
+        columns = columns - space @ (space.T @ columns)
+    return columns
+
+
+def effect_columns(effect, moment, n):
+    """Regressor form: keys and the matrix (3n, k), rows in the order x y z of each moment."""
+    found = {}
+    for key, axis, value in effect.terms(moment):
+        column = found.setdefault(key, np.zeros((n, 3)))
+        column[:, axis] += value
+    return list(found), np.stack([c.reshape(-1) for c in found.values()], 1)
+
+
+def blocks_of(rows, values, mask):
+    """Columns (3n, 3): values (n,) into one axis each, where mask holds."""
+    out = np.zeros((rows.n, 3, 3))
+    for i in range(3):
+        out[:, i, i] = values * mask
+    return out.reshape(3 * rows.n, 3)
+
+
+class Design:
+    """Nominal columns of one sensor for the rows of a plan, and the signatures of the effects.
+
+    sensor "accel": a 3x3 matrix common to all sessions; a bias, the table's tilt and two free
+    angles of each leaning pose per session; the box's tilt unless it is certified.
+    sensor "gyro": the 3x3 matrix of the turns, a bias per session and the horizontal Earth rate.
+    """
+
+    def __init__(self, rows, sensor="accel", certified_box=False, tilt=True):
+        self.rows, self.sensor, self.certified_box = rows, sensor, certified_box
+        self._reduced = {}
+        # Nuisances that are effects too: they are looked at beside the other nuisances.
+        self.own = ("table_tilt",) if certified_box else ("table_tilt", "box_tilt")
+        parts = [self._matrix(), self._biases()]
+        if sensor == "accel":
+            if tilt:
+                parts.append(self._table())
+            parts.append(self._leaning())
+            if not certified_box:
+                parts.append(self._box())
+        else:
+            parts.append(self.raw("earth_rate")[1][:, 1:])
+        self.nominal = np.hstack(parts)
+        self.space = basis(self.nominal)
+
+    def _matrix(self):
+        felt = self.rows.at.f if self.sensor == "accel" else self.rows.at.w
+        every = np.ones(self.rows.n)
+        return np.hstack([blocks_of(self.rows, component, every) for component in felt])
+
+    def _biases(self):
+        every = np.ones(self.rows.n)
+        return np.hstack([blocks_of(self.rows, every, self.rows.session == s)
+                          for s in np.unique(self.rows.session)])
+
+    def _table(self):
+        """Two columns a session; poses that lean stand on no table."""
+        _, columns = effect_columns(EFFECTS["table_tilt"](), self.rows.at, self.rows.n)
+        flat = np.repeat(~self.rows.leaning, 3)
+        return np.hstack([columns * (flat & np.repeat(self.rows.session == s, 3))[:, None]
+                          for s in np.unique(self.rows.session)])
+
+    def _leaning(self):
+        """Two free angles for each leaning pose: only the length of gravity is known there."""
+        leaning = np.unique(self.rows.placement[self.rows.leaning])
+        columns = [self.tilts_of(p) for p in leaning]
+        return np.hstack(columns) if columns else np.zeros((3 * self.rows.n, 0))
+
+    def _box(self):
+        return effect_columns(EFFECTS["box_tilt"](), self.rows.at, self.rows.n)[1]
+
+    def tilts_of(self, placement):
+        """The two small turns of one placement as columns (3n, 2), a unit for a radian."""
+        mask = self.rows.placement == placement
+        out = np.zeros((self.rows.n, 3, 2))
+        for k, direction in enumerate((self.rows.at.table_x, self.rows.at.table_y)):
+            out[mask, :, k] = np.stack(direction, 1)[mask]
+        return out.reshape(3 * self.rows.n, 2)
+
+    def without_own(self, name):
+        """The same design without the nuisance that `name` is."""
+        if name not in self._reduced:
+            self._reduced[name] = Design(self.rows, self.sensor, self.certified_box
+                                         or name == "box_tilt", name != "table_tilt")
+        return self._reduced[name]
+
+    @property
+    def freedom(self):
+        """Residual degrees of freedom: equations less the rank of the nominal model."""
+        return 3 * self.rows.n - self.space.shape[1]
+
+    def raw(self, name):
+        """(keys, columns) of an effect before projection."""
+        shapes = GYRO_SHAPES if self.sensor == "gyro" and name in GYRO_SHAPES else SHAPES
+        effect = EFFECTS[name](self.sensor, {}, shapes.get(name))
+        return effect_columns(effect, self.rows.at, self.rows.n)
+
+    def signature(self, name):
+        """Columns (3n, k) of an effect that the nominal parameters cannot take up; None when
+        nothing is left of it, which is what silent means. A nuisance is not taken up by
+        itself."""
+        columns = self.raw(name)[1]
+        space = self.without_own(name).space if name in self.own else self.space
+        left = without(space, columns)
+        energy = (columns ** 2).sum()
+        return left if (left ** 2).sum() > NEGLIGIBLE * max(energy, 1e-300) else None
+
+
+def alias_index(a, b):
+    """A(a|b) for two signatures (m, ka), (m, kb): 0 nothing, 1 all of a is in b."""
+    space = basis(b)
+    return float(((space.T @ a) ** 2).sum() / (a ** 2).sum())
+
+
+def rank(columns, reference):
+    """How many combinations of the columns exceed 1e-8 of the reference's largest."""
+    if columns is None:
+        return 0
+    top = np.linalg.svd(reference, compute_uv=False)[0]
+    return int((np.linalg.svd(columns, compute_uv=False) > 1e-8 * top).sum())
+
+
+def even_contrasts(rows):
+    """How many residual degrees of freedom say something about the sensor: of any function of
+    the face alone, three channels, what the 12 parameters do not take up."""
+    free = np.hstack([blocks_of(rows, np.ones(rows.n), rows.face == face)
+                      for face in range(len(faces.FACES))])
+    space = Design(rows, certified_box=True, tilt=False).space
+    return rank(without(space, free), free)
+
+
+def norm_only_rank(rows):
+    """Rank and number of parameters of a calibration that knows |a| = g alone: the lower
+    triangle of the matrix and three biases (turning the box changes no norm)."""
+    f = np.stack(rows.at.f, 1)
+    columns = [f[:, i] * f[:, j] for i in range(3) for j in range(i + 1)]
+    columns += [f[:, i] for i in range(3)]
+    jacobian = np.stack(columns, 1)
+    return int(np.linalg.matrix_rank(jacobian, tol=1e-9)), jacobian.shape[1]
+
+
+def alias_matrix(signatures):
+    """(names, matrix): A(row | column) for {name: signature}, silent ones left out."""
+    names = [name for name in signatures if signatures[name] is not None]
+    spaces = {name: basis(signatures[name]) for name in names}
+    table = np.array([[((spaces[b].T @ signatures[a]) ** 2).sum() / (signatures[a] ** 2).sum()
+                       for b in names] for a in names])
+    return names, table.reshape(len(names), len(names))

@@ -1,0 +1,59 @@
+"""Files that are there whole or not at all."""
+
+import os
+import tempfile
+
+from .errors import BadFile
+
+
+def write_bytes(path, data):
+    """Write `data` beside `path` under another name, then rename: never half a file."""
+    path = os.path.realpath(path) if os.path.islink(path) else os.fspath(path)
+    folder = os.path.dirname(path) or "."
+    if os.path.isdir(path):
+        raise BadFile("%s: is a folder, expected the name of a file to write" % path)
+    if os.path.exists(path) and not os.path.isfile(path):
+        return _into(path, data)        # a device, a pipe: never put a file in its place
+    try:
+        handle, temporary = tempfile.mkstemp(
+            prefix=os.path.basename(path)[:60] + ".", suffix=".new", dir=folder)
+    except OSError as error:
+        raise BadFile("%s: cannot be written: %s" % (path, error.strerror))
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+        os.chmod(temporary, 0o666 & ~_umask())
+        os.replace(temporary, path)
+    except BaseException as error:
+        os.unlink(temporary)
+        if isinstance(error, OSError):
+            raise BadFile("%s: cannot be written: %s" % (path, error.strerror))
+        raise
+
+
+def _into(path, data):
+    try:
+        with open(path, "wb") as file:
+            file.write(data)
+    except OSError as error:
+        raise BadFile("%s: cannot be written: %s" % (path, error.strerror))
+
+
+def write_text(path, text):
+    """write_bytes of UTF-8 text with the newlines it has."""
+    write_bytes(path, text.encode("utf-8"))
+
+
+def read_bytes(path):
+    """The bytes of a file, or BadFile saying why not."""
+    try:
+        with open(path, "rb") as file:
+            return file.read()
+    except OSError as error:
+        raise BadFile("%s: cannot be read: %s" % (os.fspath(path), error.strerror))
+
+
+def _umask():
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

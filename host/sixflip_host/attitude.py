@@ -1,0 +1,56 @@
+"""Follow the box's attitude through a move with the gyro, and level it at every rest."""
+
+import numpy as np
+
+LARGEST_GAP = 5     # sample intervals without a sample: what happened in between is unknown
+
+
+def heading_change(capture, rests, bias, axis, sign):
+    """Degrees (-180..180) the box turned about one of its axes from the first to the last rest.
+
+    rests   Rests in time order; gravity levels the attitude at each, only heading is integrated
+    bias    three gyro means at rest, counts; axis, sign: the face both ends lie on
+    Returns None when the gyro touched its rail or samples are missing on the way.
+    """
+    first, last = rests[0].end, rests[-1].first
+    gyro = capture.gyro[first:last].astype(float)
+    gaps = np.diff(capture.t_us[first - 1:last]) / 1e6
+    if len(gyro) and (np.abs(gyro).max() >= 32767 or gaps.max() > LARGEST_GAP * np.median(gaps)):
+        return None
+    rate = np.radians((gyro - bias) / capture.meta["gyro_lsb_per_dps"])
+    turns = _rotation(rate * gaps[:, None])
+    attitude = np.eye(3)            # body -> frame of the first rest
+    up = _unit(rests[0].mean)
+    for before, rest in zip(rests, rests[1:]):
+        for turn in turns[before.end - first:rest.first - first]:
+            attitude = attitude @ turn
+        attitude = _between(attitude @ _unit(rest.mean), up) @ attitude
+    # twist about the face's axis, up: what is left once gravity agrees
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    return sign * float(np.degrees(np.arctan2(attitude[j, i] - attitude[i, j],
+                                              attitude[i, i] + attitude[j, j])))
+
+
+def _unit(vector):
+    return np.asarray(vector, float) / np.linalg.norm(vector)
+
+
+def _rotation(vectors):
+    """Rotation matrices (n, 3, 3) of rotation vectors (n, 3), rad (Rodrigues)."""
+    angle = np.linalg.norm(vectors, axis=1)
+    safe = np.where(angle > 0, angle, 1)
+    K = np.zeros((len(vectors), 3, 3))
+    x, y, z = (vectors / safe[:, None]).T
+    K[:, 0, 1], K[:, 0, 2], K[:, 1, 2] = -z, y, -x
+    K[:, 1, 0], K[:, 2, 0], K[:, 2, 1] = z, -y, x
+    s, c = np.sin(angle)[:, None, None], np.cos(angle)[:, None, None]
+    return np.eye(3) + s * K + (1 - c) * (K @ K)
+
+
+def _between(a, b):
+    """The smallest rotation that takes unit vector a to unit vector b."""
+    axis = np.cross(a, b)
+    sine = np.linalg.norm(axis)
+    if sine < 1e-12:
+        return np.eye(3)
+    return _rotation((axis / sine * np.arctan2(sine, a @ b))[None])[0]

@@ -1,0 +1,10 @@
+"""One thread for the linear algebra; to be imported before numpy.
+
+Matrices of a few hundred rows gain nothing from more, and threads that spin while they wait for
+each other take ten times as long on a machine that has something else to do. What runs side by
+side are whole sensors, see gap/diagnosis.py. A setting of the user's own is kept.
+"""
+import os
+
+for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(name, "1")

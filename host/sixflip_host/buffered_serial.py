@@ -1,0 +1,77 @@
+"""A serial port read in large pieces and never waited for without end."""
+
+import time
+
+
+class BufferedSerial:
+    """What mpremote's SerialTransport uses of pyserial, on top of a pyserial port.
+
+    timeout   seconds that read() waits for its bytes
+    deadline  time.monotonic() after which a port that never stops talking counts as quiet
+    """
+
+    PIECE = 4096
+    LONGEST_LINE = 1 << 16
+
+    def __init__(self, port, timeout=5.0):
+        self.port = port
+        self.timeout = timeout
+        self.deadline = None
+        self.buffer = bytearray()
+        port.write_timeout = 5.0
+
+    def inWaiting(self):  # noqa: N802  the name mpremote calls
+        if self.deadline is not None and time.monotonic() > self.deadline:
+            return 0
+        return len(self.buffer) + self.port.in_waiting
+
+    def read(self, n=1):
+        """n bytes, or fewer when they did not come in time; none after the deadline."""
+        end = time.monotonic() + self.timeout
+        if self.deadline is not None and time.monotonic() > self.deadline:
+            return b""
+        while len(self.buffer) < n:
+            left = end - time.monotonic()
+            if left <= 0:
+                break
+            self.fill(min(left, 0.5))
+        taken = bytes(self.buffer[:n])
+        del self.buffer[:n]
+        return taken
+
+    def fill(self, wait):
+        """Take in what is there, waiting up to `wait` seconds for the first byte."""
+        if self.port.timeout != wait:
+            self.port.timeout = wait
+        waiting = self.port.in_waiting
+        self.buffer += self.port.read(min(waiting, self.PIECE) if waiting else 1)
+
+    def read_line(self, wait):
+        """The next line without its end, or None when no whole one came in `wait` seconds."""
+        end = time.monotonic() + wait
+        while True:
+            line, newline, rest = self.buffer.partition(b"\n")
+            if newline:
+                self.buffer = rest
+                return bytes(line.rstrip(b"\r"))
+            if len(self.buffer) > self.LONGEST_LINE:
+                self.buffer.clear()     # no line of the firmware's: noise, or another program
+            left = end - time.monotonic()
+            if left <= 0:
+                return None
+            self.fill(min(left, 0.2))
+
+    def write(self, data):
+        return self.port.write(data)
+
+    def close(self):
+        self.port.close()
+
+    def __getattr__(self, name):
+        return getattr(self.port, name)
+
+    def __setattr__(self, name, value):
+        if name in ("rts", "dtr"):
+            setattr(self.port, name, value)
+        else:
+            object.__setattr__(self, name, value)

@@ -1,0 +1,153 @@
+"""The command `sixflip`: a table of verbs, one module each, loaded when asked for."""
+
+import argparse
+import importlib
+import os
+import sys
+import traceback
+
+from .errors import SixflipError, UsageError
+from .terminal import plain
+
+# A verb's module has HELP (one line), EXAMPLE, add_arguments(parser) and run(args) -> exit code.
+VERBS = {
+    "boards": "sixflip_host.boards",
+    "provision": "sixflip_host.provision",
+    "calibrate": "sixflip_host.calibrate",
+    "pull": "sixflip_host.pull",
+    "verify": "sixflip_host.verify",
+    "solve": "sixflip_host.solve",
+    "refine": "sixflip_host.refine",
+    "restore": "sixflip_host.restore",
+    "check": "sixflip_host.check",
+    "mount": "sixflip_host.mount",
+    "stream": "sixflip_host.stream",
+    "show": "sixflip_host.show",
+    "import": "sixflip_host.import_csv",
+    "export": "sixflip_host.export",
+    "apply": "sixflip_host.apply",
+    "plan": "sixflip_host.plan",
+    "simulate": "sixflip_host.simulate",
+    "diagnose": "sixflip_host.diagnose",
+    "reproduce": "sixflip_host.reproduce",
+    "demo": "sixflip_host.demo",
+    "virtual-board": "sixflip_host.virtual_board_verb",
+}
+
+EXIT_CODES = ("exit codes: 0 done, 1 a check failed or a calibration was refused, "
+              "2 wrong command line, 3 no board or no chip, 4 a bad file")
+INTERNAL_ERROR = 70     # sysexits.h EX_SOFTWARE
+INTERRUPTED = 130       # what shells report after Ctrl-C
+BROKEN_PIPE = 141       # what shells report after SIGPIPE
+LONGEST_LINE = 1000     # of an error: what a file or a board holds must not flood a terminal
+
+
+class Parser(argparse.ArgumentParser):
+    """argparse whose complaints are one line, like every other error of this tool."""
+
+    def error(self, message):
+        raise UsageError("%s (see %s --help)" % (message, self.prog))
+
+
+def overview():
+    """The text of `sixflip --help`: every verb with its line."""
+    lines = ["usage: sixflip VERB [options]", "",
+             "On-board calibration of an inertial sensor, and its check on the host.", ""]
+    for verb in VERBS:
+        lines.append("  %-14s %s" % (verb, load(verb).HELP))
+    lines += ["", "sixflip VERB --help says more about one of them; --debug shows where an "
+              "error came from.", EXIT_CODES]
+    return "\n".join(lines)
+
+
+def load(verb):
+    """The module behind a verb."""
+    return importlib.import_module(VERBS[verb])
+
+
+def parser_for(verb):
+    """The argument parser of one verb."""
+    module = load(verb)
+    parser = Parser(prog="sixflip " + verb, description=module.HELP, allow_abbrev=False,
+                    epilog="example: %s\n\n%s" % (module.EXAMPLE, EXIT_CODES),
+                    formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--debug", action="store_true", help="show where an error came from")
+    module.add_arguments(parser)
+    return parser
+
+
+def run(argv):
+    """Do what the command line says; returns the exit code, raises what went wrong."""
+    if not argv or argv[0] in ("-h", "--help", "help"):
+        print(overview())
+        return 0 if argv else UsageError.exit_code
+    if argv[0] == "--version":
+        from sixflip import __version__
+        print("sixflip", __version__)
+        return 0
+    verb = argv[0]
+    if verb not in VERBS:
+        raise UsageError("there is no verb %r, expected one of %s" % (verb, " ".join(VERBS)))
+    args = parser_for(verb).parse_args(argv[1:])
+    return load(verb).run(args) or 0
+
+
+def main(argv=None):
+    """Entry point. Whatever happens, one line on stderr and an exit code; no traceback."""
+    argv = sys.argv[1:] if argv is None else list(argv)
+    debug = "--debug" in argv
+    argv = [word for word in argv if word != "--debug"]
+    prepare_streams()
+    try:
+        code = run(argv)
+        sys.stdout.flush()
+        return code
+    except SystemExit as stop:      # argparse after --help
+        return stop.code or 0
+    except KeyboardInterrupt:
+        return complain("stopped", INTERRUPTED, debug)
+    except BrokenPipeError:         # `sixflip show x | head`: not an error worth a word
+        throw_away_stdout()
+        return BROKEN_PIPE
+    except SixflipError as error:
+        return complain(str(error), error.exit_code, debug)
+    except OSError as error:
+        name = "%s: " % error.filename if error.filename else ""
+        code = 4 if error.filename else 1
+        try:
+            sys.stdout.flush()
+        except OSError:                 # a full disk behind stdout: Python would say so again
+            throw_away_stdout()
+        return complain("%s%s" % (name, error.strerror or error), code, debug)
+    except Exception as error:      # a bug of ours: still one line
+        return complain("internal error, please report it: %s: %s (--debug shows where)"
+                        % (type(error).__name__, error), INTERNAL_ERROR, debug)
+
+
+def prepare_streams():
+    """A stream that is closed swallows; one that cannot show ± or ² writes it as \\xb1."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w"))
+        elif hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def throw_away_stdout():
+    """Whatever is still to be printed goes nowhere."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+
+
+def complain(line, code, debug):
+    """Print the one line; with --debug also where it came from."""
+    if debug:
+        traceback.print_exc()
+    line = plain(line)
+    print("sixflip:", line if len(line) <= LONGEST_LINE else line[:LONGEST_LINE] + " ...",
+          file=sys.stderr)
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,100 @@
+"""Smallest sizes of the effects that show in single samples, spectra or motion, by formula.
+
+They leave no signature in the means of rests, so no projection applies; each formula is the
+size at which its own test has about 80 % power, for the number of samples of the protocol.
+"""
+import math
+
+from sixflip_sim.effects import typical
+from sixflip_sim.effects.library import EFFECTS
+
+ONE_SEEN = math.log(5.0)  # events expected for one or more with 80 % chance: 1 - exp(-x) = 0.8
+TIMESTAMP_US = 500.0  # jitter of a timestamp taken after a bus read
+Z = 2.8  # 5 % and 80 %
+ALWAYS = "tested on the fitted matrix (nearest signed permutation)"
+
+
+def samples_of(protocol, rate_hz):
+    """(samples at rest, samples moving, seconds) of a protocol."""
+    still = sum(r.dwell_s for s in protocol.sessions for r in s.rests)
+    still += sum(2 * s.rest_s for s in protocol.sessions)
+    moving = sum(r.move_s for s in protocol.sessions for r in s.rests)
+    return still * rate_hz, moving * rate_hz, still + moving
+
+
+def findings(name, protocol, sensor, rate_hz, make):
+    """Findings of one effect (a list, empty for those with a signature at rest)."""
+    rule = RULES.get(name)
+    if rule is None:
+        return []
+    found = []
+    for kind in sorted(EFFECTS[name].units):
+        chip_kind = "gyro" if kind == "device" and sensor == "itg3205" else kind
+        chip_kind = "accel" if chip_kind == "device" else chip_kind
+        if (sensor == "adxl345" and chip_kind == "gyro") or \
+                (sensor == "itg3205" and chip_kind == "accel"):
+            continue
+        size, source = typical.size(name, sensor, chip_kind)
+        sigma = max(typical.NOISE[typical.chip_of(sensor, chip_kind)][0])
+        smallest, how = rule(protocol, rate_hz, sigma, kind)
+        finding = make(name, kind, EFFECTS[name].units[kind], smallest, size, source)
+        finding.how = how
+        if math.isinf(smallest):
+            finding.absorbed = how
+        found.append(finding)
+    return found
+
+
+def _rare(protocol, rate_hz, sigma, kind):
+    still, moving, _ = samples_of(protocol, rate_hz)
+    return 100.0 * ONE_SEEN / (still + moving), "one gap in the timestamps is enough"
+
+
+def _torn(protocol, rate_hz, sigma, kind):
+    _, moving, _ = samples_of(protocol, rate_hz)
+    if not moving:
+        return math.inf, "no motion: the high byte never changes"
+    return 100.0 * ONE_SEEN / (moving / 4.0), "jumps near 256 counts while it moves"
+
+
+def _step(protocol, rate_hz, sigma, kind):
+    return 2.0, "common divisor of all counts: by chance 2^-n"
+
+
+def _band(protocol, rate_hz, sigma, kind):
+    return math.inf, "bias: unless a rest reads within the band of 0"
+
+
+def _clock(protocol, rate_hz, sigma, kind):
+    seconds = samples_of(protocol, rate_hz)[2]
+    return 100.0 * Z * math.sqrt(2.0) * TIMESTAMP_US * 1e-6 / seconds, \
+        "against the device timestamps; without them it is an isotropic gyro scale (1.00)"
+
+
+def _line(protocol, rate_hz, sigma, kind):
+    n = samples_of(protocol, rate_hz)[0]
+    peak = math.log(n / 2.0 / 0.05) + 2.0 * math.sqrt(math.log(n / 2.0 / 0.05))
+    return 2.0 * sigma * math.sqrt(peak / n), "a line in the spectrum of the rests"
+
+
+def _lag(protocol, rate_hz, sigma, kind):
+    moving = samples_of(protocol, rate_hz)[1]
+    if not moving:
+        return math.inf, "no motion"
+    if kind == "device":
+        return math.inf, "accelerometer and gyro late together: shows only against a reference"
+    # Minimum-jerk turn of 90 deg in 2.5 s: rms of dw/dt 42 deg/s2.
+    return 1000.0 * Z * sigma / (42.0 * math.sqrt(moving / 4.0)), "gravity before and after moves"
+
+
+def _arm(protocol, rate_hz, sigma, kind):
+    return math.inf, "the hand's own acceleration; a turntable tells"
+
+
+def _swap(protocol, rate_hz, sigma, kind):
+    return 1.0, ALWAYS
+
+
+RULES = {"quantisation": _step, "dead_band": _band, "torn_reads": _torn, "sample_rate": _clock,
+         "dropped_samples": _rare, "vibration": _line, "filter_lag": _lag, "lever_arm": _arm,
+         "axis_swap": _swap}

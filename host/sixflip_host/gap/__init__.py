@@ -1,0 +1,1 @@
+"""The gap between a nominal simulated sensor and a real one: where it lies, what makes it."""

@@ -1,0 +1,102 @@
+"""The answer as JSON, in the words and with the keys of GAP.md."""
+import math
+
+from sixflip_host.gap import next_capture, unseen
+from sixflip_sim.effects.drift import FLOOR_OF_UNIT
+
+UNITS = {"accel": "mg", "gyro": "deg/s"}
+# Allan floor of the five exponentials of unit level, by numerical integration of their kernel.
+FLOOR_OF_KERNEL = 0.78 / FLOOR_OF_UNIT
+
+
+def spelled(unit):
+    """The library's units in GAP.md's spelling."""
+    return unit.replace("degC", "°C").replace("deg/s", "°/s") if unit else unit
+
+
+def of(diagnosis):
+    """dict for json.dumps, no NaN in it."""
+    causes = [_finding(f) for f in diagnosis.findings]
+    causes += [_cause(kind, c) for kind, c in diagnosis.causes]
+    causes += [_drift(kind, gap) for kind, gap in diagnosis.gaps.items() if gap.drift]
+    causes.sort(key=lambda c: -(c["share"] or 0.0) - 1e-3 * c["score_nats"])
+    return {
+        "format": 1, "verdict": diagnosis.verdict, "causes": causes,
+        "where": [{"sensor": p.sensor, "axis": p.axis, "domain": p.domain,
+                   "share": number(p.share), "p": float("%.2g" % p.p)}
+                  for p in diagnosis.where],
+        "gap": {kind: _gap(kind, gap) for kind, gap in gaps(diagnosis).items()},
+        "unseen": unseen.listed(diagnosis), "next": next_capture.proposed(diagnosis),
+        "held_out": held_out(diagnosis), "remarks": diagnosis.remarks}
+
+
+def gaps(diagnosis):
+    """{sensor: SensorGap}; the gyro's is that of its turns where only they show something."""
+    found = dict(diagnosis.gaps)
+    turns = diagnosis.turns
+    if turns and turns.causes and not found["gyro"].causes:
+        found["gyro"] = turns
+    return found
+
+
+def held_out(diagnosis):
+    """What the figures of the gap were checked on."""
+    if not diagnosis.gaps:
+        return None
+    if any(g.same_session for g in diagnosis.gaps.values()):
+        return "same session"
+    return "each session by the others"
+
+
+def number(value, digits=4):
+    """A finite number with so many significant digits, or None."""
+    if value is None or not math.isfinite(value):
+        return None
+    return float("%.*g" % (digits, value))
+
+
+def _sizes(values):
+    return {k: number(v) for k, v in values.items()}
+
+
+def _intervals(intervals):
+    return {k: [number(a), number(b)] for k, (a, b) in intervals.items()}
+
+
+def _entry(sensor, axes, names, score, value, unit, interval, plausible, share):
+    single = len(names) == 1 and plausible
+    return {"sensor": sensor, "axes": axes, "effect": names[0] if single else None,
+            "class": names, "score_nats": number(score), "value": _sizes(value),
+            "unit": spelled(unit), "interval_90": _intervals(interval), "plausible": plausible,
+            "share": number(share)}
+
+
+def _cause(kind, c):
+    return _entry(kind, c.letters, c.names, c.score, c.value, c.unit, c.interval, c.plausible,
+                  c.share)
+
+
+def _finding(f):
+    return _entry(f.sensor, f.axes, [f.effect] + sorted(f.rivals), f.score, f.value, f.unit,
+                  f.interval or {}, True, None)
+
+
+def _drift(kind, gap):
+    level, gain = gap.drift
+    floor = level * FLOOR_OF_KERNEL
+    return _entry(kind, [], ["drift"], gain, dict.fromkeys("xyz", floor), UNITS[kind],
+                  dict.fromkeys("xyz", (floor / 2, floor * 2)), True, None)
+
+
+def _gap(kind, gap):
+    s = gap.shrinkage
+    return {"unit": spelled(UNITS[kind]), "before": number(s.before), "after": number(s.after),
+            "floor": number(s.floor), "explained_share": number(s.share),
+            "interval_90": None if s.interval is None else [number(v) for v in s.interval]}
+
+
+def of_loop(kind, loop):
+    """Real against simulated, before and after the effects were added."""
+    return {"unit": spelled(UNITS[kind]), "before": number(loop.before),
+            "after": number(loop.after), "floor": number(loop.floor),
+            "explained_share": number(loop.share), "effects": loop.effects}

@@ -1,0 +1,59 @@
+"""Which way each placement lay: nominal sensor and gravity's direction, fitted together.
+
+Twelve parameters take counts to g. All placements give |f| = 1; those on a labelled face also
+say, loosely (a table may be tilted, a box crooked), which way. Source: METHOD section 1, and
+Tedaldi et al. (ICRA 2014) for what lies in between.
+"""
+import numpy as np
+from scipy.optimize import least_squares
+
+from sixflip import faces
+
+ALONG = 0.3e-3  # g: how well |f| = 1 holds
+ACROSS = 30e-3  # g: a table's tilt
+SHAPE = 0.02  # off-diagonals where nothing else says
+
+
+def face_axes(face):
+    """(n, 3) unit vectors of face indices (n,); zero where leaning (-1)."""
+    out = np.zeros((len(face), 3))
+    for i, f in enumerate(face):
+        if f >= 0:
+            out[i, faces.AXIS[f]] = faces.SIGN[f]
+    return out
+
+
+class NominalSensor:
+    """matrix (3, 3), offset (3,): f = matrix · measured (g) + offset; up (placements, 3)."""
+
+    def __init__(self, matrix, offset, up):
+        self.matrix, self.offset, self.up = matrix, offset, up
+
+    def corrected(self, mg):
+        """(n, 3) g from (n, 3) mg as measured."""
+        return mg * 1e-3 @ self.matrix.T + self.offset
+
+
+def fit(session):
+    """NominalSensor of a Session; placements in the order of session.runs."""
+    number = session.placements()
+    mean = np.array([session.accel[session.placement == p].mean(axis=0) * 1e-3
+                     if (session.placement == p).any() else np.array([0.0, 0.0, 1.0])
+                     for p in range(number)])
+    code = [run[0] for run in session.runs]
+    axes = face_axes([faces.face_of_code(c) if session.labelled else -1 for c in code])
+    on_face = np.abs(axes).sum(axis=1) > 0
+    start = np.concatenate([np.eye(3).ravel(), np.zeros(3)])
+
+    def residual(p):
+        f = mean @ p[:9].reshape(3, 3).T + p[9:]
+        along = (np.linalg.norm(f, axis=1) - 1.0) / ALONG
+        across = (f - axes)[on_face]
+        across -= axes[on_face] * (across * axes[on_face]).sum(axis=1)[:, None]
+        prior = np.concatenate([(p[:9] - start[:9]) / SHAPE / 5.0, p[9:] / 0.5])
+        return np.concatenate([along, across.ravel() / ACROSS, prior])
+
+    found = least_squares(residual, start, x_scale=0.01, method="trf", max_nfev=60).x
+    matrix, offset = found[:9].reshape(3, 3), found[9:]
+    f = mean @ matrix.T + offset
+    return NominalSensor(matrix, offset, f / np.linalg.norm(f, axis=1)[:, None])

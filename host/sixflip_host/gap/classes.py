@@ -1,0 +1,138 @@
+"""Stage 4: never a name inside an unresolved class.
+
+Two effects are one class when one reproduces more than 0.9 of the other (alias index, in the
+metric of the noise, nominal model and the other causes projected out), when their scores are
+less than 3 nats apart, or when what tells them apart is less than 3 standard deviations.
+"""
+import numpy as np
+
+from sixflip_host.gap import selection, which
+
+SAME, NATS, SIGMAS = 0.9, 3.0, 3.0
+
+
+class Cause:
+    """One effect found: chosen (Candidates), members ({effect: why it cannot be told}),
+    score (nats), theta, sigma (arrays over keys), keys, axes, share, plausible."""
+
+    def __init__(self, effect, chosen, score):
+        self.effect, self.chosen, self.score = effect, chosen, score
+        self.members, self.share, self.plausible = {}, None, True
+        self.domain = None
+
+    @property
+    def names(self):
+        return [self.effect] + sorted(self.members)
+
+
+def pooled(data, chosen):
+    """(gram (K, K), theta (k,), V (k, k), columns) of all units with the chosen effects in."""
+    columns = np.concatenate([c.columns for c in chosen])
+    prior = np.concatenate([c.prior for c in chosen])
+    found = which.fits(data, columns, prior)
+    theta, covariance = which.coefficients(found, prior)
+    gram = sum(u.gram[f.index[0]] for u, f in zip(data.units, found))
+    return gram, theta[0], covariance[0], columns
+
+
+def causes(data, options, chosen):
+    """list of Cause, largest score first, with the members of their classes."""
+    if not chosen:
+        return []
+    gram, theta, covariance, columns = pooled(data, chosen)
+    out = []
+    for name in dict.fromkeys(c.effect for c in chosen):
+        mine = [c for c in chosen if c.effect == name]
+        others = [c for c in chosen if c.effect != name]
+        total = np.concatenate([c.columns for c in mine])
+        base = which.score(data, *_joined(others)) if others else data.base
+        cause = Cause(name, mine, float((which.score(data, *_joined(chosen)) - base)[0]))
+        where = np.isin(columns, total)
+        cause.keys = [k for c in mine for k in c.keys]
+        cause.axes = [a for c in mine for a in c.axes]
+        cause.theta = np.concatenate([theta[_places(columns, c.columns)] for c in mine])
+        sigma = np.sqrt(np.diag(covariance))
+        cause.sigma = np.concatenate([sigma[_places(columns, c.columns)] for c in mine])
+        out.append(cause)
+        _rivals(cause, data, options, others, gram, columns[~where])
+    # those in each other's class are one
+    out.sort(key=lambda c: -c.score)
+    return out
+
+
+def _joined(chosen):
+    return (np.concatenate([c.columns for c in chosen]),
+            np.concatenate([c.prior for c in chosen]))
+
+
+def _places(columns, wanted):
+    return [int(np.flatnonzero(columns == w)[0]) for w in wanted]
+
+
+def _rivals(cause, data, options, others, gram, other_columns):
+    """Fill cause.members with every other effect that cannot be told from it."""
+    mine = np.concatenate([c.columns for c in cause.chosen])
+    taken = {c.effect for c in others}
+    for name in dict.fromkeys(o.effect for o in options):
+        if name == cause.effect or name in taken:
+            continue
+        _, gain = selection.of_effect(data, options, name, others)
+        if cause.score - gain < NATS:
+            cause.members[name] = "score"
+            continue
+        variants = [o for o in options if o.effect == name and o.axis is None
+                    and not o.variant.endswith("+")]
+        left = reproduced(gram, mine, cause.theta, [o.columns for o in variants], other_columns)
+        if left is None:
+            continue
+        index, apart = left
+        if index > SAME:
+            cause.members[name] = "alias index %.2f" % index
+        elif apart < SIGMAS:
+            cause.members[name] = "%.1f standard deviations apart" % apart
+
+
+def reproduced(gram, mine, theta, alternatives, others):
+    """(largest alias index, least distance in standard deviations) over the alternatives."""
+    best = None
+    for columns in alternatives:
+        space = np.concatenate([columns, others]).astype(int)
+        inner = gram[np.ix_(mine, mine)]
+        after_others = _left(gram, mine, others.astype(int), inner)
+        left = _left(gram, mine, space, inner)
+        norms = np.diag(after_others)
+        good = norms > 1e-9 * np.maximum(np.diag(inner), 1e-300)
+        if not good.any():
+            continue
+        index = 1.0 - float(np.mean(np.diag(left)[good] / norms[good]))
+        apart = float(np.sqrt(max(theta @ left @ theta, 0.0)))
+        best = (max(index, best[0]), min(apart, best[1])) if best else (index, apart)
+    return best
+
+
+def _left(gram, mine, space, inner):
+    """Gram matrix of `mine` after the columns `space` have been projected out."""
+    if not len(space):
+        return inner
+    block = gram[np.ix_(space, space)]
+    scale = np.sqrt(np.maximum(np.diag(block), 1e-300))
+    block = block / scale / scale[:, None] + 1e-9 * np.eye(len(space))
+    cross = gram[np.ix_(space, mine)] / scale[:, None]
+    return inner - cross.T @ np.linalg.solve(block, cross)
+
+
+def alias_table(gram, options):
+    """(names, index): A(row | column) of the first plain variants, for the report."""
+    first = {}
+    for o in options:
+        if o.axis is None and not o.generic and not o.variant.endswith("+"):
+            first.setdefault(o.effect, o)
+    names = list(first)
+    table = np.eye(len(names))
+    for i, a in enumerate(names):
+        for j, b in enumerate(names):
+            if i != j:
+                found = reproduced(gram, first[a].columns, np.zeros(len(first[a].columns)),
+                                   [first[b].columns], np.zeros(0))
+                table[i, j] = found[0] if found else np.nan
+    return names, table

@@ -1,0 +1,180 @@
+"""All stages over all captures: the order in which they are asked, and the verdict."""
+import os
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+from sixflip_host.gap import (
+    attitude_fit,
+    gyro_turns,
+    integrity,
+    motion,
+    observations,
+    regressors,
+    single_rest,
+    spectral_lines,
+    where,
+)
+from sixflip_host.gap.sensor_gap import SensorGap
+
+FEWEST_PLACEMENTS = 6
+LEAST_S = 5.0  # of a capture that can be said to show no gap
+
+
+class Settings:
+    """certified: the box is square; without: effects left out of the library; reference: {sensor:
+    flicker level of a noise capture}; reference_c: temperature that slopes are taken about;
+    simulated: {sensor: [(effect, variant, key, coefficient)]} that the simulator has already;
+    jobs: threads."""
+
+    def __init__(self, certified=False, without=(), reference=None, jobs=0):
+        self.certified, self.without = certified, set(without)
+        self.reference = reference or {}
+        self.reference_c = 25.0
+        self.simulated = {}
+        self.jobs = jobs or os.cpu_count() or 1
+
+
+class Diagnosis:
+    """sessions, findings (list of Finding), gaps {sensor: SensorGap}, rest (SingleRest or None),
+    where (list of Place), verdict, remarks (sentences)."""
+
+    def __init__(self, sessions, settings, simulator=None):
+        sessions, others = observations.same_chip(sessions)
+        sessions, again = observations.distinct(sessions)
+        self.sessions, self.settings = sessions, settings
+        self.remarks, self.gaps, self.rest, self.turns = [], {}, None, None
+        self.scale_remark = ""
+        self.remarks += ["%s is of another sensor (%s) and was left out" % (
+            s.name, s.capture.meta["sensor"]) for s in others]
+        self.remarks += ["%s repeats a capture before it and was left out" % s.name
+                         for s in again]
+        self.remarks += ["%s: its timestamps stand still, rate_hz was used instead" % s.name
+                         for s in sessions if s.timeless]
+        self.stuck = integrity.stuck(sessions)
+        self.remarks += self.stuck
+        self.findings = [f for f in integrity.findings(sessions)
+                         + spectral_lines.findings(sessions) if f.effect not in settings.without]
+        self._poses()
+        if not self.gaps:
+            self.rest = single_rest.SingleRest(sessions, settings)
+            more = list(self.rest.findings)
+            if not any(f.effect == "vibration" and f.sensor == "accel" for f in self.findings):
+                more += motion.findings(sessions)
+            self.findings += [f for f in more if f.effect not in settings.without]
+            self.remarks += self.rest.remarks
+        if simulator:
+            self._compared(simulator)
+        self.where = [where.Place(f.sensor, axis, f.domain, 1.0, np.exp(-min(f.score, 600.0)))
+                      for f in self.findings for axis in (f.axes or [None])]
+        places = [p for gap in [*self.gaps.values(), *([self.turns] if self.turns else [])]
+                  for p in where.places(gap)]
+        self.where += sorted(places, key=lambda p: (not p.named, -p.share))
+        self.verdict = self._verdict()
+
+    def _compared(self, simulator):
+        """Leave out what the simulator has as well; add what only it has."""
+        self.remarks += simulator.remarks + simulator.noise_remarks(self.sessions)
+        self.remarks += ["the simulator has %s (%s), the real sensor does not"
+                         % (f.effect, f.sensor) for f in simulator.only_simulated(self.findings)]
+        self.findings = [f for f in self.findings if simulator.new(f)]
+
+    def _poses(self):
+        """The rests of sessions with poses, if any has enough of them."""
+        usable = [s for s in self.sessions if s.placements() >= FEWEST_PLACEMENTS]
+        if not usable:
+            return
+        swapped = any(f.effect == "axis_swap" for f in self.findings)
+        bad = [c for s in usable for c in s.contradicted()]
+        if bad and not swapped:
+            self.remarks.append("labels that gravity contradicts: " + ", ".join(
+                "%s (%.0f deg off)" % pair for pair in bad))
+        if swapped or self.stuck:
+            return
+        for session in usable if bad else ():
+            session.refuse([name for name, _ in session.contradicted()])
+        usable = [s for s in usable if s.placements() >= FEWEST_PLACEMENTS]
+        if not usable:
+            return
+        temperatures = [s.temperature for s in usable if s.temperature is not None]
+        if temperatures:
+            self.settings.reference_c = float(np.mean(np.concatenate(temperatures)))
+        self._temperature_remarks(usable)
+        nominal = [attitude_fit.fit(s) for s in usable]
+        self.scale_remark = integrity.full_scale(usable, nominal)
+        if self.scale_remark:
+            self.remarks.append(self.scale_remark)
+            return
+        self._judge(usable, nominal)
+
+    def _judge(self, sessions, nominal):
+        """Both sensors at rest and the gyro's turns, side by side where there are cores: the
+        linear algebra lets other threads run."""
+        gyro = all(s.gyro is not None for s in sessions)
+        with ThreadPoolExecutor(self.settings.jobs) as pool:
+            accel = pool.submit(SensorGap, "accel", sessions, nominal, self.settings)
+            if gyro:
+                still = pool.submit(SensorGap, "gyro", sessions, nominal, self.settings)
+                self._turns(sessions, nominal)
+                self.gaps["gyro"] = still.result()
+            self.gaps["accel"] = accel.result()
+        self.gaps = {k: self.gaps[k] for k in ("accel", "gyro") if k in self.gaps}
+
+    def _turns(self, sessions, nominal):
+        """The gyro while it moves: axes first, then what bends or scales it."""
+        swapped = gyro_turns.swapped(sessions, nominal)
+        if swapped and swapped.effect not in self.settings.without:
+            self.findings.append(swapped)
+        elif not swapped and all(gyro_turns.usable(s, m) for s, m in zip(sessions, nominal)):
+            self.turns = gyro_turns.TurnsGap("gyro", sessions, nominal, self.settings)
+
+    def _temperature_remarks(self, sessions):
+        if any(s.temperature is None for s in sessions):
+            self.remarks.append("no usable temperature column: effects of temperature cannot be "
+                                "looked for")
+        elif max(s.thermometer.moved for s in sessions) < 1.0:
+            self.remarks.append("the temperature moved by %.1f degC only: little can be said "
+                                "about it" % max(s.thermometer.moved for s in sessions))
+
+    @property
+    def same_session(self):
+        return len(self.sessions) == 1
+
+    @property
+    def causes(self):
+        """[(sensor, Cause)] of all sensors, the largest score first."""
+        found = [(kind, c) for kind, gap in self.gaps.items() for c in gap.causes]
+        if self.turns:
+            found += [("gyro", c) for c in self.turns.causes]
+        return sorted(found, key=lambda pair: -pair[1].score)
+
+    def _verdict(self):
+        gaps = self.gaps.values()
+        drifting = any(g.drift for g in gaps)
+        unexplained = any(g.unexplained for g in gaps) or bool(
+            self.stuck) or bool(self.scale_remark)
+        believed = [c for _, c in self.causes if c.plausible]
+        incredible = [c for _, c in self.causes if not c.plausible]
+        resolved = drifting or any(not f.rivals for f in self.findings) or any(
+            one_domain(c.names) for c in believed)
+        found = bool(believed or self.findings or drifting)
+        if not found:
+            if unexplained or incredible:
+                return "unexplained"
+            return "no gap" if self.sees() else "cannot tell"
+        if unexplained or incredible:
+            return "partly explained"
+        return "explained" if resolved else "cannot tell"
+
+    def sees(self):
+        """True when the capture would have shown most of what it is asked about."""
+        from sixflip_host.gap import unseen
+        if not self.gaps:
+            return any(s.t_s[-1] >= LEAST_S for s in self.sessions)
+        return unseen.visible_share(self) >= 0.5
+
+
+def one_domain(names):
+    """True when all effects of a class show themselves in the same way: where it comes from
+    is known then, if not its name."""
+    return len({regressors.DOMAIN[n] for n in names}) == 1

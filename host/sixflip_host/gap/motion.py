@@ -1,0 +1,37 @@
+"""Captures that move on: how much faster than the hand or the wheels the sensor is shaken."""
+import numpy as np
+
+from sixflip_host.gap.finding import Finding
+
+WINDOW_S = 1.0
+QUIET = 0.02  # share of the windows that counts as quiet
+SHAKEN = 3.0  # times the quiet level, root mean square, in at least half of the windows
+FEWEST_WINDOWS = 8
+CERTAIN = 99.0
+
+
+def findings(sessions):
+    """list of Finding: vibration of captures without poses, from what changes from one sample
+    to the next (third differences: no motion of a hand or a vehicle is so fast)."""
+    levels = []
+    for session in sessions:
+        m = max(8, int(WINDOW_S * session.rate))
+        x = session.capture.accel.astype(float) * (1000.0 / session.capture.meta[
+            "accel_lsb_per_g"])
+        fast = np.diff(x, n=3, axis=0) / np.sqrt(20.0)  # the gain of white noise
+        k = len(fast) // m
+        if k < FEWEST_WINDOWS:
+            return []
+        levels.append(np.sqrt((fast[:k * m].reshape(k, m, 3) ** 2).mean(axis=1)))
+    level = np.concatenate(levels)
+    quiet = np.quantile(level, QUIET, axis=0)
+    usual = np.median(level, axis=0)
+    axes = [i for i in range(3) if usual[i] > SHAKEN * max(quiet[i], 1e-9)]
+    if not axes:
+        return []
+    value = {"xyz"[i]: float("%.3g" % np.sqrt(2.0 * (usual[i] ** 2 - quiet[i] ** 2)))
+             for i in axes}
+    spread = {"xyz"[i]: (float(np.sqrt(2) * np.quantile(level[:, i], 0.25)),
+                         float(np.sqrt(2) * np.quantile(level[:, i], 0.75))) for i in axes}
+    return [Finding("vibration", "accel", sorted(value), value, "mg", CERTAIN, "frequency",
+                    "it is shaken most of the time", spread)]

@@ -1,0 +1,118 @@
+"""Lines in the spectrum of the rests: vibration from outside, or its alias.
+
+Each rest's periodogram over a running median of itself (so that a filter's colour is no line)
+is exponential with mean 1 where there is only noise; over R rests the weighted sum is Gamma
+distributed. The largest over all frequencies and axes must be improbable (Bonferroni).
+Source: Percival & Walden, Spectral Analysis for Physical Applications (1993), section 10.9.
+"""
+import math
+
+import numpy as np
+from scipy import ndimage, stats
+
+from sixflip_host.gap.finding import Finding
+
+LENGTH_S, SHORTEST_S, LOWEST_HZ = 5.0, 2.0, 2.0
+CHANCE = 0.001
+FEWEST = 4  # stretches
+MEDIAN_SHARE, OF_MEDIAN = 0.25, math.log(2.0)
+WHOLE_PEAK = 0.85  # of a Hann window's main lobe and its neighbours
+LEAST_SHARE = 0.2  # of the standard deviation of the noise: smaller is no matter
+
+
+def findings(sessions):
+    """list of Finding: at most one vibration a sensor."""
+    out = []
+    for sensor in ("accel", "gyro"):
+        if any(getattr(s.capture, sensor) is None for s in sessions):
+            continue
+        lines = [line for line in (strongest(sessions, sensor, i) for i in range(3)) if line]
+        if not lines:
+            continue
+        top = max(lines, key=lambda line: line[2])
+        value = {"xyz"[i]: float("%.3g" % size) for i, _, _, size, _ in lines}
+        interval = {"xyz"[i]: (size * (1 - 1.6 * rel), size * (1 + 1.6 * rel))
+                    for i, _, _, size, rel in lines}
+        rate = sessions[0].rate
+        out.append(Finding(
+            "vibration", sensor, sorted(value), value, "mg" if sensor == "accel" else "deg/s",
+            top[2], "frequency", "a line at %.2f Hz (or folded from %.2f, %.2f Hz)"
+            % (top[1], rate - top[1], rate + top[1]), interval))
+    return out
+
+
+def rests(sessions, sensor):
+    """list of (n, 3) stretches of samples in mg or deg/s, all at rest, equally long; of the
+    whole capture where there is no rest."""
+    if not any(session.runs for session in sessions):
+        return _stretches(sessions, sensor, int(SHORTEST_S * sessions[0].rate), whole=True)
+    found = _stretches(sessions, sensor, int(LENGTH_S * sessions[0].rate))
+    if len(found) < FEWEST:
+        found = _stretches(sessions, sensor, int(SHORTEST_S * sessions[0].rate))
+    return found if len(found) >= FEWEST else []
+
+
+def _stretches(sessions, sensor, length, whole=False):
+    found = []
+    for session in sessions:
+        meta = session.capture.meta
+        scale = 1000.0 / meta["accel_lsb_per_g"] if sensor == "accel" else \
+            1.0 / meta["gyro_lsb_per_dps"]
+        counts = getattr(session.capture, sensor)
+        for _, first, end in [(0, 0, len(counts))] if whole else session.runs:
+            first, end = first + int(0.1 * session.rate), end - int(0.1 * session.rate)
+            for start in range(first, end - length + 1, length):
+                found.append(counts[start:start + length] * scale)
+    return found
+
+
+def spectrum(stretches, axis):
+    """(frequencies index k, normalised power summed over R stretches (k,), R, mean power)."""
+    window = np.hanning(len(stretches[0]))
+    x = np.array([s[:, axis] for s in stretches])
+    x = x - x.mean(axis=1, keepdims=True)
+    power = np.abs(np.fft.rfft(x * window, axis=1)) ** 2 / (window ** 2).sum()
+    mean = power.mean(axis=0)
+    return mean, power.shape[0], window
+
+
+def strongest(sessions, sensor, axis):
+    """(axis, Hz, nats, amplitude, relative error) of the strongest line, or None."""
+    stretches = rests(sessions, sensor)
+    if not stretches:
+        return None
+    mean, number, window = spectrum(stretches, axis)
+    rate, n = sessions[0].rate, len(stretches[0])
+    first = int(LOWEST_HZ * n / rate) + 1
+    band = mean[first:-1]
+    if len(band) < 20 or not band.any():
+        return None
+    width = max(9, int(MEDIAN_SHARE * len(band)) | 1)
+    median_of_mean = stats.gamma.ppf(0.5, number) / number
+    floor = ndimage.median_filter(band, size=width, mode="reflect") / median_of_mean
+    ratio = band / np.maximum(floor, 1e-12)
+    k = int(ratio.argmax())
+    doubt = 1.0 + 2.0 * 1.25 / math.sqrt(width * number)  # the floor is a median itself
+    log_p = float(stats.gamma.logsf(ratio[k] * number / doubt, number))
+    nats = -(log_p + math.log(3.0 * len(band)))
+    if nats < -math.log(CHANCE):
+        return None
+    near = slice(max(0, k - 2), k + 3)
+    excess = float((band[near] - floor[near]).sum()) * (window ** 2).sum()
+    # A sine of amplitude a: sum over the lobe of |X|^2 = a^2 n sum(w^2) / 4.
+    amplitude = math.sqrt(max(4.0 * excess / (n * (window ** 2).sum()), 0.0))
+    spread = np.mean([s[:, axis].std() for s in stretches])
+    if amplitude < LEAST_SHARE * spread:
+        return None
+    error = 1.0 / math.sqrt(max(2.0 * number * ratio[k], 1.0))
+    hz = _refined(mean, first + k) * rate / n
+    return axis, hz, min(nats, 999.0), amplitude, error
+
+
+def _refined(power, k):
+    """Index of a peak between the bins: parabola through the logarithms."""
+    if not 0 < k < len(power) - 1:
+        return float(k)
+    a, b, c = np.log(np.maximum(power[k - 1:k + 2], 1e-300))
+    below = a - 2.0 * b + c
+    return k + (0.5 * (a - c) / below if below < 0 else 0.0)

@@ -1,0 +1,62 @@
+"""The chip's temperature over a capture: smooth, with its rate, and as felt with a lag."""
+import numpy as np
+
+STEP_S = 1.0
+SMOOTH_S = 8.0
+RATE_S = 40.0
+MOVES_C = 0.4  # less than this over a whole capture says nothing about temperature
+
+
+class Thermometer:
+    """t (s) and c (degC), one a second; at(t), rate_at(t), lagged(t, lag)."""
+
+    def __init__(self, t, c):
+        self.t, self.c = t, c
+        self.rate = np.gradient(_smooth(c, RATE_S), STEP_S) if len(c) > 2 else np.zeros(len(c))
+        self.moved = float(np.ptp(c))
+
+    def at(self, t):
+        return np.interp(t, self.t, self.c)
+
+    def rate_at(self, t):
+        return np.interp(t, self.t, self.rate)
+
+    def lagged(self, t, lag_s):
+        """What a part sees that follows the thermometer with a lag (s); a negative lag: the
+        thermometer follows the part, to first order."""
+        if lag_s <= 0.0:
+            return np.interp(t, self.t, self.c - lag_s * self.rate)
+        follow = np.empty_like(self.c)
+        follow[0] = self.c[0]
+        share = 1.0 - np.exp(-STEP_S / lag_s)
+        for i in range(1, len(follow)):
+            follow[i] = follow[i - 1] + share * (self.c[i] - follow[i - 1])
+        return np.interp(t, self.t, follow)
+
+
+def of(capture, t_s):
+    """Thermometer of a capture, or None where there is no column."""
+    if capture.temp is None:
+        return None
+    meta = capture.meta
+    celsius = capture.temp / meta["temp_lsb_per_c"] + meta["temp_offset_c"]
+    edges = np.arange(0.0, t_s[-1] + STEP_S, STEP_S)
+    where = np.searchsorted(t_s, edges)
+    sums = np.concatenate([[0.0], np.cumsum(celsius)])
+    number = np.diff(where)
+    filled = number > 0
+    mean = (sums[where[1:]] - sums[where[:-1]])[filled] / number[filled]
+    t = (edges[:-1] + 0.5 * STEP_S)[filled]
+    if len(t) < 3:
+        return None
+    grid = np.arange(t[0], t[-1] + 0.5 * STEP_S, STEP_S)
+    return Thermometer(grid, _smooth(np.interp(grid, t, mean), SMOOTH_S))
+
+
+def _smooth(values, seconds):
+    """Running straight-line fit over so many seconds: level without lag, also at the ends."""
+    half = max(1, int(seconds / STEP_S / 2))
+    if len(values) < 2 * half + 1:
+        return values.copy()
+    from scipy.signal import savgol_filter
+    return savgol_filter(values, 2 * half + 1, 1, mode="interp")

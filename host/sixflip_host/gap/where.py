@@ -1,0 +1,94 @@
+"""Stage 2: where the gap lies. A share of the excess and a test per domain and axis, false
+discoveries controlled [Benjamini & Hochberg, JRSS B 57 (1995) 289]."""
+import numpy as np
+from scipy import stats
+
+FALSE_DISCOVERIES = 0.01
+
+
+class Place:
+    """sensor, axis ("x" ... or None), domain, share, p; named: of a cause found."""
+
+    named = False
+
+    def __init__(self, sensor, axis, domain, share, p):
+        self.sensor, self.axis, self.domain = sensor, axis, domain
+        self.share, self.p = float(np.clip(share, 0.0, 1.0)), float(p)
+
+
+def places(gap):
+    """list of Place of a SensorGap, the largest share first; those of its causes lead."""
+    tested = [_tested(gap, option) for option in gap.options if option.generic
+              and option.axis is not None]
+    lateral = across(gap)
+    tested = controlled([t for t in tested + lateral if t is not None])
+    named = []
+    for cause in gap.causes:
+        for letter in cause.letters or [None]:
+            named.append(Place(gap.kind, letter, cause.domain, cause.share or 0.0,
+                               np.exp(-min(cause.score, 600.0))))
+    if gap.drift:
+        named.append(Place(gap.kind, None, "time", 1.0, np.exp(-min(gap.drift[1], 600.0))))
+    for place in named:
+        place.named = True
+    known = {(p.axis, p.domain) for p in named}
+    return named + sorted([t for t in tested if (t.axis, t.domain) not in known],
+                          key=lambda t: -t.share)
+
+
+def _tested(gap, option):
+    """What a generic discrepancy on one axis takes off the excess, sessions together for
+    what belongs to the sensor, apart for time."""
+    apart = option.effect == "~time"
+    taken = freedom = 0.0
+    sums = None
+    for statistics, unit, index in zip(gap.data.statistics, gap.units, gap.levels()):
+        projections = statistics[1]
+        gram = unit.gram[index][np.ix_(option.columns, option.columns)]
+        inner = projections[index][option.columns, 0]
+        if apart:
+            gain, rank = _explained(gram, inner)
+            taken, freedom = taken + gain, freedom + rank
+        else:
+            sums = (gram, inner) if sums is None else (sums[0] + gram, sums[1] + inner)
+    if not apart:
+        taken, freedom = _explained(*sums)
+    if freedom < 1:
+        return None
+    excess = max(gap.adequacy.excess_before, taken - freedom, 1e-9)
+    return Place(gap.kind, "xyz"[option.axis], option.effect[1:], (taken - freedom) / excess,
+                 stats.chi2.sf(taken, freedom))
+
+
+def _explained(gram, inner):
+    """(reduction of chi2, rank)."""
+    scale = np.sqrt(np.maximum(np.diag(gram), 1e-300))
+    values, vectors = np.linalg.eigh(gram / scale / scale[:, None])
+    keep = values > 1e-6 * max(values.max(), 1e-300)
+    turned = vectors[:, keep].T @ (inner / scale)
+    return float((turned ** 2 / values[keep]).sum()), int(keep.sum())
+
+
+ORDINARY_PLACEMENT_MG = 2.0  # 0.11 deg: a box set down by hand
+
+
+def across(gap):
+    """The attitude of the placements, where they scatter more than by hand."""
+    if gap.kind != "accel" or not gap.units[0].grid:
+        return []
+    levels = [u.grid[i][0] for u, i in zip(gap.units, gap.adequacy.index)]
+    worst = max(levels)
+    if worst <= ORDINARY_PLACEMENT_MG:
+        return []
+    share = 1.0 - (ORDINARY_PLACEMENT_MG / worst) ** 2
+    return [Place("accel", None, "across_gravity", share, 1e-6)]
+
+
+def controlled(tested):
+    """Those that pass the false discovery rate."""
+    order = sorted(tested, key=lambda t: t.p)
+    last = -1
+    for rank, one in enumerate(order):
+        if one.p <= FALSE_DISCOVERIES * (rank + 1) / max(len(order), 1):
+            last = rank
+    return order[:last + 1]

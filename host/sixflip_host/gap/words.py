@@ -1,0 +1,149 @@
+"""The answer for people: the verdict in one sentence, then tables."""
+from sixflip_host.gap.regressors import DOMAIN
+from sixflip_host.terminal import console, plain, styled, table
+
+SENSOR = {"accel": "accelerometer", "gyro": "gyro", "device": "device"}
+STYLE = {"no gap": "bold green", "explained": "bold green", "partly explained": "bold yellow",
+         "unexplained": "bold red", "cannot tell": "bold yellow"}
+DOES = {  # what a part with this effect does
+    "thermal_bias": "drifts with temperature", "thermal_scale": "changes its scale with "
+    "temperature", "warm_up": "drifts after it is switched on", "thermal_rate": "follows how fast "
+    "the temperature changes", "quadratic": "is bent (quadratic)", "cross_quadratic":
+    "feels products of the other axes", "cubic": "is bent (cubic)", "asymmetry":
+    "has different scales up and down", "g_sensitivity": "feels gravity", "drift":
+    "wanders by itself", "quantisation": "counts in steps", "dead_band": "reads 0 near 0",
+    "saturation": "hits its limit", "vibration": "is shaken at a steady frequency",
+    "vibration_rectification": "shifts when it is shaken", "hysteresis":
+    "remembers the pose before", "creep": "creeps after each move", "box_tilt":
+    "sits in a box whose faces are not square", "torn_reads": "mixes bytes of two readings",
+    "axis_swap": "has its axes swapped or inverted", "sample_rate": "runs at another rate than "
+    "it says", "dropped_samples": "loses samples", "supply": "follows the supply"}
+
+
+def sentence(answer):
+    """The first line."""
+    causes = [c for c in answer["causes"] if c["plausible"]]
+    verdict = answer["verdict"]
+    if verdict == "no gap":
+        return "No gap: the real sensor does what the nominal simulator does%s." % (
+            ", as far as this capture can show" if answer["unseen"] else "")
+    if verdict == "unexplained":
+        return "There is a gap, but nothing in the library explains it%s." % _place(answer)
+    if verdict == "cannot tell" and not causes:
+        return ("This capture cannot tell: it shows no gap, but most effects would not show in "
+                "it either.")
+    first = " ".join(_clause(c) for c in causes[:2])
+    closed = _closed(answer)
+    if verdict == "cannot tell":
+        return first + " This capture cannot tell which. " + closed
+    if verdict == "partly explained":
+        return first + " " + closed + " Something else is left that the library does not explain."
+    return (first + " " + closed).strip()
+
+
+def _place(answer):
+    if not answer["where"]:
+        return ""
+    w = answer["where"][0]
+    return ": look at %s%s of the %s" % (
+        w["domain"].replace("_", " "), ", axis " + w["axis"] if w["axis"] else "",
+        SENSOR[w["sensor"]])
+
+
+def _clause(cause):
+    axes = " and ".join(a.upper() for a in cause["axes"])
+    who = "The %s%s" % (axes + " " if axes else "", SENSOR[cause["sensor"]])
+    if cause["effect"]:
+        return "%s %s%s." % (who, DOES.get(cause["effect"], cause["effect"]), _size(cause))
+    names = [n.replace("_", " ") for n in cause["class"]]
+    if len({DOMAIN[n] for n in cause["class"]}) == 1:
+        return "%s %s%s (%s)." % (who, DOES.get(cause["class"][0]), _size(cause),
+                                  " or ".join(names))
+    return "%s shows one of: %s." % (who, ", ".join(names))
+
+
+def _size(cause):
+    values = [v for v in cause["value"].values() if v is not None]
+    if not values or cause["unit"] in ("1", "axis"):
+        return ""
+    if len(values) == 1:
+        return ", %.3g %s" % (values[0], cause["unit"])
+    return ", up to %.3g %s" % (max(values, key=abs), cause["unit"])
+
+
+def _closed(answer):
+    parts = []
+    for kind, gap in answer["gap"].items():
+        if gap["explained_share"] is not None:
+            parts.append("%.0f %% of the %s's gap" % (100 * max(0.0, gap["explained_share"]),
+                                                      SENSOR[kind]))
+    return "Adding that closes %s." % " and ".join(parts) if parts else ""
+
+
+def show(answer):
+    """Print everything."""
+    out = console()
+    out.print(styled(plain(sentence(answer)), STYLE[answer["verdict"]]), soft_wrap=True)
+    for remark in answer["remarks"]:
+        out.print(plain("  " + remark), soft_wrap=True)
+    if answer["where"]:
+        out.print(table("Where", ("sensor", "axis", "domain", "share", "p"), [
+            (SENSOR[w["sensor"]], w["axis"] or "-", w["domain"].replace("_", " "),
+             "%.0f %%" % (100 * w["share"]), "%.1g" % w["p"]) for w in answer["where"][:12]]))
+    if answer["causes"]:
+        out.print(table("Which", ("effect", "sensor", "size (90 % interval)", "score", "share"),
+                        [row(c) for c in answer["causes"]]))
+    for kind, gap in answer["gap"].items():
+        out.print(plain(shrinkage_line(kind, gap, answer["held_out"])), soft_wrap=True)
+    for kind, loop in answer.get("simulated", {}).items():
+        out.print(plain(loop_line(kind, loop)), soft_wrap=True)
+    _rest(out, answer)
+
+
+def row(c):
+    name = c["effect"] or " or ".join(c["class"])
+    if not c["plausible"]:
+        name += " (numerically helpful, physically implausible)"
+    sizes = []
+    for key, value in list(c["value"].items())[:4]:
+        low, high = c["interval_90"].get(key, [None, None])
+        span = "" if low is None or low == high else " (%.3g … %.3g)" % (low, high)
+        sizes.append("%s %.3g%s" % (key, value, span))
+    more = " …" if len(c["value"]) > 4 else ""
+    return (name, SENSOR[c["sensor"]], ", ".join(sizes) + more + " " + c["unit"],
+            "%.1f" % c["score_nats"], "-" if c["share"] is None else "%.0f %%"
+            % (100 * c["share"]))
+
+
+def shrinkage_line(kind, gap, held):
+    text = "How far, %s (%s): %.3g %s before" % (SENSOR[kind], held, gap["before"], gap["unit"])
+    if gap["explained_share"] is None:
+        return text + ", noise alone %.3g." % gap["floor"]
+    text += ", %.3g after, noise alone %.3g" % (gap["after"], gap["floor"])
+    low, high = gap["interval_90"] or (None, None)
+    if low is None:
+        return text + "; gap too small to measure."
+    return text + "; %.0f %% of what can be explained (90 %%: %.0f to %.0f)." % (
+        100 * gap["explained_share"], 100 * low, 100 * high)
+
+
+def loop_line(kind, loop):
+    """The simulator run again, in a sentence."""
+    return ("Simulated again with %s: real less simulated %.3g %s before, %.3g after, noise of "
+            "both %.3g (%s)." % (", ".join(sorted({e["effect"] for e in loop["effects"]})),
+                                 loop["before"], loop["unit"], loop["after"], loop["floor"],
+                                 SENSOR[kind]))
+
+
+def _rest(out, answer):
+    if answer["unseen"]:
+        out.print("Could not be seen:", soft_wrap=True)
+        for u in answer["unseen"]:
+            out.print(plain("  %s (%s): %s" % (u["effect"], SENSOR[u["sensor"]], u["reason"])),
+                      soft_wrap=True)
+    if answer["next"]:
+        out.print("To capture next:", soft_wrap=True)
+        for n in answer["next"]:
+            out.print(plain("  %s (%.0f minutes): tells %s" % (
+                n["capture"], n["minutes"], ", ".join(" from ".join(p) for p in n["resolves"]))),
+                soft_wrap=True)

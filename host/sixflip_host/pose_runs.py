@@ -1,0 +1,89 @@
+"""Labelled stretches of a capture as placements and moves, for the shared solvers."""
+
+import numpy as np
+
+from sixflip.placement import Move, Placement
+from sixflip.still_window import window_length
+
+POSE_SAMPLES = 400      # of a pose on the board: sets the length of its windows
+INT16_RAIL = 32767      # where the chip's count ends
+DROP = 1.5              # an interval this many times the usual one hides at least one sample
+
+
+def runs(pose):
+    """Unbroken runs of a label: list of (code, first, end), end exclusive, moving left out."""
+    edges = np.flatnonzero(np.diff(pose)) + 1
+    starts = np.concatenate(([0], edges))
+    ends = np.concatenate((edges, [len(pose)]))
+    return [(int(pose[start]), int(start), int(end)) for start, end in zip(starts, ends)
+            if pose[start]]
+
+
+def placements(capture):
+    """list of Placement, one for every run of a label in capture.pose; none when unlabelled."""
+    if capture.pose is None:
+        return []
+    return [placement(capture, *run) for run in runs(capture.pose)]
+
+
+def placement(capture, code, first, end):
+    """The Placement of samples first..end-1."""
+    n = end - first
+    sums = [int(s) for s in capture.accel[first:end].sum(axis=0, dtype=np.int64)]
+    sums += ([int(s) for s in capture.gyro[first:end].sum(axis=0, dtype=np.int64)]
+             if capture.gyro is not None else [0, 0, 0])
+    sums.append(int(capture.temp[first:end].sum(dtype=np.int64))
+                if capture.temp is not None else 0)
+    window = window_length(capture.meta["rate_hz"], POSE_SAMPLES)
+    noise = white_noise(capture.accel[first:end], window)
+    noise += (white_noise(capture.gyro[first:end], window) if capture.gyro is not None
+              else [0.0] * 3)
+    span = int(capture.t_us[end - 1] - capture.t_us[first])
+    return Placement(code, first, n, sums, noise, span * n // (n - 1) if n > 1 else 0)
+
+
+def white_noise(counts, window):
+    """Standard deviation within windows of so many samples, counts, list of one per column.
+
+    Deviations from the mean of each short window, so that a drift over the pose is no noise;
+    the board measures it the same way.
+    """
+    windows = len(counts) // window
+    if windows:
+        cut = counts[:windows * window].astype(float).reshape(windows, window, -1)
+        return np.sqrt(cut.var(axis=1, ddof=1).mean(axis=0)).tolist()
+    if len(counts) > 1:
+        return counts.astype(float).std(axis=0, ddof=1).tolist()
+    return [0.0] * counts.shape[1]
+
+
+def resumed_at(capture):
+    """Samples of a session before that the board went on with, 0 in most captures: it knew the
+    placements in them, not the moves."""
+    number = capture.meta.get("resumed_at", 0)
+    return number if isinstance(number, int) else 0
+
+
+def moves(capture, rests):
+    """list of Move between consecutive placements; none without a gyro."""
+    if capture.gyro is None or len(rests) < 2:
+        return []
+    usual = float(np.median(np.diff(capture.t_us)))
+    return [_move(capture, index, rests[index], rests[index + 1], usual)
+            for index in range(len(rests) - 1)]
+
+
+def _move(capture, index, before, after, usual):
+    """The Move from the end of one placement to the start of the next."""
+    first, end = before.first + before.n, after.first
+    gyro = capture.gyro[first:end]
+    gaps = np.diff(capture.t_us[first - 1:end + 1])
+    drops = int(np.rint(gaps[gaps > DROP * usual] / usual - 1).sum()) if usual else 0
+    rail = min(INT16_RAIL, capture.meta.get("gyro_range_dps", np.inf)
+               * capture.meta["gyro_lsb_per_dps"])
+    saturated = bool(len(gyro)) and bool((np.abs(gyro.astype(np.int32)) >= rail - 1).any())
+    return Move(index, index + 1, first, end - first,
+                [int(s) for s in gyro.sum(axis=0, dtype=np.int64)],
+                # n samples span n intervals, each sample the one before it, as on the board
+                int(capture.t_us[end - 1] - capture.t_us[first - 1]), drops, saturated,
+                int(gaps.max()))

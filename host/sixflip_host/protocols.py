@@ -1,0 +1,132 @@
+"""The sessions that can be asked for: which pose, how long, how warm, in which order.
+
+Their numbers are those of the findings: 5 s rests, 10 s moves, 8-9 degC with tau = 300 s.
+"""
+import math
+import random
+
+from sixflip import faces
+
+NAMES = ("paper", "return", "random", "backward", "recommended", "thermal", "soak",
+         "turntable", "drive")
+DWELL_S, MOVE_S = 5.0, 10.0
+OFF_FACES = math.cos(math.radians(22.0))  # the board takes what leans 15 degrees for a face
+STATES = {"warming": (22.0, 9.0, 300.0), "warm": (31.0, 2.0, 200.0),
+          "cooling": (38.0, -9.0, 400.0)}
+
+
+class Rest:
+    """One still pose. up: unit vector against gravity in the box; yaw_deg on the table; turn:
+    the way the box is turned (left: anticlockwise from above) when it comes from its flip."""
+
+    def __init__(self, pose, up, yaw_deg=0.0, dwell_s=DWELL_S, move_s=MOVE_S, turn="left"):
+        self.pose, self.up, self.yaw_deg = pose, up, yaw_deg
+        self.dwell_s, self.move_s, self.turn = dwell_s, move_s, turn
+
+    @property
+    def leaning(self):
+        return self.pose.startswith("L")
+
+
+class SessionPlan:
+    """Rests in one thermal state: T(t) = start_c + change_c (1 - exp(-t / tau_s));
+    rest_s of stillness before the first pose and after the last; vibration_mg: rms of a
+    vibration that is switched on for this session."""
+
+    vibration_mg = 0.0
+
+    def __init__(self, rests, state="warming", start_c=25.0, change_c=8.0, tau_s=300.0,
+                 rest_s=0.0):
+        self.rests, self.state, self.rest_s = rests, state, rest_s
+        self.start_c, self.change_c, self.tau_s = start_c, change_c, tau_s
+
+    @property
+    def minutes(self):
+        return (sum(r.dwell_s + r.move_s for r in self.rests) + 2 * self.rest_s) / 60.0
+
+
+class Protocol:
+    """Named sessions, to be captured in this order."""
+
+    def __init__(self, name, sessions):
+        self.name, self.sessions = name, sessions
+
+    @property
+    def minutes(self):
+        return sum(session.minutes for session in self.sessions)
+
+
+def face_rest(code, turn="left", **timing):
+    """The Rest of pose code 1..12; b is a turned by 180 degrees."""
+    face = (code - 1) // 2
+    up = [0.0, 0.0, 0.0]
+    up[faces.AXIS[face]] = float(faces.SIGN[face])
+    return Rest(faces.pose_name(code), tuple(up), 180.0 * faces.is_b(code), turn=turn, **timing)
+
+
+def leaning_rests(count, seed, **timing):
+    """Free attitudes, evenly scattered over the sphere by a seeded draw, away from the faces."""
+    draw = random.Random(1000 + seed)
+    rests = []
+    while len(rests) < count:
+        v = [draw.gauss(0.0, 1.0) for _ in range(3)]
+        length = math.sqrt(sum(c * c for c in v))
+        if max(abs(c) for c in v) < OFF_FACES * length:
+            rests.append(Rest("L%d" % (len(rests) + 1), tuple(c / length for c in v), **timing))
+    return rests
+
+
+def order_of(name, seed=7):
+    """Pose codes of one pass: "fixed"; "random"; or "pairs", the faces in random order, each
+    with its flip. Pairs give the gyro its half turns, but a single pass of them lets a crooked
+    box reproduce most of a drift (0.86 on average, 0.25 for "random"): go backward after it."""
+    codes = list(range(1, 13))
+    draw = random.Random(seed)
+    if name == "random":
+        draw.shuffle(codes)
+    elif name == "pairs":
+        pairs = [codes[k:k + 2] for k in range(0, 12, 2)]
+        draw.shuffle(pairs)
+        codes = [code for pair in pairs for code in (pair if draw.random() < 0.5
+                                                     else reversed(pair))]
+    return codes
+
+
+def faces_session(codes, leaning=0, backward=False, both_ways=True, state=None, seed=7,
+                  dwell_s=DWELL_S, move_s=MOVE_S, rest_s=0.0):
+    """One session: the codes, then leaning poses, then the codes backward."""
+    timing = {"dwell_s": dwell_s, "move_s": move_s}
+    rests = [face_rest(c, **timing) for c in codes] + leaning_rests(leaning, seed, **timing)
+    if backward:
+        rests += [face_rest(c, **timing) for c in reversed(codes)]
+    for k, rest in enumerate(rests):
+        rest.turn = "right" if both_ways and k // 2 % 2 else "left"
+    if state is None:
+        return SessionPlan(rests, rest_s=rest_s)
+    start, change, tau = STATES[state]
+    return SessionPlan(rests, state, start, change, tau, rest_s)
+
+
+def named(name, seed=7):
+    """The Protocol of this name; ValueError names what there is."""
+    if name == "paper":
+        return Protocol(name, [faces_session(order_of("fixed"), both_ways=False)])
+    if name == "return":
+        codes = order_of("fixed")
+        return Protocol(name, [faces_session(codes + codes[:1], both_ways=False)])
+    if name == "random":
+        return Protocol(name, [faces_session(order_of("random", seed))])
+    if name == "backward":
+        return Protocol(name, [faces_session(order_of("fixed"), backward=True)])
+    if name == "thermal":
+        return Protocol(name, [faces_session(order_of("fixed"), backward=True, state=state)
+                               for state in ("warming", "cooling")])
+    if name == "recommended":
+        return Protocol(name, [
+            faces_session(order_of("pairs", seed + k), 15, True, True, state, seed + k,
+                          rest_s=30.0)
+            for k, state in enumerate(("warming", "cooling"))])
+    if name == "soak":
+        return Protocol(name, [SessionPlan([Rest("Z+a", (0.0, 0.0, 1.0), 0.0, 1800.0, 0.0)],
+                                           "warming", *STATES["warming"])])
+    raise ValueError("no protocol named %r, expected one of %s" % (name, " ".join(NAMES)))
