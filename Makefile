@@ -1,0 +1,61 @@
+# Two commands do everything on a fresh machine: `make demo` and `make test`.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+export SIXFLIP_CACHE ?= $(CURDIR)/.cache
+
+.PHONY: help setup micropython demo test test-qemu check bench bench-accuracy fidelity \
+	reproduce package.json clean
+
+help:
+	@echo "make demo            a virtual board calibrates itself and the host checks it (no hardware)"
+	@echo "make test            every test: CPython, real MicroPython, an emulated Cortex-M3"
+	@echo "make setup           the command 'sixflip' in $(BIN)"
+	@echo "make micropython     the MicroPython interpreter that the virtual board runs on"
+	@echo "make test-qemu       the tests on the emulated Cortex-M3 alone"
+	@echo "make check           ruff"
+	@echo "make bench-accuracy  vector error against imucal, imu_calib and the theoretical bound"
+	@echo "make bench           that, and every other benchmark"
+	@echo "make fidelity        the simulator against real recordings"
+	@echo "make reproduce       the paper's tables 3 and 4"
+
+setup: $(VENV)/.installed
+
+$(VENV)/.installed: pyproject.toml
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	touch $@
+
+micropython: setup
+	@$(BIN)/python -m sixflip_host.micropython_fetch
+
+demo: micropython
+	@$(BIN)/sixflip demo --keep demo-output
+
+test: micropython check
+	$(BIN)/python -m pytest -n 2 --dist loadfile
+
+test-qemu: setup
+	$(BIN)/python -m pytest -s tests/on_qemu
+
+check: setup
+	$(BIN)/ruff check .
+
+bench-accuracy: setup
+	@$(BIN)/python tests/bench/accuracy.py
+
+bench: bench-accuracy
+	@for each in $(filter-out tests/bench/accuracy.py,$(wildcard tests/bench/*.py)); do \
+		echo; echo "== $$each"; $(BIN)/python $$each || exit 1; done
+
+fidelity: setup
+	@$(BIN)/python -m sixflip_host.fidelity
+
+reproduce: setup
+	@$(BIN)/sixflip reproduce
+
+package.json: setup
+	$(BIN)/python -m sixflip_host.mip_package > $@.new && mv $@.new $@
+
+clean:
+	rm -rf $(VENV) .cache build demo-output

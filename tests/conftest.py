@@ -1,0 +1,27 @@
+"""Where the tests find what they cannot carry: recordings and a MicroPython interpreter.
+
+For a user a missing one is a skip with one clear line; in CI (CI=true) it is a failure.
+"""
+
+import os
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def missing(what):
+    """Skip for a user, fail in CI."""
+    if os.environ.get("CI") == "true":
+        pytest.fail(what + " (in CI nothing may be missing)")
+    pytest.skip(what)
+
+
+@pytest.fixture(scope="session")
+def recordings():
+    """Folder of the real recordings: SIXFLIP_DATA, or ../shared/data beside the project."""
+    folder = Path(os.environ.get("SIXFLIP_DATA", ROOT.parent / "shared" / "data"))
+    if not (folder / "README.md").is_file():
+        missing("no recordings at %s: set SIXFLIP_DATA to the folder that holds them" % folder)
+    return folder

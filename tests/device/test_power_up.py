@@ -1,0 +1,410 @@
+"""The whole firmware around a simulated world: first power-up, second power-up, bad days."""
+
+import json
+import os
+import shutil
+import tempfile
+import unittest
+
+from simulated_board import SHORT_WORLD, STOP_WHEN_READY, SimulatedBoard, TooLong, power_on
+
+from sixflip import correction_record
+from sixflip.capture_blocks import read_blocks
+from sixflip_device import power_up
+from sixflip_sim import worlds
+
+STILL = {"order": [], "first_rest_s": 30.0, "tilt_deg": 2.0}
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        self.root = tempfile.mkdtemp()
+
+    def tearDown(self):
+        shutil.rmtree(self.root)
+
+    def path(self, name):
+        return os.path.join(self.root, name)
+
+    def files(self):
+        return sorted(os.listdir(self.root))
+
+    def read(self, name):
+        with open(self.path(name), "rb") as f:
+            return f.read()
+
+    def write(self, name, data):
+        with open(self.path(name), "wb") as f:
+            f.write(data)
+
+    def calibrated(self, **world):
+        """A first power-up that ends with a record on the flash."""
+        board = power_on(self.root, world)
+        self.assertIn(board.only("solved")["verdict"], ("good", "doubtful"))
+        return board
+
+
+class TestFirstPowerUp(Folder):
+    def test_from_the_chip_to_the_record(self):
+        board = self.calibrated()
+        self.assertEqual(board.names()[:5],
+                         ["hello", "selftest", "grace", "no_record", "calibrating"])
+        self.assertEqual(self.files(), ["capture.bin", "record_a.bin"])
+        solved = board.only("solved")
+        self.assertEqual(solved["level"], "tilt solved")
+        self.assertAlmostEqual(solved["tilt_deg"], 2.0, delta=0.05)
+        record = correction_record.decode(self.read("record_a.bin"))
+        self.assertEqual(record.sequence, 1)
+        self.assertEqual(record.chip, "mpu6050")
+        # P undoes what the world did to the samples: m = A t + b
+        truth = board.world.truth
+        for i in range(3):
+            up = [9.80665 if k == i else 0.0 for k in range(3)]
+            m = [sum(truth.accel_matrix[r][k] * up[k] for k in range(3)) + truth.accel_bias[r]
+                 for r in range(3)]
+            got = [sum(m[k] * record.accel["P"][k][j] for k in range(3))
+                   + record.accel["P"][3][j] for j in range(3)]
+            for j in range(3):
+                self.assertAlmostEqual(got[j], up[j], delta=0.008)
+
+    def test_capture_belongs_to_the_record(self):
+        board = self.calibrated()
+        blocks = read_blocks(self.read("capture.bin"))
+        meta = json.loads(blocks.meta_bytes)
+        record = correction_record.decode(self.read("record_a.bin"))
+        self.assertEqual(meta["session"], record.session)
+        self.assertEqual(meta["device_id"], board.unique_id)
+        self.assertTrue(blocks.complete)
+        self.assertIsNone(blocks.truncated_at)
+        self.assertEqual(len(blocks.placements), 12)
+        columns = len(blocks.names)
+        for p in blocks.placements:
+            for k in range(columns):
+                column = blocks.rows[k:][::columns]
+                self.assertEqual(sum(column[p.first:p.first + p.n]), p.sums[k])
+
+    def test_second_power_up_streams_corrected(self):
+        self.calibrated()
+        board = power_on(self.root, STILL, answers=[
+            [lambda e: e["event"] == "sample" and e["t_us"] > 2e6, {"cmd": "stop"}, 1]])
+        self.assertEqual(board.named("calibrating"), [])
+        self.assertEqual(board.only("record")["slot"], "a")
+        rest = board.only("rest")
+        self.assertTrue(rest["still"])
+        self.assertEqual(rest["verdict"], "good")
+        self.assertTrue(board.only("ready")["corrected"])
+        samples = board.named("sample")
+        self.assertGreater(len(samples), 15)
+        length = sum(sum(x * x for x in s["a"]) ** 0.5 for s in samples) / len(samples)
+        self.assertAlmostEqual(length, 9.80665, delta=0.01)
+        for axis in range(3):
+            self.assertAlmostEqual(sum(s["w"][axis] for s in samples) / len(samples), 0.0,
+                                   delta=0.0005)
+
+    def test_gy85_and_adxl345(self):
+        for sensor in ("gy85", "adxl345"):
+            root = self.path(sensor)
+            os.mkdir(root)
+            board = power_on(root, {"sensor": sensor, "tilt_deg": 1.0})
+            self.assertEqual(board.only("hello")["sensor"], sensor)
+            self.assertEqual(len(board.named("pose")), 12, board.named("refused"))
+            self.assertIn(board.only("solved")["verdict"], ("good", "doubtful"))
+            self.assertIn("record_a.bin", os.listdir(root))
+
+    def test_clone_is_named_and_used(self):
+        board = self.calibrated(who_am_i=0x98)
+        self.assertEqual(board.only("hello")["who_am_i"], [0x98, 0x98])
+        self.assertIn("clone", board.only("hello")["chip"])
+        self.assertEqual(correction_record.decode(self.read("record_a.bin")).who_am_i[0], 0x98)
+
+
+class TestAskedFor(Folder):
+    def test_flag_file_asks_once(self):
+        self.calibrated()
+        self.write("calibrate.flag", b"")
+        board = power_on(self.root, {"seed": 5})
+        self.assertEqual(len(board.named("calibrating")), 1)
+        self.assertNotIn("calibrate.flag", self.files())
+        self.assertEqual(board.only("saved")["slot"], "b")
+        self.assertEqual(board.only("saved")["sequence"], 2)
+
+    def test_button_held_at_power_up(self):
+        self.calibrated()
+        board = SimulatedBoard(worlds.make(dict(SHORT_WORLD, seed=5)), self.root,
+                               [STOP_WHEN_READY])
+        board.pressed = True
+        power_on(self.root, board=board)
+        self.assertEqual(len(board.named("calibrating")), 1)
+
+    def test_host_asks_in_the_grace_window_and_while_streaming(self):
+        self.calibrated()
+        for when in ("grace", "ready"):
+            board = power_on(self.root, {"seed": 7}, answers=[
+                [when, {"cmd": "calibrate"}, 1], ["calibrating", {"cmd": "stop"}, 1],
+                ["solved", {"cmd": "stop"}, 1]])
+            self.assertEqual(len(board.named("calibrating")), 1, when)
+
+    def test_stop_in_the_grace_window(self):
+        board = power_on(self.root, answers=[["grace", {"cmd": "stop"}, 1]])
+        self.assertEqual(board.names()[-2:], ["grace", "stopped"])
+        self.assertEqual(self.files(), [])
+
+    def test_same_result_is_not_written_again(self):
+        self.calibrated()
+        before = self.read("record_a.bin"), self.read("capture.bin")
+        self.write("calibrate.flag", b"")
+        board = power_on(self.root)
+        saved = board.only("saved")
+        self.assertFalse(saved["written"])
+        self.assertIn("uncertainty", saved["reason"])
+        self.assertEqual((self.read("record_a.bin"), self.read("capture.bin")), before)
+        self.assertNotIn("record_b.bin", self.files())
+
+    def test_restore_goes_back_and_forth(self):
+        self.calibrated()
+        first = correction_record.decode(self.read("record_a.bin")).session
+        self.write("calibrate.flag", b"")
+        power_on(self.root, {"seed": 5})
+        second = correction_record.decode(self.read("record_b.bin")).session
+        restore = [["ready", {"cmd": "restore"}, 1], ["restored", {"cmd": "stop"}, 1]]
+        for expected in (first, second):
+            board = power_on(self.root, STILL, answers=restore)
+            self.assertEqual(board.only("restored")["session"], expected)
+            board = power_on(self.root, STILL)
+            self.assertEqual(board.only("record")["session"], expected)
+
+    def test_restore_without_an_older_record(self):
+        self.calibrated()
+        board = power_on(self.root, STILL, answers=[
+            ["ready", {"cmd": "restore"}, 1], ["error", {"cmd": "stop"}, 1]])
+        self.assertIn("no record before", board.only("error")["what"])
+
+
+class TestRefused(Folder):
+    """A refused session replaces nothing."""
+
+    def refused(self, board, *words):
+        solved = board.named("solved")[-1]
+        self.assertEqual(solved["verdict"], "refused")
+        for word in words:
+            self.assertIn(word, solved["reason"])
+        self.assertFalse([e for e in board.named("saved") if e["written"]])
+
+    def test_missing_pose_times_out(self):
+        self.calibrated()
+        before = self.read("record_a.bin"), self.read("capture.bin")
+        self.write("calibrate.flag", b"")
+        board = power_on(self.root, {"mishaps": [{"kind": "missing", "pose": "X-b"}]})
+        self.refused(board, "timed out", "X-b")
+        self.assertEqual((self.read("record_a.bin"), self.read("capture.bin")), before)
+        kept = read_blocks(self.read("refused.bin"))
+        self.assertFalse(kept.complete)
+        self.assertEqual(len(kept.placements), 11)
+        self.assertTrue(board.only("ready")["corrected"])
+
+    def test_never_calibrated_streams_raw_and_says_so(self):
+        board = power_on(self.root, STILL, timeout_s=10)
+        self.refused(board, "timed out")
+        self.assertFalse(board.only("ready")["corrected"])
+        self.assertNotIn("record_a.bin", self.files())
+
+    def test_stopped_by_the_host_keeps_what_was_captured(self):
+        board = power_on(self.root, answers=[
+            [lambda e: e["event"] == "pose" and e["pose"] == "X+a", {"cmd": "stop"}, 1],
+            STOP_WHEN_READY])
+        self.refused(board, "stopped")
+        self.assertEqual(len(read_blocks(self.read("refused.bin")).placements), 5)
+
+    def test_moved_box(self):
+        board = power_on(self.root, {"mishaps": [
+            {"kind": "moved", "pose": "Z-a", "at_s": 2.0, "deg": 5.0}]})
+        self.assertTrue([e for e in board.named("refused") if e["reason"] == "moving"])
+
+    def test_crooked_face(self):
+        board = power_on(self.root, {"mishaps": [
+            {"kind": "crooked", "pose": "Y+a", "deg": 8.0}]})
+        solved = board.named("solved")
+        told = [e["reason"] for e in board.named("refused") + solved if e["reason"]]
+        self.assertTrue([t for t in told if "crooked" in t or "square" in t or "lean" in t
+                         or "off" in t], told)
+        self.assertNotEqual(solved[-1]["verdict"], "good")
+
+    def test_redo_takes_a_face_again(self):
+        board = power_on(self.root, {"order": ["Z+a", "Z+b", "Z-a", "Z-b", "X+a", "X+b", "X-a",
+                                               "X-b", "Z+a", "Z+b", "Y+a", "Y+b", "Y-a", "Y-b"]},
+                         answers=[[lambda e: e["event"] == "pose" and e["pose"] == "X-b",
+                                   {"cmd": "redo", "face": "Z+"}, 1], STOP_WHEN_READY])
+        self.assertEqual(sorted(board.only("redo")["missing"])[-2:], ["Z+a", "Z+b"])
+        blocks = read_blocks(self.read("capture.bin"))
+        self.assertEqual(len(blocks.placements), 12)
+        self.assertEqual(len(board.named("pose")), 14)
+
+
+class TestBus(Folder):
+    def with_faults(self, faults, **changes):
+        return power_on(self.root, {"faults": faults}, **changes)
+
+    def test_no_chip_is_said_once_and_the_host_is_obeyed(self):
+        board = SimulatedBoard(worlds.make(SHORT_WORLD), self.root, limit_s=20, answers=[
+            ["info", {"cmd": "stop"}, 1], ["error", {"cmd": "info"}, 1]])
+        del board.world.i2c.chips[:]
+        power_on(self.root, board=board)
+        self.assertEqual(board.names(), ["hello", "error", "info", "stopped"])
+        self.assertIsNone(board.only("hello")["sensor"])
+        self.assertIn("MPU6050", board.only("error")["expected"])
+
+    def test_chip_plugged_in_later(self):
+        board = power_on(self.root, dict(STILL, faults=[
+            {"kind": "unplugged", "at": 0, "for_ms": 7000}]), timeout_s=6)
+        self.assertEqual(len(board.named("hello")), 2)
+        self.assertEqual(board.named("hello")[1]["sensor"], "mpu6050")
+        self.assertEqual(len(board.named("error")), 1)
+
+    def test_wrong_chip(self):
+        board = SimulatedBoard(worlds.make(dict(SHORT_WORLD, sensor="adxl345")), self.root,
+                               [["error", {"cmd": "stop"}, 1]])
+        power_on(self.root, board=board, sensor="mpu6050")
+        self.assertIn("mpu6050", board.only("error")["expected"])
+
+    def test_wrong_id_once_is_not_believed(self):
+        board = self.with_faults([{"kind": "wrong_id", "at": 0, "value": 0x12}])
+        self.assertEqual(board.only("hello")["who_am_i"], [0x68, 0x68])
+        self.assertEqual(board.only("solved")["verdict"], "good")
+
+    def test_chip_asleep_in_mid_capture(self):
+        for kind in ("reset", "sleep"):
+            root = self.path(kind)
+            os.mkdir(root)
+            board = power_on(root, {"faults": [{"kind": kind, "at_ms": 20200}]})
+            self.assertTrue(board.named("bus_error"), kind)
+            self.assertEqual(len(board.named("pose")), 12, kind)
+            self.assertEqual(board.only("solved")["verdict"], "good", board.only("solved"))
+
+    def test_chip_asleep_never_enters_a_pose(self):
+        # whenever it happens in a capture of two and a half seconds
+        for at_ms in range(8600, 11600, 370):
+            root = self.path(str(at_ms))
+            os.mkdir(root)
+            power_on(root, {"dwell_s": 8.0, "order": ["Z+a", "Z+b"],
+                            "faults": [{"kind": "sleep", "at_ms": at_ms}]}, timeout_s=10)
+            for p in read_blocks(self.read(str(at_ms) + "/refused.bin")).placements:
+                self.assertGreater(p.noise[0], 30.0, at_ms)
+
+    def test_stuck_bus_is_freed_by_hand(self):
+        for flavour in ("rp2", "esp32", "stm32", "soft", "linux"):
+            root = self.path(flavour)
+            os.mkdir(root)
+            board = power_on(root, {"flavour": flavour, "faults": [
+                {"kind": "stuck_sda", "at_ms": 20200}]})
+            actions = [e["action"] for e in board.named("bus_error")]
+            self.assertIn("recovered", actions, flavour)
+            self.assertEqual(len(board.named("pose")), 12, flavour)
+            self.assertEqual(board.only("solved")["verdict"], "good", flavour)
+
+    def test_noisy_bus_loses_nothing(self):
+        board = self.with_faults([{"kind": "nak", "rate": 0.01},
+                                  {"kind": "timeout", "every": 997}])
+        self.assertGreater(board.named("bus_error")[-1]["count"], 20)
+        self.assertEqual(board.only("solved")["verdict"], "good")
+        self.assertEqual(len(read_blocks(self.read("capture.bin")).placements), 12)
+
+    def test_cable_off_for_good_in_mid_session(self):
+        board = SimulatedBoard(
+            worlds.make(dict(SHORT_WORLD, faults=[{"kind": "unplugged", "at_ms": 30000}])),
+            self.root, [["solved", {"cmd": "stop"}, 1]])
+        power_on(self.root, board=board)
+        self.assertEqual(board.only("solved")["verdict"], "refused")
+        self.assertIn("no longer answers", board.only("solved")["reason"])
+        self.assertGreater(len(read_blocks(self.read("refused.bin")).placements), 3)
+
+    def test_ctrl_c_comes_through_and_the_capture_is_readable(self):
+        board = SimulatedBoard(worlds.make(SHORT_WORLD), self.root, limit_s=30.0)
+        with self.assertRaises(TooLong):
+            power_on(self.root, board=board)
+        self.assertGreater(len(read_blocks(self.read("refused.bin")).placements), 2)
+
+
+class TestRecordsThatDoNotFit(Folder):
+    def test_both_slots_damaged(self):
+        self.calibrated()
+        data = self.read("record_a.bin")
+        self.write("record_a.bin", data[:-1])
+        self.write("record_b.bin", b"\0" * len(data))
+        board = power_on(self.root, STILL, timeout_s=6)
+        reason = board.only("no_record")["reason"]
+        self.assertIn("slot a", reason)
+        self.assertIn("slot b", reason)
+        self.assertEqual(len(board.named("calibrating")), 1)
+
+    def test_one_damaged_slot_leaves_the_other(self):
+        self.calibrated()
+        self.write("record_b.bin", b"rubbish")
+        board = power_on(self.root, STILL)
+        self.assertEqual(board.only("record")["slot"], "a")
+        self.assertIn("b", board.only("record")["refused"])
+
+    def test_other_chip_and_other_range(self):
+        self.calibrated()
+        board = power_on(self.root, dict(STILL, sensor="gy85"), timeout_s=6)
+        self.assertIn("mpu6050", board.only("no_record")["reason"])
+        board = power_on(self.root, dict(STILL, who_am_i=0x70), timeout_s=6)
+        self.assertIn("0x70", board.only("no_record")["reason"])
+        record = correction_record.decode(self.read("record_a.bin"))
+        record.accel_range_g = 8
+        self.write("record_a.bin", correction_record.encode(record))
+        board = power_on(self.root, STILL, timeout_s=6)
+        self.assertIn("8 g", board.only("no_record")["reason"])
+
+    def test_bias_is_not_poisoned_by_a_robot_that_moves(self):
+        self.calibrated()
+        board = power_on(self.root, dict(SHORT_WORLD, first_rest_s=0.7, dwell_s=0.3), rest_s=2)
+        rest = board.only("rest")
+        self.assertFalse(rest["still"])
+        self.assertEqual(rest["bias"], "stored")
+        record = correction_record.decode(self.read("record_a.bin"))
+        for k in range(3):
+            self.assertAlmostEqual(rest["bias_dps"][k], record.gyro_bias["bias_dps"][k], places=5)
+
+
+class TestCommands(Folder):
+    def answer_to(self, line, event):
+        if not self.files():
+            self.calibrated()
+        board = power_on(self.root, STILL, answers=[["ready", line, 1],
+                                                    [event, {"cmd": "stop"}, 1]])
+        return board.named(event)[-1], board
+
+    def test_unknown_and_nonsense(self):
+        for line in ({"cmd": "fly"}, "rubbish", {"cmd": "undo"}, {"cmd": "redo", "face": "W"},
+                     {"cmd": "stream", "hz": -1}, {"cmd": "stream", "raw": 1}):
+            self.assertTrue(self.answer_to(line, "error")[0]["expected"])
+
+    def test_check(self):
+        answer, _ = self.answer_to({"cmd": "check"}, "check")
+        self.assertEqual(answer["verdict"], "good")
+        self.assertLess(abs(answer["a_error_mg"]), 1.0)
+
+    def test_raw_stream(self):
+        self.calibrated()
+        board = power_on(self.root, STILL, answers=[
+            ["ready", {"cmd": "stream", "raw": True, "hz": 50}, 1],
+            [lambda e: e["event"] == "sample" and e["t_us"] > 1.5e6, {"cmd": "stop"}, 1]])
+        raw = [e for e in board.named("sample") if "raw" in e]
+        self.assertGreater(len(raw), 40)
+        self.assertEqual(len(raw[0]["raw"]), 7)
+        self.assertTrue(all(isinstance(x, int) for x in raw[0]["raw"]))
+
+
+class TestMain(unittest.TestCase):
+    def test_settings_name_an_unknown_board(self):
+        folder = tempfile.mkdtemp()
+        with open(os.path.join(folder, "sixflip.json"), "w") as f:
+            f.write('{"board": "stm32f103"}')
+        os.environ["SIXFLIP_BOARD_DIR"] = folder
+        try:
+            with self.assertRaises(ValueError) as caught:
+                power_up.main()
+        finally:
+            del os.environ["SIXFLIP_BOARD_DIR"]
+            shutil.rmtree(folder)
+        self.assertIn("expected pico", str(caught.exception))

@@ -1,0 +1,94 @@
+"""Writes the valid part of the corpus: `python tests/fuzz/seeds.py`. Small, and the same always.
+
+What fuzzing found lies beside it under names that say what it was.
+"""
+
+import sys
+from pathlib import Path
+
+import targets  # noqa: F401  sets sys.path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "host"))
+
+import hostile_sessions  # noqa: E402
+
+from sixflip import correction_record  # noqa: E402
+from sixflip_host import capture_binary, capture_file  # noqa: E402
+
+CORPUS = Path(__file__).resolve().parent / "corpus"
+
+
+def small_capture(sensor):
+    """A session of some hundred rows."""
+    session = hostile_sessions.Session(1, sensor)
+    for rest in session.rests:
+        rest.samples = 12
+    hostile_sessions.MOVE = 3
+    return session.capture()
+
+
+def a_record():
+    """Every section there is."""
+    r = correction_record.Record()
+    r.chip, r.who_am_i, r.session, r.sequence = "mpu6050", (0x68, 0x68), 7, 3
+    r.accel_range_g, r.gyro_range_dps = 2, 500
+    r.accel_lsb_per_g, r.gyro_lsb_per_dps, r.temp_c = 16384.0, 65.5, 25.0
+    identity = [[float(i == j) for j in range(4)] for i in range(4)]
+    r.accel = {"P": identity, "sigma_P": [[1e-4] * 4 for _ in range(4)], "tilt_deg": 2.0,
+               "tilt_spread_deg": 0.05, "residual_rms_g": 1e-4, "noise_g": 3e-3,
+               "level": "tilt solved", "verdict": "good", "reason": "fine"}
+    r.gyro = {"P": [row[:3] for row in identity], "sigma_P": [[1e-3] * 3 for _ in range(4)],
+              "missing": [], "verdict": "good", "reason": ""}
+    r.gyro_bias = {"bias_dps": [0.1, -0.2, 0.3], "temp_c": 25.0}
+    r.mounting = {"roll_deg": 1.0, "pitch_deg": -2.0, "order": "xyz", "axes": "x y z", "frame":
+                  "rep103"}
+    return correction_record.encode(r)
+
+
+LINES = b"""{"event": "hello", "board": "pico", "id": "e661", "chip": "MPU6050", "sensor": "auto"}
+{"event": "state", "state": "capturing", "pose": "Z+a", "progress": 5, "total": 9, "left_s": 3}
+{"event": "state", "state": "moving", "reason": "moving", "value": 1.5, "limit": 1, "unit": "mg"}
+{"event": "pose", "pose": "Z+a", "missing": ["Z+b", "X-a", "X-b"]}
+{"event": "refused", "pose": "Z+b", "reason": "not a flip", "value": 90, "limit": 40, "unit": "d"}
+{"event": "solved", "verdict": "good", "reason": "r", "tilt_deg": 1, "residual_mg_rms": 0.5}
+{"event": "saved", "slot": "a", "sequence": 3}
+{"event": "error", "what": "x", "expected": "y"}
+"""
+SETTINGS = b'{"board": "pico", "sensor": "mpu6050", "i2c": 0, "scl": 5, "sda": "X1", "g": 9.8}'
+CSV = b"\0time,acc_x,acc_y,acc_z,gyr_x,gyr_y,gyr_z\n" + b"".join(
+    b"%d,0.5,-0.5,9.75,0.25,0,-0.25\n" % k for k in range(12))
+TOML = b"""sensor = "gy85"
+scene = "recommended"
+seed = 4
+[world]
+tilt_deg = 1.5
+accel_bias_mg = [1, 2.5, -3]
+[[effects]]
+effect = "thermal_bias"
+sensor = "accel"
+x = 0.5
+"""
+PLAN = (b'{"sixflip_plan": 1, "name": "p", "sessions": [{"state": "warming", "start_c": 22, '
+        b'"poses": ["Z+a", {"pose": "L1", "up": [0, 1, 1], "dwell_s": 5, "turn": "left"}]}]}')
+
+
+def main():
+    """Write them all."""
+    mpu, adxl = small_capture("mpu6050"), small_capture("adxl345")
+    seeds = {"capture_text": [capture_file.text(mpu)[:4000].rpartition(b"\n")[0].replace(
+                 b', "samples": %d' % len(mpu), b"") + b"\n", capture_file.text(adxl)],
+             "capture_of_a_board": [capture_binary.encode(adxl)],
+             "record": [a_record()], "lines_of_a_board": [LINES, b"{'main.py': (3, None)}"],
+             "settings": [SETTINGS], "host_line": [b'{"cmd": "stream", "hz": 50, "raw": true}'],
+             "somebodys_csv": [CSV, b"\3" + b"1 2 3 0.01 4 5 6\n" * 5],
+             "sections": [b'{"x_p": {"start": 5, "end": 90}, "z_a": {"start": 100, "end": 200}}'],
+             "scenario_file": [TOML], "plan": [PLAN, b'["Z+a", "Z+b"]']}
+    for name, contents in seeds.items():
+        folder = CORPUS / name
+        folder.mkdir(parents=True, exist_ok=True)
+        for number, data in enumerate(contents, 1):
+            (folder / ("valid_%d" % number)).write_bytes(data)
+
+
+if __name__ == "__main__":
+    main()

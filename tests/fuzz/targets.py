@@ -1,0 +1,220 @@
+"""One function for every reader of bytes that somebody else wrote: a file, a board, a person.
+
+A target takes bytes and returns; what it raises is a bug. Inside, a reader may refuse with the
+one exception it is allowed; what it does accept is used as the product would use it, so that
+the parser's leftovers cannot hurt what comes behind it.
+"""
+
+import binascii
+import contextlib
+import io
+import json
+import os
+import struct
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "shared"), str(ROOT / "host"), str(ROOT / "device")]
+
+from sixflip import capture_blocks, capture_reader, correction_record  # noqa: E402
+from sixflip_device import settings as device_settings  # noqa: E402
+from sixflip_device.host_line import HostLine  # noqa: E402
+from sixflip_host import (  # noqa: E402
+    board_answers,
+    board_events,
+    capture_binary,
+    capture_file,
+    cli,
+    console,
+    plan_file,
+    scenario,
+    solution,
+    solve,
+)
+from sixflip_host.errors import SixflipError  # noqa: E402
+
+FOLDER = tempfile.mkdtemp(prefix="sixflip-fuzz-")
+BUG = cli.INTERNAL_ERROR
+
+
+def said_plainly(text):
+    """No escape sequence, no bidirectional override: only what a terminal prints."""
+    odd = [c for c in text if not c.isprintable() and c != "\n"]
+    assert not odd, "a terminal would obey %r" % odd[:5]
+
+
+def verb(*words):
+    """Run the tool in this process: any exit code but that of a bug, nothing unescaped."""
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        code = cli.main([str(word) for word in words])
+    assert code != BUG, err.getvalue()
+    said_plainly(out.getvalue())
+    said_plainly(err.getvalue())
+    assert err.getvalue().count("\n") <= 1, err.getvalue()
+    return code
+
+
+def kept(name, data):
+    """A file of this process with the bytes in it."""
+    path = os.path.join(FOLDER, name)
+    with open(path, "wb") as file:
+        file.write(data)
+    return path
+
+
+def use(capture):
+    """What solve does with a capture, and a round trip through both formats."""
+    answer = solve.finite(solution.to_json(solution.solve(capture)))
+    json.dumps(answer, allow_nan=False)
+
+
+def capture_text(data):
+    """A text capture: read, solved, written, read again."""
+    try:
+        capture = capture_file.parse("fuzz.csv", data)
+    except SixflipError:
+        return
+    again = capture_file.text(capture)
+    use(capture)
+    assert capture_file.text(capture_file.parse("again.csv", again)) == again
+
+
+def repaired_capture(data):
+    """The bytes with every CRC of a board's file put right, as far as blocks go."""
+    data = bytearray(data)
+    head = struct.calcsize(capture_blocks.HEAD)
+    if len(data) < head:
+        return bytes(data)
+    data[:5] = capture_blocks.MAGIC + bytes([capture_blocks.VERSION])
+    at, end = 0, head + struct.unpack(capture_blocks.HEAD, data[:head])[-1]
+    while end + 4 <= len(data):
+        data[end:end + 4] = struct.pack("<I", binascii.crc32(data[at:end]))
+        at = end + 4
+        if at + 4 > len(data):
+            break
+        end = at + 4 + struct.unpack(capture_blocks.BLOCK, data[at:at + 4])[-1]
+    return bytes(data)
+
+
+def capture_of_a_board(data):
+    """A binary capture with right CRCs: read, shown, solved."""
+    data = repaired_capture(data)
+    with contextlib.suppress(ValueError):
+        capture_reader.read(data)
+    try:
+        capture = capture_binary.decode(data, "fuzz.bin")
+    except SixflipError:
+        return
+    path = kept("capture.bin", data)
+    verb("show", path)
+    verb("solve", path, "--json")
+    if len(capture):
+        verb("export", path, "-o", os.path.join(FOLDER, "out.csv"))
+
+
+def record(data):
+    """A record with its length and CRC put right: decoded, encoded, shown, exported."""
+    size = correction_record.HEAD_SIZE
+    if len(data) >= size + 4:
+        body = bytearray(data[:-4])
+        body[:4] = b"6FLP"
+        struct.pack_into("<HH", body, 4, 1, len(data))
+        data = bytes(body) + struct.pack("<I", binascii.crc32(body))
+    try:
+        correction_record.decode(data)
+    except ValueError:
+        return
+    path = kept("record_a.bin", data)
+    verb("show", path)
+    verb("show", path, "--json")
+    for form in ("json", "imu_calib", "imufusion", "imucal"):
+        verb("export", path, "--format", form, "-o", os.path.join(FOLDER, "out"))
+
+
+def lines_of_a_board(data):
+    """Serial lines: events for a person, and answers of the board's Python."""
+    out = io.StringIO()
+    shown = console.Console(out)
+    for line in data.decode("utf-8", "replace").split("\n"):
+        event = board_events.parse(line)
+        if event:
+            shown.show(event)
+            out.isatty = lambda: True
+            shown.live = not shown.live
+    shown.clear()
+    said_plainly(out.getvalue().replace("\r", ""))
+    with contextlib.suppress(SixflipError):
+        board_answers.parse("port", data)
+
+
+def settings(data):
+    """sixflip.json on the board: always complete settings, and sentences."""
+    with open(os.path.join(FOLDER, device_settings.FILE), "wb") as file:
+        file.write(data)
+    values, problems = device_settings.load(FOLDER + os.sep)
+    assert set(values) == set(device_settings.KNOWN)
+    json.dumps(values)
+    assert all(isinstance(problem, str) for problem in problems)
+    for name, (default, kind, low, high) in device_settings.KNOWN.items():
+        if kind in ("int", "float"):
+            assert values[name] is default or low <= values[name] <= high
+
+
+class _Board:
+    def __init__(self, line):
+        self.line = line
+
+    def read_line(self):
+        return self.line
+
+
+class _Events:
+    def error(self, what, expected):
+        json.dumps([what, expected])
+
+
+def host_line(data):
+    """A line from the host to the firmware."""
+    command = HostLine(_Board(data.decode("utf-8", "replace")), _Events()).poll()
+    assert command is None or isinstance(command["cmd"], str)
+
+
+def somebodys_csv(data):
+    """import: the first byte chooses the options."""
+    options = (("--rate", "100", "--units", "si"), ("--rate", "100", "--accel-lsb", "16384"),
+               ("--time-column", "1", "--time-unit", "ms", "--accel-lsb", "256", "--sort"),
+               ("--columns", "ax,ay,az,-,gx,gy,gz", "--accel-lsb", "16384", "--gyro-lsb", "131",
+                "--time-column", "4", "--time-unit", "s"))
+    chosen = options[data[0] % len(options)] if data else options[0]
+    verb("import", kept("in.csv", data[1:]), "-o", os.path.join(FOLDER, "out.csv"), *chosen)
+
+
+def sections(data):
+    """The JSON of somebody's still sections."""
+    rows = b"".join(b"%d,0,1000\n" % (k % 3) for k in range(300))
+    verb("import", kept("in.csv", rows), "-o", os.path.join(FOLDER, "out.csv"), "--rate", "100",
+         "--columns", "ax,ay,az", "--accel-lsb", "1000", "--sections", kept("s.json", data))
+
+
+def scenario_file(data):
+    """A scenario of simulate, as far as the description of its worlds."""
+    path = kept("scenario.toml", data)
+    with contextlib.suppress(SixflipError):
+        json.dumps(list(scenario.read(path).worlds))
+
+
+def plan(data):
+    """A plan file: read, written, read again."""
+    try:
+        protocol = plan_file.read(kept("plan.json", data))
+    except SixflipError:
+        return
+    plan_file.from_plan(json.loads(json.dumps(plan_file.to_plan(protocol), allow_nan=False)))
+
+
+TARGETS = {one.__name__: one for one in (
+    capture_text, capture_of_a_board, record, lines_of_a_board, settings, host_line,
+    somebodys_csv, sections, scenario_file, plan)}

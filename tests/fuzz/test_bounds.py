@@ -1,0 +1,124 @@
+"""Hostile files: an answer in one line, no hang, and memory in proportion to the file.
+
+Stated bound: what the tool itself needs (its libraries, about 150 MB) and MOST_MB beyond it,
+or eight times the file if that is more. Each file is read by a process of its own, which the
+system ends if it takes more than SECONDS of processor time or LIMIT of address space.
+"""
+
+import gzip
+import json
+import os
+import resource
+import struct
+import subprocess
+import sys
+import zlib
+from binascii import crc32
+
+import pytest
+
+MOST_MB = 350
+SECONDS = 60
+LIMIT = 6 << 30
+RUN = """
+import json, resource, sys
+from sixflip_host.cli import main
+code = main(json.loads(sys.argv[1]))
+print("PEAK", resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024)
+sys.exit(code)
+"""
+HEAD = (b'# sixflip-capture 1\n# {"sensor": "other", "rate_hz": 100, "accel_lsb_per_g": 16384}\n'
+        b"t_us,ax,ay,az\n")
+MILLION = 1 << 20
+
+
+def bomb(text, repeat):
+    """gzip of text and then a gigabyte or more of the same row."""
+    member = zlib.compressobj(9, wbits=31)
+    out = member.compress(text)
+    block = b"0,1,2,3\n" * (MILLION // 8)
+    return out + b"".join(member.compress(block) for _ in range(repeat)) + member.flush()
+
+
+def board_header(length, declared):
+    """The start of a board's file that claims more than there is."""
+    return b"6CAP" + struct.pack("<BBI", 1, 1, declared)[:6] + b"{" * length
+
+
+def record_of(size):
+    """A record that is one unknown section after the other, with a right CRC."""
+    from sixflip import correction_record
+    data = bytearray(correction_record.encode(correction_record.Record())[:-4])
+    data += b"\xff\xff\xff" + b"\0" * 65535
+    del data[size:]
+    struct.pack_into("<H", data, 6, (len(data) + 4) & 0xFFFF)
+    return bytes(data) + struct.pack("<I", crc32(data))
+
+
+HOSTILE = {
+    "gzip bomb of rows": ("x.csv.gz", lambda: bomb(HEAD, 600), ("solve",)),
+    "gzip of a million empty members": ("x.csv.gz", lambda: gzip.compress(b"") * 400000,
+                                        ("solve",)),
+    "gzip bomb for import": ("x.csv.gz", lambda: bomb(b"ax,ay,az\n", 600),
+                             ("import", "-o", "OUT", "--rate", "100", "--accel-lsb", "1")),
+    "nested brackets": ("x.csv", lambda: b"# sixflip-capture 1\n# " + b"[" * 10**8, ("show",)),
+    "nested brackets, short": ("x.csv", lambda: b"# sixflip-capture 1\n# " + b"[" * 10**6
+                               + b"\nt_us,ax,ay,az\n", ("show",)),
+    "100,000 keys, one twice": ("x.csv", lambda: b"# sixflip-capture 1\n# {" + b",".join(
+        b'"%d":0' % (k % 80000) for k in range(80001)) + b"}\nt_us,ax,ay,az\n", ("show",)),
+    "a row of 10 MB of commas": ("x.csv", lambda: HEAD + b"," * 10 * MILLION + b"\n", ("solve",)),
+    "a row of 10 MB of digits": ("x.csv", lambda: HEAD + b"0,1,2," + b"9" * 10 * MILLION + b"\n",
+                                 ("solve",)),
+    "column names of 900 KB": ("x.csv", lambda: HEAD[:-14] + b"t_us," * 180000 + b"\n",
+                               ("solve",)),
+    "one column repeated": ("x.csv", lambda: b"# sixflip-capture 1\n" + b"\n" * 10 * MILLION,
+                            ("solve",)),
+    "a million poses": ("x.csv", lambda: HEAD.replace(b"az\n", b"az,pose\n") + b"".join(
+        b"%d,1,2,16384,L%d\n" % (k, k % 2000 + 1) for k in range(100000)), ("show", "--json")),
+    "board's file, huge lengths": ("x.bin", lambda: board_header(1000, 2**32 - 1), ("show",)),
+    "board's file of noise": ("x.bin", lambda: b"6CAP" + b"\xff" * 10 * MILLION, ("verify", "x")),
+    "record of one section": ("x.bin", lambda: record_of(70000), ("show",)),
+    "record of 10 MB": ("x.bin", lambda: b"6FLP" + b"\xff" * 10 * MILLION, ("show",)),
+    "csv of one line": ("x.csv", lambda: b"1," * 5 * MILLION + b"1\n",
+                        ("import", "-o", "OUT", "--rate", "100", "--accel-lsb", "1",
+                         "--columns", "ax,ay,az")),
+    "sections nested": ("x.csv", lambda: b"1,2,3\n", ("import", "-o", "OUT", "--rate", "100",
+                        "--columns", "ax,ay,az", "--accel-lsb", "1", "--sections", "NESTED")),
+    "plan nested": ("x.json", lambda: b"[" * 10**8, ("plan", "--protocol", "x")),
+    "scenario nested": ("x.toml", lambda: b"a=" + b"[" * 10**6, ("simulate", "-o", "OUT")),
+    "scenario of dots": ("x.toml", lambda: b"a." * 10**5 + b"b=1", ("simulate", "-o", "OUT")),
+}
+
+
+def limits():
+    resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS + 5))
+    resource.setrlimit(resource.RLIMIT_AS, (LIMIT, LIMIT))
+
+
+@pytest.fixture(scope="module")
+def of_the_tool_itself():
+    """MB that reading an honest little file takes, libraries included."""
+    done = subprocess.run([sys.executable, "-c", RUN, json.dumps(["--version"])],
+                          capture_output=True, text=True)
+    return int(done.stdout.split()[-1])
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_hostile_file(name, tmp_path, of_the_tool_itself):
+    file, make, (verb, *options) = HOSTILE[name]
+    path = tmp_path / file
+    path.write_bytes(make())
+    words = [verb] if "--protocol" in options else [verb, str(path)]
+    for option in options:
+        if option == "NESTED":
+            (tmp_path / "nested.json").write_bytes(b"[" * 10**7)
+            option = str(tmp_path / "nested.json")
+        words.append({"OUT": str(tmp_path / "out.csv"), "x": str(path)}.get(option, option))
+    done = subprocess.run(
+        [sys.executable, "-c", RUN, json.dumps(words)], capture_output=True, text=True,
+        preexec_fn=limits, cwd=tmp_path, env=dict(os.environ, OPENBLAS_NUM_THREADS="1"))
+    assert done.returncode in (0, 4), done.stderr[-2000:] + done.stdout[-500:]
+    assert done.stderr.count("\n") == (done.returncode != 0)
+    assert len(done.stderr) < 1200
+    peak = int(done.stdout.split()[-1]) - of_the_tool_itself
+    assert peak < max(MOST_MB, 8 * path.stat().st_size >> 20), "%d MB" % peak

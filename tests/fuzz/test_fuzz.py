@@ -1,0 +1,38 @@
+"""Every corpus file through its target, and a bounded run of the fuzzer with a fixed seed."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+
+import targets  # noqa: E402
+
+FILES = sorted(path for path in (HERE / "corpus").rglob("*") if path.is_file())
+# Runs that take a second or two: a target that goes through a whole verb is slower.
+RUNS = {"capture_text": 300, "capture_of_a_board": 25, "record": 40, "somebodys_csv": 150,
+        "sections": 80, "scenario_file": 300, "settings": 300, "plan": 500}
+A_FEW = 2000
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: "%s/%s" % (path.parent.name, path.name))
+def test_corpus(path):
+    targets.TARGETS[path.parent.name](path.read_bytes())
+
+
+def test_every_target_has_a_corpus():
+    assert {path.parent.name for path in FILES} == set(targets.TARGETS)
+
+
+@pytest.mark.parametrize("name", targets.TARGETS)
+def test_some_runs(name, tmp_path):
+    done = subprocess.run(
+        [sys.executable, str(HERE / "fuzz.py"), name, "-runs=%d" % RUNS.get(name, A_FEW),
+         "-seed=1", "-max_len=6000", "-rss_limit_mb=1500", "-timeout=60",
+         "-artifact_prefix=%s/" % tmp_path],
+        capture_output=True, text=True, errors="replace", timeout=300)
+    kept = [path.read_bytes()[:2000] for path in tmp_path.iterdir()]
+    assert done.returncode == 0, "%s\n%s" % (kept, done.stderr[-3000:])

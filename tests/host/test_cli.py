@@ -1,0 +1,82 @@
+"""The command line: one line and one exit code for every error, never a traceback."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from sixflip_host import cli, terminal
+from sixflip_host.cli import VERBS, main
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_verb_has_help_and_an_example(verb, capsys):
+    assert main([verb, "--help"]) == 0
+    out = capsys.readouterr().out
+    assert "usage: sixflip %s" % verb in out
+    assert "example: sixflip %s" % verb in out
+    assert "\n" not in cli.load(verb).HELP
+
+
+def test_overview_names_every_verb(capsys):
+    assert main(["--help"]) == 0
+    out = capsys.readouterr().out
+    assert all("\n  %s " % verb in out for verb in VERBS)
+
+
+@pytest.mark.parametrize("argv,code,words", [
+    (["fly"], 2, "there is no verb 'fly', expected one of boards"),
+    (["solve"], 2, "required"), (["solve", "x", "--level", "best"], 2, "invalid choice"),
+    (["solve", "x", "--lat", "91"], 2, "expected -90 to 90"),
+    (["solve", "x", "--height", "3"], 2, "--height needs --lat"),
+    (["solve", "x", "--g", "1"], 2, "between 9 and 11"),
+    (["solve", "no such file"], 4, "no such file: cannot be read"),
+    (["show", "no such file"], 4, "cannot be read"),
+    (["verify", "a", "b", "c"], 2, "expected DIR or CAPTURE RECORD"),
+    (["verify", "a"], 2, "expected a folder"),
+    (["export", "a", "-o", "b.xyz"], 2, "does not say the format")])
+def test_errors_are_one_line(argv, code, words, capsys):
+    assert main(argv) == code
+    error = capsys.readouterr().err
+    assert words in error and error.startswith("sixflip: ") and error.count("\n") == 1
+
+
+def test_a_bug_is_one_line_too(monkeypatch, capsys):
+    def broken(args):
+        raise RuntimeError("boom\x1b[2J")
+    monkeypatch.setattr("sixflip_host.solve.run", broken)
+    assert main(["solve", "x"]) == cli.INTERNAL_ERROR
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and "boom\\x1b[2J" in error
+    assert main(["solve", "x", "--debug"]) == cli.INTERNAL_ERROR
+    assert "Traceback" in capsys.readouterr().err
+
+
+def test_ctrl_c(monkeypatch, capsys):
+    def interrupted(args):
+        raise KeyboardInterrupt
+    monkeypatch.setattr("sixflip_host.solve.run", interrupted)
+    assert main(["solve", "x"]) == cli.INTERRUPTED
+    assert capsys.readouterr().err == "sixflip: stopped\n"
+
+
+def test_a_closed_pipe_is_no_error():
+    command = "%s -m sixflip_host --help | true" % sys.executable
+    done = subprocess.run(["bash", "-o", "pipefail", "-c", command], capture_output=True,
+                          text=True, env={"PYTHONPATH": "%s:%s:%s" % (
+                              ROOT / "shared", ROOT / "host", ROOT / "device"),
+                              "PATH": "/usr/bin:/bin"})
+    assert "Traceback" not in done.stderr and "Error" not in done.stderr
+
+
+@pytest.mark.parametrize("nasty", ["\x1b[2J", "a\nb", "\u202e", "\x00", "\udc80", "\x9b"])
+def test_text_from_files_cannot_steer_the_terminal(nasty):
+    shown = terminal.plain(nasty)
+    assert shown.isprintable() and shown != nasty
+
+
+def test_plain_leaves_words_alone():
+    assert terminal.plain("±2 g, 0.3° µT") == "±2 g, 0.3° µT"

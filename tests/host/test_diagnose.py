@@ -1,0 +1,187 @@
+"""`sixflip diagnose` from the command line, on simulated captures with known causes."""
+import json
+import xml.etree.ElementTree as ElementTree
+
+import numpy as np
+import pytest
+
+from sixflip_host import capture_file, cli, scenario, simulate
+
+KEYS = {"format", "verdict", "causes", "where", "gap", "unseen", "next"}
+CAUSE_KEYS = {"sensor", "axes", "effect", "class", "score_nats", "value", "unit", "interval_90",
+              "plausible", "share"}
+EFFECTS = [{"effect": "thermal_bias", "sensor": "accel", "z": -1.8},
+           {"effect": "g_sensitivity", "sensor": "gyro", "xy": 0.1}]
+
+
+def captures(folder, scene, effects, seed=9):
+    """Paths of the simulated sessions of a scene."""
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": scene, "seed": seed,
+                               "world": {"tilt_deg": 1.0, "placement_scatter_deg": 0.05},
+                               "effects": effects})
+    paths = []
+    for number in range(len(plan.worlds)):
+        path = folder / ("%s%d.csv" % (scene, number))
+        capture_file.write(str(path), simulate.session(plan, number))
+        paths.append(str(path))
+    return paths
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory):
+    """Thresholds are simulated once for all tests of this file."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SIXFLIP_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+@pytest.fixture(scope="module")
+def two_sessions(tmp_path_factory, cache):
+    return captures(tmp_path_factory.mktemp("gap"), "recommended", EFFECTS)
+
+
+def diagnosed(capsys, *words):
+    assert cli.main(["diagnose", *words, "--json"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def test_two_causes_are_named_with_size_axis_and_share(two_sessions, capsys, tmp_path):
+    junit = tmp_path / "checks.xml"
+    answer = diagnosed(capsys, *two_sessions, "--junit", str(junit), "--add", "found",
+                       "--scenario", str(tmp_path / "found.toml"))
+    assert set(answer) >= KEYS
+    assert answer["verdict"] == "explained"
+    assert answer["held_out"] == "each session by the others"
+    causes = {c["sensor"]: c for c in answer["causes"]}
+    assert len(answer["causes"]) == 2
+    assert set(causes["accel"]) == CAUSE_KEYS
+    # Over one exponential the temperature and its rate are the same thing (alias index 0.97).
+    assert set(causes["accel"]["class"]) == {"thermal_bias", "thermal_rate"}
+    assert causes["accel"]["effect"] is None
+    assert causes["accel"]["axes"] == ["z"]
+    low, high = causes["accel"]["interval_90"]["z"]
+    assert low - 0.05 < -1.8 < high + 0.05
+    assert causes["gyro"]["effect"] == "g_sensitivity"
+    assert causes["gyro"]["value"]["xy"] == pytest.approx(0.1, abs=0.005)
+    for gap in answer["gap"].values():
+        assert gap["explained_share"] > 0.9
+        assert gap["after"] < 0.5 * gap["before"]
+    places = {(w["sensor"], w["axis"], w["domain"]) for w in answer["where"][:3]}
+    assert places >= {("accel", "z", "temperature"), ("gyro", "x", "orientation")}
+    assert ElementTree.parse(junit).getroot().get("failures") == "0"
+    for loop in answer["simulated"].values():
+        assert loop["after"] < 1.3 * loop["floor"] < loop["before"]
+    again = scenario.read(str(tmp_path / "found.toml"))
+    assert {e["effect"] for e in again.effects} == {"thermal_bias", "g_sensitivity"}
+    assert len(again.worlds) == 2
+
+
+def test_a_simulator_that_has_the_effects_leaves_no_gap(two_sessions, tmp_path, capsys):
+    twin = captures(tmp_path, "recommended", EFFECTS, seed=31)
+    answer = diagnosed(capsys, *two_sessions, "--sim", twin[0], "--sim", twin[1])
+    assert answer["causes"] == []
+    assert answer["verdict"] == "no gap"
+    assert "thermal_bias" in " ".join(answer["remarks"])
+
+
+def test_the_first_line_is_the_verdict_and_ci_can_fail_on_it(two_sessions, tmp_path, capsys):
+    report = tmp_path / "report"
+    junit = tmp_path / "checks.xml"
+    code = cli.main(["diagnose", *two_sessions, "--fail-on", "explained", "--report", str(report),
+                     "--junit", str(junit)])
+    printed = capsys.readouterr()
+    assert code == 1
+    assert "the verdict is explained" in printed.err
+    first = printed.out.splitlines()[0]
+    assert "Z accelerometer drifts with temperature" in first
+    assert "feels gravity" in first
+    assert ElementTree.parse(junit).getroot().get("failures") == "1"
+    page = (report / "index.html").read_text()
+    assert page.count("data:image/png;base64,") == len(list(report.glob("*.png"))) >= 6
+    assert "src=\"http" not in page
+
+
+def test_twelve_poses_name_nothing_that_they_cannot_tell(tmp_path, capsys, cache):
+    for effects in ([], [{"effect": "cubic", "sensor": "accel", "x": 5.0, "z": -5.0}]):
+        paths = captures(tmp_path, "paper", effects, seed=5)
+        answer = diagnosed(capsys, *paths)
+        assert answer["verdict"] == "cannot tell"
+        assert answer["causes"] == []
+        assert answer["held_out"] == "same session"
+        silent = {u["effect"] for u in answer["unseen"] if u["sensor"] == "accel"}
+        assert {"cubic", "local_gravity", "quadratic", "asymmetry", "supply"} <= silent
+        assert answer["next"]
+
+
+def still(tmp_path, name, counts, rate=100.0, **meta):
+    """Path of a capture of one rest, accelerometer only."""
+    t_us = np.rint(np.arange(len(counts)) * 1e6 / rate).astype(np.int64)
+    head = dict({"sensor": "mpu6050", "rate_hz": rate, "accel_lsb_per_g": 16384,
+                 "accel_range_g": 2}, **meta)
+    path = tmp_path / name
+    capture_file.write(str(path), capture_file.Capture(head, t_us, counts.astype(np.int16)))
+    return str(path)
+
+
+def quiet(seconds=60, seed=1):
+    """Counts (n, 3) of a sensor at rest that does nothing but rustle."""
+    generator = np.random.default_rng(seed)
+    return np.rint(generator.normal([100.0, -200.0, 16400.0], 50.0, (seconds * 100, 3)))
+
+
+def test_a_quiet_rest_has_no_gap(tmp_path, capsys):
+    answer = diagnosed(capsys, still(tmp_path, "quiet.csv", quiet()))
+    assert (answer["verdict"], answer["causes"], answer["gap"]) == ("no gap", [], {})
+
+
+def test_steps_lines_drift_and_rails_of_a_single_rest(tmp_path, capsys):
+    t = np.arange(6000) / 100.0
+    counts = quiet()
+    walk = np.cumsum(np.random.default_rng(2).normal(0.0, 2.5, 6000))
+    cases = {"quantisation": np.rint(counts / 4) * 4,
+             "vibration": counts + np.outer(np.sin(2 * np.pi * 31.0 * t), [0, 80, 0]),
+             "drift": counts + np.outer(walk, [0, 0, 1])}
+    spiked = counts.copy()
+    spiked[3000, 2] = 32767
+    cases["saturation"] = spiked
+    for effect, values in cases.items():
+        answer = diagnosed(capsys, still(tmp_path, effect + ".csv", values))
+        assert [c["effect"] for c in answer["causes"]] == [effect]
+        assert answer["verdict"] == "explained"
+
+
+def test_clock_errors_and_missing_samples_are_named_and_jitter_is_not(tmp_path, capsys):
+    counts = quiet()
+    path = still(tmp_path, "clock.csv", counts)
+    capture = capture_file.read(path)
+    times = {"sample_rate": np.rint(capture.t_us / 1.007).astype(np.int64),
+             "": capture.t_us + np.random.default_rng(3).integers(-900, 900, len(counts)) + 1000}
+    for effect, t_us in times.items():
+        capture.t_us = t_us
+        capture_file.write(path, capture)
+        answer = diagnosed(capsys, path)
+        assert [c["effect"] for c in answer["causes"]] == ([effect] if effect else [])
+    capture = capture_file.read(still(tmp_path, "lost.csv", counts))
+    keep = np.random.default_rng(4).uniform(size=len(counts)) > 0.01
+    capture.t_us, capture.accel = capture.t_us[keep], capture.accel[keep]
+    capture_file.write(path, capture)
+    cause, = diagnosed(capsys, path)["causes"]
+    assert cause["effect"] == "dropped_samples"
+    assert cause["value"]["chance"] == pytest.approx(100 * (1 - keep.mean()), abs=0.15)
+
+
+@pytest.mark.parametrize("words, code, said", [
+    (["--without", "gremlins"], 2, "thermal_bias"),
+    (["--fail-on", "splendid"], 2, "partly explained"),
+    (["--max-gap", "-1"], 2, "more than 0"),
+    (["--add", "gremlins"], 2, "thermal_bias")])
+def test_nonsense_is_one_line(tmp_path, capsys, words, code, said):
+    assert cli.main(["diagnose", still(tmp_path, "quiet.csv", quiet(20)), *words]) == code
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
+
+
+def test_a_missing_file_is_code_4(capsys):
+    assert cli.main(["diagnose", "nowhere.csv"]) == 4
+    assert "nowhere.csv" in capsys.readouterr().err

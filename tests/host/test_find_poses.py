@@ -1,0 +1,87 @@
+"""Poses found by the host itself, against sessions whose poses are known."""
+
+import numpy as np
+import pytest
+from board_session import unlabelled
+from hand_session import Rotation, Sensor, face_attitude, session, six_faces
+
+from sixflip.faces import pose_name
+from sixflip_host.attitude import heading_change
+from sixflip_host.find_poses import Rest, find_poses
+
+LEVEL = Rotation.identity()
+
+
+def names(found):
+    return [pose_name(rest.code) for rest in found.rests]
+
+
+def session_of(*places, gyro=True, seed=4):
+    """An unlabelled capture: (face, heading in degrees) or a Rotation for each rest."""
+    poses = [("L%d" % (k + 1), place if isinstance(place, Rotation) else face_attitude(
+        place[0], np.radians(place[1]), LEVEL)) for k, place in enumerate(places)]
+    return session(Sensor(seed), poses, seed, labels=False, gyro=gyro, wobble_deg=5)
+
+
+def test_the_papers_session():
+    capture = unlabelled(3)
+    found = find_poses(capture)
+    assert names(found) == [label for label, _ in six_faces(3)]
+    assert found.noise.sd[:3] == pytest.approx([49] * 3, rel=0.25)      # 3 mg
+    assert capture.pose is None
+
+
+def test_a_and_b_by_the_gyro_whatever_came_between():
+    found = find_poses(session_of((0, 10), (2, 0), (0, 195), (0, 15), (2, 5)))
+    assert names(found) == ["Z+a", "X+a", "Z+b", "Z+a", "X+a"]
+
+
+def test_neither_a_half_turn_nor_none_is_no_pose_of_that_face():
+    found = find_poses(session_of((0, 0), (0, 90), (0, 180)))
+    assert names(found) == ["Z+a", "L1", "Z+b"]
+    assert "neither a half turn nor none" in found.rests[1].why
+
+
+def test_leaning_is_leaning():
+    leaning = Rotation.from_euler("xy", [40, 10], degrees=True)
+    assert names(find_poses(session_of((0, 0), leaning, (1, 0)))) == ["Z+a", "L1", "Z-a"]
+
+
+def test_without_a_gyro_only_what_can_be_known_is_named():
+    found = find_poses(session_of((0, 0), (0, 180), (2, 0), (0, 0), gyro=False))
+    assert names(found) == ["Z+a", "Z+b", "X+a", "L1"]
+
+
+def test_noise_comes_from_the_quietest_part_not_the_first():
+    capture = session_of((0, 0), (2, 0), (4, 0))
+    shake = np.random.default_rng(1).normal(0, 900, (400, 3))
+    capture.accel[:400] += shake.astype(np.int16)       # the first rest is shaken by 55 mg
+    found = find_poses(capture)
+    assert names(found) == ["X+a", "Y+a"]
+    assert found.noise.sd[0] < 70
+
+
+def test_nothing_still_at_all():
+    capture = session_of((0, 0))
+    capture.accel += np.random.default_rng(1).normal(0, 2000, capture.accel.shape).astype(
+        np.int16)
+    found = find_poses(capture)
+    assert found.rests == [] and not found.pose.any()
+    assert found.remarks() == ["no rest found: nowhere a second without motion"]
+
+
+@pytest.mark.parametrize("face", range(6))
+@pytest.mark.parametrize("turn", [-170, -60, 0, 90, 175])
+def test_heading_change(face, turn):
+    capture = session_of((face, 20), ((face + 2) % 6, 0), (face, 20 + turn))
+    rests = [Rest(capture, first, first + 400) for first in (0, 650, 1300)]
+    from sixflip.faces import AXIS, SIGN
+    found = heading_change(capture, rests, capture.gyro[:400].mean(axis=0), AXIS[face],
+                           SIGN[face])
+    assert (found - turn + 180) % 360 - 180 == pytest.approx(0, abs=8)
+
+
+def test_a_saturated_gyro_cannot_tell():
+    capture = session_of((0, 0), (0, 180))
+    capture.gyro[500] = 32767
+    assert names(find_poses(capture)) == ["Z+a", "L1"]

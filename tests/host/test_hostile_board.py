@@ -1,0 +1,92 @@
+"""A board that answers with malice: names that leave the folder, values of the wrong kind."""
+
+import io
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sixflip_host import board_events, pull
+from sixflip_host.board_link import safe_name
+from sixflip_host.console import Console
+from sixflip_host.errors import SixflipError
+
+NAMES = ("../../x", "/etc/x", "..", ".", "", "a/../../x", "x\0y", "\\..\\x", "C:x", "a" * 5000,
+         "CAPTURE.BIN", "capture.bin/../../x", "\x1b[2J.bin", "capture.bin\n", "~/x")
+
+
+class HostileLink:
+    """Claims to hold any names, calls itself anything, sends any bytes."""
+
+    port = "hostile"
+
+    def __init__(self, names, board_id, data=b"6CAP nonsense"):
+        self.names, self.id, self.data = names, board_id, data
+        self.asked = []
+
+    def files(self, hashed=None):
+        return {name: (len(self.data), None) for name in self.names}
+
+    def get(self, name, progress=None):
+        self.asked.append(name)
+        return self.data
+
+    def board_id(self):
+        return self.id
+
+
+@pytest.mark.parametrize("board_id", NAMES)
+def test_nothing_of_the_boards_leaves_the_folder(tmp_path, board_id, capsys):
+    output = tmp_path / "in" / "here"
+    output.mkdir(parents=True)
+    link = HostileLink([*NAMES, *pull.WANTED], board_id)
+    folder = pull.fetch(link, output)
+    assert set(link.asked) == set(pull.WANTED)
+    written = {path for path in tmp_path.rglob("*") if path.is_file()}
+    assert written == {folder / name for name in pull.WANTED}
+    assert Path(folder).resolve().parent == output.resolve()
+    assert all(c.isprintable() or c == "\n" for c in capsys.readouterr().out)
+
+
+def test_a_capture_that_is_none_is_one_line(tmp_path):
+    folder = pull.fetch(HostileLink(pull.WANTED, "x"), tmp_path, say=lambda line: None)
+    with pytest.raises(SixflipError):
+        pull.convert(folder)
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if name not in (
+    "CAPTURE.BIN", "a" * 5000, "\x1b[2J.bin", "~/x")])
+def test_unsafe_names(name):
+    assert not safe_name(name)
+
+
+JSON = st.recursive(st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=9),
+                    lambda inner: st.lists(inner, max_size=3)
+                    | st.dictionaries(st.text(max_size=5), inner, max_size=3), max_leaves=6)
+KEYS = st.sampled_from(("missing", "pose", "face", "reason", "limit", "value", "unit", "verdict",
+                        "tilt_deg", "ms", "left_s", "progress", "total", "state", "what", "chip"))
+KINDS = st.sampled_from(("hello", "grace", "no_record", "record", "calibrating", "pose", "redo",
+                         "refused", "solved", "saved", "capture", "bus_error", "error", "state"))
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.lists(st.tuples(KINDS, st.dictionaries(KEYS, JSON, max_size=4)), max_size=4),
+       st.booleans())
+def test_any_event_is_shown_and_nothing_of_it_steers_the_terminal(events, live):
+    out = io.StringIO()
+    out.isatty = lambda: live
+    console = Console(out)
+    for kind, values in events:
+        console.show(dict(values, event=kind))
+    console.clear()
+    shown = out.getvalue().replace("\r", "") if live else out.getvalue()
+    assert all(c.isprintable() or c == "\n" for c in shown), shown
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.text(max_size=200))
+def test_any_line_is_an_event_or_none(line):
+    for text in (line, '{"event"' + line, line + '{"event": "x"}'):
+        event = board_events.parse(text)
+        assert event is None or isinstance(event["event"], str)

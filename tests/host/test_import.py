@@ -1,0 +1,176 @@
+"""Other people's CSV: real recordings against the numbers in their READMEs, and every fault."""
+
+import json
+
+import numpy as np
+import pytest
+
+from sixflip.faces import pose_name
+from sixflip_host import capture_file, solution, units
+from sixflip_host.cli import main
+
+
+def imported(tmp_path, capsys, *words):
+    """(Capture, what was printed) of an import that must succeed."""
+    assert main(["import", *map(str, words), "-o", str(tmp_path / "out.csv")]) == 0
+    return capture_file.read(tmp_path / "out.csv"), capsys.readouterr().out
+
+
+def refused(tmp_path, capsys, *words):
+    """(exit code, the line) of an import that must fail and leave nothing."""
+    code = main(["import", *map(str, words), "-o", str(tmp_path / "out.csv")])
+    assert not (tmp_path / "out.csv").exists()
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    return code, error
+
+
+IMUCAL = "imucal_ferraris/example_ferraris_session"
+
+
+def test_imucal_example_with_its_sections(recordings, tmp_path, capsys):
+    capture, words = imported(
+        tmp_path, capsys, recordings / (IMUCAL + ".csv.gz"), "--units", "si,dps",
+        "--rate", 102.4, "--sections", recordings / (IMUCAL + "_list.json"))
+    assert len(capture) == 10376
+    assert 9.80665 / capture.meta["accel_lsb_per_g"] == pytest.approx(0.00479, abs=5e-6)
+    assert 1 / capture.meta["gyro_lsb_per_dps"] == pytest.approx(0.0610, abs=5e-5)
+    assert "taken as moving: x_rot y_rot z_rot" in words
+    assert [(pose_name(one.pose), one.first, one.n) for one in capture.placements()][:2] == [
+        ("X+a", 540, 731), ("X-a", 1620, 741)]
+    found = solution.solve(capture)
+    assert found.verdict == "doubtful" and "no flips" in found.reason
+    assert 0.4 < crooked_deg(found.reason) < 0.8
+
+
+def crooked_deg(reason):
+    return float(reason.split("crooked by about ")[1].split()[0])
+
+
+def test_imucal_example_without_labels(recordings, tmp_path, capsys):
+    capture, _ = imported(tmp_path, capsys, recordings / (IMUCAL + ".csv.gz"),
+                          "--units", "si,dps", "--rate", 102.4)
+    sections = json.loads((recordings / (IMUCAL + "_list.json")).read_text())
+    for name, at in sections.items():
+        if not name.endswith("_rot"):
+            pose = name[0].upper() + "+-"[name[2] == "a"] + "a"
+            middle = (at["start"] + at["end"]) // 2
+            assert pose_name(int(capture.pose[middle])) == pose
+        else:
+            assert not capture.pose[(at["start"] + at["end"]) // 2]
+    found = solution.solve(capture)
+    assert found.verdict == "doubtful" and "no flips" in found.reason
+    assert 0.4 < crooked_deg(found.reason) < 0.8
+
+
+def test_imucal_annotated(recordings, tmp_path, capsys):
+    capture, words = imported(
+        tmp_path, capsys, recordings / "imucal_ferraris" / "annotated_session.csv.gz",
+        "--accel-lsb", 2048, "--gyro-lsb", 16.4, "--rate", 204.8, "--time-column", "samples",
+        "--time-unit", "samples", "--sort", "--label-column", "part")
+    assert len(capture) == 9414
+    assert {pose_name(one.pose): one.n for one in capture.placements()} == {
+        "X+a": 1028, "X-a": 1061, "Y+a": 734, "Y-a": 848, "Z+a": 881, "Z-a": 1044}
+    assert "order of their time" in words
+    found = solution.solve(capture)
+    assert found.verdict == "doubtful" and "no flips" in found.reason
+
+
+STILL = ((50, 3700), (4200, 4440), (4760, 5070), (5440, 5800), (6100, 6480), (6900, 7170),
+         (7520, 7880), (8200, 8570), (9060, 9280), (9640, 10190))
+
+
+def test_suarez_ten_poses_with_six_near_faces(recordings, tmp_path, capsys):
+    capture, words = imported(
+        tmp_path, capsys,
+        recordings / "suarez_mpu6050_multiposition" / "example_data_calibration.csv.gz",
+        "--accel-lsb", 16384, "--gyro-lsb", 131, "--rate", 100, "--sensor", "mpu6050")
+    assert "every accelerometer count is a multiple of 4" in words
+    assert capture.accel[0].tolist() == [-12, -812, 15032]
+    names = [pose_name(int(capture.pose[(first + end) // 2])) for first, end in STILL]
+    assert names[:6] == ["Z+a", "Z-a", "X-a", "X+a", "Y-a", "Y+a"]
+    assert all(name.startswith("L") for name in names[6:])
+    for (_, end), (later, _) in zip(STILL, STILL[1:]):
+        assert not capture.pose[end:later].all()        # they moved in between
+    assert "held by hand" in words
+    found = solution.solve(capture)
+    assert found.verdict == "doubtful" and "no flips" in found.reason
+    middle = solution.middles_mg(found.placements, 16384)[2]
+    assert middle == pytest.approx(-112, abs=1)
+
+
+def test_solve_says_what_it_sees_in_suarez(recordings, tmp_path, capsys):
+    imported(tmp_path, capsys,
+             recordings / "suarez_mpu6050_multiposition" / "example_data_calibration.csv.gz",
+             "--accel-lsb", 16384, "--gyro-lsb", 131, "--rate", 100, "--no-poses")
+    assert main(["solve", str(tmp_path / "out.csv")]) == 0
+    words = capsys.readouterr().out
+    assert "multiple of 4" in words and "held by hand" in words and "no flips" in words
+
+
+TABLE = "time;acc_x;acc_y;acc_z;note\n0;0.0;0.5;9.5;a\n0.01;0.5;-1.0;10.0;b\n"
+
+
+def test_mapping_units_and_delimiter(tmp_path, capsys):
+    source = tmp_path / "in.csv"
+    source.write_text("logger 7\n" + TABLE)
+    capture, words = imported(tmp_path, capsys, source, "--units", "si", "--time-column", "time",
+                              "--time-unit", "s", "--no-poses", "--g", 10)
+    assert "steps of 1/20 g" in words
+    assert capture.meta["accel_lsb_per_g"] == pytest.approx(20)
+    assert capture.accel.tolist() == [[0, 1, 19], [1, -2, 20]]
+    assert capture.t_us.tolist() == [0, 10000]
+    capture, _ = imported(tmp_path, capsys, source, "--units", "g", "--rate", 50, "--no-poses",
+                          "--accel-lsb", 100, "--map", "ax=acc_z,az=acc_x")
+    assert capture.accel[0].tolist() == [950, 50, 0]
+
+
+@pytest.mark.parametrize("change,words,code,line", [
+    (("0.5;9.5", "x;9.5"), (), 4, 'line 2: acc_y is "x", expected a number'),
+    (("0.5;9.5", "nan;9.5"), (), 4, 'line 2: acc_y is "nan", expected a finite number'),
+    ((";a\n", "\n"), (), 4, "line 2: 4 values, expected 5"),
+    (("b\n", "b"), (), 4, "line 3: the last line has no newline"),
+    (("acc_y", "b_y"), (), 4, "no column for ay, expected --map"),
+    (("", ""), ("--map", "ax=nose"), 4, 'no column "nose"'),
+    (("", ""), ("--map", "bx=acc_x"), 2, "expected one of ax"),
+    (("", ""), ("--units", "furlong"), 2, "--units furlong"),
+    (("", ""), ("--units", "counts"), 4, "its LSB must be given"),
+    (("", ""), ("--units", "counts", "--accel-lsb", "256"), 4, "expected whole counts"),
+    (("", ""), ("--accel-lsb", "100000"), 4, "expected at most 32767"),
+    (("", ""), ("--label-column", "note"), 4, "no label is a pose, expected --label"),
+    (("", ""), ("--label-column", "note", "--label", "a=Q"), 2, "expected a pose such as Z+a"),
+    (("0.01;", "-1;"), (), 4, "line 3: time runs backwards"),
+    (("0.01;", "inf;"), (), 4, "a finite number")])
+def test_faults(tmp_path, capsys, change, words, code, line):
+    source = tmp_path / "in.csv"
+    source.write_text(TABLE.replace(*change) if change[0] else TABLE)
+    given = ["--units", "g", "--time-column", "time", "--time-unit", "s", *words]
+    found = refused(tmp_path, capsys, source, *given)
+    assert found[0] == code and line in found[1]
+
+
+def test_needs_a_rate(tmp_path, capsys):
+    source = tmp_path / "in.csv"
+    source.write_text(TABLE)
+    code, line = refused(tmp_path, capsys, source, "--units", "g")
+    assert code == 2 and "--rate" in line
+
+
+@pytest.mark.parametrize("content", ["[1]", "{", '{"z_p": {"start": 5, "end": 2}}',
+                                     '{"z_p": {"start": 0, "end": 3}}', "\x00"])
+def test_bad_sections(tmp_path, capsys, content):
+    (tmp_path / "in.csv").write_text(TABLE)
+    (tmp_path / "in.json").write_text(content)
+    code, _ = refused(tmp_path, capsys, tmp_path / "in.csv", "--units", "g", "--rate", 100,
+                      "--sections", tmp_path / "in.json")
+    assert code == 4
+
+
+@pytest.mark.parametrize("step", [0.00479, 1 / 16384, 0.061, 3.9])
+def test_finds_the_step_of_values(step):
+    counts = np.random.default_rng(1).integers(-2000, 2000, (500, 3))
+    assert units.find_step(counts * step) == pytest.approx(step, rel=1e-6)
+
+
+def test_noise_has_no_step():
+    assert units.find_step(np.random.default_rng(1).normal(size=(500, 3))) is None

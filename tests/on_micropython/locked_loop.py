@@ -1,0 +1,56 @@
+"""Locks the heap while the firmware samples, from one window's end to the next.
+
+Locked is a whole turn of the loop: pacer, driver, awake check, session, capture, lamp. Left
+out are the samples that end a window or a block. An allocation is a MemoryError, which ends
+the firmware. Prints how many turns were locked, and how many there were.
+"""
+
+import micropython
+
+
+class Lock:
+    """Stands in for the board's sleep_us, which the pacer calls once a sample."""
+
+    def __init__(self, board):
+        self.guided = None
+        self.on = False
+        self.locked = 0
+        self.samples = 0
+        self.plain = board.sleep_us
+
+    def sleep_us(self, us):
+        if self.on:
+            micropython.heap_unlock()
+            self.on = False
+        self.plain(us)
+        if self.guided is None:
+            return
+        self.samples += 1
+        window = self.guided.session._window
+        writer = self.guided._store._writer
+        if window.n != window.length - 1 and writer._count != writer._most:
+            self.locked += 1
+            self.on = True
+            micropython.heap_lock()
+
+
+def install(board, power_up):
+    lock = Lock(board)
+    board.sleep_us = lock.sleep_us
+    run_phase = power_up._run_phase
+
+    def phase(name, unit):
+        if name == "sampling":
+            from sixflip_device import guided_session
+            plain = guided_session.GuidedSession
+
+            def made(unit, store):
+                lock.guided = plain(unit, store)
+                return lock.guided
+            guided_session.GuidedSession = made
+        after = run_phase(name, unit)
+        if lock.guided is not None:
+            lock.guided = None
+            print('{"event": "locked", "turns": %d, "of": %d}' % (lock.locked, lock.samples))
+        return after
+    power_up._run_phase = phase

@@ -1,0 +1,106 @@
+"""The whole guided session, import of the firmware included, in a small heap.
+
+Simulated chip and board are not counted: what the harness holds of the heap before the first
+line of firmware is imported is measured, and just as much is added.
+"""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from . import session_tape
+
+ROOT = Path(__file__).resolve().parents[2]
+HEAP = 96 * 1024
+SCRIPT = "firmware_in_a_small_heap.py"
+
+
+def power_up(micropython, folder, heap, *more):
+    """Events of a power-up, (bytes in use, event) where it says so, and the harness's bytes."""
+    done = micropython(SCRIPT, str(folder), *more, heap=str(heap))
+    assert done.returncode == 0, done.stdout[-300:] + done.stderr[-1500:]
+    lines = done.stdout.splitlines()
+    harness = int(lines[0].split()[1])
+    events = []
+    for line in lines[1:]:
+        at = line.index("{")
+        event = json.loads(line[at:])
+        event["live"] = int(line[:at].split()[1]) - harness if at else None
+        events.append(event)
+    return events, harness
+
+
+def flash(folder, sensor):
+    """The board's flash with the firmware on it, and the chips' tapes."""
+    session_tape.write(folder, sensor)
+    (folder / "sixflip").symlink_to(ROOT / "shared" / "sixflip")
+    (folder / "sixflip_device").symlink_to(ROOT / "device" / "sixflip_device")
+
+
+def bare(micropython, folder):
+    """What the interpreter itself holds before a script does anything."""
+    script = folder / "bare.py"
+    script.write_text("import gc\ngc.collect()\nprint(gc.mem_alloc())\n")
+    return int(micropython(str(script)).stdout)
+
+
+def only(events, name):
+    found = [e for e in events if e["event"] == name]
+    assert len(found) == 1, (name, found)
+    return found[0]
+
+
+@pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])
+def test_a_whole_session_in_96_kb(micropython, tmp_path, sensor):
+    flash(tmp_path, sensor)
+    events, harness = power_up(micropython, tmp_path, 1 << 20, "live")
+    most = {}
+    for event in events:
+        most[event["event"]] = max(event["live"], most.get(event["event"], 0))
+    print("\n%s: harness %d; in use, without it, at %s" % (sensor, harness, ", ".join(
+        ["%s %d" % (name, most[name]) for name in most])))
+    (tmp_path / "record_a.bin").unlink()
+
+    heap = HEAP + harness - bare(micropython, tmp_path)
+    events, _ = power_up(micropython, tmp_path, heap)
+    assert only(events, "hello")["sensor"] == sensor
+    assert len([e for e in events if e["event"] == "pose"]) == 12
+    assert only(events, "solved")["verdict"] == "good", only(events, "solved")["reason"]
+    assert only(events, "saved")["written"]
+    assert only(events, "ready")["corrected"]
+    assert (tmp_path / "record_a.bin").exists() and (tmp_path / "capture.bin").exists()
+
+    # a second session, with a record in force and its capture on the flash
+    (tmp_path / "calibrate.flag").write_text("")
+    events, _ = power_up(micropython, tmp_path, heap)
+    assert only(events, "record")["slot"] == "a"
+    assert only(events, "saved")
+    assert only(events, "ready")["corrected"]
+
+
+@pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])
+def test_a_bus_that_hangs_before_the_last_pose_is_recovered_in_96_kb(
+        micropython, tmp_path, sensor):
+    """Nothing accepted is lost, and the chip, its registers at zero, is set up anew."""
+    flash(tmp_path, sensor)
+    _, harness = power_up(micropython, tmp_path, 1 << 20, "hanging_bus")
+    (tmp_path / "record_a.bin").unlink()
+    events, _ = power_up(micropython, tmp_path, HEAP + harness - bare(micropython, tmp_path),
+                         "hanging_bus")
+    actions = [e["action"] for e in events if e["event"] == "bus_error"]
+    assert actions[0].startswith("freeing the bus") and actions[-1] == "recovered"
+    assert len([e for e in events if e["event"] == "pose"]) == 12
+    assert only(events, "saved")["written"]
+    assert only(events, "ready")["corrected"]
+
+
+@pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])
+def test_the_firmwares_sampling_loop_allocates_nothing(micropython, tmp_path, sensor):
+    flash(tmp_path, sensor)
+    events, _ = power_up(micropython, tmp_path, 1 << 20, "locked_loop")
+    locked = only(events, "locked")
+    assert locked["of"] >= only(events, "capture")["samples"] > 9000
+    assert locked["turns"] > 0.9 * locked["of"]
+    assert len([e for e in events if e["event"] == "pose"]) == 12
+    assert only(events, "ready")["corrected"]

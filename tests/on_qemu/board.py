@@ -1,0 +1,49 @@
+"""The emulated board: QEMU with its serial port on a pty, spoken to by the real mpremote."""
+
+import os
+import re
+import subprocess
+import sys
+import time
+
+
+class QemuBoard:
+    """Context manager; exec(code) runs code on the board and returns what it printed."""
+
+    def __init__(self, elf, extra=()):
+        self.command = ["qemu-system-arm", "-M", "mps2-an385", "-nographic", "-monitor", "null",
+                        "-semihosting", "-serial", "pty", "-kernel", str(elf), *extra]
+        self.process = None
+        self.port = None
+
+    def __enter__(self):
+        self.process = subprocess.Popen(self.command, stdin=subprocess.DEVNULL,
+                                        stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        said = b""
+        deadline = time.monotonic() + 20
+        os.set_blocking(self.process.stdout.fileno(), False)
+        while self.port is None:
+            said += self.process.stdout.read() or b""
+            found = re.search(rb"/dev/pts/\d+", said)
+            if found:
+                self.port = found.group().decode()
+            elif self.process.poll() is not None or time.monotonic() > deadline:
+                self.__exit__()
+                raise RuntimeError("QEMU gave no serial port: %s" % said.decode(errors="replace"))
+            else:
+                time.sleep(0.05)
+        return self
+
+    def __exit__(self, *_):
+        self.process.kill()
+        self.process.wait()
+        self.process.stdout.close()
+
+    def exec(self, code, timeout=300):
+        """What the board printed; RuntimeError with its traceback when the code failed."""
+        answer = subprocess.run(
+            [sys.executable, "-m", "mpremote", "connect", self.port, "exec", code],
+            capture_output=True, text=True, timeout=timeout, stdin=subprocess.DEVNULL)
+        if answer.returncode:
+            raise RuntimeError("on the board: " + (answer.stdout + answer.stderr).strip())
+        return answer.stdout.replace("\r", "")

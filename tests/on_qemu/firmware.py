@@ -1,0 +1,144 @@
+"""MicroPython for an emulated Cortex-M3 (QEMU mps2-an385) with our shared code frozen in.
+
+Single-precision floats, 31-bit small ints, 140 KB of heap: what most boards have. The source
+is Debian's micropython package, built once into the cache with Debian's cross compiler; a
+change of the frozen files costs a few seconds. Nothing here runs as part of the product.
+"""
+
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from sixflip_host.errors import SixflipError
+from sixflip_host.micropython_fetch import KEYRING, SUITE, apt_get, cache_dir, debian_mirror
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGES = ("qemu-system-arm", "gcc-arm-none-eabi", "libnewlib-arm-none-eabi")
+TOOLS = ("qemu-system-arm", "arm-none-eabi-gcc", "make", "gcc")
+
+
+class Unavailable(Exception):
+    """The tier cannot be had on this machine; the text is the line for the user."""
+
+
+def frozen_files():
+    """{path in the firmware: file of the project}: shared code, its tests, their runner."""
+    files = {}
+    for path in sorted((ROOT / "shared").rglob("*.py")):
+        files[str(path.relative_to(ROOT / "shared"))] = path
+    for path in sorted((ROOT / "tests" / "shared").glob("*.py")):
+        if "sixflip_sim" not in path.read_text():
+            files[path.name] = path
+    files["unittest.py"] = ROOT / "tests" / "on_micropython" / "unittest.py"
+    return files
+
+
+def install_tools():
+    """Cross compiler and emulator from Debian; as root they are installed when missing."""
+    missing = [tool for tool in TOOLS if not shutil.which(tool)]
+    if not missing:
+        return
+    line = "no %s: apt-get install %s" % (", ".join(missing), " ".join(PACKAGES))
+    if not shutil.which("apt-get") or os.geteuid() != 0:
+        raise Unavailable(line)
+    for words in (["update"], ["install", "-y", "--no-install-recommends", *PACKAGES]):
+        answer = subprocess.run(["apt-get", "-q", *words], stdin=subprocess.DEVNULL,
+                                capture_output=True, text=True, timeout=1200,
+                                env=dict(os.environ, DEBIAN_FRONTEND="noninteractive"))
+    if answer.returncode or any(not shutil.which(tool) for tool in TOOLS):
+        raise Unavailable(line + " (tried, failed: %s)" % answer.stderr.strip()[-200:])
+
+
+def fetch_source(target):
+    """Debian's source package of MicroPython, unpacked to target in one step."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    work = Path(tempfile.mkdtemp(prefix="source-", dir=target.parent))
+    try:
+        for name in ("lists/partial", "archives/partial", "tree"):
+            (work / name).mkdir(parents=True)
+        signed = " [signed-by=%s]" % KEYRING if os.path.exists(KEYRING) else ""
+        (work / "sources.list").write_text(
+            "deb-src%s %s %s main\n" % (signed, debian_mirror(), SUITE))
+        apt_get(work, "update")
+        apt_get(work, "source", "--download-only", "micropython")
+        for archive in work.glob("micropython_*.orig.tar.*"):
+            subprocess.run(["tar", "-xf", str(archive), "--strip-components=1",
+                            "-C", str(work / "tree")], check=True, timeout=300)
+        # The build asks for this submodule's marker although nothing of it is used.
+        (work / "tree" / "lib" / "micropython-lib").mkdir(parents=True, exist_ok=True)
+        (work / "tree" / "lib" / "micropython-lib" / "README.md").touch()
+        os.rename(work / "tree", target)
+    finally:
+        shutil.rmtree(work, ignore_errors=True)
+
+
+def run_make(folder, *words):
+    answer = subprocess.run(["make", "-C", str(folder), "-j2", *words], capture_output=True,
+                            text=True, timeout=1200, stdin=subprocess.DEVNULL,
+                            env={k: v for k, v in os.environ.items()
+                                 if k not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")})
+    if answer.returncode:
+        raise RuntimeError("make in %s failed:\n%s" % (folder.name, answer.stderr[-2000:]))
+
+
+def stage(folder, files):
+    """Copy the frozen files to one tree, only those that changed, and write its manifest."""
+    wanted = set()
+    for name, path in files.items():
+        place = folder / name
+        wanted.add(place)
+        if not place.exists() or place.read_bytes() != path.read_bytes():
+            place.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(path, place)
+    for old in folder.rglob("*.py"):
+        if old not in wanted:
+            old.unlink()
+    manifest = folder.parent / "manifest.py"
+    text = "freeze(%r)\n" % str(folder)
+    if not manifest.exists() or manifest.read_text() != text:
+        manifest.write_text(text)
+    return manifest
+
+
+def build(board="MPS2_AN385"):
+    """Path of the firmware with today's shared code, built when something changed."""
+    install_tools()
+    cache = cache_dir() / "qemu"
+    source = cache / "micropython"
+    if not (source / "ports" / "qemu").is_dir():
+        if not shutil.which("apt-get"):
+            raise Unavailable("no apt-get to get MicroPython's source package with")
+        try:
+            fetch_source(source)
+        except (SixflipError, subprocess.SubprocessError) as error:
+            raise Unavailable("MicroPython's source package cannot be had: %s" % error) from None
+    files = frozen_files()
+    digest = hashlib.sha256()
+    for name, path in sorted(files.items()):
+        digest.update(name.encode() + b"\0" + path.read_bytes())
+    stamp = cache / ("built-" + board)
+    elf = source / "ports" / "qemu" / ("build-" + board) / "firmware.elf"
+    if elf.exists() and stamp.exists() and stamp.read_text() == digest.hexdigest():
+        return elf
+    run_make(source / "mpy-cross")
+    manifest = stage(cache / "frozen", files)
+    manifest.touch()
+    run_make(source / "ports" / "qemu", "BOARD=" + board, "FROZEN_MANIFEST=" + str(manifest))
+    stamp.write_text(digest.hexdigest())
+    return elf
+
+
+def mpy_cross():
+    """The cross compiler for .mpy files that the build leaves behind."""
+    return cache_dir() / "qemu" / "micropython" / "mpy-cross" / "build" / "mpy-cross"
+
+
+if __name__ == "__main__":
+    try:
+        print(build())
+    except Unavailable as error:
+        sys.exit("sixflip: %s" % error)
