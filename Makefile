@@ -33,7 +33,7 @@ demo: micropython
 	@$(BIN)/sixflip demo --keep demo-output
 
 test: micropython check
-	$(BIN)/python -m pytest -n 2 --dist loadfile
+	$(BIN)/python -m pytest -n auto --dist loadfile
 
 test-qemu: setup
 	$(BIN)/python -m pytest -s tests/on_qemu
