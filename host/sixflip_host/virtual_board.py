@@ -11,6 +11,7 @@ import hashlib
 import json
 import subprocess
 import tempfile
+import threading
 import time
 from pathlib import Path
 
@@ -52,6 +53,7 @@ class VirtualBoard:
         self.child = None
         self.relay = None
         self.folder = None
+        self.hand = threading.RLock()  # on the plug: pulled in one thread, put back in another
 
     def __enter__(self):
         self.folder = tempfile.TemporaryDirectory(prefix="sixflip-board-")
@@ -75,20 +77,22 @@ class VirtualBoard:
     def plug(self):
         """Plug in: a serial port appears and the board powers up."""
         from .pty_relay import PtyRelay
-        self.relay = PtyRelay(self)
-        self.port = self.relay.port
-        self.start(raw=False, cause=PWRON_CAUSE)
-        self.relay.start()
+        with self.hand:
+            self.relay = PtyRelay(self)
+            self.port = self.relay.port
+            self.start(raw=False, cause=PWRON_CAUSE)
+            self.relay.start()
 
     def unplug(self):
         """Pull the cable: supply gone and the port with it."""
-        relay = self.relay
-        if relay:
-            relay.stop()
-        self.kill()
-        if relay:
-            relay.close()
-        self.relay = self.port = None
+        with self.hand:
+            relay = self.relay
+            if relay:
+                relay.stop()
+            self.kill()
+            if relay:
+                relay.close()
+            self.relay = self.port = None
 
     def power_cycle(self, world=None):
         """Supply off and on, the flash stays; optionally into another world. The port stays."""
