@@ -27,7 +27,7 @@ $(VENV)/.installed: pyproject.toml
 	touch $@
 
 micropython: setup
-	@$(BIN)/python -m sixflip_host.micropython_fetch
+	@$(BIN)/python -m sixflip_host.virtual.micropython_fetch
 
 demo: micropython
 	@$(BIN)/sixflip demo --keep demo-output
@@ -49,13 +49,13 @@ bench: bench-accuracy
 		echo; echo "== $$each"; $(BIN)/python $$each || exit 1; done
 
 fidelity: setup
-	@$(BIN)/python -m sixflip_host.fidelity
+	@$(BIN)/python -m sixflip_host.simulating.fidelity
 
 reproduce: setup
 	@$(BIN)/sixflip reproduce
 
 package.json: setup
-	$(BIN)/python -m sixflip_host.mip_package > $@.new && mv $@.new $@
+	$(BIN)/python -m sixflip_host.board.mip_package > $@.new && mv $@.new $@
 
 clean:
 	rm -rf $(VENV) .cache build demo-output

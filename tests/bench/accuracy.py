@@ -19,9 +19,9 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "shared"), str(ROOT / "host")]
 
-from sixflip import accelerometer  # noqa: E402
-from sixflip.faces import AXIS, SIGN  # noqa: E402
-from sixflip.placement import Placement  # noqa: E402
+from sixflip import accelerometer
+from sixflip.faces import AXIS, SIGN
+from sixflip.placement import Placement
 
 G = 9.80665
 SAMPLES = 400

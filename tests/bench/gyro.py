@@ -16,10 +16,10 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "shared"), str(ROOT / "host")]
 
-from sixflip import accelerometer, gyroscope  # noqa: E402
-from sixflip.faces import AXIS, face_of_code  # noqa: E402
-from sixflip_host.simulated_capture import capture  # noqa: E402
-from sixflip_sim import worlds  # noqa: E402
+from sixflip import accelerometer, gyroscope
+from sixflip.faces import AXIS, face_of_code
+from sixflip_host.simulating.simulated_capture import capture
+from sixflip_sim import worlds
 
 HAND_DEG = 0.4
 TILT_DEG = 2.0

@@ -14,19 +14,14 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / part) for part in ("shared", "host", "tests/host")]
 
-import hand_session  # noqa: E402
-import xsens_recording  # noqa: E402
+import hand_session
+import xsens_recording
 
-from sixflip import accelerometer  # noqa: E402
-from sixflip_host import (  # noqa: E402
-    gyro_rests,
-    joint_refinement,
-    multiposition,
-    pose_runs,
-    refine,
-    refinement_answer,
-)
-from sixflip_host.rests_and_moves import RestsAndMoves  # noqa: E402
+from sixflip import accelerometer
+from sixflip_host.refining import joint_refinement, refine, refinement_answer
+from sixflip_host.simulating import pose_runs
+from sixflip_host.solving import gyro_rests, multiposition
+from sixflip_host.solving.rests_and_moves import RestsAndMoves
 
 RAD = np.pi / 180
 

@@ -14,9 +14,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "shared"), str(ROOT / "host"), str(ROOT / "tests" / "host")]
 
-import hostile_sessions as hostile  # noqa: E402
-import sigma_coverage  # noqa: E402
-import verdict_table  # noqa: E402
+import hostile_sessions as hostile
+import sigma_coverage
+import verdict_table
 
 
 def main():

@@ -10,7 +10,7 @@ from test_power_up import STILL, Folder
 from sixflip.capture_blocks import read_blocks
 from sixflip.faces import pose_name
 from sixflip_device import asked
-from sixflip_host import capture_binary
+from sixflip_host.capture import capture_binary
 
 FACES = "Z+a Z+b X+a X+b Y-a Y-b Z-a Z-b X-a X-b Y+a Y+b"
 BACK = "Y+b X-a Z+a"

@@ -10,10 +10,10 @@ import targets  # noqa: F401  sets sys.path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "host"))
 
-import hostile_sessions  # noqa: E402
+import hostile_sessions
 
-from sixflip import correction_record  # noqa: E402
-from sixflip_host import capture_binary, capture_file  # noqa: E402
+from sixflip import correction_record
+from sixflip_host.capture import capture_binary, capture_file
 
 CORPUS = Path(__file__).resolve().parent / "corpus"
 

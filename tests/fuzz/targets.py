@@ -18,22 +18,16 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "shared"), str(ROOT / "host"), str(ROOT / "device")]
 
-from sixflip import capture_blocks, capture_reader, correction_record  # noqa: E402
-from sixflip_device import settings as device_settings  # noqa: E402
-from sixflip_device.host_line import HostLine  # noqa: E402
-from sixflip_host import (  # noqa: E402
-    board_answers,
-    board_events,
-    capture_binary,
-    capture_file,
-    cli,
-    console,
-    plan_file,
-    scenario,
-    solution,
-    solve,
-)
-from sixflip_host.errors import SixflipError  # noqa: E402
+from sixflip import capture_blocks, capture_reader, correction_record
+from sixflip_device import settings as device_settings
+from sixflip_device.host_line import HostLine
+from sixflip_host import cli
+from sixflip_host.board import board_answers, board_events, console
+from sixflip_host.capture import capture_binary, capture_file
+from sixflip_host.errors import SixflipError
+from sixflip_host.planning import plan_file
+from sixflip_host.simulating import scenario
+from sixflip_host.solving import solution, solve
 
 FOLDER = tempfile.mkdtemp(prefix="sixflip-fuzz-")
 BUG = cli.INTERNAL_ERROR

@@ -9,7 +9,7 @@ import pytest
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
-import targets  # noqa: E402
+import targets
 
 FILES = sorted(path for path in (HERE / "corpus").rglob("*") if path.is_file())
 # Runs that take a second or two: a target that goes through a whole verb is slower.

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from sixflip.faces import AXIS, SIGN, pose_code
-from sixflip_host.capture_file import Capture
+from sixflip_host.capture.capture_file import Capture
 
 LSB_G, LSB_DPS, G = 16384.0, 65.5, 9.80665
 RAD = np.pi / 180

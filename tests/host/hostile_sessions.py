@@ -11,7 +11,7 @@ against the error that was really made.
 import numpy as np
 
 from sixflip.faces import AXIS, FACES, SIGN, pose_code
-from sixflip_host.capture_file import Capture
+from sixflip_host.capture.capture_file import Capture
 
 G = 9.80665
 POSES = [face + letter for face in FACES for letter in "ab"]

@@ -8,9 +8,9 @@ import os
 
 import pytest
 
-from sixflip_host import micropython_fetch
-from sixflip_host.board_link import MpremoteLink
-from sixflip_host.virtual_board import VirtualBoard
+from sixflip_host.board.board_link import MpremoteLink
+from sixflip_host.virtual import micropython_fetch
+from sixflip_host.virtual.virtual_board import VirtualBoard
 
 STILL = {"sensor": "mpu6050", "seed": 3, "order": []}
 SESSION = {"sensor": "mpu6050", "seed": 3, "tilt_deg": 2.0}

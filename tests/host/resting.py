@@ -3,7 +3,7 @@
 import numpy as np
 from hand_session import Sensor
 
-from sixflip_host.capture_file import Capture
+from sixflip_host.capture.capture_file import Capture
 
 
 def rest(meta, force=(0.0, 0.0, 1.0), n=600, rate_dps=(0.0, 0.0, 0.0), shake_mg=0.0, sway_mg=0.0,

@@ -5,8 +5,7 @@ Ranks exactly; shares within 0.1 for 5 s rests, 10 s moves and 8-9 degC with tau
 import numpy as np
 import pytest
 
-from sixflip_host import protocols
-from sixflip_host.alias import (
+from sixflip_host.planning.alias import (
     ACCEL,
     Design,
     alias_index,
@@ -15,7 +14,8 @@ from sixflip_host.alias import (
     norm_only_rank,
     rank,
 )
-from sixflip_host.session_rows import rows_of
+from sixflip_host.simulating import protocols
+from sixflip_host.simulating.session_rows import rows_of
 
 
 def design(protocol, blocks=1, certified_box=True, **options):
@@ -51,7 +51,7 @@ def test_silent_on_faces(effect, protocol):
 
 
 def test_constant_rectification_is_silent_and_vertical_is_not():
-    from sixflip_host.alias import effect_columns, without
+    from sixflip_host.planning.alias import effect_columns, without
     from sixflip_sim.effects.library import make
     found = design("paper")
     for vertical, silent in ((0, True), (1, False)):

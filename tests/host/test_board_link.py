@@ -9,10 +9,10 @@ import tty
 import pytest
 from micropython_tier import STILL
 
-from sixflip_host import board_link
-from sixflip_host.board_link import MpremoteLink, NoSpace, safe_name
+from sixflip_host.board import board_link
+from sixflip_host.board.board_link import MpremoteLink, NoSpace, safe_name
 from sixflip_host.errors import NoBoard, SixflipError
-from sixflip_host.virtual_board import VirtualBoard
+from sixflip_host.virtual.virtual_board import VirtualBoard
 
 
 @pytest.fixture

@@ -6,11 +6,13 @@ import json
 import pytest
 from micropython_tier import SESSION
 
-from sixflip_host import capture_file, cli, console, pull
-from sixflip_host.board_events import parse
-from sixflip_host.board_link import MpremoteLink
+from sixflip_host import cli
+from sixflip_host.board import console, pull
+from sixflip_host.board.board_events import parse
+from sixflip_host.board.board_link import MpremoteLink
+from sixflip_host.capture import capture_file
 from sixflip_host.errors import NoBoard
-from sixflip_host.virtual_board import VirtualBoard
+from sixflip_host.virtual.virtual_board import VirtualBoard
 
 
 @pytest.fixture

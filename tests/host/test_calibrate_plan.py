@@ -11,21 +11,16 @@ import time
 import numpy as np
 import pytest
 
-from sixflip_host import (
-    board_plan,
-    calibrate,
-    capture_file,
-    cli,
-    console,
-    provision,
-    simulator,
-    typed_lines,
-    virtual_board_verb,
-)
+from sixflip_host import cli
+from sixflip_host.board import calibrate, console, provision, typed_lines
+from sixflip_host.board.local_link import LocalLink
+from sixflip_host.capture import capture_file
 from sixflip_host.errors import UsageError
-from sixflip_host.local_link import LocalLink
-from sixflip_host.plan_file import from_plan
-from sixflip_host.virtual_board import VirtualBoard
+from sixflip_host.planning import board_plan
+from sixflip_host.planning.plan_file import from_plan
+from sixflip_host.simulating import simulator
+from sixflip_host.virtual import virtual_board_verb
+from sixflip_host.virtual.virtual_board import VirtualBoard
 from sixflip_sim import worlds
 
 NAMES = ("Y-a Y-b Z+b Z+a X+a X+b Z-a Z-b X-a X-b Y+a Y+b L1 L2 Y+b X-a Z+b Z+b Y-a").split()

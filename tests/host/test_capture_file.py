@@ -9,9 +9,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sixflip_host import capture_binary, capture_file
-from sixflip_host.capture_file import Capture
-from sixflip_host.capture_rows import _fast, _slow
+from sixflip_host.capture import capture_binary, capture_file
+from sixflip_host.capture.capture_file import Capture
+from sixflip_host.capture.capture_rows import _fast, _slow
 from sixflip_host.errors import BadFile
 
 HEADER = ('{"sensor": "mpu6050", "rate_hz": 100, "accel_lsb_per_g": 16384, '

@@ -10,8 +10,10 @@ from hand_session import Sensor
 from micropython_tier import SESSION, STILL
 from resting import rest
 
-from sixflip_host import capture_file, check, check_words, cli
-from sixflip_host.virtual_board import VirtualBoard
+from sixflip_host import cli
+from sixflip_host.board import check, check_words
+from sixflip_host.capture import capture_file
+from sixflip_host.virtual.virtual_board import VirtualBoard
 
 DEVICE = Path(__file__).resolve().parents[2] / "device" / "sixflip_device"
 

@@ -47,7 +47,7 @@ def test_errors_are_one_line(argv, code, words, capsys):
 def test_a_bug_is_one_line_too(monkeypatch, capsys):
     def broken(args):
         raise RuntimeError("boom\x1b[2J")
-    monkeypatch.setattr("sixflip_host.solve.run", broken)
+    monkeypatch.setattr("sixflip_host.solving.solve.run", broken)
     assert main(["solve", "x"]) == cli.INTERNAL_ERROR
     error = capsys.readouterr().err
     assert error.count("\n") == 1 and "boom\\x1b[2J" in error
@@ -58,7 +58,7 @@ def test_a_bug_is_one_line_too(monkeypatch, capsys):
 def test_ctrl_c(monkeypatch, capsys):
     def interrupted(args):
         raise KeyboardInterrupt
-    monkeypatch.setattr("sixflip_host.solve.run", interrupted)
+    monkeypatch.setattr("sixflip_host.solving.solve.run", interrupted)
     assert main(["solve", "x"]) == cli.INTERRUPTED
     assert capsys.readouterr().err == "sixflip: stopped\n"
 

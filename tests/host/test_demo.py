@@ -4,8 +4,9 @@ import json
 
 import pytest
 
-from sixflip_host import cli, demo, demo_truth, micropython_fetch
+from sixflip_host import cli
 from sixflip_host.errors import SixflipError
+from sixflip_host.virtual import demo, demo_truth, micropython_fetch
 
 
 @pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])

@@ -5,7 +5,9 @@ import xml.etree.ElementTree as ElementTree
 import numpy as np
 import pytest
 
-from sixflip_host import capture_file, cli, scenario, simulate
+from sixflip_host import cli
+from sixflip_host.capture import capture_file
+from sixflip_host.simulating import scenario, simulate
 
 KEYS = {"format", "verdict", "causes", "where", "gap", "unseen", "next"}
 CAUSE_KEYS = {"sensor", "axes", "effect", "class", "score_nats", "value", "unit", "interval_90",

@@ -2,10 +2,11 @@
 import numpy as np
 import pytest
 
-from sixflip_host import fidelity, replica
-from sixflip_host import recordings as found
-from sixflip_host import signal_measures as measures
+from sixflip_host.capture import recordings as found
 from sixflip_host.errors import BadFile
+from sixflip_host.papers import replica
+from sixflip_host.simulating import fidelity
+from sixflip_host.simulating import signal_measures as measures
 
 
 @pytest.fixture(scope="module")

@@ -6,8 +6,8 @@ from board_session import unlabelled
 from hand_session import Rotation, Sensor, face_attitude, session, six_faces
 
 from sixflip.faces import pose_name
-from sixflip_host.attitude import heading_change
-from sixflip_host.find_poses import Rest, find_poses
+from sixflip_host.solving.attitude import heading_change
+from sixflip_host.solving.find_poses import Rest, find_poses
 
 LEVEL = Rotation.identity()
 

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sixflip_host import board_events, pull
-from sixflip_host.board_link import safe_name
-from sixflip_host.console import Console
+from sixflip_host.board import board_events, pull
+from sixflip_host.board.board_link import safe_name
+from sixflip_host.board.console import Console
 from sixflip_host.errors import SixflipError
 
 NAMES = ("../../x", "/etc/x", "..", ".", "", "a/../../x", "x\0y", "\\..\\x", "C:x", "a" * 5000,

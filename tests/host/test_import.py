@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from sixflip.faces import pose_name
-from sixflip_host import capture_file, solution, units
+from sixflip_host.capture import capture_file, units
 from sixflip_host.cli import main
+from sixflip_host.solving import solution
 
 
 def imported(tmp_path, capsys, *words):

@@ -2,9 +2,9 @@
 
 import pytest
 
-from sixflip_host import calibrate, provision
+from sixflip_host.board import calibrate, provision
+from sixflip_host.board.local_link import LocalLink
 from sixflip_host.errors import NoBoard, UsageError
-from sixflip_host.local_link import LocalLink
 
 WORLD = {"sensor": "gy85", "seed": 5, "tilt_deg": 1.0}
 

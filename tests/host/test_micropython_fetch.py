@@ -5,8 +5,8 @@ import stat
 
 import pytest
 
-from sixflip_host import micropython_fetch
 from sixflip_host.errors import NoBoard, SixflipError
+from sixflip_host.virtual import micropython_fetch
 
 
 def executable(path, text):

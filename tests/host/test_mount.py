@@ -9,8 +9,10 @@ from board_session import leave_files, unlabelled
 from resting import rest
 
 from sixflip import correction_record, mounting
-from sixflip_host import capture_file, cli, mount, robot_axes
+from sixflip_host import cli
+from sixflip_host.capture import capture_file
 from sixflip_host.errors import CheckFailed, UsageError
+from sixflip_host.mounting import mount, robot_axes
 
 PAPER = (-0.2235, 0.4937, 0.8330)
 STRAIGHT = robot_axes.parse("rep103")

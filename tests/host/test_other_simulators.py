@@ -5,9 +5,10 @@ import numpy as np
 import pytest
 import yaml
 
-from sixflip_host import capture_file, other_simulators, scenario, simulate
+from sixflip_host.capture import capture_file
 from sixflip_host.errors import CheckFailed
-from sixflip_host.noise_model import measure
+from sixflip_host.simulating import other_simulators, scenario, simulate
+from sixflip_host.simulating.noise_model import measure
 
 BIAS_MG, BIAS_DPS = [20.0, -30.0, 50.0], [1.0, -0.5, 0.2]
 WORLD = {"accel_bias_mg": BIAS_MG, "gyro_bias_dps": BIAS_DPS, "accel_noise_mg": 4.0,

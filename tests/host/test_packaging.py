@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from sixflip_host import mip_package
+from sixflip_host.board import mip_package
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -3,12 +3,13 @@ import json
 
 import pytest
 
-from sixflip_host import detectable, plan, plan_additions, plan_file, protocols
-from sixflip_host.alias import Design
 from sixflip_host.cli import Parser
 from sixflip_host.errors import BadFile, UsageError
-from sixflip_host.plan_findings import Findings
-from sixflip_host.session_rows import rows_of
+from sixflip_host.planning import detectable, plan, plan_additions, plan_file
+from sixflip_host.planning.alias import Design
+from sixflip_host.planning.plan_findings import Findings
+from sixflip_host.simulating import protocols
+from sixflip_host.simulating.session_rows import rows_of
 from sixflip_sim.effects.library import NAMES
 
 
@@ -78,7 +79,7 @@ def test_a_simulated_drift_of_the_smallest_size_is_seen_four_times_in_five():
     power = detectable.Power(design, "mpu6050-accel")
     size = power.smallest("quadratic")["x"]
     column = design.raw("quadratic")[1][:, 0]
-    from sixflip_host.alias import without
+    from sixflip_host.planning.alias import without
     left = without(power.space, power.whitener @ column[:, None])[:, 0]
     direction = left / np.linalg.norm(left)
     draw = np.random.default_rng(1)

@@ -5,9 +5,10 @@ import threading
 
 import pytest
 
-from sixflip_host import cli, provision
-from sixflip_host.board_files import board_files
-from sixflip_host.board_link import MpremoteLink
+from sixflip_host import cli
+from sixflip_host.board import provision
+from sixflip_host.board.board_files import board_files
+from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.errors import NoBoard, UsageError
 
 

@@ -7,8 +7,10 @@ import xsens_recording
 from hand_session import RAD
 
 from sixflip import accelerometer
-from sixflip_host import gyro_rests, joint_refinement, pose_runs, refine, refinement_answer
-from sixflip_host.rests_and_moves import RestsAndMoves
+from sixflip_host.refining import joint_refinement, refine, refinement_answer
+from sixflip_host.simulating import pose_runs
+from sixflip_host.solving import gyro_rests
+from sixflip_host.solving.rests_and_moves import RestsAndMoves
 
 PULL = np.array([[0.1, 0.02, 0.0], [-0.15, 0.05, 0.1], [0.0, -0.1, 0.05]])  # deg/s a g
 

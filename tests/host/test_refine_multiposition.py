@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 import xsens_recording
 
-from sixflip_host import multiposition, observability, rest_intervals
+from sixflip_host.planning import observability
+from sixflip_host.refining import rest_intervals
+from sixflip_host.solving import multiposition
 
 
 @pytest.fixture(scope="module")

@@ -9,8 +9,9 @@ import pytest
 from hand_session import RAD, G
 
 from sixflip import correction_record
-from sixflip_host import capture_file, refine, refinement_record, refinement_report
+from sixflip_host.capture import capture_file
 from sixflip_host.errors import SixflipError
+from sixflip_host.refining import refine, refinement_record, refinement_report
 
 
 @pytest.fixture(scope="module")

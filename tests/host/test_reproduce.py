@@ -5,7 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from sixflip_host import cli, heading_turns, paper_tables, reproduce
+from sixflip_host import cli
+from sixflip_host.papers import heading_turns, paper_tables, reproduce
 
 
 @pytest.fixture(scope="module")

@@ -6,10 +6,12 @@ import pytest
 from board_session import leave_files, unlabelled
 
 from sixflip import correction_record
-from sixflip_host import cli, mount_board, ports
-from sixflip_host.board_files import board_files
-from sixflip_host.local_link import LocalLink
-from sixflip_host.virtual_board import VirtualBoard
+from sixflip_host import cli
+from sixflip_host.board import ports
+from sixflip_host.board.board_files import board_files
+from sixflip_host.board.local_link import LocalLink
+from sixflip_host.mounting import mount_board
+from sixflip_host.virtual.virtual_board import VirtualBoard
 
 WORLD = {"sensor": "mpu6050", "seed": 3, "order": [], "ideal": True, "tilt_deg": 10.0,
          "accel_noise_mg": 3.0}
@@ -39,7 +41,7 @@ def board(tmp_path, monkeypatch):
 
     def opened(port=None):
         return LocalLink(folder, WORLD) if port == "local:flash" else real(port)
-    for module in ("sixflip_host.restore", "sixflip_host.mount_board"):
+    for module in ("sixflip_host.board.restore", "sixflip_host.mounting.mount_board"):
         monkeypatch.setattr(module + ".open_link", opened)
     return folder
 

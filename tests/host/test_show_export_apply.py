@@ -8,7 +8,7 @@ import pytest
 from board_session import leave_files, unlabelled
 
 from sixflip.correction import Correction
-from sixflip_host import capture_file
+from sixflip_host.capture import capture_file
 from sixflip_host.cli import main
 
 

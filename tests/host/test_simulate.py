@@ -7,16 +7,10 @@ import pytest
 
 from sixflip import faces
 from sixflip.chips import probe
-from sixflip_host import (
-    capture_file,
-    motion_scenes,
-    scenario,
-    signal_measures,
-    simulate,
-    simulator,
-)
+from sixflip_host.capture import capture_file
 from sixflip_host.cli import Parser
 from sixflip_host.errors import BadFile, UsageError
+from sixflip_host.simulating import motion_scenes, scenario, signal_measures, simulate, simulator
 from sixflip_sim import worlds
 from sixflip_sim.chips.adxl345 import SimulatedADXL345
 from sixflip_sim.effects import typical

@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sixflip_host import capture_file, simulator
+from sixflip_host.capture import capture_file
+from sixflip_host.simulating import simulator
 from sixflip_sim import worlds
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "device"))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hand_session import Sensor, session, six_faces
 
-from sixflip_host import capture_file
+from sixflip_host.capture import capture_file
 from sixflip_host.cli import main
 
 

@@ -9,12 +9,13 @@ import time
 import pytest
 
 from sixflip import correction_record
-from sixflip_host import cli, provision
-from sixflip_host.board_link import MpremoteLink
+from sixflip_host import cli
+from sixflip_host.board import provision
+from sixflip_host.board.board_link import MpremoteLink
+from sixflip_host.board.local_link import LocalLink
+from sixflip_host.board.stream_session import StreamSession
 from sixflip_host.errors import CheckFailed, NoBoard
-from sixflip_host.local_link import LocalLink
-from sixflip_host.stream_session import StreamSession
-from sixflip_host.virtual_board import VirtualBoard
+from sixflip_host.virtual.virtual_board import VirtualBoard
 from sixflip_sim import worlds
 
 G = 9.80665

@@ -10,7 +10,7 @@ from pathlib import Path
 import hostile_sessions
 import pytest
 
-from sixflip_host import capture_file
+from sixflip_host.capture import capture_file
 from sixflip_host.cli import main
 
 TOOL = [sys.executable, "-m", "sixflip_host"]

@@ -10,10 +10,10 @@ import time
 import pytest
 from micropython_tier import STILL
 
-from sixflip_host import board_link
-from sixflip_host.board_link import MpremoteLink
+from sixflip_host.board import board_link
+from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.errors import SixflipError
-from sixflip_host.virtual_board import VirtualBoard
+from sixflip_host.virtual.virtual_board import VirtualBoard
 
 
 def mpremote(port, *words):
@@ -128,7 +128,7 @@ def test_no_process_is_left(micropython, tmp_path):
 
 def test_the_board_dies_with_its_host(micropython, tmp_path):
     """Even when the host's process is killed, no MicroPython is left behind."""
-    code = ("import sys, time\nfrom sixflip_host.virtual_board import VirtualBoard\n"
+    code = ("import sys, time\nfrom sixflip_host.virtual.virtual_board import VirtualBoard\n"
             "with VirtualBoard({'order': []}, sys.argv[1], micropython=sys.argv[2]) as board:\n"
             "    print(board.child.pid, flush=True)\n    time.sleep(60)\n")
     host = subprocess.Popen([sys.executable, "-c", code, str(tmp_path / "f.img"), micropython],

@@ -9,7 +9,7 @@ import gzip
 
 import numpy as np
 
-from sixflip_host.capture_file import Capture
+from sixflip_host.capture.capture_file import Capture
 
 G = 9.81744
 OFFSET = 32768

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from sixflip_host.micropython_fetch import MISSING, find
+from sixflip_host.virtual.micropython_fetch import MISSING, find
 
 HERE = Path(__file__).resolve().parent
 

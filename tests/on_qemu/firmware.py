@@ -14,7 +14,13 @@ import tempfile
 from pathlib import Path
 
 from sixflip_host.errors import SixflipError
-from sixflip_host.micropython_fetch import KEYRING, SUITE, apt_get, cache_dir, debian_mirror
+from sixflip_host.virtual.micropython_fetch import (
+    KEYRING,
+    SUITE,
+    apt_get,
+    cache_dir,
+    debian_mirror,
+)
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("qemu-system-arm", "gcc-arm-none-eabi", "libnewlib-arm-none-eabi")

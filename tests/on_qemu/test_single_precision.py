@@ -8,7 +8,7 @@ import pytest
 
 from sixflip import accelerometer
 from sixflip.placement import Placement
-from sixflip_host import reference
+from sixflip_host.solving import reference
 
 from .firmware import frozen_files
 

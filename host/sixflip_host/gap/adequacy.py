@@ -8,10 +8,11 @@ smooth in one variable, must not add anything.
 import numpy as np
 from scipy import stats
 
-from sixflip_host.gap import which
-from sixflip_host.gap.nominal_fit import FURTHER_S
 from sixflip_sim.effects import typical
 from sixflip_sim.effects.drift import TIMES_S
+
+from . import which
+from .nominal_fit import FURTHER_S
 
 TIMES_TYPICAL, TIMES_SEEN, TIMES_LEAST = 4.0, 1.5, 1.5
 DOUBTFUL_P, DOUBTFUL_RATIO = 1e-3, 1.3  # white noise itself is known to some 5 %

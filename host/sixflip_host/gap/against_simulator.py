@@ -6,8 +6,8 @@ registers, timing or spectrum is no gap. What it has and the real sensor lacks i
 """
 import numpy as np
 
-from sixflip_host.gap import diagnosis as stages
-from sixflip_host.gap import observations, which
+from . import diagnosis as stages
+from . import observations, which
 
 ALIKE = 0.3  # relative difference of a size below which two findings are the same
 NOISE_OFF = 1.25  # ratio of white noise beyond which it is said

@@ -1,8 +1,9 @@
 """The answer as JSON, in the words and with the keys of GAP.md."""
 import math
 
-from sixflip_host.gap import next_capture, unseen
 from sixflip_sim.effects.drift import FLOOR_OF_UNIT
+
+from . import next_capture, unseen
 
 UNITS = {"accel": "mg", "gyro": "deg/s"}
 # Allan floor of the five exponentials of unit level, by numerical integration of their kernel.

@@ -6,7 +6,7 @@ less than 3 nats apart, or when what tells them apart is less than 3 standard de
 """
 import numpy as np
 
-from sixflip_host.gap import selection, which
+from . import selection, which
 
 SAME, NATS, SIGMAS = 0.9, 3.0, 3.0
 

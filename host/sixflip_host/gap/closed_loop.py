@@ -9,23 +9,16 @@ import math
 
 import numpy as np
 
-from sixflip_host import replica
-from sixflip_host.capture_file import Capture
-from sixflip_host.gap import (
-    adequacy,
-    attitude_fit,
-    nominal_fit,
-    observations,
-    selection,
-    shrinkage,
-    which,
-)
-from sixflip_host.session_rows import body_to_table
 from sixflip_sim.effects import make as make_chain
 from sixflip_sim.effects.effect import BadEffect
 from sixflip_sim.effects.library import EFFECTS
 from sixflip_sim.effects.library import make as make_effect
 from sixflip_sim.sensor_model import STANDARD_G, SensorModel, Triad
+
+from ..capture.capture_file import Capture
+from ..papers import replica
+from ..simulating.session_rows import body_to_table
+from . import adequacy, attitude_fit, nominal_fit, observations, selection, shrinkage, which
 
 TAUS_S = (30.0, 60.0, 120.0, 200.0, 300.0, 400.0, 600.0, 1000.0, 3000.0)
 

@@ -4,7 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from sixflip_host.gap import (
+from . import (
     attitude_fit,
     gyro_turns,
     integrity,
@@ -15,7 +15,7 @@ from sixflip_host.gap import (
     spectral_lines,
     where,
 )
-from sixflip_host.gap.sensor_gap import SensorGap
+from .sensor_gap import SensorGap
 
 FEWEST_PLACEMENTS = 6
 LEAST_S = 5.0  # of a capture that can be said to show no gap
@@ -168,7 +168,7 @@ class Diagnosis:
 
     def sees(self):
         """True when the capture would have shown most of what it is asked about."""
-        from sixflip_host.gap import unseen
+        from . import unseen
         if not self.gaps:
             return any(s.t_s[-1] >= LEAST_S for s in self.sessions)
         return unseen.visible_share(self) >= 0.5

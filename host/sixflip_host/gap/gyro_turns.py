@@ -9,12 +9,13 @@ import itertools
 
 import numpy as np
 
-from sixflip_host import noise_arrays
-from sixflip_host.attitude import _rotation
-from sixflip_host.gap import nominal_fit, regressors, thresholds
-from sixflip_host.gap.finding import Finding
-from sixflip_host.gap.sensor_gap import SensorGap
 from sixflip_sim.effects.moment import Moment
+
+from ..simulating import noise_arrays
+from ..solving.attitude import _rotation
+from . import nominal_fit, regressors, thresholds
+from .finding import Finding
+from .sensor_gap import SensorGap
 
 EFFECTS = ("asymmetry", "quadratic", "cubic", "thermal_scale")
 LEVELS_DEG = (0.03, 0.06, 0.12, 0.25, 0.5, 1.0, 2.0, 5.0)

@@ -10,7 +10,8 @@ import numpy as np
 from scipy import stats
 
 from sixflip import faces
-from sixflip_host.gap.finding import Finding
+
+from .finding import Finding
 
 FEWEST_VALUES = 12  # distinct counts before a common divisor means anything
 RAIL = 32767

@@ -1,7 +1,7 @@
 """The checks of a diagnosis as a JUnit file."""
 from xml.sax.saxutils import quoteattr
 
-from sixflip_host import atomic_write
+from .. import atomic_write
 
 
 def write(path, checks):

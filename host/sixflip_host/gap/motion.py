@@ -1,7 +1,7 @@
 """Captures that move on: how much faster than the hand or the wheels the sensor is shaken."""
 import numpy as np
 
-from sixflip_host.gap.finding import Finding
+from .finding import Finding
 
 WINDOW_S = 1.0
 QUIET = 0.02  # share of the windows that counts as quiet

@@ -3,8 +3,9 @@ import copy
 
 import numpy as np
 
-from sixflip_host import alias, protocols
-from sixflip_host.session_rows import rows_of
+from ..planning import alias
+from ..simulating import protocols
+from ..simulating.session_rows import rows_of
 
 MOST_MINUTES = 10.0
 APART = 0.9

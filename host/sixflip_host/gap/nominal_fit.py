@@ -12,8 +12,9 @@ columns of all effects), so that is all that is kept: any subset of effects is a
 import numpy as np
 from scipy.linalg import solve_triangular
 
-from sixflip_host.gap.attitude_fit import face_axes
 from sixflip_sim.effects.drift import TIMES_S
+
+from .attitude_fit import face_axes
 
 PLACEMENT_MG = (0.1, 0.45, 0.8, 1.4, 3.0, 8.0, 40.0)  # per direction; 0.05 deg: 0.87
 FLICKER_MG = (0.005, 0.02, 0.05, 0.075, 0.11, 0.15, 0.22, 0.4, 0.8, 1.6, 4.0)

@@ -6,10 +6,11 @@ blocks so that what fades within it (creep) or wanders (flicker) shows between t
 import numpy as np
 
 from sixflip import faces
-from sixflip_host import noise_arrays, pose_runs
-from sixflip_host.find_poses import HELD_BY_HAND
-from sixflip_host.gap import thermometer
 from sixflip_sim.effects.moment import Moment
+
+from ..simulating import noise_arrays, pose_runs
+from ..solving.find_poses import HELD_BY_HAND
+from . import thermometer
 
 EDGE_S = 0.1  # left out at both ends of a rest: a label is never exact
 BLOCK_S, MOST_BLOCKS = 2.5, 6
@@ -183,7 +184,7 @@ def blocks(first, end, rate):
 
 def _label(capture):
     """Poses found where nobody labelled any."""
-    from sixflip_host.find_poses import find_poses
+    from ..solving.find_poses import find_poses
     try:
         find_poses(capture).label(capture)
     except (ValueError, IndexError, ZeroDivisionError):

@@ -1,8 +1,8 @@
 """The pictures of the report, one function each; all take a Diagnosis and write a PNG."""
 import numpy as np
 
-from sixflip_host import signal_measures
-from sixflip_host.gap import classes, single_rest, which
+from ..simulating import signal_measures
+from . import classes, single_rest, which
 
 UNIT = {"accel": "mg", "gyro": "°/s"}
 NAME = {"accel": "accelerometer", "gyro": "gyro"}
@@ -145,7 +145,7 @@ def _noise_curves(axes, x, rate, words, style):
 
 def alias_matrix(diagnosis, path):
     """How much of each effect another could be, for the captures at hand."""
-    from sixflip_host.alias_picture import draw
+    from ..planning.alias_picture import draw
     tables = {}
     for kind, gap in diagnosis.gaps.items():
         gram = sum(u.gram[i] for u, i in zip(gap.units, gap.levels()))

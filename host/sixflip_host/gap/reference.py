@@ -1,9 +1,9 @@
 """The noise of a capture at rest: how much flicker the sensor has when nothing else acts."""
 import numpy as np
 
-from sixflip_host.errors import BadFile
-from sixflip_host.gap import observations, single_rest
-from sixflip_host.signal_measures import allan
+from ..errors import BadFile
+from ..simulating.signal_measures import allan
+from . import observations, single_rest
 
 SHORTEST_S = 20.0
 

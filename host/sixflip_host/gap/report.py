@@ -3,9 +3,9 @@ import base64
 import html
 from pathlib import Path
 
-from sixflip_host import atomic_write
-from sixflip_host.errors import UsageError
-from sixflip_host.gap import pictures, words
+from .. import atomic_write
+from ..errors import UsageError
+from . import pictures, words
 
 STYLE = """body{font:15px/1.45 system-ui,sans-serif;max-width:60em;margin:2em auto;padding:0 1em;
 color:#1b1b1b}h1{font-size:1.35em}h2{font-size:1.1em;margin-top:1.8em}table{border-collapse:

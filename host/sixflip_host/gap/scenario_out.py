@@ -6,8 +6,11 @@ from pathlib import Path
 import numpy as np
 
 from sixflip import faces
-from sixflip_host import atomic_write, plan_file, protocols
-from sixflip_host.gap import closed_loop
+
+from .. import atomic_write
+from ..planning import plan_file
+from ..simulating import protocols
+from . import closed_loop
 
 
 def plan_of(session):

@@ -5,7 +5,7 @@ four effects (GAP stage 3).
 """
 import numpy as np
 
-from sixflip_host.gap import which
+from . import which
 
 MOST_EFFECTS, MOST_STEPS = 4, 8
 

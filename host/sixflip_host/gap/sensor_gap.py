@@ -1,7 +1,9 @@
 """Stages 1 and 3 to 6 for one sensor: accelerometer or gyro, over the rests of all sessions."""
 import numpy as np
 
-from sixflip_host.gap import (
+from sixflip_sim.effects.library import EFFECTS
+
+from . import (
     adequacy,
     classes,
     nominal_fit,
@@ -12,7 +14,6 @@ from sixflip_host.gap import (
     thresholds,
     which,
 )
-from sixflip_sim.effects.library import EFFECTS
 
 ALONG_FREEDOM = 10  # contrasts along gravity that a half of a session must have
 DRIFT_NATS = 6.0

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from sixflip_host.gap import which
+from . import which
 
 Z_90 = 1.6448536269514722
 

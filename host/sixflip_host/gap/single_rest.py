@@ -6,9 +6,9 @@ temperatures; lines, steps, rails and rate are looked for elsewhere, in every ca
 import numpy as np
 from scipy import stats
 
-from sixflip_host.gap import adequacy
-from sixflip_host.gap.finding import Finding
-from sixflip_host.signal_measures import allan
+from ..simulating.signal_measures import allan
+from . import adequacy
+from .finding import Finding
 
 SAME_DEG = 3.0
 FEWEST_C = 1.0

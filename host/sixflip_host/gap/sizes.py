@@ -1,7 +1,7 @@
 """The size of a cause with its interval, the axes that have it, and whether it is believable."""
 import numpy as np
 
-from sixflip_host.gap import plausible
+from . import plausible
 
 SIGNIFICANT = 3.0  # standard deviations at which an axis is said to have the effect
 Z_90 = 1.645

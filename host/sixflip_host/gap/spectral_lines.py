@@ -10,7 +10,7 @@ import math
 import numpy as np
 from scipy import ndimage, stats
 
-from sixflip_host.gap.finding import Finding
+from .finding import Finding
 
 LENGTH_S, SHORTEST_S, LOWEST_HZ = 5.0, 2.0, 2.0
 CHANCE = 0.001

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from sixflip_host import atomic_write
-from sixflip_host.gap import which
+from .. import atomic_write
+from . import which
 
 RUNS, BATCH = 240, 80
 UPPER = 0.1

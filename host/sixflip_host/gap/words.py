@@ -1,6 +1,6 @@
 """The answer for people: the verdict in one sentence, then tables."""
-from sixflip_host.gap.regressors import DOMAIN
-from sixflip_host.terminal import console, plain, styled, table
+from ..terminal import console, plain, styled, table
+from .regressors import DOMAIN
 
 SENSOR = {"accel": "accelerometer", "gyro": "gyro", "device": "device"}
 STYLE = {"no gap": "bold green", "explained": "bold green", "partly explained": "bold yellow",

@@ -1,6 +1,6 @@
 """First code of the virtual board's process: world, flash, terminal; then as a board boots.
 
-micropython boot.py CONFIG.json, written by sixflip_host.virtual_board at every start.
+micropython boot.py CONFIG.json, written by sixflip_host.virtual.virtual_board at every start.
 """
 
 import gc

@@ -29,7 +29,7 @@ def start(virtual_clock, factor, asked):
 
 
 def _look():
-    """KeyboardInterrupt when Ctrl-C was pressed: see sixflip_host.pty_relay."""
+    """KeyboardInterrupt when Ctrl-C was pressed: see sixflip_host.virtual.pty_relay."""
     if _poll.poll(0):
         _asked.read(1)
         raise KeyboardInterrupt

@@ -2,8 +2,8 @@
 import numpy as np
 import pytest
 
-from sixflip_host import scenario, simulate
 from sixflip_host.gap import answer, diagnosis, observations
+from sixflip_host.simulating import scenario, simulate
 
 
 @pytest.fixture

@@ -1,0 +1,1 @@
+"""A board at the end of a cable, or firmware on this machine: find, provision, guide, pull."""

@@ -1,0 +1,278 @@
+"""A board at the end of a serial cable. The only module that knows mpremote.
+
+mpremote calls its Python interface unstable and waits for ever on a silent port, so it is
+pinned, used here alone, and every wait has an end.
+"""
+
+import base64
+import contextlib
+import hashlib
+import io
+import time
+from pathlib import Path, PurePosixPath
+
+import serial
+from mpremote.transport import TransportError, TransportExecError
+from mpremote.transport_serial import SerialTransport
+
+from ..errors import NoBoard, SixflipError
+from . import serial_ports
+from .board_answers import NoSpace, board_error, parse, short
+from .buffered_serial import BufferedSerial
+
+ANSWER_S = 10.0  # a board hashes 100 KB in about two seconds
+LONGEST_S = 300.0  # a full flash read through a UART at 115200 Bd takes two minutes
+HANDSHAKE_S = 5.0
+ATTEMPTS = 2
+REOPEN_S = 15.0  # a USB port comes back after a reset
+CHUNK = 1024
+ON_BOARD = Path(__file__).resolve().parent / "on_board"
+LOST = (serial.SerialException, serial.SerialTimeoutException, OSError, TransportError)
+
+
+def script(name, /, **values):
+    """Source of a file of on_board/ with values assigned in front of it."""
+    head = "".join("%s = %r\n" % item for item in sorted(values.items()))
+    return head + (ON_BOARD / (name + ".py")).read_text(encoding="utf-8")
+
+
+def safe_name(name):
+    """True for a relative name below the folder it is kept in; names from boards are untrusted."""
+    path = PurePosixPath(name)
+    return bool(path.parts) and not path.is_absolute() and ".." not in path.parts and not (
+        set(name) & set("\\:\0\r\n"))
+
+
+class MpremoteLink:
+    """Link over a serial port, opened for this process alone.
+
+    Every method raises NoBoard when the board goes away or does not answer.
+    """
+
+    def __init__(self, port):
+        self.port = port
+        self.identity = serial_ports.identity(port)
+        self.transport = None
+        self.raw = False
+        self.open()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        self.close()
+
+    def open(self):
+        try:
+            transport = SerialTransport(self.port, baudrate=115200, exclusive=True, timeout=1.0)
+        except (TransportError, serial.SerialException, OSError, ValueError):
+            raise NoBoard(serial_ports.why_not(self.port)) from None
+        transport.serial = BufferedSerial(transport.serial)
+        transport.is_pty = True  # read with a time-out instead of asking and sleeping
+        self.transport = transport
+        self.raw = False
+
+    def close(self):
+        transport, self.transport = self.transport, None
+        if transport:
+            with contextlib.suppress(*LOST):
+                if self.raw:
+                    transport.exit_raw_repl()
+            with contextlib.suppress(*LOST):
+                transport.close()
+
+    @contextlib.contextmanager
+    def guarded(self, doing):
+        """Turn every way of losing a board into one line that says what was being done."""
+        try:
+            if self.transport is None:
+                raise NoBoard("%s: the link is closed" % self.port)
+            yield self.transport
+        except TransportExecError as error:
+            raise board_error(self.port, doing, error) from None
+        except LOST as error:
+            self.raw = False
+            raise NoBoard("%s: the board went away while %s (%s)"
+                          % (self.port, doing, short(error))) from None
+
+    # -- running code
+
+    def enter(self):
+        """Stop what runs and enter the raw REPL; NoBoard when that has no effect in time.
+
+        Tried twice: a Ctrl-C that comes in the middle of a reset is lost.
+        """
+        for _ in range(ATTEMPTS):
+            if not self.raw:
+                self.raw = self.handshake()
+        if not self.raw:
+            raise NoBoard("%s does not answer as a MicroPython board does: expected a raw REPL "
+                          "within %d s; is MicroPython on it, and no other program on the port?"
+                          % (self.port, HANDSHAKE_S))
+
+    def handshake(self):
+        """One attempt at the raw REPL: whether it was entered."""
+        with self.guarded("connecting") as transport:
+            wire = transport.serial
+            wire.deadline = time.monotonic() + HANDSHAKE_S
+            wire.timeout = 0.5
+            try:
+                with contextlib.redirect_stdout(io.StringIO()):
+                    transport.enter_raw_repl(soft_reset=True, timeout_overall=HANDSHAKE_S)
+            except TransportError:
+                return False
+            finally:
+                wire.timeout, wire.deadline = ANSWER_S, None
+        return True
+
+    def run(self, code, doing, consumer=None, timeout=None):
+        """Run code on the board; returns what it printed, as bytes."""
+        self.enter()
+        with self.guarded(doing) as transport:
+            transport.serial.deadline = time.monotonic() + LONGEST_S
+            try:
+                out, error = transport.exec_raw(code, timeout or ANSWER_S, consumer)
+            finally:
+                transport.serial.deadline = None
+            if error:
+                raise TransportExecError(out, error.decode("utf-8", "replace"))
+            return out
+
+    def version(self):
+        """(MicroPython's version, what the board calls itself), as text."""
+        out = self.run("import os\ntry:\n u = os.uname()\n print((u[3], u[4]))\nexcept "
+                       "AttributeError:\n import sys\n print((sys.version, sys.platform))\n",
+                       "asking for its version")
+        return parse(self.port, out)
+
+    def platform(self):
+        """sys.platform of the board: rp2, esp32, pyboard, linux …"""
+        return str(parse(self.port, self.run("import sys\nprint(repr(sys.platform))",
+                                             "asking for its version")))
+
+    def board_id(self):
+        """machine.unique_id() in hex; "board" where the port has none."""
+        out = self.run("import binascii\ntry:\n import machine\n print(binascii.hexlify("
+                       "machine.unique_id()).decode())\nexcept (ImportError, AttributeError):\n"
+                       " print()\n", "asking for its id").decode("ascii", "replace").strip()
+        return "".join(c for c in out if c in "0123456789abcdef")[:32] or "board"
+
+    # -- files
+
+    def files(self, hashed=None):
+        """{name: (size, sha256 in hex)} of all files; with `hashed` only those are hashed."""
+        wanted = None if hashed is None else set(hashed)
+        out = self.run(script("list_files", wanted=wanted), "listing its files", timeout=60)
+        found = {}
+        for line in out.splitlines():
+            name, size, digest = parse(self.port, line)
+            if safe_name(str(name)):
+                found[str(name)] = (int(size), digest)
+        return found
+
+    def get(self, name, progress=None):
+        """The bytes of a file. progress(done bytes) is called on the way."""
+        text = bytearray()
+
+        def take(piece):
+            text.extend(piece.replace(b"\x04", b""))
+            if progress and piece == b"\n":
+                progress(len(text) * 3 // 4)
+
+        self.run(script("send_file", name=name), "reading " + name, take)
+        try:
+            data = base64.b64decode(bytes(text).replace(b"\r", b"").replace(b"\n", b""),
+                                    validate=True)
+        except ValueError:
+            raise NoBoard("%s: %s arrived damaged; try again" % (self.port, name)) from None
+        size, digest = self.files([name])[name]
+        if len(data) != size or hashlib.sha256(data).hexdigest() != digest:
+            raise NoBoard("%s: %s arrived damaged; try again" % (self.port, name))
+        return data
+
+    def put(self, name, data, progress=None):
+        """Write NAME.new, compare its hash on the board, then rename it to NAME."""
+        doing = "copying " + name
+        fresh = name + ".new"
+        parents = [str(p) for p in reversed(PurePosixPath(name).parents) if str(p) != "."]
+        if parents:
+            self.run(script("make_folders", folders=parents), doing)
+        try:
+            self.run("f = open(%r, 'wb')\nw = f.write" % fresh, doing)
+            for start in range(0, len(data), CHUNK):
+                self.run("w(%r)" % data[start:start + CHUNK], doing)
+                if progress:
+                    progress(min(start + CHUNK, len(data)))
+            self.run("f.close()", doing)
+        except NoSpace:
+            with contextlib.suppress(SixflipError):
+                self.run("f.close()", doing)
+            with contextlib.suppress(SixflipError):
+                self.remove(fresh)
+            raise
+        if self.files([fresh])[fresh][1] != hashlib.sha256(data).hexdigest():
+            self.remove(fresh)
+            raise NoBoard("%s: %s arrived damaged on the board; the old one is still in force, "
+                          "try again" % (self.port, name))
+        self.run(script("replace_file", name=name), doing)
+
+    def remove(self, name):
+        self.run("import os\nos.remove(%r)" % name, "removing " + name)
+
+    # -- the running firmware
+
+    def reset(self):
+        """Hard reset, as after power-up: boot.py and main.py run."""
+        self.enter()
+        with self.guarded("resetting") as transport:
+            transport.exec_raw_no_follow(
+                "import time, machine\ntime.sleep_ms(100)\nmachine.reset()")
+        self.raw = False
+
+    def restart_firmware(self):
+        """Soft reset: main.py runs again and a USB port stays open, so that no line is lost."""
+        self.enter()
+        with self.guarded("restarting") as transport:
+            transport.exit_raw_repl()
+            transport.serial.write(b"\x04")
+        self.raw = False
+
+    def lines(self, timeout):
+        """Text lines from the running firmware, until none came for `timeout` seconds."""
+        for line in self.raw_lines(timeout):
+            yield line.decode("utf-8", "replace")
+
+    def raw_lines(self, timeout):
+        """The same as bytes: what a line holds may be a binary frame.
+
+        A port that vanishes, as USB does in a reset, is opened again when it comes back.
+        """
+        while True:
+            try:
+                with self.guarded("listening") as transport:
+                    line = transport.serial.read_line(timeout)
+            except NoBoard:
+                self.reopen()
+                continue
+            if line is None:
+                return
+            yield line
+
+    def reopen(self):
+        self.raw = False
+        self.close()
+        end = time.monotonic() + REOPEN_S
+        while True:
+            self.port = serial_ports.same_device(self.identity, self.port)
+            try:
+                return self.open()
+            except NoBoard:
+                if time.monotonic() > end:
+                    raise NoBoard("%s: the board went away and did not come back within %d s"
+                                  % (self.port, REOPEN_S)) from None
+            time.sleep(0.1)
+
+    def send(self, line):
+        """A line to the running firmware."""
+        with self.guarded("sending") as transport:
+            transport.serial.write(line.encode() + b"\n")

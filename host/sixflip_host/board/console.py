@@ -1,0 +1,249 @@
+"""The firmware's events in plain lines for the person with the box in the hand."""
+
+import shutil
+import sys
+import threading
+
+from sixflip.faces import FACES
+
+from ..terminal import plain
+
+HOW = {
+    "moving": "hold still",
+    "saturated": "the sensor is at full scale: put the box down gently",
+    "stale": "the readings do not change: the sensor hangs, or its cable",
+    "crooked": "the box does not lie flat on this face",
+    "leaning": "lay the box on one of its six faces",
+    "noisy": "more noise than at the start: does the table shake?",
+    "not a flip": "turn the box by half a turn, flat on the table",
+    "not leaning": "the plan wants the box leaned on something here, on none of its faces",
+    "turned": "the plan wants it as it lay: lift it and put it back",
+    "already done": "both placements of this face are done, take another face",
+}
+# Always a quarter turn on, about y, z, x and again: gravity before and after them shows the
+# sign of every gyro axis, which half turns do not.
+ROUND = ("Z+", "X+", "Y+", "Z-", "X-", "Y-")
+GUIDED_ORDER = [face + letter for face in ROUND for letter in "ab"]
+STRANGE = 300           # characters of an event that makes no sense
+
+
+def faces_left(missing):
+    """"Z+ and its flip, X- (flip)" of ["Z+a", "Z+b", "X-b"]."""
+    out = []
+    for pose in missing:
+        face = pose[:-1]
+        if pose.endswith("a"):
+            out.append(face + (" and its flip" if face + "b" in missing else ""))
+        elif face + "a" not in missing:
+            out.append(face + " (flip)")
+    return ", ".join(out)
+
+
+def why(event):
+    """The reason of a state or a refusal in words, with number and limit."""
+    reason = event.get("reason") or ""
+    if event.get("unit") == "face":
+        return "this is %s, the plan wants %s up" % (FACES[int(event["value"])],
+                                                     FACES[int(event["limit"])])
+    return HOW.get(reason, reason) + measured(event)
+
+
+def next_step(missing):
+    """What to do now that a pose was taken."""
+    if not missing:
+        return "all six faces done"
+    flips = [pose for pose in missing if pose.endswith("b") and pose[:-1] + "a" not in missing]
+    if flips:
+        return "next: turn the box half a turn on the table, same face up (%s)" % flips[0][:-1]
+    onward = [face for face in ROUND if face + "a" in missing]
+    return "next: %s up; left: %s" % (onward[0], faces_left(missing))
+
+
+def measured(event):
+    """" (0.9 deg, limit 5 deg)" when the event has a number behind its reason."""
+    if event.get("reason") and event.get("limit"):
+        unit = event.get("unit") or ""
+        return " (%.3g %s, limit %.3g %s)" % (event.get("value") or 0, unit, event["limit"], unit)
+    return ""
+
+
+def state_line(event):
+    """The line that is rewritten in place: what the board waits for, with number and limit."""
+    if event.get("state") == "capturing":
+        total = event.get("total") or 1
+        done = min(1.0, (event.get("progress") or 0) / total)
+        bar = "#" * int(20 * done) + "." * (20 - int(20 * done))
+        return "%-3s [%s] %3d %%, keep still %.0f s" % (
+            event.get("pose") or "", bar, 100 * done, event.get("left_s") or 0)
+    if event.get("state") == "resting":
+        return "resting: leave the box alone for %.0f s" % (event.get("left_s") or 0)
+    words = [event.get("state") or "", why(event)]
+    text = ": ".join(word for word in words if word)
+    left = event.get("left_s")
+    return text + (" (gives up in %d s)" % left if left and left < 60 else "")
+
+
+def _solved(event):
+    if event.get("verdict") == "refused":
+        return "verdict: refused: %s" % event.get("reason", "")
+    line = "verdict: %s%s" % (event.get("verdict"), "" if not event.get("reason") else
+                              ": " + event["reason"])
+    if event.get("tilt_deg") is not None:
+        line += "\ntable tilt %.2f deg (faces agree within %.2f deg), residual %.2f mg" % (
+            event["tilt_deg"], event.get("tilt_spread_deg") or 0,
+            event.get("residual_mg_rms") or 0)
+    gyro = event.get("gyro")
+    if gyro:
+        line += "\ngyro: %s: %s" % (gyro.get("verdict"), gyro.get("reason", ""))
+    return line
+
+
+def _record(event):
+    return "correction in force: slot %s, sequence %s, verdict %s" % (
+        event.get("slot"), event.get("sequence"), event.get("verdict"))
+
+
+def _rest(event):
+    if event.get("bias") == "measured now":
+        return "gyro bias measured at rest; %s" % event.get("note")
+    if not event.get("reason"):
+        return None     # a sensor without gyro
+    held = event.get("bias")
+    return "gyro bias not measured now: %s; %s" % (
+        event["reason"], "there is none" if held == "none" else "the %s one is used" % held)
+
+
+def _mounted(event):
+    if event.get("off"):
+        return "no mounting any more: samples are in the sensor's axes"
+    return ("mounted: roll %.2f deg, pitch %.2f deg (order R_%s, yaw 0: gravity does not "
+            "show it), good to %.3f deg by noise alone\n%s: the robot's x y z lie along the "
+            "sensor's %s; samples are %s; %s" % (
+                event["roll_deg"], event["pitch_deg"], event["order"], event["sigma_deg"],
+                event["frame"], event["axes"], "forward, right, down" if event["frame"] == "ned"
+                else "forward, left, up", "saved in slot %s, sequence %s" % (
+                    event["slot"], event["sequence"]) if event["written"] else "as stored"))
+
+
+def _capture(event):
+    if event.get("sums_only"):
+        return "raw capture: only the sums are kept (%s)" % event.get("reason", "short of space")
+    return "raw capture: %s samples, %s bytes" % (event.get("samples"), event.get("bytes"))
+
+
+WORDS = {
+    "hello": lambda e: "board %s, %s" % (e.get("id"), e.get("chip") or "no sensor found"),
+    "grace": lambda e: "starts in %.1f s" % ((e.get("ms") or 0) / 1000),
+    "no_record": lambda e: "no correction in flash: %s" % e.get("reason", ""),
+    "record": _record,
+    "calibrating": lambda e: "calibrating: lay the box on a face and let go, Z+ up to begin "
+                             "with; left: %s" % faces_left(e.get("missing") or []),
+    "pose": lambda e: "%s taken; %s" % (e.get("pose"), next_step(e.get("missing") or [])),
+    "redo": lambda e: "%s again; left: %s" % (e.get("face"), faces_left(e.get("missing") or [])),
+    "refused": lambda e: "%s not taken: %s" % (e.get("pose") or "placement", why(e)),
+    "solved": _solved,
+    "saved": lambda e: "saved in slot %s, sequence %s" % (e.get("slot"), e.get("sequence")),
+    "capture": _capture,
+    "rest": _rest,
+    "mounted": _mounted,
+    "not_mounted": lambda e: "mounting not measured: %s" % e.get("reason"),
+    "not_restored": lambda e: "the record offered was refused: %s" % e.get("reason"),
+    "restored": lambda e: "restored: slot %s, sequence %s" % (e.get("slot"), e.get("sequence")),
+    "bus_error": lambda e: "bus error %s (%s so far): %s" % (
+        e.get("errno"), e.get("count"), e.get("action")),
+    "error": lambda e: "error: %s; expected %s" % (e.get("what"), e.get("expected")),
+}
+
+
+def planned(event, step):
+    """The lasting line for an event of a session that follows a plan, None for other ones."""
+    kind = event["event"]
+    if kind == "calibrating":
+        return "calibrating by a plan of %d placements\n%s" % (
+            len(event.get("missing") or []), step(0))
+    if kind not in ("pose", "redo") or not isinstance(event.get("at"), int):
+        return None
+    done = "%s taken" % event.get("pose") if kind == "pose" else "%s again" % event.get("face")
+    return "%s (%d of %s); %s%s" % (done, event["at"], event.get("of"),
+                                    "next " if event["at"] < event["of"] else "",
+                                    step(event["at"]))
+
+
+def words(event, step=None):
+    """The lasting line or lines for an event, None when it has none. step: see Console."""
+    said = planned(event, step) if step else None
+    if said is not None:
+        return said
+    make = WORDS.get(event["event"])
+    return make(event) if make else None
+
+
+class Console:
+    """Prints lasting lines, and on a terminal one line below that follows the live state.
+
+    step(at): what to do for that placement of a plan; typed: what the person is typing
+    """
+
+    def __init__(self, out=None, step=None):
+        self.step = step
+        self.typed = self.state = ""
+        self.lock = threading.RLock()
+        self.out = sys.stdout if out is None else out
+        self.live = self.out.isatty()
+        self.shown = ""
+
+    def show(self, event):
+        """One event; a damaged or strange one as it came."""
+        try:
+            with self.lock:
+                self.show_known(event)
+        except (TypeError, ValueError, ArithmeticError, AttributeError, LookupError):
+            self.clear()
+            print("the board says: " + plain(str(event)[:STRANGE]), file=self.out, flush=True)
+
+    def show_known(self, event):
+        if event["event"] == "state":
+            self.show_state(event)
+            return
+        text = words(event, self.step)
+        if text is not None:
+            self.clear()
+            for line in text.split("\n"):
+                print(plain(line), file=self.out, flush=True)
+
+    def show_state(self, event):
+        line = plain(state_line(event))
+        if self.live:
+            self.state = line
+            self.redraw()
+        elif event.get("reason"):
+            # Not a terminal: only what keeps a pose from being taken, once each.
+            kind = str(event["reason"])
+            if kind != self.shown and kind not in ("moving", "noisy"):
+                print("  " + line, file=self.out, flush=True)
+            self.shown = kind
+
+    def echo(self, typed):
+        """What is being typed; from another thread."""
+        with self.lock:
+            self.typed = plain(typed)
+            self.redraw()
+
+    def redraw(self):
+        """The live line, cut to the width of the terminal: a wrapped one cannot be rewritten."""
+        line = self.state + ("   > " + self.typed if self.typed else "")
+        line = line[:max(20, shutil.get_terminal_size().columns - 1)]
+        self.out.write("\r" + line.ljust(len(self.shown)))
+        self.out.flush()
+        self.shown = line
+
+    def say(self, line):
+        """A lasting line of the host's own."""
+        with self.lock:
+            self.clear()
+            print(plain(line), file=self.out, flush=True)
+
+    def clear(self):
+        if self.live and self.shown:
+            self.out.write("\r" + " " * len(self.shown) + "\r")
+        self.shown = ""

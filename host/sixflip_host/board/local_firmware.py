@@ -1,0 +1,66 @@
+"""python -m sixflip_host.board.local_firmware FOLDER WORLD: the board's main.py under CPython.
+
+WORLD is JSON: null for this computer's own I2C bus (main.py runs as it is), or the spec of a
+simulated world, which then gives the bus and the clock.
+"""
+
+import json
+import os
+import runpy
+import sys
+from pathlib import Path
+
+from .board_files import shared_dir
+
+
+def run_simulated(folder, spec):
+    """The firmware of the folder on a simulated bus and a virtual clock."""
+    sys.path.insert(1, str(shared_dir()))
+    from sixflip_sim import worlds
+    world = worlds.make(spec)
+    # The firmware has to bring its own copy of sixflip, as on a board.
+    sys.path.remove(str(shared_dir()))
+    for name in [n for n in sys.modules if n.split(".")[0] == "sixflip"]:
+        del sys.modules[name]
+    sys.path.insert(0, str(folder))
+    from sixflip_device import power_up, settings
+    from sixflip_device.boards.raspberry_pi import LinuxBoard
+
+    class SimulatedBoard(LinuxBoard):
+        """A Linux board on the world's bus and clock."""
+
+        def reopen_i2c(self):
+            return self.i2c
+
+        def ticks_us(self):
+            return world.clock.ticks_us()
+
+        def ticks_diff(self, later, earlier):
+            return world.clock.ticks_diff(later, earlier)
+
+        def sleep_us(self, us):
+            world.clock.sleep_us(us)
+
+    root = os.path.join(str(folder), "")
+    values, problems = settings.load(root)
+    power_up.run(SimulatedBoard(lambda: world.i2c, root), values, problems)
+
+
+def main(argv):
+    folder, spec = Path(argv[0]), json.loads(argv[1])
+    if not (folder / "main.py").is_file():
+        print("%s holds no firmware: sixflip provision --port local:%s" % (folder, folder))
+        return 3
+    try:
+        if spec is None:
+            sys.path.insert(0, str(folder))
+            runpy.run_path(str(folder / "main.py"), run_name="__main__")
+        else:
+            run_simulated(folder, spec)
+    except BrokenPipeError:  # the host has gone; nobody is left to tell
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,143 @@
+"""sixflip provision: the firmware onto a board, only what changed, then its self-test."""
+
+import contextlib
+import hashlib
+import json
+
+from ..errors import NoBoard, UsageError
+from ..terminal import plain
+from .board_events import events
+from .board_files import board_files
+from .byte_progress import Bytes
+from .ports import add_port, open_link
+
+HELP = "copy the firmware onto a board and test its sensor"
+EXAMPLE = "sixflip provision --sensor gy85 --pins sda=4,scl=5"
+BOARDS = ("pico", "esp32", "pyboard", "raspberry_pi")
+SENSORS = ("auto", "mpu6050", "gy85", "adxl345")
+PLATFORMS = {"rp2": "pico", "esp32": "esp32", "pyboard": "pyboard"}
+SETTINGS = "sixflip.json"
+
+
+def add_arguments(parser):
+    add_port(parser)
+    parser.add_argument("--sensor", choices=SENSORS, help="default: find out at power-up")
+    parser.add_argument("--board", choices=BOARDS, help="default: by the port of MicroPython")
+    parser.add_argument("--pins", metavar="sda=4,scl=5",
+                        help="pins that differ from the board's usual ones: sda, scl, led, button")
+
+
+def pins(text):
+    """{"sda": 4, "scl": 5} of "sda=4,scl=5"; names such as X9 stay text."""
+    found = {}
+    for part in text.split(","):
+        name, equals, value = part.strip().partition("=")
+        if name not in ("sda", "scl", "led", "button") or not equals or not value:
+            raise UsageError("--pins %s: expected names of sda scl led button with a pin each, "
+                             "such as sda=4,scl=5" % text)
+        found[name] = int(value) if value.isdigit() else value
+    return found
+
+
+def wanted_settings(args):
+    """What the command line says for sixflip.json."""
+    wanted = pins(args.pins) if args.pins else {}
+    for name in ("sensor", "board"):
+        if getattr(args, name):
+            wanted[name] = getattr(args, name)
+    return wanted
+
+
+def merged_settings(link, present, wanted):
+    """Bytes of sixflip.json: what is on the board, changed where the command line says so."""
+    values = {}
+    if SETTINGS in present:
+        with contextlib.suppress(ValueError):  # damaged: written anew
+            values = json.loads(link.get(SETTINGS))
+    if not isinstance(values, dict):
+        values = {}
+    values.update(wanted)
+    if "board" not in values:
+        values["board"] = PLATFORMS.get(link.platform(), "pico")
+    return (json.dumps(values, indent=1, sort_keys=True) + "\n").encode()
+
+
+def copy(link, wanted, say=print):
+    """Bring the board's files up to date; returns (number copied, number already there)."""
+    files = {name: path.read_bytes() for name, path in board_files().items()}
+    present = link.files(list(files) + [SETTINGS])
+    files[SETTINGS] = merged_settings(link, present, wanted)
+    changed = [name for name, data in files.items()
+               if present.get(name, (0, ""))[1] != hashlib.sha256(data).hexdigest()]
+    changed.sort(key=lambda name: name == "main.py")  # a half-copied board never starts it
+    # What a cable pulled out in mid-copy left behind.
+    for name in present:
+        if name.endswith(".new") and name[:-4] in files:
+            link.remove(name)
+    bar = Bytes("copying", sum(len(files[name]) for name in changed))
+    done = 0
+    with bar:
+        for number, name in enumerate(changed):
+            try:
+                link.put(name, files[name], lambda n, base=done: bar.at(base + n))
+            except NoBoard as error:
+                raise NoBoard("%s; %d of %d files are copied, run the same command again and it "
+                              "goes on from there" % (error, number, len(changed))) from None
+            done += len(files[name])
+    say("%d files copied, %d already there" % (len(changed), len(files) - len(changed)))
+    return len(changed), len(files) - len(changed)
+
+
+NO_SENSOR = "no usable sensor"
+
+
+def self_test(link, say=print):
+    """The board's self-test after a reset: (hello, selftest) events; NoBoard without a sensor."""
+    link.reset()
+    try:
+        return first_words(link, 6, say)
+    except Silent:
+        # What was said before the USB port was back is lost; a soft reset keeps the port.
+        link.restart_firmware()
+        return first_words(link, 15, say)
+
+
+class Silent(NoBoard):
+    """No self-test was heard of."""
+
+
+def first_words(link, silence_s, say):
+    hello = {}
+    for event in events(link, silence_s, 60):
+        if event["event"] == "hello":
+            hello = event
+        elif event["event"] == "selftest":
+            return hello, event
+        elif event["event"] == "error":
+            line = "%s; expected %s" % (event.get("what"), event.get("expected"))
+            if str(event.get("what")).startswith(NO_SENSOR):
+                raise NoBoard("%s: %s" % (link.port, line))
+            say("the board says: " + plain(line))
+    raise Silent("%s: no self-test within %d s of the reset" % (link.port, silence_s))
+
+
+def verdict_line(hello, test):
+    """One line for a person: which chip, and whether it does what it should."""
+    chip = hello.get("chip") or hello.get("sensor") or "sensor"
+    if test.get("ok"):
+        return "self-test ok: %s, %.0f samples a second" % (chip, test.get("rate_hz", 0))
+    return "self-test failed: %s: %s" % (chip, "; ".join(test.get("problems") or ["no reason"]))
+
+
+def run(args):
+    wanted = wanted_settings(args)
+    with open_link(args.port) as link:
+        version, machine = link.version()
+        print(plain("%s: %s, %s" % (link.port, machine, version)))
+        copy(link, wanted)
+        hello, test = self_test(link)
+        line = verdict_line(hello, test)
+        print(plain(line))
+        if test.get("ok"):
+            print("next: sixflip calibrate")
+    return 0 if test.get("ok") else 1

@@ -1,0 +1,74 @@
+"""sixflip pull: capture, records and settings from a board into a folder here."""
+
+from pathlib import Path
+
+from ..atomic_write import write_bytes
+from ..capture import capture_binary, capture_file
+from ..errors import BadFile, NoBoard
+from ..terminal import plain
+from .byte_progress import Bytes
+from .ports import add_port, open_link
+
+HELP = "fetch the raw capture and the correction records from a board"
+EXAMPLE = "sixflip pull -o captures"
+WANTED = ("record_a.bin", "record_b.bin", "sixflip.json", "capture.bin", "refused.bin")
+CAPTURES = ("capture.bin", "refused.bin")
+
+
+def add_arguments(parser):
+    add_port(parser)
+    parser.add_argument("-o", "--output", metavar="DIR", default=".", type=Path,
+                        help="folder to put DIR/<board id>/… into (default: here)")
+
+
+def folder_name(board_id):
+    """A name for a folder made of a board's id, which is not to be trusted."""
+    return "".join(c for c in board_id if c.isalnum() and c.isascii())[:40] or "board"
+
+
+def fetch(link, output, say=print):
+    """Copy what is there into output/<board id>; returns that folder.
+
+    Only names of WANTED are asked for and written: no name of the board's reaches a path here.
+    """
+    present = link.files([])
+    names = [name for name in WANTED if name in present]
+    if not names:
+        raise NoBoard("%s: nothing of sixflip is on this board: sixflip provision" % link.port)
+    folder = Path(output) / folder_name(link.board_id())
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise BadFile("%s: cannot be made: %s" % (folder, error.strerror)) from None
+    done = 0
+    with Bytes("fetching", sum(present[name][0] for name in names)) as bar:
+        for name in names:
+            data = link.get(name, lambda n, base=done: bar.at(base + n))
+            write_bytes(folder / name, data)
+            done += len(data)
+            say("%s (%d bytes)" % (plain(folder / name), len(data)))
+    return folder
+
+
+def convert(folder, say=print):
+    """Write a .csv beside every capture that holds samples."""
+    for name in CAPTURES:
+        path = Path(folder) / name
+        if not path.exists():
+            continue
+        capture = capture_binary.decode(path.read_bytes())
+        if len(capture.t_us):
+            table = path.with_suffix(".csv")
+            capture_file.write(table, capture)
+            say("%s (%d samples)" % (plain(table), len(capture.t_us)))
+        else:
+            say("%s holds the poses' sums only, no samples" % plain(path))
+
+
+def run(args):
+    with open_link(args.port) as link:
+        folder = fetch(link, args.output)
+        link.reset()
+    convert(folder)
+    print("next: sixflip verify %s" % plain(folder))
+    return 0

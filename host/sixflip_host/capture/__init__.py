@@ -1,0 +1,1 @@
+"""Captures and what is said of them: read, write, import, export, show, apply."""

@@ -1,0 +1,67 @@
+"""sixflip apply: corrected samples in SI units from raw counts and a record."""
+
+import numpy as np
+
+from sixflip.correction import Correction
+
+from .. import atomic_write
+from ..errors import BadFile
+from ..verifying.verify_files import read_record
+from . import capture_file
+
+HELP = "correct a capture with a record: CSV in m/s² and rad/s"
+EXAMPLE = "sixflip apply record_a.bin capture.csv -o corrected.csv"
+
+
+def add_arguments(parser):
+    """The options of the verb."""
+    parser.add_argument("record", help="correction record")
+    parser.add_argument("capture", help="capture with the raw counts")
+    parser.add_argument("-o", "--output", required=True, help="CSV to write")
+    parser.add_argument("--force", action="store_true", help="even if it is another chip or range")
+
+
+def run(args):
+    """Correct every sample."""
+    record = read_record(args.record)
+    capture = capture_file.read(args.capture)
+    if not args.force:
+        _fits(args, record, capture)
+    columns, names = corrected(record, capture)
+    lines = ["%d,%s\n" % (t, ",".join(["%.7g" % x for x in row]))
+             for t, row in zip(capture.t_us.tolist(), columns.tolist())]
+    atomic_write.write_text(args.output, ",".join(["t_us", *names]) + "\n" + "".join(lines))
+    return 0
+
+
+def corrected(record, capture):
+    """Array (n, columns) and the names of its columns: m/s², rad/s, °C."""
+    correction = Correction(record)
+    blocks, names = [_affine(capture.accel, correction.accel)], ["ax_mps2", "ay_mps2", "az_mps2"]
+    if capture.gyro is not None:
+        blocks.append(_affine(capture.gyro, correction.gyro))
+        names += ["gx_radps", "gy_radps", "gz_radps"]
+    if capture.temp is not None:
+        celsius = capture.temp / capture.meta["temp_lsb_per_c"] + capture.meta["temp_offset_c"]
+        blocks.append(celsius[:, None])
+        names.append("temp_c")
+    return np.hstack(blocks), names
+
+
+def _affine(counts, M):
+    """[c 1] M for all rows at once, as Correction.apply does for one."""
+    M = np.array(M)
+    return counts @ M[:3] + M[3]
+
+
+def _fits(args, record, capture):
+    """A record of another chip or range would correct nothing."""
+    pairs = [("sensor", record.chip, capture.meta["sensor"], False),
+             ("counts per g", record.accel_lsb_per_g, capture.meta["accel_lsb_per_g"], True)]
+    if capture.gyro is not None and record.gyro_lsb_per_dps:
+        pairs.append(("counts per deg/s", record.gyro_lsb_per_dps,
+                      capture.meta["gyro_lsb_per_dps"], True))
+    for what, has, wants, number in pairs:
+        if (abs(has - wants) > 5.1e-4 if number else has != wants):
+            raise BadFile("%s is for %s %s, %s has %s: expected a record of this sensor "
+                          "(or --force)" % (args.record, what, has, args.capture, wants))

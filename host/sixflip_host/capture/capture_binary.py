@@ -1,0 +1,126 @@
+"""The board's own capture file, by the shared codec, to and from a Capture."""
+
+import json
+
+import numpy as np
+
+from sixflip.capture_blocks import ACCEL, GROUPS, GYRO, MAG, TEMP, BlockWriter, read_blocks
+
+from ..errors import BadFile
+from .capture_header import check_meta
+from .capture_rows import quoted
+
+# In a text capture made from a board's: what only the board's file has a place for.
+EXTRAS = "board_capture"
+UNLABELLED = "nobody labelled the poses"
+BLOCK_SAMPLES = 256
+LATEST_US = (1 << 32) * 1000000
+
+
+def decode(data, path="capture"):
+    """A Capture from the bytes of a board's file; readable up to the last whole block.
+
+    board_placements  what the board summed up itself, as sixflip.placement.Placement
+    truncated         a sentence when the file was cut off or damaged, else None
+    sums_only         the board had no room for samples: none are here
+    Raises BadFile when there is no readable header or not one sample.
+    """
+    from .capture_file import Capture
+    try:
+        blocks = read_blocks(data)
+    except ValueError as error:
+        raise BadFile("%s: %s" % (path, error))
+    meta = _meta(path, blocks)
+    width = len(blocks.names)
+    rows = np.array(blocks.rows, np.int16).reshape(-1, width)
+    if not len(rows) and not blocks.placements:
+        raise BadFile("%s: %s, and before it there is not one sample" % (
+            path, blocks.damage or "the capture is empty"))
+    columns = {name: rows[:, index] for index, name in enumerate(blocks.names)}
+    capture = Capture(meta, np.array(blocks.t_us, np.int64), _triple(columns, "a"),
+                      _triple(columns, "g"), columns.get("temp"), _triple(columns, "m"))
+    capture.board_placements = blocks.placements
+    capture.notes = [note for note in blocks.notes if note != UNLABELLED]
+    capture.truncated = blocks.damage or None
+    capture.sums_only = blocks.sums_only or not len(rows)
+    capture.complete = blocks.complete
+    capture.withdrawn = blocks.withdrawn
+    if UNLABELLED not in blocks.notes:
+        capture.pose = _labels(path, blocks)
+    extras = {"complete": blocks.complete, "notes": capture.notes, "withdrawn": blocks.withdrawn}
+    if extras != {"complete": False, "notes": [], "withdrawn": []}:
+        meta[EXTRAS] = extras
+    return capture
+
+
+def _meta(path, blocks):
+    try:
+        meta = json.loads(blocks.meta_bytes.decode("utf-8"))
+    except (ValueError, RecursionError) as error:
+        raise BadFile("%s: its metadata is no JSON: %s" % (path, quoted(str(error))))
+    if not isinstance(meta, dict):
+        raise BadFile("%s: its metadata is JSON, but not an object" % path)
+    if "ax" not in blocks.names:
+        raise BadFile("%s: it has no accelerometer" % path)
+    check_meta(meta, blocks.names, lambda found, expected: BadFile(
+        "%s: in its metadata %s, expected %s" % (path, found, expected)))
+    meta.pop("samples", None)
+    return meta
+
+
+def _triple(columns, letter):
+    if letter + "x" not in columns:
+        return None
+    return np.stack([columns[letter + axis] for axis in "xyz"], axis=1)
+
+
+def _labels(path, blocks):
+    """int16 codes of every sample from the placements in force."""
+    pose = np.zeros(len(blocks.t_us), np.int16)
+    for one in blocks.placements:
+        if len(pose) and one.first + one.n > len(pose) and not blocks.damage:
+            raise BadFile("%s: a pose ends at sample %d of %d" % (
+                path, one.first + one.n, len(pose)))
+        pose[one.first:one.first + one.n] = one.pose
+    return pose
+
+
+def encode(capture):
+    """The bytes of a board's file for a Capture; its times count from 0."""
+    if not len(capture):
+        raise BadFile("the board kept only the sums of this capture: no samples to write")
+    if capture.t_us[0] < 0 or capture.t_us[-1] >= LATEST_US:
+        raise BadFile("the times go from %d to %d us, a board's file holds 0 to %d" % (
+            capture.t_us[0], capture.t_us[-1], LATEST_US - 1))
+    meta = dict(capture.meta)
+    extras = meta.pop(EXTRAS, {})
+    if not isinstance(extras, dict):
+        raise BadFile("the key %s is %s, expected an object" % (EXTRAS, quoted(repr(extras))))
+    data = bytearray()      # the writer's buffer is used again: copy what it hands over
+    mask = ACCEL | (GYRO if capture.gyro is not None else 0) \
+        | (TEMP if capture.temp is not None else 0) | (MAG if capture.mag is not None else 0)
+    try:
+        writer = BlockWriter(data.extend, json.dumps(meta, allow_nan=False).encode(), mask,
+                             BLOCK_SAMPLES)
+    except ValueError as error:
+        raise BadFile("the capture cannot be written as a board's file: %s" % error)
+    _write_samples(writer, capture)
+    for note in [UNLABELLED] * (capture.pose is None) + list(extras.get("notes", [])):
+        writer.note(str(note))
+    for code in extras.get("withdrawn", []):
+        writer.withdraw(int(code))
+    for placement in capture.placements():
+        writer.pose(placement)
+    writer.end(bool(extras.get("complete")))
+    return bytes(data)
+
+
+def _write_samples(writer, capture):
+    blocks = {ACCEL: capture.accel, GYRO: capture.gyro, TEMP: capture.temp, MAG: capture.mag}
+    rows = np.zeros((len(capture), 10), int)
+    for mask, first, width in GROUPS:
+        if blocks[mask] is not None:
+            rows[:, first:first + width] = blocks[mask].reshape(len(capture), width)
+    intervals = np.diff(capture.t_us, prepend=0).tolist()
+    for interval, row in zip(intervals, rows.tolist()):
+        writer.add(interval, row)

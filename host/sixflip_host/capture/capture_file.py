@@ -1,0 +1,155 @@
+"""A capture in memory, read from text or board files and written as text.
+
+The text format is sixflip-capture 1: a version line, a JSON line, column names, whole numbers.
+"""
+
+import gzip
+import json
+
+import numpy as np
+
+from sixflip.faces import pose_name
+
+from .. import atomic_write
+from ..errors import BadFile
+from ..simulating import pose_runs
+from .capture_header import ACCEL, GYRO, MAG, STANDARD_G, VERSION, check_meta, parse_header
+from .capture_rows import parse_rows, quoted
+from .gunzip import MAGIC as GZIP_MAGIC
+from .gunzip import gunzip
+
+BOARD_MAGIC = b"6CAP"
+
+
+class Capture:
+    """Raw counts of one session, as the chip gave them.
+
+    meta    dict of the JSON line (without `samples`); unknown keys are kept
+    t_us    int64 (n,) microseconds, not decreasing
+    accel   int16 (n, 3) counts; gyro, mag likewise or None; temp int16 (n,) or None
+    pose    int16 (n,) codes of sixflip.faces, 0 while moving; None when nobody labelled
+    board_placements, notes, truncated, sums_only, complete, withdrawn
+            what only a board's own file knows, see capture_binary.decode
+    """
+
+    def __init__(self, meta, t_us, accel, gyro=None, temp=None, mag=None, pose=None):
+        self.meta = meta
+        self.t_us = t_us
+        self.accel = accel
+        self.gyro = gyro
+        self.temp = temp
+        self.mag = mag
+        self.pose = pose
+        self.board_placements = None
+        self.notes = []
+        self.truncated = None
+        self.sums_only = False
+        self.complete = True
+        self.withdrawn = []
+
+    def __len__(self):
+        return len(self.t_us)
+
+    @property
+    def g(self):
+        """Gravity the capture claims for its place, m/s²."""
+        return self.meta.get("g", STANDARD_G)
+
+    def columns(self):
+        """Names of the columns there are, in the order they are written."""
+        names = ["t_us", *ACCEL]
+        names += GYRO if self.gyro is not None else ()
+        names += ("temp",) if self.temp is not None else ()
+        names += MAG if self.mag is not None else ()
+        return names + (["pose"] if self.pose is not None else [])
+
+    def placements(self):
+        """Every unbroken run of a label as a sixflip.placement.Placement; sums are exact.
+
+        Where the board kept no samples, the placements are the board's.
+        """
+        if self.sums_only:
+            return list(self.board_placements)
+        return pose_runs.placements(self)
+
+    def moves(self):
+        """What lies between consecutive placements, as sixflip.placement.Move."""
+        return pose_runs.moves(self, self.placements())
+
+
+def read(path):
+    """Read a capture: text, gzipped text, or the binary file of a board.
+
+    Raises BadFile with one line: the file, the line in it, what was found and expected.
+    """
+    data = atomic_write.read_bytes(path)
+    if data.startswith(BOARD_MAGIC):
+        from . import capture_binary
+        return capture_binary.decode(data, str(path))
+    if data.startswith(GZIP_MAGIC):
+        data = gunzip(path, data)
+    return parse(path, data)
+
+
+def parse(path, data):
+    """A capture from the bytes of its text; `path` is for the error."""
+    meta, columns, samples, offset = parse_header(path, data)
+    body = data[offset:]
+    if not body:
+        raise BadFile.at(path, 4, "no rows", "%s rows" % samples if samples else "a row a sample")
+    try:
+        values = parse_rows(path, body, columns, first_line=4)
+    except BadFile:
+        rows = body.count(b"\n")
+        if samples is not None and rows < samples and not body.endswith(b"\n"):
+            raise BadFile.at(path, 4 + rows, "the file was cut short in its row %d" % (rows + 1),
+                             "%d rows" % samples)
+        raise
+    rows = len(values["t_us"])
+    if samples is not None and rows != samples:
+        raise BadFile.at(path, 3 + rows, "%s after %d rows" % (
+            "the file was cut short" if rows < samples else "the file goes on", rows),
+            "the %d rows its header promises" % samples)
+    return Capture(meta, values["t_us"], *(
+        np.stack([values[name] for name in group], axis=1) if group[0] in values else None
+        for group in (ACCEL, GYRO)),
+        values.get("temp"),
+        np.stack([values[name] for name in MAG], axis=1) if "mx" in values else None,
+        values.get("pose"))
+
+
+def write(path, capture):
+    """Write a capture as text, gzipped when the name ends in .gz; whole or not at all.
+
+    The same capture gives the same bytes, always.
+    """
+    data = text(capture)
+    if str(path).endswith(".gz"):
+        data = gzip.compress(data, mtime=0)
+    atomic_write.write_bytes(path, data)
+
+
+def text(capture):
+    """The bytes of a text capture."""
+    if not len(capture):
+        raise BadFile("the board kept only the sums of this capture: no samples to write")
+    columns = capture.columns()
+    if "samples" in capture.meta:
+        raise BadFile("a capture's header says how many rows there are, leave `samples` to it")
+    check_meta(capture.meta, columns, lambda found, expected: BadFile(
+        "the capture cannot be written: %s, expected %s" % (found, expected)))
+    try:
+        header = json.dumps(dict(capture.meta, samples=len(capture)), allow_nan=False)
+    except (TypeError, ValueError) as error:
+        raise BadFile("the capture's header cannot be written as JSON: %s" % quoted(str(error)))
+    head = "# sixflip-capture %d\n# %s\n%s\n" % (VERSION, header, ",".join(columns))
+    fields = [capture.t_us.tolist()]
+    for block in (capture.accel, capture.gyro, capture.temp, capture.mag):
+        if block is not None:
+            fields += block.T.tolist() if block.ndim == 2 else [block.tolist()]
+    if capture.pose is not None:
+        names = {code: pose_name(code) if code else "" for code in set(capture.pose.tolist())}
+        fields.append([names[code] for code in capture.pose.tolist()])
+    row = ",".join(["%d"] * (len(columns) - (capture.pose is not None))
+                   + ["%s"] * (capture.pose is not None)) + "\n"
+    return (head + "".join([row % values for values in zip(*fields)])).encode("utf-8")

@@ -1,0 +1,91 @@
+"""sixflip export: a capture or a record in another format.
+
+The record in the conventions of imu_calib, imufusion and imucal takes the place of the
+paper's do_calib: its apply_calib node, or an attitude filter, then corrects what raw_imu says.
+"""
+
+import json
+import os
+
+from .. import atomic_write
+from ..errors import UsageError
+from ..simulating import other_simulators
+from ..solving.record_json import record_json
+from ..verifying.verify_files import read_record
+from . import capture_binary, capture_file, export_formats
+from .show import RECORD_MAGIC
+
+HELP = "a capture or a record in another format"
+EXAMPLE = "sixflip export record_a.bin --format imu_calib -o imu_calib.yaml"
+
+
+def capture_csv(path, output):
+    """Text capture; gzipped when the name ends in .gz."""
+    capture_file.write(output, capture_file.read(path))
+
+
+def capture_bin(path, output):
+    """A board's file."""
+    atomic_write.write_bytes(output, capture_binary.encode(capture_file.read(path)))
+
+
+def record_to_json(path, output):
+    """Everything in a record, units in the names."""
+    answer = record_json(read_record(path))
+    atomic_write.write_text(output, json.dumps(answer, indent=1) + "\n")
+
+
+def record_text(make):
+    """A record as somebody else's file; make: a function of export_formats."""
+    def write(path, output):
+        atomic_write.write_text(output, make(path, read_record(path)))
+    return write
+
+
+# format: (made from, how, endings of a file name that ask for it)
+FORMATS = {
+    "csv": ("capture", capture_csv, (".csv", ".csv.gz")),
+    "bin": ("capture", capture_bin, (".bin",)),
+    "json": ("record", record_to_json, (".json",)),
+    "imu_calib": ("record", record_text(export_formats.imu_calib_yaml), (".yaml", ".yml")),
+    "imufusion": ("record", record_text(export_formats.imufusion_python), (".py",)),
+    "imucal": ("record", record_text(export_formats.imucal_json), ()),
+    "sdf": ("capture", other_simulators.capture_sdf, (".sdf",)),
+    "kalibr": ("capture", other_simulators.capture_kalibr, (".yaml", ".yml")),
+    "table": ("capture", other_simulators.capture_table, (".txt",)),
+}
+
+
+def add_arguments(parser):
+    """The options of the verb."""
+    parser.add_argument("file", help="capture or record")
+    parser.add_argument("-o", "--output", required=True, help="file to write")
+    parser.add_argument("--format", "--to", dest="to", choices=FORMATS,
+                        help="default: by the name of the output")
+
+
+def run(args):
+    """Convert one file."""
+    asked = [args.to] if args.to else _by_name(args.output)
+    kind = "record" if atomic_write.read_bytes(args.file).startswith(RECORD_MAGIC) else "capture"
+    # where two formats have the same ending, the one that is made from such a file
+    name = next((one for one in asked if FORMATS[one][0] == kind), asked[0])
+    made_from, how, _ = FORMATS[name]
+    if os.path.exists(args.output) and os.path.samefile(args.file, args.output):
+        raise UsageError("%s: expected another file to write than the one to read" % args.output)
+    if kind != made_from:
+        raise UsageError("%s is a %s, and %s is made from a %s: expected --format %s" % (
+            args.file, kind, name, made_from, " or ".join(
+                one for one in FORMATS if FORMATS[one][0] == kind)))
+    how(args.file, args.output)
+    return 0
+
+
+def _by_name(output):
+    """The formats an ending asks for."""
+    asked = [name for name, (_, _, endings) in FORMATS.items()
+             if endings and output.endswith(endings)]
+    if not asked:
+        raise UsageError("%s: its name does not say the format, expected --format %s" % (
+            output, " or ".join(FORMATS)))
+    return asked

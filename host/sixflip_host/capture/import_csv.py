@@ -1,0 +1,216 @@
+"""sixflip import: a capture file out of somebody else's CSV."""
+
+import os
+
+import numpy as np
+
+from ..errors import BadFile, UsageError
+from ..terminal import plain
+from . import capture_file, csv_mapping, units
+from .capture_header import ACCEL, GYRO, MAG, SENSORS, STANDARD_G
+from .csv_table import read_table
+
+HELP = "make a capture file from somebody else's CSV, finding the poses by itself"
+EXAMPLE = ("sixflip import session.csv.gz -o capture.csv --units si,dps --rate 102.4\n"
+           "         sixflip import log.csv -o capture.csv --columns ax,ay,az,-,gx,gy,gz "
+           "--accel-lsb 16384 --gyro-lsb 131 --time-column 4 --time-unit ms")
+
+TIME_UNITS = {"us": 1, "ms": 1000, "s": 1000000}
+LATEST_US = 1e16        # three centuries: what a time column in the wrong unit passes
+TEMPERATURE = {"mpu6050": (340, 36.53), "itg3205": (280, 82.142857), "gy85": (280, 82.142857)}
+
+
+def add_arguments(parser):
+    """The options of the verb."""
+    add = parser.add_argument
+    add("file", help="CSV, plain or gzipped")
+    add("-o", "--output", required=True, help="capture to write, .csv or .csv.gz")
+    add("--sensor", default="other", choices=SENSORS, help="the chip (default: other)")
+    add("--rate", type=float, metavar="HZ", help="sample rate, when there is no time column")
+    add("--time-column", metavar="NAME", help="column of times (or of sample numbers)")
+    add("--time-unit", choices=[*TIME_UNITS, "samples"], help="its unit; samples needs --rate")
+    add("--sort", action="store_true", help="put the rows in the order of their time")
+    add("--columns", metavar="A,B,…", help="names of the columns, - for one to leave out")
+    add("--map", action="append", metavar="ax=acc_x", help="a column by its name or number")
+    add("--delimiter", default="auto", help="one character, or blank (default: auto)")
+    add("--skip", type=int, metavar="N", help="lines before the names (default: finds them)")
+    add("--units", default="counts", metavar="A[,G]",
+        help="of accelerometer and gyro: counts, si, g, mg, dps, rad/s (default: counts)")
+    add("--accel-lsb", type=float, metavar="N", help="counts per g (else the values' own step)")
+    add("--gyro-lsb", type=float, metavar="N", help="counts per deg/s (likewise)")
+    add("--temp-units", default="counts", choices=("counts", "c"), help="of a column --map temp=")
+    add("--mag-lsb", type=float, metavar="N", help="counts per µT of columns --map mx= my= mz=")
+    add("--g", type=float, default=STANDARD_G, help="gravity there, m/s² (default 9.80665)")
+    add("--label-column", metavar="NAME", help="column that names the still sections")
+    add("--sections", metavar="JSON", help="file that names the still sections by sample numbers")
+    add("--label", action="append", metavar="up=Z+a", help="what one of their labels means")
+    add("--no-poses", action="store_true", help="leave finding the poses to whoever reads it")
+
+
+def run(args):
+    """Read, convert, find the poses, write; says what it found."""
+    capture, remarks = convert(args)
+    if capture.pose is None and not args.no_poses:
+        from ..solving.find_poses import find_poses
+        found = find_poses(capture)
+        found.label(capture)
+        remarks += found.remarks()
+    capture_file.write(args.output, capture)
+    print("%s: %d samples, %.1f s, %g counts per g" % (
+        plain(args.output), len(capture), (capture.t_us[-1] - capture.t_us[0]) / 1e6,
+        capture.meta["accel_lsb_per_g"]))
+    for remark in remarks:
+        print(plain("  " + remark))
+    return 0
+
+
+def convert(args):
+    """The Capture in a CSV, labelled where the CSV or the command line labels it; remarks."""
+    names = args.columns.split(",") if args.columns else None
+    if args.delimiter not in ("auto", "blank") and len(args.delimiter) != 1:
+        raise UsageError("--delimiter %r: expected one character, auto or blank" % args.delimiter)
+    if args.skip is not None and args.skip < 0:
+        raise UsageError("--skip %d: expected a number of lines" % args.skip)
+    table = read_table(args.file, args.delimiter, args.skip, names,
+                       csv_mapping.looks_like_header)
+    labels = csv_mapping.parse_pairs("--label", args.label)
+    columns = csv_mapping.choose_columns(table, csv_mapping.parse_pairs("--map", args.map))
+    pose, remarks = _labelled(args, table, labels)
+    t_us, order = _times(args, table)
+    capture, more = _in_counts(args, table, columns, t_us)
+    capture.pose = pose
+    if order is not None:
+        for name in ("t_us", "accel", "gyro", "temp", "mag", "pose"):
+            block = getattr(capture, name)
+            setattr(capture, name, block if block is None else block[order])
+        remarks.append("rows put in the order of their time")
+    return capture, more + remarks
+
+
+def _labelled(args, table, labels):
+    """Pose codes from a label column or a sections file, or None; remarks."""
+    if args.label_column and args.sections:
+        raise UsageError("--label-column and --sections: expected one of the two")
+    if args.label_column:
+        pose, moving = csv_mapping.poses_from_labels(table.words(args.label_column), labels)
+    elif args.sections:
+        pose, moving = csv_mapping.poses_from_sections(args.sections, len(table.rows), labels)
+    else:
+        return None, []
+    if not pose.any():
+        raise BadFile("%s: no label is a pose, expected --label THEIRS=Z+a for %s" % (
+            args.sections or args.file, " ".join(moving)))
+    return pose, ["taken as moving: " + " ".join(moving)] if moving else []
+
+
+def _times(args, table):
+    """int64 microseconds, and the order that sorts them or None."""
+    if args.rate is not None and not 0 < args.rate < 1e6:
+        raise UsageError("--rate %g: expected samples per second" % args.rate)
+    if not args.time_column:
+        if args.rate is None:
+            raise UsageError("expected --rate HZ, or --time-column with --time-unit")
+        if not len(table.rows) / args.rate < LATEST_US / 1e6:
+            raise UsageError("--rate %g: expected samples per second" % args.rate)
+        return np.rint(np.arange(len(table.rows)) * (1e6 / args.rate)).astype(np.int64), None
+    if not args.time_unit or (args.time_unit == "samples" and args.rate is None):
+        raise UsageError("--time-column needs --time-unit us, ms, s, or samples and --rate HZ")
+    scale = TIME_UNITS.get(args.time_unit) or 1e6 / args.rate
+    times = np.array(table.numbers(args.time_column))
+    order = np.argsort(times, kind="stable") if args.sort else np.arange(len(times))
+    steps = np.diff(times[order])
+    if (steps < 0).any():
+        row = int(np.argmax(steps < 0)) + 1
+        raise BadFile.at(table.path, table.lines[row], "%s runs backwards, from %g to %g" % (
+            args.time_column, times[row - 1], times[row]), "increasing times (or --sort)")
+    longest = float(times.max() - times.min()) * scale
+    if not longest < LATEST_US:
+        raise BadFile("%s: %s spans %.3g s, expected less than %.0g: is --time-unit %s right?" % (
+            table.path, args.time_column, longest / 1e6, LATEST_US / 1e6, args.time_unit))
+    t_us = np.rint((times - times.min()) * scale).astype(np.int64)
+    return t_us, order if (np.diff(order) != 1).any() else None
+
+
+def _in_counts(args, table, columns, t_us):
+    """A Capture of whole counts, and remarks on how they were recovered."""
+    accel_unit, gyro_unit = _units(args.units)
+    for name in ("accel_lsb", "gyro_lsb", "mag_lsb", "g"):
+        value = getattr(args, name)
+        if value is not None and not 0 < value < 1e9:
+            raise UsageError("--%s %g: expected a number above 0" % (
+                name.replace("_", "-"), value))
+    block = {group: np.array([table.numbers(columns[name]) for name in group]).T
+             for group in (ACCEL, GYRO, MAG) if group[0] in columns}
+    if accel_unit in ("si", "m/s2"):
+        block[ACCEL] = block[ACCEL] * (STANDARD_G / args.g)
+    remarks = []
+    accel, accel_lsb, rounding = units.to_counts(
+        args.file, "accelerometer", block[ACCEL], accel_unit, args.accel_lsb, units.ACCEL_UNITS)
+    remarks += _remarks("accelerometer", "g", accel_unit, args.accel_lsb, accel_lsb, rounding)
+    step = units.common_step(accel)
+    if step > 1:
+        remarks.append("every accelerometer count is a multiple of %d: its resolution is %.2f mg"
+                       % (step, 1e3 * step / accel_lsb))
+    meta = {"sensor": args.sensor, "rate_hz": args.rate or _rate(t_us), "g": args.g,
+            "accel_lsb_per_g": accel_lsb}
+    capture = capture_file.Capture(meta, t_us, accel)
+    if GYRO in block:
+        capture.gyro, meta["gyro_lsb_per_dps"], rounding = units.to_counts(
+            args.file, "gyro", block[GYRO], gyro_unit, args.gyro_lsb, units.GYRO_UNITS)
+        remarks += _remarks("gyro", "deg/s", gyro_unit, args.gyro_lsb,
+                            meta["gyro_lsb_per_dps"], rounding)
+    if MAG in block:
+        if args.mag_lsb is None:
+            raise UsageError("columns mx my mz need --mag-lsb, counts per µT")
+        capture.mag, meta["mag_lsb_per_ut"], _ = units.to_counts(
+            args.file, "magnetometer", block[MAG], "counts", args.mag_lsb, units.ACCEL_UNITS)
+    if "temp" in columns:
+        capture.temp = _temperature(args, meta, np.array(table.numbers(columns["temp"])))
+    meta["imported_from"] = os.path.basename(args.file)
+    return capture, remarks
+
+
+def _units(text):
+    """`si` or `g,dps` -> unit of the accelerometer, unit of the gyro."""
+    words = text.split(",")
+    accel, gyro = words if len(words) == 2 else (words[0], words[0])
+    if len(words) == 1 and accel in ("g", "mg", "m/s2"):
+        gyro = "dps"
+    if accel not in units.ACCEL_UNITS or gyro not in units.GYRO_UNITS or len(words) > 2:
+        raise UsageError("--units %s: expected one of %s, a comma, one of %s" % (
+            text, " ".join(units.ACCEL_UNITS), " ".join(units.GYRO_UNITS)))
+    return accel, gyro
+
+
+def _remarks(what, of, unit, given, lsb, rounding):
+    """What was found out about the counts behind the units."""
+    if unit == "counts":
+        return []
+    if given is None:
+        return ["%s values are whole steps of 1/%.6g %s" % (what, lsb, of)]
+    if rounding > units.ON_GRID:
+        return ["%s values are not whole counts at %g per %s: rounded by up to %.2f count" % (
+            what, lsb, of, rounding)]
+    return []
+
+
+def _rate(t_us):
+    """Samples per second from the usual interval."""
+    usual = float(np.median(np.diff(t_us))) if len(t_us) > 1 else 0
+    if not usual:
+        raise UsageError("the times do not say the rate, expected --rate HZ")
+    return round(1e6 / usual, 3)
+
+
+def _temperature(args, meta, values):
+    """int16 counts of the chip's thermometer."""
+    if args.sensor not in TEMPERATURE:
+        raise UsageError("a temperature needs --sensor %s" % " or ".join(TEMPERATURE))
+    lsb, offset = TEMPERATURE[args.sensor]
+    meta["temp_lsb_per_c"], meta["temp_offset_c"] = lsb, offset
+    counts = np.rint((values - offset) * lsb if args.temp_units == "c" else values)
+    if np.abs(counts).max() > 32767:
+        raise BadFile("%s: the temperature reaches %g, expected %s" % (
+            args.file, values[np.argmax(np.abs(counts))],
+            "°C" if args.temp_units == "c" else "16 bit counts (or --temp-units c)"))
+    return counts.astype(np.int16)

@@ -1,0 +1,129 @@
+"""sixflip diagnose: where the gap to the nominal simulator lies, what makes it, how far it
+shrinks once that is added."""
+import json
+
+from ..capture import capture_file
+from ..errors import CheckFailed, UsageError
+
+HELP = "find what the simulated sensor lacks: where the gap lies, which effect, how far it shrinks"
+EXAMPLE = "sixflip diagnose warming.csv cooling.csv --report gap"
+VERDICTS = ("no gap", "explained", "partly explained", "unexplained", "cannot tell")
+
+
+def add_arguments(parser):
+    add = parser.add_argument
+    add("captures", nargs="+", metavar="CAPTURE", help="one capture or more, a session each")
+    add("--reference", metavar="NOISE", help="a capture at rest, to know the noise by")
+    add("--sim", action="append", default=[], metavar="SIM.csv",
+        help="compare with this capture of your own simulator instead of the nominal one")
+    add("--add", action="append", default=[], metavar="EFFECT",
+        help="run the simulator again with this effect too (`found`: those found)")
+    add("--scenario", metavar="TOML", help="write the scenario with the effects added")
+    add("--report", metavar="DIR", help="write a page with pictures")
+    add("--certified-box", action="store_true", help="the box is known to be square")
+    add("--without", default="", metavar="EFFECT,…", help="leave effects out of the library")
+    add("--json", action="store_true", help="the answer as JSON")
+    add("--fail-on", default="", metavar="VERDICT,…", help="exit 1 on any of these verdicts")
+    add("--max-gap", type=float, metavar="X",
+        help="exit 1 when the gap of a sensor exceeds X times its noise floor")
+    add("--junit", metavar="FILE", help="also write the checks as JUnit XML")
+    add("--jobs", type=int, default=0, metavar="N", help="threads (default: one a core)")
+
+
+def run(args):
+    from sixflip_sim.effects.library import NAMES
+
+    from . import against_simulator, answer, diagnosis, observations, reference, words
+    wanted = verdicts(args.fail_on)
+    without = [name for name in args.without.split(",") if name]
+    for name in without:
+        if name not in NAMES:
+            raise UsageError("--without %s: expected effects out of: %s"
+                             % (name, " ".join(NAMES)))
+    if args.max_gap is not None and not args.max_gap > 0.0:
+        raise UsageError("--max-gap is %g, expected more than 0" % args.max_gap)
+    if args.jobs < 0:
+        raise UsageError("--jobs is %d, expected 1 or more" % args.jobs)
+    sessions = [observations.Session(path, capture_file.read(path)) for path in args.captures]
+    noise = reference.levels(capture_file.read(args.reference), args.reference) \
+        if args.reference else None
+    settings = diagnosis.Settings(args.certified_box, without, noise, args.jobs)
+    simulator = None
+    if args.sim:
+        simulator = against_simulator.read([capture_file.read(p) for p in args.sim], args.sim,
+                                           settings)
+        settings.simulated = simulator.known
+    found = diagnosis.Diagnosis(sessions, settings, simulator)
+    loops = closed(found, args)
+    result = answer.of(found)
+    if loops:
+        result["simulated"] = {kind: answer.of_loop(kind, loop) for kind, loop in loops.items()}
+    if args.report:
+        from . import report
+        report.write(args.report, found, result, loops)
+    if args.json:
+        print(json.dumps(result, indent=1, allow_nan=False, ensure_ascii=False))
+    else:
+        words.show(result)
+    return checked(result, wanted, args)
+
+
+def closed(found, args):
+    """{sensor: Loop} of the simulator run again; the scenario file where asked for."""
+    from sixflip_sim.effects.library import NAMES
+
+    from . import closed_loop, scenario_out
+    named = [name for name in args.add if name != "found"]
+    for name in named:
+        if name not in NAMES:
+            raise UsageError("--add %s: expected found, or an effect out of: %s"
+                             % (name, " ".join(NAMES)))
+    if not (args.add or args.scenario or args.report) or not found.gaps:
+        return {}
+    loops = {}
+    for kind, gap in found.gaps.items():
+        mine = [n for n in named if n in {o.effect for o in gap.options}]
+        for name in mine[:-1]:
+            closed_loop.force(gap, name)
+        loop = closed_loop.close(found, kind, mine[-1] if mine else None)
+        if loop:
+            loops[kind] = loop
+    if args.scenario:
+        scenario_out.write(args.scenario, found, [e for lo in loops.values() for e in lo.effects])
+    return loops
+
+
+def verdicts(text):
+    """The verdicts of --fail-on; UsageError names those there are."""
+    out = [" ".join(part.replace("_", " ").split()) for part in text.split(",") if part.strip()]
+    for verdict in out:
+        if verdict not in VERDICTS:
+            raise UsageError("--fail-on %s: expected verdicts out of: %s"
+                             % (verdict, ", ".join(VERDICTS)))
+    return out
+
+
+def failures(result, wanted, max_gap):
+    """{check: what went wrong or ""}"""
+    checks = {}
+    if wanted:
+        bad = result["verdict"] in wanted
+        checks["verdict"] = "the verdict is %s" % result["verdict"] if bad else ""
+    if max_gap is not None:
+        for kind, gap in result["gap"].items():
+            ratio = gap["before"] / max(gap["floor"], 1e-12)
+            checks["gap of the " + kind] = "" if ratio <= max_gap else \
+                "%.3g times the noise floor, expected at most %g" % (ratio, max_gap)
+    return checks
+
+
+def checked(result, wanted, args):
+    """Exit code 0, or CheckFailed with the first failure; the JUnit file where asked for."""
+    checks = failures(result, wanted, args.max_gap)
+    if args.junit:
+        from . import junit
+        junit.write(args.junit, checks or {"verdict": ""})
+    for name, failure in checks.items():
+        if failure:
+            raise CheckFailed("%s: %s" % (name, failure))
+    return 0

@@ -1,0 +1,1 @@
+"""How the sensor sits in the robot: roll, pitch and the robot's own axes."""

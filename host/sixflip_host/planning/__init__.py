@@ -1,0 +1,1 @@
+"""What a protocol can tell apart and detect, and which poses to add."""

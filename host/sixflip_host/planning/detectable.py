@@ -1,0 +1,93 @@
+"""The smallest size of each effect that a planned capture would show, at 80 % power.
+
+Generalised least squares with known variances: white noise over the samples of a row,
+placement (two small turns a placement, by hand), flicker (exponentials of 10 ... 1000 s).
+The unit of replication is the placement, never the sample (GAP finding 3).
+"""
+import math
+
+import numpy as np
+
+from sixflip_sim.effects import typical
+from sixflip_sim.effects.drift import Drift
+
+from . import alias
+
+PLACEMENT_DEG = 0.05  # scatter of placing a box by hand (METHOD section 1)
+FLIP_DEG = 0.4  # error of a half turn by hand (METHOD section 2)
+POWER_80, TESTS, FALSE_ALARM = 0.8416212335729143, 12, 0.05
+QUANTILE = 2.8652589 + POWER_80  # two-sided 5 % over 12 tests (Bonferroni), and 80 % power
+SILENT = math.inf
+MG_PER_RAD = 1000.0
+
+
+class Power:
+    """Whitened design of one sensor; smallest(name) -> {key: size} at 80 % power."""
+
+    def __init__(self, design, chip, rate_hz=100.0, placement_deg=PLACEMENT_DEG):
+        self.design = design
+        cov = covariance(design, chip, rate_hz, placement_deg)
+        self.whitener = np.linalg.inv(np.linalg.cholesky(cov))
+        self.space = alias.basis(self._white(design.space))
+
+    def _white(self, columns):
+        return self.whitener @ columns
+
+    def smallest(self, name):
+        """{key: smallest size seen with 80 % power}; SILENT where nothing of it is left."""
+        keys, columns = self.design.raw(name)
+        space = self.space
+        if name in self.design.own:  # a nuisance itself: measured beside the others
+            rest = self.design.without_own(name)
+            space = alias.basis(self._white(rest.space))
+        white = self._white(columns)
+        left = alias.without(space, white)
+        sizes = {}
+        for j, key in enumerate(keys):
+            norm, before = np.linalg.norm(left[:, j]), np.linalg.norm(white[:, j])
+            seen = before > 0 and norm > 1e-6 * before
+            sizes[key] = float(QUANTILE / norm) if seen else SILENT
+        return sizes
+
+    def smallest_flicker(self):
+        """Level of flicker on top of the white noise and the placements that would be told
+        from them: the variance's standard error from its Fisher information."""
+        kernel = flicker_kernel(self.design.rows)
+        white = self.whitener @ kernel @ self.whitener.T
+        left = white - self.space @ (self.space.T @ white)
+        left = left - (left @ self.space) @ self.space.T
+        information = 0.5 * (left ** 2).sum()
+        return math.sqrt(QUANTILE / math.sqrt(information)) if information > 0 else SILENT
+
+
+def flicker_kernel(rows):
+    """(3n, 3n) covariance of unit flicker: exponentials in time, axes and sessions apart."""
+    gap = np.abs(rows.at.t[:, None] - rows.at.t[None])
+    kernel = Drift().kernel(gap, np.exp) * (rows.session[:, None] == rows.session[None])
+    return np.kron(kernel, np.eye(3))
+
+
+def covariance(design, chip, rate_hz, placement_deg):
+    """(3n, 3n) in mg2 or (deg/s)2."""
+    rows = design.rows
+    sigma = np.array(typical.NOISE[chip][0])
+    white = sigma ** 2 / np.maximum(rows.seconds * rate_hz, 1.0)[:, None]
+    total = np.diag(white.reshape(-1)) + typical.FLICKER[chip] ** 2 * flicker_kernel(rows)
+    if design.sensor == "accel":
+        level = (math.radians(placement_deg) * MG_PER_RAD) ** 2
+        for placement in np.unique(rows.placement):
+            mask = np.repeat(rows.placement == placement, 3)
+            turns = design.tilts_of(placement)[mask]
+            total[np.ix_(mask, mask)] += level * turns @ turns.T
+    else:  # a half turn by hand: an error of the angle, seen as rate along the axis turned
+        error = np.where(rows.rest, 0.0, FLIP_DEG / rows.seconds)
+        for k in np.flatnonzero(~rows.rest):
+            along = np.array([rows.at.up[i][k] * error[k] for i in range(3)])
+            total[3 * k:3 * k + 3, 3 * k:3 * k + 3] += np.outer(along, along)
+    return total
+
+
+def middle(sizes):
+    """The median over the coefficients; SILENT when half of them are."""
+    values = sorted(sizes.values())
+    return values[(len(values) - 1) // 2] if values else SILENT

@@ -1,0 +1,58 @@
+"""A refinement as the correction record a board loads."""
+
+import numpy as np
+
+from sixflip.correction_record import Record
+
+from ..errors import CheckFailed
+
+
+def build(capture, found, kept=None):
+    """The Record of a refinement's dictionary.
+
+    kept: the record it started from; its identity, mounting and unsolved parts stay.
+    Raises CheckFailed for what the record cannot hold.
+    """
+    record = Record() if kept is None else kept
+    meta = capture.meta
+    if kept is None:
+        record.chip = meta["sensor"]
+        session, who = meta.get("session"), meta.get("who_am_i")
+        record.session = session & 0xFFFFFFFF if isinstance(session, int) else 0
+        if isinstance(who, list) and len(who) == 2 and all(isinstance(k, int) for k in who):
+            record.who_am_i = (who[0] & 0xFF, who[1] & 0xFF)
+        record.accel_lsb_per_g = float(meta["accel_lsb_per_g"])
+        record.accel_range_g = int(meta.get("accel_range_g", 0))
+        record.gyro_lsb_per_dps = float(meta.get("gyro_lsb_per_dps", 0))
+        record.gyro_range_dps = int(meta.get("gyro_range_dps", 0))
+        record.g = float(found["g"])
+        if capture.temp is not None:
+            record.temp_c = (float(np.mean(capture.temp)) / meta["temp_lsb_per_c"]
+                             + meta["temp_offset_c"])
+    elif abs(record.accel_lsb_per_g - meta["accel_lsb_per_g"]) > 1e-3 * record.accel_lsb_per_g:
+        raise CheckFailed("the record is for %g counts per g, the capture has %g"
+                          % (record.accel_lsb_per_g, meta["accel_lsb_per_g"]))
+    record.sequence += 1
+    record.accel = _accelerometer(found, kept)
+    gyro = found["gyro"]
+    if gyro is not None:
+        if gyro["per_g_dps"]:
+            raise CheckFailed("a record has no place for the gyro's g-sensitivity: "
+                              "expected --g-sensitivity off with --record")
+        record.gyro = {"P": gyro["P"], "sigma_P": gyro["sigma"]["P"], "missing": [],
+                       "verdict": found["verdict"], "reason": found["reason"]}
+        record.gyro_bias = {"bias_dps": gyro["bias_dps"], "temp_c": record.temp_c}
+    return record
+
+
+def _accelerometer(found, kept):
+    accel = found["accel"]
+    fields = {"P": accel["P"], "sigma_P": accel["sigma"]["P"],
+              "tilt_deg": None, "tilt_spread_deg": None, "noise_g": None}
+    level = "tilt solved" if len(found["flips"]) == 6 else "no flips"
+    if kept is not None:
+        fields.update({k: kept.accel[k] for k in ("tilt_deg", "tilt_spread_deg", "noise_g")})
+        level = kept.accel["level"]
+    fields.update(level=level, residual_rms_g=found["norm_off_mg_rms"] * 1e-3,
+                  verdict=found["verdict"], reason=found["reason"])
+    return fields

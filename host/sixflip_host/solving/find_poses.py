@@ -1,0 +1,204 @@
+"""Rests and poses in a recording nobody labelled, by the board's own still windows.
+
+Unlike the board, which must learn the sensor's noise from what comes first, the whole recording
+is there: the noise is that of its quietest second.
+"""
+
+import numpy as np
+
+from sixflip.faces import AXIS, FACES, LEANING, SIGN, nearest_face, pose_name
+from sixflip.noise_floor import CAP, ENTER, LEAVE, WINDOWS, NoiseFloor
+from sixflip.pose_label import CROOKED_DEG, HALF_TURN_DEG, SAME_DEG
+from sixflip.still_window import StillWindow, window_length
+
+from ..progress import steps
+from .attitude import heading_change
+
+POSE_SAMPLES = 400      # sets the window's length as on the board, a quarter of a second
+SHORTEST_S = 1.0        # a rest shorter than this is a pause in a move
+# Held by hand the box never is as still as its sensor's noise; such rests are taken only when
+# the others leave a face out. A turn by 90 degrees in 3 s moves gravity by 130 mg a window.
+HAND = (30.0, 4.0)      # mg, deg/s: standard deviations within a window
+HAND_WANDER_MG = 50.0   # from one window to the next
+HAND_S = 2.0
+RAIL = 32767
+HELD_BY_HAND = "held_by_hand"   # key of a capture's header: names of poses that were not at rest
+
+
+class FoundPoses:
+    """pose: int16 (n,) codes; rests: list of Rest; noise: NoiseFloor of the quietest part."""
+
+    def __init__(self, pose, rests, noise):
+        self.pose = pose
+        self.rests = rests
+        self.noise = noise
+
+    def label(self, capture):
+        """Write the poses into the capture, and into its header which were held by hand."""
+        capture.pose = self.pose
+        by_hand = [pose_name(rest.code) for rest in self.rests if rest.by_hand]
+        if by_hand:
+            capture.meta[HELD_BY_HAND] = by_hand
+
+    def remarks(self):
+        """Lines for a person: what was found and what each rest was taken for."""
+        if self.noise is None:
+            return ["no rest found: nowhere a second without motion"]
+        lines = ["%d rests found; noise %.2f mg" % (
+            len(self.rests), np.mean(self.noise.sd[:3]) / self.noise.lsb[0])]
+        for rest in self.rests:
+            lines.append("%-4s samples %d to %d, %.1f deg off %s%s" % (
+                pose_name(rest.code), rest.first, rest.end - 1, rest.off_deg, FACES[rest.face],
+                "".join("; " + why for why in (rest.why, rest.by_hand and "held by hand") if why)))
+        return lines
+
+
+class Rest:
+    """Samples first..end-1 without motion; mean accelerometer counts; what it was taken for."""
+
+    def __init__(self, capture, first, end, by_hand=False):
+        self.first = first
+        self.end = end
+        self.mean = capture.accel[first:end].mean(axis=0).tolist()
+        self.by_hand = by_hand
+        self.face, self.off_deg = nearest_face(*self.mean)
+        self.code = 0
+        self.why = ""
+
+
+def find_poses(capture):
+    """Label every sample of a Capture; returns FoundPoses. Nothing is changed in the capture."""
+    windows = _windows(capture)
+    noise = _quietest(capture, windows)
+    rests = _rests(capture, windows, noise) if noise else []
+    _name(capture, rests, noise)
+    pose = np.zeros(len(capture), np.int16)
+    for rest in rests:
+        pose[rest.first:rest.end] = rest.code
+    return FoundPoses(pose, rests, noise)
+
+
+def _windows(capture):
+    """The recording as a list of full windows, each a StillWindow of its own."""
+    rate = capture.meta["rate_hz"]
+    length = window_length(rate, POSE_SAMPLES)
+    gyro = capture.gyro if capture.gyro is not None else np.zeros((len(capture), 3), int)
+    samples = np.column_stack([capture.accel, gyro, np.zeros(len(capture), int)]).tolist()
+    intervals = np.diff(capture.t_us, prepend=capture.t_us[:1]).tolist()
+    gyro_rail = RAIL if capture.gyro is not None else 0
+    out = []
+    for start in steps(range(0, len(samples) - length + 1, length), "looking for rests"):
+        window = StillWindow(length, _rail(capture), gyro_rail, int(1e6 / rate + 0.5))
+        for index in range(start, start + length):
+            window.add(intervals[index], samples[index])
+        out.append(window)
+    return out
+
+
+def _rail(capture):
+    full_scale = capture.meta.get("accel_range_g", np.inf) * capture.meta["accel_lsb_per_g"]
+    return int(min(RAIL, full_scale - 1))
+
+
+def _quietest(capture, windows):
+    """A NoiseFloor that knows the quietest second, or None when there is none."""
+    lsb = (capture.meta["accel_lsb_per_g"],
+           capture.meta["gyro_lsb_per_dps"] if capture.gyro is not None else 0)
+    axes = 6 if lsb[1] else 3
+    best = None
+    for index in range(len(windows) - WINDOWS + 1):
+        run = windows[index:index + WINDOWS]
+        if any(one.accel_saturated or one.gyro_saturated or one.stale or one.jumped
+               for one in run):
+            continue
+        spread = np.array([[max(one.variance(axis), one.step(axis // 3) ** 2 / 12)
+                            for axis in range(axes)] for one in run])
+        means = np.array([[one.mean(axis) for axis in range(axes)] for one in run])
+        scale = np.repeat([lsb[0] / 1e3, lsb[1]], 3)[:axes]
+        wander = means.var(axis=0, ddof=1)
+        total = ((spread.mean(axis=0) + wander) / scale ** 2 / np.repeat(CAP, 3)[:axes] ** 2)
+        if (total < 1).all() and (best is None or total.sum() < best[0]):
+            best = total.sum(), np.sqrt(spread.mean(axis=0)), means.mean(axis=0)
+    if best is None:
+        return None
+    noise = NoiseFloor(*lsb)
+    noise.known = True
+    for axis in range(axes):
+        noise.sd[axis] = float(best[1][axis])
+    noise.bias = best[2][3:].tolist() or [0.0] * 3
+    return noise
+
+
+def _rests(capture, windows, noise):
+    """Stretches without motion, as Rests in time order."""
+    still = []
+    for window in windows:
+        noise.look(window)
+        still.append(not noise.judge(window, LEAVE if still and still[-1] else ENTER))
+    rests = _runs(capture, windows, still, SHORTEST_S)
+    faces = {rest.face for rest in rests if rest.off_deg <= CROOKED_DEG}
+    if len(faces) < len(FACES):
+        taken = {index for rest in rests for index in range(rest.first, rest.end)}
+        by_hand = _runs(capture, windows, _steadied(capture, windows), HAND_S, by_hand=True)
+        rests += [rest for rest in by_hand if taken.isdisjoint(range(rest.first, rest.end))]
+    return sorted(rests, key=lambda rest: rest.first)
+
+
+def _runs(capture, windows, still, shortest_s, by_hand=False):
+    """A Rest for every unbroken run of still windows that lasts long enough."""
+    length = windows[0].length
+    shortest = max(2, int(shortest_s * capture.meta["rate_hz"] / length))
+    edges = np.flatnonzero(np.diff([0, *still, 0]))
+    return [Rest(capture, start * length, end * length, by_hand)
+            for start, end in zip(edges[::2].tolist(), edges[1::2].tolist())
+            if end - start >= shortest]
+
+
+def _steadied(capture, windows):
+    """For every window: does it look like a box steadied by hand?"""
+    axes = 6 if capture.gyro is not None else 3
+    scale = np.repeat([capture.meta["accel_lsb_per_g"] / 1e3,
+                       capture.meta.get("gyro_lsb_per_dps", 1)], 3)[:axes]
+    spread = np.array([[one.variance(axis) ** 0.5 for axis in range(axes)] for one in windows])
+    means = np.array([[one.mean(axis) for axis in range(3)] for one in windows])
+    wander = np.abs(np.diff(means, axis=0, prepend=means[:1])).max(axis=1) / scale[0]
+    unusual = np.array([bool(one.accel_saturated or one.gyro_saturated or one.stale or one.jumped)
+                        for one in windows])
+    return ((spread / scale <= np.repeat(HAND, 3)[:axes]).all(axis=1)
+            & (wander <= HAND_WANDER_MG) & ~unusual)
+
+
+def _name(capture, rests, noise):
+    """Give every rest its pose: face from gravity, a or b from the gyro, leaning otherwise."""
+    leaning = 0
+    for index, rest in enumerate(rests):
+        if rest.off_deg <= CROOKED_DEG:
+            rest.code, rest.why = _letter(capture, rests[:index], rest, noise)
+        else:
+            rest.why = "leaning"
+        if not rest.code:
+            leaning += 1
+            rest.code = LEANING + leaning
+
+
+def _letter(capture, before, rest, noise):
+    """a or b of a rest on a face, and why; code 0 when the gyro cannot say."""
+    a = 1 + 2 * rest.face
+    seen = [one for one in before if one.code in (a, a + 1)]
+    if not seen:
+        return a, ""
+    last = seen[-1]
+    if capture.gyro is None:
+        if before[-1] is last or len({one.code for one in seen}) == 1:
+            return 2 * a + 1 - last.code, "moved since %s, no gyro to tell" % pose_name(last.code)
+        return 0, "on its face again, no gyro to tell a from b"
+    turned = heading_change(capture, before[before.index(last):] + [rest], noise.bias,
+                            AXIS[rest.face], SIGN[rest.face])
+    if turned is None:
+        return 0, "on its face again, but the gyro was saturated or samples are missing"
+    why = "turned by %.0f deg since %s" % (turned, pose_name(last.code))
+    if abs(turned) <= SAME_DEG:
+        return last.code, why
+    if abs(turned) >= HALF_TURN_DEG:
+        return 2 * a + 1 - last.code, why
+    return 0, why + ", neither a half turn nor none"

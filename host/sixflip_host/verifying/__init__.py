@@ -1,0 +1,1 @@
+"""What a board says it computed, held against the same capture solved here."""

@@ -1,0 +1,108 @@
+"""sixflip verify: is the board's arithmetic right? Everything again from the raw capture."""
+
+import json
+
+from ..errors import UsageError
+from ..solving import solution
+from ..solving.solve import finite
+from ..terminal import console, plain, styled, table
+from . import verify_checks, verify_files, verify_flips, verify_gyro
+
+HELP = "recompute everything from the raw capture and compare with the board's record"
+EXAMPLE = "sixflip verify pulled/e6614c311b4c5a2f"
+
+
+def add_arguments(parser):
+    """The options of the verb."""
+    parser.add_argument("files", nargs="+", metavar="DIR | CAPTURE RECORD",
+                        help="the folder `pull` made, or a capture and a record")
+    parser.add_argument("--json", action="store_true", help="every comparison as JSON")
+
+
+def run(args):
+    """Compare; 0 when everything agrees, 1 with a table of what differs."""
+    if len(args.files) > 2:
+        raise UsageError("%d files, expected DIR or CAPTURE RECORD" % len(args.files))
+    capture_path, capture, record_path, record = verify_files.find(args.files)
+    checks, remarks = verify(capture, record, verify_files.record_before(record_path, record))
+    failed = [check for check in checks if not check.ok]
+    if args.json:
+        print(json.dumps(finite({
+            "format": 1, "ok": not failed, "capture": str(capture_path),
+            "record": str(record_path), "float_bits": record.float_bits,
+            "sums_only": capture.sums_only, "remarks": remarks,
+            "checks": [vars(check) for check in checks]})))
+        return 1 if failed else 0
+    _words(capture_path, record_path, record, checks, failed, remarks)
+    return 1 if failed else 0
+
+
+def verify(capture, record, before=None):
+    """Every Check of a record against a capture, and remarks on what could not be checked.
+
+    before  the record before, None where there is none
+    """
+    remarks = []
+    checks = verify_checks.belong_together(capture, record)
+    if capture.truncated:
+        remarks.append("the capture is not whole: " + capture.truncated)
+        checks.append(verify_checks.Check("capture", capture.truncated, "", False, "whole"))
+    if capture.sums_only:
+        remarks.append("the board kept only the sums: this vouches for the solve alone, "
+                       "not for the sums it started from")
+    elif capture.board_placements is None:
+        remarks.append("a text capture has no sums of the board: the host's own are used")
+    else:
+        checks += verify_checks.pose_blocks(capture)
+    placements = capture.board_placements or capture.placements()
+    if record.accel is None:
+        return checks + [verify_checks.Check("accelerometer", "not in the record", "", False)], \
+            remarks
+    checks += verify_checks.accelerometer(record, placements, record.accel_lsb_per_g,
+                                          verify_flips.angles(record))
+    found, said = verify_flips.checks(capture, record, placements, before)
+    checks += found
+    remarks += said
+    old_gyro = before and before.gyro["P"]
+    checks.append(_verdict(capture, record, placements, old_gyro))
+    if record.gyro is not None:
+        found, said = verify_gyro.checks(capture, record, placements, old_gyro)
+        checks += found
+        remarks += said
+    if record.gyro_bias is not None and placements and record.gyro_lsb_per_dps:
+        checks += verify_checks.gyro_bias(record, placements)
+    checks += verify_checks.temperature(record, capture, placements)
+    return checks, remarks
+
+
+def _verdict(capture, record, placements, old_gyro):
+    """The verdict the shared judge gives now that the samples are at hand."""
+    again = solution.judge(capture, placements, record.g, record.accel["level"],
+                           angles=verify_flips.angles(record))
+    verify_flips.doubts(capture, record, placements, again, old_gyro)
+    check = verify_checks.same("verdict", record.accel["verdict"], again.verdict)
+    if capture.sums_only and (check.board, check.host) == ("doubtful", "good") \
+            and "flip" in record.accel["reason"]:
+        check.ok = True     # what the gyro saw of the flips was not kept
+    if not check.ok:
+        check.host = "%s: %s" % (again.verdict, again.reason)
+    return check
+
+
+def _words(capture_path, record_path, record, checks, failed, remarks):
+    """What was compared, what differs, and the answer."""
+    out = console()
+    out.print(plain("%s against %s (%d comparisons, board with %d-bit floats)" % (
+        record_path, capture_path, len(checks), record.float_bits)))
+    for remark in remarks:
+        out.print(plain("  " + remark))
+    if not failed:
+        out.print(styled("the board's arithmetic is right", "bold green"))
+        return
+    rows = [[check.name, _cell(check.board), _cell(check.host), check.limit] for check in failed]
+    out.print(table("what differs", ["", "board", "host", "limit"], rows))
+    out.print(styled("%d of %d comparisons differ" % (len(failed), len(checks)), "bold red"))
+
+
+def _cell(value):
+    return "%.12g" % value if isinstance(value, float) else str(value)

@@ -1,0 +1,59 @@
+"""The gyro section of a record against what the raw samples of flips and rests say."""
+
+import numpy as np
+
+from ..errors import CheckFailed
+from ..simulating import pose_runs
+from ..solving import reference_gyro, solution
+from .verify_checks import Check, close, same
+
+# A board with 32-bit floats: 1e-5 of the matrix is 0.002 degrees of half a turn, a 300th of
+# what a good hand leaves; of the last row it is 0.0006 deg/s.
+SINGLE = 1e-5
+DOUBLE_REL, DOUBLE_ABS = 1e-9, 1e-12
+
+
+def checks(capture, record, placements, old=None):
+    """(every Check of record.gyro, remarks).
+
+    old  P of the record before this one, kept for axes that were not flipped; None: nominal
+    """
+    section = record.gyro
+    if capture.sums_only:
+        return [], ["no samples of the moves were kept: the gyro's section is not checked"]
+    if capture.gyro is None:
+        return [Check("gyro", "in the record", "not in the capture", False)], []
+    accel_P = record.accel and record.accel["P"]
+    try:
+        host = reference_gyro.solve(capture, placements, accel_P, old)
+    except (CheckFailed, np.linalg.LinAlgError, ValueError, IndexError) as error:
+        return [Check("gyro", section["verdict"], str(error), False)], []
+    double = record.float_bits == 64
+    relative, absolute = (DOUBLE_REL, DOUBLE_ABS) if double else (0.0, SINGLE)
+    P = np.array(section["P"])
+    out = [same("gyro, axes without a flip", list(section["missing"]), host.missing)]
+    for i, j in np.ndindex(4, 3):
+        out.append(close("gyro P[%d][%d]" % (i, j), P[i, j], host.P[i, j], relative, absolute))
+    for i, j in np.ndindex(4, 3):
+        out.append(close("gyro sigma P[%d][%d]" % (i, j), section["sigma_P"][i][j],
+                         host.sigma[i, j], 1e-4 if double else 0.05, 1e-7))
+    out.append(_verdict(capture, section, placements, accel_P, old))
+    return out, _remarks(section, old)
+
+
+def _remarks(section, old):
+    if not section["missing"]:
+        return []
+    return ["the gyro's %s was not flipped: %s is expected there" % (
+        " and ".join("xyz"[k] for k in section["missing"]),
+        "the matrix of the record before" if old else "the data sheet's scale")]
+
+
+def _verdict(capture, section, placements, accel_P, old):
+    """The verdict the shared judge gives from the host's own sums of the moves."""
+    moves = pose_runs.moves(capture, placements)
+    for move in moves:
+        move.drops += move.first <= pose_runs.resumed_at(capture)
+    again, why = solution.solve_gyro(capture, placements, moves, accel_P, old)
+    return same("gyro verdict", section["verdict"],
+                again.verdict if again else "none: " + why)

@@ -1,0 +1,1 @@
+"""A board without hardware on MicroPython's unix port, and the demo that runs on it."""

@@ -1,0 +1,208 @@
+"""sixflip demo: a board that calibrates itself, from provisioning to the host's check.
+
+The same commands as with a real board; only the board is virtual.
+"""
+
+import contextlib
+import json
+import shutil
+import tempfile
+from pathlib import Path
+
+from .. import cli
+from ..board import calibrate, provision, pull
+from ..board.board_events import events, wait_for
+from ..board.board_files import shared_dir
+from ..board.console import GUIDED_ORDER, Console
+from ..errors import CheckFailed, SixflipError
+from ..terminal import plain
+from . import demo_truth, micropython_fetch
+
+HELP = "watch a virtual board calibrate itself, and check its arithmetic"
+EXAMPLE = "sixflip demo --keep demo-output"
+TILT_DEG = 2.0
+LIMIT_MG = 3.0  # a hand that places the box to 0.05 deg leaves about 1 mg across gravity
+AFTER = ("Z+a", "Z-a", "X+a", "X-a", "Y+a", "Y-a")
+
+
+def add_arguments(parser):
+    parser.add_argument("--keep", metavar="DIR", type=Path,
+                        help="keep flash image, capture, records, events and plot there")
+    parser.add_argument("--board", choices=("virtual", "local"), default="virtual",
+                        help="virtual: MicroPython (the default); local: the firmware under "
+                             "CPython")
+    parser.add_argument("--sensor", choices=("mpu6050", "gy85"), default="mpu6050")
+    parser.add_argument("--seed", type=int, default=1, help="of sensor errors and noise")
+
+
+def step(text):
+    print("\n== " + text, flush=True)
+
+
+def make_world(spec):
+    """The same world as on the board, to know the truth."""
+    from sixflip_sim import worlds
+    return worlds.make(spec)
+
+
+def first_spec(args):
+    """The sensor, and a person with a table that is not level."""
+    return {"sensor": args.sensor, "seed": args.seed, "tilt_deg": TILT_DEG,
+            "order": GUIDED_ORDER,
+            "flip_error_deg": 0.4, "placement_scatter_deg": 0.05}
+
+
+def second_spec(args, first):
+    """The same sensor on a level table after the power cycle, other noise, every face once."""
+    truth = make_world(first).truth
+    mg = [b / demo_truth.G * 1000 for b in truth.accel_bias]
+    dps = [b * 57.29577951308232 for b in truth.gyro_bias]
+    return {"sensor": args.sensor, "seed": args.seed + 1000, "tilt_deg": 0.0,
+            "accel_matrix": truth.accel_matrix, "accel_bias_mg": mg,
+            "gyro_matrix": truth.gyro_matrix, "gyro_bias_dps": dps,
+            "order": list(AFTER), "first_rest_s": 12.0}
+
+
+@contextlib.contextmanager
+def virtual_bench(folder, spec, micropython):
+    """(link, power_cycle(world)) of a virtual board."""
+    from ..board.board_link import MpremoteLink
+    from .virtual_board import VirtualBoard
+    with VirtualBoard(spec, folder / "flash.img", micropython=micropython) as board:
+        print("virtual board at %s (%s)" % (board.port, micropython))
+        with MpremoteLink(board.port) as link:
+            yield link, board.power_cycle
+
+
+@contextlib.contextmanager
+def local_bench(folder, spec):
+    """(link, power_cycle(world)) of the firmware under CPython."""
+    from ..board.local_link import LocalLink
+    with LocalLink(folder / "flash", spec) as link:
+        yield link, link.power_cycle
+
+
+def bench(args, folder, spec):
+    """The bench asked for, or the one that can be had."""
+    if args.board == "virtual":
+        try:
+            return virtual_bench(folder, spec, micropython_fetch.fetch())
+        except SixflipError as error:
+            print(plain("no MicroPython to be had: %s" % error))
+            print("running the same firmware under CPython instead")
+    return local_bench(folder, spec)
+
+
+class Log:
+    """Shows events and keeps all of them in a file."""
+
+    def __init__(self, path):
+        self.file = open(path, "w", encoding="utf-8")  # noqa: SIM115  closed by close()
+        self.console = Console()
+
+    def __call__(self, event):
+        json.dump(event, self.file)
+        self.file.write("\n")
+        self.console.show(event)
+
+    def quiet(self, event):
+        json.dump(event, self.file)
+        self.file.write("\n")
+
+    def close(self):
+        self.console.clear()
+        self.file.close()
+
+
+def stream(link, power_cycle, spec, raw, log):
+    """Vectors (m/s2, or counts when raw) streamed after a power cycle, over all rests."""
+    power_cycle(spec)
+    # The line waits in the board's input until the firmware looks for one.
+    link.send(json.dumps({"cmd": "stream", "raw": raw, "hz": demo_truth.STREAM_HZ}))
+    wait_for(link, ("hello",))  # what is still in the cable is from before
+    started = wait_for(link, ("ready", "calibrating"), seen=log.quiet if raw else log)
+    if started["event"] != "ready" or not started.get("corrected"):
+        raise CheckFailed("the board did not come up corrected after the power cycle")
+    end_us = make_world(spec).end_us
+    key = "raw" if raw else "a"
+    vectors = []
+    for event in events(link, 20, 120):
+        if event["event"] == "sample" and event.get(key):
+            vectors.append(event[key][:3])
+            if event.get("t_us", 0) > end_us:  # the last pose lasts for ever
+                return vectors
+    raise CheckFailed("the board stopped streaming")
+
+
+def run_steps(args, folder, log):
+    spec = first_spec(args)
+    after = second_spec(args, spec)
+    with bench(args, folder, spec) as (link, power_cycle):
+        step("provision: the firmware onto the board")
+        provision.copy(link, {"sensor": args.sensor})
+        step("power-up: no correction in flash, so it calibrates itself (table tilted %.0f deg)"
+             % TILT_DEG)
+        link.reset()
+        solved = calibrate.follow(link, log)
+        if solved.get("verdict") == "refused":
+            raise CheckFailed("the board refused its calibration: %s" % solved.get("reason"))
+        step("power cycle: it comes up corrected")
+        corrected = stream(link, power_cycle, after, False, log)
+        counts = stream(link, power_cycle, after, True, log)
+        step("pull: capture and record from the board")
+        pulled = pull.fetch(link, folder)
+        pull.convert(pulled)
+    step("verify: the host recomputes everything from the raw capture")
+    if cli.run(["verify", str(pulled)]):
+        raise CheckFailed("the host does not confirm the board's arithmetic")
+    step("against the simulated truth, after the power cycle")
+    return judge(pulled, after, counts, corrected, folder)
+
+
+def judge(pulled, spec, counts, corrected, folder):
+    """Print raw against corrected for each face; 1 when one is beyond the limit."""
+    from ..capture import capture_binary
+    meta = capture_binary.decode((pulled / "capture.bin").read_bytes()).meta
+    unit = demo_truth.G / meta["accel_lsb_per_g"]
+    raw = [[unit * c for c in sample] for sample in counts]
+    true = demo_truth.truth(make_world(spec))
+    rows = demo_truth.compare(true, demo_truth.rests(raw), demo_truth.rests(corrected))
+    if rows is None:
+        raise CheckFailed("the stream does not show the %d rests of the session" % len(true))
+    print("\n".join(demo_truth.table(rows)))
+    before, now = demo_truth.worst(rows)
+    plot(folder / "raw_corrected.png", rows)
+    print("worst vector: %.2f mg raw, %.2f mg corrected (limit %.1f mg)" % (before, now, LIMIT_MG))
+    return 0 if now <= LIMIT_MG else 1
+
+
+def plot(path, rows):
+    """The picture of raw against corrected, where matplotlib is installed."""
+    try:
+        from .demo_plot import draw
+    except ImportError:
+        print("no plot: matplotlib is not installed")
+        return
+    draw(path, rows)
+    print(plain(path))
+
+
+def run(args):
+    import sys
+    if str(shared_dir()) not in sys.path:
+        sys.path.append(str(shared_dir()))
+    with contextlib.ExitStack() as stack:
+        if args.keep:
+            folder = args.keep
+            folder.mkdir(parents=True, exist_ok=True)
+            # of an earlier demo: this one begins with an erased flash
+            (folder / "flash.img").unlink(missing_ok=True)
+            shutil.rmtree(folder / "flash", ignore_errors=True)
+        else:
+            folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="sixflip-")))
+        log = Log(folder / "events.jsonl")
+        stack.callback(log.close)
+        code = run_steps(args, folder, log)
+    if args.keep:
+        print(plain("everything is in %s" % folder))
+    return code

@@ -1,0 +1,159 @@
+"""A MicroPython for the virtual board: found on PATH, or Debian's package unpacked without root.
+
+`make micropython` calls this file. Nothing is installed: the package and the libraries it
+needs are unpacked into the cache, and a wrapper starts it with the loader that came along.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from ..errors import NoBoard, SixflipError
+
+OLDEST = (1, 21)
+SUITE = "trixie"  # the oldest Debian whose MicroPython (1.25) has the vfs module
+PACKAGES = ("micropython", "libc6", "libffi8", "libmbedcrypto16", "libmbedtls21", "libmbedx509-7")
+KEYRING = "/usr/share/keyrings/debian-archive-keyring.gpg"
+WRAPPER = """#!/bin/sh
+here=$(dirname "$(readlink -f "$0")")
+lib=$(echo "$here"/usr/lib/*-linux-*)
+loader=$(echo "$lib"/ld-linux*.so.*)
+exec "$loader" --library-path "$lib" "$here/usr/bin/micropython" "$@"
+"""
+MISSING = ("no MicroPython %d.%d or newer on this machine: install it (Debian 13: apt install "
+           "micropython) or run `make micropython`" % OLDEST)
+
+
+def cache_dir():
+    """SIXFLIP_CACHE, or .cache of the checkout this runs from, or the user's cache."""
+    if os.environ.get("SIXFLIP_CACHE"):
+        return Path(os.environ["SIXFLIP_CACHE"])
+    checkout = Path(__file__).resolve().parents[3]
+    if (checkout / "Makefile").exists() and (checkout / "shared" / "sixflip").is_dir():
+        return checkout / ".cache"
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "sixflip"
+
+
+def version(executable):
+    """(major, minor) of a MicroPython executable, or None when it is not one."""
+    try:
+        answer = subprocess.run(
+            [str(executable), "-c", "import sys; print(sys.implementation)"],
+            capture_output=True, text=True, timeout=20, stdin=subprocess.DEVNULL)
+    except (OSError, subprocess.TimeoutExpired):
+        return None
+    found = re.search(r"name='micropython', version=\((\d+), (\d+)", answer.stdout)
+    return tuple(map(int, found.groups())) if found else None
+
+
+def find():
+    """Path of a usable MicroPython, or None. A wrong SIXFLIP_MICROPYTHON is an error."""
+    named = os.environ.get("SIXFLIP_MICROPYTHON")
+    if named:
+        found = version(named)
+        if found is None or found < OLDEST:
+            raise NoBoard("SIXFLIP_MICROPYTHON=%s is not a MicroPython %d.%d or newer"
+                          % ((named,) + OLDEST))
+        return named
+    for candidate in (shutil.which("micropython"), cache_dir() / "micropython" / "micropython"):
+        if candidate and os.path.exists(candidate) and (version(candidate) or (0, 0)) >= OLDEST:
+            return str(candidate)
+    return None
+
+
+def debian_mirror(apt=Path("/etc/apt")):
+    """URI of the first Debian archive in this machine's own apt sources."""
+    places = [apt / "sources.list"] + sorted((apt / "sources.list.d").glob("*"))
+    uris = []
+    for place in places:
+        if place.suffix not in (".list", ".sources") or not place.is_file():
+            continue
+        text = "\n".join(line for line in place.read_text(errors="replace").splitlines()
+                         if not line.lstrip().startswith("#"))
+        uris += re.findall(r"^\s*deb\s+(?:\[.*?\]\s*)?(\S+)", text, re.M)
+        for line in re.findall(r"^URIs:\s*(.*)$", text, re.M):
+            uris += line.split()
+    uris = [uri.rstrip("/") for uri in uris if uri.rstrip("/").endswith("/debian")]
+    if not uris:
+        raise SixflipError("no Debian mirror in this machine's apt sources: install MicroPython "
+                           "%d.%d or newer by hand and name it in SIXFLIP_MICROPYTHON" % OLDEST)
+    return uris[0]
+
+
+def apt_get(work, *words):
+    """Run apt-get with lists and cache of its own below work; returns nothing or raises."""
+    options = {
+        "Dir::Etc::sourcelist": work / "sources.list", "Dir::Etc::sourceparts": "/dev/null",
+        "Dir::State::lists": work / "lists", "Dir::State::status": "/dev/null",
+        "Dir::Cache": work / "archives", "APT::Get::List-Cleanup": "0",
+        "Acquire::Languages": "none", "Acquire::Retries": "2", "Acquire::http::Timeout": "30",
+    }
+    if os.geteuid() == 0:
+        options["APT::Sandbox::User"] = "root"
+    command = ["apt-get", "-q"]
+    for key, value in options.items():
+        command += ["-o", "%s=%s" % (key, value)]
+    answer = subprocess.run(command + list(words), cwd=work, stdin=subprocess.DEVNULL,
+                            capture_output=True, text=True, timeout=600)
+    if answer.returncode:
+        last = (answer.stderr.strip() or answer.stdout.strip() or "no word").splitlines()[-1]
+        raise SixflipError("apt-get %s failed: %s" % (words[0], last))
+
+
+def unpack(work, target):
+    """Download and unpack the packages below work, then move them to target in one step."""
+    for name in ("lists/partial", "archives/partial", "root"):
+        (work / name).mkdir(parents=True)
+    signed = " [signed-by=%s]" % KEYRING if os.path.exists(KEYRING) else ""
+    (work / "sources.list").write_text("deb%s %s %s main\n" % (signed, debian_mirror(), SUITE))
+    apt_get(work, "update")
+    apt_get(work, "download", *PACKAGES)
+    for package in sorted(work.glob("*.deb")):
+        subprocess.run(["dpkg", "-x", str(package), str(work / "root")], check=True, timeout=120)
+    wrapper = work / "root" / "micropython"
+    wrapper.write_text(WRAPPER)
+    wrapper.chmod(0o755)
+    if (version(wrapper) or (0, 0)) < OLDEST:
+        raise SixflipError("the unpacked MicroPython does not start on this machine")
+    if target.exists():
+        shutil.rmtree(target)
+    os.rename(work / "root", target)
+
+
+def fetch(say=print):
+    """Path of a MicroPython, fetched when none is found; SixflipError when it cannot be had."""
+    found = find()
+    if found:
+        return found
+    if not (shutil.which("apt-get") and shutil.which("dpkg")):
+        raise SixflipError("there is no apt-get and dpkg here to unpack one with; "
+                           "put MicroPython %d.%d or newer on PATH" % OLDEST)
+    cache = cache_dir()
+    cache.mkdir(parents=True, exist_ok=True)
+    say("fetching MicroPython (Debian %s) into %s" % (SUITE, cache / "micropython"))
+    work = Path(tempfile.mkdtemp(prefix="micropython-", dir=cache))
+    try:
+        unpack(work, cache / "micropython")
+    except subprocess.SubprocessError as error:
+        raise SixflipError("unpacking MicroPython failed: %s" % error) from None
+    finally:
+        shutil.rmtree(work, ignore_errors=True)
+    return str(cache / "micropython" / "micropython")
+
+
+def main():
+    try:
+        path = fetch()
+    except SixflipError as error:
+        print("sixflip: %s" % error, file=sys.stderr)
+        return error.exit_code
+    print("MicroPython %d.%d: %s" % (version(path) + (path,)))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
