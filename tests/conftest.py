@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy; the runs are side by side
+os.environ["SIXFLIP_HISTORY"] = ""      # the history of whoever runs the tests is not theirs
 
 
 def missing(what):
