@@ -144,14 +144,21 @@ class Unit:
         self._whiten()
 
     def _whiten(self):
-        grams, dets, self.factors = [], [], []
-        for a, b in self.grid:
-            factor = np.linalg.cholesky(self.covariance(a, b))
-            whitened = solve_triangular(factor, self.columns, lower=True)
-            grams.append(whitened.T @ whitened)
-            dets.append(np.log(np.diag(factor)).sum())
-            self.factors.append(factor)
-        self.gram, self.logdet = np.array(grams), np.array(dets)
+        """One factorisation a flicker level. The placement level only rescales the directions
+        in which placements move, so it enters by the eigenvalues of those [Woodbury; Golub &
+        Van Loan, Matrix Computations, section 2.1.4]."""
+        base, lateral, kernel = self._parts
+        size, number = self.columns.shape[1], len(self.grid)
+        self.gram, self.logdet = np.empty((number, size, size)), np.empty(number)
+        self.flickers = []
+        for level in dict.fromkeys(b for _, b in self.grid):
+            one = Flicker(base + level ** 2 * kernel, self.columns, lateral)
+            one.at = [(i, a) for i, (a, b) in enumerate(self.grid) if b == level]
+            for index, placement in one.at:
+                share = one.share(placement)
+                self.gram[index] = one.gram - one.cross.T @ (share[:, None] * one.cross)
+                self.logdet[index] = one.logdet + 0.5 * np.log1p(placement ** 2 * one.sizes).sum()
+            self.flickers.append(one)
 
     def covariance(self, placement, level):
         """(m, m) of the contrasts for a placement and a flicker level."""
@@ -161,26 +168,70 @@ class Unit:
     def statistics(self, z=None):
         """(quadratic (G, R), projections (G, K, R)) of contrasts z (m, R), default the data's."""
         z = self.z[:, None] if z is None else z
-        quadratic, projections = [], []
-        for factor in self.factors:
-            half = solve_triangular(factor, z, lower=True)
-            quadratic.append((half ** 2).sum(axis=0))
-            projections.append(self.columns.T @ solve_triangular(factor, half, lower=True,
-                                                                 trans="T"))
-        return np.array(quadratic), np.array(projections)
+        quadratic = np.empty((len(self.grid), z.shape[1]))
+        projections = np.empty((len(self.grid), self.columns.shape[1], z.shape[1]))
+        for one in self.flickers:
+            half = solve_triangular(one.factor, z, lower=True)
+            moved = one.lateral.T @ half
+            squares, inner = (half ** 2).sum(axis=0), one.columns.T @ half
+            for index, placement in one.at:
+                share = one.share(placement)
+                quadratic[index] = squares - share @ moved ** 2
+                projections[index] = inner - one.cross.T @ (share[:, None] * moved)
+        return quadratic, projections
 
     def draw(self, index, generator, number):
         """Contrasts (m, R) without any effect, with the levels of one point of the grid."""
-        return self.factors[index] @ generator.standard_normal((self.freedom, number))
+        factor = np.linalg.cholesky(self.covariance(*self.grid[index]))
+        return factor @ generator.standard_normal((self.freedom, number))
 
 
-def accel_unit(session, nominal, designs, certified=False, levels=None):
-    """Unit of the accelerometer."""
+class Flicker:
+    """White noise and one level of flicker, factored: factor (m, m); columns (m, K) and lateral
+    (m, p) whitened, lateral turned to its principal directions, sizes (p,) their squares;
+    cross (p, K), gram (K, K); logdet: half of the determinant's logarithm."""
+
+    def __init__(self, covariance, columns, lateral):
+        self.factor = np.linalg.cholesky(covariance)
+        self.logdet = np.log(np.diag(self.factor)).sum()
+        self.columns = solve_triangular(self.factor, columns, lower=True)
+        self.lateral = solve_triangular(self.factor, lateral, lower=True)
+        sizes, turned = np.linalg.eigh(self.lateral.T @ self.lateral)
+        self.sizes, self.lateral = np.maximum(sizes, 0.0), self.lateral @ turned
+        self.cross, self.gram = self.lateral.T @ self.columns, self.columns.T @ self.columns
+
+    def share(self, placement):
+        """(p,) what placements of this level take off, along each direction."""
+        return placement ** 2 / (1.0 + placement ** 2 * self.sizes)
+
+
+class Rows:
+    """Readings of one session before projection: y (3n,), nuisance, columns of the twelve
+    parameters' biases in it, white (3n, 3n), lateral, kernel, levels, fixed or None."""
+
+    def __init__(self, y, nuisance, bias, white, lateral, kernel, levels, fixed=None):
+        self.y, self.nuisance, self.bias = y, nuisance, bias
+        self.white, self.lateral, self.kernel = white, lateral, kernel
+        self.levels, self.fixed = levels, fixed
+
+    def unit(self, designs):
+        return Unit(self.y, self.nuisance, self.white, self.lateral, self.kernel, self.levels,
+                    designs, self.fixed)
+
+
+def rows(kind, session, nominal, certified=False):
+    """Rows of the accelerometer or the gyro."""
+    if kind == "gyro":
+        return gyro_rows(session, nominal)
     white = np.diag((session.noise_accel[None] ** 2 / session.seconds[:, None]).reshape(-1))
-    return signed(Unit(
-        accel_rows(session, nominal), accel_nuisance(session, nominal, certified), white,
-        placement_columns(session), flicker(session),
-        levels or (PLACEMENT_MG, FLICKER_MG), designs), session)
+    return Rows(accel_rows(session, nominal), accel_nuisance(session, nominal, certified),
+                (0, 4, 8), white, placement_columns(session), flicker(session),
+                (PLACEMENT_MG, FLICKER_MG))
+
+
+def unit_of(kind, session, nominal, designs, certified=False):
+    """Unit of one session."""
+    return signed(rows(kind, session, nominal, certified).unit(designs), session)
 
 
 def signed(unit, session):
@@ -193,8 +244,8 @@ def signed(unit, session):
     return unit
 
 
-def gyro_unit(session, nominal, designs, levels=None):
-    """Unit of the gyro at rest: bias, and the Earth's rate known to a standard deviation."""
+def gyro_rows(session, nominal):
+    """Rows of the gyro at rest: bias, and the Earth's rate known to a standard deviation."""
     n, up = session.n, nominal.up[session.placement]
     white = np.diag((session.noise_gyro[None] ** 2 / session.seconds[:, None]).reshape(-1))
     nuisance = np.kron(np.ones((n, 1)), np.eye(3))
@@ -203,6 +254,5 @@ def gyro_unit(session, nominal, designs, levels=None):
     for placement in np.unique(session.placement):
         lateral += _lateral(session, session.placement == placement, nominal.up[placement])
     lateral = np.stack([c.reshape(-1) for c in lateral], 1)
-    return signed(Unit(session.gyro.reshape(-1), nuisance, white, lateral, flicker(session),
-                       levels or (EARTH_DPS, FLICKER_DPS), designs,
-                       fixed=EARTH_UP_DPS ** 2 * vertical @ vertical.T), session)
+    return Rows(session.gyro.reshape(-1), nuisance, (0, 1, 2), white, lateral, flicker(session),
+                (EARTH_DPS, FLICKER_DPS), EARTH_UP_DPS ** 2 * vertical @ vertical.T)
