@@ -26,6 +26,7 @@ VERBS = {
     "import": "sixflip_host.capture.import_csv",
     "export": "sixflip_host.capture.export",
     "apply": "sixflip_host.capture.apply",
+    "history": "sixflip_host.history.history",
     "plan": "sixflip_host.planning.plan",
     "simulate": "sixflip_host.simulating.simulate",
     "diagnose": "sixflip_host.gap.diagnose",

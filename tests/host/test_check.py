@@ -126,6 +126,9 @@ class SpokenBoard:
     def __exit__(self, *error):
         pass
 
+    def board_id(self):
+        return "e6614c311b4c5a2f"
+
     def reset(self):
         self.said = self.answers.pop(0)
 

@@ -4,6 +4,7 @@ import contextlib
 import json
 
 from ..errors import CheckFailed, Interrupted, NoBoard, SixflipError, UsageError
+from ..history import remember
 from ..planning import board_plan
 from . import typed_lines
 from .board_events import events
@@ -33,12 +34,17 @@ def add_arguments(parser):
 
 
 def ask_for_calibration(link, request=None):
-    """Leave the flag on the flash, with what is asked for in it, and start the firmware."""
+    """Leave the flag on the flash, with what is asked for in it, and start the firmware.
+
+    Returns the board's id: what the firmware says at once is lost while a USB port comes back.
+    """
     if "main.py" not in link.files([]):
         raise NoBoard("%s: the firmware is not on this board: sixflip provision" % link.port)
     try:
         link.put(FLAG, json.dumps(request).encode() if request else b"")
+        board = link.board_id()
         link.reset()
+        return board
     except KeyboardInterrupt:
         with contextlib.suppress(SixflipError, OSError):
             link.remove(FLAG)
@@ -54,15 +60,25 @@ def rate_of(link):
         return 100
 
 
-def follow(link, show, typed=None, say=print):
+def follow(link, show, typed=None, say=print, board=None):
     """Show events until the calibration is over; returns the solved event or raises.
 
     Over is: saved, or the firmware streams again, or it stopped. typed: TypedLines, whose
-    lines are sent on.
+    lines are sent on. What came of it goes into the history, under the id the firmware says,
+    or board where its first words were lost.
     """
+    witness = remember.Witness(board)
+    try:
+        return _follow(link, show, typed, say, witness)
+    finally:
+        witness.done()
+
+
+def _follow(link, show, typed, say, witness):
     solved = None
     failed = None
     for event in events(link, SILENCE_S, TOTAL_S):
+        witness.hear(event)
         show(event)
         kind = event["event"]
         if kind == "solved":
@@ -118,14 +134,14 @@ def stop(link):
 
 
 def start(link, args, session):
-    """Ask for what the command line says."""
+    """Ask for what the command line says; the board's id, None when it was not asked."""
     if args.redo:
-        if not join(link, args.redo):
-            ask_for_calibration(link, {"redo": args.redo})
-    elif session:
-        ask_for_calibration(link, board_plan.request(session, rate_of(link)))
-    else:
-        ask_for_calibration(link)
+        if join(link, args.redo):
+            return None
+        return ask_for_calibration(link, {"redo": args.redo})
+    if session:
+        return ask_for_calibration(link, board_plan.request(session, rate_of(link)))
+    return ask_for_calibration(link)
 
 
 def run(args):
@@ -135,12 +151,12 @@ def run(args):
     step = (lambda at: board_plan.step(session, at)) if session else None
     console = Console(step=step)
     with open_link(args.port) as link:
-        start(link, args, session)
+        board = start(link, args, session)
         try:
             with typed_lines.TypedLines(console.echo) as typed:
                 if typed.live:
                     console.say(typed_lines.HELP)
-                solved = follow(link, console.show, typed, console.say)
+                solved = follow(link, console.show, typed, console.say, board)
         except KeyboardInterrupt:
             console.clear()
             raise Interrupted(stop(link)) from None

@@ -7,6 +7,7 @@ from sixflip.correction import Correction
 
 from ..capture import capture_file
 from ..errors import CheckFailed, UsageError
+from ..history import remember
 from ..mounting import mount
 from ..simulating import still_rest
 from ..solving.solve import local_gravity
@@ -50,8 +51,13 @@ def run(args):
     g = local_gravity(args)
     if g is not None and not args.capture:
         raise UsageError("--g and --lat need a capture; a board knows its g from its settings")
-    found = (compare(capture_file.read(args.capture), mount.accelerometer_record(args.record), g)
-             if args.capture else ask_board(args.port))
+    if args.capture:
+        capture = capture_file.read(args.capture)
+        board = capture.meta.get("device_id")
+        found = compare(capture, mount.accelerometer_record(args.record), g)
+    else:
+        board, found = ask_board(args.port)
+    remember.checked(board, found)
     if args.json:
         print(json.dumps(found))
     else:
@@ -111,9 +117,10 @@ def judged(found):
 
 
 def ask_board(port):
-    """The answer of a board's own check; CheckFailed when it has none."""
+    """(id, answer) of a board's own check; CheckFailed when it has none."""
     seen = {}
     with open_link(port) as link:
+        board = link.board_id()
         link.reset()
         started = wait_for(link, ("ready", "calibrating"),
                            seen=lambda event: seen.update({event["event"]: event}))
@@ -130,10 +137,12 @@ def ask_board(port):
     words = event.get("words") or []
     record = seen.get("record") or {}
     valid = event.get("verdict") == "good"
-    return {"format": 1, "kind": "sixflip check", "valid": valid,
-            "against": [] if valid else [str(one) for one in words],
-            "a_error_mg": event.get("a_error_mg"), "noise_mg": event.get("noise_mg"),
-            "noise_then_mg": None, "temp_c": event.get("temp_c"),
-            "temp_then_c": record.get("temp_c"), "record_verdict": record.get("verdict"),
-            "record_reason": record.get("reason"),
-            "bias_dps": event.get("bias_dps"), "bias_then_dps": None, "seconds": None}
+    board = seen.get("hello", {}).get("id") or board
+    return board, {
+        "format": 1, "kind": "sixflip check", "valid": valid,
+        "against": [] if valid else [str(one) for one in words],
+        "a_error_mg": event.get("a_error_mg"), "noise_mg": event.get("noise_mg"),
+        "noise_then_mg": None, "temp_c": event.get("temp_c"),
+        "temp_then_c": record.get("temp_c"), "record_verdict": record.get("verdict"),
+        "record_reason": record.get("reason"),
+        "bias_dps": event.get("bias_dps"), "bias_then_dps": None, "seconds": None}

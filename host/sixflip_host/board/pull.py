@@ -5,6 +5,7 @@ from pathlib import Path
 from ..atomic_write import write_bytes
 from ..capture import capture_binary, capture_file
 from ..errors import BadFile, NoBoard
+from ..history import remember
 from ..terminal import plain
 from .byte_progress import Bytes
 from .ports import add_port, open_link
@@ -68,7 +69,9 @@ def convert(folder, say=print):
 def run(args):
     with open_link(args.port) as link:
         folder = fetch(link, args.output)
+        board = link.board_id()
         link.reset()
     convert(folder)
+    remember.pulled(folder, board)
     print("next: sixflip verify %s" % plain(folder))
     return 0

@@ -10,6 +10,7 @@ from sixflip.faces import LEANING
 from .. import atomic_write
 from ..capture import capture_file
 from ..errors import BadFile, CheckFailed, UsageError
+from ..history import remember
 from ..simulating import pose_runs
 from ..solving import gyro_rests, multiposition
 from ..solving.rests_and_moves import RestsAndMoves
@@ -49,6 +50,7 @@ def run(args):
     if args.record and pull == "auto":
         pull = "off"        # a record has no place for it
     found = refine(capture, args.free, record, pull)
+    remember.refined(capture, found)
     if args.json:
         print(json.dumps(found, allow_nan=False))
     else:

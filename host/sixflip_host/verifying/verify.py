@@ -3,6 +3,7 @@
 import json
 
 from ..errors import UsageError
+from ..history import remember
 from ..solving import solution
 from ..solving.solve import finite
 from ..terminal import console, plain, styled, table
@@ -26,6 +27,7 @@ def run(args):
     capture_path, capture, record_path, record = verify_files.find(args.files)
     checks, remarks = verify(capture, record, verify_files.record_before(record_path, record))
     failed = [check for check in checks if not check.ok]
+    remember.verified(capture, record, checks)
     if args.json:
         print(json.dumps(finite({
             "format": 1, "ok": not failed, "capture": str(capture_path),

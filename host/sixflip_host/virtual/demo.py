@@ -5,6 +5,7 @@ The same commands as with a real board; only the board is virtual.
 
 import contextlib
 import json
+import os
 import shutil
 import tempfile
 from pathlib import Path
@@ -15,6 +16,7 @@ from ..board.board_events import events, wait_for
 from ..board.board_files import shared_dir
 from ..board.console import GUIDED_ORDER, Console
 from ..errors import CheckFailed, SixflipError
+from ..history import remember, store
 from ..terminal import plain
 from . import demo_truth, micropython_fetch
 
@@ -152,6 +154,7 @@ def run_steps(args, folder, log):
         step("pull: capture and record from the board")
         pulled = pull.fetch(link, folder)
         pull.convert(pulled)
+        remember.pulled(pulled, link.board_id())
     step("verify: the host recomputes everything from the raw capture")
     if cli.run(["verify", str(pulled)]):
         raise CheckFailed("the host does not confirm the board's arithmetic")
@@ -187,6 +190,20 @@ def plot(path, rows):
     print(plain(path))
 
 
+@contextlib.contextmanager
+def own_history(file):
+    """What happens is kept in a file of its own."""
+    before = os.environ.get(store.VARIABLE)
+    os.environ[store.VARIABLE] = str(file)
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[store.VARIABLE]
+        else:
+            os.environ[store.VARIABLE] = before
+
+
 def run(args):
     import sys
     if str(shared_dir()) not in sys.path:
@@ -197,9 +214,12 @@ def run(args):
             folder.mkdir(parents=True, exist_ok=True)
             # of an earlier demo: this one begins with an erased flash
             (folder / "flash.img").unlink(missing_ok=True)
+            (folder / "history.sqlite").unlink(missing_ok=True)
             shutil.rmtree(folder / "flash", ignore_errors=True)
         else:
             folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="sixflip-")))
+        # the demo's board is none of the user's
+        stack.enter_context(own_history(folder / "history.sqlite"))
         log = Log(folder / "events.jsonl")
         stack.callback(log.close)
         code = run_steps(args, folder, log)

@@ -1,0 +1,1 @@
+"""What became of every board: its calibrations and checks, kept on this computer."""
