@@ -71,8 +71,8 @@ def test_pull_verify_and_refine(file, pulled, capsys):
     refined = found["happened"][2]["parameters"]["accel_bias_z_mg"]["value"]
     assert refined == pytest.approx(bias[2], abs=1.0)
     assert found["happened"][1]["verdict"] == "holds"
-    listed = answer(capsys)["boards"]
-    assert [(one["board"], one["calibrations"], one["checks"]) for one in listed] == [(BOARD, 2, 1)]
+    one, = answer(capsys)["boards"]
+    assert (one["board"], one["calibrations"], one["checks"]) == (BOARD, 2, 1)
 
 
 def test_a_verification_that_fails(file, pulled, tmp_path, capsys):
