@@ -34,7 +34,13 @@ class MachineBoard(Board):
         self._poll = select.poll()
         self._poll.register(sys.stdin, select.POLLIN)
         self._reader = LineReader()
-        self.i2c = make_i2c()
+        try:
+            self.i2c = make_i2c()
+        except ValueError as e:  # another chip of the family, which lacks these pins
+            raise ValueError("no I2C with scl %s, sda %s (%s): set them in sixflip.json"
+                             % (scl, sda, e))
+        if _pin(scl) is None or _pin(sda) is None:
+            self.scl_pulse = None  # an STM32 board with other names for its pins
 
     def reopen_i2c(self):
         # pins that were driven by hand have lost their I2C function
@@ -86,13 +92,16 @@ class MachineBoard(Board):
         machine.reset()
 
 
-def _pin(identity, mode, pull=-1):
-    """The pin, or None: boards of one family differ in which of them have an LED."""
+def _pin(identity, mode=None, pull=None):
+    """The pin, or None: boards of one family differ in which of them have an LED.
+
+    No pull is None: STM32 and the LED of a Pico W refuse -1.
+    """
     if identity is None:
         return None
     try:
-        return machine.Pin(identity, mode, pull)
-    except ValueError:
+        return machine.Pin(identity) if mode is None else machine.Pin(identity, mode, pull)
+    except (ValueError, TypeError):  # STM32: a number is a TypeError
         return None
 
 

@@ -63,11 +63,39 @@ def I2C(*identity, **options):
 SoftI2C = I2C
 
 
+# Pyboard v1.1 (ports/stm32/boards/PYBV11/pins.csv), as far as boards are wired to them.
+STM32_NAMES = (["X%d" % i for i in range(1, 23)] + ["Y%d" % i for i in range(1, 13)]
+               + ["SW", "LED_RED", "LED_GREEN", "LED_YELLOW", "LED_BLUE"])
+ESP32_MISSING = (20, 24, 28, 29, 30, 31)
+
+
+def _check_pin(identity, pull):
+    """What the ports of MicroPython 1.25 refuse: their machine_pin.c, STM32's pin.c."""
+    flavour = world.spec["flavour"]
+    number = isinstance(identity, int)
+    if flavour == "stm32":
+        if number:
+            raise TypeError("can't convert 'int' object to str implicitly")
+        if identity not in STM32_NAMES:
+            raise ValueError("Pin(%s) doesn't exist" % identity)
+        if pull not in (None, 0, 1, 2):
+            raise ValueError("invalid pin pull: %d" % pull)
+    elif flavour == "esp32":
+        if not number or not 0 <= identity < 40 or identity in ESP32_MISSING:
+            raise ValueError("invalid pin")
+    elif flavour == "rp2":
+        if number and not 0 <= identity < 30 or not number and identity != "LED":
+            raise ValueError("invalid pin")
+        if identity == "LED" and pull is not None:  # a pin of the Pico W's radio chip
+            raise ValueError("pulls are not supported for external pins")
+
+
 class Pin:
     IN, OUT, OPEN_DRAIN, ALT = 0, 1, 2, 3
     PULL_UP, PULL_DOWN = 1, 2
 
-    def __init__(self, identity, mode=-1, pull=-1, value=None):
+    def __init__(self, identity, mode=-1, pull=None, value=None):
+        _check_pin(identity, pull)
         self.identity = identity
         self.mode = mode
         if value is not None:
@@ -75,7 +103,7 @@ class Pin:
         elif pull == Pin.PULL_UP:
             _levels.setdefault(identity, 1)
 
-    def init(self, mode=-1, pull=-1, value=None):
+    def init(self, mode=-1, pull=None, value=None):
         self.__init__(self.identity, mode, pull, value)
 
     def value(self, level=None):
