@@ -30,10 +30,14 @@ def _ids(ids):
 
 def use(unit, slot, record):
     """Makes record (None: the data sheet's numbers) what corrects from now on."""
-    from sixflip.correction import Correction
+    from sixflip.correction import correction_of
     unit.slot = slot
     unit.record = record
-    unit.correction = Correction(blank_record(unit) if record is None else record)
+    tell = None
+    if record is not None and record.terms:
+        from .term_range import teller
+        tell = teller(unit)
+    unit.correction = correction_of(blank_record(unit) if record is None else record, tell)
     unit.bias_dps = None
     if record is not None and record.gyro_bias is not None:
         unit.bias_dps = record.gyro_bias["bias_dps"]

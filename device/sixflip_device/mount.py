@@ -7,7 +7,7 @@
 
 import math
 
-from sixflip.correction import Correction
+from sixflip.correction import correction_of
 from sixflip.mounting import estimate, parse_axes
 
 from . import in_force
@@ -44,7 +44,7 @@ def _gravity(unit, rest):
         raise ValueError(reason + "; stop the engine")
     record = unit.record
     held, record.mounting = record.mounting, None  # it must not turn what is to be measured
-    G = [x / record.g for x in Correction(record).apply(rest.means, [0.0] * 6)[:3]]
+    G = [x / record.g for x in correction_of(record).apply(rest.means, [0.0] * 6)[:3]]
     record.mounting = held
     size = math.sqrt(sum([x * x for x in G]))
     if not abs(size - 1.0) <= OFF_G:
@@ -78,10 +78,10 @@ def _take(unit, mounting, rest):
     except OSError:
         record.mounting, record.sequence = before
         raise
-    bias = unit.bias_dps
+    bias, means = unit.bias_dps, unit.correction.rest
     in_force.use(unit, slot, record)
-    if bias is not None:
-        unit.correction.set_gyro_bias([b * unit.sensor.imu.gyro_lsb_per_dps for b in bias])
+    if means is not None:
+        unit.correction.set_rest(means)
         unit.bias_dps = bias
     unit.output = None
 

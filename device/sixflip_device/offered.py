@@ -3,6 +3,8 @@
 It comes as offered.bin, is looked at once and is gone afterwards, whatever came of it.
 """
 
+from sixflip.record import LARGEST
+
 from .blank_record import blank_record
 from .flash_files import OFFERED, remove
 from .in_force import misfit
@@ -14,12 +16,12 @@ def _take(unit, name):
 
     from .record_slots import RecordSlots
     with open(name, "rb") as f:
-        record = decode(f.read())
+        record = decode(f.read(LARGEST + 1))
     reason = misfit(blank_record(unit))(record)
     if reason:
         raise ValueError(reason)
-    from sixflip.correction import Correction
-    Correction(record)  # it can be calculated with
+    from sixflip.correction import correction_of
+    correction_of(record)  # it can be calculated with
     return RecordSlots(unit.board.root).save(record), record
 
 

@@ -8,6 +8,8 @@ one valid record is complete on the flash, and a cut leaves the old one or the n
 
 import os
 
+from sixflip.record import LARGEST
+
 from .flash_files import remove
 
 SLOTS = ("a", "b")
@@ -27,7 +29,7 @@ class RecordSlots:
         """-> (record, "") or (None, reason); a file that is not there gives no reason."""
         try:
             with open(name, "rb") as f:
-                data = f.read()
+                data = f.read(LARGEST + 1)
         except OSError:
             return None, ""
         from sixflip.correction_record import decode  # not needed while sampling

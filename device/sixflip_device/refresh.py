@@ -16,7 +16,7 @@ def refresh(unit, rest_s=None, name="rest"):
     if stored and unit.bias_dps != stored["bias_dps"]:
         held = "measured before"
     if measured:
-        unit.correction.set_gyro_bias(rest.means[3:6])
+        unit.correction.set_rest(rest.means)
         unit.bias_dps = rest.bias_dps(unit.sensor.imu)
     unit.events.emit(name, still=rest.still, reason=rest.reason or shaken,
                      bias_dps=unit.bias_dps,

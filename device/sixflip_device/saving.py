@@ -35,6 +35,7 @@ def _save(unit, new):
     old = unit.record
     if old is not None:
         new.mounting = old.mounting  # the box has moved, the sensor in it has not
+        new.terms = old.terms  # they count from whatever temperature it is calibrated at
         from .record_change import unchanged
         if unchanged(old, new):
             unit.events.emit("saved", slot=unit.slot, sequence=old.sequence, written=False,

@@ -50,7 +50,8 @@ def compare(unit, rest):
         words.append("the noise is %.1f mg, at the calibration it was %.1f"
                      % (noise_mg, noise_then * 1000))
     now, then = facts["temp_c"], record.temp_c
-    if now is not None and then is not None and abs(now - then) > WARMER_C:
+    if now is not None and then is not None and abs(now - then) > WARMER_C \
+            and not unit.correction.covers(now):
         words.append("it is %.0f degrees C, at the calibration it was %.0f" % (now, then))
     facts["verdict"] = "doubtful" if words else "good"
     if not words:

@@ -9,11 +9,13 @@ class Correction:
     """Everything in one 4 x 3 matrix for the accelerometer and one for the gyro.
 
     [c0 c1 c2 1] M, c in raw counts: correction P, unit, gyro bias of the last rest and
-    mounting are multiplied out once. A part that was not measured is left nominal.
+    mounting are multiplied out once. A part that was not measured is left nominal. turned
+    False: in the sensor's axes, whatever the mounting. rest: the means of set_rest(), or None.
     """
 
-    def __init__(self, record):
+    def __init__(self, record, turned=True):
         self.record = record
+        self.rest = None
         identity = [[1.0 if i == j else 0.0 for j in range(3)] for i in range(4)]
         P = record.accel["P"] if record.accel else identity
         W = record.gyro["P"] if record.gyro else identity
@@ -24,7 +26,7 @@ class Correction:
             b = [math.radians(x) for x in record.gyro_bias["bias_dps"]]
             offset = [-sum([b[k] * W[k][j] for k in range(3)]) for j in range(3)]
         turn = None
-        if record.mounting:
+        if record.mounting and turned:
             from sixflip.mounting import compensation  # most boards have none
             turn = compensation(record.mounting)
         lsb = record.accel_lsb_per_g
@@ -42,11 +44,28 @@ class Correction:
                 out[k + j] = x * M[0][j] + y * M[1][j] + z * M[2][j] + M[3][j]
         return out
 
+    def set_rest(self, means):
+        """A new rest: the seven mean counts; the corrected rate is zero there from now on."""
+        self.rest = means
+        self.set_gyro_bias(means[3:6])
+
+    def covers(self, temp_c):
+        """Whether the accelerometer's drift is known and taken out at this temperature."""
+        return False
+
     def set_gyro_bias(self, counts):
-        """A new rest: mean counts of gx gy gz at which the corrected rate is zero."""
+        """Mean counts of gx gy gz at which the corrected rate is zero."""
         M = self.gyro
         for j in range(3):
             M[3][j] = -sum([counts[k] * M[k][j] for k in range(3)])
+
+
+def correction_of(record, tell=None):
+    """The Correction of a record, with its terms where it has some; tell: see there."""
+    if record.terms:
+        from sixflip.term_correction import TermCorrection  # hardly any record has some
+        return TermCorrection(record, tell)
+    return Correction(record)
 
 
 def gyro_bias_dps(P):

@@ -1,13 +1,14 @@
 """A calibration as bytes on flash. Little-endian, layout version 1:
 
 head (magic ... time), sections (tag u8, length u16, payload), CRC-32 of all before it (u32).
-A section is there when the thing was really measured. Unknown sections are kept as they are.
+A section is there when the thing was really measured. Unknown sections are kept as they are:
+firmware from before the terms (record_terms.py) loads and keeps a record that has some.
 """
 
 import struct
 from binascii import crc32
 
-from sixflip.record import Record
+from sixflip.record import LARGEST, TERMS, Record
 from sixflip.record_sections import SECTIONS, pack, unpack
 
 MAGIC = b"6FLP"
@@ -27,7 +28,7 @@ def encode(record):
         if fields is not None:
             payload = pack(name, fields)
             body += struct.pack("<BH", tag, len(payload)) + payload
-    for tag, payload in record.unknown:
+    for tag, payload in record.terms + record.unknown:
         body += struct.pack("<BH", tag, len(payload)) + payload
     temp = float("nan") if record.temp_c is None else record.temp_c
     chip = record.chip.encode()
@@ -39,6 +40,9 @@ def encode(record):
         int(record.accel_range_g), int(record.gyro_range_dps),
         int(record.accel_lsb_per_g * 1000 + 0.5), int(record.gyro_lsb_per_dps * 1000 + 0.5),
         temp, record.g, record.time) + body
+    if len(data) + 4 > LARGEST:
+        raise ValueError("the correction record has %d bytes: expected %d at most"
+                         % (len(data) + 4, LARGEST))
     return data + struct.pack("<I", crc32(data) & 0xFFFFFFFF)
 
 
@@ -47,6 +51,8 @@ def decode(data):
     if len(data) < HEAD_SIZE + 4 or bytes(data[:4]) != MAGIC:
         raise ValueError("no correction record: expected %d bytes or more that begin with 6FLP"
                          % (HEAD_SIZE + 4))
+    if len(data) > LARGEST:
+        raise ValueError("the correction record has more than %d bytes" % LARGEST)
     end = len(data) - 4
     if crc32(bytes(data[:end])) & 0xFFFFFFFF != struct.unpack_from("<I", data, end)[0]:
         raise ValueError("the correction record is damaged: its CRC does not match")
@@ -65,12 +71,16 @@ def decode(data):
     r.gyro_lsb_per_dps = gyro_lsb / 1000
     r.temp_c = temp if temp == temp else None
     _sections(r, data, end)
+    if r.terms:
+        from sixflip.record_terms import terms  # hardly any record has some
+        terms(r)
     return r
 
 
 def _sections(r, data, end):
     at = HEAD_SIZE
     names = dict(SECTIONS)
+    optional = dict(TERMS)
     while at < end:
         if at + 3 > end:
             raise ValueError("the correction record ends inside a section")
@@ -81,5 +91,7 @@ def _sections(r, data, end):
             raise ValueError("the correction record ends inside section %d" % tag)
         if tag in names:
             setattr(r, names[tag], unpack(names[tag], payload))
+        elif tag in optional:
+            r.terms.append((tag, payload))
         else:
             r.unknown.append((tag, payload))

@@ -1,6 +1,9 @@
 """What a calibration leaves: a Record. correction_record.py turns it into bytes and back."""
 
 MEASURED = ("accel", "gyro", "gyro_bias", "mounting")
+TERMS = ((16, "accel_thermal_bias"), (17, "gyro_thermal_bias"), (18, "accel_thermal_scale"),
+         (19, "gyro_thermal_scale"), (20, "g_sensitivity"))
+LARGEST = 2048  # bytes of a record: every section with its longest texts, and room for more
 
 
 class Record:
@@ -19,6 +22,8 @@ class Record:
               face, 0 where 180 degrees were assumed; "scale_sigma" and "sequence" of the
               record whose gyro measured them}; None: 180 degrees everywhere
     mounting  {"roll_deg", "pitch_deg", "order", "axes", "frame"}
+    terms     [(tag, bytes)] of TERMS, as stored: record_terms.py takes them apart where they
+              are used, a session has no heap to spare for them
     """
 
     def __init__(self):
@@ -31,8 +36,11 @@ class Record:
         self.temp_c = None
         self.g = 9.80665
         self.accel = self.gyro = self.gyro_bias = self.mounting = self.flips = None
+        self.terms = []
         self.unknown = []
 
     def measured(self):
         """Names of the sections there are."""
-        return [name for name in MEASURED if getattr(self, name) is not None]
+        tags = [tag for tag, _ in self.terms]
+        return [name for name in MEASURED if getattr(self, name) is not None] + [
+            name for tag, name in TERMS if tag in tags]

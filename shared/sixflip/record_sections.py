@@ -40,10 +40,11 @@ def _finite(numbers, name, field):
             raise ValueError("%s.%s holds %s: expected a finite number" % (name, field, x))
 
 
-def pack(name, fields):
-    """Bytes of a section's dictionary; ValueError for a bad number or word."""
+def pack(name, fields, layout=None):
+    """Bytes of a section's dictionary; ValueError for a bad number or word. layout: its fields
+    where they do not stand above."""
     out = b""
-    for item in FIELDS[name]:
+    for item in layout or FIELDS[name]:
         field, kind = item[0], item[1]
         value = fields[field]
         if kind == "s":
@@ -69,12 +70,12 @@ def pack(name, fields):
     return out
 
 
-def unpack(name, payload):
+def unpack(name, payload, layout=None):
     """The dictionary of a section's bytes; ValueError when they are not one."""
     fields = {}
     at = 0
     try:
-        for item in FIELDS[name]:
+        for item in layout or FIELDS[name]:
             fields[item[0]], at = _take(name, item, payload, at)
     except IndexError:
         raise ValueError("section %s of the record is too short" % name)

@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from sixflip import correction_record, mounting
-from sixflip.correction import Correction
+from sixflip.correction import correction_of
 from sixflip_sim.worlds import NOISE
 
 from .. import atomic_write
@@ -98,7 +98,7 @@ def gravity_of(capture, record):
     else:
         # The mounting it may hold already must not turn what is to be measured.
         held, record.mounting = record.mounting, None
-        G = [x / record.g for x in Correction(record).apply(rest.means, [0.0] * 6)[:3]]
+        G = [x / record.g for x in correction_of(record).apply(rest.means, [0.0] * 6)[:3]]
         record.mounting = held
     sigma = math.degrees(noise / 1e3 / math.sqrt(rest.n))
     return G, {"samples": rest.n, "noise_mg": noise, "usual_noise_mg": usual,
