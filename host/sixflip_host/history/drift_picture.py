@@ -17,6 +17,7 @@ def draw(calibrations):
 
     Error bars are two standard errors; refused calibrations are left out.
     """
+    from matplotlib.dates import AutoDateLocator, ConciseDateFormatter
     usable = [(one, found) for one, found in calibrations if one.verdict != "refused" and found]
     rows = [row for row in ROWS if any(row[0] % "x" in found for _, found in usable)]
     if not usable or not rows:
@@ -35,7 +36,10 @@ def draw(calibrations):
     axes[0, 0].set_title("change since the first calibration, over time", fontsize=10)
     axes[0, 1].set_title("over the sensor's temperature", fontsize=10)
     axes[-1, 0].set_xlabel("UTC")
-    axes[-1, 0].tick_params(axis="x", rotation=20)
+    for ax in axes[:, 0]:
+        locator = AutoDateLocator(tz=timezone.utc, maxticks=7)
+        ax.xaxis.set_major_locator(locator)
+        ax.xaxis.set_major_formatter(ConciseDateFormatter(locator, tz=timezone.utc))
     axes[-1, 1].set_xlabel("°C")
     return figure
 

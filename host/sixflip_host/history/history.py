@@ -1,6 +1,7 @@
 """sixflip history: every calibration and check of every board, and how its parameters drift."""
 
 import json
+import math
 from datetime import datetime, timezone
 
 from .. import atomic_write
@@ -177,5 +178,9 @@ def _coloured(verdict):
 
 
 def _slope(slope):
-    return "-" if slope is None else "%+.3g ± %.2g%s" % (slope[0], slope[1],
-                                                       " *" if slope[2] else "")
+    """Value and error with the digits that the error leaves meaning to."""
+    if slope is None:
+        return "-"
+    value, error, sure = slope
+    digits = max(0, 1 - math.floor(math.log10(error))) if error > 0 else 6
+    return "%+.*f ± %.*f%s" % (digits, value, digits, error, " *" if sure else "")
