@@ -15,8 +15,9 @@ def finish_interrupted(root, session):
     try:
         with open(root + NEW, "rb") as f:
             head = f.read(1200)
-        if ('"session": %d' % session).encode() in head:
-            move(root + NEW, root + GOOD)
+        name = '"session": %d' % session
+        if (name + ",").encode() in head or (name + "}").encode() in head:
+            keep(root)
     except OSError:
         pass
 
@@ -24,8 +25,8 @@ def finish_interrupted(root, session):
 def keep(root):
     """The session's record is saved: its capture takes the place of the one before, and of
     one that was refused earlier."""
-    move(root + NEW, root + GOOD)
     remove(root + REFUSED)
+    move(root + NEW, root + GOOD)  # last: until then finish_interrupted() does it all again
 
 
 def refuse(root):

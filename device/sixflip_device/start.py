@@ -1,13 +1,11 @@
 """First phase: the sensor, the self-test, the grace window."""
 
-import os
-
 import sixflip
 
 from . import led
 from .bus_recovery import BusLost, Sensor
 from .find_sensor import find
-from .flash_files import FLAG
+from .flash_files import FLAG, exists
 
 LOOK_AGAIN_US = 2000000
 STEP_US = 20000
@@ -73,13 +71,7 @@ def _self_test(unit):
 
 def _asked_for(unit):
     """A held button or the flag file asks for a calibration."""
-    if unit.board.button():
-        return True
-    try:
-        os.stat(unit.board.root + FLAG)
-        return True
-    except OSError:
-        return False
+    return unit.board.button() or exists(unit.board.root + FLAG)
 
 
 def _grace(unit):

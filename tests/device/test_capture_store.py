@@ -8,7 +8,7 @@ from array import array
 
 from sixflip.capture_blocks import ACCEL, read_blocks
 from sixflip.placement import Placement
-from sixflip_device import capture_names, capture_store, flash_files
+from sixflip_device import capture_names, capture_store, cut_short, flash_files
 from sixflip_device.capture_store import CaptureStore
 
 
@@ -91,8 +91,10 @@ class TestCaptureStore(unittest.TestCase):
             f.write(b"x")
         capture_store.free_bytes = lambda root: (
             30000 if os.path.exists(self.root + "refused.bin") else 300000)
-        self.assertFalse(self.store().sums_only)
+        store = self.store()
+        self.assertFalse(store.sums_only)
         self.assertFalse(os.path.exists(self.root + "refused.bin"))
+        store.finish(False)
 
     def test_room_runs_out_in_mid_session(self):
         self.free = 300000
@@ -150,3 +152,35 @@ class TestCaptureStore(unittest.TestCase):
         self.assertEqual(os.listdir(self.root), ["capture.new"])
         capture_names.finish_interrupted(self.root, 7)
         self.assertEqual(os.listdir(self.root), ["capture.bin"])
+
+    def test_a_session_whose_name_begins_like_the_records_is_another_one(self):
+        store = self.store()
+        store.finish(True)
+        os.rename(self.root + "capture.new", self.root + "x")
+        with open(self.root + "x", "rb") as f, open(self.root + "capture.new", "wb") as g:
+            g.write(f.read().replace(b'"session": 7', b'"session": 71'))
+        capture_names.finish_interrupted(self.root, 7)
+        self.assertIn("capture.new", os.listdir(self.root))
+
+    def test_power_cut_in_mid_session(self):
+        store = self.store()
+        self.session(store)
+        store._file.close()  # and no end block
+        cut_short.file_away(self.root)
+        self.assertEqual(os.listdir(self.root), ["refused.bin"])
+        self.assertEqual(len(self.content("refused.bin").placements), 3)
+
+    def test_power_cut_before_the_first_pose(self):
+        store = self.store()
+        store._file.close()
+        cut_short.file_away(self.root)
+        self.assertEqual(os.listdir(self.root), [])
+
+    def test_power_cut_in_a_short_session_leaves_the_longer_one_before(self):
+        for poses in (6, 2):
+            store = self.store()
+            self.session(store, poses)
+            store._file.close()
+            cut_short.file_away(self.root)
+            self.assertEqual(os.listdir(self.root), ["refused.bin"])
+            self.assertEqual(len(self.content("refused.bin").placements), 6)
