@@ -5,6 +5,7 @@ Pins are out of reach while the kernel's driver owns the bus, and that driver ru
 bus recovery, so there is no scl_pulse here. No LED and no button.
 """
 
+import errno
 import os
 import select
 import sys
@@ -105,8 +106,10 @@ def make(settings):
         try:
             return SMBusI2C(SMBus(number))
         except OSError as e:
-            raise OSError(e.errno, "I2C bus %d cannot be opened (%s); expected /dev/i2c-%d: "
-                          "switch I2C on (raspi-config), or set i2c in sixflip.json"
-                          % (number, e.strerror, number)) from e
+            todo = ("add this user to its group: sudo usermod -aG i2c $USER, and log in anew"
+                    if e.errno == errno.EACCES else
+                    "switch I2C on (raspi-config), or set i2c in sixflip.json")
+            raise OSError(e.errno, "I2C bus %d cannot be opened (%s); expected /dev/i2c-%d: %s"
+                          % (number, e.strerror, number, todo)) from e
 
     return LinuxBoard(open_bus, folder())

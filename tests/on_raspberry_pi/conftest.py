@@ -1,0 +1,14 @@
+"""umockdev, or one line why not."""
+
+import pytest
+from debian_tier import Unavailable, without
+
+from .device_node import provide
+
+
+@pytest.fixture(scope="session", autouse=True)
+def umockdev():
+    try:
+        provide()
+    except Unavailable as error:
+        without("device node of a Raspberry Pi", error)
