@@ -9,6 +9,7 @@ last rest, the mounting.
 import numpy as np
 
 from sixflip.correction import Correction
+from sixflip.record import TERMS
 
 from ..errors import BadFile
 from .capture_header import STANDARD_G
@@ -44,6 +45,14 @@ class AffineCorrection:
                          % tuple(record.mounting[key]
                                  for key in ("roll_deg", "pitch_deg", "order")))
         return lines
+
+    def left_out(self):
+        """A sentence, in a list, about what of the record A and o cannot hold; [] for nothing."""
+        names = [name for tag, name in TERMS if tag in [one for one, _ in self.record.terms]]
+        if not names:
+            return []
+        return ["NOT in this file, which has no place for them: the record's terms %s; the board "
+                "applies them, and the format c-header" % ", ".join(names)]
 
 
 def _parts(M, counts_per_unit, unit_out):

@@ -12,11 +12,12 @@ from ..errors import UsageError
 from ..simulating import other_simulators
 from ..solving.record_json import record_json
 from ..verifying.verify_files import read_record
-from . import capture_binary, capture_file, export_formats
+from . import capture_binary, capture_file, export_c, export_formats
 from .show import RECORD_MAGIC
 
 HELP = "a capture or a record in another format"
-EXAMPLE = "sixflip export record_a.bin --format imu_calib -o imu_calib.yaml"
+EXAMPLE = ("sixflip export record_a.bin --format imu_calib -o imu_calib.yaml\n"
+           "         sixflip export record_a.bin -o sixflip_correction.h")
 
 
 def capture_csv(path, output):
@@ -50,6 +51,7 @@ FORMATS = {
     "imu_calib": ("record", record_text(export_formats.imu_calib_yaml), (".yaml", ".yml")),
     "imufusion": ("record", record_text(export_formats.imufusion_python), (".py",)),
     "imucal": ("record", record_text(export_formats.imucal_json), ()),
+    "c-header": ("record", record_text(export_c.c_header), (".h",)),
     "sdf": ("capture", other_simulators.capture_sdf, (".sdf",)),
     "kalibr": ("capture", other_simulators.capture_kalibr, (".yaml", ".yml")),
     "table": ("capture", other_simulators.capture_table, (".txt",)),

@@ -15,7 +15,7 @@ def imu_calib_yaml(path, record):
     """Text for the ROS node apply_calib (dpkoch/imu_calib): SM row by row, and bias."""
     found = AffineCorrection(path, record)
     A, o = found.accel
-    lines = found.origin() + [
+    lines = found.origin() + found.left_out() + [
         "formula of imu_calib: corrected = SM * raw - bias, SM row by row",
         "units: m/s^2 in and out, the bias too; SM has none",
         "the node knows no gyro scale: it subtracts the mean of its first samples"]
@@ -33,7 +33,7 @@ def _items(values):
 def imufusion_python(path, record):
     """Text of a Python module for imufusion (x-io Fusion): misalignment, sensitivity, offset."""
     found = AffineCorrection(path, record)
-    lines = found.origin() + [
+    lines = found.origin() + found.left_out() + [
         "formula of imufusion: calibrated = misalignment * (sensitivity o (raw - offset)),",
         "o: element by element, misalignment after sensitivity (model_inertial of imufusion,",
         "FusionModelInertial or FusionCalibrationInertial in C)",
@@ -73,7 +73,7 @@ def imucal_json(path, record):
     if found.gyro is None:
         raise BadFile("%s is of a sensor without a gyro: imucal needs both, expected another "
                       "format" % path)
-    lines = found.origin() + [
+    lines = found.origin() + found.left_out() + [
         "formula of imucal: acc = R_a^-1 K_a^-1 (raw - b_a), "
         "gyr = R_g^-1 K_g^-1 (raw - K_ga acc - b_g)",
         "units: m/s^2 and deg/s in and out"]
