@@ -13,6 +13,8 @@ class Correction:
     False: in the sensor's axes, whatever the mounting. rest: the means of set_rest(), or None.
     """
 
+    needs_temperature = False  # of every sample
+
     def __init__(self, record, turned=True):
         self.record = record
         self.rest = None

@@ -21,14 +21,14 @@ COLDEST, HOTTEST = -60.0, 150.0  # degrees C that a chip can be at
 MOST = {"accel_thermal_bias": 100.0, "gyro_thermal_bias": 30.0, "accel_thermal_scale": 2.0,
         "gyro_thermal_scale": 2.0, "g_sensitivity": 10.0}  # a coefficient beyond is no sensor's
 
-_KNOWN = (("axes", "B"), ("origin", ORIGINS), ("source", "s"), ("also", "s"), ("before", "f"),
-          ("after", "f"), ("floor", "f"))
+_KNOWN = (("axes", "B"), ("origin", ORIGINS), ("source", "s"), ("before", "f"), ("after", "f"),
+          ("floor", "f"))
 _RANGE = (("t0_c", "d"), ("low_c", "d"), ("high_c", "d"), ("temp_lsb_per_c", "d"),
           ("temp_offset_c", "d"))
 _BIAS = (("k1", "d", 3), ("k2", "d", 3), ("sigma_k1", "f", 3), ("sigma_k2", "f", 3))
 _SCALE = (("k1", "d", 3), ("sigma_k1", "f", 3))
 _COUPLING = (("k", "d", 3, 3), ("sigma", "f", 3, 3))
-TEXT = 40  # bytes of source and of also
+TEXT = 60  # bytes of source
 
 
 def _layout(name):
@@ -53,9 +53,8 @@ def put(record, name, fields):
     """fields as the term of that name, in place of one there is; ValueError likewise."""
     tag = [one for one, known in TERMS if known == name][0]
     fields = dict(fields)
-    for text in ("source", "also"):
-        while len(fields[text].encode()) > TEXT:
-            fields[text] = fields[text][:-1]
+    while len(fields["source"].encode()) > TEXT:
+        fields["source"] = fields["source"][:-1]
     payload = pack(name, _checked(name, fields, record), _layout(name))
     record.terms = [one for one in record.terms if one[0] != tag] + [(tag, payload)]
     record.terms.sort()

@@ -34,6 +34,7 @@ class TermCorrection(Correction):
             self._turn = compensation(record.mounting)
         for name, fields in terms(record).items():
             self._take(name, fields)
+        self.needs_temperature = bool(self._thermal)
 
     def _take(self, name, fields):
         record = self.record

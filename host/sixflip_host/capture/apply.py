@@ -1,13 +1,16 @@
 """sixflip apply: corrected samples in SI units from raw counts and a record."""
 
+import sys
+
 import numpy as np
 
-from sixflip.correction import Correction
+from sixflip.correction import correction_of
 
 from .. import atomic_write
 from ..errors import BadFile
 from ..verifying.verify_files import read_record
 from . import capture_file
+from .corrected_rows import corrected_rows
 
 HELP = "correct a capture with a record: CSV in m/s² and rad/s"
 EXAMPLE = "sixflip apply record_a.bin capture.csv -o corrected.csv"
@@ -27,31 +30,29 @@ def run(args):
     capture = capture_file.read(args.capture)
     if not args.force:
         _fits(args, record, capture)
-    columns, names = corrected(record, capture)
+    outside = []
+    columns, names = corrected(record, capture, lambda *celsius: outside.append(celsius))
+    for _, low, high in outside:
+        print("the temperature leaves %.1f to %.1f °C, what the record's terms were measured "
+              "at: beyond it their edge holds" % (low, high), file=sys.stderr)
     lines = ["%d,%s\n" % (t, ",".join(["%.7g" % x for x in row]))
              for t, row in zip(capture.t_us.tolist(), columns.tolist())]
     atomic_write.write_text(args.output, ",".join(["t_us", *names]) + "\n" + "".join(lines))
     return 0
 
 
-def corrected(record, capture):
-    """Array (n, columns) and the names of its columns: m/s², rad/s, °C."""
-    correction = Correction(record)
-    blocks, names = [_affine(capture.accel, correction.accel)], ["ax_mps2", "ay_mps2", "az_mps2"]
+def corrected(record, capture, tell=None):
+    """Array (n, columns) and the names of its columns: m/s², rad/s, °C. tell: as correction_of."""
+    rows = corrected_rows(correction_of(record, tell), capture)
+    blocks, names = [rows[:, :3]], ["ax_mps2", "ay_mps2", "az_mps2"]
     if capture.gyro is not None:
-        blocks.append(_affine(capture.gyro, correction.gyro))
+        blocks.append(rows[:, 3:])
         names += ["gx_radps", "gy_radps", "gz_radps"]
     if capture.temp is not None:
         celsius = capture.temp / capture.meta["temp_lsb_per_c"] + capture.meta["temp_offset_c"]
         blocks.append(celsius[:, None])
         names.append("temp_c")
     return np.hstack(blocks), names
-
-
-def _affine(counts, M):
-    """[c 1] M for all rows at once, as Correction.apply does for one."""
-    M = np.array(M)
-    return counts @ M[:3] + M[3]
 
 
 def _fits(args, record, capture):

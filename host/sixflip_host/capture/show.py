@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 
+from sixflip import record_terms
 from sixflip.faces import pose_name
 from sixflip.scale_form import scale_form
 
@@ -16,7 +17,7 @@ from ..solving.record_json import record_json
 from ..solving.solve import finite
 from ..terminal import console, plain, table, verdict_text
 from ..verifying.verify_files import RECORDS, decode_record
-from . import capture_file
+from . import capture_file, term_words
 
 HELP = "what is in a record or a capture, or in the flash of a board, in words"
 EXAMPLE = "sixflip show capture.csv"
@@ -94,6 +95,9 @@ def _record_words(name, record):
     if record.mounting is not None:
         out.print("mounting: roll %.3f deg, pitch %.3f deg, order %s" % tuple(
             record.mounting[key] for key in ("roll_deg", "pitch_deg", "order")))
+    for name, fields in record_terms.terms(record).items():
+        for line in term_words.lines(term_words.facts(name, fields)):
+            out.print(plain(line), soft_wrap=True)
 
 
 def _numbers(values, form):

@@ -4,6 +4,7 @@ import json
 
 from ..capture import capture_file
 from ..errors import CheckFailed, UsageError
+from ..mounting import mount
 
 HELP = "find what the simulated sensor lacks: where the gap lies, which effect, how far it shrinks"
 EXAMPLE = "sixflip diagnose warming.csv cooling.csv --report gap"
@@ -19,6 +20,9 @@ def add_arguments(parser):
     add("--add", action="append", default=[], metavar="EFFECT",
         help="run the simulator again with this effect too (`found`: those found)")
     add("--scenario", metavar="TOML", help="write the scenario with the effects added")
+    add("--record", metavar="RECORD", help="put what was found and the board can take out (drift "
+        "with temperature, g-sensitivity) into this correction record")
+    add("-o", "--output", metavar="NEW", help="the record to write, for sixflip restore --from")
     add("--report", metavar="DIR", help="write a page with pictures")
     add("--certified-box", action="store_true", help="the box is known to be square")
     add("--without", default="", metavar="EFFECT,…", help="leave effects out of the library")
@@ -44,6 +48,12 @@ def run(args):
         raise UsageError("--max-gap is %g, expected more than 0" % args.max_gap)
     if args.jobs < 0:
         raise UsageError("--jobs is %d, expected 1 or more" % args.jobs)
+    if bool(args.record) != bool(args.output):
+        raise UsageError("expected --record and -o, or neither")
+    if args.record and args.sim:
+        raise UsageError("--record: expected no --sim, a record corrects the sensor and no "
+                         "difference between sensor and simulator")
+    record = mount.accelerometer_record(args.record) if args.record else None
     sessions = [observations.Session(path, capture_file.read(path)) for path in args.captures]
     noise = reference.levels(capture_file.read(args.reference), args.reference) \
         if args.reference else None
@@ -58,6 +68,10 @@ def run(args):
     result = answer.of(found)
     if loops:
         result["simulated"] = {kind: answer.of_loop(kind, loop) for kind, loop in loops.items()}
+    if record:
+        from . import terms_out
+        terms = terms_out.found(found, record, args)
+        result["terms"] = terms_out.answer(terms, args.output)
     if args.report:
         from . import report
         report.write(args.report, found, result, loops)
@@ -65,6 +79,8 @@ def run(args):
         print(json.dumps(result, indent=1, allow_nan=False, ensure_ascii=False))
     else:
         words.show(result)
+    if record:
+        terms_out.write(terms, args)
     return checked(result, wanted, args)
 
 

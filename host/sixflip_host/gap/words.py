@@ -98,6 +98,9 @@ def show(answer):
     for kind, loop in answer.get("simulated", {}).items():
         out.print(plain(loop_line(kind, loop)), soft_wrap=True)
     _rest(out, answer)
+    if "terms" in answer:
+        from . import terms_out
+        terms_out.show(out, answer["terms"])
 
 
 def row(c):

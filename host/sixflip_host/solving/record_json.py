@@ -1,10 +1,13 @@
 """A correction record as a JSON object, units in the names."""
 
+from sixflip import record_terms
+
 from .solve import finite
 
 
 def record_json(record):
-    """dict of a Record; sections that were not measured are null."""
+    """dict of a Record; sections that were not measured are null, terms {name: fields of
+    sixflip.record_terms} those that were found."""
     return finite({
         "format": 1, "kind": "sixflip correction record", "sequence": record.sequence,
         "session": record.session, "float_bits": record.float_bits, "chip": record.chip,
@@ -13,4 +16,4 @@ def record_json(record):
         "gyro_lsb_per_dps": record.gyro_lsb_per_dps, "temp_c": record.temp_c,
         "g": record.g, "unix_time": record.time or None, "accel": record.accel,
         "gyro": record.gyro, "gyro_bias": record.gyro_bias, "mounting": record.mounting,
-        "flips": record.flips})
+        "flips": record.flips, "terms": record_terms.terms(record)})

@@ -1,0 +1,31 @@
+"""All samples of a capture through the board's own correction, those of one temperature at once."""
+
+import numpy as np
+
+from ..errors import BadFile
+
+
+def corrected_rows(correction, capture):
+    """(n, 6) m/s² and rad/s of sixflip.correction.Correction or its like; the last three are
+    meaningless where there is no gyro. BadFile where a term needs a temperature that the
+    capture does not have."""
+    n = len(capture)
+    gyro = np.zeros((n, 3)) if capture.gyro is None else capture.gyro
+    counts = np.hstack([capture.accel, gyro]).astype(float)
+    out = np.empty((n, 6))
+    for rows, temp in _by_temperature(correction, capture):
+        sample = list(counts[rows].T) + [temp]
+        out[rows] = np.array(correction.apply(sample, [None] * 6)).T
+    return out
+
+
+def _by_temperature(correction, capture):
+    """[(rows, temperature count)]; all rows at once where the temperature does not matter."""
+    if not correction.needs_temperature:
+        return [(slice(None), 0)] if len(capture) else []
+    if capture.temp is None:
+        raise BadFile("the record takes out a drift with temperature: expected a capture with a "
+                      "temp column")
+    order = np.argsort(capture.temp, kind="stable")
+    values, starts = np.unique(capture.temp[order], return_index=True)
+    return list(zip(np.split(order, starts[1:]), values.tolist()))
