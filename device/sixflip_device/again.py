@@ -1,4 +1,4 @@
-"""One face of the session before is taken again: what else there is of it is taken over.
+"""The session before goes on, or one face of it is taken again: what there is is taken over.
 
 Its capture is copied block by block into the new one. How long ago it was nobody knows: the
 time goes on after GAP_S, a note says so, and no move across it is used. Both placements of the
@@ -62,6 +62,14 @@ def _fits(unit, scan, number):
                                             WARMER_C))
 
 
+def _unfinished(placements):
+    """ValueError when there is nothing to go on with."""
+    if [p for p in placements if p.pose > 12]:
+        raise ValueError("the session before followed a plan")
+    if len(placements) == 12:
+        raise ValueError("nothing is missing in the session before")
+
+
 def _copy(unit, name, asked, scan):
     """The file as it was, but for its header and its end."""
     root = unit.board.root
@@ -79,8 +87,8 @@ def _copy(unit, name, asked, scan):
             for kind, block in Scan(g).each():
                 if kind != cb.END and (kind != cb.SAMPLES or not asked.sums_only):
                     f.write(block)
-        new.note("%s again, after a pause of unknown length: %d s stand for it"
-                 % (FACES[asked.face], GAP_S))
+        new.note("%s, after a pause of unknown length: %d s stand for it"
+                 % (FACES[asked.face] + " again" if asked.face >= 0 else "continued", GAP_S))
         asked.bytes = f.tell()
 
 
@@ -90,8 +98,10 @@ def run(unit):
     asked.session = int.from_bytes(os.urandom(4), "little")
     try:
         name, scan = _last(unit.board.root)
-        _fits(unit, scan, asked.session)
         blocks = scan.blocks
+        if asked.face < 0:
+            _unfinished(blocks.placements)
+        _fits(unit, scan, asked.session)
         asked.placements = blocks.placements
         last = blocks.placements[-1]
         asked.samples = max(blocks.samples, last.first + last.n)
@@ -100,6 +110,9 @@ def run(unit):
         _copy(unit, name, asked, scan)
     except (ValueError, OSError) as e:
         remove(unit.board.root + NEW)
+        if asked.face < 0:
+            unit.events.emit("afresh", reason=str(e))
+            return "sampling"
         unit.events.error("face %s cannot be taken again: %s" % (FACES[asked.face], e),
                           "calibrate all faces")
         return "rest"

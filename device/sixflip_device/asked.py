@@ -5,6 +5,8 @@
                                             a plan: these, in this order; samples may be one
                                             number for all, rest_s is stillness at both ends
     {"redo": "X+"}                          that face of the session before again
+    {"continue": true}                      the session before goes on where it ended; when
+                                            there is none, or nothing is missing: six faces
 """
 
 import json
@@ -21,12 +23,13 @@ SHORTEST, LONGEST = 50, 60000  # samples of a pose
 class Asked:
     """For sampling. wanted, lengths, hold_s: a plan, see PlannedSession; wanted None: none.
 
-    face  0..5 of the session before to take again, -1: a session of its own; then
+    before  it goes on with the session before; then face: 0..5 to be taken again, or -1, and
     placements, samples, seconds, us, kept, bytes, sums_only, reason, session: what again.py
-    took over of the one before
+    took over of it
     """
 
     wanted = None
+    before = False
     face = -1
 
 
@@ -57,9 +60,13 @@ def parse(request, pose_samples):
     if not isinstance(request, dict):
         raise ValueError("expected a JSON object")
     asked = Asked()
+    if request.get("continue"):
+        asked.before = True
+        return asked
     if "redo" in request:
         if request["redo"] not in FACES:
             raise ValueError("redo without a face, expected one of " + " ".join(FACES))
+        asked.before = True
         asked.face = FACES.index(request["redo"])
         return asked
     if "poses" not in request:
@@ -88,6 +95,6 @@ def run(unit):
         unit.events.error("no calibration: what was asked for cannot be understood: %s" % e,
                           "%s empty, or a plan or a face as sixflip calibrate writes it" % FLAG)
         return "rest"
-    if unit.taken is not None and unit.taken.face >= 0:
+    if unit.taken is not None and unit.taken.before:
         return "again"
     return "sampling"

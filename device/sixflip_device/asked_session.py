@@ -1,6 +1,7 @@
 """What sampling does otherwise when a plan, or a face of the session before, was asked for."""
 
 from sixflip import capture_blocks
+from sixflip.faces import face_of_code
 
 from .capture_meta import columns, meta_bytes
 from .capture_store import CaptureStore
@@ -36,7 +37,7 @@ def store_of(unit, taken):
     """The CaptureStore; taken.session becomes that of the file that goes on."""
     asked = unit.taken
     mask = columns(unit.sensor.imu)
-    if asked.face >= 0:
+    if asked.before:
         taken.session = asked.session
         return ContinuedStore(unit.board.root, meta_bytes(unit, taken.session), mask, asked)
     rate_hz = unit.settings["rate_hz"]
@@ -45,6 +46,10 @@ def store_of(unit, taken):
     width = 2 + 2 * len(capture_blocks.places(mask))
     return CaptureStore(unit.board.root, meta_bytes(unit, taken.session), mask,
                         samples * width * 11 // 10)
+
+
+def _half(placements, face):
+    return len([p for p in placements if face_of_code(p.pose) == face]) == 1
 
 
 def session(unit, chip, store):
@@ -59,6 +64,9 @@ def session(unit, chip, store):
     from sixflip.session import Session
     made = Session(*chip, pose_samples=settings["pose_samples"], timeout_s=settings["timeout_s"])
     resume(made, asked.placements, asked.samples)
-    for code in made.redo(asked.face):
-        store.withdraw(code)
+    for face in range(6):
+        # a face alone of its pair too: the table may have been moved since
+        if face == asked.face or asked.face < 0 and _half(asked.placements, face):
+            for code in made.redo(face):
+                store.withdraw(code)
     return made

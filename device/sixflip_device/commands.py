@@ -1,7 +1,7 @@
 """What the host may ask for, one JSON line each.
 
     {"cmd": "info"}                              -> hello-like line: record, files, free bytes
-    {"cmd": "calibrate"}                         guided calibration now; by a plan: see asked.py
+    {"cmd": "calibrate"}                         guided calibration now; other ones: see asked.py
     {"cmd": "redo", "face": "Z+"}                that face again, now or of the session before
     {"cmd": "undo"}                              while calibrating
     {"cmd": "stream", "raw": true, "hz": 50}     what is streamed; hz 0: nothing; "heading" in
@@ -55,7 +55,7 @@ def _stream(unit, command):
 
 
 def _calibrate(unit, command):
-    unit.request = command if "poses" in command else None
+    unit.request = command if "poses" in command or "continue" in command else None
     unit.asked = True
 
 

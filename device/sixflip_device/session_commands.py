@@ -9,7 +9,7 @@ def obey(command, unit, session, store, teller):
     if cmd == "redo" and command.get("face") in FACES:
         _redo(FACES.index(command["face"]), session, store, teller)
     elif cmd == "redo":
-        teller.error("redo without a face", "one of " + " ".join(FACES))
+        unit.events.error("redo without a face", "one of " + " ".join(FACES))
     elif cmd == "undo" and placements and session.wanted:
         gone = session.undo()  # of a pose that may come more than once
         store.withdraw(gone.pose, gone.first)
@@ -17,7 +17,7 @@ def obey(command, unit, session, store, teller):
     elif cmd == "undo" and placements:
         _redo(face_of_code(placements[-1].pose), session, store, teller)
     elif cmd == "undo":
-        teller.error("nothing to undo", "an accepted pose")
+        unit.events.error("nothing to undo", "an accepted pose")
     else:
         unit.obey(command, True)
 

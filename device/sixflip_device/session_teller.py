@@ -4,8 +4,6 @@ from sixflip.faces import FACES, pose_name
 
 from . import led
 
-REPEAT_US = 500000  # a state that does not change is told again so often
-
 
 def names(codes):
     return [pose_name(code) for code in codes]
@@ -15,14 +13,13 @@ class Teller:
     """Turns the state of a session.Session into events; step() once a sample for the lamp."""
 
     def __init__(self, board, session, rate_hz, events):
-        self._board = board
         self._session = session
         self._rate_hz = rate_hz
         self._events = events
         self._lamp = led.Lamp(board, rate_hz)
         self._lamp.show(led.MEASURING)
         self._told = None
-        self._told_at = board.ticks_us()
+        self._repeated = 0
         self.step = self._lamp.step
 
     def pose(self, placement):
@@ -51,9 +48,6 @@ class Teller:
         at = session.place()
         return {"next": names(session.wanted[at:at + 1]), "at": at, "of": len(session.wanted)}
 
-    def error(self, what, expected):
-        self._events.error(what, expected)
-
     def _pose(self):
         session = self._session
         if session.candidate:
@@ -61,20 +55,20 @@ class Teller:
         return FACES[session.face] if session.face >= 0 else ""
 
     def state(self):
-        """At once when it changed, else a few times a second at most."""
+        """Once a window: what is missing when something changed and with every eighth, else
+        the vector. Both make a line that a full heap has no room for in one piece."""
         session = self._session
-        board = self._board
         self._lamp.show(led.STATES.get(session.state, led.WAITING))
         key = (session.state, session.candidate, session.face, session.reason)
-        now = board.ticks_us()
-        if key == self._told and board.ticks_diff(now, self._told_at) < REPEAT_US:
-            return
-        self._told = key
-        self._told_at = now
+        if key != self._told:
+            self._told = key
+            self._repeated = 0
+        more = {"live": session.live()} if self._repeated % 8 else self._todo()
+        self._repeated += 1
         left = session.left_s
         if session.state == "capturing":
             left = (session.pose_samples - session.progress) / self._rate_hz
         self._events.emit("state", state=session.state, pose=self._pose(), reason=session.reason,
                           value=session.value, limit=session.limit, unit=session.unit,
                           progress=session.progress, total=session.pose_samples, left_s=left,
-                          **self._todo())
+                          **more)

@@ -457,7 +457,7 @@ class Sensors(unittest.TestCase):
         hands.gyro_sd = 4.0
         hands.six_faces(order=(0, 2), dwell=8)
         self.assertEqual(poses(session), ["Z+a", "Z+b", "X+a", "X+b"])
-        self.assertAlmostEqual(session.noise()[0], 30, delta=7)
+        self.assertAlmostEqual(session._noise.sd[0], 30, delta=7)
 
     def test_a_shaking_hand_is_no_noise_floor(self):
         session, hands = make()
