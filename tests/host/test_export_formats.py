@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import yaml
 
-from sixflip import correction_record
-from sixflip.correction import Correction
+from sixflip import correction_record, record_terms
+from sixflip.correction import Correction, correction_of
 from sixflip_host.cli import main
 
 G = 9.80665
@@ -120,3 +120,77 @@ def test_record_without_accelerometer(tmp_path, capsys):
     (tmp_path / "r.bin").write_bytes(correction_record.encode(record))
     assert main(["export", str(tmp_path / "r.bin"), "-o", str(tmp_path / "o.yaml")]) == 4
     assert "no accelerometer correction" in capsys.readouterr().err
+
+
+TERMS = {"accel_thermal_bias": {"k1": [0.5, -0.7, -1.8], "k2": [0.01, 0.0, 0.02]},
+         "gyro_thermal_bias": {"k1": [0.04, -0.1, 0.3], "k2": [0.0, 0.001, 0.0]},
+         "accel_thermal_scale": {"k1": [0.02, -0.03, 0.05]},
+         "gyro_thermal_scale": {"k1": [0.1, 0.0, -0.1]},
+         "g_sensitivity": {"k": [[0.1, -0.05, 0.02], [0.0, 0.2, 0.03], [-0.04, 0.01, 0.15]]}}
+
+
+def with_terms(path, names=tuple(TERMS)):
+    """(path, Record) of the crooked sensor with these terms, calibrated at 24 °C."""
+    record = make_record()
+    record.temp_c = 24.0
+    for name in names:
+        fields = {"axes": [0, 1, 2], "origin": "sessions held out", "source": "a.csv b.csv",
+                  "before": 6.0, "after": 2.0, "floor": 1.9, **TERMS[name]}
+        if name == "g_sensitivity":
+            fields["sigma"] = [[0.01] * 3] * 3
+        else:
+            fields.update(sigma_k1=[0.1] * 3, sigma_k2=[0.1] * 3, t0_c=28.0, low_c=15.0,
+                          high_c=40.0, temp_lsb_per_c=340.0, temp_offset_c=36.53)
+        record_terms.put(record, name, fields)
+    path.write_bytes(correction_record.encode(record))
+    return path, record
+
+
+@pytest.mark.parametrize("celsius", [None, 36.0])
+@pytest.mark.parametrize("name", ["imu_calib", "imufusion", "imucal"])
+def test_terms_frozen_at_a_temperature_are_what_the_board_does_there(tmp_path, name, celsius):
+    path, record = with_terms(tmp_path / "r.bin")
+    output = tmp_path / "out"
+    words = [] if celsius is None else ["--temperature", str(celsius)]
+    assert main(["export", str(path), "--format", name, "-o", str(output), *words]) == 0
+    text = output.read_text()
+    assert "HOLDS AT %.2f degC ONLY" % (celsius or 24.0) in text
+    assert "accel_thermal_bias and gyro_thermal_bias" in text
+    assert ("NOT in this file" in text) == (name != "imucal")
+    counts = np.random.default_rng(8).integers(-32768, 32767, (50, 6))
+    temp = round(((celsius or 24.0) - 36.53) * 340)
+    correction = correction_of(record)
+    board = np.array([correction.apply([*row, temp], [0.0] * 6) for row in counts.tolist()])
+    if name == "imucal":
+        info = imucal.FerrarisCalibrationInfo.from_json_file(output)
+        acc, gyr = info.calibrate(counts[:, :3] / LSB * G, counts[:, 3:] / DPS, "m/s^2", "deg/s")
+        np.testing.assert_allclose(acc, board[:, :3], rtol=0, atol=2e-4)
+        np.testing.assert_allclose(np.radians(gyr), board[:, 3:], rtol=0, atol=2e-4)
+    elif name == "imu_calib":
+        node = yaml.safe_load(text)
+        SM, bias = np.reshape(node["SM"], (3, 3)), np.array(node["bias"])
+        np.testing.assert_allclose(counts[:, :3] / LSB * G @ SM.T - bias, board[:, :3], rtol=0,
+                                   atol=2e-4)
+    else:
+        names = {}
+        exec(text, names)
+        answer = [imufusion.model_inertial(row.astype(float), names["accelerometer_misalignment"],
+                                           names["accelerometer_sensitivity"],
+                                           names["accelerometer_offset"]) * 9.78
+                  for row in counts[:, :3]]
+        np.testing.assert_allclose(answer, board[:, :3], rtol=1e-5, atol=5e-4)
+
+
+def test_json_holds_every_term(tmp_path):
+    path, record = with_terms(tmp_path / "r.bin")
+    answer = json.loads(export((path,), "json", tmp_path / "r.json"))
+    assert {name: fields["axes"] for name, fields in answer["terms"].items()} == dict.fromkeys(
+        TERMS, [0, 1, 2])
+    assert answer["terms"]["accel_thermal_bias"]["k1"] == TERMS["accel_thermal_bias"]["k1"]
+
+
+def test_a_temperature_for_a_format_that_follows_it(tmp_path, capsys):
+    path, _ = with_terms(tmp_path / "r.bin")
+    assert main(["export", str(path), "--format", "json", "-o", str(tmp_path / "o"),
+                 "--temperature", "30"]) == 2
+    assert "--temperature" in capsys.readouterr().err and not (tmp_path / "o").exists()

@@ -1,4 +1,4 @@
-"""All samples of a capture through the board's own correction, those of one temperature at once."""
+"""Whole captures through the board's own correction, all samples of one temperature at once."""
 
 import numpy as np
 

@@ -43,19 +43,27 @@ def record_text(make):
     return write
 
 
+def frozen_text(make):
+    """A record as somebody else's file that knows no temperature: it holds at one."""
+    def write(path, output, temp_c=None):
+        atomic_write.write_text(output, make(path, read_record(path), temp_c))
+    return write
+
+
 # format: (made from, how, endings of a file name that ask for it)
 FORMATS = {
     "csv": ("capture", capture_csv, (".csv", ".csv.gz")),
     "bin": ("capture", capture_bin, (".bin",)),
     "json": ("record", record_to_json, (".json",)),
-    "imu_calib": ("record", record_text(export_formats.imu_calib_yaml), (".yaml", ".yml")),
-    "imufusion": ("record", record_text(export_formats.imufusion_python), (".py",)),
-    "imucal": ("record", record_text(export_formats.imucal_json), ()),
+    "imu_calib": ("record", frozen_text(export_formats.imu_calib_yaml), (".yaml", ".yml")),
+    "imufusion": ("record", frozen_text(export_formats.imufusion_python), (".py",)),
+    "imucal": ("record", frozen_text(export_formats.imucal_json), ()),
     "c-header": ("record", record_text(export_c.c_header), (".h",)),
     "sdf": ("capture", other_simulators.capture_sdf, (".sdf",)),
     "kalibr": ("capture", other_simulators.capture_kalibr, (".yaml", ".yml")),
     "table": ("capture", other_simulators.capture_table, (".txt",)),
 }
+FROZEN = ("imu_calib", "imufusion", "imucal")
 
 
 def add_arguments(parser):
@@ -64,6 +72,9 @@ def add_arguments(parser):
     parser.add_argument("-o", "--output", required=True, help="file to write")
     parser.add_argument("--format", "--to", dest="to", choices=FORMATS,
                         help="default: by the name of the output")
+    parser.add_argument("--temperature", type=float, metavar="DEGC", help="at which a record that "
+                        "follows it is frozen, in formats that know none (default: the "
+                        "calibration's)")
 
 
 def run(args):
@@ -79,7 +90,12 @@ def run(args):
         raise UsageError("%s is a %s, and %s is made from a %s: expected --format %s" % (
             args.file, kind, name, made_from, " or ".join(
                 one for one in FORMATS if FORMATS[one][0] == kind)))
-    how(args.file, args.output)
+    if name in FROZEN:
+        how(args.file, args.output, args.temperature)
+    elif args.temperature is None:
+        how(args.file, args.output)
+    else:
+        raise UsageError("--temperature: expected --format %s with it" % " or ".join(FROZEN))
     return 0
 
 

@@ -11,9 +11,9 @@ from .affine_correction import AffineCorrection
 IMUCAL_VERSION = "2.0.0"        # of its file format
 
 
-def imu_calib_yaml(path, record):
+def imu_calib_yaml(path, record, temp_c=None):
     """Text for the ROS node apply_calib (dpkoch/imu_calib): SM row by row, and bias."""
-    found = AffineCorrection(path, record)
+    found = AffineCorrection(path, record, temp_c)
     A, o = found.accel
     lines = found.origin() + found.left_out() + [
         "formula of imu_calib: corrected = SM * raw - bias, SM row by row",
@@ -30,9 +30,9 @@ def _items(values):
     return "".join("  - %.17g\n" % value for value in values)
 
 
-def imufusion_python(path, record):
+def imufusion_python(path, record, temp_c=None):
     """Text of a Python module for imufusion (x-io Fusion): misalignment, sensitivity, offset."""
-    found = AffineCorrection(path, record)
+    found = AffineCorrection(path, record, temp_c)
     lines = found.origin() + found.left_out() + [
         "formula of imufusion: calibrated = misalignment * (sensitivity o (raw - offset)),",
         "o: element by element, misalignment after sensitivity (model_inertial of imufusion,",
@@ -67,13 +67,13 @@ def _array(values):
     return "[%s]" % (",\n    ".join(_array(row) for row in values))
 
 
-def imucal_json(path, record):
+def imucal_json(path, record, temp_c=None):
     """Text that imucal loads as a FerrarisCalibrationInfo."""
-    found = AffineCorrection(path, record)
+    found = AffineCorrection(path, record, temp_c)
     if found.gyro is None:
         raise BadFile("%s is of a sensor without a gyro: imucal needs both, expected another "
                       "format" % path)
-    lines = found.origin() + found.left_out() + [
+    lines = found.origin() + found.left_out(coupled=True) + [
         "formula of imucal: acc = R_a^-1 K_a^-1 (raw - b_a), "
         "gyr = R_g^-1 K_g^-1 (raw - K_ga acc - b_g)",
         "units: m/s^2 and deg/s in and out"]
@@ -85,7 +85,9 @@ def imucal_json(path, record):
         answer["K_" + letter] = np.diag(size).tolist()
         answer["R_" + letter] = (inverse / size[:, None]).tolist()
         answer["b_" + letter] = (-inverse @ o).tolist()
-    answer.update(K_ga=[[0.0] * 3] * 3, cal_type="Ferraris", _format_version=IMUCAL_VERSION)
+    K_ga = np.zeros((3, 3)) if found.coupling is None else np.linalg.solve(
+        found.gyro[0], found.coupling)
+    answer.update(K_ga=K_ga.tolist(), cal_type="Ferraris", _format_version=IMUCAL_VERSION)
     if not all(math.isfinite(x) for x in answer["b_a"] + answer["b_g"]):
         raise BadFile("%s: its matrices cannot be inverted" % path)
     return json.dumps(answer, indent=1) + "\n"

@@ -26,7 +26,7 @@ OTHER_PART_G = 0.02  # |a| at rest beyond this: it is not this sensor's record
 
 
 class Term:
-    """name (of the section); cause; gap (SensorGap); fields (of record_terms.py, with the gain)."""
+    """name of the section; cause; gap (SensorGap); fields of record_terms.py, gain included."""
 
     def __init__(self, gap, cause, name):
         self.gap, self.cause, self.name = gap, cause, name
