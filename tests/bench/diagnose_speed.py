@@ -26,7 +26,6 @@ SETTLE_S = 30.0  # of rest, at each end of a session
 DIAGNOSE = "import sys; from sixflip_host.cli import main; sys.exit(main(sys.argv[1:]))"
 STEPWISE = """
 import json, sys
-import sixflip_host.gap
 sys.path.insert(0, sys.argv[1])
 from baselines.stepwise import stepwise
 from sixflip_host.capture import capture_file
