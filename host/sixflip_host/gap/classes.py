@@ -2,7 +2,9 @@
 
 Two effects are one class when one reproduces more than 0.9 of the other (alias index, in the
 metric of the noise, nominal model and the other causes projected out), when their scores are
-less than 3 nats apart, or when what tells them apart is less than 3 standard deviations.
+less than 3 nats apart, or when what tells them apart is less than 3 standard deviations. What
+lies between sessions counts as much in the alias index as all that lies within them: there are
+few such contrasts, but no error in the form of an effect can turn them round.
 """
 import numpy as np
 
@@ -13,11 +15,13 @@ SAME, NATS, SIGMAS = 0.9, 3.0, 3.0
 
 class Cause:
     """One effect found: chosen (Candidates), members ({effect: why it cannot be told}),
-    score (nats), theta, sigma (arrays over keys), keys, axes, share, plausible."""
+    score (nats), theta, sigma (arrays over keys), keys, axes, share, plausible;
+    other_axes: those that cannot be told from the axes chosen."""
 
     def __init__(self, effect, chosen, score):
         self.effect, self.chosen, self.score = effect, chosen, score
         self.members, self.share, self.plausible = {}, None, True
+        self.other_axes = []
         self.domain = None
 
     @property
@@ -26,20 +30,23 @@ class Cause:
 
 
 def pooled(data, chosen):
-    """(gram (K, K), theta (k,), V (k, k), columns) of all units with the chosen effects in."""
+    """([gram (K, K) within sessions, between them], theta (k,), V (k, k), columns) with the
+    chosen effects in."""
     columns = np.concatenate([c.columns for c in chosen])
     prior = np.concatenate([c.prior for c in chosen])
     found = which.fits(data, columns, prior)
     theta, covariance = which.coefficients(found, prior)
-    gram = sum(u.gram[f.index[0]] for u, f in zip(data.units, found))
-    return gram, theta[0], covariance[0], columns
+    grams = [0.0, 0.0]  # within sessions, between them
+    for unit, fit in zip(data.units, found):
+        grams[unit.between] = grams[unit.between] + unit.gram[fit.index[0]]
+    return grams, theta[0], covariance[0], columns
 
 
 def causes(data, options, chosen):
     """list of Cause, largest score first, with the members of their classes."""
     if not chosen:
         return []
-    gram, theta, covariance, columns = pooled(data, chosen)
+    grams, theta, covariance, columns = pooled(data, chosen)
     out = []
     for name in dict.fromkeys(c.effect for c in chosen):
         mine = [c for c in chosen if c.effect == name]
@@ -54,7 +61,8 @@ def causes(data, options, chosen):
         sigma = np.sqrt(np.diag(covariance))
         cause.sigma = np.concatenate([sigma[_places(columns, c.columns)] for c in mine])
         out.append(cause)
-        _rivals(cause, data, options, others, gram, columns[~where])
+        _rivals(cause, data, options, others, grams, columns[~where])
+        cause.other_axes = _other_axes(cause, data, options, others)
     # those in each other's class are one
     out.sort(key=lambda c: -c.score)
     return out
@@ -69,9 +77,17 @@ def _places(columns, wanted):
     return [int(np.flatnonzero(columns == w)[0]) for w in wanted]
 
 
-def _rivals(cause, data, options, others, gram, other_columns):
+def balanced(grams, mine):
+    """Both grams together, the energy of `mine` between sessions as large as within them."""
+    within, between = (np.trace(np.atleast_2d(g)[np.ix_(mine, mine)]) if np.ndim(g) else 0.0
+                       for g in grams)
+    return grams[0] + grams[1] * (within / between if between > 0.0 else 1.0)
+
+
+def _rivals(cause, data, options, others, grams, other_columns):
     """Fill cause.members with every other effect that cannot be told from it."""
     mine = np.concatenate([c.columns for c in cause.chosen])
+    gram, even = grams[0] + grams[1], balanced(grams, mine)
     taken = {c.effect for c in others}
     for name in dict.fromkeys(o.effect for o in options):
         if name == cause.effect or name in taken:
@@ -82,14 +98,27 @@ def _rivals(cause, data, options, others, gram, other_columns):
             continue
         variants = [o for o in options if o.effect == name and o.axis is None
                     and not o.variant.endswith("+")]
-        left = reproduced(gram, mine, cause.theta, [o.columns for o in variants], other_columns)
+        spaces = [o.columns for o in variants]
+        left = reproduced(even, mine, cause.theta, spaces, other_columns)
         if left is None:
             continue
-        index, apart = left
+        index = left[0]
+        apart = reproduced(gram, mine, cause.theta, spaces, other_columns)[1]
         if index > SAME:
             cause.members[name] = "alias index %.2f" % index
         elif apart < SIGMAS:
             cause.members[name] = "%.1f standard deviations apart" % apart
+
+
+def _other_axes(cause, data, options, others):
+    """Axes (0..2) on which the same effect would do as well: where a pose's attitude is free,
+    x: f_y f_z and y: f_x f_z add the same along gravity."""
+    if len(cause.chosen) != 1 or cause.chosen[0].axis is None:
+        return []
+    mine = cause.chosen[0]
+    same = [o for o in options if o.effect == cause.effect and o.axis not in (None, mine.axis)]
+    gains = which.gains(data, same, others)
+    return sorted({o.axis for o, gain in gains.items() if gain[0] > cause.score - NATS})
 
 
 def reproduced(gram, mine, theta, alternatives, others):

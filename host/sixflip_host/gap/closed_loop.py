@@ -152,7 +152,7 @@ def close(diagnosis, kind, add=None):
     loop = Loop()
     loop.effects = specs(gap, which.coefficients(fits, prior)[0][0], reference)
     sums = np.zeros(4)
-    for held, unit in enumerate(gap.units):
+    for held, unit in enumerate(gap.units[:len(gap.parts)]):
         others = fits[:held] + fits[held + 1:] or fits
         theta = which.coefficients(others, prior)[0][0]
         sums += _session(gap, held, unit, specs(gap, theta, reference), loop)

@@ -69,7 +69,7 @@ class Diagnosis:
                       for f in self.findings for axis in (f.axes or [None])]
         places = [p for gap in [*self.gaps.values(), *([self.turns] if self.turns else [])]
                   for p in where.places(gap)]
-        self.where += sorted(places, key=lambda p: (not p.named, -p.share))
+        self.where += sorted(places, key=where.order)
         self.verdict = self._verdict()
 
     def _compared(self, simulator):

@@ -178,6 +178,9 @@ class TurnsGap(SensorGap):
         unit.signature = ("turns", tuple((t.flip, round(t.turned, -1)) for t in chosen))
         return unit
 
+    def _between(self):
+        return []
+
     def _search(self):
         self.limits = thresholds.of(self.units, self.options, self.levels())
         self.limits.named += MARGIN_NATS

@@ -122,6 +122,7 @@ class Unit:
     """
 
     signature = ()
+    between = False  # True for what lies between the sessions, see between.py
 
     def __init__(self, y, nuisance, white, lateral, kernel, levels, designs, fixed=None):
         u, s, _ = np.linalg.svd(nuisance, full_matrices=True)
@@ -215,8 +216,10 @@ class Rows:
         self.levels, self.fixed = levels, fixed
 
     def unit(self, designs):
-        return Unit(self.y, self.nuisance, self.white, self.lateral, self.kernel, self.levels,
-                    designs, self.fixed)
+        found = Unit(self.y, self.nuisance, self.white, self.lateral, self.kernel, self.levels,
+                     designs, self.fixed)
+        found.rows = self
+        return found
 
 
 def rows(kind, session, nominal, certified=False):

@@ -8,6 +8,7 @@ import copy
 
 import numpy as np
 
+from sixflip import faces
 from sixflip_sim.effects import typical
 from sixflip_sim.effects.library import EFFECTS
 
@@ -151,7 +152,27 @@ def generics(session, up, sensor):
     since = [fade] + [(before[:, i] - f[:, i]) * fade for i in range(3)]
     found.append(_generic("time_since_move", since, n, scale))
     found.append(_generic("orientation", _harmonics(f, sensor), n, scale))
-    return found
+    flip = _flip(session, scale)
+    return [*found, flip] if flip else found
+
+
+def _flip(session, scale):
+    """Along the axis of each face, what changes sign with the flip; None without flips. Across
+    it that is the table's tilt and the box's."""
+    sign = np.where(session.code % 2 == 1, 1.0, -1.0)  # codes 1, 3, ... are a, the others b
+    keys, axes, columns = [], [], []
+    for face in np.unique(session.face[session.face >= 0]).tolist():
+        on = session.face == face
+        if len(np.unique(sign[on])) < 2:
+            continue
+        column = np.zeros((session.n, 3))
+        column[on, faces.AXIS[face]] = sign[on]
+        keys.append("%s%d" % ("xyz"[faces.AXIS[face]], face))
+        axes.append(faces.AXIS[face])
+        columns.append(column.reshape(-1))
+    if not keys:
+        return None
+    return Design("~flip", "", keys, axes, np.stack(columns, 1), np.full(len(keys), scale))
 
 
 def _generic(domain, functions, n, scale):

@@ -5,6 +5,7 @@ from sixflip_sim.effects.library import EFFECTS
 
 from . import (
     adequacy,
+    between,
     classes,
     nominal_fit,
     regressors,
@@ -33,6 +34,7 @@ class SensorGap:
         self.parts = [(s, m) for s, m in zip(sessions, nominal)]
         parts = self.parts
         self.units = [self._unit(part, model, settings.certified) for part, model in parts]
+        self.units += self._between()
         self.data = which.Data(self.units)
         self.options = [o for o in which.candidates(self.units)
                         if o.effect not in settings.without]
@@ -51,11 +53,18 @@ class SensorGap:
                                                chip=self.chip))
         designs += regressors.generics(part, model.up, self.kind)
         designs = [d for d in designs if not (certified and d.effect == "box_tilt")]
-        make = nominal_fit.accel_unit if self.kind == "accel" else nominal_fit.gyro_unit
-        unit = make(part, model, designs) if self.kind == "gyro" \
-            else make(part, model, designs, certified)
+        unit = nominal_fit.unit_of(self.kind, part, model, designs, certified)
         self._take_off(unit)
         return unit
+
+    def _between(self):
+        """[Unit of what lies between the sessions], [] where there is nothing between."""
+        found = between.unit(self.kind, [u.rows for u in self.units],
+                             [m for _, m in self.parts], [u.designs for u in self.units])
+        if found is None:
+            return []
+        self._take_off(found)
+        return [found]
 
     def _take_off(self, unit):
         """Take off the contrasts what the simulator compared with predicts already."""
@@ -156,6 +165,23 @@ class SensorGap:
         own = adequacy.session_gain(self.data, self.options, self.chosen)
         if own > SESSION_NATS:
             self.added["time"] = max(own, self.added.get("time", 0.0))
+        self._between_left()
+
+    def _between_left(self):
+        """Biases further apart than switching on explains, after the causes."""
+        unit = self.units[-1]
+        if not unit.between:
+            return
+        left = unit.z
+        if self.chosen:
+            columns = np.concatenate([c.columns for c in self.chosen])
+            prior = np.concatenate([c.prior for c in self.chosen])
+            theta = which.coefficients(which.fits(self.data, columns, prior), prior)[0][0]
+            left = left - unit.columns[:, columns] @ theta
+        covariance = unit.covariance(between.UNUSUAL[self.kind], 0.0)
+        nats = 0.5 * float(left @ np.linalg.solve(covariance, left)) - 0.5 * len(left)
+        if nats > SESSION_NATS:
+            self.added["session"] = nats
 
     def _doubted(self, cause):
         """True for a name that only stands in for something unknown: most of it is the bend

@@ -24,7 +24,7 @@ class Shrinkage:
 
 
 def of(data, chosen, index):
-    """Shrinkage of all units, each held out in turn; index: into each unit's grid, the levels
+    """Shrinkage of all sessions, each held out in turn; index: into each unit's grid, the levels
     that count as noise."""
     columns = np.concatenate([c.columns for c in chosen] + [np.zeros(0, dtype=int)])
     prior = np.concatenate([c.prior for c in chosen] + [np.zeros(0)])
@@ -32,6 +32,8 @@ def of(data, chosen, index):
     before = after = floor = closed = gap = number = 0.0
     strength = along = 0.0
     for held, (unit, point) in enumerate(zip(data.units, index)):
+        if unit.between:
+            continue
         z, cov = unit.z, unit.covariance(*unit.grid[point])
         predicted = np.zeros_like(z)
         if found:

@@ -20,6 +20,7 @@ def fill(cause, data, levels, chip, kind):
         cause.value = {k: v for k, v in cause.value.items()
                        if "xyz"[axis_of[k]] in cause.letters}
         cause.interval = {k: cause.interval[k] for k in cause.value}
+        cause.letters = sorted({*cause.letters, *("xyz"[a] for a in cause.other_axes)})
     cause.plausible = plausible.believable(cause.effect, chip, kind, cause.value, sigma)
 
 

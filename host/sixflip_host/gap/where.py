@@ -1,9 +1,13 @@
 """Stage 2: where the gap lies. A share of the excess and a test per domain and axis, false
 discoveries controlled [Benjamini & Hochberg, JRSS B 57 (1995) 289]."""
 import numpy as np
-from scipy import stats
+from scipy import linalg, stats
+
+from . import between
 
 FALSE_DISCOVERIES = 0.01
+LEAST_SHARE = 0.01  # of the excess: less is no place to look at
+BROAD = ("along_gravity", "across_gravity")
 
 
 class Place:
@@ -20,8 +24,8 @@ def places(gap):
     """list of Place of a SensorGap, the largest share first; those of its causes lead."""
     tested = [_tested(gap, option) for option in gap.options if option.generic
               and option.axis is not None]
-    lateral = across(gap)
-    tested = controlled([t for t in tested + lateral if t is not None])
+    tested += across(gap) + along(gap) + session(gap)
+    tested = controlled([t for t in tested if t is not None])
     named = []
     for cause in gap.causes:
         for letter in cause.letters or [None]:
@@ -32,8 +36,13 @@ def places(gap):
     for place in named:
         place.named = True
     known = {(p.axis, p.domain) for p in named}
-    return named + sorted([t for t in tested if (t.axis, t.domain) not in known],
-                          key=lambda t: -t.share)
+    return sorted(named + [t for t in tested if (t.axis, t.domain) not in known
+                           and t.share >= LEAST_SHARE], key=order)
+
+
+def order(place):
+    """Sort key: named causes, then domains, then what only says along or across gravity."""
+    return not place.named, place.domain in BROAD, -place.share
 
 
 def _tested(gap, option):
@@ -76,7 +85,7 @@ def across(gap):
     """The attitude of the placements, where they scatter more than by hand."""
     if gap.kind != "accel" or not gap.units[0].grid:
         return []
-    levels = [u.grid[i][0] for u, i in zip(gap.units, gap.adequacy.index)]
+    levels = [u.grid[i][0] for u, i in zip(gap.units, gap.adequacy.index) if not u.between]
     worst = max(levels)
     if worst <= ORDINARY_PLACEMENT_MG:
         return []
@@ -84,11 +93,50 @@ def across(gap):
     return [Place("accel", None, "across_gravity", share, 1e-6)]
 
 
+def along(gap):
+    """What no position of a placement can touch: the sensor itself, not its attitude."""
+    if gap.kind != "accel":
+        return []
+    chi2 = freedom = 0.0
+    for unit, index in zip(gap.units, gap.adequacy.index):
+        if unit.between:
+            continue
+        free = linalg.null_space((unit.contrasts.T @ unit.rows.lateral).T)
+        if not free.shape[1]:
+            continue
+        z = free.T @ unit.z
+        covariance = free.T @ unit.covariance(*unit.grid[index]) @ free
+        chi2 += float(z @ np.linalg.solve(covariance, z))
+        freedom += len(z)
+    if not freedom:
+        return []
+    excess = max(gap.adequacy.excess_before, chi2 - freedom, 1e-9)
+    return [Place(gap.kind, None, "along_gravity", (chi2 - freedom) / excess,
+                  stats.chi2.sf(chi2, freedom))]
+
+
+def session(gap):
+    """The biases of the sessions against each other, beyond what switching on changes."""
+    unit = gap.units[-1]
+    if not unit.between:
+        return []
+    found = []
+    z = (unit.contrasts @ unit.z).reshape(-1, 3)
+    variance = np.diag(unit.contrasts @ unit.covariance(between.ORDINARY_CHANGE[gap.kind], 0.0)
+                       @ unit.contrasts.T).reshape(-1, 3)
+    excess = max(gap.adequacy.excess_before, 1e-9)
+    for axis in range(3):
+        chi2 = float((z[:, axis] ** 2 / variance[:, axis]).sum())
+        found.append(Place(gap.kind, "xyz"[axis], "session", max(chi2 - len(z), 0.0) / max(
+            excess, chi2), stats.chi2.sf(chi2, len(z))))
+    return found
+
+
 def controlled(tested):
     """Those that pass the false discovery rate."""
-    order = sorted(tested, key=lambda t: t.p)
+    by_p = sorted(tested, key=lambda t: t.p)
     last = -1
-    for rank, one in enumerate(order):
-        if one.p <= FALSE_DISCOVERIES * (rank + 1) / max(len(order), 1):
+    for rank, one in enumerate(by_p):
+        if one.p <= FALSE_DISCOVERIES * (rank + 1) / max(len(by_p), 1):
             last = rank
-    return order[:last + 1]
+    return by_p[:last + 1]

@@ -1,0 +1,47 @@
+"""What lies between sessions: biases against each other, as one more unit of contrasts."""
+import numpy as np
+
+from sixflip_host.gap import answer, diagnosis, observations, where
+from sixflip_host.simulating import scenario, simulate
+
+
+def sessions(effects=(), change=((0, 0, 0), (0, 0, 0)), seed=61):
+    """Sessions of a recommended scene; change: counts added to each session's accelerometer."""
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": seed,
+                               "world": {"placement_scatter_deg": 0.05},
+                               "effects": list(effects)})
+    captures = [simulate.session(plan, k) for k in range(2)]
+    for capture, counts in zip(captures, change):
+        capture.accel = (capture.accel + np.array(counts)).astype(np.int16)
+    return [observations.Session(str(k), c) for k, c in enumerate(captures)]
+
+
+def test_a_bias_that_differs_from_session_to_session_is_found_there():
+    found = diagnosis.Diagnosis(sessions(change=((0, 0, 0), (0, 1000, 0))),
+                                diagnosis.Settings())
+    between = found.gaps["accel"].units[-1]
+    assert between.between
+    # 1000 counts are 61 mg; the contrast is the difference over the root of two
+    changed = between.contrasts @ between.z
+    np.testing.assert_allclose(np.abs(changed), [0, 61.0 / np.sqrt(2), 0], atol=1.5)
+    assert found.verdict == "unexplained"
+    assert not found.causes
+    places = where.places(found.gaps["accel"])
+    assert (places[0].domain, places[0].axis) == ("session", "y")
+
+
+def test_an_ordinary_change_is_no_gap():
+    found = diagnosis.Diagnosis(sessions(change=((0, 0, 0), (20, -20, 20))),
+                                diagnosis.Settings())
+    assert found.verdict == "no gap"
+    assert not answer.of(found)["where"]
+
+
+def test_products_of_the_other_axes_leave_the_axis_open():
+    """Where only the length of gravity is known x: f_y f_z and y: f_x f_z add the same."""
+    found = diagnosis.Diagnosis(
+        sessions([{"effect": "cross_quadratic", "sensor": "accel", "xyz": 4.0}]),
+        diagnosis.Settings())
+    cause, = answer.of(found)["causes"]
+    assert "cross_quadratic" in cause["class"]
+    assert cause["axes"] == ["x", "y", "z"]
