@@ -12,15 +12,17 @@ from ..verifying.verify_files import read_record
 from . import capture_file
 from .corrected_rows import corrected_rows
 
-HELP = "correct a capture with a record: CSV in m/s² and rad/s"
-EXAMPLE = "sixflip apply record_a.bin capture.csv -o corrected.csv"
+HELP = "correct a capture with a record: CSV, Parquet, NPZ or MCAP in m/s² and rad/s"
+EXAMPLE = ("sixflip apply record_a.bin capture.csv -o corrected.csv\n"
+           "         sixflip apply record_a.bin capture.csv -o corrected.mcap")
 
 
 def add_arguments(parser):
     """The options of the verb."""
     parser.add_argument("record", help="correction record")
     parser.add_argument("capture", help="capture with the raw counts")
-    parser.add_argument("-o", "--output", required=True, help="CSV to write")
+    parser.add_argument("-o", "--output", required=True,
+                        help="file to write: .parquet, .npz or .mcap, else CSV")
     parser.add_argument("--force", action="store_true", help="even if it is another chip or range")
 
 
@@ -31,14 +33,29 @@ def run(args):
     if not args.force:
         _fits(args, record, capture)
     outside = []
-    columns, names = corrected(record, capture, lambda *celsius: outside.append(celsius))
+    _writer(args.output)(args.output, capture, record,
+                         lambda *celsius: outside.append(celsius))
     for _, low, high in outside:
         print("the temperature leaves %.1f to %.1f °C, what the record's terms were measured "
               "at: beyond it their edge holds" % (low, high), file=sys.stderr)
+    return 0
+
+
+def _writer(output):
+    """function(output, capture, record, tell) by the ending of a name."""
+    from . import export_mcap, export_tables
+    for ending, write in ((".parquet", export_tables.parquet), (".npz", export_tables.npz),
+                          (".mcap", export_mcap.mcap)):
+        if output.endswith(ending):
+            return write
+    return _csv
+
+
+def _csv(output, capture, record, tell):
+    columns, names = corrected(record, capture, tell)
     lines = ["%d,%s\n" % (t, ",".join(["%.7g" % x for x in row]))
              for t, row in zip(capture.t_us.tolist(), columns.tolist())]
-    atomic_write.write_text(args.output, ",".join(["t_us", *names]) + "\n" + "".join(lines))
-    return 0
+    atomic_write.write_text(output, ",".join(["t_us", *names]) + "\n" + "".join(lines))
 
 
 def corrected(record, capture, tell=None):

@@ -12,7 +12,7 @@ from ..errors import UsageError
 from ..simulating import other_simulators
 from ..solving.record_json import record_json
 from ..verifying.verify_files import read_record
-from . import capture_binary, capture_file, export_c, export_formats
+from . import capture_binary, capture_file, export_c, export_formats, export_mcap, export_tables
 from .show import RECORD_MAGIC
 
 HELP = "a capture or a record in another format"
@@ -28,6 +28,13 @@ def capture_csv(path, output):
 def capture_bin(path, output):
     """A board's file."""
     atomic_write.write_bytes(output, capture_binary.encode(capture_file.read(path)))
+
+
+def capture_data(write):
+    """A capture's raw counts for other tools; write: function(output, capture)."""
+    def convert(path, output):
+        write(output, capture_file.read(path))
+    return convert
 
 
 def record_to_json(path, output):
@@ -59,6 +66,9 @@ FORMATS = {
     "imufusion": ("record", frozen_text(export_formats.imufusion_python), (".py",)),
     "imucal": ("record", frozen_text(export_formats.imucal_json), ()),
     "c-header": ("record", record_text(export_c.c_header), (".h",)),
+    "parquet": ("capture", capture_data(export_tables.parquet), (".parquet",)),
+    "npz": ("capture", capture_data(export_tables.npz), (".npz",)),
+    "mcap": ("capture", capture_data(export_mcap.mcap), (".mcap",)),
     "sdf": ("capture", other_simulators.capture_sdf, (".sdf",)),
     "kalibr": ("capture", other_simulators.capture_kalibr, (".yaml", ".yml")),
     "table": ("capture", other_simulators.capture_table, (".txt",)),

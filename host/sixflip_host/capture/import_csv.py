@@ -1,4 +1,4 @@
-"""sixflip import: a capture file out of somebody else's CSV."""
+"""sixflip import: a capture file out of somebody else's CSV or ROS bag."""
 
 import os
 
@@ -6,14 +6,15 @@ import numpy as np
 
 from ..errors import BadFile, UsageError
 from ..terminal import plain
-from . import capture_file, csv_mapping, units
+from . import capture_file, csv_mapping, ros_bag, units
 from .capture_header import ACCEL, GYRO, MAG, SENSORS, STANDARD_G
 from .csv_table import read_table
 
-HELP = "make a capture file from somebody else's CSV, finding the poses by itself"
+HELP = "make a capture file from somebody else's CSV or ROS bag, finding the poses by itself"
 EXAMPLE = ("sixflip import session.csv.gz -o capture.csv --units si,dps --rate 102.4\n"
            "         sixflip import log.csv -o capture.csv --columns ax,ay,az,-,gx,gy,gz "
-           "--accel-lsb 16384 --gyro-lsb 131 --time-column 4 --time-unit ms")
+           "--accel-lsb 16384 --gyro-lsb 131 --time-column 4 --time-unit ms\n"
+           "         sixflip import session.mcap -o capture.csv --topic /imu/data_raw")
 
 TIME_UNITS = {"us": 1, "ms": 1000, "s": 1000000}
 LATEST_US = 1e16        # three centuries: what a time column in the wrong unit passes
@@ -23,7 +24,8 @@ TEMPERATURE = {"mpu6050": (340, 36.53), "itg3205": (280, 82.142857), "gy85": (28
 def add_arguments(parser):
     """The options of the verb."""
     add = parser.add_argument
-    add("file", help="CSV, plain or gzipped")
+    add("file", help="CSV, plain or gzipped; or a ROS bag with sensor_msgs/Imu: a rosbag2 "
+        "folder, .db3, .mcap, .bag")
     add("-o", "--output", required=True, help="capture to write, .csv or .csv.gz")
     add("--sensor", default="other", choices=SENSORS, help="the chip (default: other)")
     add("--rate", type=float, metavar="HZ", help="sample rate, when there is no time column")
@@ -34,8 +36,9 @@ def add_arguments(parser):
     add("--map", action="append", metavar="ax=acc_x", help="a column by its name or number")
     add("--delimiter", default="auto", help="one character, or blank (default: auto)")
     add("--skip", type=int, metavar="N", help="lines before the names (default: finds them)")
-    add("--units", default="counts", metavar="A[,G]",
-        help="of accelerometer and gyro: counts, si, g, mg, dps, rad/s (default: counts)")
+    add("--units", metavar="A[,G]", help="of accelerometer and gyro: counts, si, g, mg, dps, "
+        "rad/s (default: counts; of a bag si)")
+    add("--topic", help="of a bag with several Imu topics")
     add("--accel-lsb", type=float, metavar="N", help="counts per g (else the values' own step)")
     add("--gyro-lsb", type=float, metavar="N", help="counts per deg/s (likewise)")
     add("--temp-units", default="counts", choices=("counts", "c"), help="of a column --map temp=")
@@ -71,8 +74,15 @@ def convert(args):
         raise UsageError("--delimiter %r: expected one character, auto or blank" % args.delimiter)
     if args.skip is not None and args.skip < 0:
         raise UsageError("--skip %d: expected a number of lines" % args.skip)
-    table = read_table(args.file, args.delimiter, args.skip, names,
-                       csv_mapping.looks_like_header)
+    if args.topic and not ros_bag.is_bag(args.file):
+        raise UsageError("--topic: only of a ROS bag, %s is none" % args.file)
+    if ros_bag.is_bag(args.file):
+        table = ros_bag.read_bag(args.file, args.topic)
+        args.units = args.units or "si"
+        args.time_column, args.time_unit = ros_bag.NAMES[0], "us"
+    else:
+        table = read_table(args.file, args.delimiter, args.skip, names,
+                           csv_mapping.looks_like_header)
     labels = csv_mapping.parse_pairs("--label", args.label)
     columns = csv_mapping.choose_columns(table, csv_mapping.parse_pairs("--map", args.map))
     pose, remarks = _labelled(args, table, labels)
@@ -133,7 +143,7 @@ def _times(args, table):
 
 def _in_counts(args, table, columns, t_us):
     """A Capture of whole counts, and remarks on how they were recovered."""
-    accel_unit, gyro_unit = _units(args.units)
+    accel_unit, gyro_unit = _units(args.units or "counts")
     for name in ("accel_lsb", "gyro_lsb", "mag_lsb", "g"):
         value = getattr(args, name)
         if value is not None and not 0 < value < 1e9:
