@@ -1,6 +1,7 @@
 """The pictures of the report, one function each; all take a Diagnosis and write a PNG."""
 import numpy as np
 
+from ..reporting.figures import COLOURS, canvas
 from ..simulating import signal_measures
 from . import classes, single_rest, which
 
@@ -10,16 +11,6 @@ DOMAINS = ("along_gravity", "across_gravity", "orientation", "flip", "time", "ti
            "temperature", "history", "frequency", "noise", "amplitude", "timing", "motion",
            "session")
 AXES = "xyz"
-COLOURS = ("#c0392b", "#27864a", "#2455a4")  # of x, y, z
-
-
-def canvas(rows, columns, width, height):
-    """(figure, axes (rows, columns)) that need no display."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-    figure = Figure(figsize=(width, height), layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure, figure.subplots(rows, columns, squeeze=False)
 
 
 def heat_map(diagnosis, path):

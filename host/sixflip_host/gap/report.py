@@ -1,16 +1,10 @@
 """The report: one page that needs nothing else, and its pictures."""
-import base64
-import html
 from pathlib import Path
 
 from .. import atomic_write
 from ..errors import UsageError
+from ..reporting.page import Page
 from . import pictures, words
-
-STYLE = """body{font:15px/1.45 system-ui,sans-serif;max-width:60em;margin:2em auto;padding:0 1em;
-color:#1b1b1b}h1{font-size:1.35em}h2{font-size:1.1em;margin-top:1.8em}table{border-collapse:
-collapse}td,th{padding:.25em .7em;border-bottom:1px solid #ddd;text-align:left;vertical-align:top}
-img{max-width:100%}.note{color:#555}"""
 
 
 def write(folder, diagnosis, answer, loops):
@@ -48,37 +42,33 @@ def draw(folder, diagnosis, loops):
 
 def page(answer, drawn):
     """The HTML, pictures included."""
-    parts = ["<!doctype html><html lang=en><meta charset=utf-8><title>Gap</title><style>%s"
-             "</style>" % STYLE, "<h1>%s</h1>" % html.escape(words.sentence(answer))]
-    parts += ["<p class=note>%s</p>" % html.escape(r) for r in answer["remarks"]]
+    out = Page("Gap", words.sentence(answer))
+    sections(out, answer, [(caption, path.read_bytes()) for caption, path in drawn])
+    return out.html()
+
+
+def sections(page, answer, drawn):
+    """What the answer holds, behind its sentence; drawn: [(caption, bytes of a PNG)]"""
+    for remark in answer["remarks"]:
+        page.paragraph(remark, note=True)
     if answer["causes"]:
-        rows = [words.row(c) for c in answer["causes"]]
-        parts.append("<h2>Which effect</h2>" + table(
-            ("effect", "sensor", "size (90 % interval)", "score, nats", "share"), rows))
+        page.heading("Which effect")
+        page.table(("effect", "sensor", "size (90 % interval)", "score, nats", "share"),
+                   [words.row(c) for c in answer["causes"]])
     lines = [words.shrinkage_line(k, g, answer["held_out"]) for k, g in answer["gap"].items()]
     lines += [words.loop_line(k, g) for k, g in answer.get("simulated", {}).items()]
     if lines:
-        parts.append("<h2>How far</h2>" + "".join("<p>%s</p>" % html.escape(x) for x in lines))
-    for caption, path in drawn:
-        data = base64.b64encode(path.read_bytes()).decode()
-        parts.append("<h2>%s</h2><img alt=\"%s\" src=\"data:image/png;base64,%s\">" % (
-            html.escape(caption), html.escape(caption), data))
+        page.heading("How far")
+        for line in lines:
+            page.paragraph(line)
+    for caption, png in drawn:
+        page.picture(caption, png)
     if answer["next"]:
-        parts.append("<h2>To capture next</h2>" + table(
-            ("capture", "minutes", "tells apart"),
-            [(n["capture"], "%.0f" % n["minutes"], ", ".join(" / ".join(p)
-                                                             for p in n["resolves"]))
-             for n in answer["next"]]))
+        page.heading("To capture next")
+        page.table(("capture", "minutes", "tells apart"),
+                   [(n["capture"], "%.0f" % n["minutes"],
+                     ", ".join(" / ".join(p) for p in n["resolves"])) for n in answer["next"]])
     if answer["unseen"]:
-        parts.append("<h2>What could not be seen</h2>" + table(
-            ("effect", "sensor", "why"),
-            [(u["effect"], words.SENSOR[u["sensor"]], u["reason"]) for u in answer["unseen"]]))
-    return "\n".join(parts) + "\n</html>\n"
-
-
-def table(head, rows):
-    """An HTML table of plain strings."""
-    cells = "".join("<th>%s</th>" % html.escape(h) for h in head)
-    body = "".join("<tr>%s</tr>" % "".join("<td>%s</td>" % html.escape(str(c)) for c in row)
-                   for row in rows)
-    return "<table><tr>%s</tr>%s</table>" % (cells, body)
+        page.heading("What could not be seen")
+        page.table(("effect", "sensor", "why"), [
+            (u["effect"], words.SENSOR[u["sensor"]], u["reason"]) for u in answer["unseen"]])
