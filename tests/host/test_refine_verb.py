@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hand_session import RAD, G
 
-from sixflip import correction_record
+from sixflip import correction_record, record_terms
 from sixflip_host.capture import capture_file
 from sixflip_host.errors import SixflipError
 from sixflip_host.refining import refine, refinement_record, refinement_report
@@ -239,3 +239,25 @@ def test_keep_of_something_else_is_one_sentence(tmp_path, capture):
         command(path, "--keep", path)
     with pytest.raises(SixflipError, match="expected one of the two"):
         command(path, "--keep", path, "--free")
+
+
+def test_a_pull_of_gravity_goes_into_the_record_as_its_term(tmp_path, capture):
+    out = tmp_path / "refined.bin"
+    assert command(written(tmp_path, capture), "--record", out, "--g-sensitivity", "on") == 0
+    record = correction_record.decode(out.read_bytes())
+    gyro = refine.refine(capture, g_sensitivity="on")["gyro"]
+    term = record_terms.terms(record)["g_sensitivity"]
+    assert term["k"] == gyro["per_g_dps"] and term["origin"] == "refinement"
+    assert command(written(tmp_path, capture), "--record", out) == 0
+    assert correction_record.decode(out.read_bytes()).terms == []
+
+
+def test_a_refined_bias_holds_at_the_temperature_it_was_refined_at(sensor):
+    warm = hand_session.session(sensor, hand_session.six_faces(3, 2.0), 3)
+    warm.temp = np.full(len(warm), 340 * 4, np.int16)
+    warm.meta.update(temp_lsb_per_c=340.0, temp_offset_c=36.53)
+    kept = refinement_record.build(warm, refine.refine(warm))
+    assert kept.temp_c == pytest.approx(40.53)
+    kept.temp_c = 20.0
+    again = refinement_record.build(warm, refine.refine(warm, record=kept), kept)
+    assert again.temp_c == pytest.approx(40.53)

@@ -3,7 +3,7 @@
 import json
 import math
 
-from sixflip.correction import Correction
+from sixflip.correction import correction_of
 
 from ..capture import capture_file
 from ..errors import CheckFailed, UsageError
@@ -71,13 +71,16 @@ def compare(capture, record, g=None):
     rest = still_rest.find(capture)
     if rest.reason:
         raise CheckFailed("not checked, there is no rest: %s" % rest.reason)
-    a = Correction(record).apply(rest.means, [0.0] * 6)[:3]
+    correction = correction_of(record)
+    a = correction.apply(rest.means, [0.0] * 6)[:3]
     g = g or capture.meta.get("g", record.g)
+    temp_c = _celsius(capture, rest)
     found = {
         "a_error_mg": 1e3 * (math.sqrt(sum(x * x for x in a)) / g - 1.0),
         "noise_mg": still_rest.noise_mg(rest, record.accel_lsb_per_g)[0],
         "noise_then_mg": 1e3 * record.accel["noise_g"] if record.accel["noise_g"] else None,
-        "temp_c": _celsius(capture, rest), "temp_then_c": record.temp_c,
+        "temp_c": temp_c, "temp_then_c": record.temp_c,
+        "drift_known": temp_c is not None and correction.covers(temp_c),
         "bias_dps": None, "bias_then_dps": None, "seconds": rest.n / capture.meta["rate_hz"],
         "record_verdict": record.accel["verdict"], "record_reason": record.accel["reason"]}
     if capture.gyro is not None:
@@ -105,7 +108,8 @@ def judged(found):
         against.append("the noise is %.1f mg, at the calibration it was %.1f: the sensor is "
                        "shaken or damaged" % (found["noise_mg"], found["noise_then_mg"]))
     now, then = found["temp_c"], found["temp_then_c"]
-    if now is not None and then is not None and not abs(now - then) <= WARMER_C:
+    if now is not None and then is not None and not abs(now - then) <= WARMER_C \
+            and not found["drift_known"]:
         against.append("it is %.1f °C, at the calibration it was %.1f: biases move with "
                        "temperature" % (now, then))
     if found["bias_dps"] and found["bias_then_dps"]:

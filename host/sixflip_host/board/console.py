@@ -5,6 +5,7 @@ import sys
 import threading
 
 from sixflip.faces import FACES
+from sixflip.record import TERMS
 
 from ..terminal import plain
 
@@ -99,8 +100,19 @@ def _solved(event):
 
 
 def _record(event):
-    return "correction in force: slot %s, sequence %s, verdict %s" % (
-        event.get("slot"), event.get("sequence"), event.get("verdict"))
+    return "correction in force: slot %s, sequence %s, verdict %s%s" % (
+        event.get("slot"), event.get("sequence"), event.get("verdict"), _terms(event))
+
+
+def _terms(event):
+    """", with g_sensitivity" when a record has terms beyond scale and bias."""
+    names = [name for _, name in TERMS if name in (event.get("measured") or [])]
+    return ", with " + ", ".join(names) if names else ""
+
+
+def _term_range(event):
+    return ("%.1f °C is outside of %.1f to %.1f °C, what the record's terms were measured at: the "
+            "edge holds" % (event["temp_c"], event["low_c"], event["high_c"]))
 
 
 def _rest(event):
@@ -139,6 +151,8 @@ WORDS = {
     "calibrating": lambda e: "calibrating: lay the box on a face and let go, Z+ up to begin "
                              "with; left: %s" % faces_left(e.get("missing") or []),
     "pose": lambda e: "%s taken; %s" % (e.get("pose"), next_step(e.get("missing") or [])),
+    "afresh": lambda e: "there is no unfinished session to go on with (%s): all six faces" % (
+        e.get("reason")),
     "redo": lambda e: "%s again; left: %s" % (e.get("face"), faces_left(e.get("missing") or [])),
     "refused": lambda e: "%s not taken: %s" % (e.get("pose") or "placement", why(e)),
     "solved": _solved,
@@ -148,7 +162,9 @@ WORDS = {
     "mounted": _mounted,
     "not_mounted": lambda e: "mounting not measured: %s" % e.get("reason"),
     "not_restored": lambda e: "the record offered was refused: %s" % e.get("reason"),
-    "restored": lambda e: "restored: slot %s, sequence %s" % (e.get("slot"), e.get("sequence")),
+    "restored": lambda e: "restored: slot %s, sequence %s%s" % (
+        e.get("slot"), e.get("sequence"), _terms(e)),
+    "term_range": _term_range,
     "bus_error": lambda e: "bus error %s (%s so far): %s" % (
         e.get("errno"), e.get("count"), e.get("action")),
     "error": lambda e: "error: %s; expected %s" % (e.get("what"), e.get("expected")),
@@ -178,6 +194,18 @@ def words(event, step=None):
     return make(event) if make else None
 
 
+STRANGE_EVENT = (TypeError, ValueError, ArithmeticError, AttributeError, LookupError)
+
+
+def lasting(event, step=None):
+    """The lasting lines for an event, escaped; a damaged or strange one as it came."""
+    try:
+        text = words(event, step)
+    except STRANGE_EVENT:
+        text = "the board says: " + str(event)[:STRANGE].replace("\n", " ")
+    return [] if text is None else [plain(line) for line in text.split("\n")]
+
+
 class Console:
     """Prints lasting lines, and on a terminal one line below that follows the live state.
 
@@ -194,25 +222,19 @@ class Console:
 
     def show(self, event):
         """One event; a damaged or strange one as it came."""
-        try:
-            with self.lock:
-                self.show_known(event)
-        except (TypeError, ValueError, ArithmeticError, AttributeError, LookupError):
-            self.clear()
-            print("the board says: " + plain(str(event)[:STRANGE]), file=self.out, flush=True)
-
-    def show_known(self, event):
-        if event["event"] == "state":
-            self.show_state(event)
-            return
-        text = words(event, self.step)
-        if text is not None:
-            self.clear()
-            for line in text.split("\n"):
-                print(plain(line), file=self.out, flush=True)
+        with self.lock:
+            if event["event"] == "state":
+                self.show_state(event)
+                return
+            for line in lasting(event, self.step):
+                self.clear()
+                print(line, file=self.out, flush=True)
 
     def show_state(self, event):
-        line = plain(state_line(event))
+        try:
+            line = plain(state_line(event))
+        except STRANGE_EVENT:
+            line = plain(str(event)[:STRANGE])
         if self.live:
             self.state = line
             self.redraw()

@@ -36,8 +36,8 @@ def add_arguments(parser):
     add("--free", action="store_true", help="faces and labels left aside: rests found by "
         "themselves, |a| = g in free poses, nine terms")
     add("--g-sensitivity", choices=("auto", "on", "off"), default="auto",
-        help="gyro's pull by gravity (default: when the rests show it; off with --record, "
-        "which has no place for it)")
+        help="gyro's pull by gravity (default: when the rests show it; with --record only when "
+        "on: nothing is held out here that would show its gain, as diagnose --record does)")
 
 
 def run(args):
@@ -48,7 +48,7 @@ def run(args):
     record = read_record(args.keep) if args.keep else None
     pull = args.g_sensitivity
     if args.record and pull == "auto":
-        pull = "off"        # a record has no place for it
+        pull = "off"
     found = refine(capture, args.free, record, pull)
     remember.refined(capture, found)
     if args.json:

@@ -2,9 +2,12 @@
 
 import numpy as np
 
+from sixflip import record_terms
 from sixflip.correction_record import Record
 
 from ..errors import CheckFailed
+
+BIASES = ["accelerometer %s bias" % axis for axis in "xyz"]
 
 
 def build(capture, found, kept=None):
@@ -26,19 +29,22 @@ def build(capture, found, kept=None):
         record.gyro_lsb_per_dps = float(meta.get("gyro_lsb_per_dps", 0))
         record.gyro_range_dps = int(meta.get("gyro_range_dps", 0))
         record.g = float(found["g"])
-        if capture.temp is not None:
-            record.temp_c = (float(np.mean(capture.temp)) / meta["temp_lsb_per_c"]
-                             + meta["temp_offset_c"])
     elif abs(record.accel_lsb_per_g - meta["accel_lsb_per_g"]) > 1e-3 * record.accel_lsb_per_g:
         raise CheckFailed("the record is for %g counts per g, the capture has %g"
                           % (record.accel_lsb_per_g, meta["accel_lsb_per_g"]))
+    if capture.temp is not None and (kept is None or set(BIASES) <= set(found["solved"])):
+        # A term that follows the temperature counts from that of the bias.
+        record.temp_c = (float(np.mean(capture.temp)) / meta["temp_lsb_per_c"]
+                         + meta["temp_offset_c"])
     record.sequence += 1
     record.accel = _accelerometer(found, kept)
     gyro = found["gyro"]
     if gyro is not None:
         if gyro["per_g_dps"]:
-            raise CheckFailed("a record has no place for the gyro's g-sensitivity: "
-                              "expected --g-sensitivity off with --record")
+            record_terms.put(record, "g_sensitivity", {
+                "k": gyro["per_g_dps"], "sigma": gyro["per_g_sigma_dps"], "axes": [0, 1, 2],
+                "origin": "refinement", "source": "", "before": None, "after": None,
+                "floor": None})
         record.gyro = {"P": gyro["P"], "sigma_P": gyro["sigma"]["P"], "missing": [],
                        "verdict": found["verdict"], "reason": found["reason"]}
         record.gyro_bias = {"bias_dps": gyro["bias_dps"], "temp_c": record.temp_c}
