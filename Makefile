@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 export SIXFLIP_CACHE ?= $(CURDIR)/.cache
 
-.PHONY: help setup micropython demo test test-qemu check bench bench-accuracy fidelity \
+.PHONY: help setup micropython demo test test-qemu check bench bench-accuracy fidelity blind \
 	reproduce package.json clean
 
 help:
@@ -17,6 +17,7 @@ help:
 	@echo "make bench-accuracy  vector error against imucal, imu_calib and the theoretical bound"
 	@echo "make bench           that, and every other benchmark"
 	@echo "make fidelity        the simulator against real recordings"
+	@echo "make blind           the diagnosis on sealed cases of an independent generator"
 	@echo "make reproduce       the paper's tables 3 and 4"
 
 setup: $(VENV)/.installed
@@ -51,6 +52,11 @@ bench: bench-accuracy
 fidelity: setup
 	@$(BIN)/python -m sixflip_host.simulating.fidelity
 
+# COUNT=260 cases, SEED=1, JOBS=2; the result is in blind-output/
+blind: setup
+	@$(BIN)/python tests/blind/blind_run.py --count $(or $(COUNT),260) --seed $(or $(SEED),1) \
+		--jobs $(or $(JOBS),2)
+
 reproduce: setup
 	@$(BIN)/sixflip reproduce
 
@@ -58,4 +64,4 @@ package.json: setup
 	$(BIN)/python -m sixflip_host.board.mip_package > $@.new && mv $@.new $@
 
 clean:
-	rm -rf $(VENV) .cache build demo-output
+	rm -rf $(VENV) .cache build demo-output blind-output

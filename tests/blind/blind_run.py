@@ -1,0 +1,145 @@
+"""The blind check of `sixflip diagnose`: `make blind`.
+
+1. generate: cases are drawn, captures written, labels sealed (generator/, seal.py);
+2. diagnose: the product's verb on the files alone, its JSON kept;
+3. score: the seals are opened and the answers held against them (scoring.py, target_tables.py).
+
+Exit code 1 when something that must never happen happened, 0 otherwise.
+"""
+
+import argparse
+import contextlib
+import io
+import json
+import os
+import shutil
+import sys
+import time
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(threads, "1")     # a process a core; before numpy is loaded
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+
+import seal  # noqa: E402
+import suites  # noqa: E402
+from generator.case import Case  # noqa: E402
+from generator.held_out import HELD_OUT  # noqa: E402
+from judged import judged  # noqa: E402
+
+DEFAULT_COUNT = 260     # about 25 minutes on two cores
+
+
+def generated(job):
+    """Worker of step 1: writes a case's files; returns (public, label)."""
+    name, suite, spec, folder = job
+    case = Case(spec)
+    files = case.write(str(Path(folder) / name))
+    words = list(spec.options) + ["--certified-box"] * spec.certified
+    label = {"suite": suite, **case.label(), "judged": judged(case)}
+    return {"id": name, "files": [Path(f).name for f in files], "words": words}, label
+
+
+def diagnosed(job):
+    """Worker of step 2: what the verb answers on the files; knows nothing else."""
+    public, folder, keep = job
+    from sixflip_host import cli
+    paths = [str(Path(folder) / f) for f in public["files"]]
+    out, err = io.StringIO(), io.StringIO()
+    begin, busy = time.perf_counter(), time.process_time()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        code = cli.main(["diagnose", *paths, *public["words"], "--json", "--jobs", "1"])
+    answer = None
+    with contextlib.suppress(ValueError):
+        answer = json.loads(out.getvalue())
+    if not keep:
+        for path in paths:
+            os.remove(path)
+    return {"id": public["id"], "code": code, "answer": answer,
+            "error": err.getvalue().strip()[:500],
+            "seconds": time.perf_counter() - begin, "cpu_s": time.process_time() - busy}
+
+
+def pooled(work, jobs, workers, what):
+    """Results in order, with a line of progress now and then on stderr."""
+    out, begin, shown = [], time.monotonic(), 0.0
+    with ProcessPoolExecutor(workers) as pool:
+        for done in pool.map(work, jobs):
+            out.append(done)
+            now = time.monotonic() - begin
+            if now - shown > 20 or len(out) == len(jobs):
+                shown = now
+                print("%s: %d of %d, %.0f s" % (what, len(out), len(jobs), now),
+                      file=sys.stderr, flush=True)
+    return out
+
+
+def make(specifications, folder, workers):
+    """Step 1 into a folder: captures, manifest, sealed labels."""
+    captures = folder / "captures"
+    captures.mkdir(parents=True, exist_ok=True)
+    jobs = [("case-%04d" % k, suite, spec, str(captures))
+            for k, (suite, spec) in enumerate(specifications)]
+    cases = pooled(generated, jobs, workers, "generated")
+    seal.write(folder, cases, sorted(HELD_OUT))
+
+
+def diagnose(folder, workers, keep):
+    """Step 2: answers.json from the manifest and the captures."""
+    manifest = json.loads((folder / seal.MANIFEST).read_text())
+    jobs = [(public, str(folder / "captures"), keep) for public in manifest["cases"]]
+    answers = pooled(diagnosed, jobs, workers, "diagnosed")
+    (folder / "answers.json").write_text(json.dumps(answers))
+    return answers
+
+
+def score(folder):
+    """Step 3: open the seals, print the tables, draw the pictures; the exit code."""
+    import target_tables
+    from scoring import scored
+    answers = json.loads((folder / "answers.json").read_text())
+    labels = seal.opened(folder)
+    results = [scored(labels[a["id"]], a) for a in answers]
+    (folder / "scores.json").write_text(json.dumps(results))
+    text, never = target_tables.report(results)
+    (folder / "tables.txt").write_text(text)
+    print(text)
+    import score_pictures
+    for path in score_pictures.draw(results, folder):
+        print("wrote", path)
+    return 1 if never else 0
+
+
+def arguments(argv):
+    parser = argparse.ArgumentParser(prog="make blind", description=__doc__.split("\n")[0])
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--count", type=int, default=DEFAULT_COUNT, help="cases in all")
+    parser.add_argument("--jobs", type=int, default=2, help="processes")
+    parser.add_argument("--suite", action="append", choices=list(suites.SUITES),
+                        help="only these (may be given again)")
+    parser.add_argument("--effect", help="only cases with this effect")
+    parser.add_argument("-o", "--output", type=Path, default=HERE.parents[1] / "blind-output")
+    parser.add_argument("--keep", action="store_true", help="keep the captures")
+    parser.add_argument("--score-only", action="store_true",
+                        help="score the answers of the last run again")
+    return parser.parse_args(argv)
+
+
+def main(argv=None):
+    args = arguments(argv)
+    if not args.score_only:
+        shutil.rmtree(args.output / "captures", ignore_errors=True)
+        chosen = suites.specifications(args.seed, args.count, args.suite or list(suites.SUITES))
+        if args.effect:
+            chosen = [(s, spec) for s, spec in chosen
+                      if any(name == args.effect for name, _, _ in spec.effects)]
+        make(chosen, args.output, args.jobs)
+        diagnose(args.output, args.jobs, args.keep)
+    return score(args.output)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
