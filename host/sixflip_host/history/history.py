@@ -14,6 +14,8 @@ from .parameters import AXES
 HELP = "every calibration and check of a board so far, and how its parameters drift"
 EXAMPLE = ("sixflip history\n"
            "         sixflip history e6614c311b4c5a2f --plot drift.png")
+SEEN_NOTE = "~ fetched then: the board has no clock, it was calibrated some time before"
+DRIFT_NOTE = "± is one standard error, * beyond doubt"
 
 
 def add_arguments(parser):
@@ -132,35 +134,55 @@ def _words(board, rows, calibrations, drifts, remarks):
     for remark in remarks:
         out.print(plain(remark))
     if calibrations:
-        out.print(calibration_table(board, calibrations))
+        out.print(table("calibrations of board %s" % board, *_coloured_rows(
+            *calibration_rows(calibrations), 4)))
     if any(one.time_is == store.SEEN for one, _ in calibrations):
-        out.print("~ fetched then: the board has no clock, it was calibrated some time before")
-    checks = [row for row in rows if row.kind != "calibration"]
+        out.print(SEEN_NOTE)
+    head, checks = check_rows(rows)
     if checks:
-        out.print(table("checks", ["UTC", "by", "°C", "", "why"], [
-            [when(row.at), row.verb, _cell(row.temp_c, "%.1f"), _coloured(row.verdict),
-             row.reason] for row in checks]))
-    moved = [one for one in drifts if one.per_c or one.per_30_days]
+        out.print(table("checks", *_coloured_rows(head, checks, 3)))
+    head, moved = drift_rows(drifts)
     if moved:
-        out.print(table("drift (± is one standard error, * beyond doubt)", [
-            "parameter", "change", "per °C", "per 30 days"], [
-            [one.name, "%+.5g" % one.change, _slope(one.per_c), _slope(one.per_30_days)]
-            for one in moved]))
-    for note in dict.fromkeys(one.note for one in drifts if one.note):
-        out.print(plain("no drift of %s named: %s" % (
-            "any parameter" if not moved else "the others", note)))
+        out.print(table("drift (%s)" % DRIFT_NOTE, head, moved))
+    for note in drift_notes(drifts):
+        out.print(plain(note))
 
 
-def calibration_table(board, calibrations):
-    """Every calibration with its scale, bias and gyro bias."""
-    return table("calibrations of board %s" % board, [
-        "UTC", "by", "no.", "°C", "verdict", "scale x y z", "bias x y z, mg",
-        "gyro bias x y z, deg/s"], [
+def calibration_rows(calibrations):
+    """Every calibration with its scale, bias and gyro bias: head, rows of text."""
+    return ["UTC", "by", "no.", "°C", "verdict", "scale x y z", "bias x y z, mg",
+            "gyro bias x y z, deg/s"], [
         [("~" if one.time_is == store.SEEN else "") + when(one.at), one.verb,
          "-" if one.sequence is None else str(one.sequence), _cell(one.temp_c, "%.1f"),
-         verdict_text(one.verdict), _triple(found, "accel_scale_%s", "%.5f"),
+         one.verdict, _triple(found, "accel_scale_%s", "%.5f"),
          _triple(found, "accel_bias_%s_mg", "%+.2f"),
-         _triple(found, "gyro_bias_%s_dps", "%+.3f")] for one, found in calibrations])
+         _triple(found, "gyro_bias_%s_dps", "%+.3f")] for one, found in calibrations]
+
+
+def check_rows(rows):
+    """Every verification and check: head, rows of text."""
+    return ["UTC", "by", "°C", "", "why"], [
+        [when(row.at), row.verb, _cell(row.temp_c, "%.1f"), row.verdict, row.reason]
+        for row in rows if row.kind != "calibration"]
+
+
+def drift_rows(drifts):
+    """What moved with time or temperature: head, rows of text."""
+    return ["parameter", "change", "per °C", "per 30 days"], [
+        [one.name, "%+.5g" % one.change, _slope(one.per_c), _slope(one.per_30_days)]
+        for one in drifts if one.per_c or one.per_30_days]
+
+
+def drift_notes(drifts):
+    """Sentences on why drifts are not named."""
+    moved = any(one.per_c or one.per_30_days for one in drifts)
+    return ["no drift of %s named: %s" % ("the others" if moved else "any parameter", note)
+            for note in dict.fromkeys(one.note for one in drifts if one.note)]
+
+
+def _coloured_rows(head, rows, column):
+    return head, [[_coloured(cell) if k == column else cell for k, cell in enumerate(row)]
+                  for row in rows]
 
 
 def _cell(value, form):

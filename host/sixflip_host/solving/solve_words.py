@@ -21,7 +21,7 @@ def show(solution):
         out.print(parameters(solution))
         out.print(poses(solution))
         out.print("middle: half-way between the axis' two faces, as read; angles: to the others")
-        out.print(_tilt(solution.accel))
+        out.print(plain(tilt_line(solution.accel)))
     for line in solution.flips.words():
         out.print(plain(line))
     if solution.gyro:
@@ -36,7 +36,12 @@ def show(solution):
 
 
 def parameters(solution):
-    """Scale, offset and small angles of every axis with their standard errors."""
+    """The table of parameter_rows."""
+    return table("accelerometer (%s)" % solution.accel.level, *parameter_rows(solution))
+
+
+def parameter_rows(solution):
+    """Scale, offset and small angles of every axis with their standard errors: head, rows."""
     r = solution.accel
     middles = middles_mg(solution.placements, solution.capture.meta["accel_lsb_per_g"])
     rows = []
@@ -47,12 +52,16 @@ def parameters(solution):
             "%+.2f ± %.2f" % (-1e3 * r.v[k] / r.g, 1e3 * r.sigma_v[k] / r.g),
             "-" if middles[k] is None else "%+.1f" % middles[k],
             "%+.3f  %+.3f" % tuple(angles)])
-    return table("accelerometer (%s)" % r.level,
-                 ["axis", "scale", "bias, mg", "middle, mg", "angles, deg"], rows)
+    return ["axis", "scale", "bias, mg", "middle, mg", "angles, deg"], rows
 
 
 def poses(solution):
-    """Every pose with its noise and what the solve leaves over."""
+    """The table of pose_rows."""
+    return table("what is left over", *pose_rows(solution))
+
+
+def pose_rows(solution):
+    """Every pose with its noise and what the solve leaves over: head, rows."""
     r = solution.accel
     lsb = solution.capture.meta["accel_lsb_per_g"]
     rows = []
@@ -64,19 +73,23 @@ def poses(solution):
         rows.append([pose_name(code), str(sum(one.n for one in mine)),
                      "%.2f" % (1e3 * noise / lsb), "  ".join("%+7.2f" % x for x in left),
                      styled("%.2f" % size, "yellow" if size > 2 else "")])
-    return table("what is left over", ["pose", "samples", "noise, mg", "residual x y z, mg",
-                                       "length"], rows)
+    return ["pose", "samples", "noise, mg", "residual x y z, mg", "length"], rows
 
 
-def _tilt(r):
+def tilt_line(r):
+    """The table's tilt in a sentence."""
     if r.tilt_deg is None:
         return "table tilt unknown: no face was turned by 180 degrees"
-    return plain("table tilt %.3f deg, the faces agree to %.3f deg" % (
-        r.tilt_deg, r.tilt_spread_deg))
+    return "table tilt %.3f deg, the faces agree to %.3f deg" % (r.tilt_deg, r.tilt_spread_deg)
 
 
 def gyro_table(gyro):
-    """Scale, bias and small angles of every axis, and how far every flip turned."""
+    """The table of gyro_rows."""
+    return table("gyro", *gyro_rows(gyro))
+
+
+def gyro_rows(gyro):
+    """Scale, bias and small angles of every axis: head, rows."""
     A = [[gyro.P[j][k] for j in range(3)] for k in range(3)]
     rows = []
     for k in range(3):
@@ -87,10 +100,15 @@ def gyro_table(gyro):
             scale, angles = "%.5f, not measured" % A[k][k], "-"
         rows.append(["xyz"[k], scale, "%+.4f ± %.4f" % (gyro.bias_dps[k], gyro.sigma_bias_dps[k]),
                      angles])
-    return table("gyro", ["axis", "scale", "bias, deg/s", "angles, deg"], rows)
+    return ["axis", "scale", "bias, deg/s", "angles, deg"], rows
 
 
 def flip_table(gyro, turned):
+    """The table of flip_rows."""
+    return table("flips", *flip_rows(gyro, turned))
+
+
+def flip_rows(gyro, turned):
     """Every flip: the angle by the solved gyro and by the moves, and why it does not count."""
     rows = []
     for face, flip in gyro.flips.items():
@@ -98,4 +116,4 @@ def flip_table(gyro, turned):
         rows.append([face, "%.2f" % flip["angle_deg"],
                      "%.2f ± %.2f" % by_moves if by_moves else "-",
                      "yes" if flip["used"] else "no", flip["reason"]])
-    return table("flips", ["face", "turned, deg", "by the moves, deg", "used", "why not"], rows)
+    return ["face", "turned, deg", "by the moves, deg", "used", "why not"], rows
