@@ -1,4 +1,4 @@
-"""The emulated board: QEMU with its serial port on a pty, spoken to by the real mpremote."""
+"""An emulated board: QEMU with its serial port on a pty, spoken to by the real mpremote."""
 
 import os
 import re
@@ -7,12 +7,20 @@ import sys
 import time
 
 
-class QemuBoard:
-    """Context manager; exec(code) runs code on the board and returns what it printed."""
+def cortex_m3(elf):
+    """QEMU's words for the MPS2 AN385 with a firmware.elf."""
+    return ["-M", "mps2-an385", "-semihosting", "-kernel", str(elf)]
 
-    def __init__(self, elf, extra=()):
-        self.command = ["qemu-system-arm", "-M", "mps2-an385", "-nographic", "-monitor", "null",
-                        "-semihosting", "-serial", "pty", "-kernel", str(elf), *extra]
+
+class QemuBoard:
+    """Context manager; exec(code) runs code on the board and returns what it printed.
+
+    machine  QEMU's words for the machine and what it starts
+    """
+
+    def __init__(self, machine, extra=()):
+        self.command = ["qemu-system-arm", "-nographic", "-monitor", "null", "-serial", "pty",
+                        *machine, *extra]
         self.process = None
         self.port = None
 
@@ -39,10 +47,14 @@ class QemuBoard:
         self.process.wait()
         self.process.stdout.close()
 
-    def exec(self, code, timeout=300):
-        """What the board printed; RuntimeError with its traceback when the code failed."""
+    def exec(self, *pieces, timeout=300):
+        """What the board printed; RuntimeError with its traceback when the code failed.
+
+        The board is reset first; several pieces run one after the other, each compiled alone.
+        """
+        words = [word for code in pieces for word in ("exec", code)]
         answer = subprocess.run(
-            [sys.executable, "-m", "mpremote", "connect", self.port, "exec", code],
+            [sys.executable, "-m", "mpremote", "connect", self.port, *words],
             capture_output=True, text=True, timeout=timeout, stdin=subprocess.DEVNULL)
         if answer.returncode:
             raise RuntimeError("on the board: " + (answer.stdout + answer.stderr).strip())

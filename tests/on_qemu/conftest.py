@@ -1,11 +1,10 @@
-"""One emulated board for all tests of this folder."""
-
-import os
+"""One emulated board for all tests of this folder, or one line why not."""
 
 import pytest
+from debian_tier import Unavailable, without
 
-from .board import QemuBoard
-from .firmware import Unavailable, build
+from .board import QemuBoard, cortex_m3
+from .firmware import build
 
 
 @pytest.fixture(scope="session")
@@ -13,8 +12,6 @@ def board():
     try:
         elf = build()
     except Unavailable as error:
-        if os.environ.get("CI") == "true":
-            pytest.fail("the emulated Cortex-M3 is missing in CI: %s" % error)
-        pytest.skip("no emulated Cortex-M3: %s" % error)
-    with QemuBoard(elf) as running:
+        without("emulated Cortex-M3", error)
+    with QemuBoard(cortex_m3(elf)) as running:
         yield running

@@ -13,6 +13,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+from debian_tier import Unavailable, alone, install
+
 from sixflip_host.errors import SixflipError
 from sixflip_host.virtual.micropython_fetch import (
     KEYRING,
@@ -27,10 +29,6 @@ PACKAGES = ("qemu-system-arm", "gcc-arm-none-eabi", "libnewlib-arm-none-eabi")
 TOOLS = ("qemu-system-arm", "arm-none-eabi-gcc", "make", "gcc")
 
 
-class Unavailable(Exception):
-    """The tier cannot be had on this machine; the text is the line for the user."""
-
-
 def frozen_files():
     """{path in the firmware: file of the project}: shared code, its tests, their runner."""
     files = {}
@@ -43,20 +41,8 @@ def frozen_files():
     return files
 
 
-def install_tools():
-    """Cross compiler and emulator from Debian; as root they are installed when missing."""
-    missing = [tool for tool in TOOLS if not shutil.which(tool)]
-    if not missing:
-        return
-    line = "no %s: apt-get install %s" % (", ".join(missing), " ".join(PACKAGES))
-    if not shutil.which("apt-get") or os.geteuid() != 0:
-        raise Unavailable(line)
-    for words in (["update"], ["install", "-y", "--no-install-recommends", *PACKAGES]):
-        answer = subprocess.run(["apt-get", "-q", *words], stdin=subprocess.DEVNULL,
-                                capture_output=True, text=True, timeout=1200,
-                                env=dict(os.environ, DEBIAN_FRONTEND="noninteractive"))
-    if answer.returncode or any(not shutil.which(tool) for tool in TOOLS):
-        raise Unavailable(line + " (tried, failed: %s)" % answer.stderr.strip()[-200:])
+def missing_tools():
+    return [tool for tool in TOOLS if not shutil.which(tool)]
 
 
 def fetch_source(target):
@@ -112,7 +98,12 @@ def stage(folder, files):
 
 def build(board="MPS2_AN385"):
     """Path of the firmware with today's shared code, built when something changed."""
-    install_tools()
+    install(PACKAGES, missing_tools)
+    with alone("qemu"):
+        return _build(board)
+
+
+def _build(board):
     cache = cache_dir() / "qemu"
     source = cache / "micropython"
     if not (source / "ports" / "qemu").is_dir():

@@ -153,8 +153,9 @@ def test_a_bus_that_is_not_for_this_user_names_the_group(monkeypatch):
     def refused(number):
         raise PermissionError(errno.EACCES, "Permission denied")
 
+    words = "/dev/i2c-1: add this user to its group"
     monkeypatch.setattr("smbus2.SMBus", refused)
-    with open(os.devnull) as nobody, pytest.raises(OSError, match="/dev/i2c-1: add this user to its group") as caught:
+    with open(os.devnull) as nobody, pytest.raises(OSError, match=words) as caught:
         monkeypatch.setattr("sys.stdin", nobody)
         raspberry_pi.make({"i2c": None})
     assert caught.value.errno == errno.EACCES

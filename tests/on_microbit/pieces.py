@@ -1,0 +1,36 @@
+"""Modules of the shared core cut into pieces that a heap of 9 KB can compile.
+
+The compiler needs the source and its parse tree beside the code it makes; what a whole module
+wants at once is more than there is. So every function and class goes over alone, without
+docstrings and comments, by the raw REPL. Nothing else of the source is changed.
+"""
+
+import ast
+from pathlib import Path
+
+SHARED = Path(__file__).resolve().parents[2] / "shared" / "sixflip"
+
+
+def without_docstrings(tree):
+    """The tree itself, its docstrings gone."""
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)):
+            first = node.body[0] if node.body else None
+            if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant):
+                node.body = node.body[1:] or [ast.Pass()]
+    return tree
+
+
+def of_module(name):
+    """Sources of a shared module's statements, one after the other.
+
+    Imports among the shared modules are left out: on the board all names are in one place.
+    """
+    tree = without_docstrings(ast.parse((SHARED / (name + ".py")).read_text()))
+    for node in tree.body:
+        if not (isinstance(node, ast.ImportFrom) and node.module.startswith("sixflip")):
+            yield ast.unparse(node)
+
+
+def of_modules(*names):
+    return [piece for name in names for piece in of_module(name)]
