@@ -22,8 +22,13 @@ def parse(line):
 
 
 def events(link, silence_s, total_s=None):
-    """Events until nothing came for silence_s, or total_s (real seconds) are over."""
-    end = None if total_s is None else time.monotonic() + total_s
+    """Events until nothing came for silence_s, or total_s (real seconds) are over.
+
+    Both last longer on a link with patience.
+    """
+    end = None
+    if total_s is not None:
+        end = time.monotonic() + total_s * getattr(link, "patience", 1)
     for line in link.lines(silence_s):
         event = parse(line)
         if event:

@@ -8,6 +8,7 @@ import base64
 import contextlib
 import hashlib
 import io
+import os
 import time
 from pathlib import Path, PurePosixPath
 
@@ -15,7 +16,7 @@ import serial
 from mpremote.transport import TransportError, TransportExecError
 from mpremote.transport_serial import SerialTransport
 
-from ..errors import NoBoard, SixflipError
+from ..errors import NoBoard, SixflipError, UsageError
 from . import serial_ports
 from .board_answers import NoSpace, board_error, parse, short
 from .buffered_serial import BufferedSerial
@@ -26,6 +27,7 @@ HANDSHAKE_S = 5.0
 ATTEMPTS = 2
 REOPEN_S = 15.0  # a USB port comes back after a reset
 CHUNK = 1024
+PATIENCE = "SIXFLIP_PATIENCE"
 ON_BOARD = Path(__file__).resolve().parent / "on_board"
 LOST = (serial.SerialException, serial.SerialTimeoutException, OSError, TransportError)
 
@@ -43,14 +45,29 @@ def safe_name(name):
         set(name) & set("\\:\0\r\n"))
 
 
+def patience_of(text):
+    """The number that SIXFLIP_PATIENCE holds, 1 without; UsageError for anything else."""
+    try:
+        value = float(text or 1)
+    except ValueError:
+        value = 0
+    if not 1 <= value <= 1000:
+        raise UsageError("%s=%s: expected a number from 1 to 1000" % (PATIENCE, text))
+    return value
+
+
 class MpremoteLink:
     """Link over a serial port, opened for this process alone.
+
+    patience  every time-out is so many times longer, for a board that is emulated; without it
+              what SIXFLIP_PATIENCE says
 
     Every method raises NoBoard when the board goes away or does not answer.
     """
 
-    def __init__(self, port):
+    def __init__(self, port, patience=None):
         self.port = port
+        self.patience = patience or patience_of(os.environ.get(PATIENCE))
         self.identity = serial_ports.identity(port)
         self.transport = None
         self.raw = False
@@ -114,24 +131,26 @@ class MpremoteLink:
         """One attempt at the raw REPL: whether it was entered."""
         with self.guarded("connecting") as transport:
             wire = transport.serial
-            wire.deadline = time.monotonic() + HANDSHAKE_S
+            allowed = HANDSHAKE_S * self.patience
+            wire.deadline = time.monotonic() + allowed
             wire.timeout = 0.5
             try:
                 with contextlib.redirect_stdout(io.StringIO()):
-                    transport.enter_raw_repl(soft_reset=True, timeout_overall=HANDSHAKE_S)
+                    transport.enter_raw_repl(soft_reset=True, timeout_overall=allowed)
             except TransportError:
                 return False
             finally:
-                wire.timeout, wire.deadline = ANSWER_S, None
+                wire.timeout, wire.deadline = ANSWER_S * self.patience, None
         return True
 
     def run(self, code, doing, consumer=None, timeout=None):
         """Run code on the board; returns what it printed, as bytes."""
         self.enter()
         with self.guarded(doing) as transport:
-            transport.serial.deadline = time.monotonic() + LONGEST_S
+            transport.serial.deadline = time.monotonic() + LONGEST_S * self.patience
             try:
-                out, error = transport.exec_raw(code, timeout or ANSWER_S, consumer)
+                out, error = transport.exec_raw(code, (timeout or ANSWER_S) * self.patience,
+                                                consumer)
             finally:
                 transport.serial.deadline = None
             if error:
@@ -159,10 +178,14 @@ class MpremoteLink:
 
     # -- files
 
-    def files(self, hashed=None):
-        """{name: (size, sha256 in hex)} of all files; with `hashed` only those are hashed."""
+    def files(self, hashed=None, alone=False):
+        """{name: (size, sha256 in hex)} of all files; with `hashed` only those are hashed.
+
+        alone: list only those, and each has to be there.
+        """
         wanted = None if hashed is None else set(hashed)
-        out = self.run(script("list_files", wanted=wanted), "listing its files", timeout=60)
+        out = self.run(script("list_files", wanted=wanted, alone=alone), "listing its files",
+                       timeout=60)
         found = {}
         for line in out.splitlines():
             name, size, digest = parse(self.port, line)
@@ -185,7 +208,7 @@ class MpremoteLink:
                                     validate=True)
         except ValueError:
             raise NoBoard("%s: %s arrived damaged; try again" % (self.port, name)) from None
-        size, digest = self.files([name])[name]
+        size, digest = self.files([name], alone=True)[name]
         if len(data) != size or hashlib.sha256(data).hexdigest() != digest:
             raise NoBoard("%s: %s arrived damaged; try again" % (self.port, name))
         return data
@@ -210,7 +233,7 @@ class MpremoteLink:
             with contextlib.suppress(SixflipError):
                 self.remove(fresh)
             raise
-        if self.files([fresh])[fresh][1] != hashlib.sha256(data).hexdigest():
+        if self.files([fresh], alone=True)[fresh][1] != hashlib.sha256(data).hexdigest():
             self.remove(fresh)
             raise NoBoard("%s: %s arrived damaged on the board; the old one is still in force, "
                           "try again" % (self.port, name))
@@ -250,7 +273,7 @@ class MpremoteLink:
         while True:
             try:
                 with self.guarded("listening") as transport:
-                    line = transport.serial.read_line(timeout)
+                    line = transport.serial.read_line(timeout * self.patience)
             except NoBoard:
                 self.reopen()
                 continue

@@ -1,7 +1,8 @@
 """Runs on the board: one line (name, size, sha256 in hex or None) for every file.
 
-The host puts `wanted`, names to hash or None for all, in front. Paths start at the working
-directory, which is the flash's root wherever it is mounted.
+The host puts `wanted`, names to hash or None for all, in front, and `alone`: list only those,
+for on a slow board a walk past a hundred files takes longer than copying one. Paths start at
+the working directory, which is the flash's root wherever it is mounted.
 """
 
 import binascii
@@ -36,4 +37,8 @@ def walk(folder):
             print((name, size, digest(name) if hashed(name) else None))
 
 
-walk("")
+if alone:  # noqa: F821
+    for name in wanted:  # noqa: F821
+        print((name, os.stat(name)[6], digest(name)))
+else:
+    walk("")
