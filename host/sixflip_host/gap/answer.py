@@ -5,7 +5,7 @@ from sixflip_sim.effects.drift import FLOOR_OF_UNIT
 
 from . import next_capture, unseen
 
-UNITS = {"accel": "mg", "gyro": "deg/s"}
+UNITS = {"accel": "mg", "gyro": "deg/s", "gyro_turns": "deg/s"}
 # Allan floor of the five exponentials of unit level, by numerical integration of their kernel.
 FLOOR_OF_KERNEL = 0.78 / FLOOR_OF_UNIT
 

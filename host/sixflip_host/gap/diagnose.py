@@ -88,7 +88,7 @@ def closed(found, args):
     """{sensor: Loop} of the simulator run again; the scenario file where asked for."""
     from sixflip_sim.effects.library import NAMES
 
-    from . import closed_loop, scenario_out
+    from . import closed_loop, closed_loop_turns, scenario_out
     named = [name for name in args.add if name != "found"]
     for name in named:
         if name not in NAMES:
@@ -104,6 +104,13 @@ def closed(found, args):
         loop = closed_loop.close(found, kind, mine[-1] if mine else None)
         if loop:
             loops[kind] = loop
+    turns = found.turns
+    if turns:
+        for name in named:
+            closed_loop.force(turns, name)
+        loop = closed_loop_turns.close(turns, found.settings.reference_c)
+        if loop:
+            loops["gyro_turns"] = loop
     if args.scenario:
         scenario_out.write(args.scenario, found, [e for lo in loops.values() for e in lo.effects])
     return loops

@@ -18,6 +18,7 @@ from . import (
 from .sensor_gap import SensorGap
 
 FEWEST_PLACEMENTS = 6
+SENSOR = {"accel": "accelerometer"}
 LEAST_S = 5.0  # of a capture that can be said to show no gap
 
 
@@ -65,6 +66,8 @@ class Diagnosis:
             self.remarks += self.rest.remarks
         if simulator:
             self._compared(simulator)
+        self.remarks += ["the %s: %s" % (SENSOR.get(f.sensor, f.sensor), f.words)
+                         for f in self.findings if f.effect == "vibration"]
         self.where = [where.Place(f.sensor, axis, f.domain, 1.0, np.exp(-min(f.score, 600.0)))
                       for f in self.findings for axis in (f.axes or [None])]
         places = [p for gap in [*self.gaps.values(), *([self.turns] if self.turns else [])]
@@ -119,6 +122,8 @@ class Diagnosis:
                 self.gaps["gyro"] = still.result()
             self.gaps["accel"] = accel.result()
         self.gaps = {k: self.gaps[k] for k in ("accel", "gyro") if k in self.gaps}
+        said = [c.remark() for c in self.gaps["accel"].crooked if c]
+        self.remarks += list(dict.fromkeys(sentence for sentence in said if sentence))
 
     def _turns(self, sessions, nominal):
         """The gyro while it moves: axes first, then what bends or scales it."""

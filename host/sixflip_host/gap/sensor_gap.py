@@ -7,6 +7,7 @@ from . import (
     adequacy,
     between,
     classes,
+    crooked,
     nominal_fit,
     regressors,
     selection,
@@ -35,6 +36,7 @@ class SensorGap:
         parts = self.parts
         self.units = [self._unit(part, model, settings.certified) for part, model in parts]
         self.units += self._between()
+        self.crooked = [crooked.of(s, m) for s, m in self.parts] if kind == "accel" else []
         self.data = which.Data(self.units)
         self.options = [o for o in which.candidates(self.units)
                         if o.effect not in settings.without]

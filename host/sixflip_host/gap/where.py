@@ -3,7 +3,7 @@ discoveries controlled [Benjamini & Hochberg, JRSS B 57 (1995) 289]."""
 import numpy as np
 from scipy import linalg, stats
 
-from . import between
+from . import between, crooked
 
 FALSE_DISCOVERIES = 0.01
 LEAST_SHARE = 0.01  # of the excess: less is no place to look at
@@ -82,11 +82,12 @@ ORDINARY_PLACEMENT_MG = 2.0  # 0.11 deg: a box set down by hand
 
 
 def across(gap):
-    """The attitude of the placements, where they scatter more than by hand."""
-    if gap.kind != "accel" or not gap.units[0].grid:
+    """The attitude of the placements, where they scatter more than by hand, or of the faces."""
+    if gap.kind != "accel":
         return []
     levels = [u.grid[i][0] for u, i in zip(gap.units, gap.adequacy.index) if not u.between]
-    worst = max(levels)
+    off = [c.worst * crooked.MG_A_DEG for c in gap.crooked if c and c.remark()]
+    worst = max(levels + off)
     if worst <= ORDINARY_PLACEMENT_MG:
         return []
     share = 1.0 - (ORDINARY_PLACEMENT_MG / worst) ** 2

@@ -2,7 +2,8 @@
 from ..terminal import console, plain, styled, table
 from .regressors import DOMAIN
 
-SENSOR = {"accel": "accelerometer", "gyro": "gyro", "device": "device"}
+SENSOR = {"accel": "accelerometer", "gyro": "gyro", "device": "device",
+          "gyro_turns": "gyro in motion"}
 STYLE = {"no gap": "bold green", "explained": "bold green", "partly explained": "bold yellow",
          "unexplained": "bold red", "cannot tell": "bold yellow"}
 DOES = {  # what a part with this effect does
@@ -132,8 +133,8 @@ def shrinkage_line(kind, gap, held):
 
 def loop_line(kind, loop):
     """The simulator run again, in a sentence."""
-    return ("Simulated again with %s: real less simulated %.3g %s before, %.3g after, noise of "
-            "both %.3g (%s)." % (", ".join(sorted({e["effect"] for e in loop["effects"]})),
+    return ("Simulated again with %s: real less simulated %.3g %s before, %.3g after, noise in "
+            "it %.3g (%s)." % (", ".join(sorted({e["effect"] for e in loop["effects"]})),
                                  loop["before"], loop["unit"], loop["after"], loop["floor"],
                                  SENSOR[kind]))
 

@@ -1,0 +1,30 @@
+"""Crooked faces are said to be the box's, by the face, and are no gap of the sensor."""
+import pytest
+
+from sixflip_host.gap import diagnosis, observations
+from sixflip_host.simulating import scenario, simulate
+
+
+def diagnosed(faces, tilt_deg=2.0):
+    effects = [dict(faces, effect="box_tilt")] if faces else []
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 17,
+                               "world": {"tilt_deg": tilt_deg, "placement_scatter_deg": 0.03},
+                               "effects": effects})
+    sessions = [observations.Session(str(k), simulate.session(plan, k)) for k in range(2)]
+    return diagnosis.Diagnosis(sessions, diagnosis.Settings())
+
+
+def test_a_square_box_on_a_tilted_table():
+    found = diagnosed({})
+    assert found.gaps["accel"].crooked[0].worst < 0.1
+    assert not [w for w in found.where if w.domain == "across_gravity"]
+
+
+def test_a_pair_of_faces_that_is_not_parallel():
+    found = diagnosed({"X+y": 0.8, "X-y": 0.8})
+    off = found.gaps["accel"].crooked[0]
+    assert max(off.deg, key=off.deg.get)[0] == "X"
+    # leaning alike on opposite faces is what no axis of a sensor can do
+    assert off.worst == pytest.approx(0.8, abs=0.1)
+    assert any("crooked box" in remark for remark in found.remarks)
+    assert ("across_gravity", None) in [(w.domain, w.axis) for w in found.where]
