@@ -27,6 +27,7 @@ VERBS = {
     "export": "sixflip_host.capture.export",
     "apply": "sixflip_host.capture.apply",
     "history": "sixflip_host.history.history",
+    "report": "sixflip_host.reporting.report",
     "plan": "sixflip_host.planning.plan",
     "simulate": "sixflip_host.simulating.simulate",
     "diagnose": "sixflip_host.gap.diagnose",

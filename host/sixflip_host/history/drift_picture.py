@@ -37,7 +37,7 @@ def draw(calibrations):
     axes[0, 1].set_title("over the sensor's temperature", fontsize=10)
     axes[-1, 0].set_xlabel("UTC")
     for ax in axes[:, 0]:
-        locator = AutoDateLocator(tz=timezone.utc, maxticks=7)
+        locator = AutoDateLocator(tz=timezone.utc)
         ax.xaxis.set_major_locator(locator)
         ax.xaxis.set_major_formatter(ConciseDateFormatter(locator, tz=timezone.utc))
     axes[-1, 1].set_xlabel("°C")

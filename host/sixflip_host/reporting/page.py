@@ -5,11 +5,14 @@ import html
 
 from ..terminal import plain
 
-STYLE = """:root{color-scheme:light}body{font:15px/1.45 system-ui,sans-serif;max-width:60em;
-margin:2em auto;padding:0 1em;color:#1b1b1b;background:#fff}h1{font-size:1.35em}h2{font-size:
-1.1em;margin-top:1.8em}h3{font-size:1em;margin-bottom:.3em}table{border-collapse:collapse;
-font-variant-numeric:tabular-nums}td,th{padding:.25em .7em;border-bottom:1px solid #ddd;
-text-align:left;vertical-align:top}img{max-width:100%}.note{color:#555}.scroll{overflow-x:auto}
+STYLE = """:root{color-scheme:light}
+body{font:15px/1.45 system-ui,sans-serif;max-width:64em;margin:2em auto;padding:0 1em;
+color:#1b1b1b;background:#fff}
+h1{font-size:1.35em}h2{font-size:1.1em;margin-top:1.8em}h3{font-size:1em;margin-bottom:.3em}
+table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:.87em;
+margin-bottom:1em}
+td,th{padding:.25em .7em;border-bottom:1px solid #ddd;text-align:left;vertical-align:top}
+img{max-width:100%}.note{color:#555}.scroll{overflow-x:auto}
 .good,.holds{color:#1a6e31;font-weight:600}.doubtful{color:#8a5a00;font-weight:600}
 .refused,.fails{color:#a61c1c;font-weight:600}"""
 # Even where a text should get through unescaped: a browser runs and fetches nothing.

@@ -107,10 +107,11 @@ def _words(capture_path, record_path, record, checks, failed, remarks):
     if not failed:
         out.print(styled("the board's arithmetic is right", "bold green"))
         return
-    rows = [[check.name, _cell(check.board), _cell(check.host), check.limit] for check in failed]
+    rows = [[check.name, cell(check.board), cell(check.host), check.limit] for check in failed]
     out.print(table("what differs", ["", "board", "host", "limit"], rows))
     out.print(styled("%d of %d comparisons differ" % (len(failed), len(checks)), "bold red"))
 
 
-def _cell(value):
+def cell(value):
+    """A value of a comparison as text."""
     return "%.12g" % value if isinstance(value, float) else str(value)
