@@ -195,8 +195,7 @@ def fitting(diagnosis, record, path):
     for session in diagnosis.sessions:
         if not session.n:
             continue
-        off = abs(float(np.median(np.linalg.norm(corrected(session, record).accel, axis=1)))
-                  * 1e-3 - 1.0)
+        off = rms(np.linalg.norm(corrected(session, record).accel, axis=1) * 1e-3 - 1.0)
         if not off <= OTHER_PART_G:
             raise CheckFailed("%s: at rest |a| of %s comes out %.0f mg off, expected at most "
                               "%.0f: it is the record of another part" % (
