@@ -26,41 +26,54 @@ sys.path.insert(0, str(HERE))
 
 import seal  # noqa: E402
 import suites  # noqa: E402
+from baselines import beside  # noqa: E402
 from generator.case import Case  # noqa: E402
 from generator.held_out import HELD_OUT  # noqa: E402
 from judged import judged  # noqa: E402
 
+COMPARED = ("null", "single", "pair", "stranger")    # what the baselines are put to
 DEFAULT_COUNT = 260     # about 25 minutes on two cores
 
 
 def generated(job):
     """Worker of step 1: writes a case's files; returns (public, label)."""
-    name, suite, spec, folder = job
+    name, suite, spec, folder, compare = job
     case = Case(spec)
     files = case.write(str(Path(folder) / name))
+    twin = case.write_twin(str(Path(folder) / (name + "-twin"))) if spec.twin else []
     words = list(spec.options) + ["--certified-box"] * spec.certified
     label = {"suite": suite, **case.label(), "judged": judged(case)}
-    return {"id": name, "files": [Path(f).name for f in files], "words": words}, label
+    return {"id": name, "files": [Path(f).name for f in files], "words": words,
+            "twin": [Path(f).name for f in twin], "compare": compare}, label
+
+
+def asked(paths, words):
+    """(exit code, answer or None, what was said on stderr) of the verb."""
+    from sixflip_host import cli
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        code = cli.main(["diagnose", *paths, *words, "--json", "--jobs", "1"])
+    try:
+        return code, json.loads(out.getvalue()), err.getvalue().strip()[:500]
+    except ValueError:
+        return code, None, err.getvalue().strip()[:500]
 
 
 def diagnosed(job):
     """Worker of step 2: what the verb answers on the files; knows nothing else."""
     public, folder, keep = job
-    from sixflip_host import cli
-    paths = [str(Path(folder) / f) for f in public["files"]]
-    out, err = io.StringIO(), io.StringIO()
+    paths, twin = ([str(Path(folder) / f) for f in public[which]] for which in ("files", "twin"))
     begin, busy = time.perf_counter(), time.process_time()
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        code = cli.main(["diagnose", *paths, *public["words"], "--json", "--jobs", "1"])
-    answer = None
-    with contextlib.suppress(ValueError):
-        answer = json.loads(out.getvalue())
+    code, answer, error = asked(paths, public["words"])
+    outcome = {"id": public["id"], "code": code, "answer": answer, "error": error,
+               "seconds": time.perf_counter() - begin, "cpu_s": time.process_time() - busy,
+               "twin": asked(twin, public["words"])[1] if twin else None, "baselines": None}
+    if public["compare"] and answer is not None:
+        outcome["baselines"] = beside.answers(paths)
     if not keep:
-        for path in paths:
+        for path in paths + twin:
             os.remove(path)
-    return {"id": public["id"], "code": code, "answer": answer,
-            "error": err.getvalue().strip()[:500],
-            "seconds": time.perf_counter() - begin, "cpu_s": time.process_time() - busy}
+    return outcome
 
 
 def pooled(work, jobs, workers, what):
@@ -77,11 +90,14 @@ def pooled(work, jobs, workers, what):
     return out
 
 
-def make(specifications, folder, workers):
-    """Step 1 into a folder: captures, manifest, sealed labels."""
+def make(specifications, folder, workers, compare=0):
+    """Step 1 into a folder: captures, manifest, sealed labels; `compare` cases of the suites
+    COMPARED, evenly, are put to the baselines too."""
     captures = folder / "captures"
     captures.mkdir(parents=True, exist_ok=True)
-    jobs = [("case-%04d" % k, suite, spec, str(captures))
+    fair = [k for k, (suite, _) in enumerate(specifications) if suite in COMPARED]
+    chosen = set(fair[::max(1, len(fair) // compare)][:compare]) if compare else ()
+    jobs = [("case-%04d" % k, suite, spec, str(captures), k in chosen)
             for k, (suite, spec) in enumerate(specifications)]
     cases = pooled(generated, jobs, workers, "generated")
     seal.write(folder, cases, sorted(HELD_OUT))
@@ -105,6 +121,9 @@ def score(folder):
     results = [scored(labels[a["id"]], a) for a in answers]
     (folder / "scores.json").write_text(json.dumps(results))
     text, never = target_tables.report(results)
+    both = [a for a in answers if a["baselines"]]
+    if both:
+        text += "\n\n\nBaselines on the same cases\n\n" + beside.report(labels, both)
     (folder / "tables.txt").write_text(text)
     print(text)
     import score_pictures
@@ -121,6 +140,8 @@ def arguments(argv):
     parser.add_argument("--suite", action="append", choices=list(suites.SUITES),
                         help="only these (may be given again)")
     parser.add_argument("--effect", help="only cases with this effect")
+    parser.add_argument("--compare", type=int, default=24, metavar="N",
+                        help="put N of the cases to the baselines too (half a minute each)")
     parser.add_argument("-o", "--output", type=Path, default=HERE.parents[1] / "blind-output")
     parser.add_argument("--keep", action="store_true", help="keep the captures")
     parser.add_argument("--score-only", action="store_true",
@@ -136,7 +157,7 @@ def main(argv=None):
         if args.effect:
             chosen = [(s, spec) for s, spec in chosen
                       if any(name == args.effect for name, _, _ in spec.effects)]
-        make(chosen, args.output, args.jobs)
+        make(chosen, args.output, args.jobs, args.compare)
         diagnose(args.output, args.jobs, args.keep)
     return score(args.output)
 

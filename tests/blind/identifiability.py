@@ -145,7 +145,8 @@ class Geometry:
                 for j, b in enumerate(parts):
                     if a.number == b.number:
                         rest = [k for k, p in enumerate(parts) if p.number == a.number][0]
-                        across = np.eye(3) - np.outer(up[rest], up[rest])
+                        vertical = up[rest] / np.linalg.norm(up[rest])
+                        across = np.eye(3) - np.outer(vertical, vertical)
                         loose = FREE if a.label[0] == "L" else scatter ** 2
                         cover[3 * i:3 * i + 3, 3 * j:3 * j + 3] += loose * across
             blocks.append(cover)

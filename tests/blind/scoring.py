@@ -24,6 +24,7 @@ UNITS = {"mg/°C": 1e-3, "mg/degC": 1e-3, "°/s/°C": 1.0, "deg/s/degC": 1.0, "%
          "%/degC": 1e-2, "mg/g2": 1e-3, "mg/g²": 1e-3, "mg/g3": 1e-3, "mg/g³": 1e-3,
          "mg/g": 1e-3, "%": 1e-2, "deg/s/g": 1.0, "°/s/g": 1.0, "mg/(degC/min)": 6e-2,
          "mg/(°C/min)": 6e-2, "deg/s/(degC/min)": 60.0, "°/s/(°C/min)": 60.0}
+NO_COLUMN = ("supply",)     # nobody writes the voltage down: only its course can be said
 WHEN_THERE = ("box_tilt", "table_tilt", "earth_rate")   # in every case's world
 
 
@@ -60,7 +61,7 @@ def never(cause, label):
     if here["visible"] < SILENT:
         return "%s %s is silent in this protocol" % (cause["sensor"], cause["effect"])
     for other, index in here["aliases"].items():
-        if index > ALIASED:
+        if index > ALIASED and other not in label["options"]:   # --without: it could not be told
             return "%s %s is an alias of %s (%.3f)" % (cause["sensor"], cause["effect"], other,
                                                        index)
     return None
@@ -75,7 +76,7 @@ def expected(effect, theory, label):
         return "silent"
     if theory["distance"] < DETECTABLE:
         return "faint"
-    if theory.get("attainable", 1.0) < 0.5:
+    if theory.get("attainable", 1.0) < 0.5 or effect["effect"] in NO_COLUMN:
         return "other form"
     sensor = "gyro" if effect["sensor"] == "gyro" else "accel"
     indices = dict(theory["aliases"])
@@ -148,6 +149,23 @@ def scored(label, outcome):
                     for c in causes if not belongs(c, label)]
     out["single_false"] = [c["effect"] for c in causes if c["effect"] and not belongs(c, label)]
     out["never"] = [reason for reason in (never(c, label) for c in causes) if reason]
+    out["share"] = share_held(label, answer, outcome.get("twin"))
     out["effects"] = [scored_effect(e, t, label, answer)
                       for e, t in zip(label["effects"], label["judged"]["effects"])]
     return out
+
+
+def share_held(label, answer, twin):
+    """[share, low, high] of the gap closed, the share worked out with the floor that the same
+    noise leaves without the effect (the twin's gap); None without a twin or an interval."""
+    if not twin:
+        return None
+    sensor = label["effects"][0]["sensor"]
+    gap, floor = answer["gap"].get(sensor), twin["gap"].get(sensor)
+    bounds = (gap or {}).get("interval_90")
+    if not floor or not bounds or None in bounds:
+        return None
+    whole = gap["before"] ** 2 - floor["before"] ** 2
+    if whole <= 0:
+        return None
+    return [(gap["before"] ** 2 - gap["after"] ** 2) / whole, *bounds]

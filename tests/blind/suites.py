@@ -24,11 +24,14 @@ PAPER = [("thermal_bias", "accel"), ("quadratic", "accel"), ("cubic", "accel"),
          ("local_gravity", "accel"), ("warm_up", "accel"), ("drift", "accel"),
          ("axis_swap", "gyro"), ("saturation", "accel"), ("g_sensitivity", "gyro"),
          ("thermal_scale", "accel"), ("vibration", "accel"), ("supply", "gyro")]
+SHARE = [("thermal_bias", "accel"), ("thermal_bias", "gyro"), ("g_sensitivity", "gyro"),
+         ("cubic", "accel"), ("warm_up", "gyro"), ("asymmetry", "gyro"), ("creep", "accel"),
+         ("thermal_scale", "accel")]
 KNOWN_PAIRS = [(name, sensor) for name, (_, sensors) in KNOWN.items() for sensor in sensors]
 
-# Parts of a run of all suites, out of 100 cases.
+# Parts of a run of all suites.
 SHARES = {"null": 20, "single": 38, "pair": 8, "stranger": 10, "held out": 8, "left out": 4,
-          "paper": 6, "power": 6}
+          "paper": 6, "power": 6, "share": 7}
 
 
 def chip_of(rng):
@@ -45,11 +48,13 @@ def null(rng, count):
     for number in range(count):
         protocol = rng.choice(["recommended", "recommended", "recommended", "paper", "one session",
                                "rest"])
+        no_labels = protocol != "rest" and rng.random() < 0.1
         habits = {"box_tilt_deg": 0.1 * (number % 2), "free_heading": bool(rng.random() < 0.2),
                   "touches": 0.1 * bool(rng.random() < 0.3)}
         out.append(Specification(
             seed_of(rng), chip_of(rng), str(protocol), habits=habits,
-            new_gyro_offset=bool(rng.random() < 0.3), no_thermometer=bool(rng.random() < 0.1)))
+            new_gyro_offset=bool(rng.random() < 0.3), no_thermometer=bool(rng.random() < 0.1),
+            no_labels=bool(no_labels)))
     return out
 
 
@@ -118,8 +123,15 @@ def power(rng, count):
             for thing in _spread(rng, things, count)]
 
 
+def share(rng, count):
+    """How far the gap shrinks, each case with a twin that has its noise and no effect."""
+    things = [(*thing, size) for thing in SHARE for size in SIZES]
+    return [_specification(rng, [thing], twin=True) for thing in _spread(rng, things, count)]
+
+
 SUITES = {"null": null, "single": single, "pair": pair, "stranger": stranger,
-          "held out": held_out, "left out": left_out, "paper": paper, "power": power}
+          "held out": held_out, "left out": left_out, "paper": paper, "power": power,
+          "share": share}
 
 
 def specifications(seed, count, suites):

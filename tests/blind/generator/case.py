@@ -1,6 +1,6 @@
 """One blind case: from a specification and a seed to capture files and a label."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -33,6 +33,7 @@ class Specification:
     no_thermometer: bool = False
     no_labels: bool = False
     noise_of: str = ""                  # what recorded noise it carries, in words
+    twin: bool = False                  # the same noise once more without the effects
     options: list = field(default_factory=list)     # more words for the command
 
 
@@ -40,7 +41,9 @@ def part_of(rng, chip, sessions, spec):
     """The nominal 12 parameters, gyro's included, of this case's chip."""
     lag = rng.uniform(*chip.thermometer_lag_s) if chip.thermometer_lag_s[1] else 0.0
     offset = rng.normal(0, chip.offset_dps, 3)
-    again = rng.normal(0, 0.03, (sessions, 3)) * spec.new_gyro_offset
+    # from a source of its own: one session more must not change the part
+    again = np.random.default_rng([spec.seed, 7]).normal(0, 0.03, (sessions, 3))
+    again *= spec.new_gyro_offset
     again[0] = 0
     return {"accel_matrix": np.eye(3) + rng.normal(0, 0.01, (3, 3)),
             "accel_offset": rng.normal(0, chip.offset_g, 3),
@@ -137,6 +140,10 @@ class Case:
                   None if self.spec.no_thermometer else signals.temp_counts[kept].astype(int),
                   None if self.spec.no_labels else signals.names[kept], int(RATE))
         return paths
+
+    def write_twin(self, stem, noise_source=noise.synthetic):
+        """The same sessions, part and noise without any effect; returns the paths."""
+        return Case(replace(self.spec, effects=[])).write(stem, noise_source)
 
     def label(self):
         """What the sealed file keeps: causes as they are, JSON-ready."""
