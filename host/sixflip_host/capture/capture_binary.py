@@ -78,7 +78,8 @@ def _labels(path, blocks):
     """int16 codes of every sample from the placements in force."""
     pose = np.zeros(len(blocks.t_us), np.int16)
     for one in blocks.placements:
-        if len(pose) and one.first + one.n > len(pose) and not blocks.damage:
+        if len(pose) and one.first + one.n > len(pose) and not (
+                blocks.damage or blocks.sums_only):
             raise BadFile("%s: a pose ends at sample %d of %d" % (
                 path, one.first + one.n, len(pose)))
         pose[one.first:one.first + one.n] = one.pose

@@ -19,7 +19,7 @@ from ..board.board_files import host_dir, shared_dir
 from ..errors import NoBoard
 from . import micropython_fetch
 
-FLASH_BYTES = 1024 * 1024
+FLASH_BYTES = 1408 * 1024  # what MicroPython leaves for files of a Pico's 2 MB
 HARD_RESET, SOFT_RESET, SOFT_RESET_RAW = 80, 81, 82  # exit codes of raw_repl.Restart
 POWER_CUT = 5
 PWRON_CAUSE, HARD_CAUSE, SOFT_CAUSE = 1, 2, 5
