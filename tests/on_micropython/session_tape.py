@@ -16,7 +16,7 @@ CHIPS = {
 WORLD = {"tilt_deg": 2.0, "first_rest_s": 8.0, "dwell_s": 6.0, "move_s": 2.5}
 
 
-def write(folder, sensor):
+def write(folder, sensor, world=WORLD):
     """tape.json and a file of bursts for every chip; the number of samples."""
     names = ["chip%d.tape" % i for i in range(len(CHIPS[sensor]))]
     described = []
@@ -26,7 +26,7 @@ def write(folder, sensor):
     (folder / "tape.json").write_text(json.dumps(described))
     files = [open(folder / name, "wb") for name in names]  # noqa: SIM115 - closed below
     try:
-        return tape.record(worlds.make(dict(WORLD, sensor=sensor)), files)
+        return tape.record(worlds.make(dict(world, sensor=sensor)), files)
     finally:
         for file in files:
             file.close()

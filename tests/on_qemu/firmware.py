@@ -14,7 +14,10 @@ import tempfile
 from pathlib import Path
 
 from debian_tier import Unavailable, alone, install
+from on_micropython import session_tape
 
+from sixflip_host.atomic_write import write_bytes
+from sixflip_host.board.board_files import board_files
 from sixflip_host.errors import SixflipError
 from sixflip_host.virtual.micropython_fetch import (
     KEYRING,
@@ -26,19 +29,34 @@ from sixflip_host.virtual.micropython_fetch import (
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("qemu-system-arm", "gcc-arm-none-eabi", "libnewlib-arm-none-eabi")
+# The session on tape, shorter than a person's: POSE_SAMPLES of each pose.
+WORLD = {"tilt_deg": 2.0, "first_rest_s": 6.0, "dwell_s": 3.5, "move_s": 1.5}
+POSE_SAMPLES = 200
 TOOLS = ("qemu-system-arm", "arm-none-eabi-gcc", "make", "gcc")
 
 
 def frozen_files():
-    """{path in the firmware: file of the project}: shared code, its tests, their runner."""
+    """{path in the firmware: file of the project}: shared code, its tests, their runner, and
+    what whole sessions need beside the firmware itself."""
     files = {}
-    for path in sorted((ROOT / "shared").rglob("*.py")):
-        files[str(path.relative_to(ROOT / "shared"))] = path
+    for part, folder in (("shared", ROOT / "shared"), ("sim", ROOT / "host")):
+        for path in sorted(folder.rglob("*.py")):
+            name = path.relative_to(folder).as_posix()
+            if part == "shared" or name.startswith("sixflip_sim/") and "/micropython/" not in name:
+                files[name] = path
     for path in sorted((ROOT / "tests" / "shared").glob("*.py")):
         if "sixflip_sim" not in path.read_text():
             files[path.name] = path
-    files["unittest.py"] = ROOT / "tests" / "on_micropython" / "unittest.py"
+    for path in sorted((ROOT / "tests" / "on_qemu" / "on_board").glob("*.py")):
+        files[path.name] = path
+    for name in ("unittest.py", "locked_loop.py"):
+        files[name] = ROOT / "tests" / "on_micropython" / name
     return files
+
+
+def board_sources():
+    """{path on a board: bytes}: the firmware as it is provisioned, to be compiled there."""
+    return {name: path.read_bytes() for name, path in board_files().items()}
 
 
 def missing_tools():
@@ -78,14 +96,14 @@ def run_make(folder, *words):
 
 
 def stage(folder, files):
-    """Copy the frozen files to one tree, only those that changed, and write its manifest."""
+    """Write the frozen files to one tree, only those that changed, and its manifest."""
     wanted = set()
-    for name, path in files.items():
+    for name, data in files.items():
         place = folder / name
         wanted.add(place)
-        if not place.exists() or place.read_bytes() != path.read_bytes():
+        if not place.exists() or place.read_bytes() != data:
             place.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(path, place)
+            place.write_bytes(data)
     for old in folder.rglob("*.py"):
         if old not in wanted:
             old.unlink()
@@ -94,6 +112,33 @@ def stage(folder, files):
     if not manifest.exists() or manifest.read_text() != text:
         manifest.write_text(text)
     return manifest
+
+
+def tape_module():
+    """Path of a module with the bursts of a session of each sensor, {sensor: [bytes]}; made
+    anew when the simulator changed."""
+    digest = hashlib.sha256(Path(session_tape.__file__).read_bytes() + repr(WORLD).encode())
+    for path in sorted((ROOT / "host" / "sixflip_sim").rglob("*.py")) + sorted(
+            (ROOT / "shared" / "sixflip" / "chips").rglob("*.py")):
+        digest.update(path.read_bytes())
+    made = cache_dir() / "qemu" / ("tapes-%s.py" % digest.hexdigest()[:16])
+    if not made.exists():
+        for old in made.parent.glob("tapes-*.py"):
+            old.unlink()
+        bursts = {}
+        for sensor in session_tape.CHIPS:
+            with tempfile.TemporaryDirectory() as folder:
+                session_tape.write(Path(folder), sensor, WORLD)
+                files = sorted(Path(folder).glob("*.tape"))
+                bursts[sensor] = [file.read_bytes() for file in files]
+        write_bytes(made, ("BURSTS = %r\n" % bursts).encode())
+    return made
+
+
+def tape_bursts():
+    names = {}
+    exec(tape_module().read_text(), names)
+    return names["BURSTS"]
 
 
 def build(board="MPS2_AN385"):
@@ -113,10 +158,13 @@ def _build(board):
             fetch_source(source)
         except (SixflipError, subprocess.SubprocessError) as error:
             raise Unavailable("MicroPython's source package cannot be had: %s" % error) from None
-    files = frozen_files()
+    files = {name: path.read_bytes() for name, path in frozen_files().items()}
+    sources = board_sources()
+    files["sources.py"] = ("FILES = %r\n" % sources).encode()
+    files["tapes.py"] = tape_module().read_bytes()
     digest = hashlib.sha256()
-    for name, path in sorted(files.items()):
-        digest.update(name.encode() + b"\0" + path.read_bytes())
+    for name, data in sorted(files.items()):
+        digest.update(name.encode() + b"\0" + data)
     stamp = cache / ("built-" + board)
     elf = source / "ports" / "qemu" / ("build-" + board) / "firmware.elf"
     if elf.exists() and stamp.exists() and stamp.read_text() == digest.hexdigest():

@@ -1,0 +1,58 @@
+"""A power-up of the firmware with a whole session, its sources compiled here as on a board.
+
+run(sensor): bursts from a tape; run(sensor, world={}): a simulated chip inside; lock=True: the
+heap is locked while it samples; other names are settings. Prints the events with the bytes in
+use after each, and the record in hexadecimal.
+"""
+
+import gc
+import sys
+
+import vfs
+from disk import Disk
+
+
+def tape(sensor):
+    import io
+
+    import tapes
+
+    from sixflip_sim.tape import open_tape
+    return open_tape(sensor, [io.BytesIO(data) for data in tapes.BURSTS[sensor]]), None
+
+
+def live(sensor, world):
+    from sixflip_sim import worlds
+    made = worlds.make(dict(world, sensor=sensor))
+    return made.i2c, made.clock
+
+
+def told(text):
+    gc.collect()
+    print(gc.mem_alloc(), text)
+
+
+def run(sensor, world=None, lock=False, **changed):
+    import sources
+    disk = Disk(sources.FILES)
+    i2c, clock = tape(sensor) if world is None else live(sensor, world)
+    for name in list(sys.modules):
+        if name.split(".")[0] in ("sixflip", "sixflip_sim", "sources"):
+            del sys.modules[name]  # the firmware brings its own
+    vfs.mount(disk, "/")
+    sys.path[:] = ["", ".frozen"]
+    gc.collect()
+    print("harness", gc.mem_alloc(), "heap", gc.mem_alloc() + gc.mem_free())
+
+    from sixflip_device import power_up, settings
+    assert power_up.__file__ == "sixflip_device/power_up.py", power_up.__file__
+    from taped_board import TapedBoard
+    values, problems = settings.merge(dict(grace_ms=0, **changed))
+    del settings
+    board = TapedBoard(i2c, "/", told, clock)
+    power_up.free_unlasting()
+    if lock:
+        import locked_loop
+        locked_loop.install(board, power_up)
+    power_up.run(board, values, problems)
+    print("record", "".join(["%02x" % b for b in disk.written["record_a.bin"].data]))

@@ -1,0 +1,104 @@
+"""A power-up with a whole session on the emulated board, the firmware compiled there: within the
+port's 140 KB of heap, nothing allocated while sampling, and the outcome of double precision."""
+
+import io
+import json
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sixflip import correction_record
+from sixflip_device import power_up, settings
+from sixflip_sim.tape import open_tape
+
+from .firmware import POSE_SAMPLES, tape_bursts
+from .simulated_sums import vector_error_mg
+
+sys.path[:0] = [str(Path(__file__).resolve().parent / "on_board")]
+
+from taped_board import TapedBoard  # noqa: E402  also runs on the board
+
+HEAP = 140032  # what the port leaves of its 140 KB
+
+
+def session(board, sensor, **how):
+    """(events, their bytes in use, record, {word: value} of what else it printed)."""
+    code = "import whole_session\nwhole_session.run(%r, **%r)" % (sensor, how)
+    events, used, said = [], [], {}
+    for line in board.exec(code).splitlines():
+        if "{" in line:
+            used.append(int(line[: line.index("{")] or 0))
+            events.append(json.loads(line[line.index("{") :]))
+        else:
+            words = line.split()
+            said.update(zip(words[::2], words[1::2]))
+    return events, used, correction_record.decode(bytes.fromhex(said.pop("record"))), said
+
+
+def in_double_precision(sensor, folder, monkeypatch):
+    """(events, record) of the same tape on CPython."""
+    monkeypatch.setattr(os, "urandom", lambda n: bytes(range(1, n + 1)))
+    events = []
+    i2c = open_tape(sensor, [io.BytesIO(data) for data in tape_bursts()[sensor]])
+    values, problems = settings.merge({"grace_ms": 0, "pose_samples": POSE_SAMPLES})
+    power_up.run(TapedBoard(i2c, str(folder) + "/", lambda text: events.append(json.loads(text))),
+                 values, problems)
+    return events, correction_record.decode((folder / "record_a.bin").read_bytes())
+
+
+def named(events, name):
+    return [event for event in events if event["event"] == name]
+
+
+def far(a, b):
+    return float(np.max(np.abs(np.asarray(a) - np.asarray(b))))
+
+
+@pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])
+def test_a_whole_session_with_the_heap_locked_while_sampling(board, sensor, tmp_path,
+                                                             monkeypatch):
+    events, used, record, said = session(board, sensor, lock=True, pose_samples=POSE_SAMPLES)
+    harness = int(said["harness"])
+    assert int(said["heap"]) == HEAP
+    assert named(events, "hello")[0]["float_bits"] == 32
+    assert len(named(events, "pose")) == 12
+    assert named(events, "solved")[0]["verdict"] == "good"
+    assert named(events, "saved")[0]["written"]
+    assert named(events, "ready")[0]["corrected"]
+    locked = named(events, "locked")[0]
+    assert locked["of"] >= named(events, "capture")[0]["samples"] > 5000
+    assert locked["turns"] > 0.9 * locked["of"]
+
+    there, double = in_double_precision(sensor, tmp_path, monkeypatch)
+    # every decision is the same: which samples became which pose, and the verdict
+    for here, other in zip(named(events, "pose"), named(there, "pose")):
+        assert here["pose"] == other["pose"]
+        assert far(here["mean"], other["mean"]) < 0.03  # counts; another sample would show
+    for name, key in (("capture", "samples"), ("capture", "kept"), ("solved", "verdict"),
+                      ("solved", "level")):
+        assert named(events, name)[0][key] == named(there, name)[0][key]
+    P, Q = [np.array(r.accel["P"])[:, :3] for r in (record, double)]
+    vector_mg = vector_error_mg(P, Q)
+    gyro = far(record.gyro["P"], double.gyro["P"])
+    print("\n%s: at most %d bytes in use of %d, %d of them the harness; %d of %d turns of the "
+          "sampling loop with the heap locked; against double precision on the same samples "
+          "%.5f mg, gyro matrix %.1e" % (sensor, max(used), HEAP, harness, locked["turns"],
+                                         locked["of"], vector_mg, gyro))
+    assert vector_mg < 0.01
+    assert gyro < 1e-5
+
+
+LIVE = {"tilt_deg": 2.0, "first_rest_s": 8.0, "dwell_s": 4.5, "move_s": 2.0, "seed": 3}
+
+
+def test_a_whole_session_with_the_simulated_chip_inside(board):
+    events, used, record, said = session(board, "mpu6050", world=LIVE, pose_samples=50, rate_hz=25)
+    assert len(named(events, "pose")) == 12
+    solved = named(events, "solved")[0]
+    assert solved["verdict"] in ("good", "doubtful"), solved["reason"]
+    assert solved["tilt_deg"] == pytest.approx(2.0, abs=0.1)
+    assert record.accel["level"] == "tilt solved"
+    print("\nsimulated MPU6050 inside: at most %d bytes in use of %d" % (max(used), HEAP))
