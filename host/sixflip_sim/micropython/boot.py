@@ -45,7 +45,7 @@ def mount_flash(config):
 
     new = blank(config["image"], config["flash_bytes"])
     file = open(config["image"], "r+b")  # noqa: SIM115  open for as long as the board runs
-    blocks = config["flash_bytes"] // 4096
+    blocks = file.seek(0, 2) // 4096  # one made earlier keeps its size
     device = FlashImage(file, blocks)
     if new:
         vfs.VfsLfs2.mkfs(device)
