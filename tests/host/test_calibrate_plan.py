@@ -163,7 +163,8 @@ def test_typed_lines_and_ctrl_c_in_a_terminal(micropython, tmp_path):
         assert cli.main(["provision", *port]) == 0
         child, terminal = pty.fork()
         if child == 0:
-            os.execv(sys.executable, [sys.executable, "-m", "sixflip_host", "calibrate", *port])
+            os.execv(sys.executable, [sys.executable, "-m", "sixflip_host", "calibrate", "--plain",
+                                      *port])
         said = Said(terminal)
         said.wait("Z+b taken")
         os.write(terminal, b"redo Q\nredoo\x7f Z+\n")

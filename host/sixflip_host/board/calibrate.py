@@ -3,12 +3,13 @@
 import contextlib
 import json
 
-from ..errors import CheckFailed, Interrupted, NoBoard, SixflipError, UsageError
+from ..errors import Interrupted, NoBoard, SixflipError, UsageError
 from ..history import remember
 from ..planning import board_plan
 from . import typed_lines
 from .board_events import events
 from .console import Console
+from .ending import Ending
 from .ports import add_port, open_link
 
 HELP = "calibrate a board now, guided face by face"
@@ -22,15 +23,27 @@ STOP_S = 10
 
 
 def add_arguments(parser):
-    add_port(parser)
+    where = parser.add_mutually_exclusive_group()
+    add_port(where)
+    where.add_argument("--replay", metavar="CAPTURE",
+                       help="no board: play a capture file through the firmware's own session")
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--plan", metavar="FILE|NAME",
                       help="a session of a plan (sixflip plan --save FILE), or paper, recommended")
     what.add_argument("--redo", metavar="FACE", choices=FACES,
                       help="take one face of the last session again, or of the one that is under "
                            "way: " + " ".join(FACES))
+    what.add_argument("--continue", dest="go_on", action="store_true",
+                      help="go on with the session under way, or with the one that was left "
+                           "unfinished; with neither begin a new one")
     parser.add_argument("--session", metavar="N", type=int, default=1,
                         help="which session of the plan (default: the first)")
+    parser.add_argument("--speed", metavar="N", type=float,
+                        help="of --replay: seconds of the capture a second (default: 1 on the "
+                             "guided screen, as fast as it goes in lines)")
+    parser.add_argument("--plain", action="store_true",
+                        help="lines instead of the guided screen, for scripts and screen readers; "
+                             "so it is anyway where the output is no terminal of 80 by 24")
 
 
 def ask_for_calibration(link, request=None):
@@ -75,19 +88,11 @@ def follow(link, show, typed=None, say=print, board=None):
 
 
 def _follow(link, show, typed, say, witness):
-    solved = None
-    failed = None
+    ending = Ending()
     for event in events(link, SILENCE_S, TOTAL_S):
         witness.hear(event)
         show(event)
-        kind = event["event"]
-        if kind == "solved":
-            solved = event
-        elif kind == "error":
-            failed = event
-        elif kind == "saved" and solved:
-            return solved
-        elif kind in ("ready", "stopped"):
+        if ending.take(event):
             break
         line = typed.poll() if typed else None
         if line is not None:
@@ -95,25 +100,29 @@ def _follow(link, show, typed, say, witness):
                 link.send(json.dumps(typed_lines.command(line)))
             except ValueError as error:
                 say(str(error))
-    if solved:
-        return solved
-    if failed:
-        raise CheckFailed("not calibrated: %s" % failed.get("what"))
-    raise NoBoard("%s: no calibration came to an end on this board; is its firmware of this "
-                  "version? (sixflip provision)" % link.port)
+    return ending.answer(link.port)
+
+
+def under_way(link):
+    """The names still missing in a calibration that is under way, of a plan or not known: [];
+    None when there is none: a board without a record begins one by itself."""
+    missing = None
+    for event in events(link, JOIN_S, JOIN_S):
+        if event["event"] == "state":
+            missing = missing or []
+            if isinstance(event.get("missing"), list):
+                return list(map(str, event["missing"]))
+    return missing
 
 
 def join(link, face):
     """Ask a calibration that is under way and has the face for it again. False when there is
-    none: a board without a record begins one by itself."""
-    for event in events(link, JOIN_S, JOIN_S):
-        if event["event"] == "state":
-            missing = event.get("missing")
-            if not isinstance(missing, list) or {face + "a", face + "b"} <= set(map(str, missing)):
-                return False
-            link.send(json.dumps({"cmd": "redo", "face": face}))
-            return True
-    return False
+    none."""
+    missing = under_way(link)
+    if not missing or {face + "a", face + "b"} <= set(missing):
+        return False
+    link.send(json.dumps({"cmd": "redo", "face": face}))
+    return True
 
 
 def stop(link):
@@ -128,7 +137,7 @@ def stop(link):
             elif event["event"] in ("saved", "ready", "stopped"):
                 break
     if kept:
-        return ("stopped; the %s samples so far stay on the board: sixflip calibrate --redo FACE "
+        return ("stopped; the %s samples so far stay on the board: sixflip calibrate --continue "
                 "goes on with them, sixflip pull fetches them" % kept)
     return "stopped; nothing on the board has changed"
 
@@ -139,26 +148,69 @@ def start(link, args, session):
         if join(link, args.redo):
             return None
         return ask_for_calibration(link, {"redo": args.redo})
+    if args.go_on:
+        if under_way(link) is not None:
+            return None
+        return ask_for_calibration(link, {"continue": True})
     if session:
         return ask_for_calibration(link, board_plan.request(session, rate_of(link)))
     return ask_for_calibration(link)
 
 
-def run(args):
+def checked(args):
+    """The plan's session, None without; UsageError for what does not go together."""
     session = board_plan.session_of(args.plan, args.session) if args.plan else None
     if session is None and args.session != 1:
         raise UsageError("--session %d: only with --plan" % args.session)
-    step = (lambda at: board_plan.step(session, at)) if session else None
+    if args.replay and (args.plan or args.redo or args.go_on):
+        raise UsageError("--replay plays a capture as it was taken: not with --plan, --redo or "
+                         "--continue")
+    if args.speed is not None and (not args.replay or not args.speed > 0):
+        raise UsageError("--speed %g: expected a number above 0, with --replay" % args.speed)
+    return session
+
+
+def link_of(args, guided):
+    """The board, or the replay in its place."""
+    if not args.replay:
+        return open_link(args.port)
+    from ..guide.replay_link import ReplayLink
+    return ReplayLink(args.replay, args.speed or (1.0 if guided else None))
+
+
+def in_lines(link, args, step, board):
+    """Line by line; the solved event."""
     console = Console(step=step)
-    with open_link(args.port) as link:
+    try:
+        with typed_lines.TypedLines(console.echo) as typed:
+            if typed.live:
+                console.say(typed_lines.HELP)
+            if args.replay:
+                return _follow(link, console.show, typed, console.say, remember.Witness())
+            return follow(link, console.show, typed, console.say, board)
+    finally:
+        console.clear()
+
+
+def on_a_screen(link, args, step, board):
+    """On the guided screen; the solved event."""
+    from ..guide import terminal_guide
+    from ..guide.board_session import BoardSession
+    session = BoardSession(link, board, step, keep=not args.replay)
+    if terminal_guide.run(session):
+        raise Interrupted(stop(link))
+    return session.ending.answer(link.port)
+
+
+def run(args):
+    session = checked(args)
+    from ..guide import terminal_guide
+    guided = not args.plain and terminal_guide.possible()
+    step = (lambda at: board_plan.step(session, at)) if session else None
+    with link_of(args, guided) as link:
         board = start(link, args, session)
         try:
-            with typed_lines.TypedLines(console.echo) as typed:
-                if typed.live:
-                    console.say(typed_lines.HELP)
-                solved = follow(link, console.show, typed, console.say, board)
+            solved = (on_a_screen if guided else in_lines)(link, args, step, board)
         except KeyboardInterrupt:
-            console.clear()
             raise Interrupted(stop(link)) from None
-    console.clear()
     return 1 if solved.get("verdict") == "refused" else 0

@@ -5,7 +5,7 @@ import sys
 import threading
 
 from sixflip.faces import FACES
-from sixflip.record import TERMS
+from sixflip.record_terms import TERMS
 
 from ..terminal import plain
 
@@ -106,7 +106,7 @@ def _record(event):
 
 def _terms(event):
     """", with g_sensitivity" when a record has terms beyond scale and bias."""
-    names = [name for _, name in TERMS if name in (event.get("measured") or [])]
+    names = [name for tag, name in TERMS if tag in (event.get("terms") or [])]
     return ", with " + ", ".join(names) if names else ""
 
 

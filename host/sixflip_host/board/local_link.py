@@ -83,15 +83,20 @@ class LocalLink:
 
     # -- the firmware
 
+    def command(self):
+        """What runs as the board."""
+        return [sys.executable, "-m", "sixflip_host.board.local_firmware", str(self.folder),
+                json.dumps(self.world)]
+
     def reset(self):
         self.stop()
         environment = dict(os.environ, SIXFLIP_BOARD_DIR=str(self.folder),
                            PYTHONPATH=str(host_dir()), PYTHONDONTWRITEBYTECODE="1")
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "sixflip_host.board.local_firmware", str(self.folder),
-             json.dumps(self.world)],
+            self.command(),
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-            env=environment, cwd=self.folder)
+            env=environment, cwd=self.folder,
+            start_new_session=True)     # a Ctrl-C is the host's: it ends the session in order
         # A short queue: when nobody listens the firmware waits, as it does on a full USB pipe.
         self.queue = queue.Queue(64)
         threading.Thread(target=pump, args=(self.process, self.queue), daemon=True).start()

@@ -1,0 +1,264 @@
+"""What is known of a guided session, as a value: events of the firmware in, a new State out.
+
+One model for the terminal and the browser. Everything a board sends is checked on its way in:
+text is escaped and cut, numbers are finite, names of poses are poses; nothing raises.
+"""
+
+import math
+from dataclasses import dataclass, field, replace
+from statistics import median
+
+from sixflip.faces import FACES, pose_code
+
+from ..board.console import lasting
+from ..terminal import plain
+
+LOG = 200               # lines kept
+TRAIL = 240             # vectors kept: a minute, at four a second
+TEXT = 300              # characters of a text of the board's
+DEEP = 4                # objects in objects of an answer
+SIX = tuple(face + letter for face in FACES for letter in "ab")
+WAITING, CALIBRATING, SOLVING, OVER = "waiting", "calibrating", "solving", "over"
+
+
+@dataclass(frozen=True)
+class State:
+    """stage     waiting (for the board), calibrating, solving, over
+    taken        {pose: n samples} accepted and in force; of a plan the last one of that name
+    missing      poses still to come, in a session of six faces
+    plan, at, of, next   a session by a plan: placements done, their number, the next one's name
+    box, pose, reason, value, limit, unit, progress, total, left_s   the live state, see
+                 device/sixflip_device/session_teller.py; heard: number of live states
+    vector, rate three numbers each, g and deg/s, or None; trail: tuple of (second, vector, rate)
+    refusal      why the last placement was not taken, "" once one was
+    solved, saved, record   those events' own values, {} before
+    verdict      good, doubtful, refused; "" before
+    since, taken_at, now   seconds of the caller's clock: begin of the session, last placement
+                 taken, last event; paces: seconds from placement to placement
+    log          lasting lines, oldest first; error: the last one that is in force
+    """
+
+    stage: str = WAITING
+    board: str = ""
+    chip: str = ""
+    taken: dict = field(default_factory=dict)
+    missing: tuple = ()
+    plan: bool = False
+    at: int = 0
+    of: int = 0
+    next: str = ""
+    box: str = ""
+    pose: str = ""
+    reason: str = ""
+    value: float = 0.0
+    limit: float = 0.0
+    unit: str = ""
+    progress: int = 0
+    total: int = 0
+    left_s: float = 0.0
+    heard: int = 0
+    vector: tuple = None
+    rate: tuple = None
+    trail: tuple = ()
+    refusal: str = ""
+    solved: dict = field(default_factory=dict)
+    saved: dict = field(default_factory=dict)
+    record: dict = field(default_factory=dict)
+    verdict: str = ""
+    since: float = 0.0
+    taken_at: float = 0.0
+    now: float = 0.0
+    paces: tuple = ()
+    log: tuple = ()
+    error: str = ""
+
+    def left(self):
+        """Seconds until all placements are taken, at the usual pace so far; None before the
+        first one."""
+        if self.stage != CALIBRATING or not self.paces:
+            return None
+        todo = self.of - self.at if self.plan else len(self.missing)
+        return median(self.paces) * todo - min(self.now - self.taken_at, median(self.paces))
+
+
+def text(value, longest=TEXT):
+    """A text of a board's, escaped and cut; "" for what is none."""
+    return plain(value)[:longest] if isinstance(value, str) else ""
+
+
+def number(value, default=0.0):
+    """A finite number, else the default."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return default
+    try:
+        return float(value) if math.isfinite(value) else default
+    except OverflowError:
+        return default
+
+
+def whole(value):
+    value = number(value)
+    return int(value) if 0 <= value < 1 << 31 else 0
+
+
+def cleaned(value, deep=DEEP):
+    """A JSON value of a board's with its texts escaped, its numbers finite, its depth bounded."""
+    if isinstance(value, str):
+        return text(value)
+    if isinstance(value, bool) or value is None:
+        return value
+    if isinstance(value, (int, float)):
+        return value if number(value, None) is not None else None
+    if not deep:
+        return None
+    if isinstance(value, list):
+        return [cleaned(item, deep - 1) for item in value[:64]]
+    if isinstance(value, dict):
+        return {text(key, 40): cleaned(item, deep - 1) for key, item in list(value.items())[:64]}
+    return None
+
+
+def poses(value):
+    """The names of poses in a list; other things are passed over."""
+    found = []
+    for name in value if isinstance(value, list) else ():
+        try:
+            found.append(name if isinstance(name, str) and pose_code(name) else "")
+        except (ValueError, IndexError):
+            continue
+    return tuple(name for name in found if name)
+
+
+def three(value, unit):
+    """Three numbers of a list times unit, or None."""
+    if not isinstance(value, list) or len(value) != 3 or not any(map(number, value)):
+        return None
+    return tuple(number(v) * unit for v in value)
+
+
+def after(state, event, now, step=None):
+    """The State after an event (a dict with "event"). now: seconds; step(at): see Console."""
+    state = replace(state, now=now)
+    kind = event.get("event")
+    make = AFTER.get(kind) if isinstance(kind, str) else None
+    if make:
+        state = make(state, event)
+    if kind in ("state", "sample", "heading"):
+        return state
+    return logged(state, lasting(event, step) if isinstance(kind, str) else [])
+
+
+def logged(state, lines):
+    """State with more lasting lines."""
+    return replace(state, log=(state.log + tuple(line[:TEXT] for line in lines))[-LOG:])
+
+
+def _hello(state, event):
+    return replace(state, board=text(event.get("id"), 40), chip=text(event.get("chip"), 60))
+
+
+def _calibrating(state, event):
+    """A session begins; what it goes on with is all that is not missing."""
+    missing = poses(event.get("missing"))
+    plan = event.get("plan") is True
+    taken = {} if plan else {pose: 0 for pose in SIX if pose not in missing}
+    return replace(State(), board=state.board, chip=state.chip, log=state.log, record=state.record,
+                   stage=CALIBRATING, plan=plan, missing=missing, taken=taken,
+                   of=len(missing) if plan else 0, next=missing[0] if plan and missing else "",
+                   vector=state.vector, trail=state.trail, since=state.now, taken_at=state.now,
+                   now=state.now)
+
+
+def _todo(state, event):
+    """What is still to be done, where the event says so."""
+    if "missing" in event:
+        missing = poses(event["missing"])
+        taken = {pose: n for pose, n in state.taken.items() if pose not in missing}
+        for pose in SIX:
+            if pose not in missing:
+                taken.setdefault(pose, 0)
+        return replace(state, missing=missing, taken=taken)
+    if "at" in event:
+        following = poses(event.get("next"))
+        return replace(state, plan=True, at=whole(event["at"]), of=whole(event.get("of")),
+                       next=following[0] if following else "")
+    return state
+
+
+def _live(state, event):
+    """A live state also tells a host that came later that a calibration is under way."""
+    if state.stage != CALIBRATING:
+        state = replace(State(), board=state.board, chip=state.chip, log=state.log,
+                        stage=CALIBRATING, since=state.now, taken_at=state.now, now=state.now)
+    state = replace(
+        _todo(state, event), heard=state.heard + 1,
+        box=text(event.get("state"), 20), pose=text(event.get("pose"), 8),
+        reason=text(event.get("reason"), 60), value=number(event.get("value")),
+        limit=number(event.get("limit")), unit=text(event.get("unit"), 12),
+        progress=whole(event.get("progress")), total=whole(event.get("total")),
+        left_s=max(0.0, number(event.get("left_s"))))
+    if state.box in ("capturing", "settling"):
+        state = replace(state, refusal="")
+    return _moved(state, event.get("live"))
+
+
+def _moved(state, live):
+    """The vector of a live state: mg and deg/s."""
+    live = live if isinstance(live, list) else []
+    vector = three(live[:3], 1e-3)
+    if vector is None:
+        return state
+    return _trailed(state, vector, three(live[3:], 1.0) or ((0.0,) * 3 if live[3:] else None))
+
+
+def _trailed(state, vector, rate):
+    return replace(state, vector=vector, rate=rate,
+                   trail=(state.trail + ((state.now, vector, rate),))[-TRAIL:])
+
+
+def _sample(state, event):
+    """A corrected sample, once the board streams again."""
+    vector = three(event.get("a"), 1 / 9.80665)
+    if vector is None:
+        return state
+    return _trailed(state, vector, three(event.get("w"), math.degrees(1.0)))
+
+
+def _pose(state, event):
+    for name in poses([event.get("pose")]):
+        state = replace(state, taken=dict(state.taken, **{name: whole(event.get("n"))}))
+    return replace(_todo(state, event), refusal="", error="", taken_at=state.now,
+                   paces=state.paces + (state.now - state.taken_at,))
+
+
+def _refused(state, event):
+    said = lasting(event)
+    return replace(state, refusal=said[0][:TEXT] if said else "")
+
+
+def _capture(state, event):
+    return replace(state, stage=SOLVING, pose="", box="", reason="")
+
+
+def _solved(state, event):
+    verdict = text(event.get("verdict"), 20)
+    return replace(state, stage=OVER if verdict == "refused" else SOLVING, verdict=verdict,
+                   solved=cleaned(event))
+
+
+def _error(state, event):
+    return replace(state, error=text(event.get("what")))
+
+
+def _end(state, event):
+    """The firmware streams again, or it stopped."""
+    return replace(state, stage=OVER) if state.stage in (CALIBRATING, SOLVING) else state
+
+
+AFTER = {
+    "hello": _hello, "calibrating": _calibrating, "state": _live, "sample": _sample,
+    "pose": _pose, "redo": _todo, "refused": _refused, "capture": _capture, "solved": _solved,
+    "saved": lambda s, e: replace(s, stage=OVER, saved=cleaned(e)),
+    "record": lambda s, e: replace(s, record=cleaned(e)),
+    "error": _error, "ready": _end, "stopped": _end,
+}
