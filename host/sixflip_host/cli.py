@@ -28,6 +28,7 @@ VERBS = {
     "apply": "sixflip_host.capture.apply",
     "history": "sixflip_host.history.history",
     "report": "sixflip_host.reporting.report",
+    "doctor": "sixflip_host.doctor.doctor",
     "plan": "sixflip_host.planning.plan",
     "simulate": "sixflip_host.simulating.simulate",
     "diagnose": "sixflip_host.gap.diagnose",

@@ -21,6 +21,8 @@ DEFAULTS = {
     "who_am_i": 0x68,           # of the mpu6050's relative
     "address": None,            # None: the usual one of the chip with the gyro, or ADXL345
     "magnetometer": None,       # HMC5883L, QMC5883L
+    "also": None,               # mpu6050: one more of it, at its usual address
+    "chip_clock_off": 0.0,      # %, of the chip with the gyro
     "seed": 1,                  # of part, noise and hand
     # the part: None is drawn from the seed; lists otherwise
     "ideal": False,             # no errors of scale, misalignment and bias
@@ -138,10 +140,29 @@ def _chips(s, clock, model):
     if sensor == "gy85":
         from sixflip_sim.chips.itg3205 import SimulatedITG3205
         chips.append(SimulatedITG3205(clock, model, s["address"] or 0x68))
+    for chip in chips:
+        if hasattr(chip, "clock_off"):
+            chip.clock_off = s["chip_clock_off"]
+    if s["also"]:
+        _add(chips, s["also"], clock, model)
     if s["magnetometer"]:
         from sixflip_sim.chips.magnetometers import SimulatedMagnetometer
         chips.append(SimulatedMagnetometer(clock, s["magnetometer"]))
     return chips
+
+
+def _add(chips, name, clock, model):
+    """One more chip; where there is one at its address already, the two share it."""
+    if name != "mpu6050":
+        raise ValueError("also is %r, expected mpu6050" % name)
+    from sixflip_sim.chips.mpu6050 import SimulatedMPU6050
+    more = SimulatedMPU6050(clock, model)
+    for i in range(len(chips)):
+        if chips[i].address == more.address:
+            from sixflip_sim.chips.shared_address import SharedAddress
+            chips[i] = SharedAddress(chips[i], more)
+            return
+    chips.append(more)
 
 
 def _session(s):

@@ -20,6 +20,7 @@ class InvenSense(RegisterChip):
     status_register = 0
     data_register = 0
     data_length = 0
+    clock_off = 0.0             # %, of the oscillator: a sample takes so much less time
 
     def __init__(self, address, clock, model):
         self.model = model
@@ -37,7 +38,8 @@ class InvenSense(RegisterChip):
     def period_us(self):
         """Sample period: 1 kHz behind a filter, 8 kHz without, divided."""
         base = 125 if self.registers[self.filter_register] & 7 in (0, 7) else 1000
-        return base * (1 + self.registers[self.divider_register])
+        period = base * (1 + self.registers[self.divider_register])
+        return round(period / (1 + 0.01 * self.clock_off)) if self.clock_off else period
 
     def write_register(self, register, value):
         if self._resetting():

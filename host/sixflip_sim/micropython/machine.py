@@ -90,6 +90,10 @@ def _check_pin(identity, pull):
             raise ValueError("pulls are not supported for external pins")
 
 
+def _bus_pins():
+    return _wiring.get("sda_pin", 4), _wiring.get("scl_pin", 5)
+
+
 class Pin:
     IN, OUT, OPEN_DRAIN, ALT = 0, 1, 2, 3
     PULL_UP, PULL_DOWN = 1, 2
@@ -98,6 +102,7 @@ class Pin:
         _check_pin(identity, pull)
         self.identity = identity
         self.mode = mode
+        self.pull = pull
         if value is not None:
             self.value(value)
         elif pull == Pin.PULL_UP:
@@ -111,9 +116,18 @@ class Pin:
         if level is None:
             if self.identity == _wiring.get("button_pin") and _wiring.get("button_held"):
                 return 0
+            if self.mode == Pin.IN and self.identity in _bus_pins():
+                return self._line()
             return _levels.get(self.identity, 0)
         self._drive(level)
         return None
+
+    def _line(self):
+        """A line of the bus at rest, by the wiring's "lines": sda low, scl low, no pull-ups."""
+        state = _wiring.get("lines", "")
+        if state == "no pull-ups":
+            return 1 if self.pull == Pin.PULL_UP else 0
+        return 0 if state == ("sda low", "scl low")[_bus_pins().index(self.identity)] else 1
 
     def _drive(self, level):
         before = _levels.get(self.identity, 1)

@@ -1,0 +1,1 @@
+"""What is wrong between this computer, the board and the sensor, and what to do about it."""

@@ -1,0 +1,136 @@
+"""Runs on the board, beside its firmware: the lines of the bus, who answers, what it measures.
+
+Prints one Python literal a line, ("name", ...). Nothing is changed but the sensor's set-up.
+"""
+
+from array import array
+
+from sixflip_device.this_board import board_here
+
+ASKED = ((0x68, 0x75, 1), (0x68, 0x00, 1), (0x69, 0x75, 1), (0x69, 0x00, 1), (0x53, 0x00, 1),
+         (0x1D, 0x00, 1), (0x1E, 0x0A, 3), (0x0D, 0x0D, 1), (0x7C, 0x00, 1))
+TRIES = 3
+SAMPLES = 50
+INT_ENABLE, INT_STATUS = 0x38, 0x3A     # of an MPU6050, RM-MPU-6000A-00 4.2
+READY_US = 500000
+
+
+def tell(*what):
+    print(repr(what))
+
+
+class Quiet:
+    """Events that are only counted."""
+
+    def __init__(self):
+        self.errors = 0
+
+    def emit(self, event, **fields):
+        self.errors += 1
+
+
+def levels(board):
+    """("lines", SDA and SCL against the pin's own pull-down, then with its pull-up)."""
+    scl, sda = getattr(board, "_scl", None), getattr(board, "_sda", None)
+    if board.scl_pulse is None or scl is None:
+        return
+    from machine import Pin
+    found = []
+    for pull in (getattr(Pin, "PULL_DOWN", None), Pin.PULL_UP):
+        for name in (sda, scl):
+            pin = Pin(name, Pin.IN, pull)
+            board.sleep_us(200)
+            found.append(pin.value())
+    tell("lines", str(sda), str(scl), *found)
+    board.reopen_i2c()
+
+
+def answers(i2c):
+    """("ids", {(address, register): bytes or errno}); asked again when there was an error."""
+    found = {}
+    for address, register, n in ASKED:
+        for _ in range(TRIES):
+            try:
+                found[address, register] = bytes(i2c.readfrom_mem(address, register, n))
+                break
+            except OSError as e:
+                found[address, register] = e.args[0] if e.args else 0
+    tell("ids", found)
+
+
+def scanned(i2c):
+    try:
+        tell("scan", list(i2c.scan()))
+    except (OSError, AttributeError) as e:
+        tell("scan", str(e))
+
+
+def data_ready(board, imu):
+    """("ready", new samples between the first and the last, microseconds, nominal rate)."""
+    i2c, address, flag = board.i2c, imu.address, bytearray(1)
+    i2c.writeto_mem(address, INT_ENABLE, b"\x01")
+    i2c.readfrom_mem_into(address, INT_STATUS, flag)    # what was ready before
+    started = board.ticks_us()
+    first = last = seen = 0
+    while board.ticks_diff(board.ticks_us(), started) < READY_US:
+        try:
+            i2c.readfrom_mem_into(address, INT_STATUS, flag)
+        except OSError:         # the self-test counts them
+            continue
+        if flag[0] & 1:
+            last = board.ticks_diff(board.ticks_us(), started)
+            if not seen:
+                first = last
+            seen += 1
+        board.sleep_us(100)
+    i2c.writeto_mem(address, INT_ENABLE, b"\x00")
+    tell("ready", max(0, seen - 1), last - first, imu.output_rate_hz)
+
+
+def measured(board, imu, settings):
+    """The firmware's own self-test, and the mean of some samples."""
+    from sixflip_device import self_test
+    from sixflip_device.bus_recovery import Sensor
+    quiet = Quiet()
+    sensor = Sensor(board, imu, settings, quiet)
+    answer = self_test.run(board, sensor, settings["rate_hz"])
+    sample = array("h", [0] * 7)
+    sums = [0] * 7
+    n = 0
+    for _ in range(SAMPLES):
+        if sensor.read_into(sample) == 0:
+            n += 1
+            for k in range(7):
+                sums[k] += sample[k]
+        board.sleep_us(1000000 // settings["rate_hz"])
+    tell("selftest", answer["ok"], answer["problems"], answer["rate_hz"], settings["rate_hz"],
+         answer["still"], answer["temperature_c"], sensor.errors)
+    tell("means", n, sums)
+
+
+def look():
+    from sixflip_device.find_sensor import find
+    board, settings, problems = board_here()
+    tell("settings", board.name, settings["sensor"], settings["freq"], problems)
+    levels(board)
+    scanned(board.i2c)
+    answers(board.i2c)
+    try:
+        imu, report = find(board, settings)
+    except OSError as e:
+        tell("no sensor", getattr(e, "report", None) or [str(e)])
+        return
+    tell("sensor", imu.sensor, imu.name, imu.who_am_i, imu.accel_range_g, imu.accel_lsb_per_g,
+         imu.gyro_lsb_per_dps if imu.has_gyro else 0, report)
+    try:
+        if imu.sensor == "mpu6050":
+            data_ready(board, imu)
+        measured(board, imu, settings)
+    except OSError as e:
+        tell("lost", str(e))
+
+
+try:
+    look()
+except (OSError, ValueError, ImportError) as error:
+    tell("stopped", str(error))

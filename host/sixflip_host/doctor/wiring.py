@@ -1,0 +1,246 @@
+"""What look_at_bus.py said, in findings: lines, chips, ranges, clock."""
+
+import errno
+import math
+
+from sixflip.chips import adxl345, itg3205, mpu6050
+
+from .finding import Finding, fault, ok, warning
+
+# WHO_AM_I (register 0x75) of InvenSense chips that are not driven by this firmware; their data
+# sheets' register maps.
+NOT_DRIVEN = {0x12: "ICM-20602", 0x19: "MPU-6886", 0x24: "ICM-20600 or a relative",
+              0x47: "ICM-42688-P", 0x67: "ICM-42670-P", 0x6F: "IAM-20380", 0xAC: "ICM-20690",
+              0xAF: "ICM-20608-G", 0x6B: "ICM-42607", 0x74: "MPU-6515", 0x75: "MPU-6555 class",
+              0xEA: "ICM-20948 (its WHO_AM_I is in register 0)"}
+CLONES = (0x98, 0x72)
+NOBODY = (0x7C, 0x00)           # reserved: no chip is there
+QMC5883L, HMC5883L = (0x0D, 0x0D), (0x1E, 0x0A)
+CLOCK_OFF = 0.04                # of the sample clock; MPU-6050 PS 3.4, 6.6: 1 % by its PLL
+G_OFF = 0.2                     # METHOD 1: |scale - 1| beyond is refused
+WIRES = "check the four wires: 3.3 V, GND, SDA and SCL on the pins in sixflip.json " \
+    "(sixflip provision --pins sda=…,scl=…), the solder joints of the header"
+
+
+def judge(said):
+    """[Finding] of {name: values} as parse() gives them."""
+    if "stopped" in said:
+        return [fault("bus", "the firmware cannot open it: %s" % said["stopped"][0],
+                      "sixflip provision --pins …, or --board …", True)]
+    found = settings(said) + lines(said)
+    if any(one.unreachable for one in found):
+        return found
+    found += chips(said)
+    if "sensor" in said:
+        found += sensor(said) + clock(said) + gravity(said)
+    return found
+
+
+def settings(said):
+    name, wanted, freq, problems = said["settings"]
+    if problems:
+        return [warning("settings", "; ".join(problems), "sixflip provision with what you mean")]
+    return [ok("settings", "%s, sensor %s, I2C at %d kHz" % (name, wanted, freq // 1000))]
+
+
+def lines(said):
+    """Both lines of the bus must be high by themselves while nobody talks."""
+    if "lines" not in said:
+        return []
+    sda, scl, *levels = said["lines"]
+    pins = {"SDA (%s)" % sda: levels[0::2], "SCL (%s)" % scl: levels[1::2]}
+    low = [name for name, (_, pulled_up) in pins.items() if not pulled_up]
+    weak = [name for name, (alone, pulled_up) in pins.items() if pulled_up and not alone]
+    if low:
+        return [fault("lines", "%s held low" % " and ".join(low),
+                      "a short to ground, a chip without power, or a wire in the wrong hole: "
+                      "unplug the sensor; if the line is high then, it is the sensor or its "
+                      "cable", True)]
+    if weak:
+        return [fault("lines", "no pull-up on %s" % " and ".join(weak),
+                      "the sensor is not connected or has no power (its board brings the "
+                      "pull-ups); a bare chip needs 4.7 kΩ from each line to 3.3 V", True)]
+    return [ok("lines", "SDA and SCL are high at rest")]
+
+
+def chips(said):
+    """Who answered, and who should have."""
+    ids = said["ids"][0]
+    if NOBODY in ids and isinstance(ids[NOBODY], bytes):
+        return [fault("bus", "every address answers: SDA is low whatever is asked",
+                      "SDA and GND or SDA and SCL touch; " + WIRES, True)]
+    timeouts = [one for one in ids.values() if one == errno.ETIMEDOUT]
+    if timeouts and len(timeouts) == len(ids):
+        return [fault("bus", "every transfer times out: a line is stuck, or there are no pull-ups",
+                      WIRES, True)]
+    there = sorted({address for (address, _), one in ids.items() if isinstance(one, bytes)})
+    asked = {address for address, _ in ids}
+    others = [one for one in said["scan"][0] if one not in asked] \
+        if isinstance(said["scan"][0], list) else []
+    if not there and "sensor" not in said:
+        more = "; something else answers at %s" % " ".join("0x%02x" % one for one in others) \
+            if others else ""
+        return [fault("chips", "nothing answers at 0x68, 0x69, 0x53 or 0x1d" + more, WIRES, True)]
+    found = shared_address(ids) or [one for address in (0x68, 0x69)
+                                    for one in gyro_address(ids, address)]
+    found += magnetometers(ids)
+    if "no sensor" in said and not any(one.state == "fault" for one in found):
+        found.append(fault("chips", "; ".join(said["no sensor"][0]),
+                           "sixflip provision --sensor auto, or wire the sensor that is asked for",
+                           True))
+    return found
+
+
+def byte(ids, address, register):
+    """The answer of an identification register, or None."""
+    one = ids.get((address, register))
+    return one[0] if isinstance(one, bytes) else None
+
+
+def shared_address(ids):
+    """Two chips on one address pull the same bits: neither can be identified, or both are."""
+    for address in (0x68, 0x69):
+        motion, other = byte(ids, address, mpu6050.WHO_AM_I), byte(ids, address, itg3205.WHO_AM_I)
+        if motion is None:
+            continue
+        is_itg = other is not None and other & itg3205.ID_MASK == itg3205.ID
+        is_mpu = motion in mpu6050.RELATIVES
+        with_adxl = byte(ids, 0x53, adxl345.DEVID) == adxl345.DEVICE_ID
+        if (is_itg and is_mpu) or (with_adxl and not is_itg and not is_mpu
+                                   and motion not in NOT_DRIVEN):
+            return [fault("chips", "two chips seem to answer at 0x%02x: an ID of 0x%02x at 0x75 "
+                          "and 0x%02x at 0x00, beside %s" % (
+                              address, motion, other or 0,
+                              "an ADXL345 (of a GY-85, whose ITG3205 is there too)" if with_adxl
+                              else "each other"),
+                          "a GY-85's ITG3205 and an MPU6050 share that address: tie AD0 of the "
+                          "MPU6050 to 3.3 V, which moves it to 0x69, or unplug one of them")]
+    return []
+
+
+def gyro_address(ids, address):
+    """What is at 0x68 or 0x69: known, a clone, or a chip that is not driven."""
+    who = byte(ids, address, mpu6050.WHO_AM_I)
+    other = byte(ids, address, itg3205.WHO_AM_I)
+    if who is None:
+        return []
+    if other is not None and other & itg3205.ID_MASK == itg3205.ID:
+        return [ok("chips", "ITG3205 at 0x%02x" % address)]
+    if who in CLONES:
+        return [warning("chips", "a clone at 0x%02x: who_am_i 0x%02x (%s)" % (
+            address, who, mpu6050.RELATIVES[who]),
+            "it is used as the MPU6500 it mostly is (temperature, filter); judge it by the noise "
+            "and residuals of its calibration")]
+    if who in mpu6050.RELATIVES:
+        return [ok("chips", "%s at 0x%02x (who_am_i 0x%02x)" % (
+            mpu6050.RELATIVES[who], address, who))]
+    name = NOT_DRIVEN.get(who)
+    return [fault("chips", "0x%02x answers who_am_i 0x%02x: %s" % (
+        address, who, name or "no chip that is known here"),
+        "this firmware does not drive it; it needs an MPU6050 or relative (who_am_i %s), or a "
+        "GY-85" % " ".join("0x%02x" % one for one in sorted(mpu6050.RELATIVES)), True)]
+
+
+def magnetometers(ids):
+    """A QMC5883L sold as an HMC5883L: harmless here, but named."""
+    if ids.get(QMC5883L) == b"\xff":
+        return [warning("chips", "the magnetometer is a QMC5883L (0x0d), not the HMC5883L that "
+                        "such boards are sold with", "nothing for sixflip, which does not use "
+                        "it; other programs need a driver for the QMC5883L")]
+    if ids.get(HMC5883L) == b"H43":
+        return [ok("chips", "magnetometer HMC5883L, not used")]
+    return []
+
+
+def sensor(said):
+    """What the firmware makes of it."""
+    kind, name, _, _, _, _, report = said["sensor"]
+    found = [ok("sensor", "%s: %s" % (kind, name))]
+    for line in report:
+        if "no gyro" in line:
+            found.append(warning("sensor", line, "a calibration without gyro assumes half turns"))
+    if "lost" in said:
+        found.append(fault("sensor", "answers, then is lost: %s" % said["lost"][0],
+                           "a loose wire or a weak supply; shorter wires; \"freq\": 100000 in "
+                           "sixflip.json"))
+    return found
+
+
+def clock(said):
+    """Samples the chip makes by the board's clock, and samples the bus carries."""
+    found = []
+    if "ready" in said:
+        made, us, nominal = said["ready"]
+        if not made:
+            found.append(fault("clock", "the chip makes no new samples: its readings are frozen",
+                               "take its power away for some seconds; if that does not help, it "
+                               "is broken"))
+        else:
+            off = made * 1e6 / us / nominal - 1
+            words = "the chip makes %.1f samples a second, %g are meant (%+.1f %%)" % (
+                made * 1e6 / us, nominal, 100 * off)
+            found.append(ok("clock", words) if abs(off) <= CLOCK_OFF else warning(
+                "clock", words, "its clock is off, as clones' are: timestamps come from the "
+                "board, so rates are right, but its filter and noise are not those of the data "
+                "sheet"))
+    if "selftest" not in said:
+        return found
+    fine, problems, reached, wanted, _, _, errors = said["selftest"]
+    slow = [one for one in problems if one.startswith("too slow")]
+    other = [one for one in problems if one not in slow]
+    if slow:
+        found.append(fault("rate", "%.0f samples a second reached, %d are wanted" % (
+            reached, wanted), "a faster bus (\"freq\": 400000 in sixflip.json) or a lower "
+            "\"rate_hz\""))
+    if other:
+        found.append(fault("samples", "; ".join(other), "take the sensor's power away for some "
+                           "seconds; if that does not help, it is broken"))
+    if errors:
+        found.append(warning("samples", "%d transfers failed in the self-test" % errors,
+                             "shorter wires, a better supply, or \"freq\": 100000"))
+    return found or [ok("rate", "%.0f samples a second" % reached)]
+
+
+def gravity(said):
+    """At rest the length of the reading is 1 g, whatever the attitude: else the range is wrong."""
+    if "means" not in said or not said["selftest"][4]:
+        return []
+    n, sums = said["means"]
+    _, _, _, range_g, lsb, _, _ = said["sensor"]
+    size = math.sqrt(sum((total / n) ** 2 for total in sums[:3])) / lsb if n else 0.0
+    if abs(size - 1) <= G_OFF:
+        return [ok("range", "%.3f g at rest at ±%d g" % (size, range_g))]
+    half = math.log2(size) if size > 0 else math.inf
+    if abs(half - round(half)) < 0.2 and 0 < abs(round(half)) <= 3:
+        return [fault("range", "reads %.2f g at rest: its range is not the ±%d g it was set to" % (
+            size, range_g), "a clone that ignores its range register, or another program that "
+            "sets it; take its power away for some seconds, run nothing else on the bus")]
+    return [fault("range", "reads %.2f g at rest" % size,
+                  "a broken sensor, or it was moved: keep it still and try again")]
+
+
+def record(said, slots):
+    """Findings of what is in flash; slots: [(name, Record or the sentence why not)]."""
+    readable = [one for _, one in slots if not isinstance(one, str)]
+    if not readable:
+        damaged = ["%s: %s" % (name, one) for name, one in slots]
+        return [Finding("record", "warning" if damaged else "ok", "; ".join(damaged) or
+                        "no correction in flash", "sixflip calibrate")]
+    newest = max(readable, key=lambda one: one.sequence)
+    if "sensor" in said:
+        kind, _, who, _, lsb, _, _ = said["sensor"]
+        if newest.chip != kind or abs(newest.accel_lsb_per_g - lsb) > 5.1e-4:
+            return [fault("record", "the correction in flash is of a %s at %g counts per g, the "
+                          "sensor is a %s at %g: the board refuses it" % (
+                              newest.chip, newest.accel_lsb_per_g, kind, lsb),
+                          "sixflip calibrate")]
+        if tuple(newest.who_am_i) != tuple(who):
+            return [fault("record", "the correction in flash is of a sensor with who_am_i %s, "
+                          "this one has %s" % (_ids(newest.who_am_i), _ids(who)),
+                          "the sensor was swapped: sixflip calibrate")]
+    return [ok("record", "number %d, verdict %s" % (
+        newest.sequence, newest.accel["verdict"] if newest.accel else "none"))]
+
+
+def _ids(who):
+    return "/".join("0x%02x" % one for one in who)
