@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 export SIXFLIP_CACHE ?= $(CURDIR)/.cache
 
-.PHONY: help setup micropython demo test test-qemu check bench bench-accuracy fidelity blind \
+.PHONY: help setup micropython demo test test-qemu test-pico check bench bench-accuracy fidelity blind \
 	reproduce package.json clean
 
 help:
@@ -13,6 +13,7 @@ help:
 	@echo "make setup           the command 'sixflip' in $(BIN)"
 	@echo "make micropython     the MicroPython interpreter that the virtual board runs on"
 	@echo "make test-qemu       the tests on the emulated Cortex-M3 alone"
+	@echo "make test-pico       the whole product on an emulated Raspberry Pi Pico (half an hour)"
 	@echo "make check           ruff"
 	@echo "make bench-accuracy  vector error against imucal, imu_calib and the theoretical bound"
 	@echo "make bench           that, and every other benchmark"
@@ -24,7 +25,7 @@ setup: $(VENV)/.installed
 
 $(VENV)/.installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test,pico]'
 	touch $@
 
 micropython: setup
@@ -38,6 +39,9 @@ test: micropython check
 
 test-qemu: setup
 	$(BIN)/python -m pytest -s tests/on_qemu
+
+test-pico: micropython
+	SIXFLIP_PICO=whole $(BIN)/python -m pytest -v -n 3 --dist load --durations 0 tests/on_pico
 
 check: setup
 	$(BIN)/ruff check .

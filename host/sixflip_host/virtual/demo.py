@@ -9,11 +9,13 @@ import os
 import shutil
 import tempfile
 from pathlib import Path
+from typing import NamedTuple
 
 from .. import cli
 from ..board import calibrate, provision, pull
 from ..board.board_events import events, wait_for
 from ..board.board_files import shared_dir
+from ..board.board_link import MpremoteLink
 from ..board.console import GUIDED_ORDER, Console
 from ..errors import CheckFailed, SixflipError
 from ..history import remember, store
@@ -24,15 +26,31 @@ HELP = "watch a virtual board calibrate itself, and check its arithmetic"
 EXAMPLE = "sixflip demo --keep demo-output"
 TILT_DEG = 2.0
 LIMIT_MG = 3.0  # a hand that places the box to 0.05 deg leaves about 1 mg across gravity
-AFTER = ("Z+a", "Z-a", "X+a", "X-a", "Y+a", "Y-a")
+
+
+class Pace(NamedTuple):
+    """What a board's speed asks for: settings of the firmware, the hand, poses and samples a
+    second of the stream after the power cycle."""
+
+    settings: dict
+    hand: dict
+    after: tuple
+    stream_hz: int
+
+
+USUAL = Pace({}, {}, ("Z+a", "Z-a", "X+a", "X-a", "Y+a", "Y-a"), demo_truth.STREAM_HZ)
+PACE = {"virtual": USUAL, "local": USUAL,
+        # a sample costs the emulated Pico a third of a second: few of them, and quick moves
+        "pico": Pace({"rate_hz": 25, "pose_samples": 50, "grace_ms": 100},
+                     {"dwell_s": 4.2, "move_s": 1.0}, ("Z+a", "X-a", "Y+a"), 10)}
 
 
 def add_arguments(parser):
     parser.add_argument("--keep", metavar="DIR", type=Path,
                         help="keep flash image, capture, records, events and plot there")
-    parser.add_argument("--board", choices=("virtual", "local"), default="virtual",
+    parser.add_argument("--board", choices=("virtual", "local", "pico"), default="virtual",
                         help="virtual: MicroPython (the default); local: the firmware under "
-                             "CPython")
+                             "CPython; pico: an emulated Raspberry Pi Pico, which takes its time")
     parser.add_argument("--sensor", choices=("mpu6050", "gy85"), default="mpu6050")
     parser.add_argument("--seed", type=int, default=1, help="of sensor errors and noise")
 
@@ -50,25 +68,24 @@ def make_world(spec):
 def first_spec(args):
     """The sensor, and a person with a table that is not level."""
     return {"sensor": args.sensor, "seed": args.seed, "tilt_deg": TILT_DEG,
-            "order": GUIDED_ORDER,
+            "order": GUIDED_ORDER, **PACE[args.board].hand,
             "flip_error_deg": 0.4, "placement_scatter_deg": 0.05}
 
 
 def second_spec(args, first):
-    """The same sensor on a level table after the power cycle, other noise, every face once."""
+    """The same sensor on a level table after the power cycle, other noise, faces once each."""
     truth = make_world(first).truth
     mg = [b / demo_truth.G * 1000 for b in truth.accel_bias]
     dps = [b * 57.29577951308232 for b in truth.gyro_bias]
     return {"sensor": args.sensor, "seed": args.seed + 1000, "tilt_deg": 0.0,
             "accel_matrix": truth.accel_matrix, "accel_bias_mg": mg,
             "gyro_matrix": truth.gyro_matrix, "gyro_bias_dps": dps,
-            "order": list(AFTER), "first_rest_s": 12.0}
+            "order": list(PACE[args.board].after), **PACE[args.board].hand, "first_rest_s": 12.0}
 
 
 @contextlib.contextmanager
 def virtual_bench(folder, spec, micropython):
     """(link, power_cycle(world)) of a virtual board."""
-    from ..board.board_link import MpremoteLink
     from .virtual_board import VirtualBoard
     with VirtualBoard(spec, folder / "flash.img", micropython=micropython) as board:
         print("virtual board at %s (%s)" % (board.port, micropython))
@@ -84,8 +101,20 @@ def local_bench(folder, spec):
         yield link, link.power_cycle
 
 
+@contextlib.contextmanager
+def pico_bench(folder, spec):
+    """(link, power_cycle(world)) of an emulated Pico."""
+    from ..emulated.emulated_pico import PATIENCE, PicoBoard
+    with PicoBoard(spec, folder / "flash.img") as board:
+        print("emulated Pico at %s (%s); this takes half an hour" % (board.port, board.uf2.name))
+        with MpremoteLink(board.port, PATIENCE) as link:
+            yield link, board.power_cycle
+
+
 def bench(args, folder, spec):
     """The bench asked for, or the one that can be had."""
+    if args.board == "pico":
+        return pico_bench(folder, spec)
     if args.board == "virtual":
         try:
             return virtual_bench(folder, spec, micropython_fetch.fetch())
@@ -116,11 +145,11 @@ class Log:
         self.file.close()
 
 
-def stream(link, power_cycle, spec, raw, log):
+def stream(link, power_cycle, spec, raw, hz, log):
     """Vectors (m/s2, or counts when raw) streamed after a power cycle, over all rests."""
     power_cycle(spec)
     # The line waits in the board's input until the firmware looks for one.
-    link.send(json.dumps({"cmd": "stream", "raw": raw, "hz": demo_truth.STREAM_HZ}))
+    link.send(json.dumps({"cmd": "stream", "raw": raw, "hz": hz}))
     wait_for(link, ("hello",))  # what is still in the cable is from before
     started = wait_for(link, ("ready", "calibrating"), seen=log.quiet if raw else log)
     if started["event"] != "ready" or not started.get("corrected"):
@@ -139,9 +168,10 @@ def stream(link, power_cycle, spec, raw, log):
 def run_steps(args, folder, log):
     spec = first_spec(args)
     after = second_spec(args, spec)
+    pace = PACE[args.board]
     with bench(args, folder, spec) as (link, power_cycle):
         step("provision: the firmware onto the board")
-        provision.copy(link, {"sensor": args.sensor})
+        provision.copy(link, {"sensor": args.sensor, **pace.settings})
         step("power-up: no correction in flash, so it calibrates itself (table tilted %.0f deg)"
              % TILT_DEG)
         link.reset()
@@ -149,8 +179,8 @@ def run_steps(args, folder, log):
         if solved.get("verdict") == "refused":
             raise CheckFailed("the board refused its calibration: %s" % solved.get("reason"))
         step("power cycle: it comes up corrected")
-        corrected = stream(link, power_cycle, after, False, log)
-        counts = stream(link, power_cycle, after, True, log)
+        corrected = stream(link, power_cycle, after, False, pace.stream_hz, log)
+        counts = stream(link, power_cycle, after, True, pace.stream_hz, log)
         step("pull: capture and record from the board")
         pulled = pull.fetch(link, folder)
         pull.convert(pulled)
@@ -159,17 +189,17 @@ def run_steps(args, folder, log):
     if cli.run(["verify", str(pulled)]):
         raise CheckFailed("the host does not confirm the board's arithmetic")
     step("against the simulated truth, after the power cycle")
-    return judge(pulled, after, counts, corrected, folder)
+    return judge(pulled, after, counts, corrected, pace.stream_hz, folder)
 
 
-def judge(pulled, spec, counts, corrected, folder):
+def judge(pulled, spec, counts, corrected, hz, folder):
     """Print raw against corrected for each face; 1 when one is beyond the limit."""
     from ..capture import capture_binary
     meta = capture_binary.decode((pulled / "capture.bin").read_bytes()).meta
     unit = demo_truth.G / meta["accel_lsb_per_g"]
     raw = [[unit * c for c in sample] for sample in counts]
     true = demo_truth.truth(make_world(spec))
-    rows = demo_truth.compare(true, demo_truth.rests(raw), demo_truth.rests(corrected))
+    rows = demo_truth.compare(true, demo_truth.rests(raw, hz), demo_truth.rests(corrected, hz))
     if rows is None:
         raise CheckFailed("the stream does not show the %d rests of the session" % len(true))
     print("\n".join(demo_truth.table(rows)))

