@@ -170,7 +170,7 @@ class TurnsGap(SensorGap):
         y = calibrated(chosen)
         seconds = np.concatenate([[t.seconds] * (3 if t.flip else 2) for t in chosen])
         white = np.concatenate([[ATTITUDE_DEG] * 2 + [FLIP_DEG] * t.flip for t in chosen])
-        names = [n for n in EFFECTS if n != "thermal_scale" or part.temperature is not None]
+        names = [n for n in EFFECTS if n != "thermal_scale" or part.thermal]
         designs = [design(n, chosen, self.settings.reference_c, self.chip) for n in names]
         unit = nominal_fit.Unit(
             y, nuisance(chosen), np.diag((white / seconds) ** 2), np.diag(1.0 / seconds),

@@ -12,6 +12,8 @@ from sixflip import faces
 from sixflip_sim.effects import typical
 from sixflip_sim.effects.library import EFFECTS
 
+from .thermometer import MOVES_C
+
 LAGS_S = (0.0, 15.0, 30.0, 60.0, -30.0)
 WARM_UP_S = (30.0, 60.0, 120.0, 240.0, 480.0)
 CREEP_S = (5.0, 15.0, 30.0, 60.0, 120.0)
@@ -76,8 +78,19 @@ def powered(design, columns, prior):
     return bent(design, twin, prior)
 
 
+def agree(sessions):
+    """Settle for all sessions at once what is looked for, so that the columns of one are those
+    of the others: thermal (every one has a thermometer, and one of them moved), shaken."""
+    thermal = all(s.thermometer is not None for s in sessions) and max(
+        s.thermometer.moved for s in sessions) >= MOVES_C
+    shaken = max(s.vibration.max() for s in sessions) > LEAST_VIBRATION_MG
+    for session in sessions:
+        session.thermal, session.shaken = thermal, shaken
+
+
 def library(session, up, sensor, reference_c, chip):
-    """list of Design: every variant of every effect that the rests of a session can show."""
+    """list of Design: every variant of every effect that the rests of the sessions agreed on
+    can show; columns of zeros where this one shows nothing of it."""
     m, n = session.moment(up), session.n
     found = []
 
@@ -85,7 +98,7 @@ def library(session, up, sensor, reference_c, chip):
         found.append(of_terms(name, sensor, moment, n, variant, chip=chip, **options))
         return found[-1]
 
-    if session.temperature is not None and session.thermometer.moved >= 0.4:
+    if session.thermal:
         _thermal(session, m, terms, found, sensor, reference_c)
     for tau in WARM_UP_S:
         terms("warm_up", "tau %g s" % tau, shape={"tau_s": tau})
@@ -106,7 +119,7 @@ def library(session, up, sensor, reference_c, chip):
     terms("asymmetry")
     for tau in CREEP_S:
         terms("creep", "tau %g s" % tau, shape={"tau_s": tau})
-    if session.vibration.max() > LEAST_VIBRATION_MG:
+    if session.shaken:
         terms("vibration_rectification", "vertical", shape={"vertical": 1})
         terms("vibration_rectification", "all round", shape={"vertical": 0})
     return found
@@ -141,7 +154,7 @@ def generics(session, up, sensor):
     f = np.stack(m.f, 1)
     scale = 5.0 if sensor == "accel" else 0.05
     found = [_generic("time", _hats(session.t, 6), n, scale)]
-    if session.temperature is not None and session.thermometer.moved >= 0.4:
+    if session.thermal:
         t = (session.temperature - session.temperature.mean()) / 5.0
         found.append(_generic("temperature", [t, t ** 2, t ** 3], n, scale))
     before = np.stack(m.before, 1)
@@ -152,26 +165,22 @@ def generics(session, up, sensor):
     since = [fade] + [(before[:, i] - f[:, i]) * fade for i in range(3)]
     found.append(_generic("time_since_move", since, n, scale))
     found.append(_generic("orientation", _harmonics(f, sensor), n, scale))
-    flip = _flip(session, scale)
-    return [*found, flip] if flip else found
+    return [*found, _flip(session, scale)]
 
 
 def _flip(session, scale):
-    """Along the axis of each face, what changes sign with the flip; None without flips. Across
-    it that is the table's tilt and the box's."""
+    """Along the axis of each face, what changes sign with the flip; zero where no flip was.
+    Across it that is the table's tilt and the box's."""
     sign = np.where(session.code % 2 == 1, 1.0, -1.0)  # codes 1, 3, ... are a, the others b
     keys, axes, columns = [], [], []
-    for face in np.unique(session.face[session.face >= 0]).tolist():
+    for face in range(len(faces.AXIS)):
         on = session.face == face
-        if len(np.unique(sign[on])) < 2:
-            continue
         column = np.zeros((session.n, 3))
-        column[on, faces.AXIS[face]] = sign[on]
+        if len(np.unique(sign[on])) == 2:
+            column[on, faces.AXIS[face]] = sign[on]
         keys.append("%s%d" % ("xyz"[faces.AXIS[face]], face))
         axes.append(faces.AXIS[face])
         columns.append(column.reshape(-1))
-    if not keys:
-        return None
     return Design("~flip", "", keys, axes, np.stack(columns, 1), np.full(len(keys), scale))
 
 

@@ -34,6 +34,7 @@ class SensorGap:
         self.chip = sessions[0].capture.meta["sensor"]
         self.parts = [(s, m) for s, m in zip(sessions, nominal)]
         parts = self.parts
+        regressors.agree(sessions)
         self.units = [self._unit(part, model, settings.certified) for part, model in parts]
         self.units += self._between()
         self.crooked = [crooked.of(s, m) for s, m in self.parts] if kind == "accel" else []
