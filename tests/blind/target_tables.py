@@ -4,6 +4,7 @@ from collections import Counter, defaultdict
 
 from statsmath import above, wilson
 
+NAMEABLE = ("single", "power", "share", "stranger", "held out")
 SHOWN = ("unexplained", "partly explained")
 
 
@@ -105,7 +106,7 @@ def report(results):
     crashed = [r for r in results if r["verdict"] is None]
     rows.number("runs without an answer", "0 (but axis_swap refused)", len(crashed), len(results),
                 all(any(t[0] == "axis_swap" for t in r["truth"]) for r in crashed))
-    parts = ["Targets of GAP.md\n\n" + rows.text(), _by_effect(suites), _confusion(suites),
+    parts = ["Targets of GAP.md\n\n" + rows.text(), _by_effect(suites), _confusion(answered),
              _reliability(answered), _families(suites), _seconds(answered),
              _failures(results, violations)]
     too_many = above(sum(alarm(r) for r in nulls), len(nulls), 0.05)
@@ -174,10 +175,11 @@ def _by_effect(suites):
 
 
 def confusion(results):
-    """{(true, named): n} over single effects; "nothing" where no cause was named."""
+    """{(true, named): n} over single effects of the suites NAMEABLE; "nothing" where no cause
+    was named."""
     out = Counter()
     for r in results:
-        if len(r["effects"]) != 1:
+        if r["suite"] not in NAMEABLE:
             continue
         e = r["effects"][0]
         if e["class_right"]:
@@ -190,9 +192,8 @@ def confusion(results):
     return out
 
 
-def _confusion(suites):
-    counts = confusion(suites["single"] + suites["stranger"] + suites["held out"]
-                       + suites["left out"] + suites["power"])
+def _confusion(results):
+    counts = confusion(results)
     if not counts:
         return ""
     rows = []
