@@ -9,6 +9,7 @@ from . import (
     gyro_turns,
     integrity,
     motion,
+    noise_bursts,
     observations,
     regressors,
     single_rest,
@@ -18,6 +19,7 @@ from . import (
 from .sensor_gap import SensorGap
 
 FEWEST_PLACEMENTS = 6
+NOISY = ("vibration", "torn_reads", "saturation")  # what makes some seconds louder
 SENSOR = {"accel": "accelerometer"}
 LEAST_S = 5.0  # of a capture that can be said to show no gap
 
@@ -56,6 +58,7 @@ class Diagnosis:
         self.remarks += self.stuck
         self.findings = [f for f in integrity.findings(sessions)
                          + spectral_lines.findings(sessions) if f.effect not in settings.without]
+        self._noise(sessions)
         self._poses()
         if not self.gaps:
             self.rest = single_rest.SingleRest(sessions, settings)
@@ -72,8 +75,21 @@ class Diagnosis:
                       for f in self.findings for axis in (f.axes or [None])]
         places = [p for gap in [*self.gaps.values(), *([self.turns] if self.turns else [])]
                   for p in where.places(gap)]
-        self.where += sorted(places, key=where.order)
+        self.where += sorted(places + self.nameless, key=where.order)
         self.verdict = self._verdict()
+
+    def _noise(self, sessions):
+        """Noise that comes in bursts and bits that stick: where, without a name."""
+        named = {f.sensor for f in self.findings if f.effect in NOISY}
+        bursts = [b for b in noise_bursts.found(sessions) if b[0] not in named]
+        bits = integrity.stuck_bits(sessions)
+        self.remarks += [words for _, words in bursts]
+        self.remarks += ["bit %d of the %s axis of the %s always reads %d"
+                         % (bit, axis, "gyro" if sensor == "gyro" else "accelerometer", value)
+                         for sensor, axis, bit, value in bits]
+        self.nameless = [where.Place(sensor, None, "noise", 1.0, 1e-6) for sensor, _ in bursts]
+        self.nameless += [where.Place(sensor, axis, "amplitude", 1.0, 1e-6)
+                          for sensor, axis, _, _ in bits]
 
     def _compared(self, simulator):
         """Leave out what the simulator has as well; add what only it has."""
@@ -103,12 +119,28 @@ class Diagnosis:
         if temperatures:
             self.settings.reference_c = float(np.mean(np.concatenate(temperatures)))
         self._temperature_remarks(usable)
+        usable = self._off_the_rails(usable)
+        if not usable:
+            return
         nominal = [attitude_fit.fit(s) for s in usable]
         self.scale_remark = integrity.full_scale(usable, nominal)
         if self.scale_remark:
             self.remarks.append(self.scale_remark)
             return
         self._judge(usable, nominal)
+
+    def _off_the_rails(self, usable):
+        """Rests that were cut off say nothing about the sensor but that; a remark names how
+        many were left out."""
+        if not any(f.effect == "saturation" and f.sensor == "accel" for f in self.findings):
+            return usable
+        before = sum(s.placements() for s in usable)
+        for session in usable:
+            session.leave_out(integrity.railed(session))
+        lost = before - sum(s.placements() for s in usable)
+        if lost:
+            self.remarks.append("%d rests on a rail were left out" % lost)
+        return [s for s in usable if s.placements() >= FEWEST_PLACEMENTS]
 
     def _judge(self, sessions, nominal):
         """Both sensors at rest and the gyro's turns, side by side where there are cores: the
@@ -157,7 +189,7 @@ class Diagnosis:
         gaps = self.gaps.values()
         drifting = any(g.drift for g in gaps)
         unexplained = any(g.unexplained for g in gaps) or bool(
-            self.stuck) or bool(self.scale_remark)
+            self.stuck or self.scale_remark or self.nameless)
         believed = [c for _, c in self.causes if c.plausible]
         incredible = [c for _, c in self.causes if not c.plausible]
         resolved = drifting or any(not f.rivals for f in self.findings) or any(

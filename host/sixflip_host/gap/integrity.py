@@ -16,7 +16,8 @@ from .finding import Finding
 FEWEST_VALUES = 12  # distinct counts before a common divisor means anything
 RAIL = 32767
 RATE_OFF, JITTER_SHARE, MISSING, SPAN = 1e-3, 1.5, 0.7, 20
-TORN_P, LARGEST_NOISE = 1e-6, 20.0  # counts: above, 256 is no clear jump
+TORN_P, SPIKE = 2e-4, 4.2  # standard deviations at which a sample stands out
+CALM = 8.0  # standard deviations that the neighbours of a sample at rest may span
 FEWEST_DROPS, FEWEST_TORN, FEWEST_RAILED = 2, 3, 1
 CLEAR = 0.7  # share of gravity that an axis must carry to be called swapped
 FEWEST_SAMPLES = 50
@@ -30,7 +31,7 @@ def findings(sessions):
         columns = [getattr(s.capture, sensor) for s in sessions]
         if any(c is None for c in columns):
             continue
-        found += _per_axis("quantisation", sensor, [_steps(c) for c in columns],
+        found += _per_axis("quantisation", sensor, [steps(c) for c in columns],
                            "counts come in steps", "amplitude")
         found += _per_axis("dead_band", sensor, [_dead_band(c) for c in columns],
                            "counts near 0 read 0", "amplitude")
@@ -50,7 +51,7 @@ def _per_axis(effect, sensor, sizes, words, domain):
                     words, {k: (v, v) for k, v in value.items()})]
 
 
-def _steps(counts):
+def steps(counts):
     """(3,) greatest common divisor of the counts' distances; 1 where too few values differ."""
     out = []
     for column in counts.T:
@@ -64,7 +65,7 @@ def _dead_band(counts):
     """(3,) smallest count that is not 0, where many more near 0 were to be expected."""
     out = []
     for column in counts.T:
-        step = max(1, _steps(column[:, None])[0])
+        step = max(1, steps(column[:, None])[0])
         small = np.abs(column.astype(np.int64))
         zeros, others = int((small == 0).sum()), small[small > 0]
         least = int(others.min()) if len(others) else 0
@@ -104,50 +105,85 @@ def _saturation(sessions, sensor, columns):
                     {k: (v, v) for k, v in value.items()})]
 
 
+def railed(session, sensor="accel"):
+    """(n,) True where a sample sits on a rail or on a level that peaks are cut off at."""
+    counts = getattr(session.capture, sensor)
+    rail = _range_rail(session, sensor)
+    found = np.zeros(len(counts), bool)
+    for column in counts.T.astype(np.int64):
+        found |= np.abs(column) >= rail
+        for sign in (1, -1):
+            if _cut_off(sign * column):
+                found |= sign * column == (sign * column).max()
+    return found
+
+
 def _plateau(column):
-    """True when one extreme value is met in runs, and hardly anything lies just inside."""
-    for sign in (1, -1):
-        x = sign * column.astype(np.int64)
-        top = x.max()
-        at = x == top
-        spread = max(4.0, 0.02 * float(np.ptp(x)))
-        inside = ((x < top) & (x > top - spread)).sum()
-        runs = int((at[1:] & at[:-1]).sum())
-        if at.sum() >= 12 and runs >= 6 and at.sum() > 3 * inside and (~at).sum() > at.sum():
-            return True
-    return False
+    """True when the peaks of either sign are cut off."""
+    x = column.astype(np.int64)
+    return _cut_off(x) or _cut_off(-x)
+
+
+def _cut_off(x):
+    """True when the largest value is met in runs, and hardly anything lies just inside."""
+    top = x.max()
+    at = x == top
+    spread = max(4.0, 3.0 * steps(x[:, None])[0], 0.02 * float(np.ptp(x)))
+    inside = ((x < top) & (x > top - spread)).sum()
+    runs = int((at[1:] & at[:-1]).sum())
+    return bool(at.sum() >= 12 and runs >= 6 and at.sum() > 3 * inside
+                and (~at).sum() > at.sum())
 
 
 def _torn(sessions, sensor, columns):
-    """Single samples off by 256 m against neighbours that agree; so many more than spikes of
-    any other size that it cannot be chance."""
-    torn = spikes = chances = 0
-    tolerance = []
-    for counts in columns:
-        for column in counts.T.astype(np.int64) if len(counts) >= 20 else ():
-            around = np.lib.stride_tricks.sliding_window_view(column, 7)[:, [0, 1, 2, 4, 5, 6]]
-            level = np.median(around, axis=1)
-            spread = np.ptp(around, axis=1)
-            noise = 1.4826 * np.median(np.abs(np.diff(column))) + 1.0
-            if noise > LARGEST_NOISE:
-                continue
-            jump = column[3:-3] - level
-            calm = spread < 12.0 * noise
-            off = np.abs(jump - 256.0 * np.rint(jump / 256.0))
-            spike = calm & (np.abs(jump) > max(6.0 * noise, 64.0))
-            near = spike & (off < 4.0 * noise) & (np.abs(jump) < 4096)
-            spikes, torn = spikes + int(spike.sum()), torn + int(near.sum())
-            tolerance.append(min(1.0, 8.0 * noise / 256.0))
-            chances += int((np.diff(column // 256) != 0).sum())
-    if torn < FEWEST_TORN or not tolerance:
+    """Single samples off by 256 m whose high byte is a neighbour's: half of all other spikes
+    at most would be so placed."""
+    found = [torn_in(column) for counts in columns if len(counts) >= 20
+             for column in counts.T.astype(np.int64)]
+    chances = sum(int((np.diff(column // 256) != 0).sum()) for counts in columns
+                  for column in counts.T.astype(np.int64))
+    near = sum(f[0] for f in found)
+    torn = max((sum(f[k] for f in found) for k in (1, 2)), default=0)
+    if torn < FEWEST_TORN:
         return []
-    p = stats.binom.sf(torn - 1, spikes, max(tolerance))
-    if p > TORN_P:
+    p = stats.binom.sf(torn - 1, near, 0.5)
+    if p > TORN_P or torn < 0.5 * near:
         return []
     share = 100.0 * torn / max(chances, torn)
     return [Finding("torn_reads", sensor, [], {"chance": round(share, 3)}, "%",
                     min(CERTAIN, -math.log(max(p, 1e-300))), "noise",
                     "%d samples mix the bytes of two readings" % torn)]
+
+
+def torn_in(column):
+    """(samples off by about 256 m, those with the page of the sample before, of the one after).
+
+    A sample is held against the median of three on either side where these agree, against a
+    cubic through two on either side where they do not; where noise alone reaches half of 256
+    nothing can be said.
+    """
+    x = column[3:-3]
+    around = np.lib.stride_tricks.sliding_window_view(column, 7)[:, [0, 1, 2, 4, 5, 6]]
+    calm = np.ptp(around, axis=1) < CALM * _spread(np.diff(column))
+    near = np.zeros(len(x), bool)
+    for mask, level in ((calm, np.median(around, axis=1)),
+                        (~calm, (4.0 * (around[:, 2] + around[:, 3]) - around[:, 1]
+                                 - around[:, 4]) / 6.0)):
+        jump = (x - level)[mask]
+        sigma = max(_spread(jump), 1.0) if len(jump) > 50 else np.inf
+        if SPIKE * sigma > 250.0:
+            continue
+        times = np.rint(np.abs(jump) / 256.0)
+        near[mask] = (np.abs(jump) > SPIKE * sigma) & (times >= 1) & (times <= 16) & (
+            np.abs(np.abs(jump) - 256.0 * times) < 2.5 * sigma)
+    page = column // 256
+    before, after = page[2:-4] == page[3:-3], page[4:-2] == page[3:-3]
+    return int(near.sum()), int((near & before).sum()), int((near & after).sum())
+
+
+def _spread(values):
+    """Standard deviation by the median, blind to a few outliers."""
+    return 1.4826 * float(np.median(np.abs(values - np.median(values)))) + 1e-9
 
 
 def period(session):
@@ -213,6 +249,32 @@ def _drops(sessions):
     return [Finding("dropped_samples", "device", [], {"chance": round(chance, 4)}, "%", CERTAIN,
                     "timing", "%d samples are missing, the longest gap lasts %.0f ms"
                     % (lost, longest), {"chance": (max(0.0, chance - half), chance + half)})]
+
+
+LOW_BITS = 6  # bits that noise and motion must have moved
+MOVED = 4  # times a bit's weight that a column must span to have moved it
+
+
+def stuck_bits(sessions):
+    """[(sensor, axis, bit, value)] of single low bits that never change while those around
+    them do (bits stuck from the lowest on are steps, see quantisation)."""
+    found = []
+    for sensor in ("accel", "gyro"):
+        if any(getattr(s.capture, sensor) is None for s in sessions):
+            continue
+        for i in range(3):
+            x = np.concatenate([getattr(s.capture, sensor)[:, i] for s in sessions]).astype(
+                np.int64)
+            if len(x) < FEWEST_SAMPLES:
+                continue
+            ever, always = np.bitwise_or.reduce(x), np.bitwise_and.reduce(x)
+            step = max(1, steps(x[:, None])[0])
+            for bit in range(LOW_BITS):
+                weight = 1 << bit
+                fixed = not ever & weight or bool(always & weight)
+                if fixed and step < 2 * weight and np.ptp(x) > MOVED * weight * 2:
+                    found.append((sensor, "xyz"[i], bit, int(bool(always & weight))))
+    return found
 
 
 def stuck(sessions):

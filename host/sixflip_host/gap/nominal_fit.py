@@ -229,7 +229,13 @@ def rows(kind, session, nominal, certified=False):
     white = np.diag((session.noise_accel[None] ** 2 / session.seconds[:, None]).reshape(-1))
     return Rows(accel_rows(session, nominal), accel_nuisance(session, nominal, certified),
                 (0, 4, 8), white, placement_columns(session), flicker(session),
-                (PLACEMENT_MG, FLICKER_MG))
+                (PLACEMENT_MG, FLICKER_MG), rounding(session, session.rounding_accel))
+
+
+def rounding(session, size):
+    """(3n, 3n) covariance of what rounding leaves in each rest; size (3,)."""
+    same = session.placement[:, None] == session.placement[None]
+    return np.kron(same, np.diag(size ** 2))
 
 
 def unit_of(kind, session, nominal, designs, certified=False):
@@ -258,4 +264,5 @@ def gyro_rows(session, nominal):
         lateral += _lateral(session, session.placement == placement, nominal.up[placement])
     lateral = np.stack([c.reshape(-1) for c in lateral], 1)
     return Rows(session.gyro.reshape(-1), nuisance, (0, 1, 2), white, lateral, flicker(session),
-                (EARTH_DPS, FLICKER_DPS), EARTH_UP_DPS ** 2 * vertical @ vertical.T)
+                (EARTH_DPS, FLICKER_DPS), EARTH_UP_DPS ** 2 * vertical @ vertical.T
+                + rounding(session, session.rounding_gyro))

@@ -10,7 +10,7 @@ from sixflip_sim.effects.moment import Moment
 
 from ..simulating import noise_arrays, pose_runs
 from ..solving.find_poses import HELD_BY_HAND
-from . import thermometer
+from . import integrity, thermometer
 
 EDGE_S = 0.1  # left out at both ends of a rest: a label is never exact
 BLOCK_S, MOST_BLOCKS = 2.5, 6
@@ -18,6 +18,7 @@ SHORT_REST_BLOCKS = 2
 LONG_REST_S = 12.0
 SUBMEAN_S = 0.25  # white noise is judged on means this long, so that a filter's colour is in it
 SHORTEST_S = 0.8
+MOST_BAD = 0.005  # share of a rest's samples
 FAR_OFF_DEG = 25.0  # a label that gravity contradicts
 
 
@@ -27,7 +28,8 @@ class Session:
     name; rate (Hz); accel (n, 3) mg and gyro (n, 3) deg/s or None as the chip gave them; t,
     seconds, since (s since the move); temperature, temperature_rate or None;
     placement (number), code, face (-1: leaning); vibration (n,) mg rms above the quietest;
-    noise_accel, noise_gyro (3,): of a mean over one second, mg and deg/s.
+    noise_accel, noise_gyro (3,): of a mean over one second, mg and deg/s;
+    rounding_accel, rounding_gyro (3,): of the mean of a rest, by steps of the counts.
     """
 
     def __init__(self, name, capture):
@@ -77,7 +79,29 @@ class Session:
         self.noise_accel = self._white(self.capture.accel) * (1000.0 / meta["accel_lsb_per_g"])
         if self.gyro is not None:
             self.noise_gyro = self._white(self.capture.gyro) / meta["gyro_lsb_per_dps"]
+        self.rounding_accel = self._rounding(self.capture.accel) * (
+            1000.0 / meta["accel_lsb_per_g"])
+        if self.gyro is not None:
+            self.rounding_gyro = self._rounding(self.capture.gyro) / meta["gyro_lsb_per_dps"]
         self.vibration = self._vibration()
+
+    def _rounding(self, counts):
+        """Counts (3,): standard deviation of what rounding to steps leaves in the mean of a
+        rest. Noise much wider than a step averages it out: the k-th harmonic of the rounding
+        error, step / (pi k), is damped by exp(-2 pi^2 k^2 (noise / step)^2) [Widrow & Kollar,
+        Quantization Noise (2008), chapter 5]."""
+        step = integrity.steps(counts)
+        rests = np.concatenate([np.diff(counts[a:b].astype(float), axis=0)
+                                for a, b in zip(self.first, self.end)])
+        noise = np.sqrt(np.maximum(rests.var(axis=0) / 2.0 - step ** 2 / 12.0, 0.0))
+        k = np.arange(1, 9)[:, None]
+        harmonics = step / (np.pi * k) * np.exp(-2.0 * (np.pi * k * noise / step) ** 2)
+        return np.sqrt((harmonics ** 2).sum(axis=0) / 2.0)
+
+    def leave_out(self, bad):
+        """Leave out the placements with more than a few bad samples; bad (N,) of samples."""
+        self.runs = [run for run in self.runs if bad[run[1]:run[2]].mean() <= MOST_BAD]
+        self._blocks()
 
     def _means(self, counts):
         return np.array([counts[a:b].mean(axis=0) for a, b in zip(self.first, self.end)]
@@ -163,7 +187,7 @@ class Session:
         keep = np.isin(self.placement, list(placements))
         for name, value in self.__dict__.items():
             if isinstance(value, np.ndarray) and len(value) == self.n and name not in (
-                    "t_s", "noise_accel", "noise_gyro"):
+                    "t_s", "noise_accel", "noise_gyro", "rounding_accel", "rounding_gyro"):
                 setattr(other, name, value[keep])
         other.n = int(keep.sum())
         return other

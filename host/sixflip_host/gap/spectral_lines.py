@@ -17,7 +17,11 @@ CHANCE = 0.001
 FEWEST = 4  # stretches
 MEDIAN_SHARE, OF_MEDIAN = 0.25, math.log(2.0)
 WHOLE_PEAK = 0.85  # of a Hann window's main lobe and its neighbours
-LEAST_SHARE = 0.2  # of the standard deviation of the noise: smaller is no matter
+LEAST_SHARE = 0.25  # of the standard deviation of the noise: smaller is no matter
+# A bench or a table sways at its own frequencies, by chance: from stretch to stretch the power
+# there scatters as much as its mean (noise through a resonance is exponential). Something that
+# runs is steadier. Only what is steady, or strong, is named.
+STEADY, STRONG_SHARE = 0.6, 0.4
 
 
 def findings(sessions):
@@ -67,13 +71,25 @@ def _stretches(sessions, sensor, length, whole=False):
 
 
 def spectrum(stretches, axis):
-    """(frequencies index k, normalised power summed over R stretches (k,), R, mean power)."""
+    """(mean power (k,), the same with every stretch counted alike, R, window)."""
     window = np.hanning(len(stretches[0]))
     x = np.array([s[:, axis] for s in stretches])
     x = x - x.mean(axis=1, keepdims=True)
     power = np.abs(np.fft.rfft(x * window, axis=1)) ** 2 / (window ** 2).sum()
-    mean = power.mean(axis=0)
-    return mean, power.shape[0], window
+    # Every stretch counts alike: a burst of noise in one of them is no line.
+    level = np.median(power[:, 1:], axis=1)
+    alike = power
+    if (level > 0.0).all():
+        alike = power * (np.median(level) / level)[:, None]
+    return power.mean(axis=0), alike.mean(axis=0), power.shape[0], window
+
+
+def scatter(stretches, axis, k):
+    """Standard deviation over mean of the power around index k, from stretch to stretch."""
+    window = np.hanning(len(stretches[0]))
+    x = np.array([s[:, axis] - s[:, axis].mean() for s in stretches])
+    power = (np.abs(np.fft.rfft(x * window, axis=1)) ** 2)[:, max(0, k - 1):k + 2].sum(axis=1)
+    return float(power.std(ddof=1) / max(power.mean(), 1e-300))
 
 
 def strongest(sessions, sensor, axis):
@@ -81,7 +97,10 @@ def strongest(sessions, sensor, axis):
     stretches = rests(sessions, sensor)
     if not stretches:
         return None
-    mean, number, window = spectrum(stretches, axis)
+    plain, mean, number, window = spectrum(stretches, axis)
+    resting = any(session.runs for session in sessions)
+    if not resting:  # what shakes a sensor in use comes and goes
+        mean = plain
     rate, n = sessions[0].rate, len(stretches[0])
     first = int(LOWEST_HZ * n / rate) + 1
     band = mean[first:-1]
@@ -98,11 +117,16 @@ def strongest(sessions, sensor, axis):
     if nats < -math.log(CHANCE):
         return None
     near = slice(max(0, k - 2), k + 3)
-    excess = float((band[near] - floor[near]).sum()) * (window ** 2).sum()
+    whole = plain[first:-1]
+    below = np.median(whole[max(0, k - width // 2):k + width // 2 + 1]) / median_of_mean
+    excess = float((whole[near] - below).sum()) * (window ** 2).sum()
     # A sine of amplitude a: sum over the lobe of |X|^2 = a^2 n sum(w^2) / 4.
     amplitude = math.sqrt(max(4.0 * excess / (n * (window ** 2).sum()), 0.0))
     spread = np.mean([s[:, axis].std() for s in stretches])
     if amplitude < LEAST_SHARE * spread:
+        return None
+    if resting and amplitude < STRONG_SHARE * spread and scatter(
+            stretches, axis, first + k) > STEADY:
         return None
     error = 1.0 / math.sqrt(max(2.0 * number * ratio[k], 1.0))
     hz = _refined(mean, first + k) * rate / n

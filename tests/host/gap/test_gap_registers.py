@@ -1,0 +1,106 @@
+"""What registers and noise do to the rests: rails, steps, torn reads, stuck bits, bursts."""
+import numpy as np
+import pytest
+
+from sixflip_host.gap import diagnosis, integrity, noise_bursts, observations
+from sixflip_host.simulating import scenario, simulate
+
+
+def captures(effects=(), seed=71, sensor="mpu6050"):
+    plan = scenario.from_dict({"sensor": sensor, "scene": "recommended", "seed": seed,
+                               "effects": list(effects)})
+    return [simulate.session(plan, k) for k in range(2)]
+
+
+def diagnosed(two):
+    sessions = [observations.Session(str(k), c) for k, c in enumerate(two)]
+    return diagnosis.Diagnosis(sessions, diagnosis.Settings())
+
+
+def test_rests_cut_off_at_a_rail_tell_of_the_rail_only():
+    two = captures()
+    for capture in two:
+        capture.accel = np.minimum(capture.accel, 16330).astype(np.int16)  # 0.997 g
+    found = diagnosed(two)
+    assert [(f.effect, f.sensor) for f in found.findings] == [("saturation", "accel")]
+    assert found.causes == []
+    assert any("rests on a rail were left out" in remark for remark in found.remarks)
+
+
+def test_coarse_steps_are_no_bend():
+    two = captures(sensor="gy85")  # 4 mg a count, noise narrower than the step
+    for capture in two:
+        capture.accel = (8 * np.rint(capture.accel / 8.0)).astype(np.int16)
+    found = diagnosed(two)
+    assert [f.effect for f in found.findings] == ["quantisation"]
+    assert found.findings[0].value == {"x": 8, "y": 8, "z": 8}
+    assert found.causes == []
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.15, 0.3, 1.0])
+def test_what_rounding_leaves_of_a_mean(noise):
+    """Against rounding tried: levels spread over a step, many samples each."""
+    step, lsb = 4, 16384.0
+    generator = np.random.default_rng(3)
+    levels = 5000.0 + np.linspace(0.0, step, 40, endpoint=False)
+    errors = []
+    for level in levels:
+        x = level + noise * step * generator.standard_normal(4000)
+        errors.append((step * np.rint(x / step)).mean() - level)
+    capture = captures()[0]
+    session = observations.Session("s", capture)
+    counts = session.capture.accel
+    counts[:] = step * np.rint(counts / step)
+    for a, b in zip(session.first, session.end):
+        level = 5000.0 + step * generator.random(3)
+        x = level + noise * step * generator.standard_normal((b - a, 3))
+        counts[a:b] = step * np.rint(x / step)
+    session._blocks()
+    got = session.rounding_accel / 1000.0 * lsb
+    # Sheppard's correction knows little of noise below a third of a step: rather too much.
+    assert (got > 0.8 * np.std(errors) - 0.02 * step).all()
+    assert (got < min(0.3, 2.0 * np.std(errors) / step + 0.02) * step).all()
+
+
+def test_torn_reads_in_noise_of_a_fifth_of_a_page():
+    torn = captures([{"effect": "torn_reads", "sensor": "accel", "chance": 0.5}], seed=5)
+    sessions = [observations.Session(str(k), c) for k, c in enumerate(torn)]
+    assert [(f.effect, f.sensor) for f in integrity.findings(sessions)] == [
+        ("torn_reads", "accel")]
+    sound = [observations.Session(str(k), c) for k, c in enumerate(captures(seed=5))]
+    assert integrity.findings(sound) == []
+
+
+def test_spikes_that_are_no_torn_reads():
+    two = captures(seed=6)
+    generator = np.random.default_rng(8)
+    for capture in two:
+        at = generator.choice(len(capture), 400, replace=False)
+        capture.accel[at] += generator.integers(-600, 600, (400, 3)).astype(np.int16)
+    sessions = [observations.Session(str(k), c) for k, c in enumerate(two)]
+    assert integrity.findings(sessions) == []
+
+
+def test_a_bit_that_sticks_is_said_and_not_named():
+    two = captures(seed=7)
+    for capture in two:
+        capture.accel[:, 1] |= 8
+    found = diagnosed(two)
+    assert integrity.stuck_bits(found.sessions) == [("accel", "y", 3, 1)]
+    assert found.verdict in ("unexplained", "partly explained")
+    assert ("accel", "y", "amplitude") in [(w.sensor, w.axis, w.domain) for w in found.where]
+
+
+def test_bursts_of_noise_are_no_vibration():
+    two = captures(seed=8)
+    generator = np.random.default_rng(9)
+    for capture in two:
+        rests = np.flatnonzero(capture.pose > 0)
+        for start in generator.choice(rests[:-200], 12, replace=False):
+            capture.accel[start:start + 150] += np.rint(
+                120.0 * generator.standard_t(1.8, (150, 3))).clip(-4000, 4000).astype(np.int16)
+    found = diagnosed(two)
+    assert [s for s, _ in noise_bursts.found(found.sessions)] == ["accel"]
+    assert "vibration" not in [f.effect for f in found.findings]
+    assert found.verdict in ("unexplained", "partly explained")
+    assert ("accel", "noise") in [(w.sensor, w.domain) for w in found.where]
