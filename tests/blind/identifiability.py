@@ -102,6 +102,7 @@ class Geometry:
     def __init__(self, case):
         everything = set(range(len(case.effects)))
         self.chip, self.certified = case.chip, case.spec.certified
+        self.power_ups = case.spec.new_gyro_offset
         self.signals = [case.signals(k, everything) for k in range(len(case.sessions))]
         self.parts = [stretches(s) for s in self.signals]
         self.turns = [Turns(s, p) for s, p in zip(self.signals, self.parts)]
@@ -181,10 +182,12 @@ class Geometry:
                 along = 1.0 if flip else 180.0
                 move.append(across * np.eye(3) + along ** 2 * np.outer(up, up))
             blocks += [rest] + move
-        for session in range(len(self.signals)):
+        # The offset is one for all sessions unless the power was off in between: with one of
+        # its own for each, temperature and its rate are harder to tell apart.
+        for session in range(len(self.signals) if self.power_ups else 1):
             for axis in range(3):
-                shapes.append(lambda s, a=axis, k=session:
-                              np.eye(3)[a] * np.full((len(s.t), 1), float(s.session == k)))
+                shapes.append(lambda s, a=axis, k=session: np.eye(3)[a] * np.full(
+                    (len(s.t), 1), float(s.session == k or not self.power_ups)))
         for i in range(3):
             for j in range(3):
                 shapes.append(lambda s, i=i, j=j: s.w[:, j:j + 1] * np.eye(3)[i])
