@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 export SIXFLIP_CACHE ?= $(CURDIR)/.cache
 
-.PHONY: help setup micropython demo test test-qemu test-pico check bench bench-accuracy fidelity blind \
+.PHONY: help setup micropython demo test test-qemu test-pico size check bench bench-accuracy fidelity blind \
 	reproduce package.json clean
 
 help:
@@ -12,8 +12,9 @@ help:
 	@echo "make test            every test: CPython, real MicroPython, an emulated Cortex-M3"
 	@echo "make setup           the command 'sixflip' in $(BIN)"
 	@echo "make micropython     the MicroPython interpreter that the virtual board runs on"
-	@echo "make test-qemu       the tests on the emulated Cortex-M3 alone"
+	@echo "make test-qemu       the tests on the emulated Cortex-M3 and micro:bit alone"
 	@echo "make test-pico       the whole product on an emulated Raspberry Pi Pico (half an hour)"
+	@echo "make size            flash and heap of every module of the firmware"
 	@echo "make check           ruff"
 	@echo "make bench-accuracy  vector error against imucal, imu_calib and the theoretical bound"
 	@echo "make bench           that, and every other benchmark"
@@ -38,10 +39,13 @@ test: micropython check
 	$(BIN)/python -m pytest -n auto --dist loadfile
 
 test-qemu: setup
-	$(BIN)/python -m pytest -s tests/on_qemu
+	$(BIN)/python -m pytest -s tests/on_qemu tests/on_microbit
 
 test-pico: micropython
 	SIXFLIP_PICO=whole $(BIN)/python -m pytest -v -n 3 --dist load --durations 0 tests/on_pico
+
+size: setup
+	@$(BIN)/python tests/bench/size.py
 
 check: setup
 	$(BIN)/ruff check .

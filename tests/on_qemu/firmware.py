@@ -177,11 +177,6 @@ def _build(board):
     return elf
 
 
-def mpy_cross():
-    """The cross compiler for .mpy files that the build leaves behind."""
-    return cache_dir() / "qemu" / "micropython" / "mpy-cross" / "build" / "mpy-cross"
-
-
 if __name__ == "__main__":
     try:
         print(build())
