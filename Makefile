@@ -60,9 +60,9 @@ bench: bench-accuracy
 fidelity: setup
 	@$(BIN)/python -m sixflip_host.simulating.fidelity
 
-# COUNT=260 cases, SEED=1, JOBS=2; the result is in blind-output/
+# COUNT=220 cases, SEED=1, JOBS=2; the result is in blind-output/
 blind: setup
-	@$(BIN)/python tests/blind/blind_run.py --count $(or $(COUNT),260) --seed $(or $(SEED),1) \
+	@$(BIN)/python tests/blind/blind_run.py --count $(or $(COUNT),220) --seed $(or $(SEED),1) \
 		--jobs $(or $(JOBS),2)
 
 reproduce: setup

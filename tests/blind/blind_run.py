@@ -32,7 +32,7 @@ from generator.held_out import HELD_OUT  # noqa: E402
 from judged import judged  # noqa: E402
 
 COMPARED = ("null", "single", "pair", "stranger")    # what the baselines are put to
-DEFAULT_COUNT = 260     # about 25 minutes on two cores
+DEFAULT_COUNT = 220     # about 25 minutes on two cores
 
 
 def generated(job):
@@ -140,7 +140,7 @@ def arguments(argv):
     parser.add_argument("--suite", action="append", choices=list(suites.SUITES),
                         help="only these (may be given again)")
     parser.add_argument("--effect", help="only cases with this effect")
-    parser.add_argument("--compare", type=int, default=24, metavar="N",
+    parser.add_argument("--compare", type=int, default=16, metavar="N",
                         help="put N of the cases to the baselines too (half a minute each)")
     parser.add_argument("-o", "--output", type=Path, default=HERE.parents[1] / "blind-output")
     parser.add_argument("--keep", action="store_true", help="keep the captures")

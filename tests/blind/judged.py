@@ -5,7 +5,7 @@ from identifiability import Geometry, plain, share_reproduced, span_of
 
 # Effects in rows and counts show in single samples, not in pose means; no theory is needed.
 INTEGRITY = {"quantisation", "dead_band", "saturation", "torn_reads", "stuck_bit", "sample_rate",
-             "dropped_samples", "vibration"}
+             "dropped_samples", "vibration", "axis_swap"}
 SILENT_SHARE = 0.01
 # GAP.md's protocol-wide index is averaged over coefficients with equal weight.
 

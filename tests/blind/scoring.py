@@ -24,6 +24,7 @@ UNITS = {"mg/°C": 1e-3, "mg/degC": 1e-3, "°/s/°C": 1.0, "deg/s/degC": 1.0, "%
          "%/degC": 1e-2, "mg/g2": 1e-3, "mg/g²": 1e-3, "mg/g3": 1e-3, "mg/g³": 1e-3,
          "mg/g": 1e-3, "%": 1e-2, "deg/s/g": 1.0, "°/s/g": 1.0, "mg/(degC/min)": 6e-2,
          "mg/(°C/min)": 6e-2, "deg/s/(degC/min)": 60.0, "°/s/(°C/min)": 60.0}
+IN_MOTION = ("lever_arm", "filter_lag")
 NO_COLUMN = ("supply",)     # nobody writes the voltage down: only its course can be said
 WHEN_THERE = ("box_tilt", "table_tilt", "earth_rate")   # in every case's world
 
@@ -68,8 +69,12 @@ def never(cause, label):
 
 
 def expected(effect, theory, label):
-    """"integrity", "silent", "faint", "other form" (the library's form of it reproduces less than
+    """"motion", "integrity", "silent", "faint", "other form" (the library's form of it reproduces less than
     half), "aliased" or "clear": how much could be said."""
+    if effect["effect"] in IN_MOTION:
+        return "motion"
+    if effect["parameters"].get("hidden"):      # a clock nobody wrote down
+        return "silent"
     if theory.get("by_integrity"):
         return "integrity"
     if theory["visible"] < 1e-4 or theory["distance"] < 1:

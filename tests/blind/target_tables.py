@@ -123,9 +123,12 @@ def _known(rows, results):
     for times, target in ((0.3, 0.95), (1.0, 0.99), (3.0, 0.99)):
         here = [e for r, e in effects if e["multiple"] == times and r["suite"] == "single"]
         rows.share("right class at %gx, all" % times,
-                   [e["class_right"] for e in here if e["expected"] != "silent"], target)
+                   [e["class_right"] for e in here if e["expected"] not in ("silent", "motion")],
+                   target)
         rows.share("  alias index < 0.8 and above 5 sigma",
                    [e["class_right"] for e in here if e["expected"] == "clear"], target)
+        rows.share("  in motion (lever arm, lag)",
+                   [e["class_right"] for e in here if e["expected"] == "motion"], target)
         rows.share("  in counts, rows or times",
                    [e["class_right"] for e in here if e["expected"] == "integrity"], target)
     other = [(r, e) for r, e in effects if e["expected"] == "other form" and e["multiple"] >= 1]

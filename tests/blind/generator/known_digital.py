@@ -84,9 +84,10 @@ def stuck_bit(rng, chip, sensor, times):
 
 
 def sample_rate(rng, chip, sensor, times):
-    """The chip's oscillator is off and wanders a little; device times tell, or hide it."""
+    """The chip's oscillator is off and wanders a little; the times written down are true, or
+    (one in four) those the driver believes in, which hides it."""
     wrong = rng.choice([-1, 1]) * chip.typical["sample_rate", "device"] * times
-    wander = 0.1 * wrong
+    wander, hidden = 0.1 * wrong, bool(rng.random() < 0.25)
 
     def clock(n, rate=100.0):
         u = np.arange(int(n * 1.2))
@@ -94,7 +95,7 @@ def sample_rate(rng, chip, sensor, times):
         return np.concatenate([[0.0], np.cumsum(interval)])
 
     return Effect("sample_rate", "device", [], "rows", lambda signals, _: None,
-                  {"relative": wrong}, clock=clock, hides_clock=False)
+                  {"relative": wrong, "hidden": hidden}, clock=clock, hides_clock=hidden)
 
 
 def dropped_samples(rng, chip, sensor, times):

@@ -38,13 +38,18 @@ def hysteresis(rng, chip, sensor, times):
             before = now
         return out
 
+    return _remembered("hysteresis", axes, size, way if along_the_way else placement,
+                       width_g=width, along_the_way=along_the_way)
+
+
+def _remembered(name, axes, size, form, **parameters):
+    """An Effect that adds size * form(signals, axis) to the force."""
     def act(signals, _):
         for axis in axes:
-            signals.accel[:, axis] += size[axis] * (way if along_the_way else placement)(
-                signals, axis)
+            signals.accel[:, axis] += size[axis] * form(signals, axis)
 
-    return Effect("hysteresis", "accel", names_of(axes), "response", act,
-                  {"size": size.tolist(), "width_g": width, "along_the_way": along_the_way})
+    return Effect(name, "accel", names_of(axes), "response", act,
+                  {"size": size.tolist(), **parameters})
 
 
 def _rests(signals, axis):
@@ -78,14 +83,8 @@ def creep(rng, chip, sensor, times):
             before = now
         return out
 
-    def act(signals, _):
-        for axis in axes:
-            signals.accel[:, axis] += size[axis] * (fading if remembers_all else anew)(
-                signals, axis)
-
-    return Effect("creep", "accel", names_of(axes), "response", act,
-                  {"size": size.tolist(), "tau_s": taus, "share": share, "stretch": stretch,
-                   "remembers_all": remembers_all})
+    return _remembered("creep", axes, size, fading if remembers_all else anew, tau_s=taus,
+                       share=share, stretch=stretch, remembers_all=remembers_all)
 
 
 def drift(rng, chip, sensor, times):
