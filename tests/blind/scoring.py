@@ -69,8 +69,8 @@ def never(cause, label):
 
 
 def expected(effect, theory, label):
-    """"motion", "integrity", "silent", "faint", "other form" (the library's form of it reproduces less than
-    half), "aliased" or "clear": how much could be said."""
+    """How much could be said: "motion", "integrity", "silent", "faint", "other form" (the
+    library's form of it reproduces less than half), "aliased" or "clear"."""
     if effect["effect"] in IN_MOTION:
         return "motion"
     if effect["parameters"].get("hidden"):      # a clock nobody wrote down
