@@ -4,6 +4,7 @@ import os
 import tempfile
 
 from .errors import BadFile
+from .narration import log
 
 
 def write_bytes(path, data):
@@ -12,6 +13,7 @@ def write_bytes(path, data):
     folder = os.path.dirname(path) or "."
     if os.path.isdir(path):
         raise BadFile("%s: is a folder, expected the name of a file to write" % path)
+    log.info("writing %s, %d bytes", path, len(data))
     if os.path.exists(path) and not os.path.isfile(path):
         return _into(path, data)        # a device, a pipe: never put a file in its place
     try:
@@ -46,6 +48,7 @@ def write_text(path, text):
 
 def read_bytes(path):
     """The bytes of a file, or BadFile saying why not."""
+    log.info("reading %s", path)
     try:
         with open(path, "rb") as file:
             return file.read()

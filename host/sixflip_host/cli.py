@@ -1,12 +1,14 @@
 """The command `sixflip`: a table of verbs, one module each, loaded when asked for."""
 
 import argparse
+import contextlib
 import importlib
 import os
 import sys
 import traceback
 
 from .errors import SixflipError, UsageError
+from .narration import log, narrated
 from .terminal import plain
 
 # A verb's module has HELP (one line), EXAMPLE, add_arguments(parser) and run(args) -> exit code.
@@ -35,7 +37,16 @@ VERBS = {
     "reproduce": "sixflip_host.papers.reproduce",
     "demo": "sixflip_host.virtual.demo",
     "virtual-board": "sixflip_host.virtual.virtual_board_verb",
+    "completion": "sixflip_host.completion",
 }
+
+# For every verb, and wherever they stand on the command line.
+GLOBAL = {
+    "--quiet": "print nothing but errors, and what --json or a stream prints",
+    "--verbose": "say on stderr what is being done",
+    "--debug": "show where an error came from",
+}
+TALKS = ("stream", "completion", "virtual-board")    # what they print is what they are for
 
 EXIT_CODES = ("exit codes: 0 done, 1 a check failed or a calibration was refused, "
               "2 wrong command line, 3 no board or no chip, 4 a bad file")
@@ -58,8 +69,9 @@ def overview():
              "On-board calibration of an inertial sensor, and its check on the host.", ""]
     for verb in VERBS:
         lines.append("  %-14s %s" % (verb, load(verb).HELP))
-    lines += ["", "sixflip VERB --help says more about one of them; --debug shows where an "
-              "error came from.", EXIT_CODES]
+    lines += ["", "sixflip VERB --help says more about one of them. With every verb:"]
+    lines += ["  %-14s %s" % item for item in GLOBAL.items()]
+    lines += ["", EXIT_CODES]
     return "\n".join(lines)
 
 
@@ -74,9 +86,15 @@ def parser_for(verb):
     parser = Parser(prog="sixflip " + verb, description=module.HELP, allow_abbrev=False,
                     epilog="example: %s\n\n%s" % (module.EXAMPLE, EXIT_CODES),
                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--debug", action="store_true", help="show where an error came from")
+    add_global(parser)
     module.add_arguments(parser)
     return parser
+
+
+def add_global(parser):
+    """The options of every verb; main() has obeyed them before a parser sees the rest."""
+    for name, words in GLOBAL.items():
+        parser.add_argument(name, action="store_true", help=words)
 
 
 def run(argv):
@@ -98,12 +116,16 @@ def run(argv):
 def main(argv=None):
     """Entry point. Whatever happens, one line on stderr and an exit code; no traceback."""
     argv = sys.argv[1:] if argv is None else list(argv)
-    debug = "--debug" in argv
-    argv = [word for word in argv if word != "--debug"]
+    debug, verbose = "--debug" in argv, "--verbose" in argv
+    quiet = "--quiet" in argv and "--json" not in argv and not set(TALKS) & set(argv)
+    argv = [word for word in argv if word not in GLOBAL]
     prepare_streams()
     try:
-        code = run(argv)
-        sys.stdout.flush()
+        with narrated(verbose), silenced(quiet):
+            log.info("sixflip %s", " ".join(argv))
+            code = run(argv)
+            sys.stdout.flush()
+            log.info("exit code %d", code)
         return code
     except SystemExit as stop:      # argparse after --help
         return stop.code or 0
@@ -125,6 +147,16 @@ def main(argv=None):
     except Exception as error:      # a bug of ours: still one line
         return complain("internal error, please report it: %s: %s (--debug shows where)"
                         % (type(error).__name__, error), INTERNAL_ERROR, debug)
+
+
+@contextlib.contextmanager
+def silenced(wanted):
+    """While it lasts nothing is printed on stdout, if that is wanted."""
+    if not wanted:
+        yield
+        return
+    with open(os.devnull, "w", encoding="utf-8") as nowhere, contextlib.redirect_stdout(nowhere):
+        yield
 
 
 def prepare_streams():

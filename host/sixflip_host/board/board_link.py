@@ -17,6 +17,7 @@ from mpremote.transport import TransportError, TransportExecError
 from mpremote.transport_serial import SerialTransport
 
 from ..errors import NoBoard, SixflipError, UsageError
+from ..narration import log
 from . import serial_ports
 from .board_answers import NoSpace, board_error, parse, short
 from .buffered_serial import BufferedSerial
@@ -80,6 +81,7 @@ class MpremoteLink:
         self.close()
 
     def open(self):
+        log.info("opening %s", self.port)
         try:
             transport = SerialTransport(self.port, baudrate=115200, exclusive=True, timeout=1.0)
         except (TransportError, serial.SerialException, OSError, ValueError):
@@ -145,6 +147,7 @@ class MpremoteLink:
 
     def run(self, code, doing, consumer=None, timeout=None):
         """Run code on the board; returns what it printed, as bytes."""
+        log.info("%s: %s", self.port, doing)
         self.enter()
         with self.guarded(doing) as transport:
             transport.serial.deadline = time.monotonic() + LONGEST_S * self.patience
@@ -246,6 +249,7 @@ class MpremoteLink:
 
     def reset(self):
         """Hard reset, as after power-up: boot.py and main.py run."""
+        log.info("%s: reset", self.port)
         self.enter()
         with self.guarded("resetting") as transport:
             transport.exec_raw_no_follow(

@@ -25,6 +25,7 @@ def add_arguments(parser):
     parser.add_argument("--board", choices=BOARDS, help="default: by the port of MicroPython")
     parser.add_argument("--pins", metavar="sda=4,scl=5",
                         help="pins that differ from the board's usual ones: sda, scl, led, button")
+    parser.add_argument("--json", action="store_true", help="what was done and tested, as JSON")
 
 
 def pins(text):
@@ -131,13 +132,18 @@ def verdict_line(hello, test):
 
 def run(args):
     wanted = wanted_settings(args)
+    say = (lambda text: None) if args.json else print
     with open_link(args.port) as link:
         version, machine = link.version()
-        print(plain("%s: %s, %s" % (link.port, machine, version)))
-        copy(link, wanted)
-        hello, test = self_test(link)
-        line = verdict_line(hello, test)
-        print(plain(line))
+        say(plain("%s: %s, %s" % (link.port, machine, version)))
+        copied, kept = copy(link, wanted, say)
+        hello, test = self_test(link, say)
+        say(plain(verdict_line(hello, test)))
         if test.get("ok"):
-            print("next: sixflip calibrate")
+            say("next: sixflip calibrate")
+    if args.json:
+        print(json.dumps({
+            "format": 1, "kind": "sixflip provision", "port": link.port, "machine": machine,
+            "micropython": version, "files_copied": copied, "files_there": kept,
+            "hello": hello, "selftest": test}))
     return 0 if test.get("ok") else 1

@@ -1,5 +1,6 @@
 """sixflip pull: capture, records and settings from a board into a folder here."""
 
+import json
 from pathlib import Path
 
 from ..atomic_write import write_bytes
@@ -20,6 +21,7 @@ def add_arguments(parser):
     add_port(parser)
     parser.add_argument("-o", "--output", metavar="DIR", default=".", type=Path,
                         help="folder to put DIR/<board id>/… into (default: here)")
+    parser.add_argument("--json", action="store_true", help="what was fetched, as JSON")
 
 
 def folder_name(board_id):
@@ -67,11 +69,16 @@ def convert(folder, say=print):
 
 
 def run(args):
+    say = (lambda text: None) if args.json else print
     with open_link(args.port) as link:
-        folder = fetch(link, args.output)
+        folder = fetch(link, args.output, say)
         board = link.board_id()
         link.reset()
-    convert(folder)
+    convert(folder, say)
     remember.pulled(folder, board)
-    print("next: sixflip verify %s" % plain(folder))
+    if args.json:
+        print(json.dumps({
+            "format": 1, "kind": "sixflip pull", "board": board, "folder": str(folder),
+            "files": sorted(path.name for path in folder.iterdir() if path.is_file())}))
+    say("next: sixflip verify %s" % plain(folder))
     return 0

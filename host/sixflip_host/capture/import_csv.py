@@ -1,8 +1,11 @@
 """sixflip import: a capture file out of somebody else's CSV or ROS bag."""
 
+import json
 import os
 
 import numpy as np
+
+from sixflip.faces import pose_name
 
 from ..errors import BadFile, UsageError
 from ..terminal import plain
@@ -47,6 +50,7 @@ def add_arguments(parser):
     add("--label-column", metavar="NAME", help="column that names the still sections")
     add("--sections", metavar="JSON", help="file that names the still sections by sample numbers")
     add("--label", action="append", metavar="up=Z+a", help="what one of their labels means")
+    add("--json", action="store_true", help="what was found, as JSON")
     add("--no-poses", action="store_true", help="leave finding the poses to whoever reads it")
 
 
@@ -59,6 +63,13 @@ def run(args):
         found.label(capture)
         remarks += found.remarks()
     capture_file.write(args.output, capture)
+    if args.json:
+        print(json.dumps({
+            "format": 1, "kind": "sixflip import", "capture": args.output,
+            "samples": len(capture), "meta": capture.meta, "remarks": remarks,
+            "poses": [pose_name(one.pose) for one in capture.placements()]
+            if capture.pose is not None else None}))
+        return 0
     print("%s: %d samples, %.1f s, %g counts per g" % (
         plain(args.output), len(capture), (capture.t_us[-1] - capture.t_us[0]) / 1e6,
         capture.meta["accel_lsb_per_g"]))

@@ -1,7 +1,7 @@
 """The pictures of the report, one function each; all take a Diagnosis and write a PNG."""
 import numpy as np
 
-from ..reporting.figures import COLOURS, canvas
+from ..reporting.figures import COLOURS, canvas, save
 from ..simulating import signal_measures
 from . import classes, single_rest, which
 
@@ -32,7 +32,7 @@ def heat_map(diagnosis, path):
         ax.text(j, i, "%.0f" % (100 * table[i, j]), ha="center", va="center", fontsize=8,
                 color="white" if table[i, j] > 0.6 else "black")
     ax.set_title("Where the gap lies: share of the excess, %")
-    figure.savefig(path, dpi=110)
+    save(figure, path)
 
 
 VARIABLE = {"temperature": "temperature, °C", "time": "time since start, s",
@@ -66,7 +66,7 @@ def residuals(gap, path):
     axes[0, 0].legend(fontsize=8)
     for row in range(2):
         axes[row, 0].set_ylabel("residual, " + UNIT[gap.kind])
-    figure.savefig(path, dpi=110)
+    save(figure, path)
 
 
 def both(gap, number):
@@ -121,7 +121,7 @@ def noise(diagnosis, loops, path):
         axes[1, column].set_ylabel("Allan deviation, " + UNIT[kind])
         axes[1, column].set_xlabel("averaging time, s")
         axes[0, column].legend(fontsize=7, ncols=2)
-    figure.savefig(path, dpi=110)
+    save(figure, path)
 
 
 def _noise_curves(axes, x, rate, words, style):
@@ -168,4 +168,4 @@ def poses(gap, path):
         ax.set_ylabel(UNIT[gap.kind])
         ax.set_title("%s, session %d: residual of each placement (pale: before; x red, y green, "
                      "z blue)" % (NAME[gap.kind], number + 1), fontsize=9)
-    figure.savefig(path, dpi=110)
+    save(figure, path)

@@ -4,7 +4,6 @@ import json
 import math
 from datetime import datetime, timezone
 
-from .. import atomic_write
 from ..errors import CheckFailed, UsageError
 from ..solving.solve import finite
 from ..terminal import console, plain, styled, table, verdict_text
@@ -50,12 +49,12 @@ def run(args):
 
 
 def _plot(path, calibrations):
-    from ..reporting.figures import png
+    from ..reporting.figures import save
     from .drift_picture import draw
     figure = draw(calibrations)
     if figure is None:
         raise CheckFailed("%s: not drawn, no calibration of this board says its parameters" % path)
-    atomic_write.write_bytes(path, png(figure))
+    save(figure, path)
 
 
 def _chosen(word, boards):

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..errors import BadFile
+from ..narration import log
 
 VARIABLE = "SIXFLIP_HISTORY"
 OURS = 0x36464C50           # "6FLP"
@@ -70,6 +71,7 @@ def add(file, rows):
     completes its row, whose time stays. Raises BadFile.
     """
     file = Path(file)
+    log.info("keeping %d rows in the history %s", len(rows), file)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -1,5 +1,7 @@
 """The alias matrix as a picture: row a, column b, how much of a could be b."""
 
+from ..reporting.figures import save
+
 
 def draw(matrices, path, title):
     """Write a PNG; matrices: {sensor: (names, index (n, n))}."""
@@ -24,4 +26,4 @@ def draw(matrices, path, title):
     axes[0].set_ylabel("share of this effect")
     figure.colorbar(image, ax=list(axes), shrink=0.7, label="alias index")
     figure.suptitle("Alias matrix, %s; silent effects are left out" % title)
-    figure.savefig(path, dpi=110)
+    save(figure, path)

@@ -1,5 +1,9 @@
 """What all pictures have in common: a canvas that needs no display, the colours of the axes."""
 
+import io
+
+from .. import atomic_write
+
 COLOURS = ("#c0392b", "#27864a", "#2455a4")  # of x, y, z
 DPI = 110
 
@@ -13,9 +17,13 @@ def canvas(rows, columns, width, height):
     return figure, figure.subplots(rows, columns, squeeze=False)
 
 
+def save(figure, path):
+    """Write a figure as PNG, whole or not at all."""
+    atomic_write.write_bytes(path, png(figure))
+
+
 def png(figure):
     """The bytes of a figure as PNG."""
-    import io
     out = io.BytesIO()
     figure.savefig(out, format="png", dpi=DPI)
     return out.getvalue()

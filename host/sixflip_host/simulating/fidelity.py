@@ -12,6 +12,7 @@ import numpy as np
 from ..capture import recordings
 from ..errors import SixflipError
 from ..papers import replica
+from ..reporting.figures import save
 from ..terminal import console, table
 from . import fidelity_effects
 from . import signal_measures as measures
@@ -98,7 +99,7 @@ def draw(place, out):
         axes[1, column].set_xlabel("frequency, Hz")
         axes[1, column].set_ylabel(unit + "/√Hz")
         axes[0, column].legend()
-    figure.savefig(out, dpi=100)
+    save(figure, out)
 
 
 def main(argv=None):

@@ -1,12 +1,7 @@
 """The demo's picture: errors of the vectors before and after the correction, face by face."""
 
-import matplotlib
-
-matplotlib.use("Agg")
-
-from matplotlib import pyplot  # noqa: E402  the backend comes first
-
-from .demo_truth import error_mg  # noqa: E402
+from ..reporting.figures import canvas, save
+from .demo_truth import error_mg
 
 
 def draw(path, rows):
@@ -14,7 +9,7 @@ def draw(path, rows):
     poses = [row[0] for row in rows]
     raw = [error_mg(row[2], row[1]) for row in rows]
     corrected = [error_mg(row[3], row[1]) for row in rows]
-    figure, (bars, axes) = pyplot.subplots(1, 2, figsize=(10, 4.2), constrained_layout=True)
+    figure, ((bars, axes),) = canvas(1, 2, 10.0, 4.2)
     places = range(len(rows))
     bars.bar([p - 0.2 for p in places], raw, 0.4, label="raw", color="#b5651d")
     bars.bar([p + 0.2 for p in places], corrected, 0.4, label="corrected", color="#2a6f97")
@@ -35,5 +30,4 @@ def draw(path, rows):
     axes.set_ylabel("error of x, y, z, mg (left to right)")
     axes.margins(y=0.2)
     axes.legend(loc="upper left", ncols=2)
-    figure.savefig(path, dpi=110)
-    pyplot.close(figure)
+    save(figure, path)

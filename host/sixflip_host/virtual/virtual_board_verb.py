@@ -27,6 +27,7 @@ def add_arguments(parser):
                              "`sixflip simulate --worlds` writes")
     parser.add_argument("--session", metavar="N", type=int, default=1,
                         help="which of the worlds in that file (default: the first)")
+    parser.add_argument("--json", action="store_true", help="the port and the flash, as JSON")
 
 
 def world_spec(args):
@@ -68,9 +69,13 @@ def run(args):
     image = args.flash or cache_dir() / "virtual-board.flash"
     image.parent.mkdir(parents=True, exist_ok=True)
     with VirtualBoard(world_spec(args), image, speed=args.speed) as board:
-        print("virtual board at %s, flash in %s" % (board.port, image))
-        print("in another terminal: sixflip provision --port %s   (Ctrl-C here ends it)"
-              % board.port, flush=True)
+        if args.json:
+            print(json.dumps({"format": 1, "kind": "sixflip virtual-board", "port": board.port,
+                              "board": board.unique_id, "flash": str(image)}), flush=True)
+        else:
+            print("virtual board at %s, flash in %s" % (board.port, image))
+            print("in another terminal: sixflip provision --port %s   (Ctrl-C here ends it)"
+                  % board.port, flush=True)
         try:
             while board.relay.is_alive():
                 time.sleep(0.2)

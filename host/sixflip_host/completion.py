@@ -1,0 +1,51 @@
+"""sixflip completion: the verbs, options and files of a command line, for the shell to offer."""
+
+import argparse
+
+import shtab
+
+HELP = "print what makes a shell complete sixflip's command lines"
+EXAMPLE = ("sixflip completion bash > ~/.local/share/bash-completion/completions/sixflip\n"
+           "         sixflip completion zsh > ~/.zfunc/_sixflip\n"
+           "         sixflip completion fish > ~/.config/fish/completions/sixflip.fish")
+SHELLS = ("bash", "zsh", "fish")
+FILES = ("FILE", "DIR", "CAPTURE", "RECORD", "JSON", "TOML", "PNG", "OUT", "NOISE", "SIM", "PORT")
+FILE_OPTIONS = ("output", "source", "record", "capture")
+
+
+def add_arguments(parser):
+    """The options of the verb."""
+    parser.add_argument("shell", choices=SHELLS)
+
+
+def run(args):
+    """Print the script."""
+    print(shtab.complete(whole_parser(), args.shell))
+    return 0
+
+
+def whole_parser():
+    """One parser of all verbs, made of theirs."""
+    from .cli import VERBS, add_global, load
+    root = argparse.ArgumentParser(prog="sixflip")
+    root.add_argument("--version", action="store_true", help="of sixflip")
+    verbs = root.add_subparsers(dest="verb")
+    for verb in VERBS:
+        module = load(verb)
+        parser = verbs.add_parser(verb, help=module.HELP)
+        add_global(parser)
+        module.add_arguments(parser)
+        for action in parser._actions:      # argparse has no other way to ask
+            if takes_file(action):
+                action.complete = shtab.FILE
+    return root
+
+
+def takes_file(action):
+    """Whether the value of an argument is the name of a file."""
+    if action.choices or action.nargs == 0:
+        return False
+    words = action.metavar or ""
+    if any(name in (words if isinstance(words, str) else " ".join(words)) for name in FILES):
+        return True
+    return action.dest in FILE_OPTIONS or (not action.option_strings and not words)
