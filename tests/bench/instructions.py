@@ -9,7 +9,7 @@ from pathlib import Path
 
 sys.path[:0] = [str(Path(__file__).resolve().parents[1])]
 
-from debian_tier import Unavailable
+from debian_tier import Unavailable, exit_code_without
 from on_qemu.board import QemuBoard, cortex_m3
 from on_qemu.firmware import POSE_SAMPLES, build
 
@@ -49,7 +49,7 @@ def main():
     try:
         elf = build()
     except Unavailable as error:
-        sys.exit("sixflip: no emulated Cortex-M3: %s" % error)
+        return exit_code_without("emulated Cortex-M3", error)
     found = measure(elf)
     print(table(found))
     return 0 if found["session"][1] < found["lists"][1] else 1

@@ -6,7 +6,7 @@ from pathlib import Path
 
 sys.path[:0] = [str(Path(__file__).resolve().parents[1])]
 
-from debian_tier import Unavailable
+from debian_tier import Unavailable, exit_code_without
 from on_qemu.board import QemuBoard, cortex_m3
 from on_qemu.firmware import build
 from on_qemu.float_widths import LIMIT_MG, compare, table
@@ -16,7 +16,7 @@ def main(sessions):
     try:
         elf = build()
     except Unavailable as error:
-        sys.exit("sixflip: no emulated Cortex-M3: %s" % error)
+        return exit_code_without("emulated Cortex-M3", error)
     with QemuBoard(cortex_m3(elf)) as board:
         found = compare(board, range(sessions))
     print(table(found, sessions))
