@@ -20,6 +20,7 @@ from board_session import leave_files, unlabelled
 from sixflip_host import atomic_write, cli, completion
 from sixflip_host.capture import capture_file
 from sixflip_host.cli import VERBS, main
+from sixflip_host.history import remember, store
 
 COMMAND = [sys.executable, "-m", "sixflip_host"]
 ENVIRONMENT = dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path))
@@ -184,10 +185,10 @@ def test_json_of_provision_pull_and_the_virtual_board(micropython, tmp_path, cap
 # -- colour
 
 
-def on_a_terminal(words, **variables):
-    """What a command writes on a terminal of 100 columns."""
+def on_a_terminal(words, columns=100, **variables):
+    """What a command writes on a terminal."""
     master, slave = pty.openpty()
-    fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 100, 0, 0))
+    fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
     process = subprocess.Popen([*COMMAND, *words], stdin=slave, stdout=slave, stderr=slave,
                                env=dict(ENVIRONMENT, TERM="xterm-256color", **variables))
     os.close(slave)
@@ -208,6 +209,19 @@ def test_no_color(pulled):
     codes = {code for part in plain.split("\x1b[")[1:] for code in part.split("m")[0].split(";")}
     assert not codes & {str(n) for n in (*range(30, 49), *range(90, 108))}
     assert "good" in plain
+
+
+def test_the_history_fits_80_columns(pulled, tmp_path, monkeypatch):
+    file = str(tmp_path / "history.sqlite")
+    monkeypatch.setenv("SIXFLIP_HISTORY", file)
+    for number in range(3):
+        remember.pulled(pulled, "e6614c311b4c5a2f")
+        store.add(file, [store.Happened("e6614c311b4c5a2f", "calibration", "calibrate",
+                                        1.8e9 + number * 1e5, "doubtful", temp_c=-12.5 * number,
+                                        answer={"scale": [1.0] * 3, "v": [-1.23456] * 3})])
+    for words in (["history"], ["history", "e66"]):
+        shown = on_a_terminal(words, 80, SIXFLIP_HISTORY=file)
+        assert "e6614c311b4c5a2f" in shown and "…" not in shown
 
 
 # -- Ctrl-C leaves files whole

@@ -82,10 +82,10 @@ def _boards(args, file, rows):
             file or "%s is empty: none is kept" % store.VARIABLE)))
     else:
         console().print(table("boards (%s)" % file, [
-            "board", "chip", "calibrations", "last, UTC", "verdict", "checks", "last, UTC", ""], [
-            [one["board"], one["chip"] or "-", str(one["calibrations"]),
-             when(one["calibrated"]), _coloured(one["verdict"]), str(one["checks"]),
-             when(one["checked"]), _coloured(one["holds"])] for one in listed]))
+            "board", "sessions", "last one", "verdict", "checked", ""], [
+            [one["board"], str(one["calibrations"]), when(one["calibrated"])[:10],
+             _coloured(one["verdict"]), when(one["checked"])[:10],
+             _coloured(one["holds"])] for one in listed]))
     return 0
 
 
@@ -133,13 +133,18 @@ def _words(board, rows, calibrations, drifts, remarks):
     for remark in remarks:
         out.print(plain(remark))
     if calibrations:
+        head, listed = calibration_rows(calibrations)
+        # two tables: together they do not fit into 80 columns
         out.print(table("calibrations of board %s" % board, *_coloured_rows(
-            *calibration_rows(calibrations), 4)))
+            *_only(head, listed, (0, 1, 3, 4, 6)), 3)))
+        out.print(table("and their", *_only(head, listed, (0, 5, 7))))
     if any(one.time_is == store.SEEN for one, _ in calibrations):
         out.print(SEEN_NOTE)
     head, checks = check_rows(rows)
     if checks:
-        out.print(table("checks", *_coloured_rows(head, checks, 3)))
+        found = table("checks", *_coloured_rows(head, checks, 3))
+        found.columns[-1].no_wrap = False       # a reason is to be read to its end
+        out.print(found)
     head, moved = drift_rows(drifts)
     if moved:
         out.print(table("drift (%s)" % DRIFT_NOTE, head, moved))
@@ -177,6 +182,10 @@ def drift_notes(drifts):
     moved = any(one.per_c or one.per_30_days for one in drifts)
     return ["no drift of %s named: %s" % ("the others" if moved else "any parameter", note)
             for note in dict.fromkeys(one.note for one in drifts if one.note)]
+
+
+def _only(head, rows, columns):
+    return [head[k] for k in columns], [[row[k] for k in columns] for row in rows]
 
 
 def _coloured_rows(head, rows, column):
