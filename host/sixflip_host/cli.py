@@ -16,6 +16,7 @@ VERBS = {
     "boards": "sixflip_host.board.boards",
     "provision": "sixflip_host.board.provision",
     "calibrate": "sixflip_host.board.calibrate",
+    "ui": "sixflip_host.ui.ui",
     "pull": "sixflip_host.board.pull",
     "verify": "sixflip_host.verifying.verify",
     "solve": "sixflip_host.solving.solve",

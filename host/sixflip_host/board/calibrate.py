@@ -165,9 +165,13 @@ def checked(args):
     if args.replay and (args.plan or args.redo or args.go_on):
         raise UsageError("--replay plays a capture as it was taken: not with --plan, --redo or "
                          "--continue")
+    check_speed(args)
+    return session
+
+
+def check_speed(args):
     if args.speed is not None and (not args.replay or not args.speed > 0):
         raise UsageError("--speed %g: expected a number above 0, with --replay" % args.speed)
-    return session
 
 
 def link_of(args, guided):

@@ -31,8 +31,6 @@ def run(folder, path, speed):
     class ReplayBoard(LinuxBoard):
         """A Linux board on the capture's bus and clock."""
 
-        unique_id = str(capture.meta.get("device_id") or "replay")[:40]
-
         def reopen_i2c(self):
             return self.i2c
 
@@ -60,7 +58,9 @@ def run(folder, path, speed):
 
     root = os.path.join(str(folder), "")
     values, problems = settings.load(root)
-    power_up.run(ReplayBoard(lambda: bus, root), values, problems)
+    board = ReplayBoard(lambda: bus, root)
+    board.unique_id = str(capture.meta.get("device_id") or "replay")
+    power_up.run(board, values, problems)
 
 
 def main(argv):

@@ -11,6 +11,11 @@ from ..capture import capture_file
 from .replay_chips import settings_of
 
 
+def checked(path):
+    """The settings to replay a capture file with; BadFile or UsageError where it cannot be."""
+    return settings_of(capture_file.read(path))
+
+
 class ReplayLink(LocalLink):
     """The firmware of this version on the samples of a capture file; its flash is thrown away.
 
@@ -18,7 +23,7 @@ class ReplayLink(LocalLink):
     """
 
     def __init__(self, path, speed=1.0):
-        wanted = settings_of(capture_file.read(path))
+        wanted = checked(path)
         self.temporary = tempfile.mkdtemp(prefix="sixflip-replay-")
         super().__init__(self.temporary)
         self.capture, self.speed = Path(path).resolve(), speed

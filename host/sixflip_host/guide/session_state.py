@@ -36,6 +36,7 @@ class State:
     since, taken_at, now   seconds of the caller's clock: begin of the session, last placement
                  taken, last event; paces: seconds from placement to placement
     log          lasting lines, oldest first; error: the last one that is in force
+    redone       how often placements were taken back in this session
     """
 
     stage: str = WAITING
@@ -71,6 +72,7 @@ class State:
     paces: tuple = ()
     log: tuple = ()
     error: str = ""
+    redone: int = 0
 
     def left(self):
         """Seconds until all placements are taken, at the usual pace so far; None before the
@@ -226,7 +228,8 @@ def _sample(state, event):
 
 def _pose(state, event):
     for name in poses([event.get("pose")]):
-        state = replace(state, taken=dict(state.taken, **{name: whole(event.get("n"))}))
+        others = {pose: n for pose, n in state.taken.items() if pose != name}
+        state = replace(state, taken={**others, name: whole(event.get("n"))})   # the last one
     return replace(_todo(state, event), refusal="", error="", taken_at=state.now,
                    paces=state.paces + (state.now - state.taken_at,))
 
@@ -257,7 +260,8 @@ def _end(state, event):
 
 AFTER = {
     "hello": _hello, "calibrating": _calibrating, "state": _live, "sample": _sample,
-    "pose": _pose, "redo": _todo, "refused": _refused, "capture": _capture, "solved": _solved,
+    "pose": _pose, "refused": _refused, "capture": _capture, "solved": _solved,
+    "redo": lambda s, e: replace(_todo(s, e), redone=s.redone + 1),
     "saved": lambda s, e: replace(s, stage=OVER, saved=cleaned(e)),
     "record": lambda s, e: replace(s, record=cleaned(e)),
     "error": _error, "ready": _end, "stopped": _end,

@@ -184,7 +184,7 @@ def texts(value):
             yield from texts(inner)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(EVENTS)
 def test_any_event_leaves_a_state_with_nothing_that_steers_a_terminal(events):
     state = fed(*events)

@@ -1,0 +1,260 @@
+// The page: shows what the server says, asks for what the person clicks. All state is the
+// server's; whatever comes from a board is set as text, never as markup.
+
+import { Attitude, AXES, draw, lying, product, about } from "/box.js";
+import { bars, lines } from "/plots.js";
+
+const element = (id) => document.getElementById(id);
+const KEY = "sixflip-token";
+const KEPT_S = 60;
+let view = null, trail = [], shownAt = performance.now(), reportShown = false;
+const attitude = new Attitude();
+
+// -- the key to the server: behind the # of the address, which no server ever sees
+
+function token() {
+  if (location.hash.length > 1) {
+    localStorage.setItem(KEY, location.hash.slice(1));
+    history.replaceState(null, "", "/");
+  }
+  return localStorage.getItem(KEY) || "";
+}
+const SECRET = token();
+const headers = { "X-Sixflip-Token": SECRET };
+
+// -- what the server says
+
+async function listen() {
+  for (;;) {
+    try {
+      const answer = await fetch("/api/states", { headers });
+      if (answer.status === 403) {
+        problem((await answer.json()).error);
+        say("link", "refused");
+        return;
+      }
+      await read(answer.body.getReader());
+    } catch { /* the server has gone; it is asked again */ }
+    say("link", "the server does not answer; is sixflip ui still running?");
+    await new Promise((done) => setTimeout(done, 1000));
+  }
+}
+
+async function read(reader) {
+  const decoder = new TextDecoder();
+  let text = "";
+  for (;;) {
+    const { done, value } = await reader.read();
+    if (done) return;
+    text += decoder.decode(value, { stream: true });
+    const rows = text.split("\n");
+    text = rows.pop();
+    for (const row of rows) if (row) heard(JSON.parse(row));
+  }
+}
+
+function heard(now) {
+  if (now.trail) trail = now.trail;
+  const before = view;
+  view = now;
+  if (now.vector && (!before || before.number !== now.number || moved(before, now)))
+    trail.push([performance.now() / 1000 + offset(), now.vector, now.rate]);
+  const last = trail.length ? trail[trail.length - 1][0] : 0;
+  trail = trail.filter(([t]) => last - t < KEPT_S);
+  attitude.heard(now.vector, now.rate, now.box === "capturing");
+  show();
+}
+const moved = (a, b) => !a.vector || a.vector.some((v, k) => v !== b.vector[k]) ||
+  (b.rate && (!a.rate || a.rate.some((v, k) => v !== b.rate[k])));
+
+// The server's seconds are of another clock than this page's.
+let shift = null;
+function offset() {
+  if (shift === null)
+    shift = trail.length ? trail[trail.length - 1][0] - performance.now() / 1000 : 0;
+  return shift;
+}
+
+// -- what is shown
+
+function say(id, text) {
+  const where = element(id);
+  if (where.textContent !== text) where.textContent = text;
+}
+function problem(text) {
+  element("problem").hidden = !text;
+  say("problem", text || "");
+}
+const clock = (s) => Math.floor(s / 60) + ":" + String(Math.floor(s % 60)).padStart(2, "0");
+const signed = (v, n) => (v < 0 ? "" : "+") + v.toFixed(n);
+
+function show() {
+  const v = view, running = v.live && v.stage !== "over";
+  say("link", v.live ? "board connected" : "no board connected");
+  say("chip", v.chip);
+  say("board", v.board && "board " + v.board);
+  say("port", v.port);
+  problem(v.problem || (v.stage === "calibrating" ? "" : v.error));
+  const none = v.number === 0 && !v.busy;
+  say("head", v.busy ? v.busy + "…" : none ? "ready to begin" : v.step.head);
+  say("detail", none ? "Lay the box on a table that does not shake, then start." : v.step.detail);
+  say("waits", none ? "" : v.waits);
+  showCapture(v);
+  showFaces(v, running);
+  showResult(v);
+  say("vector", v.vector ? "xyz".split("").map((a, k) => a + " " + signed(v.vector[k], 3)).join("   ") +
+    " g   |a| " + Math.hypot(...v.vector).toFixed(3) + " g" : "-");
+  say("rate", v.rate ? "xyz".split("").map((a, k) => a + " " + signed(v.rate[k], 0)).join("   ") +
+    " deg/s" : "");
+  lines(element("accel"), trail.map(([t, a]) => [t, a]), 1.2, "g");
+  lines(element("gyro"), trail.map(([t, , w]) => [t, w]), 20, "deg/s");
+  element("start").disabled = running || !!v.busy;
+  element("continue").disabled = running || !!v.busy || v.replay;
+  element("undo").disabled = !running || !v.undo;
+  element("stop").disabled = !running || v.stage !== "calibrating";
+  element("pull").disabled = running || !!v.busy;
+  element("report").disabled = running || !!v.busy || v.reporting;
+  say("pulled", v.pulled && "fetched into " + v.pulled);
+  element("reporting").hidden = !v.reporting;
+  if (v.reporting) { reportShown = false; element("reportframe").hidden = true; }
+  if (v.report && !v.reporting && !reportShown) { reportShown = true; showReport(); }
+  showLog(v.log);
+}
+
+function showCapture(v) {
+  const share = v.capture ? v.capture.progress / Math.max(1, v.capture.total) : 0;
+  element("capturebar").style.width = 100 * share + "%";
+  element("capturebar").parentElement.setAttribute("aria-valuenow", Math.round(100 * share));
+  say("capture", v.capture ? v.pose + ": " + Math.round(100 * share) + " %, keep still " +
+    v.capture.left_s.toFixed(1) + " s" : "no capture under way");
+  say("clock", v.gone_s === null ? "" : "session " + clock(v.gone_s) +
+    (v.left_s === null ? "" : ", about " + clock(Math.max(0, v.left_s)) + " left"));
+  const noise = v.noise;
+  element("noisemeter").value = noise ? Math.min(1, noise.value / noise.limit) : 0;
+  say("noise", noise ? noise.value.toPrecision(3) + " times the sensor's own, limit " + noise.limit : "-");
+}
+
+function showFaces(v, running) {
+  const body = element("faces");
+  if (!body.children.length) {
+    for (const { face } of v.faces) {
+      const row = body.insertRow();
+      for (let k = 0; k < 3; k++) row.insertCell();
+      row.cells[0].textContent = face;
+      const again = document.createElement("button");
+      again.type = "button";
+      again.textContent = "again";
+      again.id = "redo" + face;
+      again.setAttribute("aria-label", "take " + face + " again");
+      again.addEventListener("click", () => ask("redo", face));
+      row.insertCell().append(again);
+    }
+  }
+  v.faces.forEach((entry, n) => {
+    const row = body.rows[n];
+    row.className = running && v.step.face === entry.face ? "here" : "";
+    "ab".split("").forEach((letter, k) => {
+      const now = v.capture && v.pose === entry.face + letter;
+      const text = now ? Math.round(100 * v.capture.progress / Math.max(1, v.capture.total)) + " %"
+        : entry[letter] === null ? "·" : "✓";
+      if (row.cells[1 + k].textContent !== text) row.cells[1 + k].textContent = text;
+    });
+    element("redo" + entry.face).disabled = !v.live || !!v.plan || v.number === 0 ||
+      !(v.stage === "over" || v.stage === "calibrating" && (entry.a !== null || entry.b !== null));
+  });
+  element("plan").hidden = !v.plan;
+  if (v.plan) say("plan", v.plan.at + " of " + v.plan.of + " placements; next " + v.plan.next);
+}
+
+function showResult(v) {
+  element("result").hidden = !v.verdict;
+  if (!v.verdict) return;
+  say("verdict", v.verdict);
+  element("verdict").className = ["good", "doubtful", "refused"].includes(v.verdict) ? v.verdict : "";
+  const s = v.solved, number = (x, n) => (typeof x === "number" ? x.toFixed(n) : "-");
+  say("reason", typeof s.reason === "string" ? s.reason : "");
+  const three = (x, n) => (Array.isArray(x) ? x.map((y) => number(y, n)).join("  ") : "-");
+  const gyro = s.gyro && typeof s.gyro === "object" ? s.gyro : null;
+  const rows = [["table tilt", number(s.tilt_deg, 2) + " deg, faces agree to " + number(s.tilt_spread_deg, 2) + " deg"],
+    ["residual", number(s.residual_mg_rms, 2) + " mg rms"], ["scale x y z", three(s.scale, 4)],
+    ["offset v x y z", three(s.v, 4) + " m/s²"],
+    ["gyro", gyro ? gyro.verdict + ": " + gyro.reason : "-"],
+    ["gyro scale x y z", gyro ? three(gyro.scale, 4) : "-"],
+    ["gyro bias x y z", gyro ? three(gyro.bias_dps, 3) + " deg/s" : "-"],
+    ["saved", v.saved.slot ? "slot " + v.saved.slot + ", sequence " + v.saved.sequence : "no"]];
+  const table = element("numbers");
+  while (table.rows.length < rows.length) { const row = table.insertRow(); row.insertCell(); row.insertCell(); }
+  rows.forEach(([name, value], n) => {
+    table.rows[n].cells[0].textContent = name;
+    table.rows[n].cells[1].textContent = value;
+  });
+  bars(element("residuals"), s.residual_mg && typeof s.residual_mg === "object" ? s.residual_mg : {});
+}
+
+let logged = "";
+function showLog(log) {
+  const text = log.slice(-60).join("\n");
+  if (text === logged) return;
+  logged = text;
+  const list = element("log"), items = log.slice(-60).map((line) => {
+    const item = document.createElement("li");
+    item.textContent = line;
+    return item;
+  });
+  list.replaceChildren(...items);
+  list.scrollTop = list.scrollHeight;
+}
+
+async function showReport() {
+  const answer = await fetch("/api/report", { headers });
+  if (!answer.ok) return;
+  const frame = element("reportframe");
+  frame.src = (await answer.json()).path;
+  frame.hidden = false;
+}
+
+// -- what is asked for: with the number of the session that was seen, so that a second click,
+//    a stale tab or a page loaded again changes nothing that is done already
+
+async function ask(action, what = "") {
+  if (!view) return;
+  try {
+    const answer = await fetch("/api/do", { method: "POST", body: JSON.stringify(
+      { action, number: view.number, what }), headers: { ...headers, "Content-Type": "application/json" } });
+    if (!answer.ok) problem((await answer.json()).error);
+  } catch {
+    problem("the server does not answer; is sixflip ui still running?");
+  }
+}
+for (const id of ["start", "continue", "stop", "pull", "report"])
+  element(id).addEventListener("click", () => ask(id));
+element("undo").addEventListener("click", () => ask("undo", view ? view.undo : ""));
+
+// -- the box, many times a second; the board tells a few
+
+function animate(now) {
+  const seconds = Math.min(0.1, (now - shownAt) / 1000);
+  shownAt = now;
+  attitude.step(seconds);
+  const box = element("now");
+  if (view && view.vector) {
+    draw(box, attitude.m);
+    box.dataset.face = attitude.face();
+  }
+  const step = view && view.step, target = step && step.face in AXES ? step.face : "";
+  const canvas = element("next");
+  if (target) {
+    const phase = (now / 1000) % 4;
+    let m = lying(target, step.kind === "hold" && step.pose.endsWith("b") ? 1 : 0);
+    if (step.kind === "flip")
+      m = product(about([0, 0, 1], Math.PI * Math.min(1, Math.max(0, phase - 1) / 1.5)), m);
+    draw(canvas, m, true);
+    say("nextcaption", step.kind === "flip" ? "half a turn, " + target + " stays up" : target + " up");
+  }
+  element("nextfigure").hidden = !target;
+  canvas.dataset.face = target;
+  requestAnimationFrame(animate);
+}
+
+requestAnimationFrame(animate);
+listen();

@@ -1,0 +1,77 @@
+"""sixflip ui: the guided session in a browser, served by this machine to itself alone."""
+
+import asyncio
+import errno
+import os
+import webbrowser
+from pathlib import Path
+
+from ..board import calibrate
+from ..board.ports import add_port, open_link
+from ..errors import SixflipError, UsageError
+from ..terminal import plain
+
+HELP = "the guided calibration in a browser, with the box in 3-D, plots and reports"
+EXAMPLE = "sixflip ui"
+
+
+def add_arguments(parser):
+    where = parser.add_mutually_exclusive_group()
+    add_port(where)
+    where.add_argument("--replay", metavar="CAPTURE",
+                       help="no board: play a capture file through the firmware's own session")
+    parser.add_argument("--speed", metavar="N", type=float,
+                        help="of --replay: seconds of the capture a second (default: 1)")
+    parser.add_argument("--listen", metavar="N", type=int, default=0,
+                        help="port on this machine for the browser (default: a free one)")
+    parser.add_argument("-o", "--output", metavar="DIR", default=".", type=Path,
+                        help="folder for what is pulled and reported (default: here)")
+    parser.add_argument("--open", action="store_true", help="open the browser too")
+
+
+def board_of(args):
+    """open_link() for the bench; a capture that cannot be replayed is refused here at once."""
+    if not args.replay:
+        return lambda: open_link(args.port)
+    from ..guide.replay_link import ReplayLink, checked
+    checked(args.replay)
+    return lambda: ReplayLink(args.replay, args.speed or 1.0)
+
+
+def run(args):
+    try:
+        from .server import Server
+    except ImportError:
+        raise SixflipError("sixflip ui needs aiohttp: pip install 'sixflip[ui]'") from None
+    calibrate.check_speed(args)
+    if not 0 <= args.listen <= 65535:
+        raise UsageError("--listen %d: expected a port, 1 to 65535" % args.listen)
+    from .bench import Bench
+    link = board_of(args)
+    server = Server(lambda told: Bench(link, args.output, told, keep=not args.replay,
+                                       capture=args.replay), args.listen)
+    try:
+        asyncio.run(serve(server, args))
+    except KeyboardInterrupt:
+        pass
+    except OSError as error:
+        if error.errno not in (errno.EADDRINUSE, errno.EACCES):
+            raise
+        raise UsageError("--listen %d: %s" % (args.listen, os.strerror(error.errno))) from None
+    finally:
+        said = server.bench.close() if server.port else ""
+        if said:
+            print(plain(said))
+    return 0
+
+
+async def serve(server, args):
+    await server.start()
+    print("open %s   (Ctrl-C here ends it)" % server.url, flush=True)
+    if args.open:
+        webbrowser.open(server.url)
+    try:
+        await asyncio.Event().wait()
+    finally:
+        server.bench.over.set()
+        await server.stop()

@@ -1,0 +1,202 @@
+"""The page in a real browser: a replayed session, many clicks, a reload, a second tab, malice."""
+
+import os
+import re
+import sys
+import threading
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+
+import chromium
+import pytest
+from board_session import unlabelled
+from served import ScriptedLink, Served, until
+
+from sixflip_host.capture import capture_file
+from sixflip_host.guide.replay_link import ReplayLink
+from sixflip_host.ui.bench import Bench
+
+MALICE = "<img src=x onerror='document.title=9'>"
+REPORT = ("import sys; open(sys.argv[1], 'w').write('<h1>the gap</h1><script>"
+          "parent.document.title = \"taken over\"</script>')")
+
+
+@pytest.fixture(scope="module")
+def browser():
+    chromium.require()
+    with chromium.Browser() as driver:
+        yield driver
+
+
+@pytest.fixture(scope="module")
+def capture(tmp_path_factory):
+    """A whole session of a board that calls itself something nasty."""
+    found = unlabelled()
+    found.meta["device_id"] = MALICE
+    path = tmp_path_factory.mktemp("capture") / "capture.csv"
+    capture_file.write(path, found)
+    return path
+
+
+def text(browser, name):
+    return browser.find_element("id", name).text
+
+
+def click(browser, name, often=1):
+    """Clicks as fast as a script can; a button that is disabled swallows them."""
+    browser.execute_script("for (let k = 0; k < arguments[1]; k++) "
+                           "document.getElementById(arguments[0]).click()", name, often)
+
+
+def shot(browser, name):
+    """A picture to look at, where SIXFLIP_SCREENSHOTS says."""
+    if os.environ.get("SIXFLIP_SCREENSHOTS"):
+        folder = Path(os.environ["SIXFLIP_SCREENSHOTS"])
+        folder.mkdir(parents=True, exist_ok=True)
+        browser.save_screenshot(str(folder / (name + ".png")))
+
+
+def marks(browser):
+    """{face: (first, turned)} of the table."""
+    rows = browser.execute_script("return [...document.querySelectorAll('#faces tr')].map("
+                                  "row => [...row.cells].slice(0, 3).map(c => c.textContent))")
+    return {face: (first, turned) for face, first, turned in rows}
+
+
+def painted(browser, name):
+    """How many different colours a canvas shows."""
+    return browser.execute_script(
+        "const c = document.getElementById(arguments[0]), seen = new Set();"
+        "const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;"
+        "for (let k = 0; k < d.length; k += 4) if (d[k + 3] > 200) "
+        "seen.add((d[k] >> 5) * 64 + (d[k + 1] >> 5) * 8 + (d[k + 2] >> 5)); return seen.size",
+        name)
+
+
+def quiet(browser):
+    """No error of the page's in the browser's console."""
+    return [entry for entry in browser.get_log("browser") if entry["level"] == "SEVERE"] == []
+
+
+def test_a_session_from_start_to_report(browser, capture, tmp_path):
+    links = []
+
+    def link():
+        links.append(ReplayLink(capture, 12.0))
+        return links[-1]
+    with Served(lambda told: Bench(link, tmp_path, told, keep=False,
+                                   capture=str(capture))) as served:
+        browser.get(served.server.url)
+        until(lambda: text(browser, "head") == "ready to begin")
+        assert "#" not in browser.current_url       # the key is not left in the address
+        click(browser, "start", 20)
+        until(lambda: "half a turn, Z+ stays up" in text(browser, "head"))
+        shot(browser, "flip")
+        until(lambda: "keep still" in text(browser, "capture") and "%" in marks(browser)["Z+"][1])
+        assert painted(browser, "now") > 3 and painted(browser, "accel") > 2
+        until(lambda: marks(browser)["Z+"] == ("✓", "✓"))
+        assert browser.find_element("id", "now").get_dom_attribute("data-face") == "Z+"
+
+        browser.refresh()                                           # nothing is lost
+        until(lambda: marks(browser) and marks(browser)["Z+"] == ("✓", "✓"))
+        assert painted(browser, "accel") > 2                        # the trail came with it
+        first = browser.current_window_handle
+        browser.switch_to.new_window("tab")                         # nor by a second tab
+        browser.get("http://127.0.0.1:%d/" % served.server.port)
+        until(lambda: marks(browser) and marks(browser)["Z+"] == ("✓", "✓"))
+        click(browser, "start", 5)                                  # under way already
+        click(browser, "redoZ+", 5)
+        until(lambda: marks(browser)["Z+"] == ("·", "·"))
+        browser.close()
+        browser.switch_to.window(first)
+        until(lambda: marks(browser)["Z+"] == ("·", "·"))
+        until(lambda: text(browser, "verdict") == "refused")        # Z+ did not come again
+        assert "stopped by the host" in text(browser, "reason")
+        assert sum(len(done) for done in marks(browser).values()) == 12
+        assert len(links) == 1 and served.server.bench.number == 1
+        assert MALICE in text(browser, "board")
+
+        click(browser, "start")
+        until(lambda: text(browser, "verdict") == "good")
+        assert "scale x y z" in text(browser, "numbers") and painted(browser, "residuals") > 2
+        shot(browser, "result")
+        served.server.bench.report_command = lambda what, path: [
+            sys.executable, "-c", REPORT, str(path)]
+        click(browser, "report", 3)
+        until(lambda: browser.find_element("id", "reportframe").is_displayed())
+        browser.switch_to.frame("reportframe")
+        until(lambda: "the gap" in browser.find_element("tag name", "body").text)
+        browser.switch_to.default_content()
+        assert browser.title == "Sixflip"
+        refused = [e["message"] for e in browser.get_log("browser") if e["level"] == "SEVERE"]
+        assert all(re.search("sandbox|Blocked script", line) for line in refused), refused
+
+
+def test_what_a_board_says_is_text_and_nothing_else(browser, tmp_path):
+    link = ScriptedLink()
+    with Served(lambda told: Bench(lambda: link, tmp_path, told, keep=False)) as served:
+        browser.get(served.server.url)
+        until(lambda: text(browser, "head") == "ready to begin")
+        click(browser, "start")
+        until(lambda: link.resets)
+        link.say("hello", id=MALICE, chip="<b>chip</b>")
+        link.say("calibrating", missing=["Z+a", MALICE, 7], plan=False)
+        link.say("state", state="moving", reason=MALICE, value=1e308, limit=-1, unit="\u202e\x1b",
+                 live=[1, 2, "x"])
+        link.say("error", what=MALICE, expected="<script>document.title='taken over'</script>")
+        link.say("solved", verdict="good", reason=MALICE, scale=["<i>", None, 1.0],
+                 residual_mg={MALICE: [1, 2, 3], "Z+a": "x"}, gyro={"verdict": MALICE})
+        link.say("saved", slot=MALICE, sequence=[MALICE])
+        until(lambda: text(browser, "verdict") == "good")
+        until(lambda: MALICE in text(browser, "log"))
+        assert text(browser, "chip") == "<b>chip</b>" and MALICE in text(browser, "numbers")
+        assert not browser.find_elements("css selector", "img, b, i, script:not([src])")
+        assert browser.title == "Sixflip" and quiet(browser)
+
+
+def test_without_the_key_the_page_says_what_to_do(browser, tmp_path):
+    with Served(lambda told: Bench(ScriptedLink, tmp_path, told, keep=False)) as served:
+        browser.get("http://127.0.0.1:%d/" % served.server.port)
+        until(lambda: "open the address that sixflip ui printed" in text(browser, "problem"))
+
+
+class Stranger(BaseHTTPRequestHandler):
+    """Another site: a page with no rules of its own."""
+
+    def do_GET(self):  # noqa: N802  the name http.server calls
+        self.send_response(200)
+        self.send_header("Content-Type", "text/html")
+        self.end_headers()
+        self.wfile.write(b"<title>stranger</title>")
+
+    def log_message(self, *words):
+        """Nothing on stderr."""
+
+
+@pytest.fixture
+def stranger():
+    server = ThreadingHTTPServer(("127.0.0.1", 0), Stranger)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    yield "http://127.0.0.1:%d/" % server.server_port
+    server.shutdown()
+    server.server_close()
+
+
+@pytest.mark.parametrize("mode, token", [("no-cors", False), ("cors", True)])
+def test_a_page_of_another_site_gets_nothing(browser, tmp_path, stranger, mode, token):
+    """Not even with the token, which it cannot know: a browser does not let it send one."""
+    with Served(lambda told: Bench(ScriptedLink, tmp_path, told, keep=False)) as served:
+        browser.get(stranger)
+        got = browser.execute_async_script(
+            "const [url, mode, headers, done] = arguments; fetch(url, {method: 'POST', mode, "
+            "headers, body: JSON.stringify({action: 'start', number: 0})}).then("
+            "answer => done(answer.type + ' ' + answer.status), error => done('refused'))",
+            "http://127.0.0.1:%d/api/do" % served.server.port, mode,
+            {"X-Sixflip-Token": served.server.token} if token else {})
+        assert got in ("refused", "opaque 0")
+        frame = browser.execute_async_script(
+            "const [url, done] = arguments, frame = document.createElement('iframe');"
+            "frame.src = url; frame.onload = () => { try { done(frame.contentDocument.title) } "
+            "catch { done('refused') } }; document.body.append(frame)", served.server.url)
+        assert frame in ("refused", "")
+        assert served.server.bench.asked.empty() and served.server.bench.number == 0
