@@ -212,5 +212,5 @@ def _slope(slope):
     if slope is None:
         return "-"
     value, error, sure = slope
-    digits = max(0, 1 - math.floor(math.log10(error))) if error > 0 else 6
+    digits = min(7, max(0, 1 - math.floor(math.log10(error)))) if error > 0 else 7
     return "%+.*f ± %.*f%s" % (digits, value, digits, error, " *" if sure else "")
