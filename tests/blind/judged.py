@@ -6,6 +6,7 @@ from identifiability import Geometry, plain, share_reproduced, span_of
 # Effects in rows and counts show in single samples, not in pose means; no theory is needed.
 INTEGRITY = {"quantisation", "dead_band", "saturation", "torn_reads", "stuck_bit", "sample_rate",
              "dropped_samples", "vibration", "axis_swap"}
+LAGGED = ("thermal_bias", "thermal_scale")
 SILENT_SHARE = 0.01
 # GAP.md's protocol-wide index is averaged over coefficients with equal weight.
 
@@ -16,7 +17,8 @@ def judged(case):
     Of every effect of the library in this protocol: "visible", the share of its signature that
     nothing absorbs, and "aliases", {other: mean index}. Of every effect the case has:
     "distance", its size in sigma after projection; "visible"; "aliases" of what it really does;
-    "attainable", the share its own plain form reproduces; "values" {key: pseudo-true value}.
+    "attainable", the share its own plain form reproduces; "values" {key: true value}: the part's
+    own where the library has its form, else what fits its form best; none where that is bent.
     """
     geometry = Geometry(case)
     sensors = {}
@@ -69,6 +71,13 @@ def _effect(case, geometry, index, effect, sensors):
         own = seen[effect.name]
         out["attainable"] = round(share_reproduced(y, own), 4)
         if span_of(own, 1e-4).shape[1] == own.shape[1] and effect.name != "warm_up":
+            bent = effect.name in LAGGED and effect.parameters.get("bend", 0.0) != 0
             values = np.linalg.lstsq(own, y, rcond=None)[0]
-            out["values"] = {key: float(v) for (key, _), v in zip(library[effect.name], values)}
+            if effect.name in LAGGED:
+                # the thermometer's lag is the library's too: what the part has is comparable,
+                # a straight line against the thermometer is not
+                values = effect.parameters["size"]
+            if not bent:
+                out["values"] = {key: float(v)
+                                 for (key, _), v in zip(library[effect.name], values)}
     return out
