@@ -47,7 +47,7 @@ class QemuBoard:
         self.process.wait()
         self.process.stdout.close()
 
-    def exec(self, *pieces, timeout=300):
+    def exec(self, *pieces, timeout=1200):
         """What the board printed; RuntimeError with its traceback when the code failed.
 
         The board is reset first; several pieces run one after the other, each compiled alone.

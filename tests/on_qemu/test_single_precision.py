@@ -1,7 +1,6 @@
 """The shared core on real single-precision floats, 31-bit ints and a 140 KB heap."""
 
 import ast
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,24 +9,15 @@ from sixflip import accelerometer
 from sixflip.placement import Placement
 from sixflip_host.solving import reference
 
-from .firmware import frozen_files
+from .shared_tests import SHARED_TESTS, pass_on_the_board
 from .simulated_sums import session_sums, vector_error_mg
 
-SHARED_TESTS = sorted(Path(n).stem for n in frozen_files() if n.startswith("test_"))
-
-RUN = """
-import gc, unittest
-module = __import__(%r)
-print('%%d passed, %%d failed, %%d skipped' %% tuple(unittest.run_module(module)))
-"""
+LONG = "test_session"  # in a file of its own, for a processor of its own
 
 
-@pytest.mark.parametrize("name", SHARED_TESTS)
+@pytest.mark.parametrize("name", [name for name in SHARED_TESTS if name != LONG])
 def test_shared_tests_pass_on_the_board(board, name):
-    printed = board.exec(RUN % name)
-    last = printed.strip().splitlines()[-1]
-    passed, failed, _ = (int(part.split()[0]) for part in last.split(", "))
-    assert failed == 0 and passed > 0, printed
+    pass_on_the_board(board, name)
 
 
 SOLVE = """
