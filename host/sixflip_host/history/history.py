@@ -208,9 +208,13 @@ def _coloured(verdict):
 
 
 def _slope(slope):
-    """Value and error with the digits that the error leaves meaning to."""
+    """Value and error with the digits that the error leaves meaning to; six at most."""
     if slope is None:
         return "-"
     value, error, sure = slope
-    digits = min(7, max(0, 1 - math.floor(math.log10(error)))) if error > 0 else 7
-    return "%+.*f ± %.*f%s" % (digits, value, digits, error, " *" if sure else "")
+    digits = 1 - math.floor(math.log10(error)) if error > 0 else 6
+    most = 5 - math.floor(math.log10(abs(value))) if value else 6
+    digits, star = max(0, min(digits, most)), " *" if sure else ""
+    if digits > 6:
+        return "%+.1e ± %.0e%s" % (value, error, star)
+    return "%+.*f ± %.*f%s" % (digits, value, digits, error, star)
