@@ -137,15 +137,14 @@ class Bench:
         self.told()
         if self.link is None:
             self.link = self.open_link()
-        self.number += 1
-        self.done.clear()
-        self.session = BoardSession(self.link, step=self.step, keep=self.keep)
         if action == "continue" and calibrate.under_way(self.link) is not None:
             board = None
         else:
             request = {"continue": True} if action == "continue" else self.request
             board = calibrate.ask_for_calibration(self.link, request)
-        self.session.witness.board = board
+        self.done.clear()
+        self.session = BoardSession(self.link, board, self.step, self.keep)
+        self.number += 1
         self.busy = ""
 
     def tell(self, action, what):

@@ -95,9 +95,10 @@ function show() {
   say("board", v.board && "board " + v.board);
   say("port", v.port);
   problem(v.problem || (v.stage === "calibrating" ? "" : v.error));
-  const none = v.number === 0 && !v.busy;
-  say("head", v.busy ? v.busy + "…" : none ? "ready to begin" : v.step.head);
-  say("detail", none ? "Lay the box on a table that does not shake, then start." : v.step.detail);
+  const none = v.number === 0 && !v.busy, gone = !none && !v.live && v.stage !== "over" && !v.busy;
+  say("head", v.busy ? v.busy + "…" : none ? "ready to begin" : gone ? "the board is gone" : v.step.head);
+  say("detail", none ? "Lay the box on a table that does not shake, then start." :
+    gone ? "Plug it in again; then continue with what it has kept." : v.step.detail);
   say("waits", none ? "" : v.waits);
   showCapture(v);
   showFaces(v, running);
