@@ -150,6 +150,6 @@ def _words(found):
             "%s: %s" % (one.check, one.found)))
         if one.todo and one.state != OK:
             out.print(plain("         what to do: " + one.todo))
-    faults = sum(one.state == FAULT for one in found)
-    out.print("nothing is wrong" if not faults else "%d fault%s" % (
-        faults, "" if faults == 1 else "s"))
+    counts = ["%d %s%s" % (n, state, "" if n == 1 else "s") for state in (FAULT, WARNING)
+              if (n := sum(one.state == state for one in found))]
+    out.print(", ".join(counts) or "nothing is wrong")
