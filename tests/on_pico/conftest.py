@@ -3,13 +3,17 @@
 Its firmware image is in no package registry, so of all tiers this one alone may be absent in CI.
 """
 
+import contextlib
+import json
 import os
 import shutil
 
 import pytest
 
 from sixflip_host.board import calibrate, provision
+from sixflip_host.board.board_events import wait_for
 from sixflip_host.board.board_link import MpremoteLink
+from sixflip_host.board.console import GUIDED_ORDER
 from sixflip_host.emulated import firmware_image
 from sixflip_host.errors import NoBoard
 from sixflip_host.virtual import demo, micropython_fetch
@@ -35,20 +39,28 @@ def uf2():
         pytest.skip(str(error))
 
 
-@pytest.fixture(scope="session")
-def flashes(uf2, tmp_path_factory):
-    """Paths of two flashes: of a calibrated board, and of the same without its main.py."""
-    from pico_flash import FILES_BYTES, SPEC, flash
+@contextlib.contextmanager
+def provisioned(files, spec):
+    """Link to a virtual board with the Pico's settings, started; its littlefs is in files."""
+    from pico_flash import FILES_BYTES
     micropython = micropython_fetch.find()
     if micropython is None:
         missing(micropython_fetch.MISSING)
-    folder = tmp_path_factory.mktemp("flash")
-    files = folder / "files.img"
-    with VirtualBoard(SPEC, files, micropython=micropython, flash_bytes=FILES_BYTES) as board, \
+    with VirtualBoard(spec, files, micropython=micropython, flash_bytes=FILES_BYTES) as board, \
             MpremoteLink(board.port) as link:
         provision.copy(link, {"sensor": "mpu6050", "board": "pico",
                               **demo.PACE["pico"].settings})
         link.reset()
+        yield link
+
+
+@pytest.fixture(scope="session")
+def flashes(uf2, tmp_path_factory):
+    """Paths of two flashes: of a calibrated board, and of the same without its main.py."""
+    from pico_flash import SPEC, flash
+    folder = tmp_path_factory.mktemp("flash")
+    files = folder / "files.img"
+    with provisioned(files, SPEC) as link:
         assert calibrate.follow(link, lambda event: None)["verdict"] == "good"
         calibrated = folder / "calibrated.bin"
         link.enter()
@@ -67,3 +79,20 @@ def calibrated_flash(flashes, tmp_path):
 @pytest.fixture
 def still_flash(flashes, tmp_path):
     return shutil.copy(flashes[1], tmp_path / "pico.bin")
+
+
+@pytest.fixture
+def unfinished_flash(uf2, tmp_path):
+    """Of a board whose session was stopped before its last face, and is to go on."""
+    from pico_flash import LAST_FACE, SPEC, flash
+    files = tmp_path / "files.img"
+    first = [pose for pose in GUIDED_ORDER if pose not in LAST_FACE]
+    with provisioned(files, dict(SPEC, order=first)) as link:
+        for _ in first:
+            wait_for(link, ("pose",))
+        link.send(json.dumps({"cmd": "stop"}))
+        assert wait_for(link, ("solved",))["missing"] == LAST_FACE
+        link.put(calibrate.FLAG, json.dumps({"continue": True}).encode())
+        path = tmp_path / "pico.bin"
+        path.write_bytes(flash(uf2, files.read_bytes()))
+    return path

@@ -12,6 +12,7 @@ from sixflip_host.emulated.flash_chip import FLASH_BYTES
 from sixflip_host.virtual.demo import PACE
 
 SPEC = {"sensor": "mpu6050", "seed": 3, "tilt_deg": 2.0, **PACE["pico"].hand}
+LAST_FACE = ["Y-a", "Y-b"]
 LAYOUT = resolve_layout(BOARDS["pico"], "micropython")
 FILES_BYTES = LAYOUT.fs_blockcount * LAYOUT.fs_blocksize
 

@@ -5,6 +5,7 @@ import pytest
 pytest.importorskip("rp2040py")
 from sixflip_host import cli  # noqa: E402
 from sixflip_host.emulated import firmware_image  # noqa: E402
+from sixflip_host.emulated.emulated_pico import PicoBoard  # noqa: E402
 from sixflip_host.errors import NoBoard  # noqa: E402
 
 
@@ -59,6 +60,14 @@ def test_a_named_one_that_is_no_image_is_said_so(cache, tmp_path, monkeypatch, c
     monkeypatch.setenv(firmware_image.NAMED, str(path))
     with pytest.raises(NoBoard, match="mine.uf2: expected MicroPython's .uf2"):
         firmware_image.find()
+
+
+def test_a_file_that_only_begins_like_an_image_does_not_start(cache, tmp_path, capfd):
+    put(tmp_path, "mine.uf2")
+    with pytest.raises(NoBoard, match="does not run: Invalid UF2 .*mine.uf2"), \
+            PicoBoard({}, tmp_path / "flash.bin", tmp_path / "mine.uf2"):
+        pass
+    assert capfd.readouterr().err == ""
 
 
 def test_no_emulator_is_one_line(cache, monkeypatch):

