@@ -9,13 +9,14 @@ few such contrasts, but no error in the form of an effect can turn them round.
 import numpy as np
 
 from . import selection, which
+from .regressors import DOMAIN
 
 SAME, NATS, SIGMAS = 0.9, 3.0, 3.0
 
 
 class Cause:
     """One effect found: chosen (Candidates), members ({effect: why it cannot be told}),
-    score (nats), theta, sigma (arrays over keys), keys, axes, share, plausible;
+    score (nats), theta, sigma, covariance (over keys), keys, axes, share, plausible;
     other_axes: those that cannot be told from the axes chosen."""
 
     def __init__(self, effect, chosen, score):
@@ -60,12 +61,24 @@ def causes(data, options, chosen):
         cause.theta = np.concatenate([theta[_places(columns, c.columns)] for c in mine])
         sigma = np.sqrt(np.diag(covariance))
         cause.sigma = np.concatenate([sigma[_places(columns, c.columns)] for c in mine])
+        own = np.concatenate([_places(columns, c.columns) for c in mine])
+        cause.covariance = covariance[np.ix_(own, own)]
         out.append(cause)
         _rivals(cause, data, options, others, grams, columns[~where])
         cause.other_axes = _other_axes(cause, data, options, others)
-    # those in each other's class are one
     out.sort(key=lambda c: -c.score)
-    return out
+    return [c for k, c in enumerate(out) if not any(_form_of(c, b) for b in out[:k])]
+
+
+FORM = 0.05  # of an effect's score that its true form may be off by
+KIN = ({"temperature", "time"}, {"history", "time_since_move"}, {"orientation"})
+
+
+def _form_of(cause, larger):
+    """True for what only corrects the form of a far larger cause on the same axes, in the same
+    variable: no library has the very curve of a part."""
+    related = any({DOMAIN[cause.effect], DOMAIN[larger.effect]} <= kin for kin in KIN)
+    return related and set(cause.axes) <= set(larger.axes) and cause.score < FORM * larger.score
 
 
 def _joined(chosen):

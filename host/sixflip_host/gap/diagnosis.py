@@ -19,6 +19,7 @@ from . import (
 from .sensor_gap import SensorGap
 
 FEWEST_PLACEMENTS = 6
+COARSE = ("quantisation", "dead_band", "saturation", "torn_reads")
 NOISY = ("vibration", "torn_reads", "saturation")  # what makes some seconds louder
 SENSOR = {"accel": "accelerometer"}
 LEAST_S = 5.0  # of a capture that can be said to show no gap
@@ -36,6 +37,7 @@ class Settings:
         self.reference_c = 25.0
         self.simulated = {}
         self.jobs = jobs or os.cpu_count() or 1
+        self.coarse = False  # registers move what is read near zero
 
 
 class Diagnosis:
@@ -59,6 +61,7 @@ class Diagnosis:
         self.findings = [f for f in integrity.findings(sessions)
                          + spectral_lines.findings(sessions) if f.effect not in settings.without]
         self._noise(sessions)
+        settings.coarse = any(f.sensor == "accel" and f.effect in COARSE for f in self.findings)
         self._poses()
         if not self.gaps:
             self.rest = single_rest.SingleRest(sessions, settings)
@@ -149,6 +152,7 @@ class Diagnosis:
         with ThreadPoolExecutor(self.settings.jobs) as pool:
             accel = pool.submit(SensorGap, "accel", sessions, nominal, self.settings)
             if gyro:
+                self._axes(sessions, nominal)
                 still = pool.submit(SensorGap, "gyro", sessions, nominal, self.settings)
                 self._turns(sessions, nominal)
                 self.gaps["gyro"] = still.result()
@@ -157,12 +161,22 @@ class Diagnosis:
         said = [c.remark() for c in self.gaps["accel"].crooked if c]
         self.remarks += list(dict.fromkeys(sentence for sentence in said if sentence))
 
+    def _axes(self, sessions, nominal):
+        """Axes of the gyro that are swapped: named, and put right for all that follows, since
+        the Earth's rate on the wrong axes looks like gravity in the gyro."""
+        self.swapped = gyro_turns.swapped(sessions, nominal)
+        if not self.swapped:
+            return
+        if self.swapped.effect not in self.settings.without:
+            self.findings.append(self.swapped)
+        for session in sessions:
+            session.gyro = session.gyro @ self.swapped.read
+            for name in ("noise_gyro", "rounding_gyro"):
+                setattr(session, name, getattr(session, name) @ np.abs(self.swapped.read))
+
     def _turns(self, sessions, nominal):
-        """The gyro while it moves: axes first, then what bends or scales it."""
-        swapped = gyro_turns.swapped(sessions, nominal)
-        if swapped and swapped.effect not in self.settings.without:
-            self.findings.append(swapped)
-        elif not swapped and all(gyro_turns.usable(s, m) for s, m in zip(sessions, nominal)):
+        """The gyro while it moves: what bends or scales it."""
+        if not self.swapped and all(gyro_turns.usable(s, m) for s, m in zip(sessions, nominal)):
             self.turns = gyro_turns.TurnsGap("gyro", sessions, nominal, self.settings)
 
     def _temperature_remarks(self, sessions):

@@ -197,7 +197,8 @@ def usable(session, nominal):
 
 
 def swapped(sessions, nominal):
-    """Finding of gyro axes that are swapped or inverted, or None."""
+    """Finding of gyro axes that are swapped or inverted, or None; its read (3, 3) takes what is
+    true to what is read."""
     # A turn about the vertical looks the same to gravity whichever way the axes point.
     found = [t for s, m in zip(sessions, nominal) for t in turns(s, m)
              if t.before @ t.after < 0.8][:10]
@@ -223,6 +224,8 @@ def swapped(sessions, nominal):
         signed = int(read[i, source]) * (source + 1)
         if signed != i + 1:
             value["xyz"[i]] = signed
-    return Finding("axis_swap", "gyro", sorted(value), value, "axis", 99.0, "orientation",
-                   "the gyro's axes are swapped or inverted against the accelerometer's",
-                   {k: (v, v) for k, v in value.items()})
+    found = Finding("axis_swap", "gyro", sorted(value), value, "axis", 99.0, "orientation",
+                    "the gyro's axes are swapped or inverted against the accelerometer's",
+                    {k: (v, v) for k, v in value.items()})
+    found.read = read
+    return found

@@ -128,6 +128,8 @@ def _cut_off(x):
     """True when the largest value is met in runs, and hardly anything lies just inside."""
     top = x.max()
     at = x == top
+    if at.all() or np.median(np.abs(np.diff(x[~at]))) == 0:
+        return False  # rounded so coarsely that any rest looks cut off
     spread = max(4.0, 3.0 * steps(x[:, None])[0], 0.02 * float(np.ptp(x)))
     inside = ((x < top) & (x > top - spread)).sum()
     runs = int((at[1:] & at[:-1]).sum())

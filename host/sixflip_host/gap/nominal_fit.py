@@ -17,12 +17,14 @@ from sixflip_sim.effects.drift import TIMES_S
 from .attitude_fit import face_axes
 
 PLACEMENT_MG = (0.1, 0.45, 0.8, 1.4, 3.0, 8.0, 40.0)  # per direction; 0.05 deg: 0.87
-FLICKER_MG = (0.005, 0.02, 0.05, 0.075, 0.11, 0.15, 0.22, 0.4, 0.8, 1.6, 4.0)
+FLICKER_MG = (0.005, 0.02, 0.033, 0.05, 0.075, 0.11, 0.15, 0.22, 0.4, 0.8, 1.6, 4.0)
 EARTH_DPS = (0.0005, 0.003)  # the Earth's horizontal rate, the box at an unknown azimuth
 FLICKER_DPS = (0.0002, 0.0007, 0.0014, 0.002, 0.003, 0.0045, 0.008, 0.016, 0.03, 0.1)
 EARTH_UP_DPS = 0.003
 # Flicker has neither a shortest nor a longest time: beside the library's 10 to 1000 s.
 FURTHER_S = (0.3, 1.0, 3.0, 3000.0, 10000.0)
+FEWEST_PAIRS, MOST_UNLIKE = 12, 2.0  # of blocks; an axis' flicker against all, at most
+COARSE_MG = 0.5  # of what rounding leaves in the mean of a rest
 NOTHING = 1e-7  # share of its energy below which a column is silent
 
 
@@ -70,6 +72,11 @@ def accel_nuisance(session, nominal, certified):
         columns += _lateral(session, on, axis, sign)
         if not certified:
             columns += _lateral(session, on, axis)
+        if session.rounding_accel @ np.abs(axis) > COARSE_MG:
+            # The same face rounds alike in every session: it says nothing along gravity.
+            one = _columns(n)
+            one[on] = axis
+            columns.append(one)
     return np.stack([c.reshape(-1) for c in columns], 1)
 
 
@@ -96,9 +103,25 @@ def placement_columns(session):
     return np.stack([c.reshape(-1) for c in columns], 1)
 
 
-def flicker(session):
+def axis_shares(session, values, noise):
+    """(3,) flicker variance of each axis over that of all: Z often has more. From neighbouring
+    blocks of one rest, beyond white noise; towards 1 where that is too noisy to tell.
+
+    values (n, 3) block means; noise (3,) of a mean over one second."""
+    same = np.flatnonzero(np.diff(session.placement) == 0)
+    if len(same) < FEWEST_PAIRS:
+        return np.ones(3)
+    squares = (np.diff(values, axis=0)[same] ** 2).mean(axis=0)
+    over = (1.0 / session.seconds[same] + 1.0 / session.seconds[same + 1]).mean()
+    excess = np.maximum(squares - over * noise ** 2, 0.0)
+    doubt = 2.0 * over * (noise ** 2).mean() * np.sqrt(2.0 / len(same))
+    return np.clip((excess + doubt) / (excess.mean() + doubt), 1.0 / MOST_UNLIKE, MOST_UNLIKE)
+
+
+def flicker(session, shares):
     """(3n, 3n) covariance of unit flicker: of the means over the blocks of a sum of
-    exponentials (Ornstein-Uhlenbeck processes), equally spaced in the logarithm of time."""
+    exponentials (Ornstein-Uhlenbeck processes), equally spaced in the logarithm of time.
+    shares (3,): variance of each axis."""
     gap = np.abs(session.t[:, None] - session.t[None])
     kernel = np.zeros_like(gap)
     for tau in FURTHER_S + TIMES_S:
@@ -110,7 +133,7 @@ def flicker(session):
         x = 2.0 * half
         np.fill_diagonal(mean, 2.0 / x * (1.0 - (1.0 - np.exp(-x)) / x))
         kernel += mean
-    return np.kron(kernel, np.eye(3))
+    return np.kron(kernel, np.diag(shares))
 
 
 class Unit:
@@ -228,7 +251,8 @@ def rows(kind, session, nominal, certified=False):
         return gyro_rows(session, nominal)
     white = np.diag((session.noise_accel[None] ** 2 / session.seconds[:, None]).reshape(-1))
     return Rows(accel_rows(session, nominal), accel_nuisance(session, nominal, certified),
-                (0, 4, 8), white, placement_columns(session), flicker(session),
+                (0, 4, 8), white, placement_columns(session),
+                flicker(session, axis_shares(session, session.accel, session.noise_accel)),
                 (PLACEMENT_MG, FLICKER_MG), rounding(session, session.rounding_accel))
 
 
@@ -263,6 +287,7 @@ def gyro_rows(session, nominal):
     for placement in np.unique(session.placement):
         lateral += _lateral(session, session.placement == placement, nominal.up[placement])
     lateral = np.stack([c.reshape(-1) for c in lateral], 1)
-    return Rows(session.gyro.reshape(-1), nuisance, (0, 1, 2), white, lateral, flicker(session),
+    kernel = flicker(session, axis_shares(session, session.gyro, session.noise_gyro))
+    return Rows(session.gyro.reshape(-1), nuisance, (0, 1, 2), white, lateral, kernel,
                 (EARTH_DPS, FLICKER_DPS), EARTH_UP_DPS ** 2 * vertical @ vertical.T
                 + rounding(session, session.rounding_gyro))

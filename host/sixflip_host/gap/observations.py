@@ -151,6 +151,16 @@ class Session:
         index = np.maximum(self.placement - 1, 0)
         return up[index]
 
+    def remembered(self, up, tau_s):
+        """(n, 3): where something that follows the attitude with a time constant stands when
+        each block's placement begins; settled at the first."""
+        starts = np.array([self.t_s[run[1]] for run in self.runs])
+        state = np.array(up[:len(starts)], float)
+        for k in range(1, len(starts)):
+            fade = np.exp(-(starts[k] - starts[k - 1]) / tau_s)
+            state[k] = up[k - 1] + (state[k - 1] - up[k - 1]) * fade
+        return state[self.placement]
+
     def moment(self, up, number=0):
         """moment.Moment of all blocks; up (placements, 3): unit vectors against gravity."""
         m = Moment(np.exp, np.sin, np.floor, noise_arrays.gauss)

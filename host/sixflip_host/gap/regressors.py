@@ -17,6 +17,7 @@ from .thermometer import MOVES_C
 LAGS_S = (0.0, 15.0, 30.0, 60.0, -30.0)
 WARM_UP_S = (30.0, 60.0, 120.0, 240.0, 480.0)
 CREEP_S = (5.0, 15.0, 30.0, 60.0, 120.0)
+LONG_MEMORY_S = 30.0
 LEAST_VIBRATION_MG = 5.0
 DOMAIN = {  # where an effect shows itself
     "thermal_bias": "temperature", "thermal_scale": "temperature", "thermal_rate": "temperature",
@@ -119,6 +120,10 @@ def library(session, up, sensor, reference_c, chip):
     terms("asymmetry")
     for tau in CREEP_S:
         terms("creep", "tau %g s" % tau, shape={"tau_s": tau})
+        if tau >= LONG_MEMORY_S:  # what came before the placement before is not forgotten yet
+            felt = copy.copy(m)
+            felt.before = tuple(session.remembered(up, tau).T)
+            terms("creep", "tau %g s, all placements" % tau, felt, shape={"tau_s": tau})
     if session.shaken:
         terms("vibration_rectification", "vertical", shape={"vertical": 1})
         terms("vibration_rectification", "all round", shape={"vertical": 0})

@@ -19,6 +19,8 @@ from . import (
 
 ALONG_FREEDOM = 10  # contrasts along gravity that a half of a session must have
 DRIFT_NATS = 6.0
+JUMP_NATS = 3.0  # what a jump at an unknown time costs in each session
+LEAST_BOX_DEG = 0.1  # below that a placement by hand is as crooked
 KEPT_SHARE = 0.6  # of the excess, below which a name is no explanation where noise does not fit
 OWN_SHARE = 0.5  # of a bent effect that must be the effect itself
 SESSION_NATS = 8.0  # log evidence at which what is left varies in time beyond doubt
@@ -91,9 +93,6 @@ class SensorGap:
     def _search(self):
         self.limits = thresholds.of(self.units, self.options, self.levels())
         self._choose()
-        if self.kind == "accel" and not self.settings.certified \
-                and "box_tilt" not in self.settings.without:
-            self._box()
 
     def _choose(self):
         """Named effects, by forward selection, and their classes."""
@@ -102,7 +101,14 @@ class SensorGap:
         self.causes = classes.causes(self.data, named, self.chosen)
 
     def _box(self):
-        """Crooked faces: tested beside the causes found, with the box no longer a nuisance."""
+        """Crooked faces: tested beside the causes found, with the box no longer a nuisance.
+
+        Twelve free angles take up much that is none: they are looked for last, where all else
+        is explained and nothing in the registers moves readings near zero.
+        """
+        if self.unexplained or self.drift or self.settings.coarse or max(
+                s.rounding_accel.max() for s in self.sessions) > nominal_fit.COARSE_MG:
+            return
         units = [self._unit(part, model, True) for part, model in self.parts]
         for unit, (part, model) in zip(units, self.parts):
             self._with_box(unit, part, model)
@@ -124,9 +130,11 @@ class SensorGap:
             visible = {o.effect for o in self.options}
             rivals = [o for o in options if o.effect == "box_tilt" or o.effect not in visible]
             found = classes.causes(data, rivals + same, same + [best])
-            self.box = [c for c in found if c.effect == "box_tilt"]
             self.box_data = data
-            self.causes += self.box
+            box = [c for c in found if c.effect == "box_tilt"]
+            self._fill(box)
+            self.causes += [c for c in box
+                            if max(map(abs, c.value.values()), default=0.0) >= LEAST_BOX_DEG]
 
     def _with_box(self, unit, part, model):
         """Give a unit made without a box its columns, so that both sets have one order."""
@@ -155,6 +163,9 @@ class SensorGap:
             self._adequate()
             self.unexplained = True
             self._shares()
+        if self.options and self.kind == "accel" and not self.settings.certified \
+                and "box_tilt" not in self.settings.without:
+            self._box()
         self.shrinkage = self._shrink()
 
     def _adequate(self):
@@ -190,8 +201,6 @@ class SensorGap:
         """True for a name that only stands in for something unknown: most of it is the bend
         beside it, or noise does not fit and it takes less than most of the excess, or what is
         left varies in the very way that it should have explained."""
-        if cause.effect == "box_tilt":
-            return False
         if self._own_share(cause) < OWN_SHARE:
             return True
         if not self.unexplained:
@@ -247,8 +256,26 @@ class SensorGap:
                 least = min(least, found[2])
         free_ratio = sum(float(f.quadratic[0]) for f in free) / max(
             1, sum(u.freedom for u in self.units) - len(columns))
-        if gain > DRIFT_NATS and seen > 0.4 * expected and least < 1e-3 and free_ratio < 1.6:
+        if gain > DRIFT_NATS and seen > 0.4 * expected and least < 1e-3 and free_ratio < 1.6 \
+                and self._jumps(free) < gain - DRIFT_NATS / 2.0:
             self.drift = (level, gain)
+
+    def _jumps(self, fits):
+        """Nats that one jump in each session gains, with no more flicker than is allowed: what
+        jumps once does not drift."""
+        total = 0.0
+        for (part, _), unit, fit in zip(self.parts, self.units, fits):
+            placement = unit.grid[fit.index[0]][0]
+            factor = np.linalg.cholesky(unit.covariance(placement, self.allowed))
+            z = np.linalg.solve(factor, unit.z)
+            best = 0.0
+            for start in np.unique(part.placement)[1:]:
+                step = np.kron((part.placement >= start)[:, None], np.eye(3))
+                columns = np.linalg.solve(factor, unit.contrasts.T @ step)
+                size = np.linalg.lstsq(columns, z, rcond=1e-9)[0]
+                best = max(best, 0.5 * float(z @ columns @ size) - JUMP_NATS)
+            total += best
+        return total
 
     def _shares(self):
         """Each cause's share of the excess: what is lost without it."""
@@ -256,17 +283,18 @@ class SensorGap:
         total = max(adequacy.excess_at(self.data, [], index), 1e-9)
         now = adequacy.excess_at(self.data, self.chosen, index)
         for cause in self.causes:
+            rest = [c for c in self.chosen if c not in cause.chosen]
+            lost = adequacy.excess_at(self.data, rest, index) - now
+            cause.share = float(np.clip(lost / max(total, lost, 1e-9), 0.0, 1.0))
+        self._fill(self.causes)
+
+    def _fill(self, causes):
+        """Domain, unit, sizes and axes of causes."""
+        for cause in causes:
             cause.domain = regressors.DOMAIN[cause.effect]
             cause.unit = EFFECTS[cause.effect].units[self.kind]
-            if cause.effect == "box_tilt":
-                cause.share = None
-            else:
-                rest = [c for c in self.chosen if c not in cause.chosen]
-                lost = adequacy.excess_at(self.data, rest, index) - now
-                cause.share = float(np.clip(lost / max(total, lost, 1e-9), 0.0, 1.0))
-            sizes.fill(cause, self.box_data if cause.effect == "box_tilt" else self.data,
-                       self.levels(self.box_data if cause.effect == "box_tilt" else None),
-                       self.chip, self.kind)
+            data = self.box_data if cause.effect == "box_tilt" else self.data
+            sizes.fill(cause, data, self.levels(data), self.chip, self.kind)
 
 
 def at_level(unit, statistics, columns, prior, allowed):

@@ -5,6 +5,7 @@ from . import plausible
 
 SIGNIFICANT = 3.0  # standard deviations at which an axis is said to have the effect
 Z_90 = 1.645
+FORM = 0.03  # of a size, standard deviation: parts do not have the library's very curves
 
 
 def fill(cause, data, levels, chip, kind):
@@ -36,25 +37,32 @@ def letters(cause, theta, sigma):
 
 
 def effective(cause, data, levels):
-    """({key: size}, {key: sigma}); a bend beside a coefficient is taken in by the nearest size
-    without it. levels: index into each unit's grid."""
-    theta, sigma = {}, {}
+    """({key: size}, {key: sigma}): what all variants and bends of the effect add together, as
+    the nearest plain sizes. levels: index into each unit's grid."""
     gram = sum(u.gram[i] for u, i in zip(data.units, levels))
+    base = {}
+    for candidate in sorted(cause.chosen, key=lambda c: -_energy(c, cause, gram)):
+        for key, column in zip(candidate.keys, candidate.columns):
+            if not key.endswith("+"):
+                base.setdefault(key, column)
+    plain = np.array(list(base.values()))
+    every = np.concatenate([c.columns for c in cause.chosen])
+    block = gram[np.ix_(plain, plain)]
+    scale = np.sqrt(np.maximum(np.diag(block), 1e-300))
+    block = block / scale / scale[:, None] + 1e-9 * np.eye(len(plain))
+    nearest = np.linalg.solve(block, gram[np.ix_(plain, every)] / scale[:, None]) / scale[:, None]
+    size = nearest @ cause.theta
+    own = np.diag(nearest @ cause.covariance @ nearest.T)
+    spread = np.sqrt(own + (FORM * size) ** 2)
+    return dict(zip(base, size)), dict(zip(base, spread))
+
+
+def _energy(candidate, cause, gram):
+    """chi2 of what one of a cause's candidates adds."""
     start = 0
-    for candidate in cause.chosen:
-        mine = [(k, c) for k, c in zip(candidate.keys, candidate.columns) if not k.endswith("+")]
-        base = np.array([c for _, c in mine])
-        values = cause.theta[start:start + len(candidate.keys)]
-        errors = cause.sigma[start:start + len(candidate.keys)]
-        start += len(candidate.keys)
-        block = gram[np.ix_(base, base)]
-        scale = np.sqrt(np.maximum(np.diag(block), 1e-300))
-        block = block / scale / scale[:, None] + 1e-9 * np.eye(len(base))
-        inner = gram[np.ix_(base, candidate.columns)] @ values / scale
-        size = np.linalg.solve(block, inner) / scale
-        spread = np.sqrt(np.diag(np.linalg.inv(block))) / scale
-        bare = len(mine) == len(candidate.keys)
-        for i, (key, _) in enumerate(mine):
-            theta[key] = size[i]
-            sigma[key] = errors[candidate.keys.index(key)] if bare else spread[i]
-    return theta, sigma
+    for one in cause.chosen:
+        theta = cause.theta[start:start + len(one.keys)]
+        start += len(one.keys)
+        if one is candidate:
+            return float(theta @ gram[np.ix_(one.columns, one.columns)] @ theta)
+    return 0.0

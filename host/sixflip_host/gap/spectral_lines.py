@@ -11,12 +11,14 @@ import numpy as np
 from scipy import ndimage, stats
 
 from .finding import Finding
+from .integrity import steps
 
 LENGTH_S, SHORTEST_S, LOWEST_HZ = 5.0, 2.0, 2.0
 CHANCE = 0.001
 FEWEST = 4  # stretches
 MEDIAN_SHARE, OF_MEDIAN = 0.25, math.log(2.0)
 WHOLE_PEAK = 0.85  # of a Hann window's main lobe and its neighbours
+LEAST_STEPS = 0.5
 LEAST_SHARE = 0.25  # of the standard deviation of the noise: smaller is no matter
 # A bench or a table sways at its own frequencies, by chance: from stretch to stretch the power
 # there scatters as much as its mean (noise through a resonance is exponential). Something that
@@ -84,6 +86,14 @@ def spectrum(stretches, axis):
     return power.mean(axis=0), alike.mean(axis=0), power.shape[0], window
 
 
+def step(sessions, sensor, axis):
+    """mg or deg/s of the steps that an axis counts in: rounding makes lines of its own."""
+    meta = sessions[0].capture.meta
+    scale = 1000.0 / meta["accel_lsb_per_g"] if sensor == "accel" else \
+        1.0 / meta["gyro_lsb_per_dps"]
+    return scale * min(int(steps(getattr(s.capture, sensor)[:, [axis]])[0]) for s in sessions)
+
+
 def scatter(stretches, axis, k):
     """Standard deviation over mean of the power around index k, from stretch to stretch."""
     window = np.hanning(len(stretches[0]))
@@ -123,7 +133,7 @@ def strongest(sessions, sensor, axis):
     # A sine of amplitude a: sum over the lobe of |X|^2 = a^2 n sum(w^2) / 4.
     amplitude = math.sqrt(max(4.0 * excess / (n * (window ** 2).sum()), 0.0))
     spread = np.mean([s[:, axis].std() for s in stretches])
-    if amplitude < LEAST_SHARE * spread:
+    if amplitude < max(LEAST_SHARE * spread, LEAST_STEPS * step(sessions, sensor, axis)):
         return None
     if resting and amplitude < STRONG_SHARE * spread and scatter(
             stretches, axis, first + k) > STEADY:
