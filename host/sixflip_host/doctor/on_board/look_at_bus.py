@@ -66,13 +66,15 @@ def scanned(i2c):
 
 
 def data_ready(board, imu):
-    """("ready", new samples between the first and the last, microseconds, nominal rate)."""
+    """("ready", new samples between the first and the last, microseconds, nominal rate, how
+    often it was asked)."""
     i2c, address, flag = board.i2c, imu.address, bytearray(1)
     i2c.writeto_mem(address, INT_ENABLE, b"\x01")
     i2c.readfrom_mem_into(address, INT_STATUS, flag)    # what was ready before
     started = board.ticks_us()
-    first = last = seen = 0
+    first = last = seen = asked = 0
     while board.ticks_diff(board.ticks_us(), started) < READY_US:
+        asked += 1
         try:
             i2c.readfrom_mem_into(address, INT_STATUS, flag)
         except OSError:         # the self-test counts them
@@ -84,7 +86,7 @@ def data_ready(board, imu):
             seen += 1
         board.sleep_us(100)
     i2c.writeto_mem(address, INT_ENABLE, b"\x00")
-    tell("ready", max(0, seen - 1), last - first, imu.output_rate_hz)
+    tell("ready", max(0, seen - 1), last - first, imu.output_rate_hz, asked)
 
 
 def measured(board, imu, settings):
