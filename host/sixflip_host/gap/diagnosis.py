@@ -158,7 +158,7 @@ class Diagnosis:
                 self.gaps["gyro"] = still.result()
             self.gaps["accel"] = accel.result()
         self.gaps = {k: self.gaps[k] for k in ("accel", "gyro") if k in self.gaps}
-        said = [c.remark() for c in self.gaps["accel"].crooked if c]
+        said = [c.remark() for c in self.gaps["accel"].crooked if c and not self.settings.coarse]
         self.remarks += list(dict.fromkeys(sentence for sentence in said if sentence))
 
     def _axes(self, sessions, nominal):
