@@ -144,8 +144,13 @@ class Bench:
             board = calibrate.ask_for_calibration(self.link, request)
         self.done.clear()
         self.session = BoardSession(self.link, board, self.step, self.keep)
-        self.number += 1
+        self.count()
         self.busy = ""
+
+    def count(self):
+        """One session more; what was fetched is of the one before."""
+        self.number += 1
+        self.pulled = self.report = None
 
     def tell(self, action, what):
         """redo, undo or stop for the session that was seen."""
@@ -154,7 +159,7 @@ class Bench:
                 state.stage == OVER or {what + "a", what + "b"} & set(state.taken)):
             self.session.redo(what)
             if state.stage == OVER:
-                self.number += 1    # it goes on as a session of its own
+                self.count()    # it goes on as a session of its own
         elif action == "undo" and what and what == snapshot.last_taken(state):
             self.session.undo()
         elif action == "stop" and state.stage == CALIBRATING:

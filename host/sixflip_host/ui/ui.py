@@ -1,8 +1,10 @@
 """sixflip ui: the guided session in a browser, served by this machine to itself alone."""
 
 import asyncio
+import contextlib
 import errno
 import os
+import signal
 import webbrowser
 from pathlib import Path
 
@@ -52,8 +54,6 @@ def run(args):
                                        capture=args.replay), args.listen)
     try:
         asyncio.run(serve(server, args))
-    except KeyboardInterrupt:
-        pass
     except OSError as error:
         if error.errno not in (errno.EADDRINUSE, errno.EACCES):
             raise
@@ -70,8 +70,10 @@ async def serve(server, args):
     print("open %s   (Ctrl-C here ends it)" % server.url, flush=True)
     if args.open:
         webbrowser.open(server.url)
-    try:
-        await asyncio.Event().wait()
-    finally:
-        server.bench.over.set()
-        await server.stop()
+    ended = asyncio.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        with contextlib.suppress(NotImplementedError):  # Windows: Ctrl-C ends it by force
+            asyncio.get_running_loop().add_signal_handler(number, ended.set)
+    await ended.wait()
+    server.bench.over.set()
+    await server.stop()

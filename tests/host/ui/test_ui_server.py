@@ -1,11 +1,18 @@
 """Who may talk to the server, and what strangers get."""
 
 import json
+import re
+import signal
+import subprocess
+import sys
+from http.client import HTTPConnection
 
 import pytest
+from board_session import unlabelled
 from served import Served, scripted, until
 
 from sixflip_host import cli
+from sixflip_host.capture import capture_file
 from sixflip_host.ui import guard
 
 
@@ -105,6 +112,28 @@ def test_an_action_reaches_the_board(served):
     assert served.do("start", 0) == (200, {"ok": True})
     until(lambda: served.link.resets == 1)
     assert ("calibrate.flag", b"") in served.link.sent
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_the_command_ends_its_session_in_order(tmp_path, number):
+    capture_file.write(tmp_path / "capture.csv", unlabelled())
+    with subprocess.Popen(
+            [sys.executable, "-m", "sixflip_host", "ui", "--replay", "capture.csv"],
+            cwd=tmp_path, stdout=subprocess.PIPE, text=True) as child:
+        port, token = re.search(r":(\d+)/#(\S+)", child.stdout.readline()).groups()
+        link = HTTPConnection("127.0.0.1", int(port), timeout=60)
+        link.request("POST", "/api/do", '{"action": "start", "number": 0}',
+                     {"Content-Type": "application/json", "X-Sixflip-Token": token})
+        assert link.getresponse().read() == b'{"ok": true}'
+        link.request("GET", "/api/states", headers={"X-Sixflip-Token": token})
+        states = link.getresponse()
+        while json.loads(states.readline())["stage"] != "calibrating":
+            continue
+        states.close()
+        link.close()
+        child.send_signal(number)
+        assert "samples so far stay on the board" in child.stdout.read()
+        assert child.wait() == 0
 
 
 @pytest.mark.parametrize("argv, line, code", [

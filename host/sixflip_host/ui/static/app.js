@@ -117,7 +117,7 @@ function show() {
   element("report").disabled = running || !!v.busy || v.reporting;
   say("pulled", v.pulled && "fetched into " + v.pulled);
   element("reporting").hidden = !v.reporting;
-  if (v.reporting) { reportShown = false; element("reportframe").hidden = true; }
+  if (v.reporting || !v.report) { reportShown = false; element("reportframe").hidden = true; }
   if (v.report && !v.reporting && !reportShown) { reportShown = true; showReport(); }
   showLog(v.log);
 }

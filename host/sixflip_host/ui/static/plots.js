@@ -51,7 +51,7 @@ export function lines(canvas, points, least, unit) {
 // residual: {pose: [x, y, z] mg}
 export function bars(canvas, residual) {
   const context = clear(canvas), ink = getComputedStyle(canvas).color;
-  const names = Object.keys(residual).filter((name) => Array.isArray(residual[name]));
+  const names = Object.keys(residual).filter((name) => Array.isArray(residual[name])).sort();
   const { width, height } = canvas, left = 52;
   let most = 0.1;
   for (const name of names) for (const v of residual[name]) most = Math.max(most, Math.abs(v) || 0);
