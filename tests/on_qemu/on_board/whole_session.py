@@ -1,8 +1,9 @@
 """A power-up of the firmware with a whole session, its sources compiled here as on a board.
 
 run(sensor): bursts from a tape; run(sensor, world={}): a simulated chip inside; lock=True: the
-heap is locked while it samples; other names are settings. Prints the events with the bytes in
-use after each, and the record in hexadecimal.
+heap is locked while it samples; ballast: bytes that are gone from the heap beforehand; other
+names are settings. Prints the events with the bytes in use after each, and the record in
+hexadecimal.
 """
 
 import gc
@@ -27,12 +28,19 @@ def live(sensor, world):
     return made.i2c, made.clock
 
 
-def told(text):
-    gc.collect()
-    print(gc.mem_alloc(), text)
+class Teller:
+    """Prints events with the bytes in use, the ballast's not counted."""
+
+    def __init__(self, ballast):
+        self.ballast = ballast
+
+    def told(self, text):
+        gc.collect()
+        print(gc.mem_alloc() - self.ballast, text)
 
 
-def run(sensor, world=None, lock=False, **changed):
+def run(sensor, world=None, lock=False, ballast=0, **changed):
+    weight = bytearray(ballast)  # a smaller heap
     import sources
     disk = Disk(sources.FILES)
     i2c, clock = tape(sensor) if world is None else live(sensor, world)
@@ -42,17 +50,18 @@ def run(sensor, world=None, lock=False, **changed):
     vfs.mount(disk, "/")
     sys.path[:] = ["", ".frozen"]
     gc.collect()
-    print("harness", gc.mem_alloc(), "heap", gc.mem_alloc() + gc.mem_free())
+    print("harness", gc.mem_alloc() - ballast, "heap", gc.mem_alloc() + gc.mem_free() - ballast)
 
     from sixflip_device import power_up, settings
     assert power_up.__file__ == "sixflip_device/power_up.py", power_up.__file__
     from taped_board import TapedBoard
     values, problems = settings.merge(dict(grace_ms=0, **changed))
     del settings
-    board = TapedBoard(i2c, "/", told, clock)
+    board = TapedBoard(i2c, "/", Teller(ballast).told, clock)
     power_up.free_unlasting()
     if lock:
         import locked_loop
         locked_loop.install(board, power_up)
     power_up.run(board, values, problems)
+    assert len(weight) == ballast
     print("record", "".join(["%02x" % b for b in disk.written["record_a.bin"].data]))
