@@ -1,0 +1,35 @@
+"""Tiers that need Debian packages: one line and a skip for a user, a failure in CI."""
+
+import os
+
+import debian_tier
+import pytest
+
+
+def test_nothing_is_installed_when_nothing_is_missing(monkeypatch):
+    monkeypatch.setattr(debian_tier.subprocess, "run", None)  # would be a TypeError
+    debian_tier.install(("a-package",), lambda: [])
+
+
+def test_a_user_is_told_what_to_install(monkeypatch):
+    monkeypatch.setattr(os, "geteuid", lambda: 1000)
+    with pytest.raises(debian_tier.Unavailable) as told:
+        debian_tier.install(("one", "two"), lambda: ["the-tool"])
+    assert str(told.value) == "no the-tool: apt-get install one two"
+
+
+def test_a_skip_for_a_user_is_a_failure_in_ci(monkeypatch):
+    monkeypatch.delenv("CI", raising=False)
+    with pytest.raises(pytest.skip.Exception, match="no such board: no such tool"):
+        debian_tier.without("such board", "no such tool")
+    monkeypatch.setenv("CI", "true")
+    with pytest.raises(pytest.fail.Exception, match="missing in CI: no such tool"):
+        debian_tier.without("such board", "no such tool")
+
+
+def test_a_benchmark_says_so_in_one_line(monkeypatch, capsys):
+    monkeypatch.delenv("CI", raising=False)
+    assert debian_tier.exit_code_without("such board", "no such tool") == 0
+    assert capsys.readouterr().err == "sixflip: no such board: no such tool\n"
+    monkeypatch.setenv("CI", "true")
+    assert debian_tier.exit_code_without("such board", "no such tool") == 1
