@@ -15,7 +15,7 @@ DOMAINS = {
     "dropped_samples": {"timing"}, "filter_lag": {"motion", "timing", "frequency", "noise"},
     "hysteresis": {"history", "time_since_move"}, "creep": {"history", "time_since_move"},
     "lever_arm": {"motion"}, "box_tilt": {"across_gravity", "orientation"},
-    "torn_reads": {"amplitude"}, "supply": {"time", "noise"},
+    "torn_reads": {"amplitude", "noise"}, "supply": {"time", "noise"},
     "axis_swap": {"motion", "flip", "orientation"}, "local_gravity": set()}
 SILENT, ALIASED = 0.01, 0.95        # GAP.md says 0.9: the margin is for two ways to work it out
 DETECTABLE = 5.0                    # sigma
