@@ -7,7 +7,7 @@ from .session_state import CALIBRATING, OVER, SOLVING, WAITING
 
 PLACE, FLIP, HOLD, REST, LEAN, WAIT, DONE = "place", "flip", "hold", "rest", "lean", "wait", "done"
 CAUSES = {"moving": "it moves", "noisy": "it shakes", "saturated": "full scale",
-          "stale": "readings do not change", "crooked": "not flat", "leaning": "on no face"}
+          "stale": "readings do not change"}
 
 
 @dataclass(frozen=True)
@@ -113,5 +113,5 @@ def noise_share(state):
 
 
 def instead(state):
-    """In one word what keeps the box from being still, "" when it is."""
-    return CAUSES.get(state.reason, state.reason)
+    """In a few words what keeps the box from being still, "" when it is."""
+    return CAUSES.get(state.reason, "") if state.box != "capturing" else ""

@@ -169,8 +169,8 @@ def noise(state):
             "red" if over else "")
     else:
         cause = instead(state)
-        said = Text("%s: %.3g %s, limit %.3g %s" % (
-            cause, state.value, state.unit, state.limit, state.unit) if cause else "-")
+        said = Text("%s: %.3g, limit %.3g %s" % (cause, state.value, state.limit, state.unit)
+                    if cause else "-")
     return Text(size + "  noise ") + said
 
 
@@ -215,8 +215,8 @@ def beside(left, right, rows):
     return out
 
 
-def screen(state, where="", asking="", note="", step=None, ascii_only=False):
-    """HEIGHT lines of rich Text. where: the port; asking: "", redo, quit or help; note: a line
+def screen(state, where="", asking="", note="", step=None, ascii_only=False, height=HEIGHT):
+    """So many lines of rich Text. where: the port; asking: "", redo, quit or help; note: a line
     of the host's own; step: of a plan, see Console."""
     rule = Text("─" * WIDTH, "dim")
     if asking == "help":
@@ -231,10 +231,10 @@ def screen(state, where="", asking="", note="", step=None, ascii_only=False):
                      if timed else rule)
         lines += measured(state)
         lines.append(Text(fit(" " + waits, WIDTH), "bold yellow") if waits else Text(""))
-        room = HEIGHT - len(lines) - 1
+        room = height - len(lines) - 1
         told = [Text(" " + fit(line, WIDTH - 1)) for line in state.log[-room:]]
         lines += told + [Text("")] * (room - len(told))
-    lines += [Text("")] * (HEIGHT - 1 - len(lines))
+    lines += [Text("")] * (height - 1 - len(lines))
     lines.append(foot(state, asking))
     for line in lines:
         line.truncate(WIDTH)

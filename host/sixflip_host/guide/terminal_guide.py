@@ -45,8 +45,9 @@ class Guide:
 
     def lines(self, ascii_only=False):
         session = self.session
+        height = max(screen.HEIGHT, shutil.get_terminal_size().lines)
         return screen.screen(session.state, session.link.port, self.asking, self.note,
-                             session.step, ascii_only)
+                             session.step, ascii_only, height)
 
     def press(self, key):
         """One key: a command to the board, a question, or the answer to one."""
