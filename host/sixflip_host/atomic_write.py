@@ -1,7 +1,8 @@
 """Files that are there whole or not at all."""
 
+import contextlib
 import os
-import tempfile
+import secrets
 
 from .errors import BadFile
 from .narration import log
@@ -16,18 +17,16 @@ def write_bytes(path, data):
     log.info("writing %s, %d bytes", path, len(data))
     if os.path.exists(path) and not os.path.isfile(path):
         return _into(path, data)        # a device, a pipe: never put a file in its place
+    # named before it is there: Ctrl-C at any moment leaves nothing that is not taken away
+    temporary = os.path.join(folder, "%s.%s.new" % (
+        os.path.basename(path)[:60], secrets.token_hex(4)))
     try:
-        handle, temporary = tempfile.mkstemp(
-            prefix=os.path.basename(path)[:60] + ".", suffix=".new", dir=folder)
-    except OSError as error:
-        raise BadFile("%s: cannot be written: %s" % (path, error.strerror))
-    try:
-        with os.fdopen(handle, "wb") as file:
+        with open(temporary, "xb") as file:
             file.write(data)
-        os.chmod(temporary, 0o666 & ~_umask())
         os.replace(temporary, path)
     except BaseException as error:
-        os.unlink(temporary)
+        with contextlib.suppress(OSError):
+            os.unlink(temporary)
         if isinstance(error, OSError):
             raise BadFile("%s: cannot be written: %s" % (path, error.strerror))
         raise
@@ -54,9 +53,3 @@ def read_bytes(path):
             return file.read()
     except OSError as error:
         raise BadFile("%s: cannot be read: %s" % (os.fspath(path), error.strerror))
-
-
-def _umask():
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

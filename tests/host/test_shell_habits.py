@@ -3,6 +3,7 @@ files that are whole or not there."""
 
 import contextlib
 import fcntl
+import io
 import json
 import os
 import pty
@@ -236,45 +237,57 @@ WRITERS = {
     "refine": ["refine", "BOARD/capture.bin", "--record", "OUT/x.bin"],
     "plan": ["plan", "--protocol", "paper", "--plot", "OUT/x.png", "--save", "OUT/y.json"],
 }
-MOMENTS = ("mkstemp", "fdopen", "chmod", "replace")
 
 
-class Hand:
-    """Presses Ctrl-C when one of the steps of a write is reached; before it is done, or after."""
-
-    def __init__(self, monkeypatch, moment, late):
-        self.pressed = 0
-        where = atomic_write.tempfile if moment == "mkstemp" else os
-        step = getattr(where, moment)
-
-        def pressing(*args, **more):
-            path = str(args[0]) if args and moment != "mkstemp" else str(more.get("prefix"))
-            if "x." not in path and moment not in ("fdopen",):
-                return step(*args, **more)
-            self.pressed += 1
-            if late:
-                step(*args, **more)
+def press(monkeypatch, moment):
+    """Ctrl-C at a moment of a write: created, half, before or after the rename."""
+    class Half(io.FileIO):
+        def write(self, data):
+            super().write(data[:len(data) // 2])
             raise KeyboardInterrupt
-        monkeypatch.setattr(where, moment, pressing)
+
+    def opened(path, mode):
+        if mode != "xb":
+            return io.FileIO(path, mode.replace("b", ""))
+        file = Half(path, "x")
+        if moment == "half":
+            return file
+        file.close()
+        raise KeyboardInterrupt
+
+    def replace(source, target):
+        if moment == "after":
+            os.rename(source, target)
+        raise KeyboardInterrupt
+    if moment in ("created", "half"):
+        monkeypatch.setattr(atomic_write, "open", opened, raising=False)
+    else:
+        monkeypatch.setattr(atomic_write.os, "replace", replace)
 
 
-@pytest.mark.parametrize("name", ["export"])
-@pytest.mark.parametrize("moment,late", [("mkstemp", False), ("fdopen", False), ("chmod", False),
-                                         ("chmod", True), ("replace", False)])
-def test_ctrl_c_while_writing_leaves_the_old_file(pulled, tmp_path, monkeypatch, capsys, name,
-                                                  moment, late):
+@pytest.mark.parametrize("moment", ["created", "half", "before", "after"])
+def test_ctrl_c_while_writing_leaves_a_whole_file(pulled, tmp_path, monkeypatch, capsys, moment):
     words = [word.replace("BOARD", str(pulled)).replace("OUT", str(tmp_path))
-             for word in WRITERS[name]]
-    written = next(word for word in words if "/x." in word)
-    with open(written, "w") as file:
-        file.write("old")
+             for word in WRITERS["export"]]
+    written = tmp_path / "x.csv"
+    assert main(words) == 0
+    whole = written.read_bytes()
+    written.write_bytes(b"old")
     with monkeypatch.context() as patch:
-        hand = Hand(patch, moment, late)
+        press(patch, moment)
         assert main(words) == cli.INTERRUPTED
-    assert hand.pressed == 1 and capsys.readouterr().err == "sixflip: stopped\n"
-    with open(written) as file:
-        assert file.read() == "old"
-    assert os.listdir(tmp_path) == [os.path.basename(written)]
+    assert capsys.readouterr().err == "sixflip: stopped\n"
+    assert written.read_bytes() == (whole if moment == "after" else b"old")
+    assert os.listdir(tmp_path) == ["x.csv"]
+
+
+def test_what_is_written_has_the_rights_of_any_new_file(tmp_path):
+    before = os.umask(0o027)
+    try:
+        atomic_write.write_bytes(tmp_path / "a", b"x")
+        assert (tmp_path / "a").stat().st_mode & 0o777 == 0o640
+    finally:
+        os.umask(before)
 
 
 @pytest.mark.parametrize("name", WRITERS)
