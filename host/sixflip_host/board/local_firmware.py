@@ -13,37 +13,50 @@ from pathlib import Path
 from .board_files import shared_dir
 
 
-def run_simulated(folder, spec):
-    """The firmware of the folder on a simulated bus and a virtual clock."""
-    sys.path.insert(1, str(shared_dir()))
-    from sixflip_sim import worlds
-    world = worlds.make(spec)
-    # The firmware has to bring its own copy of sixflip, as on a board.
+def own_copy(folder):
+    """The firmware has to bring its own copy of sixflip, as on a board."""
     sys.path.remove(str(shared_dir()))
     for name in [n for n in sys.modules if n.split(".")[0] == "sixflip"]:
         del sys.modules[name]
     sys.path.insert(0, str(folder))
-    from sixflip_device import power_up, settings
+
+
+def board_on(clock):
+    """The class of a Linux board whose time is a virtual clock's."""
     from sixflip_device.boards.raspberry_pi import LinuxBoard
 
-    class SimulatedBoard(LinuxBoard):
-        """A Linux board on the world's bus and clock."""
+    class ClockedBoard(LinuxBoard):
+        """A Linux board on somebody else's bus and clock."""
 
         def reopen_i2c(self):
             return self.i2c
 
         def ticks_us(self):
-            return world.clock.ticks_us()
+            return clock.ticks_us()
 
         def ticks_diff(self, later, earlier):
-            return world.clock.ticks_diff(later, earlier)
+            return clock.ticks_diff(later, earlier)
 
         def sleep_us(self, us):
-            world.clock.sleep_us(us)
+            clock.sleep_us(us)
+    return ClockedBoard
 
+
+def run_on(folder, make):
+    """The firmware of the folder. make(root): its board."""
+    from sixflip_device import power_up, settings
     root = os.path.join(str(folder), "")
     values, problems = settings.load(root)
-    power_up.run(SimulatedBoard(lambda: world.i2c, root), values, problems)
+    power_up.run(make(root), values, problems)
+
+
+def run_simulated(folder, spec):
+    """The firmware of the folder on a simulated bus and a virtual clock."""
+    sys.path.insert(1, str(shared_dir()))
+    from sixflip_sim import worlds
+    world = worlds.make(spec)
+    own_copy(folder)
+    run_on(folder, lambda root: board_on(world.clock)(lambda: world.i2c, root))
 
 
 def main(argv):

@@ -9,6 +9,7 @@ import os
 import sys
 from pathlib import Path
 
+from ..board import local_firmware
 from ..board.board_files import shared_dir
 
 
@@ -19,48 +20,30 @@ def run(folder, path, speed):
     capture = capture_file.read(path)
     replay = Replay(capture, speed)
     bus = bus_of(capture, replay)
-    # The firmware has to bring its own copy of sixflip, as on a board.
-    sys.path.remove(str(shared_dir()))
-    for name in [n for n in sys.modules if n.split(".")[0] == "sixflip"]:
-        del sys.modules[name]
-    sys.path.insert(0, str(folder))
-    from sixflip_device import power_up, settings
-    from sixflip_device.boards.raspberry_pi import LinuxBoard
-    clock = replay.clock
+    local_firmware.own_copy(folder)
+    on_the_clock = local_firmware.board_on(replay.clock)
 
-    class ReplayBoard(LinuxBoard):
-        """A Linux board on the capture's bus and clock."""
-
-        def reopen_i2c(self):
-            return self.i2c
-
-        def ticks_us(self):
-            return clock.ticks_us()
-
-        def ticks_diff(self, later, earlier):
-            return clock.ticks_diff(later, earlier)
-
-        def sleep_us(self, us):
-            clock.sleep_us(us)
+    class ReplayBoard(on_the_clock):
+        """A board on the capture's bus that begins and ends with its samples."""
 
         def read_line(self):
             if replay.ended:
                 replay.stop()
                 return json.dumps({"cmd": "stop"})
-            return LinuxBoard.read_line(self)
+            return on_the_clock.read_line(self)
 
         def write_line(self, text):
             if text.startswith('{"event": "calibrating"'):
                 replay.begin()
             elif replay.running and text.startswith('{"event": "capture"'):
                 replay.stop()
-            LinuxBoard.write_line(self, text)
+            on_the_clock.write_line(self, text)
 
-    root = os.path.join(str(folder), "")
-    values, problems = settings.load(root)
-    board = ReplayBoard(lambda: bus, root)
-    board.unique_id = str(capture.meta.get("device_id") or "replay")
-    power_up.run(board, values, problems)
+    def make(root):
+        board = ReplayBoard(lambda: bus, root)
+        board.unique_id = str(capture.meta.get("device_id") or "replay")
+        return board
+    local_firmware.run_on(folder, make)
 
 
 def main(argv):
