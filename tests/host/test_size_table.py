@@ -33,6 +33,8 @@ def test_flash_is_what_the_table_says(written):
         assert sum(sizes[i] for sizes in found.values()) == pytest.approx(
             sum(sizes[i] for sizes in written.values()), rel=0.1), WRITE
         for name, sizes in found.items():
+            if name not in written:  # the test above says so
+                continue
             assert sizes[i] == pytest.approx(written[name][i], rel=0.33, abs=200), (name, WRITE)
 
 

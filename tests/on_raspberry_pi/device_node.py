@@ -37,16 +37,19 @@ def provide():
 class DeviceNode:
     """Context manager. folder: for its files; world: spec for sixflip_sim.worlds.
 
+    real_time  the chips are read as this computer's time goes, not as firmware_in_shared_time.py
+            moves it
     errnos  [[n-th transfer, errno, how many], …] that the bus answers instead
     seen    after it ended: {"transfers", "longest" (bytes), "requests": {ioctl: how often}}
     """
 
-    def __init__(self, folder, world, errnos=()):
+    def __init__(self, folder, world, errnos=(), real_time=False):
         self.clock = folder / "clock"
         self.clock.write_bytes(bytes(8))
         self.spec = folder / "i2c.json"
         self.spec.write_text(json.dumps({"world": dict(world, flavour="linux"),
-                                         "clock": str(self.clock), "errnos": list(errnos)}))
+                                         "clock": None if real_time else str(self.clock),
+                                         "errnos": list(errnos)}))
         self.seen = None
 
     def __enter__(self):

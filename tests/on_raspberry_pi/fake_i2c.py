@@ -2,9 +2,9 @@
 
     umockdev-wrapper /usr/bin/python3 fake_i2c.py SPEC.json
 
-SPEC: {"world": for worlds.make, "clock": file of the time both processes share (shared_time.py),
-"errnos": [[n-th transfer, errno, how many], …]}. Prints the folder of the fake devices; serves
-until its standard input ends; then prints what came: {"transfers", "longest", "requests"}.
+SPEC: {"world": for worlds.make, "clock": file of the time both processes share (shared_time.py)
+or null, "errnos": [[n-th transfer, errno, how many], …]}. Prints the folder of the fake devices;
+serves until its standard input ends; then prints what came: {"transfers", "longest", "requests"}.
 
 The messages are the kernel's: struct i2c_rdwr_ioctl_data, i2c_msg and i2c_smbus_ioctl_data of
 linux/i2c.h and linux/i2c-dev.h, read out of the caller's memory by umockdev.
@@ -22,7 +22,7 @@ import gi  # noqa: E402  Debian's python3-gi
 
 gi.require_version("UMockdev", "1.0")
 from gi.repository import GLib, UMockdev  # noqa: E402
-from shared_time import SharedTime  # noqa: E402
+from shared_time import RealTime, SharedTime  # noqa: E402
 
 from sixflip_sim import worlds  # noqa: E402
 
@@ -49,7 +49,7 @@ class Bus(UMockdev.IoctlBase):
     def __init__(self, spec):
         super().__init__()
         self.world = worlds.make(spec["world"])
-        self.time = SharedTime(spec["clock"])
+        self.time = SharedTime(spec["clock"]) if spec["clock"] else RealTime()
         self.errnos = spec["errnos"]
         self.slave = None
         self.transfers = 0
@@ -65,7 +65,7 @@ class Bus(UMockdev.IoctlBase):
         try:
             if answer is None:
                 raise OSError(ENOTTY, "unknown request")
-            clock.advance_ns((self.time.us() - clock.now_us()) * 1000)
+            clock.advance_ns(max(0, self.time.us() - clock.now_us()) * 1000)
             result = answer(client)
             client.complete(result, 0)
         except OSError as error:

@@ -98,6 +98,21 @@ def test_a_whole_calibration_and_the_power_up_after_it(tmp_path, flash, sensor, 
     assert sum(x * x for x in a) ** 0.5 == pytest.approx(9.80665, abs=0.15)
 
 
+def test_provision_puts_the_firmware_there_and_tests_the_chip(tmp_path, monkeypatch, capsys):
+    """The command itself, in real time, the firmware started as on a Raspberry Pi."""
+    with DeviceNode(tmp_path, {"sensor": "gy85", "order": [], "first_rest_s": 60.0},
+                    real_time=True) as node:
+        for name, value in node.environment().items():
+            monkeypatch.setenv(name, value)
+        folder = tmp_path / "flash"
+        code = cli.main(["provision", "--board", "raspberry_pi", "--port", "local:%s" % folder])
+    said = capsys.readouterr().out.splitlines()[-1]
+    # a busy computer may not keep up, which is all the self-test may find
+    assert (code, said[:20]) == (0, "self-test ok: GY-85:") or "GY-85" in said and (
+        "too slow" in said and ";" not in said), said
+    assert node.seen["transfers"] > 100
+
+
 FROM_LINUX = [(errno.EREMOTEIO, errno.ENODEV), (errno.ENXIO, errno.ENODEV),
               (errno.EIO, errno.ENODEV), (errno.ETIMEDOUT, errno.ETIMEDOUT)]
 
