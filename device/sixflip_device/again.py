@@ -115,6 +115,6 @@ def run(unit):
             return "sampling"
         unit.events.error("face %s cannot be taken again: %s" % (FACES[asked.face], e),
                           "calibrate all faces")
-        return "rest"
+        return "put_in_force"
     unit.taken = asked
     return "sampling"

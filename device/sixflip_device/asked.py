@@ -94,7 +94,7 @@ def run(unit):
     except (ValueError, RuntimeError) as e:
         unit.events.error("no calibration: what was asked for cannot be understood: %s" % e,
                           "%s empty, or a plan or a face as sixflip calibrate writes it" % FLAG)
-        return "rest"
+        return "put_in_force"
     if unit.taken is not None and unit.taken.before:
         return "again"
     return "sampling"

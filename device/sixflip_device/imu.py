@@ -40,6 +40,9 @@ class CorrectedImu:
         self._out = array("f", [0.0] * 6)
         self.reason = in_force.recall(unit)
         in_force.use(unit, unit.slot, unit.record)
+        if unit.record is not None and unit.record.terms:
+            from .terms import bring
+            bring(unit)
         self.calibrated = unit.record is not None
         if rest_s != 0 and imu.has_gyro:
             from .refresh import refresh

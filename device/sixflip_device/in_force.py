@@ -29,15 +29,12 @@ def _ids(ids):
 
 
 def use(unit, slot, record):
-    """Makes record (None: the data sheet's numbers) what corrects from now on."""
-    from sixflip.correction import correction_of
+    """Makes record (None: the data sheet's numbers) what corrects from now on; its terms, if it
+    has some, do not yet: terms.py."""
+    from sixflip.correction import Correction
     unit.slot = slot
     unit.record = record
-    tell = None
-    if record is not None and record.terms:
-        from .term_range import teller
-        tell = teller(unit)
-    unit.correction = correction_of(blank_record(unit) if record is None else record, tell)
+    unit.correction = Correction(blank_record(unit) if record is None else record)
     unit.bias_dps = None
     if record is not None and record.gyro_bias is not None:
         unit.bias_dps = record.gyro_bias["bias_dps"]
@@ -58,7 +55,8 @@ def recall(unit):
     accel = record.accel
     unit.events.emit("record", slot=slot, sequence=record.sequence, session=record.session,
                      verdict=accel["verdict"], reason=accel["reason"], temp_c=record.temp_c,
-                     measured=record.measured(), refused=refused)
+                     measured=record.measured(), terms=[tag for tag, _ in record.terms],
+                     refused=refused)
     return ""
 
 
@@ -81,4 +79,7 @@ def restore(unit):
         unit.events.error("restore: the flash gives an error: %s" % e, "room for a record")
         return
     use(unit, slot, record)
+    if record.terms:
+        from .terms import beside_stream
+        beside_stream(unit)
     unit.events.emit("restored", slot=slot, sequence=record.sequence, session=record.session)

@@ -7,7 +7,7 @@
 
 import math
 
-from sixflip.correction import correction_of
+from sixflip.correction_of import correction_of
 from sixflip.mounting import estimate, parse_axes
 
 from . import in_force
@@ -83,6 +83,9 @@ def _take(unit, mounting, rest):
     if means is not None:
         unit.correction.set_rest(means)
         unit.bias_dps = bias
+    if record.terms:
+        from .terms import beside_stream
+        beside_stream(unit)
     unit.output = None
 
 

@@ -3,8 +3,6 @@
 It comes as offered.bin, is looked at once and is gone afterwards, whatever came of it.
 """
 
-from sixflip.record import LARGEST
-
 from .blank_record import blank_record
 from .flash_files import OFFERED, remove
 from .in_force import misfit
@@ -12,15 +10,15 @@ from .in_force import misfit
 
 def _take(unit, name):
     """(slot, record); ValueError or OSError when it is not to be had."""
-    from sixflip.correction_record import decode
+    from sixflip.correction_record import MOST, decode
 
     from .record_slots import RecordSlots
     with open(name, "rb") as f:
-        record = decode(f.read(LARGEST + 1))
+        record = decode(f.read(MOST + 1))
     reason = misfit(blank_record(unit))(record)
     if reason:
         raise ValueError(reason)
-    from sixflip.correction import correction_of
+    from sixflip.correction_of import correction_of
     correction_of(record)  # it can be calculated with
     return RecordSlots(unit.board.root).save(record), record
 
@@ -37,4 +35,5 @@ def take(unit):
         unit.events.emit("not_restored", reason=reason)
     else:
         unit.events.emit("restored", slot=slot, sequence=record.sequence,
-                         session=record.session, measured=record.measured())
+                         session=record.session, measured=record.measured(),
+                         terms=[tag for tag, _ in record.terms])

@@ -4,7 +4,7 @@ One phase after the other, each a module with run(unit) -> name of the next phas
 phase is let go of when it ends: a small board must not hold solver and session at once.
 
     start     find the sensor, hello, self-test, grace window
-    recall    newest valid record, then rest: it comes in force, gyro bias
+    recall    newest valid record; put_in_force: it corrects; rest: gyro bias
     asked     all six faces, a plan, or (again) one face of the session before
     sampling  guided session: six faces, each with a flip
     checking  the poses, then flips_turned: by an earlier gyro, solving: the parameters,
@@ -12,6 +12,7 @@ phase is let go of when it ends: a small board must not hold solver and session 
     remember  the record before, then solving_gyro, gyro_signs, judging_gyro, judging_flips
     saving    record on flash
     resume    the sensor again, then reuse: the record corrects
+    terms     what it has beside scale and bias
     stream    corrected samples
 """
 

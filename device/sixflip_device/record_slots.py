@@ -8,12 +8,11 @@ one valid record is complete on the flash, and a cut leaves the old one or the n
 
 import os
 
-from sixflip.record import LARGEST
-
 from .flash_files import remove
 
 SLOTS = ("a", "b")
 NEW = "record.new"
+MOST = 2049  # bytes to read: one more than a record may have
 
 
 class RecordSlots:
@@ -29,7 +28,7 @@ class RecordSlots:
         """-> (record, "") or (None, reason); a file that is not there gives no reason."""
         try:
             with open(name, "rb") as f:
-                data = f.read(LARGEST + 1)
+                data = f.read(MOST)
         except OSError:
             return None, ""
         from sixflip.correction_record import decode  # not needed while sampling
@@ -92,11 +91,11 @@ class RecordSlots:
         try:
             self._settle()
         except OSError as e:
-            settle_error = [("new", "could not be put in its place: %s" % e)]
+            error = [("new", "could not be put in its place: %s" % e)]
         else:
-            settle_error = []
+            error = []
         best = None, None
-        refusals = settle_error
+        refusals = error
         for slot in SLOTS:
             record, reason = self._read(self._name(slot))
             if record is not None:

@@ -4,11 +4,13 @@
 def refresh(unit, rest_s=None, name="rest"):
     """Looks for a rest and tells it as an event of that name; whatever moves or shakes, the
     stored bias stays and the event says so."""
-    from . import at_rest, still_valid
+    from . import quiet_run  # noqa: F401, I001 - the largest first, while a small heap has room
+    from . import at_rest
     settings = unit.settings
     stored = unit.record.gyro_bias if unit.record is not None else None
     rest = at_rest.watch(unit.board, unit.sensor, settings["rate_hz"],
                          settings["rest_s"] if rest_s is None else rest_s, stored, unit.listen)
+    from . import still_valid
     facts = still_valid.compare(unit, rest)
     shaken = still_valid.shaken(unit, rest)
     held = "none" if unit.bias_dps is None else "stored"

@@ -1,11 +1,9 @@
-"""The record comes in force; while the board is at rest the gyro's bias is measured anew."""
+"""The record is in force; while the board is at rest the gyro's bias is measured anew."""
 
-from . import in_force
 from .bus_recovery import BusLost
 
 
 def run(unit):
-    in_force.use(unit, unit.slot, unit.record)
     try:
         if unit.record is not None:
             from .refresh import refresh
@@ -16,4 +14,9 @@ def run(unit):
     except BusLost as e:
         unit.events.error(str(e), "the sensor that was there a moment ago")
         return "start"
-    return "asked" if unit.asked else "" if unit.stopped else "stream"
+    if unit.asked or unit.stopped:
+        return "asked" if unit.asked else ""
+    if unit.record is not None and unit.record.terms:
+        from .put_in_force import small
+        return "terms" if small() else "stream"
+    return "stream"

@@ -16,6 +16,11 @@ def _file_away(unit, how):
             unit.events.error("the capture stays as capture.new: %s" % e, "a rename that works")
 
 
+def _refuse_cut_short(root):
+    from .cut_short import file_away
+    file_away(root)
+
+
 def _tell(unit):
     """The solved event; True when there is something to save."""
     taken = unit.taken
@@ -61,7 +66,7 @@ def run(unit):
     if _tell(unit):
         _save(unit, taken.record)
     else:
-        _file_away(unit, refuse)
+        _file_away(unit, refuse if taken.how == "complete" else _refuse_cut_short)
     unit.taken = None
     if taken.how == "bus lost":
         unit.events.error(taken.ended, "the sensor that was there a moment ago")

@@ -20,6 +20,12 @@ def shaken(unit, rest):
     return "" if noise_mg <= limit else "shaken: %.1f mg of noise, limit %.1f" % (noise_mg, limit)
 
 
+def _known(correction, temp_c):
+    """Whether the accelerometer's drift is taken out at this temperature, by a term."""
+    between = getattr(correction, "range_c", None)
+    return between is not None and between[0] <= temp_c <= between[1]
+
+
 def compare(unit, rest):
     """A dict for an event: a_error_mg, noise_mg, temp_c, verdict, words (a list)."""
     facts = {"verdict": "none", "words": [], "a_error_mg": None, "noise_mg": None,
@@ -51,7 +57,7 @@ def compare(unit, rest):
                      % (noise_mg, noise_then * 1000))
     now, then = facts["temp_c"], record.temp_c
     if now is not None and then is not None and abs(now - then) > WARMER_C \
-            and not unit.correction.covers(now):
+            and not _known(unit.correction, now):
         words.append("it is %.0f degrees C, at the calibration it was %.0f" % (now, then))
     facts["verdict"] = "doubtful" if words else "good"
     if not words:

@@ -45,6 +45,9 @@ def run(unit):
     if unit.correction is None:
         from . import in_force
         in_force.use(unit, unit.slot, unit.record)
+        if unit.record is not None and unit.record.terms:
+            from .terms import beside_stream
+            beside_stream(unit)
     try:
         _stream(unit)
     except BusLost as e:

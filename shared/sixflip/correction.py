@@ -2,25 +2,21 @@
 
 import math
 
-from sixflip.scale_form import inverse3
-
 
 class Correction:
     """Everything in one 4 x 3 matrix for the accelerometer and one for the gyro.
 
     [c0 c1 c2 1] M, c in raw counts: correction P, unit, gyro bias of the last rest and
-    mounting are multiplied out once. A part that was not measured is left nominal. turned
+    mounting are multiplied out once. A part that was not measured is left nominal. mounting
     False: in the sensor's axes, whatever the mounting. rest: the means of set_rest(), or None.
     """
 
-    needs_temperature = False  # of every sample
-
-    def __init__(self, record, turned=True):
+    def __init__(self, record, mounting=True):
         self.record = record
         self.rest = None
-        identity = [[1.0 if i == j else 0.0 for j in range(3)] for i in range(4)]
-        P = record.accel["P"] if record.accel else identity
-        W = record.gyro["P"] if record.gyro else identity
+        nominal = [[1.0 if i == j else 0.0 for j in range(3)] for i in range(4)]
+        P = record.accel["P"] if record.accel else nominal
+        W = record.gyro["P"] if record.gyro else nominal
         offset = W[3]
         if record.gyro_bias:
             # The newest rest wins over the bias of the session: Li finds it differs at each
@@ -28,7 +24,7 @@ class Correction:
             b = [math.radians(x) for x in record.gyro_bias["bias_dps"]]
             offset = [-sum([b[k] * W[k][j] for k in range(3)]) for j in range(3)]
         turn = None
-        if record.mounting and turned:
+        if record.mounting and mounting:
             from sixflip.mounting import compensation  # most boards have none
             turn = compensation(record.mounting)
         lsb = record.accel_lsb_per_g
@@ -51,29 +47,11 @@ class Correction:
         self.rest = means
         self.set_gyro_bias(means[3:6])
 
-    def covers(self, temp_c):
-        """Whether the accelerometer's drift is known and taken out at this temperature."""
-        return False
-
     def set_gyro_bias(self, counts):
         """Mean counts of gx gy gz at which the corrected rate is zero."""
         M = self.gyro
         for j in range(3):
             M[3][j] = -sum([counts[k] * M[k][j] for k in range(3)])
-
-
-def correction_of(record, tell=None):
-    """The Correction of a record, with its terms where it has some; tell: see there."""
-    if record.terms:
-        from sixflip.term_correction import TermCorrection  # hardly any record has some
-        return TermCorrection(record, tell)
-    return Correction(record)
-
-
-def gyro_bias_dps(P):
-    """The measured rate in deg/s that P maps to zero: b A = -o."""
-    A = inverse3([[P[i][j] for j in range(3)] for i in range(3)])
-    return [math.degrees(-sum([P[3][k] * A[k][j] for k in range(3)])) for j in range(3)]
 
 
 def _multiplied(P, offset, unit, turn):

@@ -1,9 +1,6 @@
 """What a calibration leaves: a Record. correction_record.py turns it into bytes and back."""
 
 MEASURED = ("accel", "gyro", "gyro_bias", "mounting")
-TERMS = ((16, "accel_thermal_bias"), (17, "gyro_thermal_bias"), (18, "accel_thermal_scale"),
-         (19, "gyro_thermal_scale"), (20, "g_sensitivity"))
-LARGEST = 2048  # bytes of a record: every section with its longest texts, and room for more
 
 
 class Record:
@@ -22,8 +19,8 @@ class Record:
               face, 0 where 180 degrees were assumed; "scale_sigma" and "sequence" of the
               record whose gyro measured them}; None: 180 degrees everywhere
     mounting  {"roll_deg", "pitch_deg", "order", "axes", "frame"}
-    terms     [(tag, bytes)] of TERMS, as stored: record_terms.py takes them apart where they
-              are used, a session has no heap to spare for them
+    terms     [(tag, bytes)], as stored: record_terms.py takes them apart, and checks them,
+              where they are used; a session has no heap to spare for that
     """
 
     def __init__(self):
@@ -41,6 +38,4 @@ class Record:
 
     def measured(self):
         """Names of the sections there are."""
-        tags = [tag for tag, _ in self.terms]
-        return [name for name in MEASURED if getattr(self, name) is not None] + [
-            name for tag, name in TERMS if tag in tags]
+        return [name for name in MEASURED if getattr(self, name) is not None]

@@ -26,7 +26,7 @@ FIELDS = {
 }
 
 
-def _flat(value, shape):
+def _list(value, shape):
     if not shape:
         return [value]
     if len(shape) == 1:
@@ -34,19 +34,18 @@ def _flat(value, shape):
     return [value[i][j] for i in range(shape[0]) for j in range(shape[1])]
 
 
-def _finite(numbers, name, field):
-    for x in numbers:
+def _fault(values, name, what):
+    for x in values:
         if not abs(x) < 1e30:
-            raise ValueError("%s.%s holds %s: expected a finite number" % (name, field, x))
+            raise ValueError("%s.%s holds %s: expected a finite number" % (name, what, x))
 
 
-def pack(name, fields, layout=None):
-    """Bytes of a section's dictionary; ValueError for a bad number or word. layout: its fields
-    where they do not stand above."""
+def pack(name, fields):
+    """Bytes of a section's dictionary; ValueError for a bad number or word."""
     out = b""
-    for item in layout or FIELDS[name]:
-        field, kind = item[0], item[1]
-        value = fields[field]
+    for one in FIELDS[name]:
+        what, kind = one[0], one[1]
+        value = fields[what]
         if kind == "s":
             # Cut between characters, not inside one.
             value = value[:200]
@@ -59,24 +58,24 @@ def pack(name, fields, layout=None):
         elif isinstance(kind, tuple):
             if value not in kind:
                 raise ValueError("%s.%s is %s: expected one of %s"
-                                 % (name, field, value, ", ".join(kind)))
+                                 % (name, what, value, ", ".join(kind)))
             out += struct.pack("<B", kind.index(value))
         else:
-            numbers = _flat(value, item[2:])
+            values = _list(value, one[2:])
             if kind == "d":
-                _finite(numbers, name, field)
-            for x in numbers:
+                _fault(values, name, what)
+            for x in values:
                 out += struct.pack("<" + kind, float("nan") if x is None else x)
     return out
 
 
-def unpack(name, payload, layout=None):
+def unpack(name, payload):
     """The dictionary of a section's bytes; ValueError when they are not one."""
     fields = {}
     at = 0
     try:
-        for item in layout or FIELDS[name]:
-            fields[item[0]], at = _take(name, item, payload, at)
+        for one in FIELDS[name]:
+            fields[one[0]], at = _take(name, one, payload, at)
     except IndexError:
         raise ValueError("section %s of the record is too short" % name)
     if at > len(payload):
@@ -87,8 +86,8 @@ def unpack(name, payload, layout=None):
     return fields
 
 
-def _take(name, item, payload, at):
-    field, kind = item[0], item[1]
+def _take(name, one, payload, at):
+    what, kind = one[0], one[1]
     if kind == "s":
         end = at + 1 + payload[at]
         return payload[at + 1:end].decode(), end
@@ -96,20 +95,20 @@ def _take(name, item, payload, at):
         return [axis for axis in range(3) if payload[at] & 1 << axis], at + 1
     if isinstance(kind, tuple):
         return kind[payload[at]], at + 1
-    shape = item[2:]
+    shape = one[2:]
     size = struct.calcsize("<" + kind)
-    numbers = []
+    values = []
     for _ in range((shape or (1,))[0] * (shape[1] if len(shape) == 2 else 1)):
         if at + size > len(payload):
             raise IndexError
         x = struct.unpack_from("<" + kind, payload, at)[0]
-        numbers.append(x if kind == "d" or x == x else None)
+        values.append(x if kind == "d" or x == x else None)
         at += size
     if kind == "d":
-        _finite(numbers, name, field)
+        _fault(values, name, what)
     if not shape:
-        return numbers[0], at
+        return values[0], at
     if len(shape) == 1:
-        return numbers, at
+        return values, at
     k = shape[1]
-    return [numbers[i * k:i * k + k] for i in range(shape[0])], at
+    return [values[i * k:i * k + k] for i in range(shape[0])], at

@@ -8,11 +8,13 @@ from pathlib import Path
 
 import targets  # noqa: F401  sets sys.path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "host"))
+sys.path[:0] = [str(Path(__file__).resolve().parents[1] / name) for name in ("host", "shared")]
 
 import hostile_sessions
+from test_term_correction import fields_of
 
-from sixflip import correction_record
+from sixflip import correction_record, record_terms
+from sixflip.term_numbers import TERMS
 from sixflip_host.capture import capture_binary, capture_file
 
 CORPUS = Path(__file__).resolve().parent / "corpus"
@@ -40,6 +42,8 @@ def a_record():
     r.gyro = {"P": [row[:3] for row in identity], "sigma_P": [[1e-3] * 3 for _ in range(4)],
               "missing": [], "verdict": "good", "reason": ""}
     r.gyro_bias = {"bias_dps": [0.1, -0.2, 0.3], "temp_c": 25.0}
+    for _, name in TERMS:
+        record_terms.put(r, name, fields_of(name))
     r.mounting = {"roll_deg": 1.0, "pitch_deg": -2.0, "order": "xyz", "axes": "x y z", "frame":
                   "rep103"}
     return correction_record.encode(r)

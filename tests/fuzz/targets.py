@@ -19,6 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "shared"), str(ROOT / "host"), str(ROOT / "device")]
 
 from sixflip import capture_blocks, capture_reader, correction_record
+from sixflip.correction_of import correction_of
 from sixflip_device import settings as device_settings
 from sixflip_device.host_line import HostLine
 from sixflip_host import cli
@@ -109,6 +110,13 @@ def capture_of_a_board(data):
         verb("export", path, "-o", os.path.join(FOLDER, "out.csv"))
 
 
+def stream(correction):
+    """What a board does with a correction it took: a rest, and samples at any temperature."""
+    correction.set_rest([1, -2, 16384, 3, -4, 5, -3700])
+    for temp in (-32768, -3700, 0, 32767):
+        correction.apply([32767, -32768, 1, 0, -1, 32767, temp], [0.0] * 6)
+
+
 def record(data):
     """A record with its length and CRC put right: decoded, encoded, shown, exported."""
     size = correction_record.HEAD_SIZE
@@ -118,9 +126,11 @@ def record(data):
         struct.pack_into("<HH", body, 4, 1, len(data))
         data = bytes(body) + struct.pack("<I", binascii.crc32(body))
     try:
-        correction_record.decode(data)
+        found = correction_record.decode(data)
     except ValueError:
         return
+    with contextlib.suppress(ValueError):
+        stream(correction_of(found))
     path = kept("record_a.bin", data)
     verb("show", path)
     verb("show", path, "--json")

@@ -10,8 +10,9 @@ import pytest
 from test_export_formats import make_record
 
 from sixflip import correction_record, record_terms
-from sixflip.correction import Correction, correction_of
-from sixflip.record import TERMS
+from sixflip.correction import Correction
+from sixflip.correction_of import correction_of
+from sixflip.record_terms import TERMS
 from sixflip_host.cli import main
 
 COMPILERS = {"c99": ["gcc", "-std=c99", "-x", "c"], "c++": ["g++", "-std=c++11", "-x", "c++"]}

@@ -9,7 +9,8 @@ import pytest
 import yaml
 
 from sixflip import correction_record, record_terms
-from sixflip.correction import Correction, correction_of
+from sixflip.correction import Correction
+from sixflip.correction_of import correction_of
 from sixflip_host.cli import main
 
 G = 9.80665

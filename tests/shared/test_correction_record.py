@@ -4,9 +4,10 @@ import unittest
 from binascii import crc32
 
 from sixflip import correction_record, scale_form
-from sixflip.correction import Correction, gyro_bias_dps
+from sixflip.correction import Correction
 from sixflip.correction_record import Record, decode, encode
 from sixflip.elimination import DOUBLE
+from sixflip.gyro_bias import gyro_bias_dps
 
 P = [[1.01, 0.01, 0.02, 0.0], [-0.03, 0.99, 0.0, 0.0], [0.01, 0.02, 1.03, 0.0],
      [0.1 / 3, -0.2, 1.1, 1.0]]

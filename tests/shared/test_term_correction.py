@@ -4,11 +4,13 @@ import math
 import unittest
 
 from sixflip import record_terms
-from sixflip.correction import Correction, correction_of
-from sixflip.correction_record import decode, encode
+from sixflip.correction import Correction
+from sixflip.correction_of import correction_of
+from sixflip.correction_record import MOST, decode, encode
 from sixflip.elimination import DOUBLE
-from sixflip.record import LARGEST, TERMS, Record
+from sixflip.record import Record
 from sixflip.scale_form import inverse3
+from sixflip.term_numbers import TERMS
 
 P = [[1.01, 0.01, 0.02, 0.0], [-0.03, 0.99, 0.0, 0.0], [0.01, 0.02, 1.03, 0.0],
      [0.1, -0.2, 0.5, 1.0]]
@@ -110,7 +112,7 @@ class Stored(unittest.TestCase):
     def test_each_comes_back(self):
         for name in ALL:
             r = with_terms([name])
-            self.assertEqual(r.measured(), ["accel", "gyro", "gyro_bias", name])
+            self.assertEqual(record_terms.names_of(r), [name])
             self.assertEqual(record_terms.terms(r), {name: fields_of(name)})
 
     def test_all_together_fit_with_the_longest_texts(self):
@@ -125,7 +127,7 @@ class Stored(unittest.TestCase):
             long["source"] = "°" * 300
             record_terms.put(r, name, long)
         data = encode(r)
-        self.assertTrue(len(data) <= LARGEST, len(data))
+        self.assertTrue(len(data) <= MOST, len(data))
         self.assertEqual(encode(decode(data)), data)
         self.assertEqual(record_terms.terms(decode(data))[ALL[0]]["source"], "°" * 30)
 
@@ -146,7 +148,7 @@ class Stored(unittest.TestCase):
 
     def test_a_record_that_grows_too_large_is_not_written(self):
         r = plain()
-        r.unknown.append((99, b"x" * LARGEST))
+        r.unknown.append((99, b"x" * MOST))
         self.assertRaises(ValueError, encode, r)
 
 
@@ -184,14 +186,14 @@ class Refused(unittest.TestCase):
         for tag, name in TERMS:
             r = with_terms([name])
             payload = r.terms[0][1]
-            for bad in (payload[:-3], b"", payload[:8] + b"\xff" * 8 + payload[16:]):
+            for bad, use in ((payload[:-3], record_terms.terms), (b"", correction_of),
+                             (payload[:8] + b"\xff" * 8 + payload[16:], correction_of)):
                 r.terms = [(tag, bad)]
-                data = encode(r)
                 with self.assertRaises(ValueError) as caught:
-                    decode(data)
+                    use(decode(encode(r)))
                 self.assertIn(name, str(caught.exception))
             r.terms = [(tag, payload), (tag, payload)]
-            self.assertRaises(ValueError, decode, encode(r))
+            self.assertRaises(ValueError, correction_of, decode(encode(r)))
 
 
 class Applied(unittest.TestCase):
@@ -262,13 +264,7 @@ class Applied(unittest.TestCase):
             self.corrected(correction, sample(ALL, self.f, self.w, t))
         self.assertEqual(len(said), 1)
         self.near(said[0], (HIGH_C + 2.0, LOW_C, HIGH_C), 1e-4)
-
-    def test_covers(self):
-        correction = correction_of(with_terms(["accel_thermal_bias"]))
-        self.assertEqual([correction.covers(t) for t in (14.0, 15.0, 39.0, 41.0)],
-                         [False, True, True, False])
-        self.assertFalse(correction_of(with_terms(["gyro_thermal_bias"])).covers(20.0))
-        self.assertFalse(correction_of(plain()).covers(20.0))
+        self.near(correction.range_c, (LOW_C, HIGH_C))
 
 
 if __name__ == "__main__":

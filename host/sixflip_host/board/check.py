@@ -3,7 +3,7 @@
 import json
 import math
 
-from sixflip.correction import correction_of
+from sixflip.correction_of import correction_of
 
 from ..capture import capture_file
 from ..errors import CheckFailed, UsageError
@@ -80,7 +80,7 @@ def compare(capture, record, g=None):
         "noise_mg": still_rest.noise_mg(rest, record.accel_lsb_per_g)[0],
         "noise_then_mg": 1e3 * record.accel["noise_g"] if record.accel["noise_g"] else None,
         "temp_c": temp_c, "temp_then_c": record.temp_c,
-        "drift_known": temp_c is not None and correction.covers(temp_c),
+        "drift_known": _drift_known(correction, temp_c),
         "bias_dps": None, "bias_then_dps": None, "seconds": rest.n / capture.meta["rate_hz"],
         "record_verdict": record.accel["verdict"], "record_reason": record.accel["reason"]}
     if capture.gyro is not None:
@@ -88,6 +88,12 @@ def compare(capture, record, g=None):
         if record.gyro_bias:
             found["bias_then_dps"] = list(record.gyro_bias["bias_dps"])
     return judged(found)
+
+
+def _drift_known(correction, temp_c):
+    """Whether a term takes the accelerometer's drift out at this temperature."""
+    between = getattr(correction, "range_c", None)
+    return temp_c is not None and between is not None and between[0] <= temp_c <= between[1]
 
 
 def _celsius(capture, rest):

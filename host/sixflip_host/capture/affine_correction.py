@@ -11,7 +11,7 @@ A measured + o - C (true specific force).
 import numpy as np
 
 from sixflip import record_terms
-from sixflip.correction import correction_of
+from sixflip.correction_of import correction_of
 
 from ..errors import BadFile
 from .capture_header import STANDARD_G

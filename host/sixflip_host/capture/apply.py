@@ -4,7 +4,7 @@ import sys
 
 import numpy as np
 
-from sixflip.correction import correction_of
+from sixflip.correction_of import correction_of
 
 from .. import atomic_write
 from ..errors import BadFile

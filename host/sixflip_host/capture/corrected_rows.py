@@ -21,7 +21,7 @@ def corrected_rows(correction, capture):
 
 def _by_temperature(correction, capture):
     """[(rows, temperature count)]; all rows at once where the temperature does not matter."""
-    if not correction.needs_temperature:
+    if not getattr(correction, "thermal", None):
         return [(slice(None), 0)] if len(capture) else []
     if capture.temp is None:
         raise BadFile("the record takes out a drift with temperature: expected a capture with a "

@@ -1,7 +1,7 @@
 """A correction as a C header: single precision, no heap, C99 and C++ (Arduino, ESP-IDF)."""
 
-from sixflip.correction import correction_of
-from sixflip.record import TERMS
+from sixflip.correction_of import correction_of
+from sixflip.record_terms import TERMS
 
 from . import export_c_text as text
 from .affine_correction import AffineCorrection
@@ -24,15 +24,15 @@ def c_header(path, record):
 def _terms(correction):
     """Tables of a TermCorrection and the function that applies them, in the order it does."""
     tables, calls = [], []
-    for number, one in enumerate(correction._thermal):
+    for number, one in enumerate(correction.thermal):
         name = "sixflip_thermal_%d" % number
-        tables += [_table(name, [one._base, one._k1, one._k2]),
-                   _row(name + "_range", [one._t0, one.low, one.high, one._lsb, one._offset])]
-        into = "scale" if one.into is correction._scale else "shift"
+        tables += [_table(name, [one.base, one.k1, one.k2]),
+                   _row(name + "_range", [one.t0, one.low, one.high, one.lsb, one.offset])]
+        into = "scale" if one.into is correction.scale else "shift"
         calls.append("    sixflip_thermal(%s, %s_range, temp, %s + %d);\n" % (
             name, name, into, one.first))
-    tables.append(_table("sixflip_coupling", correction._coupling or [[0.0] * 3] * 3))
-    tables.append(_table("sixflip_turn", correction._turn or [
+    tables.append(_table("sixflip_coupling", correction.coupling or [[0.0] * 3] * 3))
+    tables.append(_table("sixflip_turn", correction.turn or [
         [1.0 if i == j else 0.0 for j in range(3)] for i in range(3)]))
     tables += [text.THERMAL] if calls else []
     return [*tables, text.TERMS.replace("CALLS", "".join(calls))]

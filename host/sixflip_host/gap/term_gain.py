@@ -5,7 +5,7 @@ import copy
 import numpy as np
 
 from sixflip import record_terms
-from sixflip.correction import correction_of
+from sixflip.correction_of import correction_of
 
 from ..capture.corrected_rows import corrected_rows
 from . import adequacy, attitude_fit, gyro_turns, nominal_fit, sensor_gap, which

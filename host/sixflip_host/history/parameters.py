@@ -2,7 +2,7 @@
 
 import math
 
-from sixflip.correction import gyro_bias_dps
+from sixflip.gyro_bias import gyro_bias_dps
 from sixflip.scale_form import scale_form
 
 from ..capture.capture_header import STANDARD_G

@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from sixflip import correction_record, mounting
-from sixflip.correction import correction_of
+from sixflip.correction_of import correction_of
 from sixflip_sim.worlds import NOISE
 
 from .. import atomic_write

@@ -2,7 +2,7 @@
 
 import json
 
-from sixflip.record import TERMS
+from sixflip.record_terms import names_of
 
 from ..errors import UsageError
 from ..history import remember
@@ -76,7 +76,7 @@ def verify(capture, record, before=None):
     if record.gyro_bias is not None and placements and record.gyro_lsb_per_dps:
         checks += verify_checks.gyro_bias(record, placements)
     checks += verify_checks.temperature(record, capture, placements)
-    names = [name for tag, name in TERMS if tag in dict(record.terms)]
+    names = names_of(record)
     if names:
         remarks.append("not recomputed, other captures than this one told them: %s (sixflip "
                        "diagnose --record)" % ", ".join(names))

@@ -3,7 +3,7 @@
 import os
 import struct
 
-from sixflip import correction_record
+from sixflip import correction_record, record_terms
 from sixflip.mounting import parse_axes
 from sixflip.scale_form import scale_form
 
@@ -19,6 +19,7 @@ def decode_record(path, data):
     """A Record from bytes; BadFile with the sentence that says why not."""
     try:
         record = correction_record.decode(data)
+        record_terms.terms(record)
         for fields in (record.accel, record.gyro):
             if fields is not None:
                 scale_form(fields["P"])     # raises where it cannot be a correction
