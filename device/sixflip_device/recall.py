@@ -1,7 +1,7 @@
 """After the start: the newest record that fits. Without one a calibration comes first."""
 
 from . import in_force
-from .flash_files import NEW, NOBODY, OFFERED, exists, size
+from .flash_files import NEW, OFFERED, exists, size
 
 
 def run(unit):
@@ -11,11 +11,8 @@ def run(unit):
     in_force.recall(unit)
     if exists(unit.board.root + NEW):
         from .cut_short import file_away
-        try:
-            file_away(unit.board.root)
-        except OSError as e:
-            unit.events.error("the capture stays as capture.new: %s" % e, "a rename that works")
+        file_away(unit.board.root)
     first, unit.first = unit.first, False
     if unit.record is None and first:
-        unit.asked = unit.asked or NOBODY
+        unit.asked = True
     return "asked" if unit.asked else "put_in_force"
