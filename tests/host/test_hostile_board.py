@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from sixflip.capture_blocks import ACCEL, BlockWriter
 from sixflip_host.board import board_events, pull
 from sixflip_host.board.board_link import safe_name
 from sixflip_host.board.console import Console
@@ -53,6 +54,19 @@ def test_a_capture_that_is_none_is_one_line(tmp_path):
     folder = pull.fetch(HostileLink(pull.WANTED, "x"), tmp_path, say=lambda line: None)
     with pytest.raises(SixflipError):
         pull.convert(folder)
+
+
+def test_a_session_that_ended_before_anything_was_captured(tmp_path, capsys):
+    data = bytearray()
+    meta = b'{"sensor": "mpu6050", "rate_hz": 100, "accel_lsb_per_g": 16384}'
+    BlockWriter(data.extend, meta, ACCEL).end(False)
+    (tmp_path / "refused.bin").write_bytes(data)
+    pull.convert(tmp_path)
+    assert "is empty" in capsys.readouterr().out
+    assert [path.name for path in tmp_path.iterdir()] == ["refused.bin"]
+    (tmp_path / "refused.bin").write_bytes(data[:-3])       # cut short is another thing
+    with pytest.raises(SixflipError, match="refused.bin"):
+        pull.convert(tmp_path)
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if name not in (

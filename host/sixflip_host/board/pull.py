@@ -59,7 +59,11 @@ def convert(folder, say=print):
         path = Path(folder) / name
         if not path.exists():
             continue
-        capture = capture_binary.decode(path.read_bytes())
+        data = path.read_bytes()
+        if capture_binary.is_empty(data):
+            say("%s is empty: its session ended before anything was captured" % plain(path))
+            continue
+        capture = capture_binary.decode(data, str(path))
         if len(capture.t_us):
             table = path.with_suffix(".csv")
             capture_file.write(table, capture)

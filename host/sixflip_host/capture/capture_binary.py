@@ -17,6 +17,15 @@ BLOCK_SAMPLES = 256
 LATEST_US = (1 << 32) * 1000000
 
 
+def is_empty(data):
+    """True for a board's file that is whole and holds nothing: nothing was captured."""
+    try:
+        blocks = read_blocks(data)
+    except ValueError:
+        return False
+    return not (blocks.rows or blocks.placements or blocks.damage)
+
+
 def decode(data, path="capture"):
     """A Capture from the bytes of a board's file; readable up to the last whole block.
 

@@ -55,11 +55,11 @@ class Witness:
 def pulled(folder, board):
     """The records in a folder `pull` made; board: the id the link knows."""
     def rows():
-        from ..capture import capture_file
+        from ..capture import capture_binary, capture_file
         from ..verifying import verify_files
         found, known = [], board
         capture = Path(folder) / "capture.bin"
-        if capture.exists():
+        if capture.exists() and not capture_binary.is_empty(capture.read_bytes()):
             known = capture_file.read(capture).meta.get("device_id") or board
         for name in RECORDS:
             path = Path(folder) / name
