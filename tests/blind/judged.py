@@ -71,6 +71,7 @@ def _effect(case, geometry, index, effect, sensors):
         own = seen[effect.name]
         out["attainable"] = round(share_reproduced(y, own), 4)
         if span_of(own, 1e-4).shape[1] == own.shape[1] and effect.name != "warm_up":
+            out["own"] = effect.name in LAGGED
             bent = effect.name in LAGGED and effect.parameters.get("bend", 0.0) != 0
             values = np.linalg.lstsq(own, y, rcond=None)[0]
             if effect.name in LAGGED:

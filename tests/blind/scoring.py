@@ -24,6 +24,7 @@ UNITS = {"mg/°C": 1e-3, "mg/degC": 1e-3, "°/s/°C": 1.0, "deg/s/degC": 1.0, "%
          "%/degC": 1e-2, "mg/g2": 1e-3, "mg/g²": 1e-3, "mg/g3": 1e-3, "mg/g³": 1e-3,
          "mg/g": 1e-3, "%": 1e-2, "deg/s/g": 1.0, "°/s/g": 1.0, "mg/(degC/min)": 6e-2,
          "mg/(°C/min)": 6e-2, "deg/s/(degC/min)": 60.0, "°/s/(°C/min)": 60.0}
+MISFIT = 4.0                        # sigma squared
 IN_MOTION = ("lever_arm", "filter_lag")
 NO_COLUMN = ("supply",)     # nobody writes the voltage down: only its course can be said
 WHEN_THERE = ("box_tilt", "table_tilt", "earth_rate")   # in every case's world
@@ -103,8 +104,10 @@ def domain_rows(answer, sensor, domains):
 def intervals(cause, theory):
     """[(key, true, low, high)] in our units, where value and truth mean the same."""
     factor = UNITS.get(cause["unit"])
-    if factor is None or "values" not in theory or theory.get("attainable", 0) < 0.97:
+    if factor is None or "values" not in theory:
         return []
+    if not theory["own"] and theory["distance"] ** 2 * (1 - theory["attainable"]) > MISFIT:
+        return []       # the library's form of it is visibly another one
     out = []
     biggest = max(abs(v) for v in theory["values"].values())
     for key, bounds in (cause["interval_90"] or {}).items():
