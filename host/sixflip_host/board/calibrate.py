@@ -13,7 +13,7 @@ from .ending import Ending
 from .ports import add_port, open_link
 
 HELP = "calibrate a board now, guided face by face"
-EXAMPLE = "sixflip calibrate"
+EXAMPLE = "sixflip calibrate\n         sixflip calibrate --replay capture.bin --speed 5"
 FLAG = "calibrate.flag"
 FACES = ("Z+", "Z-", "X+", "X-", "Y+", "Y-")
 SILENCE_S = 30
@@ -162,16 +162,12 @@ def checked(args):
     session = board_plan.session_of(args.plan, args.session) if args.plan else None
     if session is None and args.session != 1:
         raise UsageError("--session %d: only with --plan" % args.session)
-    if args.replay and (args.plan or args.redo or args.go_on):
+    if args.replay and (args.plan or getattr(args, "redo", None) or getattr(args, "go_on", None)):
         raise UsageError("--replay plays a capture as it was taken: not with --plan, --redo or "
                          "--continue")
-    check_speed(args)
-    return session
-
-
-def check_speed(args):
     if args.speed is not None and (not args.replay or not args.speed > 0):
         raise UsageError("--speed %g: expected a number above 0, with --replay" % args.speed)
+    return session
 
 
 def link_of(args, guided):

@@ -27,11 +27,12 @@ ANSWER_S = 3.0          # a board that has not answered by then is asked again
 class Bench:
     """open_link() -> a Link; output: folder for what is pulled; told(): something changed.
 
-    keep  whether calibrations go into the history; capture: of a replay, for its report
+    keep     whether calibrations go into the history; capture: of a replay, for its report
+    request  request(link): what a plan asks the board for; step(at): what it says, see Console
     """
 
-    def __init__(self, open_link, output, told=lambda: None, keep=True, capture=None, step=None,
-                 request=None):
+    def __init__(self, open_link, output, told=lambda: None, keep=True, capture=None,
+                 request=lambda link: None, step=None):
         self.open_link = open_link
         self.output = Path(output)
         self.told = told
@@ -140,7 +141,7 @@ class Bench:
         if action == "continue" and calibrate.under_way(self.link) is not None:
             board = None
         else:
-            request = {"continue": True} if action == "continue" else self.request
+            request = {"continue": True} if action == "continue" else self.request(self.link)
             board = calibrate.ask_for_calibration(self.link, request)
         self.done.clear()
         self.session = BoardSession(self.link, board, self.step, self.keep)

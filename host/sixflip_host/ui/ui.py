@@ -11,6 +11,7 @@ from pathlib import Path
 from ..board import calibrate
 from ..board.ports import add_port, open_link
 from ..errors import SixflipError, UsageError
+from ..planning import board_plan
 from ..terminal import plain
 
 HELP = "the guided calibration in a browser, with the box in 3-D, plots and reports"
@@ -24,6 +25,11 @@ def add_arguments(parser):
                        help="no board: play a capture file through the firmware's own session")
     parser.add_argument("--speed", metavar="N", type=float,
                         help="of --replay: seconds of the capture a second (default: 1)")
+    parser.add_argument("--plan", metavar="FILE|NAME",
+                        help="a session of a plan (sixflip plan --save FILE), or paper, "
+                             "recommended")
+    parser.add_argument("--session", metavar="N", type=int, default=1,
+                        help="which session of the plan (default: the first)")
     parser.add_argument("--listen", metavar="N", type=int, default=0,
                         help="port on this machine for the browser (default: a free one)")
     parser.add_argument("-o", "--output", metavar="DIR", default=".", type=Path,
@@ -45,13 +51,16 @@ def run(args):
         from .server import Server
     except ImportError:
         raise SixflipError("sixflip ui needs aiohttp: pip install 'sixflip[ui]'") from None
-    calibrate.check_speed(args)
+    session = calibrate.checked(args)
     if not 0 <= args.listen <= 65535:
         raise UsageError("--listen %d: expected a port, 1 to 65535" % args.listen)
     from .bench import Bench
     link = board_of(args)
+    more = {} if session is None else {
+        "request": lambda link: board_plan.request(session, calibrate.rate_of(link)),
+        "step": lambda at: board_plan.step(session, at)}
     server = Server(lambda told: Bench(link, args.output, told, keep=not args.replay,
-                                       capture=args.replay), args.listen)
+                                       capture=args.replay, **more), args.listen)
     try:
         asyncio.run(serve(server, args))
     except OSError as error:

@@ -118,6 +118,27 @@ def test_continue_joins_a_session_under_way_and_asks_for_nothing(bench):
     assert bench.board.sent == [] and bench.board.resets == 0
 
 
+def test_a_plan_is_asked_for_and_undone_by_its_number(tmp_path):
+    words = ("Z+a: lay it down", "L1: lean it", "all placements done")
+    link, make = scripted(tmp_path, request=lambda link: {"poses": "Z+a L1"},
+                          step=words.__getitem__)
+    bench = make(lambda: None)
+    bench.board = link
+    bench.thread.start()
+    bench.ask("start", 0)
+    until(lambda: link.resets)
+    assert link.sent == [("calibrate.flag", b'{"poses": "Z+a L1"}')]
+    link.say("calibrating", missing=["Z+a", "L1"], plan=True)
+    link.say("pose", pose="Z+a", n=100, next=["L1"], at=1, of=2)
+    until(lambda: bench.view()["undo"] == "1")
+    assert bench.view()["step"]["head"] == "L1: lean it on something"
+    for _ in range(3):
+        bench.ask("undo", 1, "1")
+    bench.ask("redo", 1, "Z+")      # a plan is undone pose by pose
+    assert commands(bench) == [{"cmd": "undo"}]
+    bench.close()
+
+
 def test_a_lost_board_is_said_and_a_start_tries_again(tmp_path):
     tries = []
 

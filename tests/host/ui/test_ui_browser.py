@@ -13,6 +13,7 @@ from board_session import unlabelled
 from served import ScriptedLink, Served, until
 
 from sixflip_host.capture import capture_file
+from sixflip_host.guide import box_drawings
 from sixflip_host.guide.replay_link import ReplayLink
 from sixflip_host.ui.bench import Bench
 
@@ -152,6 +153,43 @@ def test_what_a_board_says_is_text_and_nothing_else(browser, tmp_path):
         assert text(browser, "chip") == "<b>chip</b>" and MALICE in text(browser, "numbers")
         assert not browser.find_elements("css selector", "img, b, i, script:not([src])")
         assert browser.title == "Sixflip" and quiet(browser)
+
+
+def test_the_box_follows_gravity_and_the_gyro(browser, tmp_path):
+    """Against the drawings of the terminal, which are right-handed by their own test."""
+    with Served(lambda told: Bench(ScriptedLink, tmp_path, told, keep=False)) as served:
+        browser.get(served.server.url)
+        found = browser.execute_async_script(GEOMETRY)
+    for face, (front, right) in box_drawings.SEEN.items():
+        assert found["lying"][face] == [front, right, face]
+        assert found["turned"][face] == [*box_drawings.turned((front, right)), face]
+        assert found["followed"][face] == face
+    assert found["yaw"] == pytest.approx(180, abs=2)    # the gyro's bias is left out
+
+
+GEOMETRY = """const done = arguments[0];
+import("/box.js").then(({ Attitude, AXES, lying, times }) => {
+  const names = Object.keys(AXES);
+  const along = (m, world) => names.find(name => times(m, AXES[name]).every(
+    (v, k) => Math.abs(v - world[k]) < 1e-9));
+  const seen = m => [along(m, [0, -1, 0]), along(m, [1, 0, 0]), along(m, [0, 0, 1])];
+  const found = { lying: {}, turned: {}, followed: {} };
+  for (const face of names) {
+    found.lying[face] = seen(lying(face));
+    found.turned[face] = seen(lying(face, 1));
+    const box = new Attitude();
+    box.heard(AXES[face].map(v => 1.02 * v + 0.05), null, false);
+    for (let k = 0; k < 300; k++) box.step(1 / 60);
+    found.followed[face] = box.face();
+  }
+  const box = new Attitude();
+  for (let k = 0; k < 40; k++) box.heard([0, 0, 1], [2, 1, -2], true);
+  box.heard([0, 0, 1], [2, 1, 88], false);
+  for (let k = 0; k < 120; k++) box.step(1 / 60);
+  const x = times(box.m, [1, 0, 0]);
+  found.yaw = Math.abs(Math.atan2(x[1], x[0])) * 180 / Math.PI;
+  done(found);
+});"""
 
 
 def test_without_the_key_the_page_says_what_to_do(browser, tmp_path):

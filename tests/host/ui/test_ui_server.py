@@ -138,7 +138,8 @@ def test_the_command_ends_its_session_in_order(tmp_path, number):
 
 @pytest.mark.parametrize("argv, line, code", [
     (["--speed", "2"], "with --replay", 2), (["--listen", "70000"], "expected a port", 2),
-    (["--replay", "no_such_file"], "No such file", 4),
+    (["--replay", "no_such_file"], "No such file", 4), (["--session", "2"], "only with --plan", 2),
+    (["--replay", "x", "--plan", "paper"], "as it was taken", 2),
     (["--replay", "x", "--port", "y"], "not allowed with", 2)])
 def test_command_lines_that_cannot_be(argv, line, code, capsys):
     assert cli.main(["ui", *argv]) == code
