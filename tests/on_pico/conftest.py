@@ -19,7 +19,7 @@ from sixflip_host.errors import NoBoard
 from sixflip_host.virtual import demo, micropython_fetch
 from sixflip_host.virtual.virtual_board import VirtualBoard
 
-# half an hour: make test-pico sets this
+# an hour: make test-pico sets this
 collect_ignore = [] if os.environ.get("SIXFLIP_PICO") == "whole" else ["test_pico_session.py"]
 
 

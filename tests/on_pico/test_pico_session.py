@@ -44,7 +44,7 @@ def test_from_an_erased_flash_to_the_verification(uf2, sensor, tmp_path, capsys,
 
 
 def test_the_last_face_is_taken_solved_saved_and_in_force(unfinished_flash, tmp_path):
-    """What the demo does in half an hour, in some minutes: ten poses come with the flash."""
+    """What the demo does in an hour, in some minutes: ten poses come with the flash."""
     spec = dict(SPEC, order=LAST_FACE)
     with PicoBoard(spec, unfinished_flash) as board, MpremoteLink(board.port, PATIENCE) as link:
         said = []
