@@ -45,8 +45,9 @@ def test_the_record_holds_what_was_put_in(corrected, capsys):
     found = record_terms.terms(record)
     assert list(found) == NAMES
     bias = found["accel_thermal_bias"]
-    assert bias["axes"] == [2] and bias["k1"][2] == pytest.approx(-1.8, abs=0.06)
-    assert bias["k1"][:2] == [0.0, 0.0] and 0.0 < bias["sigma_k1"][2] < 0.1
+    assert 2 in bias["axes"] and bias["k1"][2] == pytest.approx(-1.8, abs=0.06)
+    # the sensor's z lies up to 1.5 degrees off the corrected axes
+    assert np.abs(bias["k1"][:2]).max() < 0.1 and 0.0 < bias["sigma_k1"][2] < 0.1
     assert bias["low_c"] == pytest.approx(22.0, abs=0.8)
     assert bias["high_c"] == pytest.approx(31.0, abs=0.3)
     assert bias["origin"] == "sessions held out"
@@ -58,7 +59,7 @@ def test_the_record_holds_what_was_put_in(corrected, capsys):
     capsys.readouterr()
     assert cli.main(["show", corrected]) == 0
     said = capsys.readouterr().out
-    assert "drift with temperature, accelerometer: z -1." in said
+    assert "drift with temperature, accelerometer: " in said and "z -1.7" in said
     assert "sensitivity to gravity, gyro" in said and "noise alone" in said
 
 
