@@ -69,16 +69,20 @@ def _effect(case, geometry, index, effect, sensors):
                        for name, columns in seen.items() if name != effect.name}}
     if effect.name in library:
         own = seen[effect.name]
-        out["attainable"] = round(share_reproduced(y, own), 4)
-        if span_of(own, 1e-4).shape[1] == own.shape[1] and effect.name != "warm_up":
+        out["attainable"] = round(share_reproduced(y, own), 8)
+        values = _values(effect, y, own)
+        if values is not None:
             out["own"] = effect.name in LAGGED
-            bent = effect.name in LAGGED and effect.parameters.get("bend", 0.0) != 0
-            values = np.linalg.lstsq(own, y, rcond=None)[0]
-            if effect.name in LAGGED:
-                # the thermometer's lag is the library's too: what the part has is comparable,
-                # a straight line against the thermometer is not
-                values = effect.parameters["size"]
-            if not bent:
-                out["values"] = {key: float(v)
-                                 for (key, _), v in zip(library[effect.name], values)}
+            out["values"] = {key: float(v) for (key, _), v in zip(library[effect.name], values)}
     return out
+
+
+def _values(effect, y, own):
+    """One coefficient for each of an effect's plain columns, or None where none is "the" one."""
+    if effect.name in LAGGED:
+        # the thermometer's lag is the library's too: what the part has is comparable, a
+        # straight line against the thermometer is not
+        return None if effect.parameters.get("bend") else effect.parameters["size"]
+    if effect.name == "warm_up" or span_of(own, 1e-4).shape[1] < own.shape[1]:
+        return None
+    return np.linalg.lstsq(own, y, rcond=None)[0]

@@ -113,7 +113,7 @@ def g_sensitivity(rng, chip, sensor, times):
         keep = np.zeros((3, 3), bool)
         keep[rng.permutation(3)[:2], rng.integers(0, 3, 2)] = True
         matrix = np.where(keep, matrix, 0)
-    bend = rng.uniform(-0.1, 0.1)
+    bend = rng.uniform(-0.1, 0.1) * (rng.random() < 0.5)
 
     def act(signals, _):
         signals.gyro += (signals.f * (1 + bend * np.abs(signals.f))) @ matrix.T
