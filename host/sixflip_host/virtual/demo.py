@@ -106,7 +106,7 @@ def pico_bench(folder, spec):
     """(link, power_cycle(world)) of an emulated Pico."""
     from ..emulated.emulated_pico import PATIENCE, PicoBoard
     with PicoBoard(spec, folder / "flash.img") as board:
-        print("emulated Pico at %s (%s); this takes most of an hour" % (board.port, board.uf2.name))
+        print("emulated Pico at %s (%s); it takes most of an hour" % (board.port, board.uf2.name))
         with MpremoteLink(board.port, PATIENCE) as link:
             yield link, board.power_cycle
 
