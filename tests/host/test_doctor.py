@@ -132,6 +132,26 @@ def test_the_verb_from_port_to_record(bench, capsys):
         provision.copy(link, {"sensor": "auto"}, say=lambda text: None)
 
 
+def test_provision_and_pull_as_json(bench, tmp_path, capsys):
+    """Here because this board has its firmware already."""
+    board, link = bench
+    judged(bench, {})
+    link.close()
+    try:
+        capsys.readouterr()
+        assert main(["provision", "--port", board.port, "--json"]) == 0
+        done = json.loads(capsys.readouterr().out)
+        assert done["selftest"]["ok"] and done["files_there"] > 50
+        assert main(["pull", "--port", board.port, "-o", str(tmp_path), "--json"]) == 0
+        fetched = json.loads(capsys.readouterr().out)
+        # a session in which the box was never turned may have been refused already
+        assert {"sixflip.json"} <= set(fetched["files"]) <= {
+            "sixflip.json", "refused.bin", "refused.csv"}
+        assert fetched["board"] == board.unique_id
+    finally:
+        link.open()
+
+
 def test_no_firmware_on_the_board(board, capsys):
     code, found = findings(capsys, "--port", board.port)
     assert code == 1 and found["firmware"]["todo"] == "sixflip provision"
