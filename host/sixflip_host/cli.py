@@ -47,7 +47,7 @@ GLOBAL = {
     "--verbose": "say on stderr what is being done",
     "--debug": "show where an error came from",
 }
-TALKS = ("stream", "completion", "virtual-board")    # what they print is what they are for
+TALKS = ("stream", "completion", "virtual-board", "ui")    # what they print is what they are for
 
 EXIT_CODES = ("exit codes: 0 done, 1 a check failed or a calibration was refused, "
               "2 wrong command line, 3 no board or no chip, 4 a bad file")

@@ -10,7 +10,7 @@ from http.client import HTTPConnection
 from sixflip_host.ui.bench import Bench
 from sixflip_host.ui.server import Server
 
-WAIT_S = 30
+WAIT_S = 120
 
 
 class Served:
