@@ -2,6 +2,10 @@
 
 
 def main():
+    try:  # noqa: SIM105 - MicroPython has no contextlib
+        import sixflip_update  # noqa: F401 - a provisioning that was cut off, see provision.py
+    except ImportError:
+        pass  # as mostly: there is no such file
     from sixflip_device import power_up
     power_up.main()
 

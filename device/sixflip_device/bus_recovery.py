@@ -11,6 +11,7 @@ no room for the prober. Once it is given up, the start phase probes for whatever
 RETRIES = 3
 RETRY_US = 500
 PAUSES_MS = (10, 100, 500, 1000, 2000, 4000)  # before each recovery; then it is given up
+EMPTY = 8  # samples in a row without a bit of difference: the chip is set up anew
 
 READ = 0       # a fresh sample is in the buffer
 RECOVERED = 1  # the chip was set up anew: what was being captured must be thrown away
@@ -49,17 +50,19 @@ class Sensor:
         self.imu = imu
         self.errors = 0
         self.recoveries = 0
+        self._vain = 0
 
     def read_into(self, sample):
         """READ or RECOVERED (then sample is not to be used); BusLost when it is hopeless."""
         try:
             if self.imu.read_into(sample):
+                self._vain = 0
                 return READ
             error = None  # all zeros or all ones: no sensor at work reads like that
         except OSError as e:
             error = e
-        if error is None:
-            return self.check()
+        if error is None and self.check() != READ:
+            return RECOVERED
         return self._retry(error, sample)
 
     def check(self):
@@ -81,7 +84,7 @@ class Sensor:
         return self._recover(error)
 
     def _report(self, error, action):
-        number = None if error is None or not error.args else error.args[0]
+        number = error.args[0] if isinstance(error, OSError) and error.args else None
         self._events.emit("bus_error", errno=number, count=self.errors, action=action)
 
     def _retry(self, error, sample):
@@ -89,13 +92,19 @@ class Sensor:
         for _ in range(RETRIES):
             self._board.sleep_us(RETRY_US)
             try:
-                self.imu.read_into(sample)
+                whole = self.imu.read_into(sample)
             except OSError as e:
                 error = e
                 self.errors += 1
                 continue
-            self._report(error, "read again")
-            return READ
+            if whole:
+                self._report(error, "read again")
+                return READ
+            error = None
+        if error is None:
+            self._vain += 1
+            if self._vain % EMPTY:
+                return RECOVERED
         return self._recover(error)
 
     def _recover(self, error):
@@ -112,6 +121,9 @@ class Sensor:
                 error = e
                 self.errors += 1
                 continue
+            if self._vain > 6 * EMPTY:
+                error = "no bit of its samples differs"
+                break
             self.recoveries += 1
             self._report(error, "recovered")
             return RECOVERED

@@ -14,6 +14,8 @@ def meta_bytes(unit, number, resumed=0):
     meta = unit.sensor.imu.metadata()
     if resumed:
         meta["resumed_at"] = resumed
+    if unit.asked == "nobody":
+        meta["unasked"] = True
     meta.update({"g": unit.settings["g"], "device_id": unit.board.unique_id,
                  "board": unit.board.name, "firmware": sixflip.__version__, "session": number,
                  "float_bits": 64 if 1.0 + 1e-9 != 1.0 else 32})

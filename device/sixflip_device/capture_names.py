@@ -33,9 +33,8 @@ def refuse(root):
     move(root + NEW, root + REFUSED)
 
 
-def refuse_longer(root):
-    """A session that a Ctrl-C ended, perhaps one nobody asked for, replaces no longer one."""
-    if size(root + NEW) >= size(root + REFUSED):
+def refuse_first(root):
+    """A session that a Ctrl-C ended: where there is another one's capture already, the next
+    power-up decides between the two (cut_short.py), there is no room for it now."""
+    if not size(root + REFUSED):
         refuse(root)
-    else:
-        remove(root + NEW)

@@ -26,14 +26,6 @@ def size(name):
         return 0
 
 
-def exists(name):
-    try:
-        os.stat(name)
-        return True
-    except OSError:
-        return False
-
-
 def remove(name):
     """Removes a file that may not be there."""
     try:  # noqa: SIM105 - MicroPython has no contextlib

@@ -1,7 +1,9 @@
 """After the start: the newest record that fits. Without one a calibration comes first."""
 
+import os
+
 from . import in_force
-from .flash_files import NEW, OFFERED, exists, size
+from .flash_files import NEW, OFFERED, size
 
 
 def run(unit):
@@ -9,10 +11,13 @@ def run(unit):
         from .offered import take
         take(unit)
     in_force.recall(unit)
-    if exists(unit.board.root + NEW):
+    if NEW in os.listdir(unit.board.root or "."):
         from .cut_short import file_away
-        file_away(unit.board.root)
+        try:
+            file_away(unit.board.root)
+        except OSError as e:
+            unit.events.error("the capture stays as capture.new: %s" % e, "a rename that works")
     first, unit.first = unit.first, False
     if unit.record is None and first:
-        unit.asked = True
+        unit.asked = unit.asked or "nobody"  # has: the board does by itself
     return "asked" if unit.asked else "put_in_force"

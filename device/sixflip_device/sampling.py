@@ -37,7 +37,6 @@ def _store(unit, number):
 
 def run(unit):
     remove(unit.board.root + FLAG)
-    unit.asked = False
     taken = Taken()
     taken.session = int.from_bytes(os.urandom(4), "little")
     if unit.taken is None:
@@ -45,6 +44,7 @@ def run(unit):
     else:
         from .asked_session import store_of
         store = store_of(unit, taken)
+    unit.asked = False
     free(("sixflip_device.capture_meta", "sixflip.chips.header"))
     guided = GuidedSession(unit, store)
     unit.taken = None
@@ -58,8 +58,8 @@ def run(unit):
         # after Ctrl-C too: what was captured stays readable
         taken.kept = store.finish(taken.how == "complete", guided.session.placements)
         if taken.how == "interrupted" and taken.kept:
-            from .capture_names import refuse_longer
-            refuse_longer(unit.board.root)
+            from .capture_names import refuse_first
+            refuse_first(unit.board.root)
     taken.ended = guided.ended
     taken.placements = guided.session.placements
     taken.moves = guided.session.moves

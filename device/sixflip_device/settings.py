@@ -3,6 +3,7 @@
 import json
 
 FILE = "sixflip.json"
+MOST_TEXT = 4096  # characters of it: a small heap has no room for any more
 
 # name: (default, kind, smallest, largest); None is allowed where the default is None and
 # means "as the board file says". Kinds: int, float, str, bool.
@@ -83,11 +84,14 @@ def load(root):
     """The settings in root + "sixflip.json" -> (settings, list of sentences about faults)."""
     try:
         with open(root + FILE) as f:
-            text = f.read()
+            text = f.read(MOST_TEXT + 1)
     except OSError:
         return defaults(), []
     except ValueError:  # not UTF-8
         return defaults(), ["%s is not text; defaults are used" % FILE]
+    if len(text) > MOST_TEXT:
+        return defaults(), ["%s has more than %d characters; defaults are used"
+                            % (FILE, MOST_TEXT)]
     try:
         return merge(json.loads(text))
     except (ValueError, RuntimeError):

@@ -1,11 +1,13 @@
 """First phase: the sensor, the self-test, the grace window."""
 
+import os
+
 import sixflip
 
 from . import led
 from .bus_recovery import BusLost, Sensor
 from .find_sensor import find
-from .flash_files import FLAG, exists
+from .flash_files import FLAG
 
 LOOK_AGAIN_US = 2000000
 STEP_US = 20000
@@ -49,7 +51,8 @@ def _find_sensor(unit):
         try:
             imu, report = find(unit.board, unit.settings)
         except OSError as e:
-            report = getattr(e, "report", None) or [str(e)]
+            report = getattr(e, "report", None) or [
+                "the bus fails while the chip is set up (%s)" % e]
             if told is None and unit.first:
                 _hello(unit, None, report)
             if report != told:
@@ -71,7 +74,13 @@ def _self_test(unit):
 
 def _asked_for(unit):
     """A held button or the flag file asks for a calibration."""
-    return unit.board.button() or exists(unit.board.root + FLAG)
+    if unit.board.button():
+        return True
+    try:
+        os.stat(unit.board.root + FLAG)
+        return True
+    except OSError:
+        return False
 
 
 def _grace(unit):
@@ -91,5 +100,6 @@ def run(unit):
             _grace(unit)
     except BusLost as e:
         unit.events.error(str(e), "the sensor that was there a moment ago")
-        return "start"
+        _wait(unit, LOOK_AGAIN_US, led.NO_CHIP)
+        return "" if unit.stopped else "start"
     return "" if unit.stopped else "recall"

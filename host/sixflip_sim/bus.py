@@ -148,7 +148,7 @@ class SimulatedI2C:
             raise OSError(self._data_nak)
 
     def _spoil(self, active, chip, register, buf):
-        """Faults of the data read: torn, repeated, or a wrong identification."""
+        """Faults of the data read: torn, garbled, repeated, or a wrong identification."""
         key = (chip.address, register, len(buf))
         before = self._bursts.get(key)
         fresh = bytes(buf)
@@ -158,6 +158,9 @@ class SimulatedI2C:
         if before is not None and "torn" in active:
             n = self.faults.tear_at % len(buf)
             buf[:n] = before[:n]
+        if "garbled" in active:
+            at, bits = self.faults.garble
+            buf[at % len(buf)] ^= bits
         if "wrong_id" in active:
             for i in range(len(buf)):
                 buf[i] = self.faults.wrong_id

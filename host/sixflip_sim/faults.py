@@ -11,19 +11,20 @@ One fault is a dict. "kind" is one of
     unplugged   the chip is gone for "for_ms" (for ever without), then as after power-up
     wrong_id    the identification register answers "value" (0)
     torn        the burst's first "byte" (1) bytes are those of the burst before
+    garbled     in the burst's byte "byte" (0) the bits of "bits" (128) are inverted
     duplicate   the burst is the one before once more
     late        the transaction comes "us" (30000) late
 When: "at" (transaction number, from 0), or "at_ms" (the world's time), or "every" (each n-th
 transaction), or "rate" (probability of each transaction, with "seed"). "count" (1; with
 every and rate no limit) is how many transactions are hit. "address": only this chip's. A
-fault waits for a transaction it can happen to: torn and duplicate for a burst of six or more
-registers, data_nak for a write, wrong_id for a read of the identification.
+fault waits for a transaction it can happen to: torn, garbled and duplicate for a burst of six or
+more registers, data_nak for a write, wrong_id for a read of the identification.
 """
 
 from sixflip_sim import noise
 
 KINDS = ("nak", "data_nak", "timeout", "stuck_sda", "reset", "sleep", "frozen", "unplugged",
-         "wrong_id", "torn", "duplicate", "late")
+         "wrong_id", "torn", "garbled", "duplicate", "late")
 _NO_LIMIT = 1 << 30
 
 
@@ -63,6 +64,7 @@ class Faults:
         self.pending = []
         self.spoil_reads = False
         self.tear_at = 1
+        self.garble = (0, 128)
         self.wrong_id = 0
         self.happened = []          # (transaction, kind) of everything that was injected
         self._restore = []          # (time in µs, chip, what) of what ends by itself
@@ -72,7 +74,7 @@ class Faults:
     def add(self, spec):
         fault = _Fault(spec)
         self.pending.append(fault)
-        if fault.kind in ("torn", "duplicate", "wrong_id"):
+        if fault.kind in ("torn", "garbled", "duplicate", "wrong_id"):
             self.spoil_reads = True
 
     def due(self, bus, number, address, register, n, writing):
@@ -104,6 +106,8 @@ class Faults:
             bus.clock.advance_ns(spec.get("us", 30000) * 1000)
         elif kind == "torn":
             self.tear_at = spec.get("byte", 1)
+        elif kind == "garbled":
+            self.garble = (spec.get("byte", 0), spec.get("bits", 128))
         elif kind == "wrong_id":
             self.wrong_id = spec.get("value", 0)
         elif kind == "reset":
@@ -143,7 +147,7 @@ def _fits(kind, chip, register, n, writing):
         return True
     if chip is None:
         return False
-    if kind in ("torn", "duplicate"):
+    if kind in ("torn", "garbled", "duplicate"):
         return n >= 6 and not writing
     if kind == "data_nak":
         return writing

@@ -12,8 +12,10 @@ ACROSS_DEG = 5.0
 # A gyro misaligned by this much is believed when the flips of both faces show the same.
 COMMON_DEG = 15.0
 OFF_HALF_TURN_DEG = 40.0
-# A gap this many times the mean interval hides part of the turn.
+# A gap this many times the mean interval hides part of the turn; as pose_label.has_gap().
 GAP = 5
+# A brisk flip reaches 300 deg/s: so late a sample stands for 3 degrees more than it should.
+LATE_US = 10000
 
 
 def integral(sums, n, duration_us, lsb_per_dps):
@@ -81,6 +83,9 @@ def _why_not(move, flip, turn):
         return "%d samples are missing" % move.drops
     if move.largest_gap_us * move.n > GAP * move.duration_us:
         return "a gap of %d ms in the samples" % (move.largest_gap_us // 1000)
+    if move.largest_gap_us - move.duration_us / move.n > LATE_US:
+        return "a sample came %d ms late" % (
+            (move.largest_gap_us - move.duration_us / move.n) // 1000)
     if not abs(turn - 180.0) <= OFF_HALF_TURN_DEG:
         return "turned by %.0f degrees, expected 140 to 220" % turn
     if not flip.lean_deg <= ACROSS_DEG:

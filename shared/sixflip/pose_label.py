@@ -6,13 +6,25 @@ HALF_TURN_DEG = 140.0  # 180 less 40: from here on a flip
 SAME_DEG = 40.0  # up to here the box was put back as it was
 
 
+def has_gap(move):
+    """Whether five samples or more are missing in one piece: part of a turn was not seen."""
+    return move.largest_gap_us * move.n > 5 * move.duration_us
+
+
 def turned_deg(move, bias, lsb_per_dps, axis):
-    """Degrees in 0..180 the box turned about an axis of its own, whole turns left out."""
+    """Degrees in 0..180 the box turned about an axis of its own, whole turns left out.
+
+    0 where a gap in the samples hides so much that it is neither a flip nor none: a pose is
+    taken again then, instead of a flip refused that was one.
+    """
     if move.n == 0:
         return 0.0
     mean = move.gyro_sums[axis] / move.n - bias[axis]
     angle = abs(mean / lsb_per_dps * (move.duration_us / 1e6)) % 360
-    return min(angle, 360 - angle)
+    angle = min(angle, 360 - angle)
+    if SAME_DEG < angle < HALF_TURN_DEG and has_gap(move):
+        return 0.0
+    return angle
 
 
 class PoseLabel:

@@ -109,8 +109,9 @@ class StillWindow:
         return self.ref[i] + self.s[i] / self.n
 
     def spread(self, i):
-        """n times the sum of squared deviations from the mean: an exact integer."""
-        return self.n * self.q[i] - self.s[i] * self.s[i]
+        """n times the sum of squared deviations from the mean: an exact integer, of a window
+        that has not jumped; of one that has, whose squares are clamped, 0 at least."""
+        return max(0, self.n * self.q[i] - self.s[i] * self.s[i])
 
     def variance(self, i):
         """Counts squared, unbiased."""

@@ -171,16 +171,31 @@ class TestCaptureStore(unittest.TestCase):
         self.assertEqual(len(self.content("refused.bin").placements), 3)
 
     def test_power_cut_before_the_first_pose(self):
-        store = self.store()
-        store._file.close()
+        for poses, left in ((2, 2), (0, 2)):
+            store = self.store()
+            self.session(store, poses)
+            store._file.close()
+            cut_short.file_away(self.root)
+            self.assertEqual(len(self.content("refused.bin").placements), left)
+
+    def test_power_cut_before_the_header_is_whole(self):
+        with open(self.root + "capture.new", "wb") as f:
+            f.write(b"6CAP")
         cut_short.file_away(self.root)
         self.assertEqual(os.listdir(self.root), [])
 
-    def test_power_cut_in_a_short_session_leaves_the_longer_one_before(self):
-        for poses in (6, 2):
-            store = self.store()
+    def test_power_cut_in_a_session_nobody_asked_for_leaves_one_with_more_poses(self):
+        for poses, idle in ((6, 0), (2, 5000)):
+            store = CaptureStore(self.root, b'{"session": 7, "unasked": true}', ACCEL, 50000)
+            for _ in range(idle):
+                store.add(10000, array("h", [1, -2, 16384, 0, 0, 0, 0]))
             self.session(store, poses)
             store._file.close()
             cut_short.file_away(self.root)
             self.assertEqual(os.listdir(self.root), ["refused.bin"])
             self.assertEqual(len(self.content("refused.bin").placements), 6)
+        store = self.store()
+        self.session(store, 2)
+        store._file.close()
+        cut_short.file_away(self.root)
+        self.assertEqual(len(self.content("refused.bin").placements), 2)

@@ -36,6 +36,14 @@ class TestSettings(unittest.TestCase):
             self.assertIn("sixflip.json", problems[0])
             self.assertEqual(values, settings.defaults())
 
+    def test_a_file_without_end_is_not_read_into_the_heap(self):
+        for size in (5000, 1 << 24):
+            values, problems = self.load(b'{"rate_hz": 50, "x": "' + b"x" * size)
+            self.assertEqual(values, settings.defaults())
+            self.assertIn("4096 characters", problems[0])
+        padded = b'{"rate_hz": 50}' + b" " * 4000
+        self.assertEqual(self.load(padded)[0]["rate_hz"], 50)
+
     def test_one_bad_value_leaves_the_others(self):
         bad = {"rate_hz": 0, "grace_ms": "2", "stream_hz": True, "pose_samples": 400.5,
                "sensor": "bmi160", "sda": -1, "g": 0, "board": "", "mounting": 3, "nonsense": 1}

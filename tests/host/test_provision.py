@@ -29,15 +29,17 @@ def test_second_time_copies_nothing(board, capsys):
     assert "\n0 files copied" in capsys.readouterr().out
 
 
-def test_only_the_changed_file_and_main_last(link, monkeypatch):
+def test_only_the_changed_file_and_main_last_and_then_both_in_place(link, monkeypatch):
     provision.copy(link, {}, quiet)
     link.put("sixflip/faces.py", b"damaged")
     link.put("main.py", b"damaged")
     order = []
-    put = link.put
-    monkeypatch.setattr(link, "put", lambda name, *rest: (order.append(name), put(name, *rest)))
+    stage = link.stage
+    monkeypatch.setattr(
+        link, "stage", lambda name, *rest: (order.append(name), stage(name, *rest)))
     assert provision.copy(link, {}, quiet)[0] == 2
-    assert order == ["sixflip/faces.py", "main.py"]
+    assert order == ["sixflip/faces.py", "main.py", "sixflip_update.py"]
+    assert provision.copy(link, {}, quiet)[0] == 0
 
 
 def test_settings_of_the_user_stay(link):

@@ -10,7 +10,7 @@ import hashlib
 import io
 import os
 import time
-from pathlib import Path, PurePosixPath
+from pathlib import PurePosixPath
 
 import serial
 from mpremote.transport import TransportError, TransportExecError
@@ -21,22 +21,19 @@ from ..narration import log
 from . import serial_ports
 from .board_answers import NoSpace, board_error, parse, short
 from .buffered_serial import BufferedSerial
+from .on_board_scripts import UPDATE, script
 
 ANSWER_S = 10.0  # a board hashes 100 KB in about two seconds
 LONGEST_S = 300.0  # a full flash read through a UART at 115200 Bd takes two minutes
+OUTPUT = 1 << 17  # bytes of an answer; a listing of the firmware has 20 KB
+LONGEST_FILE = 1 << 25  # the same for a file in base64: no board's flash is larger
 HANDSHAKE_S = 5.0
 ATTEMPTS = 2
 REOPEN_S = 15.0  # a USB port comes back after a reset
 CHUNK = 1024
 PATIENCE = "SIXFLIP_PATIENCE"
-ON_BOARD = Path(__file__).resolve().parent / "on_board"
+BASE64 = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/=\r\n\x04"
 LOST = (serial.SerialException, serial.SerialTimeoutException, OSError, TransportError)
-
-
-def script(name, /, **values):
-    """Source of a file of on_board/ with values assigned in front of it."""
-    head = "".join("%s = %r\n" % item for item in sorted(values.items()))
-    return head + (ON_BOARD / (name + ".py")).read_text(encoding="utf-8")
 
 
 def safe_name(name):
@@ -146,17 +143,21 @@ class MpremoteLink:
                 wire.timeout, wire.deadline = ANSWER_S * self.patience, None
         return True
 
-    def run(self, code, doing, consumer=None, timeout=None):
-        """Run code on the board; returns what it printed, as bytes."""
+    def run(self, code, doing, consumer=None, timeout=None, most=OUTPUT):
+        """Run code on the board; returns what it printed, as bytes.
+
+        A port that says more than `most` bytes is no board that runs this code.
+        """
         log.info("%s: %s", self.port, doing)
         self.enter()
         with self.guarded(doing) as transport:
-            transport.serial.deadline = time.monotonic() + LONGEST_S * self.patience
+            wire = transport.serial
+            wire.deadline, wire.most = time.monotonic() + LONGEST_S * self.patience, most
             try:
                 out, error = transport.exec_raw(code, (timeout or ANSWER_S) * self.patience,
                                                 consumer)
             finally:
-                transport.serial.deadline = None
+                wire.deadline = wire.most = None
             if error:
                 raise TransportExecError(out, error.decode("utf-8", "replace"))
             return out
@@ -202,11 +203,14 @@ class MpremoteLink:
         text = bytearray()
 
         def take(piece):
+            if piece not in BASE64:
+                self.raw = False
+                raise NoBoard("%s: %s arrived damaged; try again" % (self.port, name))
             text.extend(piece.replace(b"\x04", b""))
             if progress and piece == b"\n":
                 progress(len(text) * 3 // 4)
 
-        self.run(script("send_file", name=name), "reading " + name, take)
+        self.run(script("send_file", name=name), "reading " + name, take, most=LONGEST_FILE)
         try:
             data = base64.b64decode(bytes(text).replace(b"\r", b"").replace(b"\n", b""),
                                     validate=True)
@@ -219,6 +223,21 @@ class MpremoteLink:
 
     def put(self, name, data, progress=None):
         """Write NAME.new, compare its hash on the board, then rename it to NAME."""
+        self.stage(name, data, progress)
+        self.run(script("replace_file", name=name), "copying " + name)
+
+    def commit(self, names):
+        """Every NAME.new that was staged takes the place of NAME: all of them or none, even if
+        the power fails meanwhile, for main.py goes on with it at the next power-up."""
+        self.put(UPDATE, script("put_in_place", names=names).encode())
+        self.finish()
+
+    def finish(self):
+        """Go on with a commit that was cut off."""
+        self.run("exec(open(%r).read())" % UPDATE, "putting the files in their places", timeout=60)
+
+    def stage(self, name, data, progress=None):
+        """Write NAME.new and compare its hash on the board."""
         doing = "copying " + name
         fresh = name + ".new"
         parents = [str(p) for p in reversed(PurePosixPath(name).parents) if str(p) != "."]
@@ -241,7 +260,6 @@ class MpremoteLink:
             self.remove(fresh)
             raise NoBoard("%s: %s arrived damaged on the board; the old one is still in force, "
                           "try again" % (self.port, name))
-        self.run(script("replace_file", name=name), doing)
 
     def remove(self, name):
         self.run("import os\nos.remove(%r)" % name, "removing " + name)

@@ -8,6 +8,7 @@ class BufferedSerial:
 
     timeout   seconds that read() waits for its bytes
     deadline  time.monotonic() after which a port that never stops talking counts as quiet
+    most      bytes after which it does, None: no limit
     """
 
     PIECE = 4096
@@ -16,19 +17,19 @@ class BufferedSerial:
     def __init__(self, port, timeout=5.0):
         self.port = port
         self.timeout = timeout
-        self.deadline = None
+        self.deadline = self.most = None
         self.buffer = bytearray()
         port.write_timeout = 5.0
 
     def inWaiting(self):  # noqa: N802  the name mpremote calls
-        if self.deadline is not None and time.monotonic() > self.deadline:
+        if self.spent():
             return 0
         return len(self.buffer) + self.port.in_waiting
 
     def read(self, n=1):
         """n bytes, or fewer when they did not come in time; none after the deadline."""
         end = time.monotonic() + self.timeout
-        if self.deadline is not None and time.monotonic() > self.deadline:
+        if self.spent():
             return b""
         while len(self.buffer) < n:
             left = end - time.monotonic()
@@ -37,7 +38,14 @@ class BufferedSerial:
             self.fill(min(left, 0.5))
         taken = bytes(self.buffer[:n])
         del self.buffer[:n]
+        if self.most is not None:
+            self.most -= len(taken)
         return taken
+
+    def spent(self):
+        """Whether a port that goes on talking has had its time, or its share."""
+        return (self.deadline is not None and time.monotonic() > self.deadline
+                or self.most is not None and self.most < 0)
 
     def fill(self, wait):
         """Take in what is there, waiting up to `wait` seconds for the first byte."""

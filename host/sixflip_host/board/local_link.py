@@ -18,6 +18,7 @@ from pathlib import Path
 from ..atomic_write import read_bytes, write_bytes
 from ..errors import NoBoard, UsageError
 from .board_files import host_dir
+from .on_board_scripts import UPDATE, script
 
 END = object()
 
@@ -66,7 +67,7 @@ class LocalLink:
             name = path.relative_to(self.folder).as_posix()
             if path.is_file() and "__pycache__" not in name:
                 data = path.read_bytes()
-                wanted = hashed is None or name in hashed
+                wanted = hashed is None or name in hashed or name.removesuffix(".new") in hashed
                 found[name] = (len(data), hashlib.sha256(data).hexdigest() if wanted else None)
         return found
 
@@ -77,6 +78,16 @@ class LocalLink:
         path = self.path(name)
         path.parent.mkdir(parents=True, exist_ok=True)
         write_bytes(path, data)
+
+    def stage(self, name, data, progress=None):
+        self.put(name + ".new", data)
+
+    def commit(self, names):
+        self.put(UPDATE, script("put_in_place", names=names).encode())
+        self.finish()
+
+    def finish(self):
+        subprocess.run([sys.executable, UPDATE], cwd=self.folder, check=True)
 
     def remove(self, name):
         os.remove(self.path(name))

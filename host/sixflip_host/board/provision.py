@@ -4,11 +4,13 @@ import contextlib
 import hashlib
 import json
 
-from ..errors import NoBoard, UsageError
+from ..errors import NoBoard, SixflipError, UsageError
 from ..terminal import plain
+from .board_answers import NoSpace
 from .board_events import events
 from .board_files import board_files
 from .byte_progress import Bytes
+from .on_board_scripts import UPDATE
 from .ports import add_port, open_link
 
 HELP = "copy the firmware onto a board and test its sensor"
@@ -64,29 +66,61 @@ def merged_settings(link, present, wanted):
 
 
 def copy(link, wanted, say=print):
-    """Bring the board's files up to date; returns (number copied, number already there)."""
+    """Bring the board's files up to date; returns (number copied, number already there).
+
+    On a board that starts a firmware all new files are copied beside the old ones first and
+    take their places together: pulled out at any time it starts the old one or the new one.
+    """
     files = {name: path.read_bytes() for name, path in board_files().items()}
-    present = link.files(list(files) + [SETTINGS])
+    asked = [*files, SETTINGS]
+    present = link.files(asked)
+    if UPDATE in present:  # cut off, and not powered up since
+        link.finish()
+        present = link.files(asked)
     files[SETTINGS] = merged_settings(link, present, wanted)
-    changed = [name for name, data in files.items()
-               if present.get(name, (0, ""))[1] != hashlib.sha256(data).hexdigest()]
+    hashes = {name: hashlib.sha256(data).hexdigest() for name, data in files.items()}
+    changed = [name for name in files if present.get(name, (0, ""))[1] != hashes[name]]
     changed.sort(key=lambda name: name == "main.py")  # a half-copied board never starts it
+    starts = "main.py" in present
+    ready = [name for name in changed
+             if starts and present.get(name + ".new", (0, ""))[1] == hashes[name]]
     # What a cable pulled out in mid-copy left behind.
     for name in present:
-        if name.endswith(".new") and name[:-4] in files:
+        if name.endswith(".new") and name[:-4] in files and name[:-4] not in ready:
             link.remove(name)
-    bar = Bytes("copying", sum(len(files[name]) for name in changed))
+    todo = [name for name in changed if name not in ready]
+    with Bytes("copying", sum(len(files[name]) for name in todo)) as bar:
+        try:
+            send(link, link.stage if starts else link.put, files, todo, bar)
+        except NoSpace:
+            if not starts:
+                raise
+            say("no room for the old firmware and the new one: without one until this is done")
+            for name in ["main.py", *[name + ".new" for name in changed]]:
+                with contextlib.suppress(SixflipError, OSError):
+                    link.remove(name)
+            todo = [name for name in changed if name != "main.py"] + ["main.py"]
+            bar.at(0)
+            send(link, link.put, files, todo, bar)
+            starts = False
+    if starts and changed:
+        link.commit(changed)
+    say("%d files copied, %d already there" % (len(todo), len(files) - len(todo)))
+    return len(todo), len(files) - len(todo)
+
+
+def send(link, put, files, names, bar):
+    """put(name, data, progress) of every name, with a hint when the board goes away."""
     done = 0
-    with bar:
-        for number, name in enumerate(changed):
-            try:
-                link.put(name, files[name], lambda n, base=done: bar.at(base + n))
-            except NoBoard as error:
-                raise NoBoard("%s; %d of %d files are copied, run the same command again and it "
-                              "goes on from there" % (error, number, len(changed))) from None
-            done += len(files[name])
-    say("%d files copied, %d already there" % (len(changed), len(files) - len(changed)))
-    return len(changed), len(files) - len(changed)
+    for number, name in enumerate(names):
+        try:
+            put(name, files[name], lambda n, base=done: bar.at(base + n))
+        except NoSpace:
+            raise
+        except NoBoard as error:
+            raise NoBoard("%s; %d of %d files are copied, run the same command again and it "
+                          "goes on from there" % (error, number, len(names))) from None
+        done += len(files[name])
 
 
 NO_SENSOR = "no usable sensor"

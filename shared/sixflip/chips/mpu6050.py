@@ -113,7 +113,7 @@ class MPU6050(Registers):
     def awake(self):
         """Whether the chip still has the set-up configure() gave it. Two short reads and
         no allocation: to be asked about once a second, and when read_into says False. A
-        brown-out shows in the divider (0 after a reset) and, MPU6050 only, as sleep."""
+        brown-out shows in the filter (0 after a reset) and, MPU6050 only, as sleep."""
         self._i2c.readfrom_mem_into(self.address, SMPLRT_DIV, self._found)
         return self._found == self._setup and self._read(PWR_MGMT_1) == CLOCK_GYRO_X
 

@@ -16,7 +16,7 @@ except ImportError:
 
 _GYRO_ADDRESSES = (0x68, 0x69)
 _ACCEL_ADDRESSES = (0x53, 0x1D)
-_ATTEMPTS = const(3)            # a glitch may spoil one answer
+_ATTEMPTS = const(4)            # a glitch may spoil one answer: two have to be the same
 _NOBODY = const(0x7C)           # reserved (10-bit addressing): no chip answers there
 
 
@@ -44,14 +44,14 @@ def _answer(i2c, address, register, n=1):
 
 
 def _identify(i2c, address, register, known, mask=0xFF):
-    """Answer of the register; asked again when it is missing or not one of the known."""
+    """Answer of the register; asked until one of the known came twice in a row."""
     answer = None
     for _ in range(_ATTEMPTS):
         found = _answer(i2c, address, register)
         if found is not None:
-            answer = found[0]
-            if answer & mask in known:
+            if found[0] & mask in known and found[0] == answer:
                 break
+            answer = found[0]
     return answer
 
 

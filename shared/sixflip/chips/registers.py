@@ -80,7 +80,9 @@ def filter_code(bandwidths_hz, rate_hz):
 
 def rate_divider(rate_hz):
     """SMPLRT_DIV of InvenSense chips behind their 1 kHz filter: output rate is
-    1000 / (1 + divider), at least twice the polling rate so no poll sees a sample twice."""
+    1000 / (1 + divider), four times the polling rate where there is so much, else twice: what a
+    poll finds is then a quarter of an interval old at most, and a turn is not seen too early or
+    too late by more than that when a poll is late or the two clocks drift apart."""
     if not 1 <= rate_hz <= 500:
         raise ValueError("rate_hz is %s, expected 1 to 500" % rate_hz)
-    return min(int(500 // rate_hz) - 1, 255)
+    return max(0, min(int(250 // rate_hz) - 1, 255))

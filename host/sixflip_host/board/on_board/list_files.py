@@ -24,7 +24,9 @@ def digest(name):
 
 
 def hashed(name):
-    return wanted is None or name in wanted  # noqa: F821
+    if wanted is None or name in wanted:  # noqa: F821
+        return True
+    return name[-4:] == ".new" and name[:-4] in wanted  # noqa: F821
 
 
 def walk(folder):

@@ -1,0 +1,19 @@
+"""Runs on the board, at once or at the next power-up: every NAME.new of `names`, put in front by
+the host, takes the place of NAME; however often it is cut off, in the end all have.
+
+littlefs replaces in one step; FAT refuses to rename onto a file, so there it is removed first.
+"""
+
+import os
+
+for name in names:  # noqa: F821
+    try:
+        os.stat(name + ".new")
+    except OSError:
+        continue  # it has been done already
+    try:
+        os.rename(name + ".new", name)
+    except OSError:
+        os.remove(name)
+        os.rename(name + ".new", name)
+os.remove("sixflip_update.py")

@@ -1,0 +1,96 @@
+"""A failing bus over a whole calibration, by the thousand:
+
+    python tests/bench/bus_storm.py [--runs 10000] [--jobs 4]
+
+First every fault at every step of the protocol, for an MPU6050, an MPU6500 and both chips of a
+GY-85; then random storms of one to three kinds of faults, each once or now and then, in the
+calibration and in the power-up after it. "wrong": a correction called good that is off by more
+than it may be (tests/faults/storm.py says how much), a bias measured wrongly, a firmware that
+stops or hangs, a refusal without a reason. Exits with 1 when there is one.
+"""
+
+import argparse
+import collections
+import gc
+import os
+import sys
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tests" / "faults")]
+
+import fault_matrix
+import storm
+
+WORDS = ("good", "doubtful", "refused", "no sensor", "wrong")
+BEHIND = ((0, None), (1, 0x53), (1, 0x68), (2, None))  # sensor, address
+LEFT = 20       # runs in a piece of work
+
+
+def matrix(step):
+    """[(kind, word, reason)] of every fault at one step."""
+    found = []
+    for sensor, address in BEHIND:
+        places = fault_matrix.places(sensor)
+        for fault in fault_matrix.FAULTS:
+            outcome, happened = fault_matrix.run(sensor, step, fault, places, address)
+            if happened:
+                found.append((fault["kind"], outcome.word, outcome.reason))
+    return found
+
+
+def storms(first):
+    """[(seed, kinds, word, reason, error in mg)] of LEFT storms."""
+    found = []
+    for seed in range(first, first + LEFT):
+        outcome, kinds = storm.storm(seed)
+        found.append((seed, kinds, outcome.word, outcome.reason, outcome.error_mg))
+    return found
+
+
+def line(name, words, tail=""):
+    print("%-16s" % name + "".join("%10d" % words[w] for w in WORDS) + tail, flush=True)
+
+
+def main():
+    """Both tables; exit code 1 when a run was wrong."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--runs", type=int, default=10000)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    args = parser.parse_args()
+    wrong = []
+    head = "%-16s" % "" + "".join("%10s" % w for w in WORDS)
+    with ProcessPoolExecutor(args.jobs, initializer=gc.freeze) as pool:
+        print("One fault at a step of the protocol\n" + head)
+        total = collections.Counter()
+        for step, found in zip(fault_matrix.STEPS, pool.map(matrix, fault_matrix.STEPS)):
+            words = collections.Counter(word for _, word, _ in found)
+            total += words
+            wrong += ["%s at %s: %s" % (kind, step, reason)
+                      for kind, word, reason in found if word == "wrong"]
+            line(step, words)
+        line("all", total)
+        print("\nRandom storms with such a fault among theirs\n" + head + "  worst good, mg")
+        kinds_seen = {kind: collections.Counter() for kind in storm.KINDS}
+        total, worst = collections.Counter(), collections.Counter()
+        for found in pool.map(storms, range(0, args.runs, LEFT)):
+            for seed, kinds, word, reason, error in found:
+                total[word] += 1
+                if word == "wrong":
+                    wrong.append("storm %d, %s: %s" % (seed, " ".join(kinds), reason))
+                for kind in kinds + ["all"]:
+                    if kind in kinds_seen:
+                        kinds_seen[kind][word] += 1
+                    if word == "good":
+                        worst[kind] = max(worst[kind], error)
+        for kind in storm.KINDS:
+            line(kind, kinds_seen[kind], "%16.2f" % worst[kind])
+        line("all", total, "%16.2f" % worst["all"])
+    for one in wrong:
+        print("wrong:", one)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,212 @@
+"""What can happen to a board on a cable while a verb of the host works on it: the power fails at
+any block operation of its flash, bytes are damaged, lost, cut off or added on the way."""
+
+import contextlib
+import io
+import json
+import random
+import shutil
+
+from sixflip import capture_reader
+from sixflip.capture_blocks import BlockWriter
+from sixflip_host import cli
+from sixflip_host.board import board_link, calibrate, provision
+from sixflip_host.board.board_events import events
+from sixflip_host.board.board_link import MpremoteLink
+from sixflip_host.errors import SixflipError
+from sixflip_host.virtual.virtual_board import VirtualBoard
+
+STILL = {"sensor": "mpu6050", "seed": 3, "order": []}
+PARTS = ("sixflip_device/power_up.py", "sixflip_device/a.py", "sixflip/b.py")
+ENDS = (0, 1, 3, 4)     # exit codes of errors in one line
+QUICK = {"ANSWER_S": 2.0, "HANDSHAKE_S": 3.0, "REOPEN_S": 3.0}
+
+
+@contextlib.contextmanager
+def impatient():
+    """The link's time-outs for a board that runs as fast as the processor."""
+    before = {name: getattr(board_link, name) for name in QUICK}
+    silence, calibrate.SILENCE_S = calibrate.SILENCE_S, 3
+    for name, value in QUICK.items():
+        setattr(board_link, name, value)
+    try:
+        yield
+    finally:
+        calibrate.SILENCE_S = silence
+        for name, value in before.items():
+            setattr(board_link, name, value)
+
+
+def firmware(folder, version):
+    """A firmware of three modules that says which version each of them is; main.py is ours."""
+    hello = ('def main():\n    from sixflip_device import a\n    from sixflip import b\n'
+             '    print(\'{"event": "hello", "parts": [%d, %%d, %%d]}\' %% (a.V, b.V))\n')
+    sources = {PARTS[0]: hello % version, PARTS[1]: "V = %d\n" % version,
+               PARTS[2]: "V = %d\n" % version,
+               "sixflip/__init__.py": "", "sixflip_device/__init__.py": ""}
+    files = {}
+    for name, text in sources.items():
+        files[name] = folder / str(version) / name
+        files[name].parent.mkdir(parents=True, exist_ok=True)
+        files[name].write_text(text + "# %d\n" % version * 40)
+    main = folder / str(version) / "main.py"
+    own = (provision.board_files()["main.py"]).read_text()
+    main.write_text(own + "# %d\n" % version)
+    files["main.py"] = main
+    return files
+
+
+class Provisioned:
+    """A board with the old firmware, whose provisioning with the new one is cut off."""
+
+    def __init__(self, micropython, folder):
+        self.micropython, self.folder = micropython, folder
+        self.old, self.new = firmware(folder, 1), firmware(folder, 2)
+        with self.board("old") as board, MpremoteLink(board.port) as link:
+            self.copy(link, self.old)
+
+    def board(self, name):
+        return VirtualBoard(STILL, self.folder / (name + ".img"), micropython=self.micropython)
+
+    @staticmethod
+    def copy(link, files):
+        before, provision.board_files = provision.board_files, lambda: files
+        try:
+            return provision.copy(link, {}, lambda line: None)
+        finally:
+            provision.board_files = before
+
+    @staticmethod
+    def parts(link):
+        """Versions of the modules that main.py starts after a reset; None: it starts none."""
+        link.reset()
+        for event in events(link, 3, 10):
+            if event["event"] == "hello":
+                return event["parts"]
+        return None
+
+    def cut_at(self, operation):
+        """(parts started after the cut, whether it was cut, parts after the next provision,
+        files left that should not be).
+
+        operation: number of block operations of the flash before the power fails in one.
+        """
+        shutil.copy(self.folder / "old.img", self.folder / "cut.img")
+        with self.board("cut") as board:
+            board.cut_after = operation
+            board.power_cycle()
+            with contextlib.suppress(SixflipError), MpremoteLink(board.port) as link:
+                self.copy(link, self.new)
+            cut = board.cut_after is None
+            board.cut_after = None
+            board.power_cycle()
+            with MpremoteLink(board.port) as link:
+                found = self.parts(link)
+                self.copy(link, self.new)
+                left = [name for name in link.files([]) if name.endswith(".new")
+                        or name == "sixflip_update.py"]
+                return found, cut, self.parts(link), left
+
+
+class BadCable:
+    """For PtyRelay.corrupt: from the `first` byte on, `rate` of the pieces are damaged."""
+
+    def __init__(self, seed, rate, first=0):
+        self.random = random.Random(seed)
+        self.rate, self.left = rate, first
+        self.hits = 0
+
+    def __call__(self, piece):
+        self.left -= len(piece)
+        if self.left > 0 or not piece or self.random.random() > self.rate:
+            return piece
+        self.hits += 1
+        at = self.random.randrange(len(piece))
+        return self.random.choice((
+            piece[:at] + bytes([self.random.randrange(256)]) + piece[at + 1:],      # noise
+            piece[:at] + self.random.randbytes(20) + piece[at:],                    # more of it
+            piece[:at], piece[at:],                                                 # half a line
+            piece[:at] + b"\r\nMPY: soft reboot\r\n" + piece[at:],                  # a reset
+            b""))
+
+
+def verb(*words):
+    """(exit code, what stderr says) of a command; anything but an exit code passes through."""
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        code = cli.main(list(words))
+    return code, err.getvalue()
+
+
+def a_capture(samples=600):
+    """Bytes of a small capture.bin."""
+    data = bytearray()
+    meta = {"sensor": "mpu6050", "rate_hz": 100, "accel_lsb_per_g": 16384,
+            "gyro_lsb_per_dps": 65.5, "temp_lsb_per_c": 340, "temp_offset_c": 36.53}
+    writer = BlockWriter(data.extend, json.dumps(meta).encode())
+    for i in range(samples):
+        writer.add(10000, [i, -i, 16384, i * 7 % 100, 3, 2, -3700])
+    writer.end(False)
+    return bytes(data)
+
+
+class Pulled:
+    """A board with a capture on it, pulled over a cable that fails."""
+
+    def __init__(self, board, folder):
+        self.board, self.folder = board, folder
+        self.files = {"capture.bin": a_capture(), "sixflip.json": b'{"rate_hz": 100}\n'}
+        with MpremoteLink(board.port) as link:
+            for name, data in self.files.items():
+                link.put(name, data)
+
+    def pull(self, corrupt):
+        """(exit code, stderr) over a bad cable, then what is wrong, "" when nothing is: a file
+        here that is not the board's, or a second pull, over a good one, that does not work."""
+        self.board.relay.corrupt = corrupt
+        code, error = verb("pull", "--port", self.board.port, "-o", str(self.folder))
+        self.board.relay.corrupt = None
+        self.board.power_cycle()
+        here = self.folder / self.board.unique_id
+        for path in self.folder.rglob("*"):
+            if path.name in self.files and path.read_bytes() != self.files[path.name]:
+                return code, error, "%s is not the board's" % path.name
+            if path.name.endswith(".new"):
+                return code, error, "%s was left" % path.name
+        again, said = verb("pull", "--port", self.board.port, "-o", str(self.folder))
+        if again or not (here / "capture.csv").exists():
+            return code, error, "the next pull: exit code %d, %s" % (again, said)
+        shutil.rmtree(here)
+        return code, error, ""
+
+
+def calibrate_and_pull_out(board, pose):
+    """Pull the cable out in a calibration once that pose is taken, put it back in; the capture
+    that the board has kept of the session (capture_reader.Blocks)."""
+    board.relay.corrupt = PullOut(board, b'"event": "pose", "pose": "%s"' % pose.encode())
+    verb("calibrate", "--port", board.port)
+    board.world = dict(STILL)
+    board.unplug()
+    board.plug()
+    with MpremoteLink(board.port) as link:
+        link.reset()
+        for event in events(link, 5, 30):
+            if event["event"] in ("calibrating", "ready"):
+                break
+        return capture_reader.read(link.get("refused.bin"))
+
+
+class PullOut:
+    """For PtyRelay.corrupt: kills the board when it says so, and says nothing more."""
+
+    def __init__(self, board, when):
+        self.board, self.when, self.heard = board, when, b""
+        self.out = False
+
+    def __call__(self, piece):
+        self.heard = self.heard[-200:] + piece
+        if not self.out and self.when in self.heard:
+            self.out = True
+            self.board.world = dict(STILL)
+            self.board.kill()
+        return b"" if self.out else piece

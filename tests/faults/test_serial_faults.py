@@ -1,0 +1,81 @@
+"""A cable that fails while a board is provisioned, calibrated or pulled. tests/bench/
+serial_faults.py cuts a provisioning everywhere and has more seeds."""
+
+import random
+import time
+
+import pytest
+import serial_faults as faults
+from serial_faults import BadCable, verb
+
+from sixflip_host.board.buffered_serial import BufferedSerial
+from sixflip_host.virtual.virtual_board import VirtualBoard
+
+SESSION = {"sensor": "mpu6050", "seed": 3, "tilt_deg": 2.0}
+
+
+@pytest.fixture(autouse=True)
+def impatient():
+    with faults.impatient():
+        yield
+
+
+@pytest.fixture(scope="module")
+def provisioned(micropython, tmp_path_factory):
+    return faults.Provisioned(micropython, tmp_path_factory.mktemp("provisioned"))
+
+
+def in_one_line(code, error):
+    return code in faults.ENDS and "Traceback" not in error and (
+        code != 3 or error.count("\n") == 1)
+
+
+@pytest.mark.parametrize("operation", sorted(random.Random(4).sample(range(55), 4)))
+def test_provision_cut_off_leaves_the_old_or_the_new_firmware(provisioned, operation):
+    started, cut, after, left = provisioned.cut_at(operation)
+    assert cut
+    assert started in ([1, 1, 1], [2, 2, 2])
+    assert after == [2, 2, 2]
+    assert left == []
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_pull_over_a_bad_cable(micropython, tmp_path, seed):
+    with VirtualBoard(faults.STILL, tmp_path / "f.img", micropython=micropython) as board:
+        pulled = faults.Pulled(board, tmp_path / "here")
+        code, error, wrong = pulled.pull(BadCable(seed, 0.02, 200 * seed))
+        assert in_one_line(code, error), error
+        assert wrong == ""
+
+
+def test_provision_over_a_bad_cable_and_calibrate_cut_off(micropython, tmp_path):
+    with VirtualBoard(SESSION, tmp_path / "f.img", micropython=micropython) as board:
+        board.relay.corrupt = BadCable(1, 0.05, 3000)
+        code, error = verb("provision", "--port", board.port)
+        assert in_one_line(code, error), error
+        board.relay.corrupt = None
+        assert verb("provision", "--port", board.port)[0] == 0
+        kept = faults.calibrate_and_pull_out(board, "X+a")
+        assert len(kept.placements) >= 5
+        assert len(kept.t_us) > 2500
+
+
+class Endless:
+    """A port that talks without end."""
+
+    in_waiting = 4096
+    timeout = write_timeout = None
+
+    def read(self, n):
+        return b"x" * n
+
+
+def test_a_port_that_never_stops_talking_has_its_share():
+    wire = BufferedSerial(Endless(), timeout=60)
+    wire.most = 100000
+    taken = 0
+    started = time.monotonic()
+    while wire.inWaiting() and time.monotonic() < started + 60:
+        taken += len(wire.read(1000))
+    assert 100000 < taken < 102000
+    assert wire.read(1) == b""
