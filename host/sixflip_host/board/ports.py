@@ -1,10 +1,12 @@
 """From --port to a link: a serial port, local:DIR for this computer, or the only board there."""
 
+import os
+
 from ..errors import NoBoard
 from . import serial_ports
 
-HELP = ("serial port of the board (default: the only one plugged in), or local:DIR for the "
-        "firmware on this computer with DIR as its flash")
+HELP = ("serial port of the board (default: $SIXFLIP_PORT, or the only one plugged in), or "
+        "local:DIR for the firmware on this computer with DIR as its flash")
 
 
 def add_port(parser):
@@ -14,7 +16,7 @@ def add_port(parser):
 def open_link(port=None):
     """A Link; NoBoard with one line when there is none or the choice is not clear."""
     if port is None:
-        port = only_board()
+        port = os.environ.get("SIXFLIP_PORT") or only_board()
     if port.startswith("local:"):
         from .local_link import LocalLink
         return LocalLink(port[len("local:"):] or None)

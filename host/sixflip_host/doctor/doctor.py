@@ -32,7 +32,7 @@ def add_arguments(parser):
 
 def run(args):
     """Look, and say; 0 without a fault, 1 with one, 3 where there is no board or no chip."""
-    found = look(args.port)
+    found = look(args.port or os.environ.get("SIXFLIP_PORT"))
     if args.json:
         print(json.dumps({"format": 1, "kind": "sixflip doctor",
                           "ok": not any(one.state == FAULT for one in found),

@@ -82,10 +82,10 @@ def turns(session, nominal):
 def _turns(session, nominal):
     rest = np.array([session.gyro[session.placement == p].mean(axis=0)
                      for p in np.unique(session.placement)])
-    bias = np.median(rest, axis=0)
     found = []
     for place in range(len(session.runs) - 1):
-        turn = Turn(session, nominal, bias, place)
+        # What drifts, or feels gravity, is halfway between the rests before and after.
+        turn = Turn(session, nominal, 0.5 * (rest[place] + rest[place + 1]), place)
         gaps = turn.dt.max() if len(turn.dt) else 1.0
         if turn.railed or gaps > 5.0 / session.rate or turn.turned < LEAST_DEG:
             continue
