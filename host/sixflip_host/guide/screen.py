@@ -24,7 +24,7 @@ HELP = (
     "which face is up, and when it has enough. Then turn it by half a turn, flat on",
     "the table, same face up. Faces may come in any order.",
     "",
-    "  r  take a face again, both placements    u  take the last placement back",
+    "  r  take a face again, both placements    u  the same for the last face taken",
     "  q  quit; sixflip calibrate --continue goes on with what was captured",
     "  Ctrl-C  the same, without a question",
     "",
