@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 export SIXFLIP_CACHE ?= $(CURDIR)/.cache
 
 .PHONY: help setup micropython demo test test-qemu test-pico size check bench bench-accuracy fidelity blind \
-	reproduce package.json clean
+	blind-studies reproduce package.json clean
 
 help:
 	@echo "make demo            a virtual board calibrates itself and the host checks it (no hardware)"
@@ -20,6 +20,7 @@ help:
 	@echo "make bench           that, and every other benchmark"
 	@echo "make fidelity        the simulator against real recordings"
 	@echo "make blind           the diagnosis on sealed cases of an independent generator"
+	@echo "make blind-studies   real noise, real recordings, effects taken out, captures recommended"
 	@echo "make reproduce       the paper's tables 3 and 4"
 
 setup: $(VENV)/.installed
@@ -64,6 +65,12 @@ fidelity: setup
 blind: setup
 	@$(BIN)/python tests/blind/blind_run.py --count $(or $(COUNT),220) --seed $(or $(SEED),1) \
 		--jobs $(or $(JOBS),2)
+
+# every study to its end, whatever the others say; JOBS=2
+blind-studies: setup
+	@failed=0; for each in unattended null_study left_out resolved; do \
+		echo; echo "== $$each"; $(BIN)/python tests/blind/studies/$$each.py \
+		$$([ $$each = unattended ] || echo --jobs $(or $(JOBS),2)) || failed=1; done; exit $$failed
 
 reproduce: setup
 	@$(BIN)/sixflip reproduce
