@@ -136,6 +136,8 @@ def stop(link):
                 kept = event.get("samples") or 0
             elif event["event"] in ("saved", "ready", "stopped"):
                 break
+    if getattr(link, "thrown_away", False):
+        return "stopped; of a replay nothing is kept"
     if kept:
         return ("stopped; the %s samples so far stay on the board: sixflip calibrate --continue "
                 "goes on with them, sixflip pull fetches them" % kept)

@@ -22,6 +22,8 @@ class ReplayLink(LocalLink):
     speed  seconds of the capture a second; None: as fast as it goes
     """
 
+    thrown_away = True
+
     def __init__(self, path, speed=1.0):
         wanted = checked(path)
         self.temporary = tempfile.mkdtemp(prefix="sixflip-replay-")
