@@ -39,6 +39,13 @@ class Window(unittest.TestCase):
         self.assertEqual(window.us, 250000)
         self.assertFalse(window.jumped)
 
+    def test_a_window_that_jumped_has_no_negative_variance(self):
+        rows = [[0, 0, 0, 0, 0, 0, 0]] + [[30000, 0, 0, 0, 0, 0, 0]] * 24
+        window = StillWindow(25, 32767, 32767, 10000)
+        fill(window, rows)
+        self.assertTrue(window.jumped)
+        self.assertEqual(window.spread(0), 0)
+
     def test_a_second_window_starts_anew(self):
         window = StillWindow(25, 32767, 32767, 10000)
         fill(window, noisy_rows(25, at=5000))

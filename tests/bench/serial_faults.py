@@ -1,0 +1,88 @@
+"""A cable that fails while a board is provisioned or pulled:
+
+    python tests/bench/serial_faults.py [--every 1] [--pulls 30]
+
+A provisioning with a new firmware is cut off by a power failure in each block operation of the
+flash in turn; then the board is started, provisioned again and started again. A pull goes over
+a cable that damages bytes, loses and adds some, and cuts lines; then a second one over a good
+cable. Exits with 1 when the board starts neither the old nor the new firmware, when anything
+does not mend, or when a file here is not the board's.
+"""
+
+import argparse
+import collections
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tests" / "faults"), str(ROOT / "shared"), str(ROOT / "host")]
+
+import serial_faults as faults
+
+from sixflip_host.virtual import micropython_fetch
+from sixflip_host.virtual.virtual_board import VirtualBoard
+
+STARTED = {(1, 1, 1): "the old firmware", (2, 2, 2): "the new firmware"}
+
+
+def provisioned(micropython, every):
+    """Counts of what a board starts after each cut; sentences on what is wrong."""
+    counts, wrong = collections.Counter(), []
+    with tempfile.TemporaryDirectory() as folder:
+        board = faults.Provisioned(micropython, Path(folder))
+        operation, cut = 0, True
+        while cut:
+            started, cut, after, left = board.cut_at(operation)
+            counts["cuts"] += cut
+            what = STARTED.get(tuple(started or ()), "neither, but %s" % started)
+            counts[what] += cut
+            if started is None or what not in STARTED.values():
+                wrong.append("cut at operation %d: the board starts %s" % (operation, what))
+            if after != [2, 2, 2] or left:
+                wrong.append("cut at operation %d: then %s, left %s" % (operation, after, left))
+            operation += every
+    return counts, wrong
+
+
+def pulled(micropython, pulls):
+    """Counts of exit codes; sentences on what is wrong."""
+    counts, wrong = collections.Counter(), []
+    with tempfile.TemporaryDirectory() as folder, VirtualBoard(
+            faults.STILL, Path(folder) / "f.img", micropython=micropython) as board:
+        pull = faults.Pulled(board, Path(folder) / "here")
+        for seed in range(pulls):
+            cable = faults.BadCable(seed, (0.01, 0.05, 0.2)[seed % 3], 150 * seed)
+            code, error, found = pull.pull(cable)
+            counts["exit code %d" % code] += 1
+            if found or code not in faults.ENDS or "Traceback" in error:
+                wrong.append("pull %d: exit code %d, %s %s" % (seed, code, error.strip(), found))
+    return counts, wrong
+
+
+def main():
+    """Both tables; exit code 1 when something was lost."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--every", type=int, default=1, help="each n-th operation is cut")
+    parser.add_argument("--pulls", type=int, default=30)
+    args = parser.parse_args()
+    micropython = micropython_fetch.find()
+    if micropython is None:
+        raise SystemExit(micropython_fetch.MISSING)
+    broken = []
+    with faults.impatient():
+        for title, (counts, wrong) in (
+                ("provisioning cut off", provisioned(micropython, args.every)),
+                ("pull over a bad cable", pulled(micropython, args.pulls))):
+            print(title)
+            for what, n in sorted(counts.items()):
+                print("  %-20s%6d" % (what, n))
+            print("  %-20s%6d" % ("wrong", len(wrong)), flush=True)
+            broken += wrong
+    for one in broken:
+        print("wrong:", one)
+    return 1 if broken else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
