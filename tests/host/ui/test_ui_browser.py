@@ -172,6 +172,28 @@ def test_what_a_board_says_is_text_and_nothing_else(browser, tmp_path):
         assert browser.title == "Sixflip" and quiet(browser)
 
 
+def test_a_dozen_tabs_share_one_board(browser, tmp_path):
+    """A browser keeps six connections to a server; a tab that nobody sees holds none."""
+    link = ScriptedLink()
+    with Served(lambda told: Bench(lambda: link, tmp_path, told, keep=False)) as served:
+        first = browser.current_window_handle
+        browser.get(served.server.url)
+        for _ in range(11):
+            browser.switch_to.new_window("tab")
+            browser.get("http://127.0.0.1:%d/" % served.server.port)
+        until(lambda: text(browser, "head") == "ready to begin")
+        click(browser, "start")
+        until(lambda: link.resets == 1)
+        link.say("calibrating", missing=["Z+a"], plan=False)
+        link.say("state", state="moving", live=[0, 0, 1000, 0, 0, 0])
+        for handle in browser.window_handles:
+            browser.switch_to.window(handle)
+            until(lambda: "Z+ up" in text(browser, "head"))
+            if handle != first:
+                browser.close()
+        browser.switch_to.window(first)
+
+
 def test_the_box_follows_gravity_and_the_gyro(browser, tmp_path):
     """Against the drawings of the terminal, which are right-handed by their own test."""
     with Served(lambda told: Bench(ScriptedLink, tmp_path, told, keep=False)) as served:

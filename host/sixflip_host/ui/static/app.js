@@ -24,17 +24,28 @@ const headers = { "X-Sixflip-Token": SECRET };
 
 // -- what the server says
 
+// A browser keeps few connections to one server: a tab that nobody sees lets go of its own.
+const seen = () => new Promise((done) => {
+  if (!document.hidden) done();
+  else document.addEventListener("visibilitychange", () => seen().then(done), { once: true });
+});
+
 async function listen() {
   for (;;) {
+    await seen();
+    const stop = new AbortController(), hide = () => stop.abort();
+    document.addEventListener("visibilitychange", hide, { once: true });
     try {
-      const answer = await fetch("/api/states", { headers });
+      const answer = await fetch("/api/states", { headers, signal: stop.signal });
       if (answer.status === 403) {
         problem((await answer.json()).error);
         say("link", "refused");
         return;
       }
       await read(answer.body.getReader());
-    } catch { /* the server has gone; it is asked again */ }
+    } catch { /* the server has gone, or nobody looks; it is asked again */ }
+    document.removeEventListener("visibilitychange", hide);
+    if (stop.signal.aborted) continue;
     say("link", "the server does not answer; is sixflip ui still running?");
     await new Promise((done) => setTimeout(done, 1000));
   }
