@@ -62,7 +62,13 @@ def never(cause, label):
         return None
     if here["visible"] < SILENT:
         return "%s %s is silent in this protocol" % (cause["sensor"], cause["effect"])
-    for other, index in here["aliases"].items():
+    aliases = dict(here["aliases"])
+    for effect, theory in zip(label["effects"], label["judged"]["effects"]):
+        if effect["effect"] == cause["effect"] and fits(cause, effect):
+            # it is there: an alias counts if it could also have done just this
+            for other, index in theory.get("aliases", {}).items():
+                aliases[other] = min(index, aliases.get(other, 0))
+    for other, index in aliases.items():
         if index > ALIASED and other not in label["options"]:   # --without: it could not be told
             return "%s %s is an alias of %s (%.3f)" % (cause["sensor"], cause["effect"], other,
                                                        index)
