@@ -71,7 +71,7 @@ def causes(data, options, chosen):
 
 
 FORM = 0.05  # of an effect's score that its true form may be off by
-KIN = ({"temperature", "time"}, {"history", "time_since_move"}, {"orientation"})
+KIN = ({"temperature", "time"}, {"history", "time_since_move"}, {"orientation"}, {"amplitude"})
 
 
 def _form_of(cause, larger):

@@ -22,6 +22,8 @@ DRIFT_NATS = 6.0
 JUMP_NATS = 3.0  # what a jump at an unknown time costs in each session
 LEAST_BOX_DEG = 0.1  # below that a placement by hand is as crooked
 KEPT_SHARE = 0.6  # of the excess, below which a name is no explanation where noise does not fit
+MOST_OF_ONE = 2  # causes that one session, held out against itself, can be believed to show
+STAND_IN = 0.8  # of the gain of several names
 OWN_SHARE = 0.5  # of a bent effect that must be the effect itself
 SESSION_NATS = 8.0  # log evidence at which what is left varies in time beyond doubt
 
@@ -99,6 +101,25 @@ class SensorGap:
         named = [o for o in self.options if not o.generic]
         self.chosen = selection.forward(self.data, named, self.limits.named)
         self.causes = classes.causes(self.data, named, self.chosen)
+        if self._stands_in():
+            self.chosen, self.causes = [], []
+
+    def _stands_in(self):
+        """True when something smooth in one variable, nameless, does about as well as all the
+        names found, none of which has to do with that variable: they only stand in for it."""
+        if not self.causes:
+            return False
+        if self.same_session and len(self.causes) > MOST_OF_ONE:
+            return True
+        domains = {regressors.DOMAIN[c.effect] for c in self.causes}
+        columns = np.concatenate([c.columns for c in self.chosen])
+        prior = np.concatenate([c.prior for c in self.chosen])
+        total = float((which.score(self.data, columns, prior) - self.data.base)[0])
+        enough = (STAND_IN * total if len(self.causes) > 1 else total + DRIFT_NATS)
+        return any(gain > enough and not any({domain, d} <= kin for kin in classes.KIN
+                                             for d in domains)
+                   for domain, (gain, _) in adequacy.generic_gains(
+                       self.data, self.options, []).items())
 
     def _box(self):
         """Crooked faces: tested beside the causes found, with the box no longer a nuisance.
