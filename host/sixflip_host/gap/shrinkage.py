@@ -13,6 +13,7 @@ import numpy as np
 from . import which
 
 Z_90 = 1.6448536269514722
+FLOOR = 0.05  # of the noise's variance, standard deviation: it is estimated, too
 
 
 class Shrinkage:
@@ -58,14 +59,14 @@ def of(data, chosen, index):
 
 def fieller(gap, closed, number, strength, along):
     """(share, (low, high)); (share or None, None) where the interval is unbounded."""
-    variance_gap = 2.0 * number + 4.0 * max(gap, 0.0)
+    variance_gap = 2.0 * number + 4.0 * max(gap, 0.0) + (FLOOR * number) ** 2
     variance_closed, both = 4.0 * strength, 4.0 * along
     z2 = Z_90 * Z_90
     a = gap * gap - z2 * variance_gap
     b = -2.0 * (gap * closed - z2 * both)
     c = closed * closed - z2 * variance_closed
     root = b * b - 4.0 * a * c
-    if a <= 0.0 or root < 0.0:
+    if a <= 0.0 or root < 0.0 or closed <= 0.0:  # nothing closed: too little to learn it from
         return None, None
     low, high = (-b - math.sqrt(root)) / (2 * a), (-b + math.sqrt(root)) / (2 * a)
     return min(closed / gap, 1.0), (min(low, 1.0), min(high, 1.0))

@@ -5,7 +5,7 @@ from . import plausible
 
 SIGNIFICANT = 3.0  # standard deviations at which an axis is said to have the effect
 Z_90 = 1.645
-FORM = 0.03  # of a size, standard deviation: parts do not have the library's very curves
+FORM = 0.05  # of a size, standard deviation: parts do not have the library's very curves
 
 
 def fill(cause, data, levels, chip, kind):
