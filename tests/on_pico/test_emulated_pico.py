@@ -33,7 +33,7 @@ def test_comes_up_corrected(calibrated_flash):
         for event in events(link, 20, 60):
             if event["event"] == "sample":
                 vectors.append(event["a"])
-            if len(vectors) == 25:
+            if len(vectors) == 12:
                 break
         assert board.state()["cuts"] == 0
     mean = [sum(v[axis] for v in vectors) / len(vectors) for axis in range(3)]

@@ -41,7 +41,7 @@ class Pace(NamedTuple):
 USUAL = Pace({}, {}, ("Z+a", "Z-a", "X+a", "X-a", "Y+a", "Y-a"), demo_truth.STREAM_HZ)
 PACE = {"virtual": USUAL, "local": USUAL,
         # a sample costs the emulated Pico a third of a second: few of them, and quick moves
-        "pico": Pace({"rate_hz": 25, "pose_samples": 50, "grace_ms": 100},
+        "pico": Pace({"rate_hz": 25, "pose_samples": 50, "grace_ms": 100, "rest_s": 2},
                      {"dwell_s": 4.2, "move_s": 1.0}, ("Z+a", "X-a", "Y+a"), 10)}
 
 
