@@ -70,12 +70,17 @@ class GuidedSession:
         session = self.session
         for code in session.withdrawn:
             self._store.withdraw(code)
-        if event == machine.POSE or event == machine.COMPLETE:
+        taken = event == machine.POSE or event == machine.COMPLETE
+        if taken:
             self._store.pose(session.placements[-1])
-            self._teller.pose(session.placements[-1])
-        elif event == machine.REFUSED:
-            self._teller.refused()
-        self._teller.state()
+        try:
+            if taken:
+                self._teller.pose(session.placements[-1])
+            elif event == machine.REFUSED:
+                self._teller.refused()
+            self._teller.state()
+        except MemoryError:
+            pass  # a line less is told; of the session nothing is lost
         if event == machine.TIMED_OUT:
             self.ended = "timed out: no new pose for %d s (%s); still missing: %s" % (
                 session.timeout_s, session.obstacle, " ".join(names(session.missing())))
@@ -92,6 +97,9 @@ class GuidedSession:
         if command["cmd"] == "stop":
             self.ended = "stopped by the host"
             return "stopped"
-        from .session_commands import obey  # most sessions hear none
-        obey(command, self._unit, self.session, self._store, self._teller)
+        try:
+            from .session_commands import obey  # most sessions hear none
+            obey(command, self._unit, self.session, self._store, self._teller)
+        except MemoryError:
+            self._unit.events.error("no memory for this now", "fewer placements taken")
         return ""

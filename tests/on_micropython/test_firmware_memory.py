@@ -104,3 +104,19 @@ def test_the_firmwares_sampling_loop_allocates_nothing(micropython, tmp_path, se
     assert locked["turns"] > 0.9 * locked["of"]
     assert len([e for e in events if e["event"] == "pose"]) == 12
     assert only(events, "ready")["corrected"]
+
+
+@pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])
+def test_a_late_redo_costs_no_session_in_96_kb(micropython, tmp_path, sensor):
+    """It is done, or said to have no room; what was captured is there either way."""
+    flash(tmp_path, sensor)
+    _, harness = power_up(micropython, tmp_path, 1 << 20, "redo_late")
+    for name in ("record_a.bin", "capture.bin", "refused.bin"):
+        (tmp_path / name).unlink(missing_ok=True)
+    events, _ = power_up(micropython, tmp_path, HEAP + harness - bare(micropython, tmp_path),
+                         "redo_late")
+    answers = [e for e in events if e["event"] == "redo" or e.get("what", "").startswith("no mem")]
+    assert len(answers) == 1
+    kept = "refused.bin" if answers[0]["event"] == "redo" else "capture.bin"
+    assert (tmp_path / kept).exists()
+    assert only(events, "capture")["kept"] > 9000
