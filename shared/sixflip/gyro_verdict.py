@@ -32,6 +32,12 @@ def judge_gyroscope(r):
         if r.flips[face]["used"] and not abs(angle - 180.0) <= ANGLE_OFF_DEG:
             return "doubtful", ("the flips of an axis disagree: %s turned by %.1f degrees if "
                                 "the others were half turns, 3 is the limit" % (face, angle))
+    # One flip is right or wrong by itself: late or repeated samples may have shortened it.
+    unseen = [k for k in "XYZ" if len([1 for face in r.flips if face[0] == k
+                                       and r.flips[face]["used"]]) < 2]
+    if unseen:
+        return "doubtful", ("one flip alone about %s, nothing to hold its angle against"
+                            % " and ".join(unseen).lower()) + tail
     scale = max([r.sigma[k][k] for k in range(3)])
     if not scale <= 0.01:
         return "doubtful", "the scale is known to %.1f %% only, 1 is the limit" % (100 * scale)

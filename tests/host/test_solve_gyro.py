@@ -83,7 +83,8 @@ def test_time_jumps_inside_a_flip(tmp_path, capsys):
     answer, words = solve(tmp_path, capsys, capture)
     gyro = answer["gyro"]
     assert [face for face, flip in gyro["flips"].items() if not flip["used"]] == ["Z-"]
-    assert gyro["flips"]["Z-"]["reason"] and gyro["verdict"] == "good"
+    assert gyro["flips"]["Z-"]["reason"] and gyro["verdict"] == "doubtful"
+    assert "one flip alone about z" in gyro["reason"]
     assert "the timestamps jump in 1 place, the farthest by 7.01 s after sample" in words
 
 
