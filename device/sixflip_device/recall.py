@@ -11,7 +11,11 @@ def run(unit):
         from .offered import take
         take(unit)
     in_force.recall(unit)
-    if NEW in os.listdir(unit.board.root or "."):
+    try:
+        os.stat(unit.board.root + NEW)
+    except OSError:
+        pass  # no session was cut short
+    else:
         from .cut_short import file_away
         try:
             file_away(unit.board.root)

@@ -106,7 +106,8 @@ def test_provision_puts_the_firmware_there_and_tests_the_chip(tmp_path, monkeypa
             monkeypatch.setenv(name, value)
         folder = tmp_path / "flash"
         code = cli.main(["provision", "--board", "raspberry_pi", "--port", "local:%s" % folder])
-    said = capsys.readouterr().out.splitlines()[-1]
+    said = [line for line in capsys.readouterr().out.splitlines()
+            if line.startswith("self-test") or "GY-85" in line][-1]
     # a busy computer may not keep up, which is all the self-test may find
     assert (code, said[:20]) == (0, "self-test ok: GY-85:") or "GY-85" in said and (
         "too slow" in said and ";" not in said), said
