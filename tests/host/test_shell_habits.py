@@ -24,7 +24,7 @@ from sixflip_host.cli import VERBS, main
 from sixflip_host.history import remember, store
 
 COMMAND = [sys.executable, "-m", "sixflip_host"]
-ENVIRONMENT = dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path))
+ENVIRONMENT = dict(os.environ)
 
 
 @pytest.fixture(scope="module")

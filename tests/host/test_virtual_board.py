@@ -132,8 +132,7 @@ def test_the_board_dies_with_its_host(micropython, tmp_path):
             "with VirtualBoard({'order': []}, sys.argv[1], micropython=sys.argv[2]) as board:\n"
             "    print(board.child.pid, flush=True)\n    time.sleep(60)\n")
     host = subprocess.Popen([sys.executable, "-c", code, str(tmp_path / "f.img"), micropython],
-                            stdout=subprocess.PIPE, text=True,
-                            env=dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path)))
+                            stdout=subprocess.PIPE, text=True)
     pid = int(host.stdout.readline())
     host.kill()
     host.communicate()

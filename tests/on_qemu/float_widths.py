@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE / "on_board"), str(HERE.parent / "shared")]
+sys.path += [str(HERE / "on_board"), str(HERE.parent / "shared")]
 
 from flipped_box import gravities, gyro_session, placements  # noqa: E402
 from solved_quantities import quantities  # noqa: E402

@@ -17,7 +17,7 @@ from sixflip_sim.tape import open_tape
 from .firmware import POSE_SAMPLES, tape_bursts
 from .simulated_sums import vector_error_mg
 
-sys.path[:0] = [str(Path(__file__).resolve().parent / "on_board")]
+sys.path.append(str(Path(__file__).resolve().parent / "on_board"))
 
 from taped_board import TapedBoard  # noqa: E402  also runs on the board
 
