@@ -11,6 +11,7 @@ from . import in_force, power_up
 from .bus_recovery import READ, Sensor
 from .events import Events
 from .find_sensor import find
+from .repeats import Repeats
 
 
 class CorrectedImu:
@@ -22,7 +23,8 @@ class CorrectedImu:
     report    called with the firmware's event lines (print, for one); None: silence
 
     calibrated says whether there is a record for this sensor, reason why not. Without one
-    read() answers with the data sheet's scale. OSError when the sensor cannot be reached.
+    read() answers with the data sheet's scale. OSError when the sensor cannot be reached, or
+    hangs.
     """
 
     def __init__(self, board=None, rest_s=None, report=None):
@@ -36,6 +38,7 @@ class CorrectedImu:
         unit.events = Events(report or (lambda line: None))
         imu, _ = find(board, values)
         unit.sensor = Sensor(board, imu, values, unit.events)
+        self._repeats = Repeats(unit.sensor, unit.events)
         self._sample = array("h", [0] * 7)
         self._out = array("f", [0.0] * 6)
         self.reason = in_force.recall(unit)
@@ -55,6 +58,8 @@ class CorrectedImu:
         # a chip that had to be set up anew delivers from the next sample on
         for _ in range(3):
             if self._unit.sensor.read_into(self._sample) == READ:
+                if self._repeats.seen(self._sample):
+                    raise OSError("the sensor hangs: it repeats its reading")
                 return self._sample
             self._unit.board.sleep_us(20000)
         raise OSError("the sensor answers, but not with samples")

@@ -5,6 +5,7 @@ from array import array
 from . import led
 from .bus_recovery import BusLost
 from .pacer import Pacer
+from .repeats import Repeats
 
 LISTEN_US = 100000
 
@@ -62,11 +63,12 @@ def _stream(unit):
     board = unit.board
     rate_hz = unit.settings["rate_hz"]
     pacer = Pacer(board, unit.sensor, rate_hz)
+    repeats = Repeats(unit.sensor, unit.events)
     lamp = led.Lamp(board, rate_hz)
     lamp.show(led.RAW if unit.record is None else led.CALIBRATED)
     unit.events.emit("ready", corrected=unit.record is not None, stream_hz=unit.stream_hz)
     sample = array("h", [0] * 7)
-    t_us = since_heard = 0
+    t_us = since_heard = unseen_us = 0
     due = 500000  # parts of a sample that are due, in millionths; half a one allows for jitter
     pressed = True  # a button still held from before asks for nothing
     while True:
@@ -78,12 +80,16 @@ def _stream(unit):
         lamp.step()
         if unit.output is None:  # so has a command left it
             unit.output = _output(unit)
-        unit.output.step(sample, dt)
-        hz = unit.stream_hz
-        due += dt * hz
-        if hz and due >= 1000000:
-            due = min(due - 1000000, 1000000)  # late is late
-            unit.output.send(t_us, sample)
+        if repeats.seen(sample):
+            unseen_us += dt
+        else:
+            unit.output.step(sample, unseen_us + dt)
+            unseen_us = 0
+            hz = unit.stream_hz
+            due += dt * hz
+            if hz and due >= 1000000:
+                due = min(due - 1000000, 1000000)  # late is late
+                unit.output.send(t_us, sample)
         if since_heard >= LISTEN_US:
             since_heard = 0
             held = board.button()

@@ -2,11 +2,13 @@
 
 import errno
 
+from sixflip_sim import noise
 from sixflip_sim.faults import Faults
 
 EREMOTEIO = 121                     # Linux; MicroPython's errno does not know it
 _TIMEOUT_NS = 50000000              # what machine.I2C waits by default
 _SILENT = None
+_SHAKEN = noise.key(1, 0x620)
 
 # (nobody acknowledges the address, written data not acknowledged); a held line is always
 # ETIMEDOUT by the name of the interpreter's errno. Sources: MicroPython 1.21-1.25
@@ -147,6 +149,16 @@ class SimulatedI2C:
         if self._data_nak is not _SILENT:
             raise OSError(self._data_nak)
 
+    def _shake(self, buf, high):
+        """Noise on every word; high: which byte of a word is the high one."""
+        for i in range(0, len(buf) - 1, 2):
+            word = buf[i + high] << 8 | buf[i + 1 - high]
+            off = noise.gauss(_SHAKEN, 16 * self.transactions + i)
+            word = (word ^ 0x8000) - 0x8000 + int(self.faults.noise * off)
+            word = max(-32768, min(32767, word))
+            buf[i + high] = word >> 8 & 0xFF
+            buf[i + 1 - high] = word & 0xFF
+
     def _spoil(self, active, chip, register, buf):
         """Faults of the data read: torn, garbled, repeated, or a wrong identification."""
         key = (chip.address, register, len(buf))
@@ -161,6 +173,8 @@ class SimulatedI2C:
         if "garbled" in active:
             at, bits = self.faults.garble
             buf[at % len(buf)] ^= bits
+        if "noise" in active:
+            self._shake(buf, chip.high_byte)
         if "wrong_id" in active:
             for i in range(len(buf)):
                 buf[i] = self.faults.wrong_id

@@ -14,17 +14,18 @@ One fault is a dict. "kind" is one of
     garbled     in the burst's byte "byte" (0) the bits of "bits" (128) are inverted
     duplicate   the burst is the one before once more
     late        the transaction comes "us" (30000) late
+    noise       the burst's words are off at random, "counts" (200) being their deviation
 When: "at" (transaction number, from 0), or "at_ms" (the world's time), or "every" (each n-th
 transaction), or "rate" (probability of each transaction, with "seed"). "count" (1; with
 every and rate no limit) is how many transactions are hit. "address": only this chip's. A
-fault waits for a transaction it can happen to: torn, garbled and duplicate for a burst of six or
-more registers, data_nak for a write, wrong_id for a read of the identification.
+fault waits for a transaction it can happen to: torn, garbled, duplicate and noise for a burst of
+six or more registers, data_nak for a write, wrong_id for a read of the identification.
 """
 
 from sixflip_sim import noise
 
 KINDS = ("nak", "data_nak", "timeout", "stuck_sda", "reset", "sleep", "frozen", "unplugged",
-         "wrong_id", "torn", "garbled", "duplicate", "late")
+         "wrong_id", "torn", "garbled", "duplicate", "late", "noise")
 _NO_LIMIT = 1 << 30
 
 
@@ -66,6 +67,7 @@ class Faults:
         self.tear_at = 1
         self.garble = (0, 128)
         self.wrong_id = 0
+        self.noise = 200
         self.happened = []          # (transaction, kind) of everything that was injected
         self._restore = []          # (time in µs, chip, what) of what ends by itself
         for spec in specs:
@@ -74,7 +76,7 @@ class Faults:
     def add(self, spec):
         fault = _Fault(spec)
         self.pending.append(fault)
-        if fault.kind in ("torn", "garbled", "duplicate", "wrong_id"):
+        if fault.kind in ("torn", "garbled", "duplicate", "wrong_id", "noise"):
             self.spoil_reads = True
 
     def due(self, bus, number, address, register, n, writing):
@@ -108,6 +110,8 @@ class Faults:
             self.tear_at = spec.get("byte", 1)
         elif kind == "garbled":
             self.garble = (spec.get("byte", 0), spec.get("bits", 128))
+        elif kind == "noise":
+            self.noise = spec.get("counts", 200)
         elif kind == "wrong_id":
             self.wrong_id = spec.get("value", 0)
         elif kind == "reset":
@@ -147,7 +151,7 @@ def _fits(kind, chip, register, n, writing):
         return True
     if chip is None:
         return False
-    if kind in ("torn", "garbled", "duplicate"):
+    if kind in ("torn", "garbled", "duplicate", "noise"):
         return n >= 6 and not writing
     if kind == "data_nak":
         return writing

@@ -1,12 +1,14 @@
 """A failing bus over a whole calibration, by the thousand:
 
-    python tests/bench/bus_storm.py [--runs 10000] [--jobs 4]
+    python tests/bench/bus_storm.py [--runs 10000] [--first 0] [--jobs 4]
 
 First every fault at every step of the protocol, for an MPU6050, an MPU6500 and both chips of a
-GY-85; then random storms of one to three kinds of faults, each once or now and then, in the
-calibration and in the power-up after it. "wrong": a correction called good that is off by more
-than it may be (tests/faults/storm.py says how much), a bias measured wrongly, a firmware that
-stops or hangs, a refusal without a reason. Exits with 1 when there is one.
+GY-85; then noise, late, repeated, torn and lost samples all through a calibration, at six rates;
+then random storms of one to three kinds of faults, each once or now and then, in the
+calibration and in the power-up after it; the seeds are those from --first on. "wrong": a
+correction called good that is off by more than it may be (tests/faults/storm.py says how much),
+a bias measured wrongly, a stream that shows another g, a firmware that stops or hangs, a refusal
+without a reason. Exits with 1 when there is one.
 """
 
 import argparse
@@ -26,6 +28,7 @@ import storm
 WORDS = ("good", "doubtful", "refused", "no sensor", "wrong")
 BEHIND = ((0, None), (1, 0x53), (1, 0x68), (2, None))  # sensor, address
 LEFT = 20       # runs in a piece of work
+EACH = 12       # runs of a kind at a rate
 
 
 def matrix(step):
@@ -37,6 +40,16 @@ def matrix(step):
             outcome, happened = fault_matrix.run(sensor, step, fault, places, address)
             if happened:
                 found.append((fault["kind"], outcome.word, outcome.reason))
+    return found
+
+
+def throughout(kind):
+    """[(rate, seed, word, reason)] of one kind at every rate."""
+    found = []
+    for rate in storm.RATES:
+        for seed in range(EACH):
+            outcome = storm.throughout(kind, rate, seed)
+            found.append((rate, seed, outcome.word, outcome.reason))
     return found
 
 
@@ -57,6 +70,7 @@ def main():
     """Both tables; exit code 1 when a run was wrong."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--runs", type=int, default=10000)
+    parser.add_argument("--first", type=int, default=0, help="seed of the first storm")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     args = parser.parse_args()
     wrong = []
@@ -71,10 +85,20 @@ def main():
                       for kind, word, reason in found if word == "wrong"]
             line(step, words)
         line("all", total)
+        print("\nAll through a calibration and the power-up after it\n" + head)
+        total = collections.Counter()
+        for kind, found in zip(storm.THROUGHOUT, pool.map(throughout, storm.THROUGHOUT)):
+            words = collections.Counter(word for _, _, word, _ in found)
+            total += words
+            wrong += ["%s at a rate of %s, seed %d: %s" % (kind, rate, seed, reason)
+                      for rate, seed, word, reason in found if word == "wrong"]
+            line(kind, words)
+        line("all", total)
         print("\nRandom storms with such a fault among theirs\n" + head + "  worst good, mg")
-        kinds_seen = {kind: collections.Counter() for kind in storm.KINDS}
+        named = storm.KINDS + ("noise",)
+        kinds_seen = {kind: collections.Counter() for kind in named}
         total, worst = collections.Counter(), collections.Counter()
-        for found in pool.map(storms, range(0, args.runs, LEFT)):
+        for found in pool.map(storms, range(args.first, args.first + args.runs, LEFT)):
             for seed, kinds, word, reason, error in found:
                 total[word] += 1
                 if word == "wrong":
@@ -84,7 +108,7 @@ def main():
                         kinds_seen[kind][word] += 1
                     if word == "good":
                         worst[kind] = max(worst[kind], error)
-        for kind in storm.KINDS:
+        for kind in named:
             line(kind, kinds_seen[kind], "%16.2f" % worst[kind])
         line("all", total, "%16.2f" % worst["all"])
     for one in wrong:

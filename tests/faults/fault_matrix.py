@@ -10,7 +10,7 @@ FAULTS = (
     {"kind": "frozen", "for_ms": 300}, {"kind": "unplugged", "for_ms": 300},
     {"kind": "wrong_id", "value": 0x12}, {"kind": "torn", "byte": 5},
     {"kind": "garbled", "byte": 0, "bits": 0x40}, {"kind": "duplicate"},
-    {"kind": "late", "us": 90000})
+    {"kind": "late", "us": 90000}, {"kind": "noise"})
 FIRST = ("probe", "configure", "read-back", "self-test", "still window", "pose capture",
          "flip move", "face move", "last window", "save")
 SECOND = ("power-up", "rest", "stream")

@@ -222,11 +222,17 @@ def weather(seed):
     for kind in kinds:
         for into, seconds in ((faults, 75.0), (later, 15.0)):
             into += [_fault(rng, kind, seconds, sensor) for _ in range(rng.choice((1, 2, 4)))]
-    return sensor, rng.choice(FLAVOURS), faults, later, kinds
+    flavour = rng.choice(FLAVOURS)
+    if rng.random() < NOISY:
+        kinds.append("noise")
+        faults.append(_fault(rng, "noise", 75.0, sensor))
+        later.append(_fault(rng, "noise", 15.0, sensor))
+    return sensor, flavour, faults, later, kinds
 
 
 KINDS = ("nak", "data_nak", "timeout", "stuck_sda", "reset", "sleep", "frozen", "unplugged",
          "wrong_id", "torn", "garbled", "duplicate", "late")
+NOISY = 0.15            # share of the storms, beside these kinds
 
 
 def _fault(rng, kind, seconds, sensor):
@@ -248,6 +254,8 @@ def _fault(rng, kind, seconds, sensor):
         fault["byte"] = rng.randint(1, 13)
     elif kind == "garbled":
         fault["byte"], fault["bits"] = rng.randint(0, 13), rng.randint(1, 255)
+    elif kind == "noise":
+        fault["counts"] = int(10 ** rng.uniform(0, 4))
     elif kind == "wrong_id":
         fault["value"] = rng.choice((0x00, 0xFF, 0x70, 0x68, 0xE5, rng.randrange(256)))
     if sensor == 1 and rng.random() < 0.5:
@@ -259,3 +267,22 @@ def storm(seed):
     """(Outcome, kinds of faults) of one random storm."""
     sensor, flavour, faults, later, kinds = weather(seed)
     return calibration(seed, sensor, flavour, faults, later), kinds
+
+
+# Through a whole calibration, each read with this probability.
+THROUGHOUT = ("noise", "late", "duplicate", "torn", "garbled", "nak", "timeout")
+RATES = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
+
+
+def throughout(kind, rate, seed):
+    """The Outcome of a calibration all of whose reads are hit at a rate, and of the power-up
+    after it, likewise."""
+    rng = random.Random("%s %s %s" % (kind, rate, seed))
+    sensor = seed % len(SENSORS)
+    hit = []
+    for _ in range(2):
+        fault = _fault(rng, kind, 75.0, sensor)
+        for once in ("at_ms", "count", "address"):
+            fault.pop(once, None)
+        hit.append(dict(fault, rate=rate))
+    return calibration(seed, sensor, rng.choice(FLAVOURS), hit[:1], hit[1:])

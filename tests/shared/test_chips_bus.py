@@ -164,6 +164,15 @@ class Readings(unittest.TestCase):
         bad = self.readings(10, {"kind": "torn", "byte": 4})
         self.assertEqual(bad[5], good[4][:2] + good[5][2:])
 
+    def test_noise(self):
+        for sensor, last in (("mpu6050", 7), ("adxl345", 3)):
+            good = self.readings(8, None, sensor)
+            bad = self.readings(8, {"kind": "noise", "counts": 100}, sensor)
+            self.assertEqual(bad[:5] + bad[6:], good[:5] + good[6:])
+            off = [bad[5][i] - good[5][i] for i in range(7)]
+            self.assertEqual([i for i in range(7) if off[i]], list(range(last)))
+            self.assertTrue(max([abs(x) for x in off]) < 500)
+
     def test_frozen(self):
         rows = self.readings(20, {"kind": "frozen", "for_ms": 100})
         for i in range(5, 14):

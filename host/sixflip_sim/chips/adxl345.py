@@ -16,6 +16,7 @@ class SimulatedADXL345(RegisterChip):
     id_register = chip.DEVID
     data_register = chip.DATAX0
     data_length = chip.BURST
+    high_byte = 1
 
     def __init__(self, clock, model, address=0x53):
         self.model = model

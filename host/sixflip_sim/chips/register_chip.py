@@ -4,10 +4,12 @@
 class RegisterChip:
     """Base of the simulated chips; the bus calls select, write and read_into.
 
-    id_register: where the identification is (faults of the bus aim at it).
+    id_register: where the identification is (faults of the bus aim at it); high_byte: 0 or 1,
+    which byte of a reading's word is the high one.
     """
 
     id_register = 0
+    high_byte = 0
 
     def __init__(self, address, clock, size=128):
         self.address = address

@@ -6,6 +6,7 @@ class SharedAddress:
 
     frozen = False
     plugged = True
+    high_byte = 0
 
     def __init__(self, first, second):
         self.chips = (first, second)

@@ -1,0 +1,48 @@
+"""A chip that hangs: it answers, awake and set up as it should be, and repeats itself.
+
+Noise does not give a triple SAME times over: what repeats itself so often is no measurement.
+The chip is set up anew then, and again after twice as many, for as long as it takes; a session
+has its own eye on this, its windows.
+"""
+
+from array import array
+
+SAME = 32    # as in still_window.py, which is not in the heap while numbers are streamed
+MOST = 4096  # repeats from one attempt to the next
+
+
+class Repeats:
+    """seen(sample) -> whether it is one of a chip that hangs: not to be used. BusLost when the
+    chip cannot be set up anew."""
+
+    def __init__(self, sensor, events):
+        self._sensor = sensor
+        self._events = events
+        self._last = array("h", [0] * 6)
+        self._same = [1, 1]  # accelerometer, gyro
+        self._due = SAME
+
+    def seen(self, sample):
+        most = self._count(sample, 0)
+        if self._sensor.imu.has_gyro:
+            most = max(most, self._count(sample, 1))
+        if most < SAME:
+            self._due = SAME
+            return False
+        if most == self._due:
+            self._due += min(most, MOST)
+            if most == SAME:
+                self._events.error("the sensor hangs: %d identical readings" % SAME,
+                                   "noise; nothing is sent until a reading differs")
+            self._sensor.hangs()
+        return True
+
+    def _count(self, sample, which):
+        last = self._last
+        same = True
+        for i in range(3 * which, 3 * which + 3):
+            if sample[i] != last[i]:
+                last[i] = sample[i]
+                same = False
+        self._same[which] = self._same[which] + 1 if same else 1
+        return self._same[which]
