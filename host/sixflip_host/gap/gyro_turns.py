@@ -31,10 +31,13 @@ MARGIN_NATS = 2.0  # the errors of moves are not as normal as those of rests
 
 class Turn:
     """One move: rate (n, 3) deg/s about the bias, dt (n,), attitude (n, 3, 3), up before and
-    after, the code of a flip's face or -1; seconds; temperature (n,) or None."""
+    after, the code of a flip's face or -1; seconds; temperature (n,) or None; first, last: which
+    samples; matrix, shift (deg/s): what was taken out of the rates, true = matrix rate - shift."""
 
     def __init__(self, session, nominal, bias, place):
         first, end = session.runs[place][2] - 1, session.runs[place + 1][1] + 1
+        self.first, self.last = first, end
+        self.matrix, self.shift = np.eye(3), np.zeros(3)
         capture = session.capture
         counts = capture.gyro[first:end]
         self.t = session.t_s[first:end]
@@ -158,6 +161,7 @@ def calibrated(chosen):
         matrix = np.eye(3) - found[:9].reshape(3, 3)
         for turn in chosen:
             turn.middle = turn.middle @ matrix.T - found[9:]
+            turn.matrix, turn.shift = matrix @ turn.matrix, matrix @ turn.shift + found[9:]
             turn.integrate()
     return np.concatenate([observed(t, nominal_fit.lateral_basis(t.before)) for t in chosen])
 
@@ -165,7 +169,7 @@ def calibrated(chosen):
 class TurnsGap(SensorGap):
     """SensorGap of the gyro in motion: only named effects, no flicker."""
 
-    def _unit(self, part, model, certified):
+    def unit(self, part, model, certified):
         chosen = turns(part, model)
         y = calibrated(chosen)
         seconds = np.concatenate([[t.seconds] * (3 if t.flip else 2) for t in chosen])

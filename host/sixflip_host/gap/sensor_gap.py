@@ -8,6 +8,8 @@ from . import (
     between,
     classes,
     crooked,
+    crooked_box,
+    drifting,
     nominal_fit,
     regressors,
     selection,
@@ -18,9 +20,6 @@ from . import (
 )
 
 ALONG_FREEDOM = 10  # contrasts along gravity that a half of a session must have
-DRIFT_NATS = 6.0
-JUMP_NATS = 3.0  # what a jump at an unknown time costs in each session
-LEAST_BOX_DEG = 0.1  # below that a placement by hand is as crooked
 KEPT_SHARE = 0.6  # of the excess, below which a name is no explanation where noise does not fit
 MOST_OF_ONE = 2  # causes that one session, held out against itself, can be believed to show
 STAND_IN = 0.8  # of the gain of several names
@@ -39,7 +38,7 @@ class SensorGap:
         self.parts = [(s, m) for s, m in zip(sessions, nominal)]
         parts = self.parts
         regressors.agree(sessions)
-        self.units = [self._unit(part, model, settings.certified) for part, model in parts]
+        self.units = [self.unit(part, model, settings.certified) for part, model in parts]
         self.units += self._between()
         self.crooked = [crooked.of(s, m) for s, m in self.parts] if kind == "accel" else []
         self.data = which.Data(self.units)
@@ -52,14 +51,16 @@ class SensorGap:
             self._search()
         self._judge()
 
-    def _unit(self, part, model, certified):
+    def unit(self, part, model, certified):
+        """Unit of one session; certified: the box is no nuisance."""
         reference = self.settings.reference_c
         designs = regressors.library(part, model.up, self.kind, reference, self.chip)
         if self.kind == "accel":
             designs.append(regressors.of_terms("box_tilt", "accel", part.moment(model.up), part.n,
                                                chip=self.chip))
         designs += regressors.generics(part, model.up, self.kind)
-        designs = [d for d in designs if not (certified and d.effect == "box_tilt")]
+        if self.settings.certified:
+            designs = [d for d in designs if d.effect != "box_tilt"]
         unit = nominal_fit.unit_of(self.kind, part, model, designs, certified)
         self._take_off(unit)
         return unit
@@ -115,66 +116,18 @@ class SensorGap:
         columns = np.concatenate([c.columns for c in self.chosen])
         prior = np.concatenate([c.prior for c in self.chosen])
         total = float((which.score(self.data, columns, prior) - self.data.base)[0])
-        enough = (STAND_IN * total if len(self.causes) > 1 else total + DRIFT_NATS)
+        enough = (STAND_IN * total if len(self.causes) > 1 else total + drifting.DRIFT_NATS)
         return any(gain > enough and not any({domain, d} <= kin for kin in classes.KIN
                                              for d in domains)
                    for domain, (gain, _) in adequacy.generic_gains(
                        self.data, self.options, []).items())
-
-    def _box(self):
-        """Crooked faces: tested beside the causes found, with the box no longer a nuisance.
-
-        Twelve free angles take up much that is none: they are looked for last, where all else
-        is explained and nothing in the registers moves readings near zero.
-        """
-        if self.unexplained or self.drift or self.settings.coarse or max(
-                s.rounding_accel.max() for s in self.sessions) > nominal_fit.COARSE_MG:
-            return
-        units = [self._unit(part, model, True) for part, model in self.parts]
-        for unit, (part, model) in zip(units, self.parts):
-            self._with_box(unit, part, model)
-        data = which.Data(units)
-        options = [o for o in which.candidates(units) if not o.generic
-                   and o.effect not in self.settings.without]
-        mine = [o for o in options if o.effect == "box_tilt"]
-        if not mine:
-            return
-        limit = thresholds.of(units, mine, self.levels(data)).named
-        # All axes and terms of the causes: here they show across gravity, too.
-        same = [o for o in options if o.axis is None and o.variant.rstrip("+") in {
-            c.variant.rstrip("+") for c in self.chosen if c.effect == o.effect}
-            and not o.variant.endswith("+")]
-        same += [o for o in options if o.axis is None and not o.variant and o not in same
-                 and o.effect in {c.effect for c in self.chosen}]
-        best, gain = selection.best_of(which.gains(data, mine, same))
-        if best is not None and gain > limit:
-            visible = {o.effect for o in self.options}
-            rivals = [o for o in options if o.effect == "box_tilt" or o.effect not in visible]
-            found = classes.causes(data, rivals + same, same + [best])
-            self.box_data = data
-            box = [c for c in found if c.effect == "box_tilt"]
-            self._fill(box)
-            self.causes += [c for c in box
-                            if max(map(abs, c.value.values()), default=0.0) >= LEAST_BOX_DEG]
-
-    def _with_box(self, unit, part, model):
-        """Give a unit made without a box its columns, so that both sets have one order."""
-        design = regressors.of_terms("box_tilt", "accel", part.moment(model.up), part.n,
-                                     chip=self.chip)
-        unit.designs = unit.designs + [design]
-        columns = unit.contrasts.T @ design.columns
-        unit.silent = np.concatenate([unit.silent, (columns ** 2).sum(axis=0)
-                                      <= nominal_fit.NOTHING * (design.columns ** 2).sum(axis=0)
-                                      ])
-        unit.columns = np.hstack([unit.columns, columns])
-        unit._whiten()
 
     def _judge(self):
         """Adequacy, drift, plausibility, shrinkage."""
         self._adequate()
         self.drift = None
         if not self.adequacy.ok and not self.added and "drift" not in self.settings.without:
-            self._drift()
+            self.drift = drifting.level(self)
         self.unexplained = (not self.adequacy.ok or bool(self.added)) and self.drift is None
         self._shares()
         doubted = [c for c in self.causes if self._doubted(c)]
@@ -185,8 +138,13 @@ class SensorGap:
             self.unexplained = True
             self._shares()
         if self.options and self.kind == "accel" and not self.settings.certified \
-                and "box_tilt" not in self.settings.without:
-            self._box()
+                and "box_tilt" not in self.settings.without and crooked_box.possible(self):
+            box, self.box_data = crooked_box.found(self)
+            self._fill(box)
+            self.causes += [c for c in box if max(map(abs, c.value.values()), default=0.0)
+                            >= crooked_box.LEAST_DEG]
+        if crooked_box.bent(self.causes):
+            self.crooked = []  # a nonlinearity leans the faces as well
         self.shrinkage = self._shrink()
 
     def _adequate(self):
@@ -229,16 +187,21 @@ class SensorGap:
         return cause.domain in self.added or (cause.share or 0.0) < KEPT_SHARE
 
     def _own_share(self, cause):
-        """Share of what a cause adds that its plain coefficients reproduce."""
+        """Share of what a cause adds that its plain coefficients reproduce, the best variant
+        on each axis: several lags with opposite signs are no slope."""
         gram = sum(u.gram[i] for u, i in zip(self.data.units, self.adequacy.index))
         columns = np.concatenate([c.columns for c in cause.chosen])
-        plain = np.array([not k.endswith("+") for k in cause.keys])
-        if plain.all():
-            return 1.0
-        whole = float(cause.theta @ gram[np.ix_(columns, columns)] @ cause.theta)
-        left = classes.reproduced(gram, columns, cause.theta, [columns[plain]],
-                                  np.zeros(0, dtype=int))
-        return 1.0 - left[1] ** 2 / max(whole, 1e-12)
+        plain = [o for o in self.options if o.effect == cause.effect and o.axis is None
+                 and not o.variant.endswith("+")]
+        whole = left = 0.0
+        for axis in set(cause.axes):
+            on = np.array(cause.axes) == axis
+            mine, theta = columns[on], cause.theta[on]
+            whole += float(theta @ gram[np.ix_(mine, mine)] @ theta)
+            variants = [o.columns[np.array(o.axes) == axis] for o in plain]
+            apart = classes.reproduced(gram, mine, theta, variants, np.zeros(0, dtype=int))
+            left += apart[1] ** 2 if apart else 0.0
+        return 1.0 - left / max(whole, 1e-12)
 
     @property
     def same_session(self):
@@ -251,52 +214,9 @@ class SensorGap:
         parts = halves(self.kind, *self.parts[0], self.settings.certified)
         if not parts or not self.chosen:
             return shrinkage.of(self.data, self.chosen, self.adequacy.index)
-        data = which.Data([self._unit(p, m, self.settings.certified) for p, m in parts])
+        data = which.Data([self.unit(p, m, self.settings.certified) for p, m in parts])
         index = adequacy.Adequacy(data, self.chosen, self.allowed).index
         return shrinkage.of(data, self.chosen, index)
-
-    def _drift(self):
-        """More flicker than is allowed: drift if the rests themselves wander, and all that is
-        left looks like it."""
-        columns = np.concatenate([c.columns for c in self.chosen] + [np.zeros(0, dtype=int)])
-        prior = np.concatenate([c.prior for c in self.chosen] + [np.zeros(0)])
-        free = which.fits(self.data, columns, prior)
-        level = max(u.grid[f.index[0]][1] for u, f in zip(self.units, free))
-        if level <= self.allowed * 1.001:
-            return
-        gain = sum(float(f.loglik[0]) - at_level(u, s, columns, prior, self.allowed)
-                   for u, f, s in zip(self.units, free, self.data.statistics))
-        seen = expected = 0.0
-        least = 1.0
-        for (part, _), unit, fit in zip(self.parts, self.units, free):
-            values = part.accel if self.kind == "accel" else part.gyro
-            noise = part.noise_accel if self.kind == "accel" else part.noise_gyro
-            found = adequacy.wandering(part, values, noise, unit.grid[fit.index[0]][1])
-            if found:
-                seen, expected = seen + found[0], expected + found[1]
-                least = min(least, found[2])
-        free_ratio = sum(float(f.quadratic[0]) for f in free) / max(
-            1, sum(u.freedom for u in self.units) - len(columns))
-        if gain > DRIFT_NATS and seen > 0.4 * expected and least < 1e-3 and free_ratio < 1.6 \
-                and self._jumps(free) < gain - DRIFT_NATS / 2.0:
-            self.drift = (level, gain)
-
-    def _jumps(self, fits):
-        """Nats that one jump in each session gains, with no more flicker than is allowed: what
-        jumps once does not drift."""
-        total = 0.0
-        for (part, _), unit, fit in zip(self.parts, self.units, fits):
-            placement = unit.grid[fit.index[0]][0]
-            factor = np.linalg.cholesky(unit.covariance(placement, self.allowed))
-            z = np.linalg.solve(factor, unit.z)
-            best = 0.0
-            for start in np.unique(part.placement)[1:]:
-                step = np.kron((part.placement >= start)[:, None], np.eye(3))
-                columns = np.linalg.solve(factor, unit.contrasts.T @ step)
-                size = np.linalg.lstsq(columns, z, rcond=1e-9)[0]
-                best = max(best, 0.5 * float(z @ columns @ size) - JUMP_NATS)
-            total += best
-        return total
 
     def _shares(self):
         """Each cause's share of the excess: what is lost without it."""
@@ -316,23 +236,6 @@ class SensorGap:
             cause.unit = EFFECTS[cause.effect].units[self.kind]
             data = self.box_data if cause.effect == "box_tilt" else self.data
             sizes.fill(cause, data, self.levels(data), self.chip, self.kind)
-
-
-def at_level(unit, statistics, columns, prior, allowed):
-    """Largest log-likelihood with no more flicker than allowed."""
-    quadratic, projections = statistics
-    fit = which.Fit
-    keep = [i for i, (_, level) in enumerate(unit.grid) if level <= allowed * 1.001]
-    return max(float(fit(_Point(unit, i), (quadratic[i:i + 1], projections[i:i + 1]), columns,
-                         prior).loglik[0]) for i in keep)
-
-
-class _Point:
-    """One point of a unit's grid, for which.Fit."""
-
-    def __init__(self, unit, index):
-        self.grid = unit.grid[index:index + 1]
-        self.gram, self.logdet = unit.gram[index:index + 1], unit.logdet[index:index + 1]
 
 
 def halves(kind, session, model, certified):

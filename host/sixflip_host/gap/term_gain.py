@@ -46,7 +46,7 @@ class Gains:
             self.parts = [(session, set(p.placement.tolist())) for p, _ in halves]
             if not halves:
                 return
-            self.data = which.Data([gap._unit(p, m, certified) for p, m in halves])
+            self.data = which.Data([gap.unit(p, m, certified) for p, m in halves])
             index = adequacy.Adequacy(self.data, gap.chosen, gap.allowed).index
         self.units = [u for u in self.data.units if not getattr(u, "between", False)]
         covariances = [u.covariance(*u.grid[k]) for u, k in zip(self.units, index)]
@@ -67,7 +67,7 @@ class Gains:
         model = attitude_fit.fit(session)
         part = session if placements is None else session.part(placements)
         if self.turning:
-            return self.gap._unit(part, model, self.certified).z
+            return self.gap.unit(part, model, self.certified).z
         y = nominal_fit.accel_rows(part, model) if self.gap.kind == "accel" \
             else part.gyro.reshape(-1)
         return unit.contrasts.T @ y

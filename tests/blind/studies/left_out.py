@@ -4,7 +4,8 @@
 
 Cases of the blind generator with one known effect, diagnosed with `--without` that effect. Right
 is a verdict that something is not explained, or an alias class named as a class; honest where
-the effect is faint: no gap, cannot tell. Wrong is a single name. Exits with 1 if there is one.
+the effect is faint: no gap, cannot tell; unavoidable where another effect is its exact alias, by
+theory. Wrong is any other single name. Exits with 1 if there is one.
 """
 
 import argparse
@@ -19,14 +20,16 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from generator.case import Case, Specification  # noqa: E402
 from generator.library import KNOWN  # noqa: E402
+from judged import judged  # noqa: E402
 
 from studies import ask  # noqa: E402
 
 PROTOCOL = {"lever_arm": "driving", "filter_lag": "driving"}
 # What no protocol of hands and tables shows, or what has no name of its own to take out.
 NOT_ASKED = ("local_gravity", "stuck_bit")
+ALIASED = 0.95
 OPEN = ("unexplained", "partly explained")
-KINDS = ("open", "class", "quiet", "wrong")
+KINDS = ("open", "class", "quiet", "alias", "wrong")
 
 
 def things():
@@ -41,14 +44,17 @@ def specification(effect, sensor, times, seed):
                          {"box_tilt_deg": 0.0}, certified=effect == "box_tilt")
 
 
-def kind(answer, effect, also=()):
+def kind(answer, effect, also=(), aliases=()):
     """What an answer without the effect is worth, and the single names that are wrong.
 
-    also: [(effect, sensor)] that come with it and may be named."""
+    also: [(effect, sensor)] that come with it and may be named; aliases: names that cannot be
+    told from it."""
     single = ["%s %s" % (c["sensor"], c["effect"]) for c in answer["causes"]
               if c["effect"] and (c["effect"], c["sensor"]) not in also]
     if single and answer["verdict"] == "explained":
-        return "wrong", single
+        known = {c["effect"] for c in answer["causes"] if c["effect"]} <= {
+            *aliases, *(name for name, _ in also)}
+        return "alias" if known else "wrong", single
     if answer["verdict"] in OPEN:
         return "open", single
     if any(len(c["class"]) > 1 for c in answer["causes"]):
@@ -65,7 +71,9 @@ def asked(job):
         paths = case.write(str(Path(folder) / "case"))
         answer = ask.on_files(paths, "--without", effect, "--jobs", "1", *words)
     also = [pair for e in case.effects for pair in map(tuple, e.also)]
-    return (effect, sensor, times, seed, *kind(answer, effect, also), answer["verdict"])
+    theory = judged(case)["effects"][0].get("aliases", {})
+    aliases = [name for name, index in theory.items() if index > ALIASED]
+    return (effect, sensor, times, seed, *kind(answer, effect, also, aliases), answer["verdict"])
 
 
 def main():
