@@ -82,8 +82,10 @@ class GuidedSession:
         except MemoryError:
             pass  # a line less is told; of the session nothing is lost
         if event == machine.TIMED_OUT:
-            self.ended = "timed out: no new pose for %d s (%s); still missing: %s" % (
-                session.timeout_s, session.obstacle, " ".join(names(session.missing())))
+            self.ended = "timed out: no new pose for %d s (%s); still missing: %s%s" % (
+                session.timeout_s, session.obstacle, " ".join(names(session.missing())),
+                "" if session.gyro_lsb_per_dps
+                else "; without a gyro a flip shows only when the box is lifted")
             return "timed out"
         if session.state == "done":
             return "complete"

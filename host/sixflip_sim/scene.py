@@ -11,6 +11,7 @@ import math
 from sixflip_sim import rotation
 
 REST = 0
+TREMOR_HZ = 9.0  # of a hand that holds something: 8 to 12 Hz (Stiles and Randall 1967)
 TURN = 1        # from one attitude to another about one axis, minimum jerk, with a lift
 BUMP = 2        # away and back again
 
@@ -47,12 +48,14 @@ class Scene:
     """Begins at rest in `attitude`; segments are appended; the last attitude lasts for ever.
 
     g in m/s²; lever_arm: where the sensor sits from the axis of every turn, body frame, m.
+    tremor: amplitude of a lifted box's shaking, vertical, m/s².
     Temperature: temperature_c - warm_c·exp(-t/warm_tau_s), °C.
     """
 
     def __init__(self, attitude=rotation.IDENTITY, g=9.80665, lever_arm=None,
-                 temperature_c=25.0, warm_c=0.0, warm_tau_s=300.0):
+                 temperature_c=25.0, warm_c=0.0, warm_tau_s=300.0, tremor=0.0):
         self.g = g
+        self.tremor = tremor
         self.lever_arm = lever_arm
         self.temperature_c = temperature_c
         self.warm_c = warm_c
@@ -159,6 +162,8 @@ class Scene:
         up = self.g
         if segment.lift:
             up += segment.lift * bump_profile(tau)[2] / (seconds * seconds)
+            if self.tremor:
+                up += self.tremor * math.sin(2.0 * math.pi * TREMOR_HZ * tau * seconds)
         f = (r[6] * up, r[7] * up, r[8] * up)
         w = (axis[0] * speed, axis[1] * speed, axis[2] * speed)
         alpha = (axis[0] * gain, axis[1] * gain, axis[2] * gain)

@@ -39,6 +39,7 @@ DEFAULTS = {
     "order": None,
     "dwell_s": 6.5, "move_s": 2.5, "first_rest_s": 8.0,
     "flip_error_deg": 0.4, "placement_scatter_deg": 0.0, "turn": "alternate",
+    "tremor_mg": 0.0,           # of a box in the hand; of real ones 10 to 60 (RMS, 5 to 20 Hz)
     "mishaps": [],              # see _do
     "effects": [],              # [{"effect": "thermal_bias", "z": 0.9}], see sixflip_sim.effects
     # the bus
@@ -182,7 +183,8 @@ def _session(s):
         first_pose=order[0]["pose"] if order and order[0]["pose"][0] != "L" else "Z+a",
         scene_args={"g": s["g"], "lever_arm": s["lever_arm_m"],
                     "temperature_c": s["temperature_c"], "warm_c": s["warm_c"],
-                    "warm_tau_s": s["warm_tau_s"]})
+                    "warm_tau_s": s["warm_tau_s"],
+                    "tremor": s["tremor_mg"] * math.sqrt(2.0) * 1e-3 * STANDARD_G})
     operator.rest(s["first_rest_s"])
     for number, asked in enumerate(order):
         pose = asked["pose"]

@@ -19,8 +19,10 @@ COMPLETE = 4  # accepted, and nothing is missing any more
 TIMED_OUT = 5  # nothing accepted for timeout_s; what stood in the way is in `obstacle`
 
 SETTLE_WINDOWS = 2  # still windows (0.5 s) before the capture starts
-MOVED_WINDOWS = 4  # without a gyro a mere knock (it touches up to 3) must not pass for a flip
 US = 1000000
+# Without a gyro a mere knock must not pass for a flip:
+KNOCK_US = 500000  # it lasts no longer,
+KNOCKS_S = 3  # and two are further apart.
 
 
 class Session:
@@ -46,6 +48,7 @@ class Session:
         self.withdrawn = []
         self.obstacle = ""
         period_us = int(US / rate_hz + 0.5)
+        self._handled = 2 - -KNOCK_US // (length * period_us)  # windows; a knock touches one less
         self._window = StillWindow(
             length, accel_rail, gyro_rail if gyro_lsb_per_dps else 0, period_us
         )
@@ -56,7 +59,8 @@ class Session:
         self._pose = None
         self._settled = 0
         self._turn = empty_move(0)  # windows not still since the last placement, for the flip
-        self._moved = 0  # such windows since the last rest was dealt with
+        self._moved = 0  # such windows since the last rest was dealt with,
+        self._moved_at = 0  # the last of them at this second
         self._rested = False  # that rest still lasts,
         self._rest_face = -1  # on this face
         self._away = False  # another face was rested on since the last placement
@@ -170,10 +174,11 @@ class Session:
     def _wait(self):
         """No capture under way: has the box moved, has it come to rest again?"""
         window = self._window
-        limit = LEAVE if self._settled or self._rested else ENTER
+        still = self._settled or self._rested and self.gyro_lsb_per_dps
+        limit = LEAVE if still else ENTER  # without a gyro a turn shows by the hand's tremor alone
         if self._noise.judge(window, limit):
             self._moving(window)
-            if self._moved >= MOVED_WINDOWS or self.gyro_lsb_per_dps:
+            if self._moved >= self._handled or self.gyro_lsb_per_dps:
                 self._rested = False
             self._idle()
             self.state = "moving"
@@ -190,7 +195,10 @@ class Session:
 
     def _moving(self, window):
         """Long rests stay out of the turn: there an error of the bias would add up."""
+        if self._seconds > self._moved_at + KNOCKS_S:
+            self._moved = 0
         self._moved += 1
+        self._moved_at = self._seconds
         add_window(self._turn, window)
 
     def _begin(self):

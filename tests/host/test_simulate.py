@@ -40,6 +40,7 @@ def test_numpy_counts_what_the_chips_count_through_driver_and_bus(sensor, effect
     """The paper's session polled through the real driver; every count must be the same."""
     world = worlds.make({"sensor": sensor, "tilt_deg": 2.0, "seed": 3, "dwell_s": 1.0,
                          "warm_c": 8.0, "placement_scatter_deg": 0.05, "effects": effects,
+                         "tremor_mg": 15.0,
                          "mishaps": [{"kind": "touched", "pose": "X+a", "at_s": 0.4}]})
     imu, _ = probe.find(world.i2c)
     imu.configure(100)

@@ -66,8 +66,10 @@ def next_step(state, step=None):
         return Step(WAIT, "", up, "all six faces are done", "")
     face = pose[:2]
     if pose.endswith("b"):
+        no_gyro = state.vector and not state.rate  # then only the hand's own shaking shows it
         return Step(FLIP, face, up, "half a turn, %s stays up" % face,
-                    "turn it flat on the table, either way round")
+                    "lift it, turn it, put it down again" if no_gyro
+                    else "turn it flat on the table, either way round")
     return Step(PLACE, face, up, "lay the box down with %s up" % face,
                 "flat on the table, then let go")
 

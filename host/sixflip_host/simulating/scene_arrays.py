@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from sixflip_sim.scene import REST, TURN, bump_profile, turn_profile
+from sixflip_sim.scene import REST, TREMOR_HZ, TURN, bump_profile, turn_profile
 from sixflip_sim.sensor_model import Moment
 
 
@@ -60,6 +60,9 @@ def _turn(found, part, segment, t_us, scene):
     up = scene.g
     if segment.lift:
         up = up + segment.lift * bump_profile(tau)[2] / (seconds * seconds)
+        if scene.tremor:
+            phase = 2.0 * math.pi * TREMOR_HZ * tau * seconds
+            up = up + scene.tremor * np.array([math.sin(x) for x in phase.tolist()])
     found.attitude[:, part] = r
     f = (r[6] * up, r[7] * up, r[8] * up)
     w = tuple(a * speed for a in axis)

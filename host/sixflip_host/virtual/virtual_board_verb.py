@@ -14,7 +14,7 @@ EXAMPLE = "sixflip virtual-board --sensor gy85"
 
 
 def add_arguments(parser):
-    parser.add_argument("--sensor", choices=("mpu6050", "gy85"), default="mpu6050")
+    parser.add_argument("--sensor", choices=("mpu6050", "gy85", "adxl345"), default="mpu6050")
     parser.add_argument("--tilt", metavar="DEG", type=float, default=2.0,
                         help="tilt of the table that the simulated operator works on")
     parser.add_argument("--seed", type=int, default=1, help="of sensor errors and noise")

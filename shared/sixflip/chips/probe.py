@@ -144,7 +144,7 @@ def find(i2c, sleep_ms=None, sensor="auto"):
     if accel is not None and sensor in ("auto", "adxl345"):
         from sixflip.chips.adxl345 import ADXL345
         if sensor == "auto":
-            report.append("no gyro: flips are taken as 180 degrees, not measured")
+            report.append("no gyro: lift the box for a flip, which is taken as 180 degrees")
         return ADXL345(i2c, accel, sleep_ms), report
     if _answer(i2c, _NOBODY, 0) is not None:
         raise BusStuck(["every address answers, the reserved 0x7c too: SDA is held low"],

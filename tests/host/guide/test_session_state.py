@@ -118,6 +118,13 @@ def test_what_to_do_next(event, kind, words):
     assert step.kind == kind and words in step.head
 
 
+@pytest.mark.parametrize("vector, words", [
+    ([0, 0, 1000], "lift it"), ([0, 0, 1000, 0, 0, 0], "flat on the table")])
+def test_without_a_gyro_the_box_has_to_be_lifted(vector, words):
+    state = fed(calibrating(), taken("Z+a", without("Z+a")), live(live=vector))
+    assert words in steps.next_step(state).detail
+
+
 @pytest.mark.parametrize("event, words", [
     (live(reason="crooked", value=22.04, limit=15, unit="deg"), "(22 deg, limit 15 deg)"),
     (live(reason="moving", value=9.2), "not at rest yet: it moves (9.2 x noise, limit 2 x noise)"),
