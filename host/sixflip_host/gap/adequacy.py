@@ -18,15 +18,20 @@ TIMES_TYPICAL, TIMES_SEEN, TIMES_LEAST = 4.0, 1.5, 1.5
 DOUBTFUL_P, DOUBTFUL_RATIO = 1e-3, 1.3  # white noise itself is known to some 5 %
 
 
+def usual(sensor, kind):
+    """Typical flicker level of a chip, mg or deg/s."""
+    return typical.FLICKER[typical.chip_of(sensor, kind)]
+
+
 def allowance(sensor, kind, reference=None, seen=None):
     """Largest flicker level that counts as noise, mg or deg/s. reference: level of a noise
     capture; seen: level that the wandering within the rests shows, where there is none."""
-    usual = typical.FLICKER[typical.chip_of(sensor, kind)]
+    level = usual(sensor, kind)
     if reference is not None:
-        return max(2.0 * reference, usual)
+        return max(2.0 * reference, level)
     if seen is None:
-        return TIMES_TYPICAL * usual
-    return float(np.clip(TIMES_SEEN * seen, TIMES_LEAST * usual, TIMES_TYPICAL * usual))
+        return TIMES_TYPICAL * level
+    return float(np.clip(TIMES_SEEN * seen, TIMES_LEAST * level, TIMES_TYPICAL * level))
 
 
 def level_within(parts, kind):
@@ -137,27 +142,41 @@ def _evidence(fit, prior):
     return float(which.predictive(fit, theta, covariance)[0])
 
 
-def wandering(session, values, noise, level):
-    """(seen, expected) of the excess variance between the blocks of a rest, over white noise,
-    in the unit of values squared; a p of the excess. Only true wandering (drift) shows there.
+def wandering(session, values, noise, level, ordinary=0.0):
+    """(seen, expected, expected of a random walk) of the excess variance between the blocks of a
+    rest, over white noise and ordinary flicker, in the unit of values squared; a p of the excess.
+    Only true wandering (drift) shows there.
 
-    values (n, 3) block means; noise (3,) of a second; level: flicker that is claimed.
+    values (n, 3) block means; noise (3,) of a second; level: flicker that is claimed, the random
+    walk being the one that wanders as far from one rest to the next; ordinary: level that every
+    part has.
     """
     same = np.flatnonzero(np.diff(session.placement) == 0)
+    moved = np.flatnonzero(np.diff(session.placement) != 0)
     if len(same) < 4:
         return None
     difference = np.diff(values, axis=0)[same]
     gap = np.diff(session.t)[same]
+    over = noise[None] ** 2 * (1.0 / session.seconds[same] + 1.0 / session.seconds[same + 1]
+                               )[:, None] + ordinary ** 2 * _flicker(gap, gap)[:, None]
+    claimed = level ** 2 * _flicker(gap, gap)
+    walk = claimed
+    if len(moved):
+        pause = np.diff(session.t)[moved]
+        block = 0.5 * (session.seconds[moved] + session.seconds[moved + 1])
+        # Of two neighbouring means over g seconds a walk of rate q differs by 2/3 q g.
+        rate = level ** 2 * np.mean(_flicker(pause, block) / (pause - block / 3.0))
+        walk = np.minimum(claimed, rate * gap * 2.0 / 3.0)
+    seen = float((difference ** 2 - over).sum())
+    return (seen, 3.0 * float(claimed.sum()), 3.0 * float(walk.sum()),
+            float(stats.chi2.sf(float((difference ** 2 / over).sum()), difference.size)))
+
+
+def _flicker(gap, block):
+    """Variance of the difference of two means over `block` seconds, their middles `gap` >= block
+    apart, of unit flicker: per exponential 2 var - 2 cov, averaged over the blocks."""
     times = np.array(FURTHER_S + TIMES_S)[:, None]
-    white = noise[None] ** 2 * (1.0 / session.seconds[same] + 1.0 / session.seconds[same + 1]
-                                )[:, None]
-    # Of the difference of two neighbouring means over half a gap each, per exponential:
-    # 2 var - 2 cov, with the averages over the blocks.
-    x = gap[None] / times
+    x = block[None] / times
     own = 2.0 / x * (1.0 - (1.0 - np.exp(-x)) / x)
-    both = ((1.0 - np.exp(-x)) / x) ** 2
-    claimed = 2.0 * level ** 2 * (own - both).sum(axis=0)
-    chi2 = float((difference ** 2 / white).sum())
-    seen = float((difference ** 2 - white).sum())
-    expected = 3.0 * float(claimed.sum())
-    return seen, expected, float(stats.chi2.sf(chi2, difference.size))
+    both = ((1.0 - np.exp(-x)) / x) ** 2 * np.exp(-(gap - block)[None] / times)
+    return 2.0 * (own - both).sum(axis=0)

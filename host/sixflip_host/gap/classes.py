@@ -70,7 +70,7 @@ def causes(data, options, chosen):
     return [c for k, c in enumerate(out) if not any(_form_of(c, b) for b in out[:k])]
 
 
-FORM = 0.05  # of an effect's score that its true form may be off by
+FORM = 0.08  # of an effect's score that its true form may be off by
 KIN = ({"temperature", "time"}, {"history", "time_since_move"}, {"orientation"}, {"amplitude"})
 
 

@@ -1,17 +1,27 @@
 """Drift: more flicker than is allowed, all over the session and within the rests.
 
-A random walk is none where one jump in each session, or one slow sine, does about as well: what
-jumps once or sways does not drift.
+What jumps or sways does not drift, nor does one axis alone: a random walk's innovations, the
+residuals with all correlation taken out in the order of time, are normal and of about one size
+on all axes; those of jumps have heavy tails, those of a sine light ones. Neither does a random
+walk do what one jump a session, or one slow sine, does about as well.
 """
 import numpy as np
+from scipy.linalg import solve_triangular
+from scipy.stats import kurtosis
 
 from . import adequacy, which
 
 DRIFT_NATS = 6.0
-JUMP_NATS = 3.0  # what a jump at an unknown time costs in each session
-SWAY_NATS = 4.0  # what a sine of unknown period and phase costs in each session
-SHORTEST_SWAY_S, SWAYS_AN_OCTAVE = 16.0, 6
+JUMP_NATS = 10.0  # what a jump at an unknown time costs in each session
+SWAY_NATS = 20.0  # what a sine of unknown period and phase costs in each session
+SHORTEST_SWAY_S, A_PERIOD = 16.0, 8  # shortest sine tried; frequencies tried a period
 STILL_FITS = 1.6  # chi2 a degree of freedom that freer flicker must bring it down to
+WITHIN = 0.2  # of what a random walk moves within the rests, that must be seen there
+FORM = 0.1  # of the gain, that something else may add: no part has the library's spectrum
+ONE_AXIS = 2.3  # largest ratio of two axes' innovations
+TAILS = (-0.7, 1.2)  # excess kurtosis that some hundred normal innovations keep within
+ABSORBED = 0.6  # leverage above which a residual is mostly fitted away
+FEWEST = 20  # innovations an axis
 
 
 def level(gap):
@@ -30,17 +40,54 @@ def level(gap):
     for (part, _), unit, fit in zip(gap.parts, gap.units, free):
         values = part.accel if gap.kind == "accel" else part.gyro
         noise = part.noise_accel if gap.kind == "accel" else part.noise_gyro
-        found = adequacy.wandering(part, values, noise, unit.grid[fit.index[0]][1])
+        found = adequacy.wandering(part, values, noise, unit.grid[fit.index[0]][1],
+                                   adequacy.usual(gap.chip, gap.kind))
         if found:
-            seen, expected = seen + found[0], expected + found[1]
-            least = min(least, found[2])
+            seen, expected = seen + found[0], expected + found[2]
+            least = min(least, found[3])
     ratio = sum(float(f.quadratic[0]) for f in free) / max(
         1, sum(u.freedom for u in gap.units) - len(columns))
-    if gain <= DRIFT_NATS or seen <= 0.4 * expected or least >= 1e-3 or ratio >= STILL_FITS:
+    if gain <= DRIFT_NATS or seen <= WITHIN * expected or least >= 1e-3 or ratio >= STILL_FITS:
         return None
-    if max(_simpler(gap, free)) >= gain - DRIFT_NATS / 2.0:
+    if max(gap.added.values(), default=0.0) > FORM * gain:
+        return None
+    if max(_simpler(gap, free)) >= gain - DRIFT_NATS / 2.0 or not _walks(gap, free):
         return None
     return highest, gain
+
+
+def _walks(gap, fits):
+    """Whether the innovations are those of a random walk, as far as there are enough."""
+    each = [[], [], []]
+    for _, unit, fit in zip(gap.parts, gap.units, fits):
+        found = innovations(unit, *unit.grid[fit.index[0]])
+        for axis in range(3):
+            seen = found[np.isfinite(found[:, axis]), axis]
+            if len(seen) >= FEWEST:
+                each[axis].append(seen)
+    if not any(each):
+        return True
+    tails = [kurtosis(one) for seen in each for one in seen]
+    sizes = [np.sqrt(np.mean(np.concatenate(seen) ** 2)) for seen in each if seen]
+    return TAILS[0] < np.mean(tails) < TAILS[1] and max(sizes) < ONE_AXIS * min(sizes)
+
+
+def innovations(unit, placement, level):
+    """(n, 3) residuals of a session's nuisance fit, whitened in the order of time to a standard
+    deviation of 1 at these levels of placement and flicker; NaN where the fit takes them up."""
+    rows = unit.rows
+    covariance = rows.white + level ** 2 * rows.kernel \
+        + placement ** 2 * rows.lateral @ rows.lateral.T
+    if rows.fixed is not None:
+        covariance = covariance + rows.fixed
+    factor = np.linalg.cholesky(covariance)
+    columns, y = (solve_triangular(factor, v, lower=True) for v in (rows.nuisance, rows.y))
+    basis, s, _ = np.linalg.svd(columns, full_matrices=False)
+    basis = basis[:, s > 1e-9 * s[0]]
+    left, leverage = y - basis @ (basis.T @ y), (basis ** 2).sum(axis=1)
+    left = left / np.sqrt(np.maximum(1.0 - leverage, 1e-9))
+    left[leverage > ABSORBED] = np.nan
+    return left.reshape(-1, 3)
 
 
 def _simpler(gap, fits):
@@ -61,10 +108,8 @@ def _simpler(gap, fits):
 def _sines(t):
     """(n, 2) sine and cosine of every period from SHORTEST_SWAY_S to the session's length."""
     longest = max(float(np.ptp(t)), 2.0 * SHORTEST_SWAY_S)
-    octaves = np.log2(longest / SHORTEST_SWAY_S)
-    # A session holds many periods of a fast sine: as dense as the phase at its ends wants.
-    count = max(int(SWAYS_AN_OCTAVE * octaves), int(4.0 * longest / SHORTEST_SWAY_S))
-    for frequency in np.linspace(1.0 / longest, 1.0 / SHORTEST_SWAY_S, count):
+    count = int(A_PERIOD * longest / SHORTEST_SWAY_S)
+    for frequency in np.linspace(0.5 / longest, 1.0 / SHORTEST_SWAY_S, count):
         phase = 2.0 * np.pi * frequency * t
         yield np.stack([np.sin(phase), np.cos(phase)], 1)
 

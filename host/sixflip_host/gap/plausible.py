@@ -4,7 +4,13 @@ from sixflip_sim.effects import typical
 TIMES = 5.0  # GAP stage 3
 LOOSE = {"warm_up": 10.0, "drift": 10.0, "vibration": 1e9, "sample_rate": 10.0,
          "dropped_samples": 1e9, "saturation": 1e9, "torn_reads": 1e9, "axis_swap": 1e9,
-         "quantisation": 1e9, "dead_band": 1e9, "box_tilt": 20.0, "creep": 5.0}
+         "quantisation": 1e9, "dead_band": 1e9, "box_tilt": 20.0, "creep": 5.0,
+         "lever_arm": 10.0}
+
+
+# What a part's drift with temperature amounts to while it warms up, and in what follows the
+# thermometer by a minute: no data sheet gives these two by themselves.
+BY_TEMPERATURE = {"warm_up": 10.0, "thermal_rate": 1.0}  # degC, minutes
 
 
 def limit(effect, chip, sensor, key):
@@ -13,7 +19,13 @@ def limit(effect, chip, sensor, key):
     size = typical.size(effect, chip, kind, key)[0]
     if size is None:
         size = typical.size(effect, chip, kind)[0]
-    return None if size is None else LOOSE.get(effect, TIMES) * abs(size)
+    if size is None:
+        return None
+    top = LOOSE.get(effect, TIMES) * abs(size)
+    if effect in BY_TEMPERATURE:
+        slope = typical.size("thermal_bias", chip, kind, key)[0]
+        top = max(top, TIMES * abs(slope) * BY_TEMPERATURE[effect])
+    return top
 
 
 def believable(effect, chip, sensor, values, sigmas=None):

@@ -21,6 +21,7 @@ from . import (
 
 ALONG_FREEDOM = 10  # contrasts along gravity that a half of a session must have
 KEPT_SHARE = 0.6  # of the excess, below which a name is no explanation where noise does not fit
+LEFT = 0.25  # of a cause's score, that something nameless in its domain may still gain
 MOST_OF_ONE = 2  # causes that one session, held out against itself, can be believed to show
 STAND_IN = 0.8  # of the gain of several names
 OWN_SHARE = 0.5  # of a bent effect that must be the effect itself
@@ -124,19 +125,13 @@ class SensorGap:
 
     def _judge(self):
         """Adequacy, drift, plausibility, shrinkage."""
-        self._adequate()
-        self.drift = None
-        if not self.adequacy.ok and not self.added and "drift" not in self.settings.without:
-            self.drift = drifting.level(self)
-        self.unexplained = (not self.adequacy.ok or bool(self.added)) and self.drift is None
-        self._shares()
+        self._settle()
         doubted = [c for c in self.causes if self._doubted(c)]
         if doubted:
             self.chosen = [o for o in self.chosen if not any(o in c.chosen for c in doubted)]
             self.causes = [c for c in self.causes if c not in doubted]
-            self._adequate()
-            self.unexplained = True
-            self._shares()
+            self._settle()
+            self.unexplained = self.drift is None
         if self.options and self.kind == "accel" and not self.settings.certified \
                 and "box_tilt" not in self.settings.without and crooked_box.possible(self):
             box, self.box_data = crooked_box.found(self)
@@ -146,6 +141,15 @@ class SensorGap:
         if crooked_box.bent(self.causes):
             self.crooked = []  # a nonlinearity leans the faces as well
         self.shrinkage = self._shrink()
+
+    def _settle(self):
+        """Adequacy, drift and shares of the causes as they are now."""
+        self._adequate()
+        self.drift = None
+        if not self.adequacy.ok and "drift" not in self.settings.without:
+            self.drift = drifting.level(self)
+        self.unexplained = (not self.adequacy.ok or bool(self.added)) and self.drift is None
+        self._shares()
 
     def _adequate(self):
         """adequacy, and added: {domain: nats} of the generic discrepancies that add."""
@@ -179,12 +183,13 @@ class SensorGap:
     def _doubted(self, cause):
         """True for a name that only stands in for something unknown: most of it is the bend
         beside it, or noise does not fit and it takes less than most of the excess, or what is
-        left varies in the very way that it should have explained."""
+        left varies by much in the very way that it should have explained."""
         if self._own_share(cause) < OWN_SHARE:
             return True
         if not self.unexplained:
             return False
-        return cause.domain in self.added or (cause.share or 0.0) < KEPT_SHARE
+        left = self.added.get(cause.domain, 0.0)
+        return left > LEFT * cause.score or (cause.share or 0.0) < KEPT_SHARE
 
     def _own_share(self, cause):
         """Share of what a cause adds that its plain coefficients reproduce, the best variant

@@ -26,12 +26,21 @@ class Thermometer:
         thermometer follows the part, to first order."""
         if lag_s <= 0.0:
             return np.interp(t, self.t, self.c - lag_s * self.rate)
-        follow = np.empty_like(self.c)
-        follow[0] = self.c[0]
-        share = 1.0 - np.exp(-STEP_S / lag_s)
-        for i in range(1, len(follow)):
-            follow[i] = follow[i - 1] + share * (self.c[i] - follow[i - 1])
-        return np.interp(t, self.t, follow)
+        return np.interp(t, self.t, _follow(self.c, lag_s))
+
+    def lagged_rate(self, t, lag_s):
+        """Rate of what follows the thermometer with a lag (s) of 0 or more."""
+        return np.interp(t, self.t, _follow(self.rate, lag_s) if lag_s else self.rate)
+
+
+def _follow(values, lag_s):
+    """One a second, after a first-order lag (s)."""
+    out = np.empty_like(values)
+    out[0] = values[0]
+    share = 1.0 - np.exp(-STEP_S / lag_s)
+    for i in range(1, len(out)):
+        out[i] = out[i - 1] + share * (values[i] - out[i - 1])
+    return out
 
 
 def of(capture, t_s):

@@ -20,7 +20,7 @@ UPPER = 0.1
 CHANCE = 0.004  # two sensors, the gyro's turns, the box and the spectra share 5 %, with room
 LEAST_NATS = 6.0  # the prototype's 4.0 was 95 % for one search with the noise known exactly
 MARGIN_NATS = 1.5  # flicker and placement are not what the simulation takes them for
-FORMAT = 6
+FORMAT = 7
 
 
 class Thresholds:

@@ -54,7 +54,7 @@ SIZES = {
         "mpu6050-accel": (5.0, _MPU + "2: 0.5 % nonlinearity"), "mpu6050-gyro": (0.2, _MPU + "1"),
         "adxl345": (5.0, _ADXL + ": 0.5 % of full scale"), "itg3205": (0.2, _ITG + ": 0.2 %")},
     "asymmetry": {
-        "mpu6050-accel": (3.0, _JUDGED), "mpu6050-gyro": (1.0, _JUDGED),
+        "mpu6050-accel": (3.0, _JUDGED), "mpu6050-gyro": (5.9, _SEEN),
         "adxl345": (3.0, _JUDGED), "itg3205": (5.9, _SEEN)},
     "g_sensitivity": {
         "mpu6050-gyro": (0.1, _MPU + "1"), "itg3205": (0.1, _ITG)},
