@@ -182,4 +182,4 @@ def share_held(label, answer, twin):
     whole = gap["before"] ** 2 - floor["before"] ** 2
     if whole <= 0:
         return None
-    return [(gap["before"] ** 2 - gap["after"] ** 2) / whole, *bounds]
+    return [min((gap["before"] ** 2 - gap["after"] ** 2) / whole, 1.0), *bounds]

@@ -60,14 +60,13 @@ def null(rng, count):
 
 def _specification(rng, effects, **more):
     habits = {"box_tilt_deg": 0.0, "free_heading": bool(rng.random() < 0.2)}
-    certified = any(name == "box_tilt" for name, _, _ in effects)
     protocol = "recommended"
     if any(name in ("lever_arm", "filter_lag") for name, _, _ in effects):
         protocol = "driving"
     if effects and effects[0][0] == "drift" and rng.random() < 0.3:
         protocol = "rest"
     return Specification(seed_of(rng), more.pop("chip", None) or chip_of(rng),
-                         more.pop("protocol", protocol), effects, habits, certified, **more)
+                         more.pop("protocol", protocol), effects, habits, **more)
 
 
 def _spread(rng, things, count):

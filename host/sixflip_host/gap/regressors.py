@@ -140,7 +140,7 @@ def _thermal(session, m, terms, found, sensor, reference_c):
     for lag in LAGS_S:
         felt = copy.copy(m)
         felt.temperature = session.thermometer.lagged(session.t, lag)
-        felt.temperature_rate = session.thermometer.lagged_rate(session.t, max(lag, 0.0))
+        felt.temperature_rate = session.thermometer.lagged_rate(session.t, lag)
         label = "lag %g s" % lag if lag else ""
         shape = {"reference_c": reference_c}
         bias = terms("thermal_bias", label, felt, only=("x", "y", "z"), shape=shape)
@@ -150,8 +150,7 @@ def _thermal(session, m, terms, found, sensor, reference_c):
             scale = terms("thermal_scale", label, felt, shape=shape)
             if not lag:
                 found.append(powered(scale, scale.columns * dt, 0.1 * scale.prior[0]))
-        if lag >= 0.0:
-            terms("thermal_rate", label, felt)
+        terms("thermal_rate", label, felt)
 
 
 def generics(session, up, sensor):

@@ -29,8 +29,11 @@ class Thermometer:
         return np.interp(t, self.t, _follow(self.c, lag_s))
 
     def lagged_rate(self, t, lag_s):
-        """Rate of what follows the thermometer with a lag (s) of 0 or more."""
-        return np.interp(t, self.t, _follow(self.rate, lag_s) if lag_s else self.rate)
+        """Rate of what `lagged` returns."""
+        if lag_s > 0.0:
+            return np.interp(t, self.t, _follow(self.rate, lag_s))
+        bend = np.gradient(_smooth(self.rate, RATE_S), STEP_S) if len(self.c) > 2 else 0.0
+        return np.interp(t, self.t, self.rate - lag_s * bend)
 
 
 def _follow(values, lag_s):
