@@ -5,7 +5,7 @@ from sixflip_sim.effects.drift import FLOOR_OF_UNIT
 
 from . import next_capture, unseen
 
-UNITS = {"accel": "mg", "gyro": "deg/s", "gyro_turns": "deg/s"}
+UNITS = {"accel": "mg", "gyro": "deg/s", "gyro_turns": "deg/s", "accel_motion": "mg"}
 # Allan floor of the five exponentials of unit level, by numerical integration of their kernel.
 FLOOR_OF_KERNEL = 0.78 / FLOOR_OF_UNIT
 
@@ -32,11 +32,14 @@ def of(diagnosis):
 
 
 def gaps(diagnosis):
-    """{sensor: SensorGap}; the gyro's is that of its turns where only they show something."""
+    """{sensor: SensorGap}; that of the motion where only that shows something."""
     found = dict(diagnosis.gaps)
     turns = diagnosis.turns
     if turns and turns.causes and not found["gyro"].causes:
         found["gyro"] = turns
+    motion = diagnosis.motion
+    if motion and motion.found and not found["accel"].causes:
+        found["accel"] = motion
     return found
 
 

@@ -88,7 +88,7 @@ def closed(found, args):
     """{sensor: Loop} of the simulator run again; the scenario file where asked for."""
     from sixflip_sim.effects.library import NAMES
 
-    from . import closed_loop, closed_loop_turns, scenario_out
+    from . import closed_loop, closed_loop_motion, closed_loop_turns, scenario_out
     named = [name for name in args.add if name != "found"]
     for name in named:
         if name not in NAMES:
@@ -111,6 +111,13 @@ def closed(found, args):
         loop = closed_loop_turns.close(turns, found.settings.reference_c)
         if loop:
             loops["gyro_turns"] = loop
+    motion = found.motion
+    if motion:
+        for name in named:
+            motion.force(name)
+        loop = closed_loop_motion.close(motion)
+        if loop:
+            loops["accel_motion"] = loop
     if args.scenario:
         scenario_out.write(args.scenario, found, [e for lo in loops.values() for e in lo.effects])
     return loops

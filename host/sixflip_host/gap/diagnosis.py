@@ -9,6 +9,7 @@ from . import (
     gyro_turns,
     integrity,
     motion,
+    motion_gap,
     noise_bursts,
     observations,
     regressors,
@@ -42,13 +43,15 @@ class Settings:
 
 class Diagnosis:
     """sessions, findings (list of Finding), gaps {sensor: SensorGap}, rest (SingleRest or None),
-    where (list of Place), verdict, remarks (sentences)."""
+    turns, motion (TurnsGap of the gyro, MotionGap of the accelerometer, or None), where (list of
+    Place), verdict, remarks (sentences)."""
 
     def __init__(self, sessions, settings, simulator=None):
         sessions, others = observations.same_chip(sessions)
         sessions, again = observations.distinct(sessions)
         self.sessions, self.settings = sessions, settings
         self.remarks, self.gaps, self.rest, self.turns = [], {}, None, None
+        self.motion = None
         self.scale_remark = ""
         self.remarks += ["%s is of another sensor (%s) and was left out" % (
             s.name, s.capture.meta["sensor"]) for s in others]
@@ -158,6 +161,10 @@ class Diagnosis:
                 self.gaps["gyro"] = still.result()
             self.gaps["accel"] = accel.result()
         self.gaps = {k: self.gaps[k] for k in ("accel", "gyro") if k in self.gaps}
+        self.motion = motion_gap.of(self.sessions, sessions, nominal, self.turns, self.settings)
+        if self.motion:
+            self.findings += self.motion.found
+            self.remarks += self.motion.remarks
         said = [c.remark() for c in self.gaps["accel"].crooked if c and not self.settings.coarse]
         self.remarks += list(dict.fromkeys(sentence for sentence in said if sentence))
 

@@ -89,12 +89,16 @@ def _turns(session, nominal):
     for place in range(len(session.runs) - 1):
         # What drifts, or feels gravity, is halfway between the rests before and after.
         turn = Turn(session, nominal, 0.5 * (rest[place] + rest[place + 1]), place)
-        gaps = turn.dt.max() if len(turn.dt) else 1.0
-        if turn.railed or gaps > 5.0 / session.rate or turn.turned < LEAST_DEG:
-            continue
-        if SHORTEST_S <= turn.seconds <= LONGEST_S:
+        if fit(turn, session.rate):
             found.append(turn.integrate())
     return found
+
+
+def fit(turn, rate):
+    """True when a turn can be used: neither cut off nor with gaps, long and far enough."""
+    gaps = turn.dt.max() if len(turn.dt) else 1.0
+    return (not turn.railed and gaps <= 5.0 / rate and turn.turned >= LEAST_DEG
+            and SHORTEST_S <= turn.seconds <= LONGEST_S)
 
 
 def rows(turn, axis_vectors):

@@ -15,8 +15,8 @@ ABSORBED = {
     "creep": "absorbed by bias", "g_sensitivity": "absorbed by bias",
     "vibration_rectification": "absorbed by bias: nothing vibrated, or all the time",
     "earth_rate": "a nuisance: below the noise, or not told from g_sensitivity",
-    "lever_arm": "the hand's own acceleration hides it: a turntable tells",
-    "filter_lag": "shows only in motion with a reference",
+    "lever_arm": "needs a gyro and a dozen turns from rest to rest",
+    "filter_lag": "needs a gyro and a dozen turns from rest to rest",
     "saturation": "no sample came near a rail; a rounded one is odd and absorbed by scale"}
 STILL_ONLY = {"gyro": ("thermal_scale", "quadratic", "cubic", "asymmetry", "saturation")}
 ALWAYS_SEEN = ("quantisation", "dead_band", "torn_reads", "dropped_samples", "sample_rate",
@@ -45,8 +45,9 @@ def _named(diagnosis):
 
 def reason(diagnosis, name, sensor):
     """Why an effect could not have been seen; "" when it could."""
-    if sensor == "device" or name in ("lever_arm", "supply", "table_tilt", "earth_rate",
-                                      "local_gravity", "filter_lag"):
+    if name in ("lever_arm", "filter_lag"):
+        return in_motion(diagnosis, name, sensor)
+    if sensor == "device" or name in ("supply", "table_tilt", "earth_rate", "local_gravity"):
         return ABSORBED.get(name, "")
     gap = diagnosis.gaps.get(sensor)
     if gap is None:
@@ -72,6 +73,20 @@ def reason(diagnosis, name, sensor):
         return "too small for this capture: from %.2g %s on, typical is %.2g" % (
             smallest, EFFECTS[name].units[sensor], abs(usual))
     return ""
+
+
+def in_motion(diagnosis, name, sensor):
+    """reason() of the effects that act in motion only."""
+    if sensor == "device":
+        return "both sensors are late together: shows only against a reference outside"
+    motion = diagnosis.motion
+    if motion is None or not motion.seen:
+        return ABSORBED[name]
+    smallest, usual = motion.least(name), typical.size(name, motion.chip, sensor)[0]
+    if smallest <= usual:
+        return ""
+    return "hidden by the hand's own acceleration: from %.2g %s on, typical is %.2g" % (
+        smallest, EFFECTS[name].units[sensor], usual)
 
 
 def least(gap, options):

@@ -3,7 +3,7 @@ from ..terminal import console, plain, styled, table
 from .regressors import DOMAIN
 
 SENSOR = {"accel": "accelerometer", "gyro": "gyro", "device": "device",
-          "gyro_turns": "gyro in motion"}
+          "gyro_turns": "gyro in motion", "accel_motion": "accelerometer in motion"}
 STYLE = {"no gap": "bold green", "explained": "bold green", "partly explained": "bold yellow",
          "unexplained": "bold red", "cannot tell": "bold yellow"}
 DOES = {  # what a part with this effect does
@@ -18,7 +18,9 @@ DOES = {  # what a part with this effect does
     "remembers the pose before", "creep": "creeps after each move", "box_tilt":
     "sits in a box whose faces are not square", "torn_reads": "mixes bytes of two readings",
     "axis_swap": "has its axes swapped or inverted", "sample_rate": "runs at another rate than "
-    "it says", "dropped_samples": "loses samples", "supply": "follows the supply"}
+    "it says", "dropped_samples": "loses samples", "supply": "follows the supply",
+    "lever_arm": "sits off the point it is turned about", "filter_lag": "is behind the other "
+    "sensor"}
 
 
 def sentence(answer):

@@ -1,6 +1,8 @@
 """Effects of when a sample is taken, and of what lies between feeling and reading."""
 from sixflip_sim.effects.effect import TIMING, Effect
 
+_RADIAN = 0.017453292519943295  # of a degree; g and ms make mg and s of it
+
 
 class SampleRate(Effect):
     """The clock of the chip runs (1 + kappa) times as fast; 99.3 and 100.3 Hz were seen for 100.
@@ -41,17 +43,24 @@ class FilterLag(Effect):
     """The low-pass filter is behind: -tau dw/dt, to first order; delays of 1-19 ms.
 
     sensor "device": accelerometer and gyro are late together, an exact delay of tau; "gyro":
-    the gyro alone. MPU-6050 register map rev 4.2, register 26: 0.98 to 18.6 ms for DLPF_CFG
-    0 to 6.
+    the gyro alone; "accel": the accelerometer alone, what turning does to f: df/dt = f x w.
+    MPU-6050 register map rev 4.2, register 26: 0.98 to 18.6 ms for DLPF_CFG 0 to 6.
     """
 
     name = "filter_lag"
-    units = {"device": "ms", "gyro": "ms"}
-    largest = {"device": 100.0, "gyro": 100.0}
+    units = {"device": "ms", "gyro": "ms", "accel": "ms"}
+    largest = {"device": 100.0, "gyro": 100.0, "accel": 100.0}
     keys = ("tau",)
     smallest = 0.0
 
+    def _sensor(self, sensor):
+        return Effect._sensor(self, sensor or "device")
+
     def terms(self, m):
-        if self.sensor == "gyro":
-            for i in range(3):
+        f, w = m.f, m.w
+        for i in range(3):
+            if self.sensor == "gyro":
                 yield "tau", i, m.w_rate[i] * -0.001
+            elif self.sensor == "accel":
+                j, k = (i + 1) % 3, (i + 2) % 3
+                yield "tau", i, (f[j] * w[k] - f[k] * w[j]) * -_RADIAN

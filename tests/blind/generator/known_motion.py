@@ -1,6 +1,7 @@
 """Known effects of vibration and motion: lines, rectification, lever arm, lag, axes, box."""
 
 import numpy as np
+from scipy.signal import lfilter, lfiltic
 from scipy.spatial.transform import Rotation
 
 from .effect import Effect, names_of, sized, some_axes
@@ -66,13 +67,24 @@ def lever_arm(rng, chip, sensor, times):
     return Effect("lever_arm", "accel", [], "world", act, {"r_m": r.tolist()})
 
 
+def _behind(x, t, tau):
+    """x (n, k) behind a first-order lag, the input a straight line from sample to sample: the
+    delay of a ramp is tau however short that is beside the sampling."""
+    step = np.mean(np.diff(t))
+    fade = np.exp(-step / tau)
+    held = tau / step * (1 - fade)
+    start = lfiltic([1 - held, held - fade], [1, -fade], [1.0], [1.0])
+    return np.stack([lfilter([1 - held, held - fade], [1, -fade], column,
+                             zi=start * column[0])[0] for column in x.T], axis=1)
+
+
 def filter_lag(rng, chip, sensor, times):
     """Two first-order lags in a row, together tau."""
     tau = chip.typical["filter_lag", sensor] * times
 
     def act(signals, _):
         out = signals.out(sensor)
-        out[:] = lagged(lagged(out, signals.t, tau / 2), signals.t, tau / 2)
+        out[:] = _behind(_behind(out, signals.t, tau / 2), signals.t, tau / 2)
 
     return Effect("filter_lag", sensor, [], "analogue", act, {"tau_s": tau})
 
