@@ -11,6 +11,7 @@ import os
 from array import array
 
 from sixflip import capture_blocks as cb
+from sixflip.capture_moves import CaptureMoves
 from sixflip.capture_scan import Scan
 from sixflip.faces import FACES
 
@@ -80,16 +81,21 @@ def _copy(unit, name, asked, scan):
         asked.reason = "no room for a copy of the session before"
     asked.sums_only = asked.reason != ""
     asked.kept = 0 if asked.sums_only else asked.samples
+    moves = CaptureMoves(asked.placements, scan.blocks.columns,
+                         int(1000000 / unit.settings["rate_hz"] + 0.5), unit.sensor.imu.gyro_rail)
     with open(root + NEW, "wb") as f:
-        meta = meta_bytes(unit, asked.session, asked.samples)
+        meta = meta_bytes(unit, asked.session)
         new = cb.BlockWriter(f.write, meta, scan.blocks.columns, 1)
         with open(root + name, "rb") as g:
             for kind, block in Scan(g).each():
+                if kind == cb.SAMPLES:
+                    moves.block(block)
                 if kind != cb.END and (kind != cb.SAMPLES or not asked.sums_only):
                     f.write(block)
         new.note("%s, after a pause of unknown length: %d s stand for it"
                  % (FACES[asked.face] + " again" if asked.face >= 0 else "continued", GAP_S))
         asked.bytes = f.tell()
+    asked.moves = moves.moves()
 
 
 def run(unit):

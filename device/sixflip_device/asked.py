@@ -24,8 +24,8 @@ class Asked:
     """For sampling. wanted, lengths, hold_s: a plan, see PlannedSession; wanted None: none.
 
     before  it goes on with the session before; then face: 0..5 to be taken again, or -1, and
-    placements, samples, seconds, us, kept, bytes, sums_only, reason, session: what again.py
-    took over of it
+    placements, moves, samples, seconds, us, kept, bytes, sums_only, reason, session: what
+    again.py took over of it
     """
 
     wanted = None

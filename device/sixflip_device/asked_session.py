@@ -63,7 +63,7 @@ def session(unit, chip, store):
     from sixflip.resumed_session import resume
     from sixflip.session import Session
     made = Session(*chip, pose_samples=settings["pose_samples"], timeout_s=settings["timeout_s"])
-    resume(made, asked.placements, asked.samples)
+    resume(made, asked.placements, asked.samples, asked.moves)
     for face in range(6):
         # a face alone of its pair too: the table may have been moved since
         if face == asked.face or asked.face < 0 and _half(asked.placements, face):

@@ -6,14 +6,9 @@ import sixflip
 from sixflip import capture_blocks
 
 
-def meta_bytes(unit, number, resumed=0):
-    """The capture's metadata, JSON in bytes: what the driver says, and who and how.
-
-    resumed: so many samples are of a session before, whose moves nobody summed up
-    """
+def meta_bytes(unit, number):
+    """The capture's metadata, JSON in bytes: what the driver says, and who and how."""
     meta = unit.sensor.imu.metadata()
-    if resumed:
-        meta["resumed_at"] = resumed
     if unit.asked == "nobody":
         meta["unasked"] = True
     meta.update({"g": unit.settings["g"], "device_id": unit.board.unique_id,

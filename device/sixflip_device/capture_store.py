@@ -9,7 +9,8 @@ from sixflip.capture_blocks import BlockWriter
 from .flash_files import NEW, REFUSED, free_bytes, remove
 
 RESERVE = 24576      # bytes left for the records, and for the file system's own needs
-CHECK_BYTES = 4096   # free space is asked for again after so many bytes
+CHECK_BYTES = 4096   # free space is asked for again after so many bytes at least: littlefs
+                     # goes through all of the flash for it, 0.15 s without a sample on a Pico
 SUMS_BYTES = 4096    # what the poses of a session take without their samples
 ENOSPC = 28          # everywhere; MicroPython's errno module does not list it
 
@@ -81,8 +82,10 @@ class CaptureStore:
             return
         self.bytes += len(data)
         if self.bytes >= self._next_check and not self.sums_only:
-            self._next_check = self.bytes + CHECK_BYTES
+            # not before half of what there is to spare is used
             free = free_bytes(self._root)
+            self._next_check = self.bytes + max(
+                CHECK_BYTES, ((free or 0) - RESERVE - SUMS_BYTES) // 2)
             if free is not None and free < RESERVE + SUMS_BYTES:
                 self._short("the flash is nearly full, %d bytes free" % free)
 

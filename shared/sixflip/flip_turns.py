@@ -1,21 +1,18 @@
 """The half turns of a session as the gyro's integral saw them, and which of them count.
 
 An integral is the exact sum of counts over n samples, divided by n, times the time that
-really passed: rad in measured units, bias still in it.
+really passed, late samples apart (move_turn): rad in measured units, bias still in it.
 """
 
 import math
 
 from sixflip.faces import AXIS, SIGN, face_of_code
+from sixflip.move_turn import has_gap, turned
 
 ACROSS_DEG = 5.0
 # A gyro misaligned by this much is believed when the flips of both faces show the same.
 COMMON_DEG = 15.0
 OFF_HALF_TURN_DEG = 40.0
-# A gap this many times the mean interval hides part of the turn; as pose_label.has_gap().
-GAP = 5
-# A brisk flip reaches 300 deg/s: so late a sample stands for 3 degrees more than it should.
-LATE_US = 10000
 
 
 def integral(sums, n, duration_us, lsb_per_dps):
@@ -23,6 +20,12 @@ def integral(sums, n, duration_us, lsb_per_dps):
     T = duration_us * 1e-6
     f = math.radians(T / (n * lsb_per_dps))
     return [s * f for s in sums], T
+
+
+def turn(move, lsb_per_dps):
+    """Likewise, of a move."""
+    f = math.radians(1.0 / lsb_per_dps)
+    return [turned(move, k) * f for k in range(3)], move.duration_us * 1e-6
 
 
 def mean_rate(placements, lsb_per_dps):
@@ -65,7 +68,7 @@ def find_flips(placements, moves, lsb_per_dps, bias, rotation=None):
 def _flip(move, a, b, lsb_per_dps, bias, rotation):
     flip = Flip()
     flip.face = face_of_code(a)
-    measured, flip.T = integral(move.gyro_sums, move.n, move.duration_us, lsb_per_dps)
+    measured, flip.T = turn(move, lsb_per_dps)
     flip.turned = [measured[k] - bias[k] * flip.T for k in range(3)]
     about = SIGN[flip.face] * flip.turned[AXIS[flip.face]]
     flip.along = 1 if about >= 0.0 else -1
@@ -76,18 +79,13 @@ def _flip(move, a, b, lsb_per_dps, bias, rotation):
     return flip
 
 
-def _why_not(move, flip, turn):
+def _why_not(move, flip, turned_deg):
     if move.saturated:
         return "the gyro was saturated: turn the box more slowly"
-    if move.drops:
-        return "%d samples are missing" % move.drops
-    if move.largest_gap_us * move.n > GAP * move.duration_us:
+    if has_gap(move):
         return "a gap of %d ms in the samples" % (move.largest_gap_us // 1000)
-    if move.largest_gap_us - move.duration_us / move.n > LATE_US:
-        return "a sample came %d ms late" % (
-            (move.largest_gap_us - move.duration_us / move.n) // 1000)
-    if not abs(turn - 180.0) <= OFF_HALF_TURN_DEG:
-        return "turned by %.0f degrees, expected 140 to 220" % turn
+    if not abs(turned_deg - 180.0) <= OFF_HALF_TURN_DEG:
+        return "turned by %.0f degrees, expected 140 to 220" % turned_deg
     if not flip.lean_deg <= ACROSS_DEG:
         return ("did not stay flat: %.1f degrees across the axis, %.0f is the limit"
                 % (flip.lean_deg, ACROSS_DEG))

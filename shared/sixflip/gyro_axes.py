@@ -8,7 +8,8 @@ every other reading of the axes, and the one that does is the sensor's.
 import math
 
 from sixflip.faces import AXIS, SIGN, face_of_code
-from sixflip.flip_turns import integral
+from sixflip.flip_turns import turn
+from sixflip.move_turn import has_gap
 
 ORDERS = ((0, 1, 2), (1, 0, 2), (2, 1, 0), (0, 2, 1), (1, 2, 0), (2, 0, 1))
 # Squared distances between unit vectors: 45 degrees is 0.6, a right angle 2.
@@ -46,12 +47,12 @@ def _evidence(placements, moves, lsb_per_dps, bias):
     """[(face before, face after, turned [3] rad), ...] of the moves that can be trusted."""
     out = []
     for m in moves:
-        if m.before < 0 or m.after < 0 or m.saturated or m.drops or not m.n > 0:
+        if m.before < 0 or m.after < 0 or m.saturated or not m.n > 0 or has_gap(m):
             continue
         f = face_of_code(placements[m.before].pose)
         t = face_of_code(placements[m.after].pose)
         if f >= 0 and t >= 0:
-            measured, T = integral(m.gyro_sums, m.n, m.duration_us, lsb_per_dps)
+            measured, T = turn(m, lsb_per_dps)
             out.append((f, t, [measured[k] - bias[k] * T for k in range(3)]))
     return out
 

@@ -1,5 +1,7 @@
 """What a session yields: still placements of the box and the moves between them."""
 
+LATE_US = 128  # unit of Move.late's times
+
 
 class Placement:
     """One unbroken rest of the box in one pose; the unit of replication of every solve.
@@ -9,7 +11,10 @@ class Placement:
     sums         seven exact integers: counts of ax ay az gx gy gz temp summed over n samples
     noise        six floats: standard deviation within the pose, counts, ax ay az gx gy gz
     duration_us  the time the n samples span, n times the mean interval
+    late         as a Move's, where samples came late and the board took it itself, or None
     """
+
+    late = None
 
     def __init__(self, pose, first, n, sums, noise, duration_us):
         self.pose = pose
@@ -27,12 +32,13 @@ class Move:
     first, n         index of its first sample, number of samples
     gyro_sums        three exact integers: counts of gx gy gz summed over n samples
     duration_us      true elapsed time from the device's timestamps
-    drops            samples missing in between, judged by the timestamps
+    late             [gx, gy, gz, time] of the samples that came early or late: the count before
+                     plus the count then, times by how much, and by how much; LATE_US is the unit
     saturated        True when a gyro axis touched full scale
     largest_gap_us   the longest interval between two samples
     """
 
-    def __init__(self, before, after, first, n, gyro_sums, duration_us, drops, saturated,
+    def __init__(self, before, after, first, n, gyro_sums, duration_us, late, saturated,
                  largest_gap_us):
         self.before = before
         self.after = after
@@ -40,6 +46,6 @@ class Move:
         self.n = n
         self.gyro_sums = gyro_sums
         self.duration_us = duration_us
-        self.drops = drops
+        self.late = late
         self.saturated = saturated
         self.largest_gap_us = largest_gap_us

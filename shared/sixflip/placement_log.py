@@ -4,14 +4,15 @@ from sixflip.placement import Move
 
 
 def empty_move(first):
-    return Move(-1, -1, first, 0, [0, 0, 0], 0, 0, False, 0)
+    return Move(-1, -1, first, 0, [0, 0, 0], 0, [0, 0, 0, 0], False, 0)
 
 
 def add_window(move, window):
     """Append a window's samples to a move: exact sums, true elapsed time."""
     move.n += window.n
     move.duration_us += window.us
-    move.drops += window.drops
+    for i in range(4):
+        move.late[i] += window.late[i]
     move.saturated = move.saturated or window.gyro_saturated != 0
     move.largest_gap_us = max(move.largest_gap_us, window.largest_gap_us)
     for i in range(3):
@@ -22,7 +23,8 @@ def absorb(move, later):
     """Append a later, adjoining stretch to a move."""
     move.n += later.n
     move.duration_us += later.duration_us
-    move.drops += later.drops
+    for i in range(4):
+        move.late[i] += later.late[i]
     move.saturated = move.saturated or later.saturated
     move.largest_gap_us = max(move.largest_gap_us, later.largest_gap_us)
     for i in range(3):
@@ -35,8 +37,8 @@ def span_of(placement, period_us):
     move.n = placement.n
     move.gyro_sums = placement.sums[3:6]
     move.duration_us = placement.duration_us
-    move.drops = max(0, (move.duration_us + period_us // 2) // period_us - move.n)
-    move.largest_gap_us = (move.drops + 1) * period_us
+    move.late = placement.late or [0, 0, 0, 0]
+    move.largest_gap_us = max(0, move.duration_us - move.n * period_us) + period_us
     return move
 
 

@@ -1,14 +1,11 @@
 """Which pose a rest is, in any order: the face from gravity, a or b from the gyro."""
 
+from sixflip.move_turn import has_gap, turned
+
 CROOKED_DEG = 15.0  # live limit: a raw bias of 112 mg alone tilts gravity by 6.4 degrees
 LEANING_DEG = 30.0  # from here on it rests on no face at all
 HALF_TURN_DEG = 140.0  # 180 less 40: from here on a flip
 SAME_DEG = 40.0  # up to here the box was put back as it was
-
-
-def has_gap(move):
-    """Whether five samples or more are missing in one piece: part of a turn was not seen."""
-    return move.largest_gap_us * move.n > 5 * move.duration_us
 
 
 def turned_deg(move, bias, lsb_per_dps, axis):
@@ -19,8 +16,8 @@ def turned_deg(move, bias, lsb_per_dps, axis):
     """
     if move.n == 0:
         return 0.0
-    mean = move.gyro_sums[axis] / move.n - bias[axis]
-    angle = abs(mean / lsb_per_dps * (move.duration_us / 1e6)) % 360
+    counts = turned(move, axis) - bias[axis] * (move.duration_us / 1e6)
+    angle = abs(counts / lsb_per_dps) % 360
     angle = min(angle, 360 - angle)
     if SAME_DEG < angle < HALF_TURN_DEG and has_gap(move):
         return 0.0

@@ -67,4 +67,7 @@ class PoseSums:
     def placement(self):
         noise = array("f", [math.sqrt(v / self.taken) for v in self.squares])
         span = self.span
-        return Placement(self.pose, span.first, span.n, self.sums, noise, span.duration_us)
+        made = Placement(self.pose, span.first, span.n, self.sums, noise, span.duration_us)
+        if span.late[3]:
+            made.late = span.late
+        return made

@@ -2,20 +2,20 @@
 
 from sixflip.placement_log import empty_move
 
+PAUSE_US = 60000000  # between the two; how long it was nobody knows
 
-def resume(session, placements, samples):
-    """Put the placements of a session of so many samples in force; of the moves to them, and
-    to the one that comes next, nothing is known: they lack samples.
+
+def resume(session, placements, samples, moves=None):
+    """Put the placements of a session of so many samples in force, and its moves.
+
+    moves   to each of them and the one under way at its end (capture_moves.py); None: nothing
+            is known of them
     """
     log = session._log
-    for placement in placements:
-        _lost(log, placement.first)
+    for i, placement in enumerate(placements):
+        log.open = moves[i] if moves else empty_move(placement.first)
         log.accept(placement)
-    _lost(log, samples)
+    log.open = moves[-1] if moves else empty_move(samples)
+    log.open.largest_gap_us = PAUSE_US
     session.samples = samples
     session._away = True
-
-
-def _lost(log, first):
-    log.open = empty_move(first)
-    log.open.drops = 1

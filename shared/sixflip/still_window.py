@@ -5,6 +5,8 @@ where the small integers of 32-bit boards end; a deviation beyond SPAN is motion
 is clamped. The plain sums stay exact.
 """
 
+from sixflip.placement import LATE_US
+
 SPAN = 4096
 MOST = 64  # samples in a window: MOST * SPAN**2 = 2**30, and equal deviations never all reach it
 SAME = 32  # readings of a triple identical so many times over: the chip is stuck
@@ -14,7 +16,7 @@ class StillWindow:
     """Window of `length` samples; add() answers True when it is full, then read it.
 
     s, q        deviations and their squares summed, per axis ax ay az gx gy gz
-    us          elapsed microseconds; drops: samples missing, by the timestamps
+    us          elapsed microseconds; late: as of a sixflip.placement.Move
     accel_rail, gyro_rail  |count| at or beyond: saturated; gyro_rail 0: there is no gyro
     """
 
@@ -32,16 +34,18 @@ class StillWindow:
         self.last = [0] * 6
         self.bits = [0, 0]  # every bit ever seen set, accelerometer and gyro: shows the step
         self.same = [1, 1]  # identical readings so far, accelerometer and gyro
-        self._clear()
+        self.late = [0] * 4
+        self.clear()
 
-    def _clear(self):
+    def clear(self):
         for i in range(6):
             self.s[i] = 0
             self.q[i] = 0
         self.n = 0
         self.temp = 0
         self.us = 0
-        self.drops = 0
+        for i in range(4):
+            self.late[i] = 0
         self.largest_gap_us = 0
         self.jumped = False
         self.accel_saturated = 0
@@ -51,7 +55,7 @@ class StillWindow:
     def add(self, dt_us, sample):
         """Take one sample (ax ay az gx gy gz temp, counts), dt_us after the one before."""
         if self.n == self.length:
-            self._clear()
+            self.clear()
         if self.n == 0:
             for i in range(6):
                 self.ref[i] = sample[i]
@@ -59,8 +63,12 @@ class StillWindow:
         self.us += dt_us
         if dt_us > self.largest_gap_us:
             self.largest_gap_us = dt_us
-        if dt_us + dt_us > 3 * self.period_us:
-            self.drops += (dt_us + self.period_us // 2) // self.period_us - 1
+        off = dt_us - self.period_us
+        if abs(off) > self.period_us // 4:
+            off //= LATE_US
+            for i in range(3):
+                self.late[i] += (self.last[3 + i] + sample[3 + i]) * off
+            self.late[3] += off
         self.temp += sample[6]
         peak = self._triple(sample, 0, self.accel_rail)
         if peak:

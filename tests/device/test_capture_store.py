@@ -97,13 +97,13 @@ class TestCaptureStore(unittest.TestCase):
         store.finish(False)
 
     def test_room_runs_out_in_mid_session(self):
-        self.free = 300000
-        store = self.store()
+        name = self.root + "capture.new"
+        room = capture_store.RESERVE + capture_store.SUMS_BYTES + 1500
+        capture_store.free_bytes = lambda root: room - flash_files.size(name)
         capture_store.CHECK_BYTES, before = 512, capture_store.CHECK_BYTES
         try:
-            def fill():
-                self.free = 1000
-            self.session(store, 6, fill)
+            store = self.store(expected=3000)
+            self.session(store, 6)
         finally:
             capture_store.CHECK_BYTES = before
         self.assertTrue(store.finish(True, self.placements))
@@ -114,6 +114,16 @@ class TestCaptureStore(unittest.TestCase):
         self.assertEqual(len(got.t_us), store.kept)
         self.assertGreater(store.kept, 99)
         self.assertLess(store.kept, 600)
+
+    def test_free_space_is_not_asked_for_while_there_is_plenty(self):
+        asked = []
+        capture_store.free_bytes = lambda root: asked.append(1) or 1200000
+        store = self.store()
+        del asked[:]  # before the first sample
+        self.session(store, 12)
+        self.assertGreater(store.bytes, 2 * capture_store.CHECK_BYTES)
+        self.assertEqual(asked, [])
+        store.finish(True)
 
     def test_flash_full_in_mid_write(self):
         for room in (0, 3, 100, 700, 1500, 2500):

@@ -37,6 +37,8 @@ class Continued(Folder):
         blocks = read_blocks(self.read("capture.bin"))
         self.assertEqual([pose_name(p.pose) for p in blocks.placements], ["Z+a", "Z+b"] + REST)
         self.assertIn("continued, after a pause", blocks.notes[-1])
+        gyro = board.only("solved")["gyro"]
+        self.assertEqual((gyro["verdict"], gyro["reason"][:7]), ("good", "6 flips"))
         self.assertEqual(self.files(), ["capture.bin", "record_a.bin"])
 
     def test_with_nothing_before_it_begins_afresh(self):

@@ -19,8 +19,11 @@ def test_demo_on_the_virtual_board(micropython, sensor, tmp_path, capsys, monkey
     assert (kept / "raw_corrected.png").read_bytes()[:4] == b"\x89PNG"
     assert (kept / "flash.img").exists()
     lines = (kept / "events.jsonl").read_text().splitlines()
-    names = [json.loads(line)["event"] for line in lines]
-    assert names.count("pose") == 12
+    said = [json.loads(line) for line in lines]
+    assert [event["event"] for event in said].count("pose") == 12
+    [solved] = [event for event in said if event["event"] == "solved"]
+    # the flash takes its time in the middle of flips too
+    assert solved["gyro"]["verdict"] == "good" and "left out" not in solved["gyro"]["reason"]
 
 
 def test_demo_without_micropython_says_so_and_goes_on(tmp_path, capsys, monkeypatch):

@@ -42,7 +42,7 @@ def session(seed):
     means = {p.pose: p for p in still}
     rests = [(p.pose, p.first, p.n, means[p.pose].sums[:3] + p.sums[3:],
               means[p.pose].noise[:3] + p.noise[3:], p.duration_us) for p in turned]
-    fields = ("before", "after", "first", "n", "gyro_sums", "duration_us", "drops", "saturated",
+    fields = ("before", "after", "first", "n", "gyro_sums", "duration_us", "late", "saturated",
               "largest_gap_us")
     return rests, [tuple(getattr(m, f) for f in fields) for m in moves], accel_lsb, gyro_lsb, \
         seed % 3 == 0

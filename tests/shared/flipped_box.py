@@ -130,7 +130,7 @@ def gyro_session(M=IDEAL, bias_dps=(0, 0, 0), hand_deg=0.0, noise_dps=0.0, lsb=G
             angles = _angle_between(before, code, (before - 1) // 2, face,
                                     math.radians(hand_deg), dice)
             moves.append(Move(number - 1, number, 650 * number - 250, 250,
-                              counts(angles, 2.5, 250), 2500000, 0, False, 10000))
+                              counts(angles, 2.5, 250), 2500000, [0] * 4, False, 10000))
         accel = [int(6553600 * x) for x in UP[face]]
         rests.append(Placement(code, 650 * number, 400, accel + counts((0, 0, 0), 4.0, 400) + [0],
                                [30.0] * 3 + [max(noise_dps * lsb, 0.5)] * 3, 4000000))

@@ -5,6 +5,7 @@ from synthetic_operator import Operator
 
 from sixflip import session as machine
 from sixflip.faces import face_of_code, pose_code, pose_name
+from sixflip.move_turn import has_gap
 from sixflip.planned_session import PlannedSession
 from sixflip.resumed_session import resume
 from sixflip.session import Session
@@ -87,7 +88,8 @@ class SixFaces(unittest.TestCase):
             self.assertEqual(move.gyro_sums, [
                 recorder.total(3 + k, at, p.first) for k in range(3)])
             self.assertEqual(move.duration_us, 10000 * move.n)
-            self.assertEqual((move.drops, move.saturated, move.largest_gap_us), (0, False, 10000))
+            self.assertEqual((move.late, move.saturated, move.largest_gap_us),
+                             ([0, 0, 0, 0], False, 10000))
             end = p.first + p.n
             self.assertEqual(p.sums, [recorder.total(k, p.first, end) for k in range(7)])
             self.assertEqual((p.n, p.duration_us), (400, 4000000))
@@ -137,7 +139,7 @@ class SixFaces(unittest.TestCase):
         self.assertEqual(poses(session), ["Z+a", "Z+b"])
         self.assertGreater(session.moves[1].duration_us, 1 << 30)
 
-    def test_time_comes_from_the_timestamps_and_drops_are_counted(self):
+    def test_time_comes_from_the_timestamps_and_late_samples_are_apart(self):
         session, hands = make()
         hands.place(0)
         hands.rest(6)
@@ -147,7 +149,7 @@ class SixFaces(unittest.TestCase):
         hands.flip(0)
         hands.rest(6)
         move = session.moves[1]
-        self.assertEqual((move.drops, move.largest_gap_us), (10, 20000))
+        self.assertEqual((move.late[3], move.largest_gap_us), (10 * (10000 // 128), 20000))
         self.assertEqual(move.duration_us, 10000 * (move.n + 10))
 
 
@@ -473,9 +475,10 @@ class Sensors(unittest.TestCase):
         session, hands = make(dps=0)
         hands.place(0)
         hands.rest(6)
-        hands.shake = 2000
-        hands.samples(5)
-        hands.rest(6)
+        for _ in range(4):
+            hands.shake = 2000
+            hands.samples(5)
+            hands.rest(6)
         self.assertEqual(poses(session), ["Z+a"])
         hands.flip(0)
         hands.rest(6)
@@ -624,8 +627,18 @@ class Planned(unittest.TestCase):
         self.assertEqual((session.state, session.missing()), ("done", []))
         self.assertEqual(len(session.placements), 12)
         self.assertTrue(session.placements[4].first >= before.samples)
-        lost = [m.drops > 0 for m in session.moves]
+        lost = [not m.n or has_gap(m) for m in session.moves]
         self.assertEqual(lost, [True] * 5 + [False] * 7)
+
+    def test_with_the_moves_before_only_the_one_across_the_pause_is_lost(self):
+        before, hands = make()
+        hands.six_faces(order=(0, 1))
+        session, hands = make()
+        resume(session, before.placements, before.samples, before.moves + [before._log.open])
+        hands.six_faces(order=(2, 3, 4, 5))
+        self.assertEqual(session.state, "done")
+        self.assertEqual([has_gap(m) for m in session.moves], [False] * 4 + [True] + [False] * 7)
+        self.assertEqual([m.before for m in session.moves], list(range(-1, 11)))
 
 
 if __name__ == "__main__":

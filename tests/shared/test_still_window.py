@@ -98,14 +98,17 @@ class Window(unittest.TestCase):
         fill(window, [row[:3] + [0, 0, 0, 0] for row in noisy_rows(100, at=256, sd=2)])
         self.assertEqual(window.stale, 0)
 
-    def test_drops_by_the_timestamps(self):
+    def test_late_samples_by_the_timestamps(self):
         window = StillWindow(25, 32767, 32767, 10000)
         rows = noisy_rows(25)
         for k, row in enumerate(rows):
-            window.add({5: 20100, 9: 49900, 12: 13000}.get(k, 10000), array("h", row))
-        self.assertEqual(window.drops, 1 + 4)
+            window.add({5: 20100, 9: 49900, 10: 4000, 12: 12000}.get(k, 10000), array("h", row))
+        off = {5: 10100 // 128, 9: 39900 // 128, 10: -6000 // 128}
+        self.assertEqual(window.late, [sum(
+            u * (rows[k - 1][3 + i] + rows[k][3 + i]) for k, u in off.items())
+            for i in range(3)] + [sum(off.values())])
         self.assertEqual(window.largest_gap_us, 49900)
-        self.assertEqual(window.us, 22 * 10000 + 20100 + 49900 + 13000)
+        self.assertEqual(window.us, 21 * 10000 + 20100 + 49900 + 4000 + 12000)
 
     def test_steps_of_the_counts(self):
         for step in (1, 4):

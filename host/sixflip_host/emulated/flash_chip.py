@@ -1,10 +1,14 @@
-"""The emulated flash chip with a supply that can fail between and within its operations."""
+"""The emulated flash chip: it takes its time, and its supply can fail between and within
+operations."""
 
 from rp2040py.peripherals.ssi import CMD_BLOCK_ERASE, CMD_PAGE_PROGRAM, CMD_SECTOR_ERASE, RPSSI
 
+from sixflip_sim.flash_times import BLOCK_ERASE_US, PAGE_US, SECTOR_ERASE_US
+
 FLASH_BYTES = 2 * 1024 * 1024  # of a Pico
 ADDRESS_END = 4  # command byte and three of the address
-CHANGING = (CMD_SECTOR_ERASE, CMD_BLOCK_ERASE, CMD_PAGE_PROGRAM)
+BUSY_US = {CMD_SECTOR_ERASE: SECTOR_ERASE_US, CMD_BLOCK_ERASE: BLOCK_ERASE_US,
+           CMD_PAGE_PROGRAM: PAGE_US}
 
 
 class FlashChip(RPSSI):
@@ -26,7 +30,8 @@ class FlashChip(RPSSI):
     def _apply_command(self):
         """Called by the emulator when chip select rises: a command is complete."""
         command = bytes(self._tx_buffer)
-        if self._write_enabled and command[:1] and command[0] in CHANGING:
+        busy_us = 0
+        if self._write_enabled and command[:1] and command[0] in BUSY_US:
             if self.dead:
                 self._tx_buffer = bytearray()
             elif self.cut_after == 0:
@@ -34,7 +39,11 @@ class FlashChip(RPSSI):
             elif self.cut_after:
                 self.cut_after -= 1
             self.operations += 1
+            busy_us = 0 if self.dead else BUSY_US[command[0]]
         super()._apply_command()
+        if busy_us:
+            # The boot ROM would ask for the chip's state until it is done.
+            self.rp2040.clock.tick(1000 * busy_us)
 
     def tear(self, command):
         """Half of the operation, then the supply is gone."""

@@ -2,12 +2,11 @@
 
 import numpy as np
 
-from sixflip.placement import Move, Placement
+from sixflip.placement import LATE_US, Move, Placement
 from sixflip.still_window import window_length
 
 POSE_SAMPLES = 400      # of a pose on the board: sets the length of its windows
 INT16_RAIL = 32767      # where the chip's count ends
-DROP = 1.5              # an interval this many times the usual one hides at least one sample
 
 
 def runs(pose):
@@ -57,33 +56,33 @@ def white_noise(counts, window):
     return [0.0] * counts.shape[1]
 
 
-def resumed_at(capture):
-    """Samples of a session before that the board went on with, 0 in most captures: it knew the
-    placements in them, not the moves."""
-    number = capture.meta.get("resumed_at", 0)
-    return number if isinstance(number, int) else 0
-
-
 def moves(capture, rests):
     """list of Move between consecutive placements; none without a gyro."""
     if capture.gyro is None or len(rests) < 2:
         return []
-    usual = float(np.median(np.diff(capture.t_us)))
-    return [_move(capture, index, rests[index], rests[index + 1], usual)
+    return [_move(capture, index, rests[index], rests[index + 1])
             for index in range(len(rests) - 1)]
 
 
-def _move(capture, index, before, after, usual):
+def _move(capture, index, before, after):
     """The Move from the end of one placement to the start of the next."""
     first, end = before.first + before.n, after.first
     gyro = capture.gyro[first:end]
-    gaps = np.diff(capture.t_us[first - 1:end + 1])
-    drops = int(np.rint(gaps[gaps > DROP * usual] / usual - 1).sum()) if usual else 0
+    gaps = np.diff(capture.t_us[first - 1:end])
     rail = min(INT16_RAIL, capture.meta.get("gyro_range_dps", np.inf)
                * capture.meta["gyro_lsb_per_dps"])
     saturated = bool(len(gyro)) and bool((np.abs(gyro.astype(np.int32)) >= rail - 1).any())
     return Move(index, index + 1, first, end - first,
                 [int(s) for s in gyro.sum(axis=0, dtype=np.int64)],
                 # n samples span n intervals, each sample the one before it, as on the board
-                int(capture.t_us[end - 1] - capture.t_us[first - 1]), drops, saturated,
-                int(gaps.max()))
+                int(capture.t_us[end - 1] - capture.t_us[first - 1]),
+                _late(capture, first, end, gaps), saturated, int(gaps.max(initial=0)))
+
+
+def _late(capture, first, end, gaps):
+    """Move.late of samples first..end-1, which gaps (us) lead to."""
+    period = int(1e6 / capture.meta["rate_hz"] + 0.5)
+    off = gaps - period
+    off = np.where(np.abs(off) > period // 4, off // LATE_US, 0)
+    gyro = capture.gyro[first - 1:end].astype(np.int64)
+    return [int(x) for x in off @ (gyro[:-1] + gyro[1:])] + [int(off.sum())]

@@ -9,30 +9,50 @@ import math
 import numpy as np
 
 from sixflip.faces import AXIS, face_of_code
+from sixflip.move_turn import GAP_US
+from sixflip.placement import LATE_US
 
 from ..errors import CheckFailed
-from ..simulating import pose_runs
 
 # Standard deviations of a hand (along the axis, across it), rad, and of the bias, rad/s.
 HAND, FLAT, WANDER = np.radians(0.4), np.radians(0.1), np.radians(0.005)
 OLD = HAND / math.sqrt(1000.0)  # of the old matrix, where an axis was not flipped
 FLAT_DEG, NEAR_DEG = 5.0, 40.0
 MISALIGNED_DEG = 15.0   # as much as a gyro's own axes may be off, when two flips agree
-GAP, DROP = 5, 1.5
 
 
 class Interval:
-    """turned (3,) rad with the bias in it, T s: the integral over samples first..end-1."""
+    """turned (3,) rad with the bias in it, T s: the integral over samples first..end-1.
 
-    def __init__(self, capture, first, end):
+    Each stands for the usual interval before it; what was late or early in a move goes by the
+    trapezoidal rule, its time counted in whole LATE_US as on the board.
+    """
+
+    def __init__(self, capture, first, end, moving):
         gyro = capture.gyro[first:end].astype(np.int64)
         times = capture.t_us[max(first - 1, 0):end]
         self.T = (times[-1] - times[0]) / 1e6
-        self.turned = np.radians(gyro.mean(axis=0) * self.T / capture.meta["gyro_lsb_per_dps"])
         self.gaps = np.diff(times)
+        late, bridge = _late(capture, first, end) if moving else (0.0, np.zeros(3))
+        self.turned = np.radians((gyro.mean(axis=0) * (self.T - late) + bridge)
+                                 / capture.meta["gyro_lsb_per_dps"])
         rail = min(32767.0, capture.meta.get("gyro_range_dps", np.inf)
                    * capture.meta["gyro_lsb_per_dps"])
         self.saturated = bool((np.abs(gyro) >= rail - 1).any())
+
+
+def _late(capture, first, end):
+    """(s by which samples were late in all, counts times s over that time)."""
+    begin = max(first - 1, 0)
+    period = int(1e6 / capture.meta["rate_hz"] + 0.5)
+    late = 0.0
+    bridge = np.zeros(3)
+    for number, gap in enumerate(np.diff(capture.t_us[begin:end]).tolist(), begin + 1):
+        if abs(gap - period) > period // 4:
+            off = (gap - period) // LATE_US * LATE_US / 1e6
+            late += off
+            bridge += off * (capture.gyro[number - 1] / 2 + capture.gyro[number] / 2)
+    return late, bridge
 
 
 class GyroReference:
@@ -50,8 +70,7 @@ def solve(capture, placements, accel_P, old=None):
     n = sum(one.n for one in rests)
     bias = np.radians(sum(capture.gyro[one.first:one.first + one.n].sum(axis=0, dtype=np.int64)
                           for one in rests) / n / lsb)
-    usual = float(np.median(np.diff(capture.t_us)))
-    flips = half_turns(capture, placements, bias, np.asarray(accel_P)[:3, :3], usual)
+    flips = half_turns(capture, placements, bias, np.asarray(accel_P)[:3, :3])
     out = GyroReference()
     out.missing = [k for k in range(3) if k not in {flip[1] for flip in flips}]
     rows, truths, weights, spreads = [], [], [], []
@@ -63,7 +82,7 @@ def solve(capture, placements, accel_P, old=None):
         spreads.append(spread)
 
     for one in rests:
-        at = Interval(capture, one.first, one.first + one.n)
+        at = Interval(capture, one.first, one.first + one.n, moving=False)
         noise = np.radians(np.array(one.noise[3:6]) / lsb) * at.T / math.sqrt(one.n)
         variance = noise ** 2 + (WANDER * at.T) ** 2
         add([*at.turned, at.T], np.zeros(3), variance.max(), variance)
@@ -85,7 +104,7 @@ def solve(capture, placements, accel_P, old=None):
     return out
 
 
-def half_turns(capture, placements, bias, rotation, usual):
+def half_turns(capture, placements, bias, rotation):
     """[(Interval, axis, true turn (3,), (pose before, pose after))] of the flips that count."""
     turns = []
     for before, after in zip(placements, placements[1:]):
@@ -93,11 +112,10 @@ def half_turns(capture, placements, bias, rotation, usual):
         if face < 0 or face_of_code(after.pose) != face or before.pose == after.pose:
             continue
         first, end = before.first + before.n, after.first
-        if end <= first or first <= pose_runs.resumed_at(capture):
+        if end <= first:
             continue
-        at = Interval(capture, first, end)
-        if at.saturated or (at.gaps > DROP * usual).any() \
-                or at.gaps.max() * (end - first) > GAP * at.T * 1e6:
+        at = Interval(capture, first, end, moving=True)
+        if at.saturated or at.gaps.max() - at.T * 1e6 / (end - first) > GAP_US:
             continue
         turned = np.degrees(at.turned - bias * at.T)
         k = AXIS[face]

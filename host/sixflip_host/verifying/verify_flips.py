@@ -49,10 +49,9 @@ def excess(capture, placements, P, known, sigma):
     rests = [one for one in placements if one.n > 0]
     bias = np.radians(sum(capture.gyro[one.first:one.first + one.n].sum(axis=0, dtype=np.int64)
                           for one in rests) / sum(one.n for one in rests) / lsb)
-    usual = float(np.median(np.diff(capture.t_us)))
     found = {}
     for at, k, _, (first, second) in reference_gyro.half_turns(
-            capture, placements, bias, P[:3], usual):
+            capture, placements, bias, P[:3]):
         face = face_of_code(first)
         if k in known:
             turn = SIGN[face] * ((at.turned - bias * at.T) @ P[:3])[k]
@@ -70,8 +69,6 @@ def doubts(capture, record, placements, again, old_P=None):
     again.gyro = None
     if again.accel and not capture.sums_only and capture.gyro is not None:
         moves = pose_runs.moves(capture, placements)
-        for move in moves:
-            move.drops += move.first <= pose_runs.resumed_at(capture)
         again.gyro, _ = solution.solve_gyro(capture, placements, moves, again.accel.P, old_P)
     solution.doubt_flips(again, set(angles(record) or ()))
     return again

@@ -52,8 +52,6 @@ def _remarks(section, old):
 def _verdict(capture, section, placements, accel_P, old):
     """The verdict the shared judge gives from the host's own sums of the moves."""
     moves = pose_runs.moves(capture, placements)
-    for move in moves:
-        move.drops += move.first <= pose_runs.resumed_at(capture)
     again, why = solution.solve_gyro(capture, placements, moves, accel_P, old)
     return same("gyro verdict", section["verdict"],
                 again.verdict if again else "none: " + why)

@@ -15,6 +15,8 @@ import threading
 import time
 from pathlib import Path
 
+from sixflip_sim.flash_times import PAGE, PAGE_US, SECTOR_ERASE_US
+
 from ..board.board_files import host_dir, shared_dir
 from ..errors import NoBoard
 from . import micropython_fetch
@@ -121,6 +123,7 @@ class VirtualBoard:
             "world": self.world, "wiring": self.wiring,
             "image": str(self.image_path), "speed": self.speed,
             "flash_bytes": self.flash_bytes, "cut_after": self.cut_after, "raw": raw,
+            "flash_times": (SECTOR_ERASE_US, PAGE_US, PAGE),
             "cause": cause, "unique_id": self.unique_id, "asked": self.relay.ask_read,
             "path": [str(tools), str(host_dir()), str(shared_dir()), ".frozen"],
             "terminal": {

@@ -40,13 +40,15 @@ def make_world(config):
 
 
 def mount_flash(config):
+    import time
+
     import vfs
     from flash import FlashImage
 
     new = blank(config["image"], config["flash_bytes"])
     file = open(config["image"], "r+b")  # noqa: SIM115  open for as long as the board runs
     blocks = file.seek(0, 2) // 4096  # one made earlier keeps its size
-    device = FlashImage(file, blocks)
+    device = FlashImage(file, blocks, wait_us=time.clock.sleep_us, times=config["flash_times"])
     if new:
         vfs.VfsLfs2.mkfs(device)
     device.cut_after = config["cut_after"]

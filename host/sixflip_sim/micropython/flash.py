@@ -17,12 +17,16 @@ class FlashImage:
     file   an image opened "r+b", a whole number of blocks, erased blocks read 0xFF
     cut_after  number of writes and erases that still succeed; the next one is torn in the
                middle and nothing is written from then on. None: never.
+    wait_us    passes the time that erasing and writing take, if any
+    times      us of an erase and of writing a page, bytes in a page (sixflip_sim.flash_times)
     """
 
-    def __init__(self, file, blocks, cut_after=None):
+    def __init__(self, file, blocks, cut_after=None, wait_us=None, times=(0, 0, 1)):
         self.file = file
         self.blocks = blocks
         self.cut_after = cut_after
+        self.wait_us = wait_us
+        self.erase_us, self.page_us, self.page = times
         self.operations = 0
         self.dead = False
         self.erased = b"\xff" * BLOCK_SIZE
@@ -36,6 +40,11 @@ class FlashImage:
             self.ioctl(IOCTL_ERASE, block)
             offset = 0
         self._store(block * BLOCK_SIZE + offset, buffer)
+        self._wait(-(-len(buffer) // self.page) * self.page_us)
+
+    def _wait(self, us):
+        if self.wait_us:
+            self.wait_us(us)
 
     def ioctl(self, operation, argument):
         if operation == IOCTL_BLOCK_COUNT:
@@ -44,6 +53,7 @@ class FlashImage:
             return BLOCK_SIZE
         if operation == IOCTL_ERASE:
             self._store(argument * BLOCK_SIZE, self.erased)
+            self._wait(self.erase_us)
             return 0
         if operation == IOCTL_SYNC:
             self.file.flush()

@@ -1,0 +1,76 @@
+"""The moves of a session that is in a file, summed up from its samples as while they came."""
+
+import struct
+from array import array
+
+from sixflip.capture_blocks import TIME, US, places
+from sixflip.placement_log import PlacementLog, add_window
+from sixflip.still_window import StillWindow
+
+LENGTH = 32  # samples summed up in one go; any number will do
+
+
+class CaptureMoves:
+    """block() of every block of samples in the file's order; then moves() has them.
+
+    placements  in force in that file; columns: its mask; gyro_rail: |count| at or beyond is
+                saturated, 0 without a gyro
+    """
+
+    def __init__(self, placements, columns, period_us, gyro_rail):
+        self._to_come = list(placements)
+        self._log = PlacementLog(period_us)
+        self._window = StillWindow(LENGTH, US, gyro_rail, period_us)
+        self._places = places(columns)
+        self._row = array("h", [0] * 10)
+        self._last_us = 0
+        self._last_s = 0
+        self._at = 0
+
+    def block(self, block):
+        seconds, us, count = struct.unpack(TIME, block[4:14])
+        # in it the first sample has no interval
+        dt = (seconds - self._last_s) * US + us - self._last_us
+        at = 14
+        for _ in range(count):
+            dt += block[at] | block[at + 1] << 8
+            us += block[at] | block[at + 1] << 8
+            for i in self._places:
+                at += 2
+                self._row[i] = struct.unpack_from("<h", block, at)[0]
+            at += 2
+            self._sample(dt)
+            dt = 0
+        self._last_s = seconds + us // US
+        self._last_us = us % US
+
+    def _sample(self, dt_us):
+        to_come = self._to_come
+        if to_come and self._at == to_come[0].first:
+            self._flush()
+            self._log.accept(to_come.pop(0))
+        self._at += 1
+        full = self._window.add(dt_us, self._row)
+        placements = self._log.placements
+        if placements and self._at == placements[-1].first + placements[-1].n:
+            self._window.clear()
+        elif full and not self._resting():
+            add_window(self._log.open, self._window)
+
+    def _resting(self):
+        placements = self._log.placements
+        return placements and self._at < placements[-1].first + placements[-1].n
+
+    def _flush(self):
+        if self._window.n < LENGTH:  # a full one is in the move already
+            add_window(self._log.open, self._window)
+        self._window.clear()
+
+    def moves(self):
+        """To each of the placements, and the one that was under way at the end; None when not
+        all of the samples were there."""
+        if self._to_come:
+            return None
+        if not self._resting():
+            self._flush()
+        return self._log.moves + [self._log.open]

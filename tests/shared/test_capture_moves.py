@@ -1,0 +1,142 @@
+"""Moves out of a file are those that the session itself had; pauses in a turn are bridged."""
+
+import math
+import unittest
+from array import array
+
+from synthetic_operator import Operator
+
+from sixflip.capture_blocks import SAMPLES, BlockWriter
+from sixflip.capture_moves import CaptureMoves
+from sixflip.capture_scan import Scan
+from sixflip.move_turn import turned
+from sixflip.placement_log import add_window, empty_move
+from sixflip.session import Session
+from sixflip.still_window import StillWindow
+
+META = b"{}"
+
+
+class Stream:
+    """A file of blocks as Scan reads it."""
+
+    def __init__(self):
+        self.data = b""
+        self.at = 0
+
+    def write(self, data):
+        self.data += bytes(data)
+
+    def read(self, n):
+        self.at += n
+        return self.data[self.at - n:self.at]
+
+
+class Kept:
+    """A session and the file of its samples; the intervals are as a board's that writes."""
+
+    PAUSES = {700: 80000, 701: 4000, 1200: 52000, 1950: 13000, 2100: 12000, 2101: 8000}
+
+    def __init__(self):
+        self.session = Session(16384, 65.5, 32767, 32767, 100)
+        self.file = Stream()
+        self.writer = BlockWriter(self.file.write, META)
+        self.hands = Operator(self.feed)
+
+    def feed(self, dt_us, sample):
+        dt_us = self.PAUSES.get(self.session.samples, dt_us)
+        event = self.session.feed(dt_us, sample)
+        self.writer.add(dt_us, sample)
+        return event
+
+    def moves(self):
+        self.writer.flush()
+        self.file.at = 0
+        scan = Scan(self.file)
+        found = CaptureMoves(self.session.placements, scan.blocks.columns, 10000, 32767)
+        for kind, block in scan.each():
+            if kind == SAMPLES:
+                found.block(block)
+        return found.moves()
+
+
+def content(move):
+    return (move.before, move.after, move.first, move.n, move.gyro_sums, move.duration_us,
+            move.late, move.saturated, move.largest_gap_us)
+
+
+class FromTheFile(unittest.TestCase):
+    def same(self, kept):
+        moves = kept.moves()
+        own = kept.session.moves
+        self.assertEqual([content(m) for m in moves[:-1]], [content(m) for m in own])
+        return moves[-1], kept.session._log.open
+
+    def test_the_same_as_the_sessions_own(self):
+        kept = Kept()
+        kept.hands.six_faces(order=(0, 3))
+        kept.hands.place(1)
+        kept.hands.rest(0.25)
+        last, own = self.same(kept)
+        self.assertEqual(last.gyro_sums, own.gyro_sums)
+        self.assertEqual((last.n, last.late), (own.n, own.late))
+
+    def test_it_ended_with_a_pose(self):
+        kept = Kept()
+        kept.hands.six_faces(order=(4,), dwell=6)
+        end = kept.session.placements[-1]
+        kept.hands.samples(-(end.first + end.n) % 25)
+        last, own = self.same(kept)
+        self.assertEqual(last.n, kept.session.samples - end.first - end.n)
+
+    def test_saturation_is_seen(self):
+        kept = Kept()
+        kept.hands.place(0)
+        kept.hands.rest(6)
+        kept.hands.turn(2, 180, 0.3)
+        kept.hands.rest(6)
+        self.assertEqual([m.saturated for m in kept.moves()], [False, True, False])
+
+    def test_without_all_of_the_samples_nothing_is_known(self):
+        kept = Kept()
+        kept.hands.six_faces(order=(0,))
+        kept.file.data = kept.file.data[:len(kept.file.data) // 2]
+        kept.writer._write = lambda data: None
+        self.assertEqual(kept.moves(), None)
+
+
+class Pauses(unittest.TestCase):
+    def flip(self, pauses, seconds=1.2):
+        """Degrees of half a turn whose rate rises and falls like a cosine, as summed up with
+        samples that are late by so many us."""
+        window = StillWindow(60, 32767, 32767, 10000)
+        move = empty_move(0)
+        move.before, move.after = 0, 1
+        t = 0
+        while t < (seconds + 0.4) * 1000000:
+            dt = 10000 + pauses.get(window.n + move.n, 0)
+            t += dt
+            phase = 2 * math.pi * (t * 1e-6 - 0.2) / seconds
+            rate = 180 / seconds * (1 - math.cos(phase)) if 0 < phase < 2 * math.pi else 0
+            if window.add(dt, array("h", [0, 0, 16384, 0, 0, int(rate * 65.5), 0])):
+                add_window(move, window)
+                window.clear()
+        add_window(move, window)
+        return turned(move, 2) / 65.5
+
+    def test_a_pause_in_a_brisk_turn_is_bridged(self):
+        self.assertAlmostEqual(self.flip({}), 180, delta=0.05)
+        for at in range(22, 140, 7):
+            self.assertAlmostEqual(self.flip({at: 45000}), 180, delta=0.1)
+            self.assertAlmostEqual(self.flip({at: 80000}), 180, delta=0.3)
+        worst = max(abs(self.flip({at: 150000}) - 180) for at in range(22, 140, 3))
+        self.assertLess(worst, 1.5)
+        self.assertGreater(worst, 0.5)  # so that it is not measured beside the turn
+
+    def test_several_pauses_in_one_turn(self):
+        self.assertAlmostEqual(self.flip({40: 45000, 80: 60000, 81: -5000, 100: 45000}),
+                               180, delta=0.3)
+
+
+if __name__ == "__main__":
+    unittest.main()
