@@ -43,7 +43,8 @@ test-qemu: setup
 	$(BIN)/python -m pytest -s tests/on_qemu tests/on_microbit
 
 test-pico: micropython
-	SIXFLIP_PICO=whole $(BIN)/python -m pytest -v -n 3 --dist load --durations 0 tests/on_pico
+	SIXFLIP_PICO=whole $(BIN)/python -m pytest -v -n 3 --dist load --maxschedchunk 1 \
+		--durations 0 tests/on_pico
 
 size: setup
 	@$(BIN)/python tests/bench/size.py

@@ -15,16 +15,17 @@ from sixflip_host.virtual.virtual_board import VirtualBoard
 PACE = demo.PACE["pico"]  # the fewest samples a turn
 
 
-@pytest.mark.parametrize("settings, hand, left", [
-    (PACE.settings, PACE.hand, ["Y-a", "Y-b"]), ({}, {}, ["X-b", "Y-a", "Y-b"])],
+@pytest.mark.parametrize("sensor, settings, hand, left", [
+    ("gy85", PACE.settings, PACE.hand, ["Y-a", "Y-b"]),
+    ("mpu6050", {}, {}, ["X-b", "Y-a", "Y-b"])],
     ids=["few samples", "in mid-face"])
-def test_the_flips_from_before_count(micropython, tmp_path, settings, hand, left):
+def test_the_flips_from_before_count(micropython, tmp_path, sensor, settings, hand, left):
     first = [pose for pose in GUIDED_ORDER if pose not in left]
     again = [pose for pose in GUIDED_ORDER if pose[:2] in {name[:2] for name in left}]
-    spec = {"sensor": "mpu6050", "seed": 3, "tilt_deg": 2.0, **hand}
+    spec = {"sensor": sensor, "seed": 3, "tilt_deg": 2.0, **hand}
     with VirtualBoard(dict(spec, order=first), tmp_path / "flash.img",
                       micropython=micropython) as board, MpremoteLink(board.port) as link:
-        provision.copy(link, {"sensor": "mpu6050", **settings})
+        provision.copy(link, {"sensor": sensor, **settings})
         link.reset()
         for _ in first:
             wait_for(link, ("pose",))

@@ -35,6 +35,7 @@ def test_from_an_erased_flash_to_the_verification(uf2, sensor, tmp_path, capsys,
     assert [event["event"] for event in said].count("pose") == 12
     [solved] = [event for event in said if event["event"] == "solved"]
     assert solved["verdict"] == "good"
+    assert solved["gyro"]["reason"].startswith("6 flips, "), solved["gyro"]
     monkeypatch.setenv(board_link.PATIENCE, str(PATIENCE))
     with PicoBoard(dict(STILL, sensor=sensor), kept / "flash.img") as board:
         assert cli.main(["provision", "--port", board.port]) == 0
@@ -50,6 +51,7 @@ def test_the_last_face_is_taken_solved_saved_and_in_force(unfinished_flash, tmp_
         said = []
         solved = calibrate.follow(link, said.append)
         assert solved["verdict"] == "good", solved
+        assert solved["gyro"]["reason"].startswith("6 flips, "), solved["gyro"]
         assert [event["pose"] for event in said if event["event"] == "pose"] == LAST_FACE
         assert said[-1]["event"] == "saved"
         link.reset()
