@@ -126,8 +126,7 @@ class SensorGap:
     def _judge(self):
         """Adequacy, drift, plausibility, shrinkage."""
         self._settle()
-        doubted = [c for c in self.causes if self._doubted(c)]
-        if doubted:
+        while doubted := [c for c in self.causes if self._doubted(c)] or self._opposed():
             self.chosen = [o for o in self.chosen if not any(o in c.chosen for c in doubted)]
             self.causes = [c for c in self.causes if c not in doubted]
             self._settle()
@@ -190,6 +189,16 @@ class SensorGap:
             return False
         left = self.added.get(cause.domain, 0.0)
         return left > LEFT * cause.score or (cause.share or 0.0) < KEPT_SHARE
+
+    def _opposed(self):
+        """Causes that show in one way and of which one is larger than can be: they make up a
+        form that none of them has, each against the others."""
+        for cause in self.causes:
+            kin = [c for c in self.causes if c is not cause and any(
+                {c.domain, cause.domain} <= k for k in classes.KIN)]
+            if not cause.plausible and kin:
+                return [cause, *kin]
+        return []
 
     def _own_share(self, cause):
         """Share of what a cause adds that its plain coefficients reproduce, the best variant
