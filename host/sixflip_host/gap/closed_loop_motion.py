@@ -20,16 +20,12 @@ def close(gap):
         return None
     loop = closed_loop.Loop()
     loop.effects = specs(gap, gap.sizes)
-    before = after = 0.0
-    for move, real, fold in zip(gap.moves, gap.bare, gap.held):
-        made = added(move, specs(gap, gap.by_others[fold]))
-        before += float((real ** 2).sum())
-        after += float(((real - made) ** 2).sum())
-    floor = gap.floor()
-    number = sum(m.y.size for m in gap.moves)
-    loop.before, loop.after, loop.floor = np.sqrt(np.array([before, after, floor]) / number)
-    shown = before - floor
-    loop.share = float((before - after) / shown) if shown > 0.0 else None
+    made = [added(m, specs(gap, gap.by_others[f])) for m, f in zip(gap.moves, gap.held)]
+    loop.before = gap.rms(gap.bare)
+    loop.after = gap.rms([real - simulated for real, simulated in zip(gap.bare, made)])
+    loop.floor = gap.floor()
+    shown = loop.before ** 2 - loop.floor ** 2
+    loop.share = (loop.before ** 2 - loop.after ** 2) / shown if shown > 0.0 else None
     return loop
 
 

@@ -26,6 +26,7 @@ from .finding import Finding
 FEWEST_MOVES = 12
 SINGLE_FOLDS = 2
 ROUNDS, FREEDOM = 4, 4.0  # of weighting; Student's t
+BENT, WANDERED = (0.03, 0.1, 0.3, 1.0), (0.1, 0.3, 1.0)  # of the widest priors
 LOTS, ALARMS = 2000, 0.002
 LEAST_NATS = 6.0
 Z_90 = 1.645
@@ -71,13 +72,29 @@ class MotionGap:
         self.sessions = sorted({m.session for m in self.moves})
         self.shared = len(prior)
         by_hand = {m.session: m.by_hand for m in self.moves}
-        self.prior = np.concatenate([prior] + [moves.local_priors(by_hand[s])
-                                               for s in self.sessions])
+        local = [moves.local_priors(by_hand[s]) for s in self.sessions]
+        self.prior = self.wide = np.concatenate([prior, *local])
+        self.bends = np.arange(self.shared - moves.BENDS, self.shared)
+        course = np.arange(len(local[0])) >= 3
+        self.courses = self.shared + np.flatnonzero(np.tile(course, len(local)))
         self.effects = {"lever_arm": np.arange(3), "filter_lag": np.array([3])}
         self.nuisance = np.arange(4, len(self.prior))
         self.folds = np.array([self.sessions.index(m.session) for m in self.moves])
         if len(self.sessions) == 1:
             self.folds = np.arange(len(self.moves)) % SINGLE_FOLDS
+
+    def _settle(self, gram, inner):
+        """How large bends of the sensor and the course of its bias are: the likeliest of a few
+        levels, in place of priors that would let them be anything."""
+        everything = np.arange(len(self.prior))
+        best = None
+        for level in np.ndindex(len(BENT), len(WANDERED)):
+            prior = self.wide.copy()
+            prior[self.bends] *= BENT[level[0]]
+            prior[self.courses] *= WANDERED[level[1]]
+            found = float(_evidence(gram, inner[:, None], everything, prior)[0])
+            if best is None or found > best:
+                best, self.prior = found, prior
 
     def _own(self, move):
         """Indices of a move's columns."""
@@ -99,14 +116,15 @@ class MotionGap:
                 scaled = (table / variance[:, :, None]).reshape(-1, len(own))
                 gram[j][np.ix_(own, own)] = scaled.T @ table.reshape(-1, len(own))
                 inner[j, own] = scaled.T @ move.y.ravel()
+            self._settle(np.tensordot(weights, gram, axes=1), weights @ inner)
             theta, _ = _solved(gram, inner, weights, self.prior)
             weights, excess = _weighted(gram, inner, theta)
             left = [m.y - t @ theta[self._own(m)] for m, t in zip(self.moves, tables)]
         weights = weights / excess
         self.gram = gram * weights[:, None, None]
         self.inner = inner * weights[:, None]
-        theta[:4] = 0.0
-        self.bare = [m.y - t @ theta[self._own(m)] for m, t in zip(self.moves, tables)]
+        self.tables = tables
+        self.precision = [w / v for w, v in zip(weights, variances)]
 
     def _search(self):
         """Take effects in as long as they pass the threshold."""
@@ -144,8 +162,9 @@ class MotionGap:
         return out
 
     def _limit(self, options):
-        """Gain that chance reaches in ALARMS of the lots."""
-        columns = self._columns()
+        """Gain that chance reaches in ALARMS of the lots: what all effects together leave of
+        each move, by the sizes of the others, with its sign by lot [ter Braak, 1992]."""
+        columns = self._columns(options)
         theta = _without_each(self.gram[:, columns][:, :, columns], self.inner[:, columns],
                               self.prior[columns])
         left = self.inner - np.einsum("jab,jb->ja", self.gram[:, :, columns], theta)
@@ -162,7 +181,13 @@ class MotionGap:
         self.theta, self.covariance = self._sizes(columns)
         if not self.chosen:
             return
-        self.sizes, self.spread = self._sizes(self._columns())
+        columns = self._columns()
+        self.sizes, self.spread = self._sizes(columns)
+        habits = np.zeros(len(self.prior))
+        habits[columns] = _solved(self.gram[:, columns][:, :, columns], self.inner[:, columns],
+                                  np.ones(len(self.moves)), self.prior[columns])[0]
+        habits[:4] = 0.0
+        self.bare = [m.y - t @ habits[self._own(m)] for m, t in zip(self.moves, self.tables)]
         sigma = np.sqrt(np.diag(self.spread))
         for name in self.chosen:
             one = _finding(name, self.sizes, sigma, self.scores[name])
@@ -197,14 +222,20 @@ class MotionGap:
         sigma = np.sort(np.sqrt(np.diag(self.covariance)[self.effects[name]]))
         return TIMES_SIGMA * float(sigma[(len(sigma) - 1) // 2])
 
+    def rms(self, left):
+        """mg of what is left of each move, (n, 3) mg: quiet moves, directions and frequencies
+        count more, as they do for the sizes."""
+        total = sum(float((p * x ** 2).sum()) for p, x in zip(self.precision, left))
+        return float(np.sqrt(total / sum(float(p.sum()) for p in self.precision)))
+
     def floor(self):
-        """mg², sum: what is left with the sizes found."""
-        return sum(float(((y - m.columns[:, :, :4] @ self.sizes) ** 2).sum())
-                   for y, m in zip(self.bare, self.moves))
+        """mg: what is left with the sizes found."""
+        return self.rms([y - m.columns[:, :, :4] @ self.sizes
+                         for y, m in zip(self.bare, self.moves)])
 
     def _shrinkage(self):
-        """Before, after, floor: mg a sample of 0.1 s; each fold by what the others say of the
-        sizes. The interval is that of the sizes themselves."""
+        """Before, after, floor as rms has them; each fold by what the others say of the sizes.
+        The interval is that of the sizes themselves."""
         columns = self._columns()
         folds = self.held = self.folds
         if not self._told(columns, folds):
@@ -217,16 +248,17 @@ class MotionGap:
         own = other = 0.0
         self.by_others = {}
         for f in np.unique(folds):
-            power = sum(_power(m) for m, g in zip(self.moves, folds) if g == f)
+            power = self.gram[folds == f].sum(axis=0)[:4, :4]
             theirs = self.by_others[f] = self._sizes(columns, folds != f)[0]
             before += np.einsum("ra,ab,rb->r", drawn, power, drawn)
             after += np.einsum("ra,ab,rb->r", drawn - theirs, power, drawn - theirs)
             noise = float((power * self.spread).sum())
             own += self.sizes @ power @ self.sizes - noise
             other += (self.sizes - theirs) @ power @ (self.sizes - theirs) + noise
-        samples = sum(m.y.size for m in self.moves)
         floor = self.floor()
-        rms = [float(np.sqrt(max(v, 0.0) / samples)) for v in (floor + own, floor + other, floor)]
+        rms = [float(np.sqrt(floor ** 2 + max(v, 0.0) / sum(float(p.sum()) for p in
+                                                            self.precision)))
+               for v in (own, other)] + [floor]
         if own <= 0.0:
             return shrinkage.Shrinkage(*rms, None, None)
         low, high = np.quantile(1.0 - after / before, [0.05, 0.95])
@@ -235,17 +267,11 @@ class MotionGap:
     def _told(self, columns, folds):
         """True when all folds but one tell the sizes well enough for that one."""
         for f in np.unique(folds):
-            power = sum(_power(m) for m, g in zip(self.moves, folds) if g == f)
+            power = self.gram[folds == f].sum(axis=0)[:4, :4]
             spread = self._sizes(columns, folds != f)[1]
             if (power * spread).sum() > UNTOLD * (self.sizes @ power @ self.sizes):
                 return False
         return True
-
-
-def _power(move):
-    """(4, 4): sum of squares of the effects in a move, per unit of their sizes."""
-    own = move.columns[:, :, :4].reshape(-1, 4)
-    return own.T @ own
 
 
 def of(sessions, usable, nominal, turns, settings):

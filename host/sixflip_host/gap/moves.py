@@ -20,8 +20,9 @@ BIN_S, FEWEST_BINS, MOST_BINS = 0.1, 12, 60
 FLAT_DEG = 15.0  # a move that leaves the vertical where it was, in the box
 HATS = 4  # of the bias's course over a session
 HABITS = 4  # cosines that hands have in common when they turn a box over
-PRIOR_METRES, PRIOR_CM, PRIOR_MG = 0.1, 10.0, 3.0
-BIAS_MG = 5.0
+BENDS = 39  # columns of what bends with the attitude, or remembers the one before
+PRIOR_METRES, PRIOR_CM, PRIOR_MG = 0.1, 10.0, 5.0
+BIAS_MG, STRANGE_BIAS_MG = 10.0, 60.0  # a session calibrated by its own poses, or by others'
 HAND_CM, WHEELS_CM = 0.3, 0.03  # how well the same hand, the same axle hold their centre
 MG_PER_METRE_S2 = 1000.0 / 9.80665
 SMALL_DEG = 10.0
@@ -92,13 +93,14 @@ def priors(chip):
     effect = [10.0 * typical.size(name, chip, "accel")[0] for name in EFFECT_NAMES
               for _ in EFFECTS[name].keys]
     return np.concatenate([effect, [PRIOR_CM] * 3, [PRIOR_METRES] * (2 * HABITS),
-                           [PRIOR_MG] * 39])
+                           [PRIOR_MG] * BENDS])
 
 
 def local_priors(by_hand):
     """(k,) standard deviations of Move.local's coefficients: where hand or wheels turn the box
     in this session, and the course of the bias."""
-    return np.concatenate([[HAND_CM if by_hand else WHEELS_CM] * 3, [BIAS_MG] * (3 * HATS)])
+    centre, bias = (HAND_CM, BIAS_MG) if by_hand else (WHEELS_CM, STRANGE_BIAS_MG)
+    return np.concatenate([[centre] * 3, [bias] * (3 * HATS)])
 
 
 def spread(name, moment):

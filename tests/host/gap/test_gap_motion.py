@@ -1,0 +1,200 @@
+"""What shows in motion only: a sensor off the point it is turned about, one behind the other."""
+import json
+
+import numpy as np
+import pytest
+
+from sixflip_host import cli
+from sixflip_host.capture import capture_file
+from sixflip_host.capture.capture_file import Capture
+from sixflip_host.gap import (
+    attitude_fit,
+    closed_loop_motion,
+    gyro_turns,
+    hands,
+    motion_gap,
+    observations,
+    still_runs,
+)
+from sixflip_host.simulating import scenario, simulate
+
+ARM_CM = (3.0, -2.0, 1.0)
+ARM = dict(zip("xyz", ARM_CM), effect="lever_arm")
+WORLD = {"tilt_deg": 1.0, "placement_scatter_deg": 0.05}
+
+
+def captures(effects, sensor="mpu6050", seed=4, sessions=1):
+    plan = scenario.from_dict({"sensor": sensor, "scene": "recommended", "seed": seed,
+                               "effects": effects, "world": WORLD})
+    return [simulate.session(plan, number) for number in range(sessions)]
+
+
+def judged(found, more=()):
+    """MotionGap of captures with poses, and of more without."""
+    posed = [observations.Session(str(k), c) for k, c in enumerate(found)]
+    models = [attitude_fit.fit(s) for s in posed]
+    for session, model in zip(posed, models):
+        gyro_turns.calibrated(gyro_turns.turns(session, model))
+    others = [observations.Session("driven %d" % k, c) for k, c in enumerate(more)]
+    return motion_gap.MotionGap(posed + others, models, found[0].meta["sensor"])
+
+
+def inside(finding, key, true, slack=1.8):
+    """The size within slack times its 90 % interval."""
+    low, high = finding.interval[key]
+    return abs(finding.value[key] - true) < slack * 0.5 * (high - low)
+
+
+def driven(arm_cm, turns=14, seed=3):
+    """A robot that turns on the spot, rests in between; mpu6050 counts of one g up on Z."""
+    rng = np.random.default_rng(seed)
+    rate, pieces = 100.0, [np.zeros(500)]
+    for k in range(turns):
+        u = (np.arange(220) + 0.5) / 220
+        pieces += [np.radians(150.0) * (-1) ** k * 30.0 * u ** 2 * (1.0 - u) ** 2 / 2.2,
+                   np.zeros(250)]
+    w = np.concatenate(pieces)
+    alpha = np.gradient(w) * rate
+    x, y, _ = np.array(arm_cm) / 100.0 / 9.80665
+    f = np.stack([-w * w * x - alpha * y, -w * w * y + alpha * x, np.ones(len(w))], 1)
+    accel = np.rint((f + rng.normal(0, 0.003, f.shape)) * 16384).astype(np.int16)
+    gyro = np.zeros((len(w), 3))
+    gyro[:, 2] = np.degrees(w)
+    gyro = np.rint((gyro + rng.normal(0, 0.05, gyro.shape)) * 65.5).astype(np.int16)
+    meta = {"sensor": "mpu6050", "rate_hz": 100, "g": 9.80665, "accel_lsb_per_g": 16384,
+            "gyro_lsb_per_dps": 65.5}
+    return Capture(meta, (np.arange(len(w)) * 10000).astype(np.int64), accel, gyro, None, None,
+                   np.zeros(len(w), np.int16))
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return captures([], seed=5)
+
+
+@pytest.fixture(scope="module")
+def off_axis():
+    return judged(captures([ARM], sessions=2))
+
+
+def test_the_arm_is_found_where_it_is_and_nothing_else(off_axis):
+    assert [f.effect for f in off_axis.found] == ["lever_arm"]
+    arm = off_axis.found[0]
+    assert (arm.sensor, arm.unit, arm.domain) == ("accel", "cm", "motion")
+    for key, true in zip("xyz", ARM_CM):
+        assert inside(arm, key, true)
+        assert arm.interval[key][1] - arm.interval[key][0] < 1.5
+    assert arm.score > 30.0
+    assert off_axis.shrinkage.share > 0.9
+    assert off_axis.shrinkage.interval[0] > 0.8
+    assert off_axis.shrinkage.before > off_axis.shrinkage.after
+
+
+def test_the_loop_closes_when_the_moves_are_felt_again_with_the_arm(off_axis):
+    loop = closed_loop_motion.close(off_axis)
+    assert [e["effect"] for e in loop.effects] == ["lever_arm"]
+    assert loop.share > 0.9
+    assert loop.after < 1.01 * loop.floor < loop.before
+
+
+@pytest.mark.parametrize("sensor,chip", [("gyro", "mpu6050"), ("accel", "gy85")])
+def test_the_one_that_is_behind_is_named_with_the_delay_between_them(sensor, chip):
+    found = judged(captures([{"effect": "filter_lag", "sensor": sensor, "tau": 9.0}], chip))
+    assert [(f.effect, f.sensor) for f in found.found] == [("filter_lag", sensor)]
+    assert inside(found.found[0], "tau", 9.0)
+    loop = closed_loop_motion.close(found)
+    assert loop.effects[0]["sensor"] == sensor
+    assert loop.share > 0.8
+
+
+def test_nothing_is_found_where_nothing_is(plain):
+    found = judged(plain)
+    assert found.seen
+    assert found.found == []
+    assert closed_loop_motion.close(found) is None
+    assert np.abs(found.theta[:3]).max() < 1.2
+    assert found.least("lever_arm") < 3.0
+
+
+def test_what_both_have_in_common_is_not_taken_for_a_delay():
+    found = judged(captures([{"effect": "filter_lag", "sensor": "device", "tau": 15.0}]))
+    assert found.found == []
+
+
+def test_an_arm_longer_than_any_box_is_not_named():
+    found = judged(captures([{"effect": "lever_arm", "x": 90.0}]))
+    assert [f.effect for f in found.found] == []
+    assert any("lever arm would help, but at an impossible size" in r for r in found.remarks)
+
+
+def test_an_effect_left_out_of_the_library_is_not_named():
+    found = captures([ARM])
+    session = observations.Session("0", found[0])
+    model = attitude_fit.fit(session)
+    gyro_turns.calibrated(gyro_turns.turns(session, model))
+    gap = motion_gap.MotionGap([session], [model], "mpu6050", without={"lever_arm"})
+    assert gap.found == []
+
+
+def test_a_robot_that_turns_on_the_spot_tells_the_arm_across_the_vertical():
+    found = judged(captures([{"effect": "lever_arm", "x": 1.5, "y": -0.8}], seed=5),
+                   [driven((1.5, -0.8, 0.0))])
+    arm = found.found[0]
+    assert (arm.effect, len(found.found)) == ("lever_arm", 1)
+    assert arm.value["x"] == pytest.approx(1.5, abs=0.15)
+    assert arm.value["y"] == pytest.approx(-0.8, abs=0.15)
+    width = {k: high - low for k, (low, high) in arm.interval.items()}
+    assert width["x"] < 0.2 and width["y"] < 0.2 < width["z"]
+
+
+def test_rests_of_a_capture_without_labels():
+    capture = driven((0.0, 0.0, 0.0), turns=5)
+    runs = still_runs.runs(capture, capture.t_us * 1e-6)
+    assert len(runs) == 6
+    for k, (_, first, end) in enumerate(runs):
+        start = 500 + 470 * k - 250 if k else 0
+        assert start - 40 < first and end < 540 + 470 * k
+        assert end - first > 180
+
+
+class Kind:
+    """What hands.spectra reads of a move."""
+
+    session, flat, seconds, bin_s, white = 0, False, 4.0, 0.1, 0.1
+
+    def __init__(self, n):
+        self.y = np.zeros((n, 3))
+
+
+def test_a_hands_spectrum_is_that_of_its_moves():
+    rng = np.random.default_rng(6)
+    kinds = [Kind(40) for _ in range(400)]
+    sizes = np.where(np.arange(40) < 5, 20.0, 4.0)[:, None] * [1.0, 2.0, 0.5]
+    left = [rng.standard_normal((40, 3)) * sizes for _ in kinds]
+    found = hands.spectra(kinds, left, np.ones(400))
+    assert np.sqrt(found[0]) == pytest.approx(sizes, rel=0.12)
+
+
+def test_the_verb_says_it_in_json_and_words_and_writes_the_scenario(tmp_path, capsys):
+    paths = [str(tmp_path / "one.csv"), str(tmp_path / "two.csv")]
+    for path, capture in zip(paths, captures([ARM], sessions=2)):
+        capture_file.write(path, capture)
+    toml = tmp_path / "found.toml"
+    assert cli.main(["diagnose", *paths, "--json", "--add", "found", "--scenario", str(toml),
+                     "--jobs", "1"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["verdict"] == "explained"
+    assert [(c["sensor"], c["effect"], c["axes"], c["unit"]) for c in answer["causes"]] == [
+        ("accel", "lever_arm", [], "cm")]
+    assert answer["causes"][0]["value"]["x"] == pytest.approx(3.0, abs=0.8)
+    assert answer["where"][0]["domain"] == "motion"
+    assert answer["gap"]["accel"]["explained_share"] > 0.9
+    assert answer["simulated"]["accel_motion"]["explained_share"] > 0.9
+    assert [u["sensor"] for u in answer["unseen"] if u["effect"] == "filter_lag"] == ["device"]
+    from sixflip_host.gap import words
+    words.show(answer)
+    said = capsys.readouterr().out
+    assert "sits off the point it is turned about" in said.split("\n")[0]
+    assert "accelerometer in motion" in said
+    again = scenario.read(str(toml))
+    assert [e["effect"] for e in again.effects] == ["lever_arm"]
