@@ -5,14 +5,14 @@ Their numbers are those of the findings: 5 s rests, 10 s moves, 8-9 degC with ta
 import math
 import random
 
-from sixflip import faces
+from sixflip import faces, pose_codes
 
 NAMES = ("paper", "return", "random", "backward", "recommended", "thermal", "soak",
          "turntable", "drive")
 DWELL_S, MOVE_S = 5.0, 10.0
 OFF_FACES = math.cos(math.radians(22.0))  # the board takes what leans 15 degrees for a face
 STATES = {"warming": (22.0, 9.0, 300.0), "warm": (31.0, 2.0, 200.0),
-          "cooling": (38.0, -9.0, 400.0)}
+          "cooling": (31.0, -9.0, 400.0)}  # back from where the warm one stood, somewhere cool
 
 
 class Rest:
@@ -61,7 +61,8 @@ def face_rest(code, turn="left", **timing):
     face = (code - 1) // 2
     up = [0.0, 0.0, 0.0]
     up[faces.AXIS[face]] = float(faces.SIGN[face])
-    return Rest(faces.pose_name(code), tuple(up), 180.0 * faces.is_b(code), turn=turn, **timing)
+    return Rest(faces.pose_name(code), tuple(up), 180.0 * pose_codes.is_b(code), turn=turn,
+                **timing)
 
 
 def leaning_rests(count, seed, **timing):
