@@ -32,7 +32,7 @@ def close(gap):
 def specs(gap, sizes):
     """[{effect, sensor, key: size}] of the effects found, with these sizes (4,)."""
     out = []
-    for name in gap.chosen:
+    for name in [f.effect for f in gap.found]:
         values = sizes[gap.effects[name]]
         if name == "filter_lag":
             sensor = "accel" if values[0] > 0.0 else "gyro"

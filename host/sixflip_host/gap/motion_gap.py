@@ -24,6 +24,7 @@ from .attitude_fit import NominalSensor
 from .finding import Finding
 
 FEWEST_MOVES = 12
+FEWEST_FLAT = 6  # turns on a table, if there is one session only
 SINGLE_FOLDS = 2
 ROUNDS, FREEDOM = 4, 4.0  # of weighting; Student's t
 BENT, WANDERED = (0.03, 0.1, 0.3, 1.0), (0.1, 0.3, 1.0)  # of the widest priors
@@ -72,6 +73,9 @@ class MotionGap:
         self.sessions = sorted({m.session for m in self.moves})
         self.shared = len(prior)
         by_hand = {m.session: m.by_hand for m in self.moves}
+        # What a hand in the air turns the box about may be its grip as well.
+        self.one_hand = len(self.sessions) == 1 and by_hand[self.sessions[0]] and sum(
+            m.flat for m in self.moves) < FEWEST_FLAT
         local = [moves.local_priors(by_hand[s]) for s in self.sessions]
         self.prior = self.wide = np.concatenate([prior, *local])
         self.bends = np.arange(self.shared - moves.BENDS, self.shared)
@@ -182,20 +186,26 @@ class MotionGap:
         if not self.chosen:
             return
         columns = self._columns()
-        self.sizes, self.spread = self._sizes(columns)
+        sizes, spread = self._sizes(columns)
+        for name in self.chosen:
+            one = _finding(name, sizes, np.sqrt(np.diag(spread)), self.scores[name])
+            if not plausible.believable(name, self.chip, "accel", one.value):
+                self.remarks.append("in motion %s would help, but at an impossible size: "
+                                    "something else acts" % name.replace("_", " "))
+            elif name == "lever_arm" and self.one_hand:
+                self.remarks.append("turned about a point %.1f cm from the accelerometer: the "
+                                    "hand's grip or the box, flips on a table tell"
+                                    % np.linalg.norm(list(one.value.values())))
+            else:
+                self.found.append(one)
+        self.named = np.isin(np.arange(4), [i for f in self.found
+                                            for i in self.effects[f.effect]])
+        self.sizes, self.spread = sizes * self.named, spread * self.named * self.named[:, None]
         habits = np.zeros(len(self.prior))
         habits[columns] = _solved(self.gram[:, columns][:, :, columns], self.inner[:, columns],
                                   np.ones(len(self.moves)), self.prior[columns])[0]
-        habits[:4] = 0.0
+        habits[:4][self.named] = 0.0
         self.bare = [m.y - t @ habits[self._own(m)] for m, t in zip(self.moves, self.tables)]
-        sigma = np.sqrt(np.diag(self.spread))
-        for name in self.chosen:
-            one = _finding(name, self.sizes, sigma, self.scores[name])
-            if plausible.believable(name, self.chip, "accel", one.value):
-                self.found.append(one)
-            else:
-                self.remarks.append("in motion %s would help, but at an impossible size: "
-                                    "something else acts" % name.replace("_", " "))
         if self.found:
             self.shrinkage = self._shrinkage()
             self.remarks.append("what was found in motion is judged on %d moves; what the hand "
@@ -249,7 +259,7 @@ class MotionGap:
         self.by_others = {}
         for f in np.unique(folds):
             power = self.gram[folds == f].sum(axis=0)[:4, :4]
-            theirs = self.by_others[f] = self._sizes(columns, folds != f)[0]
+            theirs = self.by_others[f] = self._sizes(columns, folds != f)[0] * self.named
             before += np.einsum("ra,ab,rb->r", drawn, power, drawn)
             after += np.einsum("ra,ab,rb->r", drawn - theirs, power, drawn - theirs)
             noise = float((power * self.spread).sum())
@@ -268,7 +278,7 @@ class MotionGap:
         """True when all folds but one tell the sizes well enough for that one."""
         for f in np.unique(folds):
             power = self.gram[folds == f].sum(axis=0)[:4, :4]
-            spread = self._sizes(columns, folds != f)[1]
+            spread = self._sizes(columns, folds != f)[1] * self.named * self.named[:, None]
             if (power * spread).sum() > UNTOLD * (self.sizes @ power @ self.sizes):
                 return False
         return True

@@ -82,6 +82,8 @@ def in_motion(diagnosis, name, sensor):
     motion = diagnosis.motion
     if motion is None or not motion.seen:
         return ABSORBED[name]
+    if name == "lever_arm" and motion.one_hand:
+        return "turned in the air: the hand's grip or the box, flips on a table tell"
     smallest, usual = motion.least(name), typical.size(name, motion.chip, sensor)[0]
     if smallest <= usual:
         return ""

@@ -29,14 +29,14 @@ def captures(effects, sensor="mpu6050", seed=4, sessions=1):
     return [simulate.session(plan, number) for number in range(sessions)]
 
 
-def judged(found, more=()):
+def judged(found, more=(), without=()):
     """MotionGap of captures with poses, and of more without."""
     posed = [observations.Session(str(k), c) for k, c in enumerate(found)]
     models = [attitude_fit.fit(s) for s in posed]
     for session, model in zip(posed, models):
         gyro_turns.calibrated(gyro_turns.turns(session, model))
     others = [observations.Session("driven %d" % k, c) for k, c in enumerate(more)]
-    return motion_gap.MotionGap(posed + others, models, found[0].meta["sensor"])
+    return motion_gap.MotionGap(posed + others, models, found[0].meta["sensor"], without)
 
 
 def inside(finding, key, true, slack=1.8):
@@ -127,13 +127,25 @@ def test_an_arm_longer_than_any_box_is_not_named():
     assert any("lever arm would help, but at an impossible size" in r for r in found.remarks)
 
 
+def test_a_hand_in_the_air_is_not_told_from_the_box():
+    one = captures([ARM])
+    flipped = (one[0].pose <= 12) & (one[0].pose % 2 == 0)
+    one[0].pose[flipped] = 0
+    found = judged(one)
+    assert found.found == [] and found.chosen == ["lever_arm"]
+    assert any("turned about a point" in r and "flips on a table tell" in r
+               for r in found.remarks)
+
+
+def test_flips_on_a_table_tell_it_in_one_session():
+    found = judged(captures([ARM])).found
+    assert [f.effect for f in found] == ["lever_arm"]
+    assert inside(found[0], "x", ARM_CM[0])
+
+
 def test_an_effect_left_out_of_the_library_is_not_named():
-    found = captures([ARM])
-    session = observations.Session("0", found[0])
-    model = attitude_fit.fit(session)
-    gyro_turns.calibrated(gyro_turns.turns(session, model))
-    gap = motion_gap.MotionGap([session], [model], "mpu6050", without={"lever_arm"})
-    assert gap.found == []
+    gap = judged(captures([ARM]), without={"lever_arm"})
+    assert gap.found == [] and gap.chosen == []
 
 
 def test_a_robot_that_turns_on_the_spot_tells_the_arm_across_the_vertical():
