@@ -125,6 +125,18 @@ def test_jumping_timestamps(capture):
         refine.refine(jumpy)
 
 
+def test_pauses_while_a_flash_is_written_are_bridged(capture):
+    keep = np.ones(len(capture), bool)
+    for start in np.flatnonzero(np.diff((capture.pose == 0).astype(int)) == 1):
+        keep[start + 60:start + 65] = False
+    paused = refine.refine(capture_file.Capture(
+        capture.meta, capture.t_us[keep], capture.accel[keep], capture.gyro[keep],
+        pose=capture.pose[keep]))
+    found = refine.refine(capture)
+    assert paused["moves_left_out"] == []
+    assert np.abs(np.subtract(paused["gyro"]["P"], found["gyro"]["P"])).max() < 2e-3
+
+
 def changed(capture, accel=None, gyro=None, t_us=None, pose=None):
     return capture_file.Capture(
         capture.meta, capture.t_us if t_us is None else t_us,

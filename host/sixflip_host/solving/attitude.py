@@ -2,7 +2,7 @@
 
 import numpy as np
 
-LARGEST_GAP = 5     # sample intervals without a sample: what happened in between is unknown
+from sixflip.move_turn import GAP_US
 
 
 def heading_change(capture, rests, bias, axis, sign):
@@ -13,11 +13,12 @@ def heading_change(capture, rests, bias, axis, sign):
     Returns None when the gyro touched its rail or samples are missing on the way.
     """
     first, last = rests[0].end, rests[-1].first
-    gyro = capture.gyro[first:last].astype(float)
+    gyro = capture.gyro[first - 1:last].astype(float)
     gaps = np.diff(capture.t_us[first - 1:last]) / 1e6
-    if len(gyro) and (np.abs(gyro).max() >= 32767 or gaps.max() > LARGEST_GAP * np.median(gaps)):
+    if len(gaps) and (np.abs(gyro).max() >= 32767 or gaps.max() - np.median(gaps) > 1e-6 * GAP_US):
         return None
-    rate = np.radians((gyro - bias) / capture.meta["gyro_lsb_per_dps"])
+    middle = (gyro[1:] + gyro[:-1]) / 2
+    rate = np.radians((middle - bias) / capture.meta["gyro_lsb_per_dps"])
     turns = _rotation(rate * gaps[:, None])
     attitude = np.eye(3)            # body -> frame of the first rest
     up = _unit(rests[0].mean)

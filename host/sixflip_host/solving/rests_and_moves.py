@@ -3,6 +3,7 @@
 import numpy as np
 
 from sixflip.faces import AXIS, LEANING, SIGN, face_of_code, is_b, pose_name
+from sixflip.move_turn import GAP_US
 
 from ..errors import BadFile, CheckFailed
 from ..simulating import pose_runs
@@ -10,7 +11,6 @@ from .gyro_moves import GyroMoves
 
 FLOOR_G = 5e-5  # standard error a mean is never better than: a chip's own flicker noise
 FLOOR_RATE = 2e-5  # rad/s, likewise (0.001 deg/s)
-LONGEST_GAP = 5.0  # usual sample intervals; a longer one loses the rotation
 MINIMUM_G = 0.5  # a rest reads between this and 2 g minus it, whatever its calibration
 FACE_COSINE = 0.7  # of the angle between a rest and the axis its label names
 RAD = np.pi / 180.0
@@ -77,7 +77,7 @@ class RestsAndMoves:
                 self.left_out.append("move %s: the gyro is saturated" % name)
             elif usual <= 0:
                 self.left_out.append("move %s: the timestamps stand still" % name)
-            elif gap > LONGEST_GAP * usual:
+            elif gap - usual > GAP_US:
                 self.left_out.append(
                     "move %s: the timestamps jump by %.3f s" % (name, gap * 1e-6)
                 )
