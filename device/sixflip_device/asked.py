@@ -11,7 +11,8 @@
 
 import json
 
-from sixflip.faces import FACES, pose_code
+from sixflip.faces import FACES
+from sixflip.pose_codes import pose_code
 
 from .flash_files import FLAG, remove
 

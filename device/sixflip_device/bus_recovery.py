@@ -114,9 +114,9 @@ class Sensor:
 
     def _recover(self, error):
         imu = self.imu
-        for pause in PAUSES_MS:
+        for ms in PAUSES_MS:
             self._report(error, "freeing the bus and asking the chip again")
-            self._board.sleep_us(pause * 1000)
+            self._board.sleep_us(ms * 1000)
             try:
                 free_bus(self._board)
                 if not imu.answers(self._board.i2c):

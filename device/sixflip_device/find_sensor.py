@@ -10,14 +10,14 @@ def find(board, settings, tries=3):
 
     from .bus_recovery import free_bus, sleeper
 
-    for attempt in range(tries):
+    for k in range(tries):
         try:
             imu, report = probe.find(board.i2c, sleeper(board), settings["sensor"])
             imu.configure(settings["rate_hz"])
             return imu, report
         except OSError as e:
             error = e
-            if attempt + 1 < tries:
+            if k + 1 < tries:
                 board.sleep_us(20000)
                 free_bus(board)
     raise error

@@ -28,13 +28,13 @@ class Pacer:
         wait = self._period + self._ahead - board.ticks_diff(board.ticks_us(), self._last)
         if wait > 0:
             board.sleep_us(wait)
-        outcome = self._sensor.read_into(sample)
+        found = self._sensor.read_into(sample)
         self._countdown -= 1
         if self._countdown == 0:
             self._countdown = CHECK_EVERY
             if self._sensor.check() != READ:
-                outcome = -1
-        if outcome != READ:
+                found = -1
+        if found != READ:
             return -1
         now = board.ticks_us()
         dt = board.ticks_diff(now, self._last)

@@ -93,10 +93,10 @@ def free(names):
     """Lets go of modules by name; whoever still uses one keeps it alive."""
     for name in names:
         sys.modules.pop(name, None)
-        dot = name.rfind(".")
-        package = sys.modules.get(name[:dot])
-        if package is not None and hasattr(package, name[dot + 1:]):
-            delattr(package, name[dot + 1:])
+        at = name.rfind(".")
+        package = sys.modules.get(name[:at])
+        if package is not None and hasattr(package, name[at + 1:]):
+            delattr(package, name[at + 1:])
     gc.collect()
 
 

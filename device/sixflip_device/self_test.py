@@ -32,9 +32,9 @@ def run(board, sensor, rate_hz):
                         % (window.accel_saturated or window.gyro_saturated))
     if reached < 0.9 * rate_hz:
         problems.append("too slow: %.0f samples a second, expected %d" % (reached, rate_hz))
-    temperature = None
+    temp_c = None
     if imu.has_temp:
-        temperature = window.total(6) / SAMPLES / imu.temp_lsb_per_c + imu.temp_offset_c
+        temp_c = window.total(6) / SAMPLES / imu.temp_lsb_per_c + imu.temp_offset_c
     return {"ok": not problems, "problems": problems, "rate_hz": reached, "noise": noise,
             "still": max(noise[:3]) < STILL_G * imu.accel_lsb_per_g,
-            "temperature_c": temperature, "bus_errors": sensor.errors}
+            "temperature_c": temp_c, "bus_errors": sensor.errors}

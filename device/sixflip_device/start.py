@@ -45,7 +45,7 @@ def _no_sensor(unit, report):
 
 def _find_sensor(unit):
     """Looks until the chip is there; False when the host stopped it. Says so once."""
-    told = None
+    said = None
     unit.sensor = None
     while not unit.stopped:
         try:
@@ -53,10 +53,10 @@ def _find_sensor(unit):
         except OSError as e:
             report = getattr(e, "report", None) or [
                 "the bus fails while the chip is set up (%s)" % e]
-            if told is None and unit.first:
+            if said is None and unit.first:
                 _hello(unit, None, report)
-            if report != told:
-                told = report
+            if report != said:
+                said = report
                 _no_sensor(unit, report)
             _wait(unit, LOOK_AGAIN_US, led.NO_CHIP)
             continue

@@ -75,8 +75,8 @@ def _summarise(r):
     """Tilts in degrees and the residual of every pose."""
     r.tilts = {}
     for face in r.across:
-        sine = math.sqrt(sum([x * x for x in r.across[face][0]]))
-        r.tilts[face] = math.degrees(math.asin(min(1.0, sine)))
+        across = math.sqrt(sum([x * x for x in r.across[face][0]]))
+        r.tilts[face] = math.degrees(math.asin(min(1.0, across)))
     tilts = list(r.tilts.values())
     r.tilt_deg = sum(tilts) / len(tilts) if tilts else None
     r.tilt_spread_deg = max(tilts) - min(tilts) if tilts else None

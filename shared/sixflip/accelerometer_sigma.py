@@ -31,7 +31,7 @@ def mean_variance(noise, n):
 def _scatter(r, h):
     """Variance of placing the box, g2, from the residuals beyond the noise; never below 0."""
     found = noise = weight = 0.0
-    for _face, n, left, kept in face_residuals(r, h):
+    for _, n, left, kept in face_residuals(r, h):
         for axis in range(3):
             v, s = residual_variance(r, kept, axis, 1.0)
             found += n * left[axis] * left[axis]

@@ -148,10 +148,3 @@ class BlockWriter:
         """Last block; complete: every pose that was asked for is there."""
         flags = (COMPLETE if complete else 0) | (SUMS_ONLY if self.sums_only else 0)
         self._block(END, struct.pack(FINISH, self.samples, flags))
-
-
-def read_blocks(data):
-    """The content of a capture file's bytes; see capture_reader, which a board need not load."""
-    from sixflip.capture_reader import read
-
-    return read(data)

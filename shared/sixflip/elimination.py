@@ -56,6 +56,6 @@ def _pivot(a, k):
         raise SingularSystem("the rows leave column %d undetermined: pivot %.1e, at least %.0e is "
                              "needed" % (k + 1, abs(a[p][k]), SMALLEST_PIVOT))
     a[k], a[p] = a[p], a[k]
-    pivot = 1.0 / a[k][k]
+    f = 1.0 / a[k][k]
     for j in range(k, len(a[k])):
-        a[k][j] *= pivot
+        a[k][j] *= f

@@ -93,10 +93,10 @@ def _judge_along(r):
         other = r.residual.get(pose + 1 if pose & 1 else pose - 1)
         if other is None:
             continue
-        gap = abs(r.residual[pose][k] - other[k])
+        apart = abs(r.residual[pose][k] - other[k])
         limit = 4.5 * math.sqrt(2.0 * v) + 5e-5
-        if not gap <= limit:
+        if not apart <= limit:
             return "doubtful", ("%s and its flip differ by %.1f mg along gravity, %.1f is the "
                                 "limit: one was knocked, or the temperature changed"
-                                % (pose_name(pose), 1000.0 * gap, 1000.0 * limit))
+                                % (pose_name(pose), 1000.0 * apart, 1000.0 * limit))
     return None

@@ -23,8 +23,8 @@ def measured_angles(placements, moves, lsb_per_dps, P):
             k = AXIS[f.face]
             raw = SIGN[f.face] * f.turned[k]
             turn = SIGN[f.face] * sum([f.turned[i] * P[i][k] for i in range(3)])
-            psi = turn if abs((raw - f.angle) % (2.0 * math.pi)) < 1e-6 else -turn
-            found.setdefault(f.face, []).append(psi % (2.0 * math.pi))
+            angle = turn if abs((raw - f.angle) % (2.0 * math.pi)) < 1e-6 else -turn
+            found.setdefault(f.face, []).append(angle % (2.0 * math.pi))
     return {face: sum(a) / len(a) for face, a in found.items()}
 
 

@@ -24,15 +24,15 @@ def angles(r, flips):
 def spread(r, rows, used, c, bias):
     """Standard errors: a hand no better than 0.4 degrees, worse when its flips disagree."""
     free = len(used) - (3 - len(r.missing))
-    hand2 = sum([f.left * f.left for f in used]) / free if free > 0 else 0.0
-    hand2 = max(hand2, HAND * HAND)
-    r.hand_deg = math.degrees(math.sqrt(hand2))
+    square = sum([f.left * f.left for f in used]) / free if free > 0 else 0.0
+    square = max(square, HAND * HAND)
+    r.hand_deg = math.degrees(math.sqrt(square))
     var = [[0.0] * 3 for _ in range(5)]
     for row, truth, v in rows:
         h = [HAND * HAND / v[3] * sum([c[i][j] * row[j] for j in range(4)]) for i in range(4)]
         offset = h[3] - sum([bias[k] * h[k] for k in range(3)])
         for j in range(3):
-            d = hand2 if truth[j] and v[j] == HAND * HAND else v[j]
+            d = square if truth[j] and v[j] == HAND * HAND else v[j]
             for i, x in enumerate(h[:3] + [offset, h[3]]):
                 var[i][j] += x * x * d
     r.sigma = [[math.sqrt(x) for x in row] for row in var[:4]]

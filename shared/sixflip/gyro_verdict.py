@@ -16,17 +16,17 @@ def judge_gyroscope(r):
         if not abs(r.P[k][k] - 1.0) <= SCALE_OFF:
             return "refused", ("gyro scale of axis %s is %.3f, 0.8 to 1.2 is the limit: wrong "
                                "range or LSB?" % ("xyz"[k], r.P[k][k]))
-    left_out = ["%s (%s)" % (face, r.flips[face]["reason"]) for face in sorted(r.flips)
+    out = ["%s (%s)" % (face, r.flips[face]["reason"]) for face in sorted(r.flips)
                 if not r.flips[face]["used"]]
-    tail = "; left out: " + ", ".join(left_out) if left_out else ""
+    more = "; left out: " + ", ".join(out) if out else ""
     unseen = ["xyz"[k] for k in range(3) if k not in r.signs_seen]
     if unseen:
-        tail += "; sign of %s not seen, no quarter turn about it" % " and ".join(unseen)
+        more += "; sign of %s not seen, no quarter turn about it" % " and ".join(unseen)
     if len(r.missing) == 3:
-        return "refused", "no usable flip about any axis" + tail
+        return "refused", "no usable flip about any axis" + more
     if r.missing:
         return "doubtful", ("no usable flip about axis %s, its old values are kept"
-                            % " and ".join(["xyz"[k] for k in r.missing])) + tail
+                            % " and ".join(["xyz"[k] for k in r.missing])) + more
     for face in sorted(r.flips):
         angle = r.flips[face]["angle_deg"]
         if r.flips[face]["used"] and not abs(angle - 180.0) <= ANGLE_OFF_DEG:
@@ -37,10 +37,10 @@ def judge_gyroscope(r):
                                        and r.flips[face]["used"]]) < 2]
     if unseen:
         return "doubtful", ("one flip alone about %s, nothing to hold its angle against"
-                            % " and ".join(unseen).lower()) + tail
+                            % " and ".join(unseen).lower()) + more
     scale = max([r.sigma[k][k] for k in range(3)])
     if not scale <= 0.01:
         return "doubtful", "the scale is known to %.1f %% only, 1 is the limit" % (100 * scale)
     used = len([1 for face in r.flips if r.flips[face]["used"]])
     return "good", ("%d flips, scale known to %.2f %%, bias to %.3f degrees/s"
-                    % (used, 100 * scale, max(r.sigma_bias_dps))) + tail
+                    % (used, 100 * scale, max(r.sigma_bias_dps))) + more

@@ -90,11 +90,11 @@ class NoiseFloor:
 
     def _within_cap(self):
         for i in range(self.axes):
-            cap = CAP[i // 3]
+            limit = CAP[i // 3]
             sd = math.sqrt(self._var[i]) / self.lsb[i // 3]
-            if sd > cap:
+            if sd > limit:
                 if not self.known:
-                    self.say("noisy", sd, cap, UNITS[i // 3])
+                    self.say("noisy", sd, limit, UNITS[i // 3])
                 return False
         if not self.known:
             self.say("", 0, 0, "")
@@ -158,8 +158,8 @@ class NoiseFloor:
         if not self._fault(window):
             ratio = self._ratio()
             if ratio > limit:
-                steady = self.wander(self._before, 1, window.n) == ""
-                self.say("noisy" if steady else "moving", ratio, limit, "x noise")
+                still = self.wander(self._before, 1, window.n) == ""
+                self.say("noisy" if still else "moving", ratio, limit, "x noise")
             elif self.wander(self._before, 1, window.n) == "" and self._turning() == "":
                 self.say("", ratio, limit, "x noise")
         return self.reason

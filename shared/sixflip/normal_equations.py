@@ -25,13 +25,13 @@ class NormalEquations:
         """row: 4 measured values, truth: one value per target, weight: 1/variance."""
         self.rows += 1
         for i in range(COLUMNS):
-            scaled = weight * row[i]
+            x = weight * row[i]
             xx = self.xx[i]
             for j in range(COLUMNS):
-                xx[j] += scaled * row[j]
+                xx[j] += x * row[j]
             xy = self.xy[i]
             for j in range(self.targets):
-                xy[j] += scaled * truth[j]
+                xy[j] += x * truth[j]
 
     def solve(self):
         """The 4 x targets parameters. Raises SingularSystem."""

@@ -5,7 +5,7 @@ import json
 from simulated_board import STOP_WHEN_READY, power_on
 from test_power_up import STILL, Folder
 
-from sixflip.capture_blocks import read_blocks
+from sixflip.capture_reader import read as read_blocks
 from sixflip.faces import pose_name
 
 FIRST = ["Z+a", "Z+b", "X+a"]

@@ -7,8 +7,9 @@ from io import BytesIO
 from synthetic_operator import Noise
 
 from sixflip import capture_blocks as cb
-from sixflip.capture_blocks import BlockWriter, read_blocks
+from sixflip.capture_blocks import BlockWriter
 from sixflip.capture_reader import NAMES
+from sixflip.capture_reader import read as read_blocks
 from sixflip.capture_scan import Scan, go_on
 from sixflip.placement import Placement
 

@@ -4,9 +4,10 @@ from array import array
 from synthetic_operator import Operator
 
 from sixflip import session as machine
-from sixflip.faces import face_of_code, pose_code, pose_name
+from sixflip.faces import face_of_code, pose_name
 from sixflip.move_turn import has_gap
 from sixflip.planned_session import PlannedSession
+from sixflip.pose_codes import pose_code
 from sixflip.resumed_session import resume
 from sixflip.session import Session
 

@@ -4,7 +4,8 @@ import json
 
 import numpy as np
 
-from sixflip.capture_blocks import ACCEL, GROUPS, GYRO, MAG, TEMP, BlockWriter, read_blocks
+from sixflip.capture_blocks import ACCEL, GROUPS, GYRO, MAG, TEMP, BlockWriter
+from sixflip.capture_reader import read as read_blocks
 
 from ..errors import BadFile
 from .capture_header import check_meta

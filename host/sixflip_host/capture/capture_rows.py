@@ -9,7 +9,8 @@ import re
 
 import numpy as np
 
-from sixflip.faces import pose_code, pose_name
+from sixflip.faces import pose_name
+from sixflip.pose_codes import pose_code
 
 from ..errors import BadFile
 

@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 
-from sixflip.faces import pose_code
+from sixflip.pose_codes import pose_code
 
 from .. import atomic_write
 from ..errors import BadFile, UsageError

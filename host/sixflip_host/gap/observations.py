@@ -5,7 +5,7 @@ blocks so that what fades within it (creep) or wanders (flicker) shows between t
 """
 import numpy as np
 
-from sixflip import faces
+from sixflip import faces, pose_codes
 from sixflip_sim.effects.moment import Moment
 
 from ..simulating import noise_arrays, pose_runs
@@ -42,7 +42,7 @@ class Session:
         self.labelled = capture.pose is not None and bool((capture.pose > 0).any())
         if not self.labelled:
             _label(capture)
-        unsteady = {faces.pose_code(name) for name in capture.meta.get(HELD_BY_HAND, ())}
+        unsteady = {pose_codes.pose_code(name) for name in capture.meta.get(HELD_BY_HAND, ())}
         self.runs = [r for r in pose_runs.runs(capture.pose)
                      if r[2] - r[1] >= max(8, SHORTEST_S * self.rate) and r[0] not in unsteady]
         self.thermometer = thermometer.of(capture, self.t_s)
@@ -135,7 +135,7 @@ class Session:
 
     def refuse(self, labels):
         """Leave out the placements with these labels."""
-        codes = {faces.pose_code(label) for label in labels}
+        codes = {pose_codes.pose_code(label) for label in labels}
         self.runs = [run for run in self.runs if run[0] not in codes]
         self._blocks()
 

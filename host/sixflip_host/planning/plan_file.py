@@ -11,7 +11,7 @@ in the box. Poses may come back: each time is a placement of its own.
 import json
 import math
 
-from sixflip import faces
+from sixflip import faces, pose_codes
 
 from ..atomic_write import write_text
 from ..errors import BadFile
@@ -105,7 +105,7 @@ def _pose(spec, where):
     name = spec.get("pose")
     if not isinstance(name, str) or not name:
         raise ValueError("%s: pose is %r, expected a name like Z+a or L1" % (where, name))
-    code = faces.pose_code(name)
+    code = pose_codes.pose_code(name)
     turn = spec.get("turn", "left")
     if turn not in ("left", "right"):
         raise ValueError("%s: turn is %r, expected left or right" % (where, turn))

@@ -3,7 +3,7 @@ import json
 
 import numpy as np
 
-from sixflip import faces
+from sixflip import pose_codes
 from sixflip.chips import probe
 from sixflip_sim import noise, worlds
 from sixflip_sim.effects import make as make_effects
@@ -119,7 +119,7 @@ def labels(world, look_us, moving):
     pose[:] = 0
     for name, t0, t1 in world.operator.log:
         inside = slice(*np.searchsorted(look_us, (t0, t1)))
-        pose[inside] = faces.pose_code(name)
+        pose[inside] = pose_codes.pose_code(name)
     pose[~rest] = 0
     return pose
 

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from sixflip.faces import AXIS, LEANING, SIGN, face_of_code, is_b, pose_name
+from sixflip.faces import AXIS, LEANING, SIGN, face_of_code, pose_name
 from sixflip.move_turn import GAP_US
+from sixflip.pose_codes import is_b
 
 from ..errors import BadFile, CheckFailed
 from ..simulating import pose_runs

@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 
-from sixflip.faces import FACES, SIGN, face_of_code, is_b
+from sixflip.faces import FACES, SIGN, face_of_code
 from sixflip.flip_angle import NO_FLIP
+from sixflip.pose_codes import is_b
 
 from ..simulating import pose_runs
 from ..solving import reference_gyro, solution

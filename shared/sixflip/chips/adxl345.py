@@ -64,7 +64,7 @@ class ADXL345(Registers):
         not take its value. The chip has no reset bit: everything that matters is written."""
         if not 1 <= rate_hz <= 400:
             raise ValueError("rate_hz is %s, expected 1 to 400" % rate_hz)
-        output_rate, code = [o for o in OUTPUT_RATES if o[0] >= 2 * rate_hz][0]
+        hz, code = [x for x in OUTPUT_RATES if x[0] >= 2 * rate_hz][0]
         self._set(POWER_CTL, 0)
         for register, value in ((BW_RATE, code), (DATA_FORMAT, FULL_RES_16_G), (FIFO_CTL, 0),
                                 (INT_ENABLE, 0), (OFSX, 0), (OFSX + 1, 0), (OFSX + 2, 0),
@@ -72,8 +72,8 @@ class ADXL345(Registers):
             self._set(register, value)
         self._setup[0] = code
         self._setup[1] = MEASURE
-        self.output_rate_hz = output_rate
-        self.filter_hz = output_rate / 2
+        self.output_rate_hz = hz
+        self.filter_hz = hz / 2
         self.rate_hz = rate_hz
         if self._sleep_ms is not None:
             self._sleep_ms(20)      # turn-on time 11.1 ms at 100 Hz (table 1, note 7)

@@ -83,13 +83,13 @@ def _look_at_gyro_address(i2c, address, report):
 def _look_at_accel_address(i2c, address, report):
     """True for an ADXL345. A chip that answers otherwise at 0x1d may be anything."""
     from sixflip.chips import adxl345
-    devid = _identify(i2c, address, adxl345.DEVID, (adxl345.DEVICE_ID,))
-    if devid is None:
+    answer = _identify(i2c, address, adxl345.DEVID, (adxl345.DEVICE_ID,))
+    if answer is None:
         return False
-    if devid == adxl345.DEVICE_ID:
+    if answer == adxl345.DEVICE_ID:
         report.append("0x%02x: ADXL345 (id 0xe5)" % address)
         return True
-    report.append("0x%02x answers id 0x%02x: not an ADXL345 (0xe5)" % (address, devid))
+    report.append("0x%02x answers id 0x%02x: not an ADXL345 (0xe5)" % (address, answer))
     return False
 
 

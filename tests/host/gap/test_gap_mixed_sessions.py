@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from sixflip import faces
+from sixflip import pose_codes
 from sixflip_host.gap import answer, diagnosis, observations
 from sixflip_host.simulating import scenario, simulate
 
@@ -24,7 +24,7 @@ def steady(capture):
 
 
 def no_flips(capture):
-    flipped = [code for code in range(1, 13) if faces.is_b(code)]
+    flipped = [code for code in range(1, 13) if pose_codes.is_b(code)]
     capture.pose[np.isin(capture.pose, flipped)] = 0
 
 
