@@ -1,6 +1,6 @@
 """A failing bus over a whole calibration, by the thousand:
 
-    python tests/bench/bus_storm.py [--runs 10000] [--first 0] [--jobs 4]
+    python tests/bench/bus_storm.py [--runs 10000] [--first 0] [--jobs 4] [--log FILE]
 
 First every fault at every step of the protocol, for an MPU6050, an MPU6500 and both chips of a
 GY-85; then noise, late, repeated, torn and lost samples all through a calibration, at six rates;
@@ -8,12 +8,14 @@ then random storms of one to three kinds of faults, each once or now and then, i
 calibration and in the power-up after it; the seeds are those from --first on. "wrong": a
 correction called good that is off by more than it may be (tests/faults/storm.py says how much),
 a bias measured wrongly, a stream that shows another g, a firmware that stops or hangs, a refusal
-without a reason. Exits with 1 when there is one.
+without a reason. Exits with 1 when there is one. A storm takes a third of a second; --log keeps
+each as a line, and those in it are not run again.
 """
 
 import argparse
 import collections
 import gc
+import json
 import os
 import sys
 from concurrent.futures import ProcessPoolExecutor
@@ -53,13 +55,27 @@ def throughout(kind):
     return found
 
 
-def storms(first):
-    """[(seed, kinds, word, reason, error in mg)] of LEFT storms."""
+def storms(seeds):
+    """[(seed, kinds, word, reason, error in mg)] of some storms."""
     found = []
-    for seed in range(first, first + LEFT):
+    for seed in seeds:
         outcome, kinds = storm.storm(seed)
         found.append((seed, kinds, outcome.word, outcome.reason, outcome.error_mg))
     return found
+
+
+def every(pool, seeds, log):
+    """Results of all storms as storms() gives them, those in a log first."""
+    done = {}
+    if log and log.exists():
+        done = {one[0]: one for one in map(json.loads, log.read_text().splitlines())}
+    yield [done[seed] for seed in seeds if seed in done]
+    left = [seed for seed in seeds if seed not in done]
+    for found in pool.map(storms, [left[i:i + LEFT] for i in range(0, len(left), LEFT)]):
+        if log:
+            with open(log, "a", encoding="utf-8") as f:
+                f.writelines(json.dumps(one) + "\n" for one in found)
+        yield found
 
 
 def line(name, words, tail=""):
@@ -72,6 +88,7 @@ def main():
     parser.add_argument("--runs", type=int, default=10000)
     parser.add_argument("--first", type=int, default=0, help="seed of the first storm")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--log", type=Path, help="file of storms that were run")
     args = parser.parse_args()
     wrong = []
     head = "%-16s" % "" + "".join("%10s" % w for w in WORDS)
@@ -98,7 +115,8 @@ def main():
         named = storm.KINDS + ("noise",)
         kinds_seen = {kind: collections.Counter() for kind in named}
         total, worst = collections.Counter(), collections.Counter()
-        for found in pool.map(storms, range(args.first, args.first + args.runs, LEFT)):
+        seeds = range(args.first, args.first + args.runs)
+        for found in every(pool, seeds, args.log):
             for seed, kinds, word, reason, error in found:
                 total[word] += 1
                 if word == "wrong":
