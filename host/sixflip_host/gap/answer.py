@@ -37,9 +37,9 @@ def gaps(diagnosis):
     turns = diagnosis.turns
     if turns and turns.causes and not found["gyro"].causes:
         found["gyro"] = turns
-    motion = diagnosis.motion
-    if motion and motion.found and not found["accel"].causes:
-        found["accel"] = motion
+    moved = any(f.domain == "motion" for f in diagnosis.findings)
+    if diagnosis.motion and moved and not found["accel"].causes:
+        found["accel"] = diagnosis.motion
     return found
 
 

@@ -15,8 +15,8 @@ ABSORBED = {
     "creep": "absorbed by bias", "g_sensitivity": "absorbed by bias",
     "vibration_rectification": "absorbed by bias: nothing vibrated, or all the time",
     "earth_rate": "a nuisance: below the noise, or not told from g_sensitivity",
-    "lever_arm": "needs a gyro and a dozen turns from rest to rest",
-    "filter_lag": "needs a gyro and a dozen turns from rest to rest",
+    "lever_arm": "needs rests in several poses, a gyro and a dozen turns between rests",
+    "filter_lag": "needs rests in several poses, a gyro and a dozen turns between rests",
     "saturation": "no sample came near a rail; a rounded one is odd and absorbed by scale"}
 STILL_ONLY = {"gyro": ("thermal_scale", "quadratic", "cubic", "asymmetry", "saturation")}
 ALWAYS_SEEN = ("quantisation", "dead_band", "torn_reads", "dropped_samples", "sample_rate",
