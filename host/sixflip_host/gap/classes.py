@@ -2,9 +2,10 @@
 
 Two effects are one class when one reproduces more than 0.9 of the other (alias index, in the
 metric of the noise, nominal model and the other causes projected out), when their scores are
-less than 3 nats apart, or when what tells them apart is less than 3 standard deviations. What
-lies between sessions counts as much in the alias index as all that lies within them: there are
-few such contrasts, but no error in the form of an effect can turn them round.
+less than 3 nats apart, or when what tells them apart is less than 3 standard deviations. One
+session that tells them apart by itself is enough: the others must not dilute it. What lies
+between sessions counts as much in the alias index as all that lies within them: there are few
+such contrasts, but no error in the form of an effect can turn them round.
 """
 import numpy as np
 
@@ -31,23 +32,25 @@ class Cause:
 
 
 def pooled(data, chosen):
-    """([gram (K, K) within sessions, between them], theta (k,), V (k, k), columns) with the
-    chosen effects in."""
+    """([gram (K, K) within sessions, between them], [gram of each session], theta (k,), V (k, k),
+    columns) with the chosen effects in."""
     columns = np.concatenate([c.columns for c in chosen])
     prior = np.concatenate([c.prior for c in chosen])
     found = which.fits(data, columns, prior)
     theta, covariance = which.coefficients(found, prior)
-    grams = [0.0, 0.0]  # within sessions, between them
+    grams, each = [0.0, 0.0], []  # within sessions, between them
     for unit, fit in zip(data.units, found):
-        grams[unit.between] = grams[unit.between] + unit.gram[fit.index[0]]
-    return grams, theta[0], covariance[0], columns
+        gram = unit.gram[fit.index[0]]
+        grams[unit.between] = grams[unit.between] + gram
+        each += [] if unit.between else [gram]
+    return grams, each, theta[0], covariance[0], columns
 
 
 def causes(data, options, chosen):
     """list of Cause, largest score first, with the members of their classes."""
     if not chosen:
         return []
-    grams, theta, covariance, columns = pooled(data, chosen)
+    grams, each, theta, covariance, columns = pooled(data, chosen)
     out = []
     for name in dict.fromkeys(c.effect for c in chosen):
         mine = [c for c in chosen if c.effect == name]
@@ -64,21 +67,26 @@ def causes(data, options, chosen):
         own = np.concatenate([_places(columns, c.columns) for c in mine])
         cause.covariance = covariance[np.ix_(own, own)]
         out.append(cause)
-        _rivals(cause, data, options, others, grams, columns[~where])
+        _rivals(cause, data, options, others, (grams, each), columns[~where])
         cause.other_axes = _other_axes(cause, data, options, others)
     out.sort(key=lambda c: -c.score)
     return [c for k, c in enumerate(out) if not any(_form_of(c, b) for b in out[:k])]
 
 
 FORM = 0.08  # of an effect's score that its true form may be off by
-KIN = ({"temperature", "time"}, {"history", "time_since_move"}, {"orientation"}, {"amplitude"})
+KIN = ({"temperature", "time"}, {"history", "time_since_move"})
+
+
+def related(one, other):
+    """Whether two domains are one variable, or two that go together."""
+    return one == other or any({one, other} <= kin for kin in KIN)
 
 
 def _form_of(cause, larger):
     """True for what only corrects the form of a far larger cause on the same axes, in the same
     variable: no library has the very curve of a part."""
-    related = any({DOMAIN[cause.effect], DOMAIN[larger.effect]} <= kin for kin in KIN)
-    return related and set(cause.axes) <= set(larger.axes) and cause.score < FORM * larger.score
+    return related(DOMAIN[cause.effect], DOMAIN[larger.effect]) \
+        and set(cause.axes) <= set(larger.axes) and cause.score < FORM * larger.score
 
 
 def _joined(chosen):
@@ -100,6 +108,7 @@ def balanced(grams, mine):
 def _rivals(cause, data, options, others, grams, other_columns):
     """Fill cause.members with every other effect that cannot be told from it."""
     mine = np.concatenate([c.columns for c in cause.chosen])
+    grams, each = grams
     gram, even = grams[0] + grams[1], balanced(grams, mine)
     taken = {c.effect for c in others}
     for name in dict.fromkeys(o.effect for o in options):
@@ -117,10 +126,17 @@ def _rivals(cause, data, options, others, grams, other_columns):
             continue
         index = left[0]
         apart = reproduced(gram, mine, cause.theta, spaces, other_columns)[1]
-        if index > SAME:
+        if index > SAME and not any(_told(g, mine, cause.theta, spaces, other_columns)
+                                    for g in each if len(each) > 1):
             cause.members[name] = "alias index %.2f" % index
         elif apart < SIGMAS:
             cause.members[name] = "%.1f standard deviations apart" % apart
+
+
+def _told(gram, mine, theta, spaces, others):
+    """Whether one session's gram alone tells an effect from another's variants."""
+    found = reproduced(gram, mine, theta, spaces, others)
+    return found is not None and found[0] <= SAME and found[1] >= SIGMAS
 
 
 def _other_axes(cause, data, options, others):

@@ -21,6 +21,7 @@ from . import (
 
 ALONG_FREEDOM = 10  # contrasts along gravity that a half of a session must have
 KEPT_SHARE = 0.6  # of the excess, below which a name is no explanation where noise does not fit
+BEND = 0.03  # of a cause's score, that the form of the part's own curve may add
 LEFT = 0.25  # of a cause's score, that something nameless in its domain may still gain
 MOST_OF_ONE = 2  # causes that one session, held out against itself, can be believed to show
 STAND_IN = 0.8  # of the gain of several names
@@ -118,8 +119,7 @@ class SensorGap:
         prior = np.concatenate([c.prior for c in self.chosen])
         total = float((which.score(self.data, columns, prior) - self.data.base)[0])
         enough = (STAND_IN * total if len(self.causes) > 1 else total + drifting.DRIFT_NATS)
-        return any(gain > enough and not any({domain, d} <= kin for kin in classes.KIN
-                                             for d in domains)
+        return any(gain > enough and not any(classes.related(domain, d) for d in domains)
                    for domain, (gain, _) in adequacy.generic_gains(
                        self.data, self.options, []).items())
 
@@ -157,7 +157,9 @@ class SensorGap:
         if not self.options:
             return
         gains = adequacy.generic_gains(self.data, self.options, self.chosen)
-        self.added = {d: g for d, (g, _) in gains.items() if g > self.limits.generic + 2.0}
+        self.added = {d: g for d, (g, _) in gains.items() if g > self.limits.generic + 2.0
+                      and not any(g < BEND * c.score and classes.related(
+                          d, regressors.DOMAIN[c.effect]) for c in self.causes)}
         own = adequacy.session_gain(self.data, self.options, self.chosen)
         if own > SESSION_NATS:
             self.added["time"] = max(own, self.added.get("time", 0.0))
@@ -194,8 +196,8 @@ class SensorGap:
         """Causes that show in one way and of which one is larger than can be: they make up a
         form that none of them has, each against the others."""
         for cause in self.causes:
-            kin = [c for c in self.causes if c is not cause and any(
-                {c.domain, cause.domain} <= k for k in classes.KIN)]
+            kin = [c for c in self.causes
+                   if c is not cause and classes.related(c.domain, cause.domain)]
             if not cause.plausible and kin:
                 return [cause, *kin]
         return []
