@@ -1,12 +1,14 @@
-"""A cable that fails while a board is provisioned or pulled:
+"""A cable that fails while a board is provisioned, calibrated or pulled:
 
-    python tests/bench/serial_faults.py [--every 1] [--pulls 30]
+    python tests/bench/serial_faults.py [--every 1] [--pulls 30] [--sessions 12]
 
 A provisioning with a new firmware is cut off by a power failure in each block operation of the
 flash in turn; then the board is started, provisioned again and started again. A pull goes over
 a cable that damages bytes, loses and adds some, and cuts lines; then a second one over a good
-cable. Exits with 1 when the board starts neither the old nor the new firmware, when anything
-does not mend, or when a file here is not the board's.
+cable. A calibration loses its cable, and the board its supply, at each of the things it says; and
+goes over a bad cable. Then the board starts, has kept every pose it told of, or a record that is
+right (as tests/faults/storm.py judges). Exits with 1 when the board starts neither the old nor
+the new firmware, when anything does not mend, or when a file here is not the board's.
 """
 
 import argparse
@@ -60,11 +62,29 @@ def pulled(micropython, pulls):
     return counts, wrong
 
 
+def calibrated(micropython, sessions):
+    """Counts of exit codes, cable pulled out or bad; sentences on what is wrong."""
+    counts, wrong = collections.Counter(), []
+    with tempfile.TemporaryDirectory() as folder:
+        board = faults.Calibrated(micropython, Path(folder))
+        cables = [("pulled out", when, lambda b, w=when: faults.PullOut(b, w.encode()))
+                  for when in faults.CALIBRATING]
+        cables += [("bad cable", "seed %d" % seed, lambda b, s=seed: faults.BadCable(
+            s, (0.002, 0.01, 0.05)[s % 3], 1000 * s)) for seed in range(sessions)]
+        for kind, name, cable in cables:
+            code, error, found = board.calibrate(cable)
+            counts["%s: exit %d" % (kind, code)] += 1
+            if found:
+                wrong.append("calibrate, %s, %s: %s %s" % (kind, name, found, error.strip()))
+    return counts, wrong
+
+
 def main():
-    """Both tables; exit code 1 when something was lost."""
+    """All tables; exit code 1 when something was lost."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--every", type=int, default=1, help="each n-th operation is cut")
     parser.add_argument("--pulls", type=int, default=30)
+    parser.add_argument("--sessions", type=int, default=12, help="calibrations over a bad cable")
     args = parser.parse_args()
     micropython = micropython_fetch.find()
     if micropython is None:
@@ -73,11 +93,12 @@ def main():
     with faults.impatient():
         for title, (counts, wrong) in (
                 ("provisioning cut off", provisioned(micropython, args.every)),
+                ("calibrate", calibrated(micropython, args.sessions)),
                 ("pull over a bad cable", pulled(micropython, args.pulls))):
             print(title)
             for what, n in sorted(counts.items()):
-                print("  %-20s%6d" % (what, n))
-            print("  %-20s%6d" % ("wrong", len(wrong)), flush=True)
+                print("  %-24s%6d" % (what, n))
+            print("  %-24s%6d" % ("wrong", len(wrong)), flush=True)
             broken += wrong
     for one in broken:
         print("wrong:", one)

@@ -7,7 +7,9 @@ import json
 import random
 import shutil
 
-from sixflip import capture_reader
+import storm
+
+from sixflip import capture_reader, correction_record
 from sixflip.capture_blocks import BlockWriter
 from sixflip_host import cli
 from sixflip_host.board import board_link, calibrate, provision
@@ -15,9 +17,17 @@ from sixflip_host.board.board_events import events
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.errors import SixflipError
 from sixflip_host.virtual.virtual_board import VirtualBoard
+from sixflip_sim import worlds
 
 STILL = {"sensor": "mpu6050", "seed": 3, "order": []}
 PARTS = ("sixflip_device/power_up.py", "sixflip_device/a.py", "sixflip/b.py")
+SESSION = {"sensor": "mpu6050", "seed": 3, "tilt_deg": 2.0}
+POSES = tuple(face + letter for face in ("Z+", "Z-", "X+", "X-", "Y+", "Y-") for letter in "ab")
+# What is heard when the cable is pulled out of a board that calibrates.
+CALIBRATING = tuple('"event": "%s"' % name for name in (
+    "hello", "selftest", "grace", "calibrating")) + tuple(
+    '"event": "pose", "pose": "%s"' % pose for pose in POSES) + tuple(
+    '"event": "%s"' % name for name in ("capture", "solved", "saved", "ready"))
 ENDS = (0, 1, 3, 4)     # exit codes of errors in one line
 QUICK = {"ANSWER_S": 2.0, "HANDSHAKE_S": 3.0, "REOPEN_S": 3.0}
 
@@ -196,16 +206,76 @@ def calibrate_and_pull_out(board, pose):
         return capture_reader.read(link.get("refused.bin"))
 
 
+class Calibrated:
+    """A calibration over a cable that fails or is pulled out; then what the board makes of it."""
+
+    def __init__(self, micropython, folder):
+        self.micropython, self.folder = micropython, folder
+        self.truth = worlds.make(SESSION).truth
+        with VirtualBoard(STILL, folder / "new.img", micropython=micropython) as board:
+            code, error = verb("provision", "--port", board.port)
+            assert code == 0, error
+
+    def calibrate(self, corrupt_of):
+        """(exit code, stderr, what is wrong or ""); corrupt_of(board): for PtyRelay.corrupt."""
+        image = self.folder / "calibrated.img"
+        shutil.copy(self.folder / "new.img", image)
+        with VirtualBoard(SESSION, image, micropython=self.micropython) as board:
+            board.relay.corrupt = cable = corrupt_of(board)
+            code, error = verb("calibrate", "--plain", "--port", board.port)
+            board.world = dict(STILL)
+            board.unplug()
+            board.plug()
+            wrong = self._afterwards(board, getattr(cable, "poses", 0))
+        if code not in ENDS or "Traceback" in error:
+            wrong = "exit code %s, %s" % (code, error.strip())
+        elif code == 0 and not wrong.startswith("a record"):
+            wrong = wrong or "exit code 0, and there is no record"
+        return code, error, "" if wrong.startswith("a record that is right") else wrong
+
+    def _afterwards(self, board, told):
+        """It starts, what was told is kept, a record is right; "a record that is right" then."""
+        with MpremoteLink(board.port) as link:
+            link.reset()
+            names = set()
+            for event in events(link, 5, 30):
+                names.add(event["event"])
+                if names & {"calibrating", "ready"}:
+                    break
+            else:
+                return "the board says %s only" % sorted(names)
+            present = link.files([])
+            records = [link.get(name) for name in ("record_a.bin", "record_b.bin")
+                       if name in present]
+            if records:
+                return self._judged(correction_record.decode(records[0]))
+            if told:
+                kept = capture_reader.read(link.get("refused.bin"))
+                if len(kept.placements) < told:
+                    return "%d poses were told, %d are kept" % (told, len(kept.placements))
+        return ""
+
+    def _judged(self, record):
+        outcome = storm.Outcome()
+        outcome.word = record.accel["verdict"]
+        storm.compare(outcome, self.truth, record)
+        return outcome.reason if outcome.word == "wrong" else "a record that is right"
+
+
 class PullOut:
-    """For PtyRelay.corrupt: kills the board when it says so, and says nothing more."""
+    """For PtyRelay.corrupt: kills the board when it says so, once a host had it in hand, and says
+    nothing more. poses: that the session has taken by then."""
 
     def __init__(self, board, when):
         self.board, self.when, self.heard = board, when, b""
-        self.out = False
+        self.out = self.begun = False
+        name = when.decode()[-4:-1]
+        self.poses = 1 + POSES.index(name) if name in POSES else 0
 
     def __call__(self, piece):
         self.heard = self.heard[-200:] + piece
-        if not self.out and self.when in self.heard:
+        self.begun = self.begun or b"raw REPL" in self.heard
+        if self.begun and not self.out and self.when in self.heard:
             self.out = True
             self.board.world = dict(STILL)
             self.board.kill()
