@@ -204,6 +204,10 @@ def test_timing():
     first = counts([{"effect": "filter_lag", "sensor": "gyro", "tau": 2.0}], GYRO)[0]
     slope = np.gradient(base[2].astype(float)) * 200.0
     assert np.polyfit(slope, (first - base)[2], 1)[0] == pytest.approx(-0.002, rel=0.05)
+    felt = counts([], ACCEL)[0].astype(float)
+    behind = counts([{"effect": "filter_lag", "sensor": "accel", "tau": 2.0}], ACCEL)[0] - felt
+    assert np.polyfit((np.gradient(felt, axis=1) * 200.0).ravel(), behind.ravel(), 1)[
+        0] == pytest.approx(-0.002, rel=0.05)
     slow = counts([{"effect": "sample_rate", "rate": 1.0, "stamped": 0}], GYRO)[0]
     turned, true = slow[2].sum(), base[2].sum()
     assert np.abs(slow - base).max() > 100 and abs(turned) > 0 and abs(true) > 0
