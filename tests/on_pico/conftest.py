@@ -41,16 +41,15 @@ def uf2():
 
 @contextlib.contextmanager
 def provisioned(files, spec):
-    """Link to a virtual board with the Pico's settings, started; its littlefs is in files."""
+    """Link to a virtual board with the Pico's settings, not started; its littlefs is in files."""
     from pico_flash import FILES_BYTES
     micropython = micropython_fetch.find()
     if micropython is None:
         missing(micropython_fetch.MISSING)
     with VirtualBoard(spec, files, micropython=micropython, flash_bytes=FILES_BYTES) as board, \
             MpremoteLink(board.port) as link:
-        provision.copy(link, {"sensor": "mpu6050", "board": "pico",
+        provision.copy(link, {"sensor": spec["sensor"], "board": "pico",
                               **demo.PACE["pico"].settings})
-        link.reset()
         yield link
 
 
@@ -61,6 +60,7 @@ def flashes(uf2, tmp_path_factory):
     folder = tmp_path_factory.mktemp("flash")
     files = folder / "files.img"
     with provisioned(files, SPEC) as link:
+        link.reset()
         assert calibrate.follow(link, lambda event: None)["verdict"] == "good"
         calibrated = folder / "calibrated.bin"
         link.enter()
@@ -82,12 +82,24 @@ def still_flash(flashes, tmp_path):
 
 
 @pytest.fixture
+def gy85_flash(uf2, tmp_path):
+    """Of a board that has its firmware and was never started."""
+    from pico_flash import SPEC, flash
+    files = tmp_path / "files.img"
+    path = tmp_path / "pico.bin"
+    with provisioned(files, dict(SPEC, sensor="gy85")):
+        path.write_bytes(flash(uf2, files.read_bytes()))
+    return path
+
+
+@pytest.fixture
 def unfinished_flash(uf2, tmp_path):
     """Of a board whose session was stopped before its last face, and is to go on."""
     from pico_flash import LAST_FACE, SPEC, flash
     files = tmp_path / "files.img"
     first = [pose for pose in GUIDED_ORDER if pose not in LAST_FACE]
     with provisioned(files, dict(SPEC, order=first)) as link:
+        link.reset()
         for _ in first:
             wait_for(link, ("pose",))
         link.send(json.dumps({"cmd": "stop"}))
