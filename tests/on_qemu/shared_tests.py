@@ -4,7 +4,10 @@ from pathlib import Path
 
 from .firmware import frozen_files
 
-SHARED_TESTS = sorted(Path(n).stem for n in frozen_files() if n.startswith("test_"))
+ALL = sorted(Path(n).stem for n in frozen_files() if n.startswith("test_"))
+# In a file of their own, for a processor of their own.
+OF_SESSIONS = [name for name in ALL if name.startswith("test_session")]
+SHARED_TESTS = [name for name in ALL if name not in OF_SESSIONS]
 
 RUN = """
 import gc, unittest

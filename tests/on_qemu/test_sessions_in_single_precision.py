@@ -1,7 +1,10 @@
-"""The session's own tests on the emulated board: the longest of them all."""
+"""The session's own tests on the emulated board: the longest of all."""
 
-from .shared_tests import pass_on_the_board
+import pytest
+
+from .shared_tests import OF_SESSIONS, pass_on_the_board
 
 
-def test_the_sessions_tests_pass_on_the_board(board):
-    pass_on_the_board(board, "test_session")
+@pytest.mark.parametrize("name", OF_SESSIONS)
+def test_the_sessions_tests_pass_on_the_board(board, name):
+    pass_on_the_board(board, name)

@@ -12,10 +12,8 @@ from sixflip_host.solving import reference
 from .shared_tests import SHARED_TESTS, pass_on_the_board
 from .simulated_sums import session_sums, vector_error_mg
 
-LONG = "test_session"  # in a file of its own, for a processor of its own
 
-
-@pytest.mark.parametrize("name", [name for name in SHARED_TESTS if name != LONG])
+@pytest.mark.parametrize("name", SHARED_TESTS)
 def test_shared_tests_pass_on_the_board(board, name):
     pass_on_the_board(board, name)
 
