@@ -27,6 +27,7 @@ class Imu:
     who_am_i = (0x68, 0x68)
     accel_range_g, gyro_range_dps = 2, 500
     accel_lsb_per_g, gyro_lsb_per_dps = 16384, 65.5
+    accel_rail = gyro_rail = 32767
     has_gyro = has_temp = True
     temp_lsb_per_c = 340
 
