@@ -144,7 +144,10 @@ def _capture(event):
 
 
 WORDS = {
-    "hello": lambda e: "board %s, %s" % (e.get("id"), e.get("chip") or "no sensor found"),
+    "hello": lambda e: "board %s, %s%s" % (
+        e.get("id"), e.get("chip") or "no sensor found",
+        "" if e.get("sensor") != "adxl345"
+        else "\nno gyro: lift the box for each half turn, or it is not seen"),
     "grace": lambda e: "starts in %.1f s" % ((e.get("ms") or 0) / 1000),
     "no_record": lambda e: "no correction in flash: %s" % e.get("reason", ""),
     "record": _record,

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from sixflip_host.board.console import lasting
 from sixflip_host.guide import next_step as steps
 from sixflip_host.guide.session_state import CALIBRATING, OVER, SIX, SOLVING, State, after
 
@@ -121,6 +122,8 @@ def test_what_to_do_next(event, kind, words):
 @pytest.mark.parametrize("vector, words", [
     ([0, 0, 1000], "lift it"), ([0, 0, 1000, 0, 0, 0], "flat on the table")])
 def test_without_a_gyro_the_box_has_to_be_lifted(vector, words):
+    hello = {"event": "hello", "id": "1", "sensor": "gy85" if vector[3:] else "adxl345"}
+    assert ("lift the box" in " ".join(lasting(hello))) == (not vector[3:])
     state = fed(calibrating(), taken("Z+a", without("Z+a")), live(live=vector))
     assert words in steps.next_step(state).detail
 
