@@ -13,7 +13,8 @@ TIMESTAMP_US = 500.0  # jitter of a timestamp taken after a bus read
 Z = 2.8  # 5 % and 80 %
 # In motion the hand is the noise: standard deviation that one move of 3 to 7 s leaves by a hand
 # that trembles by 15 mg, how well a hand holds its centre, and the threshold with 80 % power.
-LAG_A_MOVE_MS, ARM_A_MOVE_CM, HAND_CM, Z_MOTION, FEWEST_MOVES = 4.0, 1.3, 0.3, 4.5, 12
+LAG_A_MOVE_MS, ARM_A_MOVE_CM, HAND_CM, Z_MOTION, FEWEST_MOVES = 1.0, 1.0, 0.3, 4.5, 12
+LEAST_LAG_MS = 0.5  # two sensors of one chip are not sampled at the same moment either
 ALWAYS = "tested on the fitted matrix (nearest signed permutation)"
 
 
@@ -91,7 +92,8 @@ def _lag(protocol, rate_hz, sigma, kind):
     _, tilting = moves_of(protocol)
     if tilting < FEWEST_MOVES:
         return math.inf, "too few moves that tilt"
-    return Z_MOTION * LAG_A_MOVE_MS / math.sqrt(tilting), "gravity on the way, against the other"
+    return max(LEAST_LAG_MS, Z_MOTION * LAG_A_MOVE_MS / math.sqrt(tilting)), \
+        "gravity on the way, against the other"
 
 
 def _arm(protocol, rate_hz, sigma, kind):

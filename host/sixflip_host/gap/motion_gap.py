@@ -31,6 +31,7 @@ BENT, WANDERED = (0.03, 0.1, 0.3, 1.0), (0.1, 0.3, 1.0)  # of the widest priors
 LOTS, ALARMS = 2000, 0.002
 LEAST_NATS = 6.0
 Z_90 = 1.645
+LEAST_LAG_MS = 0.5  # two sensors of one chip are not sampled at the same moment either
 TIMES_SIGMA = 4.5  # 80 % power at the threshold
 KNOWN_CM = 5.0  # standard deviation beyond which a direction of the arm is not known
 UNTOLD = 0.1  # of an effect's power
@@ -192,6 +193,8 @@ class MotionGap:
             if not plausible.believable(name, self.chip, "accel", one.value):
                 self.remarks.append("in motion %s would help, but at an impossible size: "
                                     "something else acts" % name.replace("_", " "))
+            elif name == "filter_lag" and one.value["tau"] < LEAST_LAG_MS:
+                continue
             elif name == "lever_arm" and self.one_hand:
                 self.remarks.append("turned about a point %.1f cm from the accelerometer: the "
                                     "hand's grip or the box, flips on a table tell"
@@ -230,7 +233,8 @@ class MotionGap:
     def least(self, name):
         """Smallest size that would show, cm or ms."""
         sigma = np.sort(np.sqrt(np.diag(self.covariance)[self.effects[name]]))
-        return TIMES_SIGMA * float(sigma[(len(sigma) - 1) // 2])
+        shown = TIMES_SIGMA * float(sigma[(len(sigma) - 1) // 2])
+        return max(shown, LEAST_LAG_MS) if name == "filter_lag" else shown
 
     def rms(self, left):
         """mg of what is left of each move, (n, 3) mg: quiet moves, directions and frequencies

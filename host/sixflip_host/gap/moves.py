@@ -58,11 +58,11 @@ class Move:
         memory = np.zeros((len(felt), 3, 3))
         for i in range(3):
             memory[:, i, i] = felt[0, i] - felt[:, i]
-        static = seen.of(np.concatenate([_orientation(felt), memory], axis=2))
+        static = seen.held(np.concatenate([_orientation(felt), memory], axis=2))
         bias = np.zeros((len(felt), 3, 3 * HATS))
         for i in range(3):
             bias[:, i, i::3] = course[:, part].T
-        self.local = np.concatenate([own[:, :, :3], seen.of(bias)], axis=2)
+        self.local = np.concatenate([own[:, :, :3], seen.held(bias)], axis=2)
         self.columns = np.concatenate([own, edge, self._habits(seen.n), static], axis=2)
 
     def _frame(self, turn, body, rate):
@@ -131,7 +131,7 @@ def pinned(turn):
 
 
 class _Seen:
-    """Body-fixed accelerations as the move's frequencies, less what pins gravity at its ends."""
+    """Accelerations in the body as the move's frequencies."""
 
     def __init__(self, body, frame, share, samples):
         self.n = int(np.clip(samples // 5, FEWEST_BINS, MOST_BINS))
@@ -144,11 +144,18 @@ class _Seen:
             np.pi / self.n * (k[None, :] + 0.5) * k[:, None])
         self.cosines[0] /= np.sqrt(2.0)
 
+    def held(self, values):
+        """of() what is there at rest, too: across gravity that was taken for its attitude."""
+        table = self.turned @ values
+        share = self.share[:, None, None]
+        table[:, :2] -= ((1.0 - share) * table[0] + share * table[-1])[:, :2]
+        return self._frequencies(table)
+
     def of(self, values):
         """(n, 3, k) from (samples, 3, k) in the body."""
-        table = self.turned @ values
-        ends = (1.0 - self.share)[:, None, None] * table[0] + self.share[:, None, None] * table[-1]
-        table[:, :2] -= ends[:, :2]  # a tilt of gravity at a rest is its attitude
+        return self._frequencies(self.turned @ values)
+
+    def _frequencies(self, table):
         means = np.add.reduceat(table, self.edges[:-1], axis=0) / self.counts
         return np.tensordot(self.cosines, means, axes=1)
 
