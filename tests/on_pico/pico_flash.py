@@ -12,7 +12,15 @@ from sixflip_host.emulated.flash_chip import FLASH_BYTES
 from sixflip_host.virtual.demo import PACE
 
 SPEC = {"sensor": "mpu6050", "seed": 3, "tilt_deg": 2.0, **PACE["pico"].hand}
+STILL = {"order": []}
 LAST_FACE = ["Y-a", "Y-b"]
+# for a board's REPL: the newest valid record
+LOAD = """
+from sixflip_device.record_slots import RecordSlots
+slots = RecordSlots("/")
+slot, record, refused = slots.load(lambda record: "")
+print([slot, record.sequence, refused])
+"""
 LAYOUT = resolve_layout(BOARDS["pico"], "micropython")
 FILES_BYTES = LAYOUT.fs_blockcount * LAYOUT.fs_blocksize
 

