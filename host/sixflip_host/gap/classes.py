@@ -1,12 +1,15 @@
 """Stage 4: never a name inside an unresolved class.
 
 Two effects are one class when one reproduces more than 0.9 of the other (alias index, in the
-metric of the noise, nominal model and the other causes projected out), when their scores are
+metric of the noise, nominal model and the other causes projected out; averaged over coefficients,
+or of the very sizes found), when their scores are
 less than 3 nats apart, or when what tells them apart is less than 3 standard deviations. One
 session that tells them apart by itself is enough: the others must not dilute it. What lies
 between sessions counts as much in the alias index as all that lies within them: there are few
 such contrasts, but no error in the form of an effect can turn them round.
 """
+import math
+
 import numpy as np
 
 from . import selection, which
@@ -151,7 +154,8 @@ def _other_axes(cause, data, options, others):
 
 
 def reproduced(gram, mine, theta, alternatives, others):
-    """(largest alias index, least distance in standard deviations) over the alternatives."""
+    """(largest alias index, least distance in standard deviations) over the alternatives; the
+    index is averaged over the coefficients `mine`, or of these very ones where that is more."""
     best = None
     for columns in alternatives:
         space = np.concatenate([columns, others]).astype(int)
@@ -163,7 +167,10 @@ def reproduced(gram, mine, theta, alternatives, others):
         if not good.any():
             continue
         index = 1.0 - float(np.mean(np.diag(left)[good] / norms[good]))
-        apart = float(np.sqrt(max(theta @ left @ theta, 0.0)))
+        rest, whole = (max(float(theta @ g @ theta), 0.0) for g in (left, after_others))
+        if whole > 0.0:
+            index = max(index, 1.0 - rest / whole)
+        apart = math.sqrt(rest)
         best = (max(index, best[0]), min(apart, best[1])) if best else (index, apart)
     return best
 

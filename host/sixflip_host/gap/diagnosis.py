@@ -182,8 +182,10 @@ class Diagnosis:
                 setattr(session, name, getattr(session, name) @ np.abs(self.swapped.read))
 
     def _turns(self, sessions, nominal):
-        """The gyro while it moves: what bends or scales it."""
-        if not self.swapped and all(gyro_turns.usable(s, m) for s, m in zip(sessions, nominal)):
+        """The gyro while it moves: what bends or scales it, beyond a band that reads nothing."""
+        bent = any(f.sensor == "gyro" and f.effect == "dead_band" for f in self.findings)
+        usable = all(gyro_turns.usable(s, m) for s, m in zip(sessions, nominal))
+        if usable and not self.swapped and not bent:
             self.turns = gyro_turns.TurnsGap("gyro", sessions, nominal, self.settings)
 
     def _temperature_remarks(self, sessions):
@@ -210,7 +212,8 @@ class Diagnosis:
         gaps = self.gaps.values()
         drifting = any(g.drift for g in gaps)
         unexplained = any(g.unexplained for g in gaps) or bool(
-            self.stuck or self.scale_remark or self.nameless)
+            self.stuck or self.scale_remark or self.nameless
+            or self.turns and self.turns.misnamed)
         believed = [c for _, c in self.causes if c.plausible]
         incredible = [c for _, c in self.causes if not c.plausible]
         resolved = drifting or any(not f.rivals for f in self.findings) or any(

@@ -11,15 +11,17 @@ from scipy.stats import kurtosis
 
 from . import adequacy, which
 
-DRIFT_NATS = 6.0
+DRIFT_NATS, ALONE_NATS = 6.0, 20.0  # with other sessions to hold it against, and without
 JUMP_NATS = 10.0  # what a jump at an unknown time costs in each session
 SWAY_NATS = 20.0  # what a sine of unknown period and phase costs in each session
 SHORTEST_SWAY_S, A_PERIOD = 16.0, 8  # shortest sine tried; frequencies tried a period
-STILL_FITS = 1.6  # chi2 a degree of freedom that freer flicker must bring it down to
+STILL_FITS = 2.0  # chi2 a degree of freedom that freer flicker must bring it down to
 WITHIN = 0.2  # of what a random walk moves within the rests, that must be seen there
 FORM = 0.1  # of the gain, that something else may add: no part has the library's spectrum
 ONE_AXIS = 2.3  # largest ratio of two axes' innovations
-TAILS = (-0.7, 1.2)  # excess kurtosis that some hundred normal innovations keep within
+TAILS = (-0.7, 1.2)  # mean excess kurtosis of all axes and sessions, if normal
+TAIL = 3.5  # and the largest
+TOGETHER = 0.5  # correlation of two axes' innovations: one thing moves both
 ABSORBED = 0.6  # leverage above which a residual is mostly fitted away
 FEWEST = 20  # innovations an axis
 
@@ -47,7 +49,9 @@ def level(gap):
             least = min(least, found[3])
     ratio = sum(float(f.quadratic[0]) for f in free) / max(
         1, sum(u.freedom for u in gap.units) - len(columns))
-    if gain <= DRIFT_NATS or seen <= WITHIN * expected or least >= 1e-3 or ratio >= STILL_FITS:
+    if gain <= (ALONE_NATS if gap.same_session else DRIFT_NATS) or ratio >= STILL_FITS:
+        return None
+    if seen <= WITHIN * expected or least >= 1e-3:
         return None
     if max(gap.added.values(), default=0.0) > FORM * gain:
         return None
@@ -58,9 +62,10 @@ def level(gap):
 
 def _walks(gap, fits):
     """Whether the innovations are those of a random walk, as far as there are enough."""
-    each = [[], [], []]
+    each, together = [[], [], []], 0.0
     for _, unit, fit in zip(gap.parts, gap.units, fits):
         found = innovations(unit, *unit.grid[fit.index[0]])
+        together = max(together, _correlation(found))
         for axis in range(3):
             seen = found[np.isfinite(found[:, axis]), axis]
             if len(seen) >= FEWEST:
@@ -69,7 +74,18 @@ def _walks(gap, fits):
         return True
     tails = [kurtosis(one) for seen in each for one in seen]
     sizes = [np.sqrt(np.mean(np.concatenate(seen) ** 2)) for seen in each if seen]
-    return TAILS[0] < np.mean(tails) < TAILS[1] and max(sizes) < ONE_AXIS * min(sizes)
+    return bool(TAILS[0] < np.mean(tails) < TAILS[1] and max(tails) < TAIL
+                and max(sizes) < ONE_AXIS * min(sizes) and together < TOGETHER)
+
+
+def _correlation(found):
+    """Largest correlation of two axes of innovations (n, 3)."""
+    largest = 0.0
+    for a, b in ((0, 1), (0, 2), (1, 2)):
+        both = found[np.isfinite(found[:, [a, b]]).all(axis=1)][:, [a, b]]
+        if len(both) >= FEWEST:
+            largest = max(largest, abs(float(np.corrcoef(both.T)[0, 1])))
+    return largest
 
 
 def innovations(unit, placement, level):

@@ -22,6 +22,8 @@ from . import (
 ALONG_FREEDOM = 10  # contrasts along gravity that a half of a session must have
 KEPT_SHARE = 0.6  # of the excess, below which a name is no explanation where noise does not fit
 BEND = 0.03  # of a cause's score, that the form of the part's own curve may add
+TURNS_UP = 0.2  # of a cause's score, below which what is implausible only bends it
+SHARED = 0.5  # of the excess, that two causes lose less than in all when either is left out
 LEFT = 0.25  # of a cause's score, that something nameless in its domain may still gain
 MOST_OF_ONE = 2  # causes that one session, held out against itself, can be believed to show
 STAND_IN = 0.8  # of the gain of several names
@@ -31,7 +33,10 @@ SESSION_NATS = 8.0  # log evidence at which what is left varies in time beyond d
 
 class SensorGap:
     """units, data, options, thresholds, chosen, causes, adequacy, shrinkage; unexplained: bool;
-    added: {domain: nats} of generic discrepancies beyond the causes; drift: level or None."""
+    added: {domain: nats} of generic discrepancies beyond the causes; drift: level or None;
+    misnamed: names were found that stood in for something unknown."""
+
+    misnamed = False
 
     def __init__(self, kind, sessions, nominal, settings):
         self.kind, self.sessions, self.nominal = kind, sessions, nominal
@@ -126,11 +131,13 @@ class SensorGap:
     def _judge(self):
         """Adequacy, drift, plausibility, shrinkage."""
         self._settle()
+        self.causes = [c for c in self.causes if not self._only_bends(c)]
         while doubted := [c for c in self.causes if self._doubted(c)] or self._opposed():
             self.chosen = [o for o in self.chosen if not any(o in c.chosen for c in doubted)]
             self.causes = [c for c in self.causes if c not in doubted]
             self._settle()
-            self.unexplained = self.drift is None
+            self.unexplained = self.misnamed = self.drift is None
+        self._merge()
         if self.options and self.kind == "accel" and not self.settings.certified \
                 and "box_tilt" not in self.settings.without and crooked_box.possible(self):
             box, self.box_data = crooked_box.found(self)
@@ -191,6 +198,23 @@ class SensorGap:
             return False
         left = self.added.get(cause.domain, 0.0)
         return left > LEFT * cause.score or (cause.share or 0.0) < KEPT_SHARE
+
+    def _only_bends(self, cause):
+        """Whether a cause that is larger than can be only bends a far larger one, in the same
+        variable."""
+        return not cause.plausible and any(
+            cause.score < TURNS_UP * c.score and classes.related(c.domain, cause.domain)
+            for c in self.causes if c is not cause)
+
+    def _merge(self):
+        """One class of two causes in the same variable that each do most of what the other
+        does: without either of them little is lost."""
+        for cause in list(self.causes):
+            for other in [c for c in self.causes if c.score < cause.score]:
+                if cause in self.causes and classes.related(cause.domain, other.domain) \
+                        and (cause.share or 0.0) + (other.share or 0.0) < SHARED:
+                    cause.members[other.effect] = "each does most of what the other does"
+                    self.causes.remove(other)
 
     def _opposed(self):
         """Causes that show in one way and of which one is larger than can be: they make up a
