@@ -6,9 +6,12 @@ import time
 
 import pytest
 import serial_faults as faults
+from mpremote.transport_serial import SerialTransport
 from serial_faults import BadCable, verb
 
+from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.board.buffered_serial import BufferedSerial
+from sixflip_host.errors import NoBoard
 from sixflip_host.virtual.virtual_board import VirtualBoard
 
 SESSION = {"sensor": "mpu6050", "seed": 3, "tilt_deg": 2.0}
@@ -58,6 +61,22 @@ def test_provision_over_a_bad_cable_and_calibrate_cut_off(micropython, tmp_path)
         kept = faults.calibrate_and_pull_out(board, "X+a")
         assert len(kept.placements) >= 5
         assert len(kept.t_us) > 2500
+
+
+class Half:
+    """A port that answers with half of what was asked for."""
+
+    def read(self, n):
+        return b"x" * (n // 2)
+
+
+def test_an_answer_cut_short_is_a_lost_board(monkeypatch):
+    monkeypatch.setattr(MpremoteLink, "open", lambda link: None)
+    link = MpremoteLink("/dev/ttyNONE")
+    link.transport = SerialTransport.__new__(SerialTransport)
+    link.transport.serial = Half()
+    with pytest.raises(NoBoard, match="went away while asking"), link.guarded("asking") as port:
+        port.raw_paste_write(b"1")
 
 
 class Endless:

@@ -9,6 +9,7 @@ import contextlib
 import hashlib
 import io
 import os
+import struct
 import time
 from pathlib import PurePosixPath
 
@@ -33,7 +34,8 @@ REOPEN_S = 15.0  # a USB port comes back after a reset
 CHUNK = 1024
 PATIENCE = "SIXFLIP_PATIENCE"
 BASE64 = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/=\r\n\x04"
-LOST = (serial.SerialException, serial.SerialTimeoutException, OSError, TransportError)
+LOST = (serial.SerialException, serial.SerialTimeoutException, OSError, TransportError,
+        struct.error)  # of mpremote: an answer of two bytes was cut short
 
 
 def safe_name(name):
