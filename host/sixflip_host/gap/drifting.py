@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import solve_triangular
 from scipy.stats import kurtosis
 
-from . import adequacy, which
+from . import adequacy, regressors, which
 
 DRIFT_NATS, ALONE_NATS = 6.0, 20.0  # with other sessions to hold it against, and without
 JUMP_NATS = 10.0  # what a jump at an unknown time costs in each session
@@ -17,6 +17,9 @@ SWAY_NATS = 20.0  # what a sine of unknown period and phase costs in each sessio
 SHORTEST_SWAY_S, A_PERIOD = 16.0, 8  # shortest sine tried; frequencies tried a period
 STILL_FITS = 2.0  # chi2 a degree of freedom that freer flicker must bring it down to
 WITHIN = 0.2  # of what a random walk moves within the rests, that must be seen there
+WALKS = 14  # rates of a random walk that are tried
+SLOW = ("time", "temperature")
+DRAWS = 40
 FORM = 0.1  # of the gain, that something else may add: no part has the library's spectrum
 ONE_AXIS = 2.3  # largest ratio of two axes' innovations
 TAILS = (-0.7, 1.2)  # mean excess kurtosis of all axes and sessions, if normal
@@ -55,16 +58,20 @@ def level(gap):
         return None
     if max(gap.added.values(), default=0.0) > FORM * gain:
         return None
-    if max(_simpler(gap, free)) >= gain - DRIFT_NATS / 2.0 or not _walks(gap, free):
+    if max(_simpler(gap, free)) >= gain - DRIFT_NATS / 2.0:
         return None
-    return highest, gain
+    theta = which.coefficients(free, prior)[0][0]
+    return (highest, gain) if _walks(gap, free, columns, theta) else None
 
 
-def _walks(gap, fits):
-    """Whether the innovations are those of a random walk, as far as there are enough."""
+def _walks(gap, fits, columns, theta):
+    """Whether the innovations are those of a random walk, as far as there are enough: of flicker
+    or of a walk in each session, whichever is likelier."""
     each, together = [[], [], []], 0.0
-    for _, unit, fit in zip(gap.parts, gap.units, fits):
-        found = innovations(unit, *unit.grid[fit.index[0]])
+    for (part, _), unit, fit in zip(gap.parts, gap.units, fits):
+        left = unit.z - unit.columns[:, columns] @ theta
+        found = innovations(unit, _likelier(unit, part, *unit.grid[fit.index[0]], gap.allowed,
+                                            left))
         together = max(together, _correlation(found))
         for axis in range(3):
             seen = found[np.isfinite(found[:, axis]), axis]
@@ -88,14 +95,69 @@ def _correlation(found):
     return largest
 
 
-def innovations(unit, placement, level):
-    """(n, 3) residuals of a session's nuisance fit, whitened in the order of time to a standard
-    deviation of 1 at these levels of placement and flicker; NaN where the fit takes them up."""
+def by_chance(gap):
+    """Names that do no better than a drift like this one gains them by chance: list of Cause.
+
+    What drifts follows for a while whatever changes slowly, in both sessions now and then; the
+    thresholds were simulated without drift. Here every effect of time and temperature is put to
+    DRAWS sets of contrasts that drift as the sessions do, without any effect.
+    """
+    slow = [c for c in gap.causes if regressors.DOMAIN[c.effect] in SLOW]
+    if not slow:
+        return []
+    options = [o for o in gap.options if regressors.DOMAIN.get(o.effect) in SLOW]
+    generator, draws = np.random.default_rng(20190919), []
+    free = which.fits(gap.data, np.zeros(0, dtype=int), np.zeros(0))
+    for number, (unit, fit) in enumerate(zip(gap.units, free)):
+        if unit.between:
+            draws.append(unit.draw(fit.index[0], generator, DRAWS))
+            continue
+        covariance = _likelier(unit, gap.parts[number][0], *unit.grid[fit.index[0]], gap.allowed,
+                               unit.z)
+        factor = np.linalg.cholesky(unit.contrasts.T @ covariance @ unit.contrasts)
+        draws.append(factor @ generator.standard_normal((unit.freedom, DRAWS)))
+    gains = which.gains(which.Data(gap.units, draws), options)
+    chance = max(float(v.max()) for v in gains.values())
+    return [c for c in slow if c.score <= chance]
+
+
+def _likelier(unit, part, placement, level, allowed, z):
+    """(3n, 3n) covariance of a session's rows: with the flicker found, or with no more than is
+    allowed and a random walk, as makes the contrasts z likelier."""
     rows = unit.rows
-    covariance = rows.white + level ** 2 * rows.kernel \
-        + placement ** 2 * rows.lateral @ rows.lateral.T
+    still = rows.white + placement ** 2 * rows.lateral @ rows.lateral.T
     if rows.fixed is not None:
-        covariance = covariance + rows.fixed
+        still = still + rows.fixed
+    walk = np.kron(random_walk(part), np.eye(3))
+    calm = still + min(level, allowed) ** 2 * rows.kernel
+    # From a walk as far as the flicker allowed goes in a second up to what the flicker found
+    # goes in a rest and a move.
+    rates = np.geomspace(0.1 * allowed ** 2, 10.0 * level ** 2, WALKS)
+    models = [still + level ** 2 * rows.kernel] + [calm + rate * walk for rate in rates]
+    return max(models, key=lambda covariance: _likelihood(unit, covariance, z))
+
+
+def _likelihood(unit, covariance, z):
+    """Log density of contrasts z under a covariance of the rows."""
+    factor = np.linalg.cholesky(unit.contrasts.T @ covariance @ unit.contrasts)
+    half = solve_triangular(factor, z, lower=True)
+    return -0.5 * float(half @ half) - float(np.log(np.diag(factor)).sum())
+
+
+def random_walk(part):
+    """(n, n) covariance of the means over a session's blocks of a random walk that begins with
+    the first and goes 1 in a second."""
+    begin = part.t - 0.5 * part.seconds
+    t = begin - begin.min()
+    found = np.minimum(t[:, None] + 0.5 * part.seconds[:, None], t[None] + 0.5 * part.seconds)
+    np.fill_diagonal(found, t + part.seconds / 3.0)
+    return found
+
+
+def innovations(unit, covariance):
+    """(n, 3) residuals of a session's nuisance fit, whitened in the order of time to a standard
+    deviation of 1 under a covariance (3n, 3n) of its rows; NaN where the fit takes them up."""
+    rows = unit.rows
     factor = np.linalg.cholesky(covariance)
     columns, y = (solve_triangular(factor, v, lower=True) for v in (rows.nuisance, rows.y))
     basis, s, _ = np.linalg.svd(columns, full_matrices=False)

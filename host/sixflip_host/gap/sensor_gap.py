@@ -133,10 +133,10 @@ class SensorGap:
         self._settle()
         self.causes = [c for c in self.causes if not self._only_bends(c)]
         while doubted := [c for c in self.causes if self._doubted(c)] or self._opposed():
-            self.chosen = [o for o in self.chosen if not any(o in c.chosen for c in doubted)]
-            self.causes = [c for c in self.causes if c not in doubted]
-            self._settle()
+            self._drop(doubted)
             self.unexplained = self.misnamed = self.drift is None
+        if self.drift:
+            self._drop(drifting.by_chance(self))
         self._merge()
         if self.options and self.kind == "accel" and not self.settings.certified \
                 and "box_tilt" not in self.settings.without and crooked_box.possible(self):
@@ -147,6 +147,13 @@ class SensorGap:
         if crooked_box.bent(self.causes):
             self.crooked = []  # a nonlinearity leans the faces as well
         self.shrinkage = self._shrink()
+
+    def _drop(self, causes):
+        """Go on without these names."""
+        if causes:
+            self.chosen = [o for o in self.chosen if not any(o in c.chosen for c in causes)]
+            self.causes = [c for c in self.causes if c not in causes]
+            self._settle()
 
     def _settle(self):
         """Adequacy, drift and shares of the causes as they are now."""

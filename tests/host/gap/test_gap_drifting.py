@@ -1,0 +1,90 @@
+"""Drift: a random walk of every axis. What sways, jumps or moves them together is none."""
+import numpy as np
+import pytest
+
+from sixflip_host.gap import diagnosis, observations
+from sixflip_host.simulating import scenario, simulate
+
+SIZE_DPS = 0.15
+
+
+@pytest.fixture(scope="module")
+def captures():
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 21})
+    return [simulate.session(plan, k) for k in range(len(plan.worlds))]
+
+
+def walk(generator, t, axes):
+    """(n, axes) random walks with a standard deviation of SIZE_DPS over the session."""
+    steps = generator.standard_normal((len(t), axes)).cumsum(axis=0)
+    return SIZE_DPS * steps / np.sqrt(len(t))
+
+
+def walks(generator, t):
+    return walk(generator, t, 3)
+
+
+def together(generator, t):
+    return walk(generator, t, 1) @ np.array([[1.0, -0.8, 1.2]])
+
+
+def one_axis(generator, t):
+    return walk(generator, t, 1) @ np.array([[0.0, 1.0, 0.0]])
+
+
+def sways(generator, t):
+    phase = generator.uniform(0.0, 6.28, 3)
+    return SIZE_DPS * np.sin(2.0 * np.pi * t[:, None] / 75.0 + phase)
+
+
+def jumps(generator, t):
+    return SIZE_DPS * (t > 0.4 * t[-1])[:, None] * np.array([[1.0, -0.7, 0.9]])
+
+
+def diagnosed(captures, course, tmp_path, monkeypatch):
+    monkeypatch.setenv("SIXFLIP_CACHE", str(tmp_path))
+    generator, sessions = np.random.default_rng(4), []
+    for number, capture in enumerate(captures):
+        kept = capture.gyro
+        t = (capture.t_us - capture.t_us[0]) * 1e-6
+        added = course(generator, t) * capture.meta["gyro_lsb_per_dps"]
+        capture.gyro = np.round(kept + added).astype(kept.dtype)
+        sessions.append(observations.Session(str(number), capture))
+        sessions[-1].restored = kept
+    found = diagnosis.Diagnosis(sessions, diagnosis.Settings(jobs=1))
+    for capture, session in zip(captures, sessions):
+        capture.gyro = session.restored
+    return found
+
+
+def test_a_random_walk_of_each_axis_drifts(captures, tmp_path, monkeypatch):
+    found = diagnosed(captures, walks, tmp_path, monkeypatch)
+    assert found.gaps["gyro"].drift and found.verdict == "explained"
+    assert not found.gaps["accel"].drift
+    assert not found.causes  # nothing slow that a walk follows by chance for a while
+
+
+def test_a_slope_beside_a_walk_keeps_its_name(captures, tmp_path, monkeypatch):
+    warmest = max(c.temp.max() for c in captures)
+
+    remaining = list(captures)
+
+    def slope_too(generator, t):
+        capture = remaining.pop(0)
+        degrees = (capture.temp - warmest) / capture.meta["temp_lsb_per_c"]
+        return 0.3 * walks(generator, t) + 0.4 * degrees[:, None] * np.array([[0.0, 1.0, 0.0]])
+
+    found = diagnosed(captures, slope_too, tmp_path, monkeypatch)
+    (sensor, cause), = found.causes
+    assert (sensor, cause.effect) == ("gyro", "thermal_bias") and "y" in cause.letters
+    low, high = cause.interval["y"]
+    assert low < 0.4 < high
+
+
+@pytest.mark.parametrize("course", [together, one_axis, sways, jumps])
+def test_what_is_no_random_walk_of_every_axis_is_not_called_drift(
+        course, captures, tmp_path, monkeypatch):
+    found = diagnosed(captures, course, tmp_path, monkeypatch)
+    assert not found.gaps["gyro"].drift
+    assert found.verdict in ("unexplained", "partly explained")
+    assert any(p.sensor == "gyro" and p.domain == "time" for p in found.where)
