@@ -9,13 +9,19 @@ HAND = math.radians(0.4)  # how well a hand turns by half a turn
 
 
 def angles(r, flips):
-    """The angle of every flip by the solved matrix; a face's last usable flip speaks."""
+    """The angle of every flip by the solved matrix; a face's last usable flip speaks. across_deg:
+    the most that a used one turned about another axis."""
     r.flips = {}
+    r.across_deg = 0.0
     for f in flips:
         k = AXIS[f.face]
         name = FACES[f.face]
         turn = sum([f.turned[i] * r.P[i][k] for i in range(3)]) + f.T * r.P[3][k]
         f.left = abs(turn) - math.pi
+        for j in range(3):
+            if f.used and j != k:
+                across = sum([f.turned[i] * r.P[i][j] for i in range(3)]) + f.T * r.P[3][j]
+                r.across_deg = max(r.across_deg, abs(math.degrees(across)))
         if f.used or not r.flips.get(name, {"used": False})["used"]:
             r.flips[name] = {"angle_deg": math.degrees(abs(turn)), "used": f.used,
                              "reason": f.reason}

@@ -2,6 +2,7 @@
 
 SCALE_OFF = 0.2
 ANGLE_OFF_DEG = 3.0
+ACROSS_DEG = 1.5  # half of what two flips of an axis may lean apart
 
 
 def judge_gyroscope(r):
@@ -32,6 +33,9 @@ def judge_gyroscope(r):
         if r.flips[face]["used"] and not abs(angle - 180.0) <= ANGLE_OFF_DEG:
             return "doubtful", ("the flips of an axis disagree: %s turned by %.1f degrees if "
                                 "the others were half turns, 3 is the limit" % (face, angle))
+    if not r.across_deg <= ACROSS_DEG:
+        return "doubtful", ("the flips of an axis disagree: one of them turned by %.1f degrees "
+                            "about another axis, %.1f is the limit" % (r.across_deg, ACROSS_DEG))
     # One flip is right or wrong by itself: late or repeated samples may have shortened it.
     unseen = [k for k in "XYZ" if len([1 for face in r.flips if face[0] == k
                                        and r.flips[face]["used"]]) < 2]

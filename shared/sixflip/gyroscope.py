@@ -26,7 +26,7 @@ class GyroscopeResult:
     flips     {"Z+": {"angle_deg", "used", "reason"}, ...}; the angle by the solved P
     missing   axes 0..2 without a usable flip: P keeps the old matrix there
     wrong_axes  sentence or ""; signs_seen: axes whose sign the moves confirmed
-    hand_deg  how far the flips of an axis disagree, at least 0.4
+    hand_deg  how far the flips of an axis disagree, at least 0.4; across_deg: see gyro_spread
     verdict, reason
     """
 

@@ -63,3 +63,11 @@ def test_a_wrong_correction_is_noticed_as_one():
         record.accel["P"][row] = [scale * x for x in record.accel["P"][row]]
     storm.compare(outcome, world.truth, record)
     assert outcome.word == "wrong" and "called good with an error" in outcome.reason
+
+
+def test_flips_that_lean_unlike_each_other_make_the_gyro_doubtful():
+    """Two garbled samples in mid-flip: 4 degrees about another axis, on one of two flips."""
+    outcome, _ = storm.storm(9502)
+    assert outcome.word == "good" and outcome.gyro > storm.GYRO
+    gyro = outcome.boards[0].only("solved")["gyro"]
+    assert gyro["verdict"] == "doubtful" and "another axis" in gyro["reason"]
