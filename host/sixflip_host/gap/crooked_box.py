@@ -38,9 +38,7 @@ def found(gap):
     best, gain = selection.best_of(which.gains(data, mine, same))
     if best is None or gain <= limit:
         return [], data
-    visible = {o.effect for o in gap.options}
-    rivals = [o for o in options if o.effect == "box_tilt" or o.effect not in visible]
-    causes = classes.causes(data, rivals + same, same + [best])
+    causes = classes.causes(data, options, same + [best])
     return [c for c in causes if c.effect == "box_tilt"], data
 
 

@@ -162,7 +162,8 @@ class Diagnosis:
             self.gaps["accel"] = accel.result()
         self.gaps = {k: self.gaps[k] for k in ("accel", "gyro") if k in self.gaps}
         self.motion = motion_gap.of(self.sessions, sessions, nominal, self.turns, self.settings)
-        if self.motion:
+        # What the rests do not explain would be carried into the moves.
+        if self.motion and not any(g.unexplained for g in self.gaps.values()):
             self.findings += self.motion.found
             self.remarks += self.motion.remarks
         said = [c.remark() for c in self.gaps["accel"].crooked if c and not self.settings.coarse]

@@ -30,8 +30,8 @@ class Thermometer:
 
     def lagged_rate(self, t, lag_s):
         """Rate of what `lagged` returns."""
-        if lag_s > 0.0:
-            return np.interp(t, self.t, _follow(self.rate, lag_s))
+        if lag_s > 0.0:  # what follows begins where the thermometer does: its rate with 0
+            return np.interp(t, self.t, (self.c - _follow(self.c, lag_s)) / lag_s)
         bend = np.gradient(_smooth(self.rate, RATE_S), STEP_S) if len(self.c) > 2 else 0.0
         return np.interp(t, self.t, self.rate - lag_s * bend)
 
