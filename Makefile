@@ -13,7 +13,7 @@ help:
 	@echo "make setup           the command 'sixflip' in $(BIN)"
 	@echo "make micropython     the MicroPython interpreter that the virtual board runs on"
 	@echo "make test-qemu       the tests on the emulated Cortex-M3 and micro:bit alone"
-	@echo "make test-pico       the whole product on an emulated Raspberry Pi Pico (an hour)"
+	@echo "make test-pico       the whole product on an emulated Raspberry Pi Pico (an hour or two)"
 	@echo "make size            flash and heap of every module of the firmware"
 	@echo "make check           ruff"
 	@echo "make bench-accuracy  vector error against imucal, imu_calib and the theoretical bound"

@@ -18,18 +18,31 @@ META = b"{}"
 
 
 class Stream:
-    """A file of blocks as Scan reads it."""
+    """A file of blocks as Scan reads it, in pieces as they were written: a small heap has no
+    room for one that grows."""
 
     def __init__(self):
-        self.data = b""
-        self.at = 0
+        self.pieces = []
+        self.rewind()
+
+    def rewind(self):
+        self.piece = self.at = 0
 
     def write(self, data):
-        self.data += bytes(data)
+        self.pieces.append(bytes(data))
 
     def read(self, n):
-        self.at += n
-        return self.data[self.at - n:self.at]
+        out = b""
+        while len(out) < n and self.piece < len(self.pieces):
+            here = self.pieces[self.piece]
+            out += here[self.at:self.at + n - len(out)]
+            self.at += n
+            if self.at >= len(here):
+                self.piece += 1
+                self.at = 0
+            else:
+                break
+        return out
 
 
 class Kept:
@@ -51,7 +64,7 @@ class Kept:
 
     def moves(self):
         self.writer.flush()
-        self.file.at = 0
+        self.file.rewind()
         scan = Scan(self.file)
         found = CaptureMoves(self.session.placements, scan.blocks.columns, 10000, 32767)
         for kind, block in scan.each():
@@ -100,7 +113,7 @@ class FromTheFile(unittest.TestCase):
     def test_without_all_of_the_samples_nothing_is_known(self):
         kept = Kept()
         kept.hands.six_faces(order=(0,))
-        kept.file.data = kept.file.data[:len(kept.file.data) // 2]
+        kept.file.pieces = kept.file.pieces[:len(kept.file.pieces) // 2]
         kept.writer._write = lambda data: None
         self.assertEqual(kept.moves(), None)
 

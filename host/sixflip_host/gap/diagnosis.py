@@ -6,12 +6,15 @@ import numpy as np
 
 from . import (
     attitude_fit,
+    axis_order,
+    counts,
     gyro_turns,
     integrity,
     motion,
     motion_gap,
     noise_bursts,
     observations,
+    rails,
     regressors,
     single_rest,
     spectral_lines,
@@ -59,7 +62,7 @@ class Diagnosis:
                          for s in again]
         self.remarks += ["%s: its timestamps stand still, rate_hz was used instead" % s.name
                          for s in sessions if s.timeless]
-        self.stuck = integrity.stuck(sessions)
+        self.stuck = counts.stuck(sessions)
         self.remarks += self.stuck
         self.findings = [f for f in integrity.findings(sessions)
                          + spectral_lines.findings(sessions) if f.effect not in settings.without]
@@ -88,7 +91,7 @@ class Diagnosis:
         """Noise that comes in bursts and bits that stick: where, without a name."""
         named = {f.sensor for f in self.findings if f.effect in NOISY}
         bursts = [b for b in noise_bursts.found(sessions) if b[0] not in named]
-        bits = integrity.stuck_bits(sessions)
+        bits = counts.stuck_bits(sessions)
         self.remarks += [words for _, words in bursts]
         self.remarks += ["bit %d of the %s axis of the %s always reads %d"
                          % (bit, axis, "gyro" if sensor == "gyro" else "accelerometer", value)
@@ -129,7 +132,7 @@ class Diagnosis:
         if not usable:
             return
         nominal = [attitude_fit.fit(s) for s in usable]
-        self.scale_remark = integrity.full_scale(usable, nominal)
+        self.scale_remark = axis_order.full_scale(usable, nominal)
         if self.scale_remark:
             self.remarks.append(self.scale_remark)
             return
@@ -142,7 +145,7 @@ class Diagnosis:
             return usable
         before = sum(s.placements() for s in usable)
         for session in usable:
-            session.leave_out(integrity.railed(session))
+            session.leave_out(rails.railed(session))
         lost = before - sum(s.placements() for s in usable)
         if lost:
             self.remarks.append("%d rests on a rail were left out" % lost)

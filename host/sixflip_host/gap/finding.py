@@ -1,5 +1,7 @@
 """An effect read off the samples themselves: registers, timing, spectrum."""
 
+CERTAIN = 99.0  # nats written where chance is out of the question
+
 
 class Finding:
     """effect, sensor, axes ("xyz" letters), value {key: size}, interval {key: (low, high)} or

@@ -13,10 +13,10 @@ from sixflip_sim.effects.library import EFFECTS
 from . import (
     gyro_turns,
     hands,
-    integrity,
     moves,
     observations,
     plausible,
+    rails,
     shrinkage,
     still_runs,
 )
@@ -308,7 +308,7 @@ def _moves(session, number, model, models, known):
         return []
     course = _course(session.t_s)
     white = _white(session.capture, runs)
-    railed = integrity.railed(session)
+    railed = rails.railed(session)
     found = []
     for turn in chosen:
         if railed[turn.first:turn.last].mean() > observations.MOST_BAD:

@@ -10,7 +10,8 @@ from sixflip_sim.effects.moment import Moment
 
 from ..simulating import noise_arrays, pose_runs
 from ..solving.find_poses import HELD_BY_HAND
-from . import integrity, thermometer
+from . import thermometer
+from .counts import steps
 
 EDGE_S = 0.1  # left out at both ends of a rest: a label is never exact
 BLOCK_S, MOST_BLOCKS = 2.5, 6
@@ -90,7 +91,7 @@ class Session:
         rest. Noise much wider than a step averages it out: the k-th harmonic of the rounding
         error, step / (pi k), is damped by exp(-2 pi^2 k^2 (noise / step)^2) [Widrow & Kollar,
         Quantization Noise (2008), chapter 5]."""
-        step = integrity.steps(counts)
+        step = steps(counts)
         rests = np.concatenate([np.diff(counts[a:b].astype(float), axis=0)
                                 for a, b in zip(self.first, self.end)])
         noise = np.sqrt(np.maximum(rests.var(axis=0) / 2.0 - step ** 2 / 12.0, 0.0))

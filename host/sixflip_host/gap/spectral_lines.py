@@ -10,8 +10,8 @@ import math
 import numpy as np
 from scipy import ndimage, stats
 
+from .counts import steps
 from .finding import Finding
-from .integrity import steps
 
 LENGTH_S, SHORTEST_S, LOWEST_HZ = 5.0, 2.0, 2.0
 CHANCE = 0.001

@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from sixflip_host.gap import diagnosis, integrity, noise_bursts, observations
+from sixflip_host.gap import counts, diagnosis, integrity, noise_bursts, observations
 from sixflip_host.simulating import scenario, simulate
 
 
@@ -86,7 +86,7 @@ def test_a_bit_that_sticks_is_said_and_not_named():
     for capture in two:
         capture.accel[:, 1] |= 8
     found = diagnosed(two)
-    assert integrity.stuck_bits(found.sessions) == [("accel", "y", 3, 1)]
+    assert counts.stuck_bits(found.sessions) == [("accel", "y", 3, 1)]
     assert found.verdict in ("unexplained", "partly explained")
     assert ("accel", "y", "amplitude") in [(w.sensor, w.axis, w.domain) for w in found.where]
 

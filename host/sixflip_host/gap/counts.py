@@ -1,0 +1,68 @@
+"""Columns of counts: steps, a band that reads nothing, bits and columns that stick."""
+import numpy as np
+
+FEWEST_VALUES = 12  # distinct counts before a common divisor means anything
+FEWEST_SAMPLES = 50
+RAIL = 32767
+LOW_BITS = 6  # bits that noise and motion must have moved
+MOVED = 4  # times a bit's weight that a column must span to have moved it
+
+
+def steps(counts):
+    """(3,) greatest common divisor of the counts' distances; 1 where too few values differ."""
+    out = []
+    for column in counts.T:
+        values = np.unique(column).astype(np.int64)
+        values = values[np.abs(values) < RAIL]  # a rail need not lie on a step
+        out.append(int(np.gcd.reduce(np.diff(values))) if len(values) >= FEWEST_VALUES else 1)
+    return np.array(out)
+
+
+def dead_band(counts):
+    """(3,) smallest count that is not 0, where many more near 0 were to be expected."""
+    out = []
+    for column in counts.T:
+        step = max(1, steps(column[:, None])[0])
+        small = np.abs(column.astype(np.int64))
+        zeros, others = int((small == 0).sum()), small[small > 0]
+        least = int(others.min()) if len(others) else 0
+        near = int((others < 2 * least).sum()) if least else 0
+        expected = near * (least / step - 1.0) / max(least / step, 1.0)
+        out.append(least if zeros > 20 and least > 2 * step and expected > 40 else 0)
+    return np.array(out)
+
+
+def stuck_bits(sessions):
+    """[(sensor, axis, bit, value)] of single low bits that never change while those around
+    them do (bits stuck from the lowest on are steps, see quantisation)."""
+    found = []
+    for sensor in ("accel", "gyro"):
+        if any(getattr(s.capture, sensor) is None for s in sessions):
+            continue
+        for i in range(3):
+            x = np.concatenate([getattr(s.capture, sensor)[:, i] for s in sessions]).astype(
+                np.int64)
+            if len(x) < FEWEST_SAMPLES:
+                continue
+            ever, always = np.bitwise_or.reduce(x), np.bitwise_and.reduce(x)
+            step = max(1, steps(x[:, None])[0])
+            for bit in range(LOW_BITS):
+                weight = 1 << bit
+                fixed = not ever & weight or bool(always & weight)
+                if fixed and step < 2 * weight and np.ptp(x) > MOVED * weight * 2:
+                    found.append((sensor, "xyz"[i], bit, int(bool(always & weight))))
+    return found
+
+
+def stuck(sessions):
+    """Sentences on columns that never change."""
+    out = []
+    for sensor, words in (("accel", "accelerometer"), ("gyro", "gyro")):
+        columns = [getattr(s.capture, sensor) for s in sessions]
+        if any(c is None for c in columns):
+            continue
+        for i in range(3):
+            if any(len(c) >= FEWEST_SAMPLES and np.ptp(c[:, i].astype(int)) == 0
+                   for c in columns):
+                out.append("the %s axis of the %s never changes: it is stuck" % ("xyz"[i], words))
+    return out
