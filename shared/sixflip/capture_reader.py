@@ -15,6 +15,7 @@ class Blocks:
     """meta_bytes, columns (mask), names of the columns;
     t_us          array('q'): microseconds since the start of the session
     rows          array('h'): samples one after the other, len(names) counts each
+    starts        array('l'): number of the first sample of every block of samples
     placements    in force, in the order they were accepted
     withdrawn     codes of the poses that were taken back
     notes         texts
@@ -30,6 +31,7 @@ class Blocks:
         self.names = [NAMES[i] for i in cb.places(columns)]
         self.t_us = array("q")
         self.rows = array("h")
+        self.starts = array("l")
         self.placements = []
         self.withdrawn = []
         self.notes = []
@@ -74,6 +76,7 @@ def _samples(blocks, payload):
     t = seconds * cb.US + us
     if len(blocks.t_us) and t < blocks.t_us[-1]:
         raise ValueError("time runs backwards")
+    blocks.starts.append(len(blocks.t_us))
     form = "<H%dh" % width
     at = 10
     for _ in range(count):

@@ -5,6 +5,7 @@ import xml.etree.ElementTree as ElementTree
 import numpy as np
 import pytest
 
+from sixflip import capture_blocks
 from sixflip_host import cli
 from sixflip_host.capture import capture_file
 from sixflip_host.simulating import scenario, simulate
@@ -170,6 +171,43 @@ def test_clock_errors_and_missing_samples_are_named_and_jitter_is_not(tmp_path, 
     cause, = diagnosed(capsys, path)["causes"]
     assert cause["effect"] == "dropped_samples"
     assert cause["value"]["chance"] == pytest.approx(100 * (1 - keep.mean()), abs=0.15)
+
+
+def board_file(path, counts, lost=0.0):
+    """The file of a board whose every write to flash lasts 37 ms, as an erase does on a Pico."""
+    late, data, missing = [], bytearray(), np.random.default_rng(6).uniform(size=len(counts)) < lost
+
+    def write(block):
+        data.extend(block)
+        late.append(37000)
+    meta = {"sensor": "mpu6050", "rate_hz": 100, "accel_lsb_per_g": 16384}
+    writer = capture_blocks.BlockWriter(write, json.dumps(meta).encode(), capture_blocks.ACCEL)
+    skipped = 0
+    for row, gone in zip(counts.astype(int).tolist(), missing):
+        if gone:
+            skipped += 1
+            continue
+        pause, late[:] = sum(late), []
+        writer.add(10000 * (1 + skipped) + pause, row)
+        skipped = 0
+    writer.end(True)
+    path.write_bytes(data)
+    return str(path), missing.mean()
+
+
+def test_the_pauses_in_which_a_board_writes_are_a_remark_and_losses_beside_them_are_named(
+        tmp_path, capsys):
+    path, _ = board_file(tmp_path / "capture.bin", quiet())
+    text = str(tmp_path / "capture.csv")
+    capture_file.write(text, capture_file.read(path))
+    for one in (path, text):
+        answer = diagnosed(capsys, one)
+        assert answer["causes"] == [] and answer["verdict"] == "no gap"
+        assert any("to its flash" in remark for remark in answer["remarks"])
+    path, share = board_file(tmp_path / "lost.bin", quiet(), lost=0.01)
+    cause, = diagnosed(capsys, path)["causes"]
+    assert cause["effect"] == "dropped_samples"
+    assert cause["value"]["chance"] == pytest.approx(100 * share, rel=0.2)
 
 
 @pytest.mark.parametrize("words, code, said", [

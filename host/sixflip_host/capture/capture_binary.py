@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 
-from sixflip.capture_blocks import ACCEL, GROUPS, GYRO, MAG, TEMP, BlockWriter
+from sixflip.capture_blocks import ACCEL, GAP_US, GROUPS, GYRO, MAG, TEMP, BlockWriter
 from sixflip.capture_reader import read as read_blocks
 
 from ..errors import BadFile
@@ -13,6 +13,8 @@ from .capture_rows import quoted
 
 # In a text capture made from a board's: what only the board's file has a place for.
 EXTRAS = "board_capture"
+PAUSES = "write_pauses_us"
+LATE = 1.5              # an interval so many times the usual one covers another sample's time
 UNLABELLED = "nobody labelled the poses"
 BLOCK_SAMPLES = 256
 LATEST_US = (1 << 32) * 1000000
@@ -58,9 +60,32 @@ def decode(data, path="capture"):
     if UNLABELLED not in blocks.notes:
         capture.pose = _labels(path, blocks)
     extras = {"complete": blocks.complete, "notes": capture.notes, "withdrawn": blocks.withdrawn}
+    kept = meta.pop(EXTRAS, None)       # of a file that encode() made: its blocks tell nothing
+    pauses = kept.get(PAUSES, []) if isinstance(kept, dict) else write_pauses_us(blocks)
+    if pauses:
+        extras[PAUSES] = pauses
     if extras != {"complete": False, "notes": [], "withdrawn": []}:
         meta[EXTRAS] = extras
     return capture
+
+
+def write_pauses_us(blocks):
+    """Times of the samples after which the board was late because it wrote to its flash.
+
+    A full block is written when the first sample of the next one has been read, a pose's block
+    after its last sample: an interval beside the start of a block that is longer than LATE
+    usual ones is such a write. A longer one than GAP_US before a start begins a block by
+    itself; it counts only where a placement ends.
+    """
+    t_us = np.array(blocks.t_us, np.int64)
+    if len(t_us) < 2:
+        return []
+    gaps = np.diff(t_us)
+    starts = np.array(blocks.starts[1:], np.int64)
+    ends = [one.first + one.n for one in blocks.placements]
+    before = starts[(gaps[starts - 1] <= GAP_US) | np.isin(starts, ends)] - 1
+    beside = np.union1d(before, starts[starts < len(gaps)])
+    return t_us[beside[gaps[beside] > LATE * np.median(gaps)]].tolist()
 
 
 def _meta(path, blocks):
@@ -107,6 +132,7 @@ def encode(capture):
     extras = meta.pop(EXTRAS, {})
     if not isinstance(extras, dict):
         raise BadFile("the key %s is %s, expected an object" % (EXTRAS, quoted(repr(extras))))
+    meta[EXTRAS] = {PAUSES: extras.get(PAUSES, [])}
     data = bytearray()      # the writer's buffer is used again: copy what it hands over
     mask = ACCEL | (GYRO if capture.gyro is not None else 0) \
         | (TEMP if capture.temp is not None else 0) | (MAG if capture.mag is not None else 0)

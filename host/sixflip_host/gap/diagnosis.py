@@ -16,6 +16,7 @@ from . import (
     observations,
     rails,
     regressors,
+    sample_clock,
     single_rest,
     spectral_lines,
     where,
@@ -62,6 +63,7 @@ class Diagnosis:
                          for s in again]
         self.remarks += ["%s: its timestamps stand still, rate_hz was used instead" % s.name
                          for s in sessions if s.timeless]
+        self.remarks += sample_clock.remarks(sessions)
         self.stuck = counts.stuck(sessions)
         self.remarks += self.stuck
         self.findings = [f for f in integrity.findings(sessions)

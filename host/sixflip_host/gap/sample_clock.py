@@ -1,8 +1,9 @@
-"""The times of the samples: the true rate, and samples that are missing."""
+"""The times of the samples: the true rate, samples that are missing, pauses of the recorder."""
 import math
 
 import numpy as np
 
+from ..capture.capture_binary import EXTRAS, PAUSES
 from .finding import CERTAIN, Finding
 
 RATE_OFF, JITTER_SHARE, MISSING, SPAN = 1e-3, 1.5, 0.7, 20
@@ -13,10 +14,10 @@ def rate(sessions):
     """The clock against the header's rate_hz: span by span, and over the whole capture."""
     errors, widths = [], []
     for session in sessions:
-        t = session.capture.t_us
+        t = without_pauses(session.capture)
         if len(t) < 10 * SPAN:
             return []
-        usual, scatter = period(session)
+        usual, scatter = period(t)
         total = float(t[-1] - t[0]) / (len(t) - 1)
         if usual <= 0 or total <= 0:
             return []
@@ -42,10 +43,10 @@ def drops(sessions):
     lost = rows = 0
     longest = 0.0
     for session in sessions:
-        t = session.capture.t_us.astype(float)
+        t = without_pauses(session.capture).astype(float)
         if len(t) < 10 * SPAN:
             continue
-        usual, _ = period(session)
+        usual, _ = period(t)
         if usual <= 0:
             return []
         gaps = np.diff(t)
@@ -66,9 +67,40 @@ def drops(sessions):
                     % (lost, longest), {"chance": (max(0.0, chance - half), chance + half)})]
 
 
-def period(session):
+def pauses(capture):
+    """Indices of the intervals in which the board wrote to its flash instead of reading."""
+    extras = capture.meta.get(EXTRAS)
+    times = extras.get(PAUSES) if isinstance(extras, dict) else None
+    if not isinstance(times, list) or not all(type(t) is int for t in times):
+        return np.zeros(0, int)
+    return np.flatnonzero(np.isin(capture.t_us[:-1], times))
+
+
+def without_pauses(capture):
+    """t_us (n,) as if every pause of the recorder had lasted a usual interval."""
+    found = pauses(capture)
+    if not len(found):
+        return capture.t_us
+    gaps = np.diff(capture.t_us)
+    gaps[found] = np.median(gaps)
+    return capture.t_us[0] + np.concatenate([[0], np.cumsum(gaps)])
+
+
+def remarks(sessions):
+    """A sentence for every capture whose recorder paused."""
+    said = []
+    for session in sessions:
+        found = pauses(session.capture)
+        if len(found):
+            said.append("%s: the board wrote to its flash %d times, the longest took %.0f ms "
+                        "without a sample; that is the recorder's doing, not the sensor's" % (
+                            session.name, len(found),
+                            np.diff(session.capture.t_us)[found].max() / 1e3))
+    return said
+
+
+def period(t_us):
     """(usual time between two samples in us, its scatter over spans): the median over spans
     of SPAN samples, so that rounded or jittering timestamps do not matter."""
-    t = session.capture.t_us
-    spans = (t[SPAN:] - t[:-SPAN]) / float(SPAN)
+    spans = (t_us[SPAN:] - t_us[:-SPAN]) / float(SPAN)
     return float(np.median(spans)), float(1.4826 * np.median(np.abs(spans - np.median(spans))))
