@@ -175,7 +175,8 @@ def test_clock_errors_and_missing_samples_are_named_and_jitter_is_not(tmp_path, 
 
 def board_file(path, counts, lost=0.0):
     """The file of a board whose every write to flash lasts 37 ms, as an erase does on a Pico."""
-    late, data, missing = [], bytearray(), np.random.default_rng(6).uniform(size=len(counts)) < lost
+    late, data = [], bytearray()
+    missing = np.random.default_rng(6).uniform(size=len(counts)) < lost
 
     def write(block):
         data.extend(block)

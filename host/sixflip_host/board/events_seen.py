@@ -68,7 +68,7 @@ def _step(protocol, rate_hz, sigma, kind):
 
 
 def _band(protocol, rate_hz, sigma, kind):
-    return math.inf, "bias: unless a rest reads within the band of 0"
+    return math.inf, "taken for bias unless a rest reads within the band of 0"
 
 
 def _clock(protocol, rate_hz, sigma, kind):

@@ -88,6 +88,16 @@ def write_pauses_us(blocks):
     return t_us[beside[gaps[beside] > LATE * np.median(gaps)]].tolist()
 
 
+def write_pauses(capture):
+    """Indices of the intervals in which the board wrote to its flash instead of reading; of a
+    board's file or of a text made from one."""
+    extras = capture.meta.get(EXTRAS)
+    times = extras.get(PAUSES) if isinstance(extras, dict) else None
+    if not isinstance(times, list) or not all(type(t) is int for t in times):
+        return np.zeros(0, int)
+    return np.flatnonzero(np.isin(capture.t_us[:-1], times))
+
+
 def _meta(path, blocks):
     try:
         meta = json.loads(blocks.meta_bytes.decode("utf-8"))

@@ -18,6 +18,7 @@ from ..solving.solve import finite
 from ..terminal import console, plain, table, verdict_text
 from ..verifying.verify_files import RECORDS, decode_record
 from . import capture_file, term_words
+from .capture_binary import EXTRAS, PAUSES, write_pauses
 
 HELP = "what is in a record or a capture, or in the flash of a board, in words"
 EXAMPLE = "sixflip show capture.csv"
@@ -97,7 +98,7 @@ def _record_words(name, record):
             record.mounting[key] for key in ("roll_deg", "pitch_deg", "order")))
     for name, fields in record_terms.terms(record).items():
         for line in term_words.lines(term_words.facts(name, fields)):
-            out.print(plain(line), soft_wrap=True)
+            out.print(plain(line))
 
 
 def _numbers(values, form):
@@ -137,7 +138,10 @@ def _capture_words(name, capture):
     out.print(plain("%s: %d samples of a %s in %.1f s, columns %s" % (
         name, len(capture), capture.meta["sensor"], _duration(capture),
         " ".join(capture.columns()))))
+    pauses = write_pauses(capture)
     for key, value in capture.meta.items():
+        if key == EXTRAS and isinstance(value, dict):       # hundreds of times, counted below
+            value = {name: kept for name, kept in value.items() if name != PAUSES}
         out.print(plain("  %s: %s" % (key, json.dumps(value))))
     for line in solution.capture_remarks(capture) + capture.notes:
         out.print(plain("  " + line))
@@ -145,6 +149,8 @@ def _capture_words(name, capture):
         gaps = np.diff(capture.t_us)
         out.print("  longest interval %.1f ms, usual %.1f ms" % (
             gaps.max() / 1e3, np.median(gaps) / 1e3))
+    if len(pauses):
+        out.print("  %d of the intervals are writes to the board's flash" % len(pauses))
     lsb = capture.meta["accel_lsb_per_g"]
     rows = [[pose_name(one.pose), str(one.first), str(one.n),
              _numbers([s / one.n / lsb for s in one.sums[:3]], "%+.4f"),

@@ -143,11 +143,11 @@ def slots(link):
 
 
 def _words(found):
-    from ..terminal import console
+    from ..terminal import Sentence, console
     out = console()
     for one in found:
-        out.print(styled("%-8s" % one.state, STYLE[one.state]), plain(
-            "%s: %s" % (one.check, one.found)))
+        state = styled("%-8s " % one.state, STYLE[one.state])
+        out.print(Sentence(state + plain("%s: %s" % (one.check, one.found)), hanging=9))
         if one.todo and one.state != OK:
             out.print(plain("         what to do: " + one.todo))
     counts = ["%d %s%s" % (n, state, "" if n == 1 else "s") for state in (FAULT, WARNING)

@@ -53,8 +53,7 @@ def sections(page, answer, drawn):
         page.paragraph(remark, note=True)
     if answer["causes"]:
         page.heading("Which effect")
-        page.table(("effect", "sensor", "size (90 % interval)", "score, nats", "share"),
-                   [words.row(c) for c in answer["causes"]])
+        page.table(words.WHICH, [words.row(c) for c in answer["causes"]])
     lines = [words.shrinkage_line(k, g, answer["held_out"]) for k, g in answer["gap"].items()]
     lines += [words.loop_line(k, g) for k, g in answer.get("simulated", {}).items()]
     if lines:

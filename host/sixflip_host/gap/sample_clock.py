@@ -3,7 +3,7 @@ import math
 
 import numpy as np
 
-from ..capture.capture_binary import EXTRAS, PAUSES
+from ..capture.capture_binary import write_pauses
 from .finding import CERTAIN, Finding
 
 RATE_OFF, JITTER_SHARE, MISSING, SPAN = 1e-3, 1.5, 0.7, 20
@@ -67,18 +67,9 @@ def drops(sessions):
                     % (lost, longest), {"chance": (max(0.0, chance - half), chance + half)})]
 
 
-def pauses(capture):
-    """Indices of the intervals in which the board wrote to its flash instead of reading."""
-    extras = capture.meta.get(EXTRAS)
-    times = extras.get(PAUSES) if isinstance(extras, dict) else None
-    if not isinstance(times, list) or not all(type(t) is int for t in times):
-        return np.zeros(0, int)
-    return np.flatnonzero(np.isin(capture.t_us[:-1], times))
-
-
 def without_pauses(capture):
     """t_us (n,) as if every pause of the recorder had lasted a usual interval."""
-    found = pauses(capture)
+    found = write_pauses(capture)
     if not len(found):
         return capture.t_us
     gaps = np.diff(capture.t_us)
@@ -90,7 +81,7 @@ def remarks(sessions):
     """A sentence for every capture whose recorder paused."""
     said = []
     for session in sessions:
-        found = pauses(session.capture)
+        found = write_pauses(session.capture)
         if len(found):
             said.append("%s: the board wrote to its flash %d times, the longest took %.0f ms "
                         "without a sample; that is the recorder's doing, not the sensor's" % (

@@ -29,13 +29,13 @@ def show(out, result):
     """Print what an answer() holds."""
     for term in result["found"]:
         for line in term_words.lines(term):
-            out.print(plain("Into the record: " + line), soft_wrap=True)
+            out.print(plain("Into the record: " + line))
     for one in result["left_out"]:
         out.print(plain("Not into the record: %s (%s): %s" % (
-            " or ".join(one["effects"]), one["sensor"], one["reason"])), soft_wrap=True)
+            " or ".join(one["effects"]), one["sensor"], one["reason"])))
     if result["written"]:
         out.print(plain("%s: sixflip restore --from it puts it onto the board"
-                        % result["written"]), soft_wrap=True)
+                        % result["written"]))
 
 
 def write(terms, args):

@@ -21,6 +21,7 @@ ABSORBED = {
 STILL_ONLY = {"gyro": ("thermal_scale", "quadratic", "cubic", "asymmetry", "saturation")}
 ALWAYS_SEEN = ("quantisation", "dead_band", "torn_reads", "dropped_samples", "sample_rate",
                "vibration", "axis_swap", "drift")
+NOT_DETERMINED = "this capture does not determine its size"
 TIMES_SIGMA = 3.7  # 80 % power at the threshold, as in the plan
 
 
@@ -69,6 +70,8 @@ def reason(diagnosis, name, sensor):
         return "silent: " + ABSORBED.get(name, "nothing of it is left")
     smallest = least(gap, mine)
     usual = typical.size(name, gap.chip, sensor)[0]
+    if not typical.determined(smallest, usual):
+        return NOT_DETERMINED
     if usual and smallest > abs(usual):
         return "too small for this capture: from %.2g %s on, typical is %.2g" % (
             smallest, EFFECTS[name].units[sensor], abs(usual))
@@ -87,6 +90,8 @@ def in_motion(diagnosis, name, sensor):
     smallest, usual = motion.least(name), typical.size(name, motion.chip, sensor)[0]
     if smallest <= usual:
         return ""
+    if not typical.determined(smallest, usual):
+        return NOT_DETERMINED
     return "hidden by the hand's own acceleration: from %.2g %s on, typical is %.2g" % (
         smallest, EFFECTS[name].units[sensor], usual)
 

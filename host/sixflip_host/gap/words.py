@@ -6,6 +6,7 @@ SENSOR = {"accel": "accelerometer", "gyro": "gyro", "device": "device",
           "gyro_turns": "gyro in motion", "accel_motion": "accelerometer in motion"}
 STYLE = {"no gap": "bold green", "explained": "bold green", "partly explained": "bold yellow",
          "unexplained": "bold red", "cannot tell": "bold yellow"}
+WHICH = ("effect", "sensor", "score, nats", "share", "size (90 % interval)")
 DOES = {  # what a part with this effect does
     "thermal_bias": "drifts with temperature", "thermal_scale": "changes its scale with "
     "temperature", "warm_up": "drifts after it is switched on", "thermal_rate": "follows how fast "
@@ -86,20 +87,19 @@ def _closed(answer):
 def show(answer):
     """Print everything."""
     out = console()
-    out.print(styled(plain(sentence(answer)), STYLE[answer["verdict"]]), soft_wrap=True)
+    out.print(styled(plain(sentence(answer)), STYLE[answer["verdict"]]))
     for remark in answer["remarks"]:
-        out.print(plain("  " + remark), soft_wrap=True)
+        out.print(plain("  " + remark))
     if answer["where"]:
         out.print(table("Where", ("sensor", "axis", "domain", "share", "p"), [
             (SENSOR[w["sensor"]], w["axis"] or "-", w["domain"].replace("_", " "),
              "%.0f %%" % (100 * w["share"]), "%.1g" % w["p"]) for w in answer["where"][:12]]))
     if answer["causes"]:
-        out.print(table("Which", ("effect", "sensor", "size (90 % interval)", "score", "share"),
-                        [row(c) for c in answer["causes"]]))
+        out.print(table("Which", WHICH, [row(c) for c in answer["causes"]], prose=True))
     for kind, gap in answer["gap"].items():
-        out.print(plain(shrinkage_line(kind, gap, answer["held_out"])), soft_wrap=True)
+        out.print(plain(shrinkage_line(kind, gap, answer["held_out"])))
     for kind, loop in answer.get("simulated", {}).items():
-        out.print(plain(loop_line(kind, loop)), soft_wrap=True)
+        out.print(plain(loop_line(kind, loop)))
     _rest(out, answer)
     if "terms" in answer:
         from . import terms_out
@@ -107,18 +107,19 @@ def show(answer):
 
 
 def row(c):
+    """Effect, sensor, score, share and every size with its interval, as text."""
     name = c["effect"] or " or ".join(c["class"])
     if not c["plausible"]:
         name += " (numerically helpful, physically implausible)"
     sizes = []
-    for key, value in list(c["value"].items())[:4]:
+    for key, value in c["value"].items():
         low, high = c["interval_90"].get(key, [None, None])
         span = "" if low is None or low == high else " (%.3g … %.3g)" % (low, high)
-        sizes.append("%s %.3g%s" % (key, value, span))
-    more = " …" if len(c["value"]) > 4 else ""
-    return (name, SENSOR[c["sensor"]], ", ".join(sizes) + more + " " + c["unit"],
-            "%.1f" % c["score_nats"], "-" if c["share"] is None else "%.0f %%"
-            % (100 * c["share"]))
+        sizes.append("%s %s%s" % (key, "not determined" if value is None else "%.3g" % value,
+                                  span))
+    return (name, SENSOR[c["sensor"]], "%.1f" % c["score_nats"],
+            "-" if c["share"] is None else "%.0f %%" % (100 * c["share"]),
+            ", ".join(sizes) + " " + c["unit"])
 
 
 def shrinkage_line(kind, gap, held):
@@ -143,13 +144,11 @@ def loop_line(kind, loop):
 
 def _rest(out, answer):
     if answer["unseen"]:
-        out.print("Could not be seen:", soft_wrap=True)
+        out.print("Could not be seen:")
         for u in answer["unseen"]:
-            out.print(plain("  %s (%s): %s" % (u["effect"], SENSOR[u["sensor"]], u["reason"])),
-                      soft_wrap=True)
+            out.print(plain("  %s (%s): %s" % (u["effect"], SENSOR[u["sensor"]], u["reason"])))
     if answer["next"]:
-        out.print("To capture next:", soft_wrap=True)
+        out.print("To capture next:")
         for n in answer["next"]:
             out.print(plain("  %s (%.0f minutes): tells %s" % (
-                n["capture"], n["minutes"], ", ".join(" from ".join(p) for p in n["resolves"]))),
-                soft_wrap=True)
+                n["capture"], n["minutes"], ", ".join(" from ".join(p) for p in n["resolves"]))))

@@ -133,18 +133,13 @@ def _words(board, rows, calibrations, drifts, remarks):
     for remark in remarks:
         out.print(plain(remark))
     if calibrations:
-        head, listed = calibration_rows(calibrations)
-        # two tables: together they do not fit into 80 columns
         out.print(table("calibrations of board %s" % board, *_coloured_rows(
-            *_only(head, listed, (0, 1, 3, 4, 6)), 3)))
-        out.print(table("and their", *_only(head, listed, (0, 5, 7))))
+            *calibration_rows(calibrations), 4)))
     if any(one.time_is == store.SEEN for one, _ in calibrations):
         out.print(SEEN_NOTE)
     head, checks = check_rows(rows)
     if checks:
-        found = table("checks", *_coloured_rows(head, checks, 3))
-        found.columns[-1].no_wrap = False       # a reason is to be read to its end
-        out.print(found)
+        out.print(table("checks", *_coloured_rows(head, checks, 3), prose=True))
     head, moved = drift_rows(drifts)
     if moved:
         out.print(table("drift (%s)" % DRIFT_NOTE, head, moved))

@@ -108,7 +108,7 @@ def show(found):
         [[row["parameter"], *("%.2f" % row[key] for key in ("paper_mean", "paper_sd")),
           *("%.3f" % row[key] for key in ("mean", "sd", "sd_flush"))]
          for row in found["table_3"]]))
-    out.print(plain(_about_table_3(found["table_3"])), soft_wrap=True)
+    out.print(plain(_about_table_3(found["table_3"])))
     out.print()
     out.print(table(
         "Table 4: turns of a robot on the floor, degrees, before and after",
@@ -117,13 +117,12 @@ def show(found):
           *("%.2f" % row[key] for key in ("first_before", "first_after", "before_mean_error")),
           *("%.3f" % row[key] for key in ("after_median_error", "after_95_error"))]
          for row in found["table_4"]]))
-    out.print(plain(_about_table_4(found["sessions"], found["table_4"][0]["repetitions"])),
-              soft_wrap=True)
+    out.print(plain(_about_table_4(found["sessions"], found["table_4"][0]["repetitions"])))
     out.print()
     for one in found["claims"]:
         word = styled("holds", "bold green") if one["holds"] else styled(
             "does not hold", "bold red")
-        out.print(word, plain(": %s: %s" % (one["claim"], one["found"])), sep="", soft_wrap=True)
+        out.print(word, plain(": %s: %s" % (one["claim"], one["found"])), sep="")
 
 
 def _about_table_3(rows):

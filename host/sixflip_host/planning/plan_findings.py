@@ -9,6 +9,7 @@ from ..simulating.session_rows import rows_of
 from . import alias, detectable
 
 SAME_CLASS = 0.9  # alias index above which two effects get one name (GAP stage 4)
+NOT_DETERMINED = "too little of it happens for a size to be determined"
 # What takes up an effect that leaves no residual, by sensor.
 TAKEN_UP_BY = {
     "accel": {"local_gravity": "scale", "cubic": "scale", "saturation": "scale",
@@ -72,8 +73,12 @@ class Findings:
             smallest = sizes["up"] if name == "earth_rate" else detectable.middle(sizes)
             if name not in matrix[0]:
                 smallest = detectable.SILENT
-            finding = Finding(name, kind, EFFECTS[name].units[kind], smallest, size, source)
-            if finding.silent:
+            known = typical.determined(smallest, size)
+            finding = Finding(name, kind, EFFECTS[name].units[kind],
+                              smallest if known else detectable.SILENT, size, source)
+            if not known and smallest < detectable.SILENT:
+                finding.absorbed = finding.how = NOT_DETERMINED
+            elif not known:
                 finding.absorbed = taken_up(design, name)
             finding.members = members(name, tables)
             self.list.append(finding)

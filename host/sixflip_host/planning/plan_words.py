@@ -1,30 +1,80 @@
 """The answer of `sixflip plan` for a person."""
-import shutil
-import textwrap
-
-from ..terminal import console, plain, styled
+from ..terminal import console, plain, styled, table
 
 TITLES = (("accel", "Accelerometer"), ("gyro", "Gyro"), ("device", "Device"))
-NARROWEST = 80
+NAME = {"accel": "accelerometer", "gyro": "gyro", "device": "device"}
 
 
 def show(answer):
-    """Print the three parts: what is there, what each effect's chances are, what to add."""
+    """Print what can be told, what cannot and what to add in three lines; then what is there,
+    each effect's chances and every addition."""
     out = console()
-    width = max(NARROWEST, min(140, shutil.get_terminal_size((100, 24)).columns))
-    out.print(textwrap.fill(overview(answer), width))
+    for line in (can_tell(answer), cannot_tell(answer), add_this(answer)):
+        out.print(plain(line))
+    out.print()
+    out.print(overview(answer))
     for sensor, title in TITLES:
         effects = [e for e in answer["effects"] if e["sensor"] == sensor]
         if effects:
-            out.print("\n%-24s %9s %8s  %-19s %s" % (
-                title, "seen from", "typical", "unit", "cannot be told from (alias index)"))
-        for effect in effects:
-            effect_lines(out, effect, width)
-    out.print("\nWhat to add, by what it resolves per minute:")
+            out.print(table(title, ("effect", "seen from", "typical", "unit", "remark"),
+                            [effect_row(effect) for effect in effects], prose=True))
+    out.print("What to add, by what it resolves per minute:")
     for addition in answer["additions"]:
-        addition_lines(out, addition, width)
+        addition_lines(out, addition)
     if not answer["additions"]:
         out.print("  nothing on the list of additions would resolve more")
+
+
+def can_tell(answer):
+    """What would be seen at its typical size and called by its own name."""
+    return "Can tell: %s." % named(_pairs(answer, True))
+
+
+def cannot_tell(answer):
+    """All the others: at their typical size they leave no trace, or another one leaves it too."""
+    return "Cannot tell: %s." % named(_pairs(answer, False))
+
+
+def _pairs(answer, told):
+    return [(e["sensor"], e["effect"]) for e in answer["effects"]
+            if told == (e["seen_at_typical_size"] and not e["class"])]
+
+
+def named(pairs):
+    """(sensor, effect) pairs by sensor: "accelerometer thermal_bias, cubic; gyro cubic"."""
+    said = []
+    for sensor, _ in TITLES:
+        names = [name for kind, name in pairs if kind == sensor]
+        if names:
+            said.append("%s %s" % (NAME[sensor], ", ".join(names)))
+    return "; ".join(said) or "nothing"
+
+
+def add_this(answer):
+    """The addition that resolves most per minute."""
+    if not answer["additions"]:
+        return "Add this: nothing on the list would resolve more."
+    first = answer["additions"][0]
+    return "Add this: %s (%s), which %s." % (first["add"], minutes(first), resolved(first))
+
+
+def minutes(addition):
+    return "no more time" if addition["minutes"] < 0.05 else "%.1f minutes" % addition["minutes"]
+
+
+def resolved(addition):
+    """What an addition makes visible, in a clause."""
+    apart = {}
+    for sensor, one, other in addition["tells_apart"]:
+        apart.setdefault((sensor, one), []).append(other)
+    said = [] if not apart else ["tells " + "; ".join(
+        "%s %s from %s" % (NAME[sensor], one, ", ".join(others))
+        for (sensor, one), others in apart.items())]
+    for words, pairs in (("shows", addition["no_longer_silent"]),
+                         ("shows at its typical size", addition["typical_size_reached"])):
+        if pairs:
+            said.append("%s %s" % (words, named(pairs)))
+    return "; ".join(said)
 
 
 def overview(answer):
@@ -32,7 +82,7 @@ def overview(answer):
     sessions = len(answer["sessions"])
     return ("%s: %d placements in %d session%s (%s), %.1f minutes, %s, box %s. %d accelerometer "
             "equations leave %d residual degrees of freedom; %d contrasts between faces say "
-            "something about the sensor." % (
+            "something about the sensor. Alike: does more than 0.9 of the same (alias index)." % (
                 plain(answer["protocol"]), answer["placements"], sessions,
                 "" if sessions == 1 else "s", plain(", ".join(answer["sessions"])),
                 answer["minutes"], answer["sensor"],
@@ -40,36 +90,24 @@ def overview(answer):
                 accel["equations"], accel["residual"], accel["even_contrasts"]))
 
 
-def effect_lines(out, effect, width):
-    """Name, smallest and typical size, unit, and in as many lines as needed what it is
-    confused with; green where the typical size would be seen."""
+def effect_row(effect):
+    """Name, smallest and typical size, unit and what it is confused with; green where the
+    typical size would be seen."""
     words = ", ".join("%s %.2f" % (name, index) for name, index in effect["class"].items())
+    words = words and "alike: " + words
     if effect["silent"]:
         seen, style = "silent", "red"
-        words = "absorbed by " + effect["absorbed_by"] + ("; " + words if words else "")
+        why = effect["how"] or "absorbed by " + effect["absorbed_by"]
+        words = why + ("; " + words if words else "")
     else:
         seen = "%.2g" % effect["smallest"]
         style = "green" if effect["seen_at_typical_size"] else "yellow"
         words = words or effect["how"] or ""
     typical = "" if effect["typical"] is None else "%.3g" % effect["typical"]
-    indent = 64
-    lines = textwrap.wrap(words, width - indent) or [""]
-    out.print("  %-22s" % effect["effect"], styled("%9s" % seen, style),
-              "%8s  %-19s" % (typical, effect["unit"]), lines[0])
-    for line in lines[1:]:
-        out.print(" " * (indent - 1), line)
+    return effect["effect"], styled(seen, style), typical, effect["unit"], words
 
 
-def addition_lines(out, addition, width):
-    words = []
-    for text, items in (("apart: ", ["%s %s|%s" % tuple(p) for p in addition["tells_apart"]]),
-                        ("no longer silent: ", [" ".join(s) for s in
-                                                addition["no_longer_silent"]]),
-                        ("typical size seen: ", [" ".join(s) for s in
-                                                 addition["typical_size_reached"]])):
-        if items:
-            words.append(text + ", ".join(items))
-    out.print("  %s: %.1f minutes, resolves %.2g per minute" % (
-        addition["add"], addition["minutes"], addition["per_minute"]))
-    out.print(textwrap.fill("; ".join(words), width, initial_indent="      ",
-                            subsequent_indent="      "))
+def addition_lines(out, addition):
+    out.print(plain("  %s: %s, resolves %.2g per minute" % (
+        addition["add"], minutes(addition), addition["per_minute"])))
+    out.print(plain("    " + resolved(addition)))

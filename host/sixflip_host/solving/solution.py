@@ -7,6 +7,7 @@ from sixflip.chips.gyro_tolerance import GYRO_SCALE
 from sixflip.faces import FACES, face_of_code, pose_name
 
 from ..capture import units
+from ..capture.capture_binary import write_pauses
 from . import flips_turned
 from .find_poses import HELD_BY_HAND, find_poses
 
@@ -165,6 +166,7 @@ def _time_remarks(capture):
     if abs(usual * rate_hz * 1e-6 - 1) > RATE_OFF:
         remarks.append("the timestamps say %.4g samples a second, the header %g" % (
             1e6 / usual if usual else np.inf, rate_hz))
+    gaps[write_pauses(capture)] = usual
     jumps = np.flatnonzero(gaps > JUMP * max(usual, 1.0))
     if len(jumps):
         longest = int(gaps.argmax())

@@ -3,6 +3,7 @@
 SIZES[effect][chip] = (size, unit, source); one number stands for every coefficient unless a
 dict of keys says otherwise. Chips: mpu6050-accel mpu6050-gyro adxl345 itg3205.
 """
+import math
 
 _MPU = "MPU-6050 PS rev 3.4, table 6."
 _ADXL = "ADXL345 rev E, table 1"
@@ -117,6 +118,17 @@ SIZES = {
         "mpu6050-gyro": (0.00295, "0.0042 deg/s at 45 deg of latitude"),
         "itg3205": (0.00295, "0.0042 deg/s at 45 deg of latitude")},
 }
+
+
+# The widest range of sizes that the diagnosis believes is 20 times the typical one (a crooked
+# box); where only far larger ones would show, a capture says nothing about the effect at all.
+DETERMINED_TIMES = 100.0
+
+
+def determined(smallest, usual):
+    """Whether a capture that shows sizes from `smallest` on says anything about an effect."""
+    return math.isfinite(smallest) and (
+        usual is None or smallest <= DETERMINED_TIMES * abs(usual))
 
 
 def chip_of(sensor, kind):
