@@ -162,3 +162,20 @@ def test_bad_options(words, expected):
     with pytest.raises(UsageError) as caught:
         plan.run(parser.parse_args(words))
     assert expected in str(caught.value)
+
+
+def test_plan_begins_with_what_can_be_told_what_cannot_and_what_to_add(capsys):
+    first = planned(capsys, "--protocol", "paper").splitlines()[:4]
+    assert first[0].startswith("Can tell: accelerometer drift") and first[3] == ""
+    assert first[1].startswith("Cannot tell: ") and "cubic" in first[1]
+    assert first[2].startswith("Add this: random order (no more time), which tells ")
+
+
+def test_a_size_that_the_capture_does_not_determine_is_no_number(tmp_path, capsys):
+    late = tmp_path / "late.json"       # half a day before the first pose: nothing warms up
+    late.write_text(json.dumps({"sixflip_plan": 1, "sessions": [{
+        "rest_s": 42000, "poses": [r.pose for r in protocols.named("paper").sessions[0].rests]}]}))
+    answer = json.loads(planned(capsys, "--protocol", str(late), "--json"))
+    assert of(answer, "warm_up")["smallest"] is None
+    assert all(e["smallest"] is None or e["smallest"] < 1e4 for e in answer["effects"])
+    assert "too little of it happens" in planned(capsys, "--protocol", str(late))
