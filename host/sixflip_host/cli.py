@@ -7,6 +7,7 @@ import os
 import sys
 import traceback
 
+from . import file_arguments
 from .errors import SixflipError, UsageError
 from .narration import log, narrated
 from .terminal import plain
@@ -110,7 +111,9 @@ def run(argv):
     verb = argv[0]
     if verb not in VERBS:
         raise UsageError("there is no verb %r, expected one of %s" % (verb, " ".join(VERBS)))
-    args = parser_for(verb).parse_args(argv[1:])
+    parser = parser_for(verb)
+    args = parser.parse_args(argv[1:])
+    file_arguments.check(parser, args)
     return load(verb).run(args) or 0
 
 

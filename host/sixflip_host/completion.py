@@ -9,8 +9,6 @@ EXAMPLE = ("sixflip completion bash > ~/.local/share/bash-completion/completions
            "         sixflip completion zsh > ~/.zfunc/_sixflip\n"
            "         sixflip completion fish > ~/.config/fish/completions/sixflip.fish")
 SHELLS = ("bash", "zsh", "fish")
-FILES = ("FILE", "DIR", "CAPTURE", "RECORD", "JSON", "TOML", "PNG", "OUT", "NOISE", "SIM", "PORT")
-FILE_OPTIONS = ("output", "source", "record", "capture")
 
 
 def add_arguments(parser):
@@ -42,10 +40,5 @@ def whole_parser():
 
 
 def takes_file(action):
-    """Whether the value of an argument is the name of a file."""
-    if action.choices or action.nargs == 0:
-        return False
-    words = action.metavar or ""
-    if any(name in (words if isinstance(words, str) else " ".join(words)) for name in FILES):
-        return True
-    return action.dest in FILE_OPTIONS or (not action.option_strings and not words)
+    """Whether the value of an argument is the name of a file; a port is one, too."""
+    return hasattr(action, "reads") or hasattr(action, "writes") or action.metavar == "PORT"

@@ -107,7 +107,7 @@ def capture_of_a_board(data):
     verb("show", path)
     verb("solve", path, "--json")
     if len(capture):
-        verb("export", path, "-o", os.path.join(FOLDER, "out.csv"))
+        verb("export", path, "-o", os.path.join(FOLDER, "out.csv"), "--force")
 
 
 def stream(correction):
@@ -135,7 +135,7 @@ def record(data):
     verb("show", path)
     verb("show", path, "--json")
     for form in ("json", "imu_calib", "imufusion", "imucal"):
-        verb("export", path, "--format", form, "-o", os.path.join(FOLDER, "out"))
+        verb("export", path, "--format", form, "-o", os.path.join(FOLDER, "out"), "--force")
 
 
 def lines_of_a_board(data):

@@ -77,7 +77,7 @@ def test_a_and_b_found_far_apart_are_no_flip(sensor):
 
 def test_a_record_is_written_and_read_back(tmp_path, capture):
     out = tmp_path / "refined.bin"
-    assert command(written(tmp_path, capture), "--record", out) == 0
+    assert command(written(tmp_path, capture), "-o", out) == 0
     record = correction_record.decode(out.read_bytes())
     found = refine.refine(capture)
     assert np.abs(np.array(record.accel["P"]) - found["accel"]["P"]).max() < 1e-12
@@ -88,7 +88,7 @@ def test_a_record_is_written_and_read_back(tmp_path, capture):
 def test_six_faces_without_labels_or_gyro_are_refused(tmp_path, sensor, capsys):
     bare = hand_session.session(sensor, hand_session.six_faces(3, 0.0), 3, gyro=False)
     record = tmp_path / "out.bin"
-    assert command(written(tmp_path, bare), "--free", "--record", record) == 1
+    assert command(written(tmp_path, bare), "--free", "-o", record) == 1
     out = capsys.readouterr().out
     assert "refused: these poses determine 6 of 9 parameters" in out
     assert not record.exists()
@@ -238,7 +238,7 @@ def test_keep_through_the_command(tmp_path, aged, capsys):
     kept, out = tmp_path / "record.bin", tmp_path / "new.bin"
     kept.write_bytes(data)
     path = written(tmp_path, hand_session.session(later, hand_session.on_the_floor(), 2))
-    assert command(path, "--keep", kept, "--record", out) == 0
+    assert command(path, "--record", kept, "-o", out) == 0
     assert "solved by this session: " in capsys.readouterr().out
     old, new = correction_record.decode(data), correction_record.decode(out.read_bytes())
     assert new.sequence == old.sequence + 1
@@ -248,19 +248,19 @@ def test_keep_through_the_command(tmp_path, aged, capsys):
 def test_keep_of_something_else_is_one_sentence(tmp_path, capture):
     path = written(tmp_path, capture)
     with pytest.raises(SixflipError, match="no correction record"):
-        command(path, "--keep", path)
+        command(path, "--record", path)
     with pytest.raises(SixflipError, match="expected one of the two"):
-        command(path, "--keep", path, "--free")
+        command(path, "--record", path, "--free")
 
 
 def test_a_pull_of_gravity_goes_into_the_record_as_its_term(tmp_path, capture):
     out = tmp_path / "refined.bin"
-    assert command(written(tmp_path, capture), "--record", out, "--g-sensitivity", "on") == 0
+    assert command(written(tmp_path, capture), "-o", out, "--g-sensitivity", "on") == 0
     record = correction_record.decode(out.read_bytes())
     gyro = refine.refine(capture, g_sensitivity="on")["gyro"]
     term = record_terms.terms(record)["g_sensitivity"]
     assert term["k"] == gyro["per_g_dps"] and term["origin"] == "refinement"
-    assert command(written(tmp_path, capture), "--record", out) == 0
+    assert command(written(tmp_path, capture), "-o", out) == 0
     assert correction_record.decode(out.read_bytes()).terms == []
 
 

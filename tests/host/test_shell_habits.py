@@ -24,6 +24,7 @@ from sixflip_host.cli import VERBS, main
 from sixflip_host.history import remember, store
 
 COMMAND = [sys.executable, "-m", "sixflip_host"]
+OLD = b"# sixflip-capture 1\n"       # of the same kind, or it would not be replaced
 ENVIRONMENT = dict(os.environ)
 
 
@@ -266,12 +267,12 @@ def test_ctrl_c_while_writing_leaves_a_whole_file(pulled, tmp_path, monkeypatch,
     written = tmp_path / "x.csv"
     assert main(words) == 0
     whole = written.read_bytes()
-    written.write_bytes(b"old")
+    written.write_bytes(OLD)
     with monkeypatch.context() as patch:
         press(patch, moment)
         assert main(words) == cli.INTERRUPTED
     assert capsys.readouterr().err == "sixflip: stopped\n"
-    assert written.read_bytes() == (whole if moment == "after" else b"old")
+    assert written.read_bytes() == (whole if moment == "after" else OLD)
     assert os.listdir(tmp_path) == ["x.csv"]
 
 

@@ -108,4 +108,4 @@ def test_apply_refuses_another_range(pulled, tmp_path, capsys):
              "-o", str(tmp_path / "out.csv")]
     assert main(words) == 4
     assert "expected a record of this sensor" in capsys.readouterr().err
-    assert main([*words, "--force"]) == 0
+    assert main([*words, "--other-sensor"]) == 0

@@ -76,7 +76,7 @@ def test_a_pipe_is_written_into_not_replaced(session, tmp_path):
 
 def test_a_link_stays_a_link(session, tmp_path):
     there = tmp_path / "there.csv"
-    there.write_bytes(b"old")
+    there.write_bytes(b"# sixflip-capture 1\n")
     link = tmp_path / "link.csv"
     link.symlink_to(there)
     assert main(["export", session, "-o", str(link)]) == 0

@@ -4,6 +4,7 @@ import contextlib
 import json
 
 from ..errors import Interrupted, NoBoard, SixflipError, UsageError
+from ..file_arguments import add_input
 from ..history import remember
 from ..planning import board_plan
 from . import typed_lines
@@ -25,11 +26,11 @@ STOP_S = 10
 def add_arguments(parser):
     where = parser.add_mutually_exclusive_group()
     add_port(where)
-    where.add_argument("--replay", metavar="CAPTURE",
-                       help="no board: play a capture file through the firmware's own session")
+    add_input(where, "--replay", metavar="CAPTURE",
+              help="no board: play a capture file through the firmware's own session")
     what = parser.add_mutually_exclusive_group()
-    what.add_argument("--plan", metavar="FILE|NAME",
-                      help="a session of a plan (sixflip plan --save FILE), or paper, recommended")
+    add_input(what, "--plan", metavar="FILE|NAME",
+              help="a session of a plan (sixflip plan --save FILE), or paper, recommended")
     what.add_argument("--redo", metavar="FACE", choices=FACES,
                       help="take one face of the last session again, or of the one that is under "
                            "way: " + " ".join(FACES))

@@ -7,6 +7,7 @@ from sixflip.correction_of import correction_of
 
 from ..capture import capture_file
 from ..errors import CheckFailed, UsageError
+from ..file_arguments import add_input
 from ..history import remember
 from ..mounting import mount
 from ..simulating import still_rest
@@ -29,9 +30,9 @@ BIAS_DPS = 5.0
 
 def add_arguments(parser):
     """The options of the verb."""
-    parser.add_argument("capture", nargs="?",
-                        help="capture of some seconds of rest (default: a board measures now)")
-    parser.add_argument("--record", help="the correction record; with a capture")
+    add_input(parser, "capture", nargs="?",
+              help="capture of some seconds of rest (default: a board measures now)")
+    add_input(parser, "--record", help="the correction record; with a capture")
     parser.add_argument("--g", type=float, help="gravity of this place, m/s² (default: what the "
                         "capture says, else the record)")
     parser.add_argument("--lat", type=float, metavar="DEG", help="latitude, for gravity")
@@ -52,7 +53,7 @@ def run(args):
     if g is not None and not args.capture:
         raise UsageError("--g and --lat need a capture; a board knows its g from its settings")
     if args.capture:
-        capture = capture_file.read(args.capture)
+        capture = capture_file.read_samples(args.capture)
         board = capture.meta.get("device_id")
         found = compare(capture, mount.accelerometer_record(args.record), g)
     else:

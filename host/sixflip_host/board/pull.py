@@ -3,9 +3,11 @@
 import json
 from pathlib import Path
 
+from .. import file_kinds
 from ..atomic_write import write_bytes
 from ..capture import capture_binary, capture_file
 from ..errors import BadFile, NoBoard
+from ..file_arguments import add_output, may_replace
 from ..history import remember
 from ..terminal import plain
 from .byte_progress import Bytes
@@ -15,12 +17,19 @@ HELP = "fetch the raw capture and the correction records from a board"
 EXAMPLE = "sixflip pull -o captures"
 WANTED = ("record_a.bin", "record_b.bin", "sixflip.json", "capture.bin", "refused.bin")
 CAPTURES = ("capture.bin", "refused.bin")
+# What a file there may be to be replaced, those of convert() with them.
+KINDS = {"record_a.bin": (file_kinds.RECORD,), "record_b.bin": (file_kinds.RECORD,),
+         "sixflip.json": (file_kinds.JSON,), "capture.bin": (file_kinds.BOARD_CAPTURE,),
+         "refused.bin": (file_kinds.BOARD_CAPTURE,), "capture.csv": (file_kinds.CAPTURE,),
+         "refused.csv": (file_kinds.CAPTURE,)}
 
 
 def add_arguments(parser):
     add_port(parser)
-    parser.add_argument("-o", "--output", metavar="DIR", default=".", type=Path,
-                        help="folder to put DIR/<board id>/… into (default: here)")
+    # what is written there is known once the board has said its id: fetch() looks then
+    add_output(parser, "-o", "--output", metavar="DIR", default=".", type=Path,
+               writes=lambda value, args: [],
+               help="folder to put DIR/<board id>/… into (default: here)")
     parser.add_argument("--json", action="store_true", help="what was fetched, as JSON")
 
 
@@ -29,8 +38,10 @@ def folder_name(board_id):
     return "".join(c for c in board_id if c.isalnum() and c.isascii())[:40] or "board"
 
 
-def fetch(link, output, say=print):
+def fetch(link, output, say=print, force=False):
     """Copy what is there into output/<board id>; returns that folder.
+
+    force: replace there what is none of a board's files, too.
 
     Only names of WANTED are asked for and written: no name of the board's reaches a path here.
     """
@@ -39,6 +50,7 @@ def fetch(link, output, say=print):
     if not names:
         raise NoBoard("%s: nothing of sixflip is on this board: sixflip provision" % link.port)
     folder = Path(output) / folder_name(link.board_id())
+    may_replace([(folder / name, kinds) for name, kinds in KINDS.items()], force)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -75,7 +87,7 @@ def convert(folder, say=print):
 def run(args):
     say = (lambda text: None) if args.json else print
     with open_link(args.port) as link:
-        folder = fetch(link, args.output, say)
+        folder = fetch(link, args.output, say, args.force)
         board = link.board_id()
         link.reset()
     convert(folder, say)

@@ -4,6 +4,7 @@ import json
 
 from .. import atomic_write
 from ..errors import CheckFailed
+from ..file_arguments import add_input
 from ..verifying.verify_files import decode_record
 from .board_events import wait_for
 from .console import Console
@@ -16,9 +17,8 @@ OFFERED = "offered.bin"     # where the firmware looks for it at its next power-
 
 
 def add_arguments(parser):
-    parser.add_argument("--from", dest="source", metavar="FILE", help="a correction record, of "
-                        "pull, mount -o or refine --record: the board checks it and makes it "
-                        "its newest one")
+    add_input(parser, "--from", dest="source", metavar="FILE", help="a correction record, of "
+              "pull, mount -o or refine -o: the board checks it and makes it its newest one")
     add_port(parser)
 
 

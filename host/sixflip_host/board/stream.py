@@ -9,7 +9,9 @@ import contextlib
 import math
 import sys
 
+from .. import file_kinds
 from ..errors import UsageError
+from ..file_arguments import add_output
 from ..terminal import plain
 from .console import words
 from .ports import add_port, open_link
@@ -40,7 +42,8 @@ def add_arguments(parser):
                                                  "set to)")
     parser.add_argument("--seconds", type=float, metavar="N", help="by the board's clock "
                                                                    "(default: until Ctrl-C)")
-    parser.add_argument("-o", "--output", metavar="FILE", help="CSV (default: the screen)")
+    add_output(parser, "-o", "--output", metavar="FILE", help="CSV (default: the screen)",
+               kinds=(file_kinds.SAMPLES, file_kinds.CORRECTED))
 
 
 def run(args):

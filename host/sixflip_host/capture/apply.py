@@ -6,8 +6,9 @@ import numpy as np
 
 from sixflip.correction_of import correction_of
 
-from .. import atomic_write
+from .. import atomic_write, file_kinds
 from ..errors import BadFile
+from ..file_arguments import add_input, add_output
 from ..verifying.verify_files import read_record
 from . import capture_file
 from .corrected_rows import corrected_rows
@@ -19,36 +20,38 @@ EXAMPLE = ("sixflip apply record_a.bin capture.csv -o corrected.csv\n"
 
 def add_arguments(parser):
     """The options of the verb."""
-    parser.add_argument("record", help="correction record")
-    parser.add_argument("capture", help="capture with the raw counts")
-    parser.add_argument("-o", "--output", required=True,
-                        help="file to write: .parquet, .npz or .mcap, else CSV")
-    parser.add_argument("--force", action="store_true", help="even if it is another chip or range")
+    add_input(parser, "record", help="correction record")
+    add_input(parser, "capture", help="capture with the raw counts")
+    add_output(parser, "-o", "--output", required=True, kinds=lambda args: _form(args.output)[1:],
+               help="file to write: .parquet, .npz or .mcap, else CSV")
+    parser.add_argument("--other-sensor", action="store_true",
+                        help="even if it is another chip or range")
 
 
 def run(args):
     """Correct every sample."""
     record = read_record(args.record)
-    capture = capture_file.read(args.capture)
-    if not args.force:
+    capture = capture_file.read_samples(args.capture)
+    if not args.other_sensor:
         _fits(args, record, capture)
     outside = []
-    _writer(args.output)(args.output, capture, record,
-                         lambda *celsius: outside.append(celsius))
+    _form(args.output)[0](args.output, capture, record,
+                          lambda *celsius: outside.append(celsius))
     for _, low, high in outside:
         print("the temperature leaves %.1f to %.1f °C, what the record's terms were measured "
               "at: beyond it their edge holds" % (low, high), file=sys.stderr)
     return 0
 
 
-def _writer(output):
-    """function(output, capture, record, tell) by the ending of a name."""
+def _form(output):
+    """By the ending of a name: function(output, capture, record, tell), kind of file."""
     from . import export_mcap, export_tables
-    for ending, write in ((".parquet", export_tables.parquet), (".npz", export_tables.npz),
-                          (".mcap", export_mcap.mcap)):
+    for ending, write, kind in ((".parquet", export_tables.parquet, file_kinds.PARQUET),
+                                (".npz", export_tables.npz, file_kinds.NPZ),
+                                (".mcap", export_mcap.mcap, file_kinds.MCAP)):
         if output.endswith(ending):
-            return write
-    return _csv
+            return write, kind
+    return _csv, file_kinds.CORRECTED
 
 
 def _csv(output, capture, record, tell):
@@ -82,4 +85,4 @@ def _fits(args, record, capture):
     for what, has, wants, number in pairs:
         if (abs(has - wants) > 5.1e-4 if number else has != wants):
             raise BadFile("%s is for %s %s, %s has %s: expected a record of this sensor "
-                          "(or --force)" % (args.record, what, has, args.capture, wants))
+                          "(or --other-sensor)" % (args.record, what, has, args.capture, wants))

@@ -91,6 +91,16 @@ def read(path):
     return parse(path, data)
 
 
+def read_samples(path):
+    """read() for what needs every sample: BadFile where the board kept the poses' sums only."""
+    capture = read(path)
+    if capture.sums_only:
+        raise BadFile("%s: the board's flash was full, so it kept the sums of its poses and not "
+                      "the samples this needs; sixflip solve works with the sums, and sixflip "
+                      "verify checks what was solved from them" % path)
+    return capture
+
+
 def parse(path, data):
     """A capture from the bytes of its text; `path` is for the error."""
     meta, columns, samples, offset = parse_header(path, data)

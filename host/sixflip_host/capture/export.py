@@ -5,10 +5,10 @@ paper's do_calib: its apply_calib node, or an attitude filter, then corrects wha
 """
 
 import json
-import os
 
-from .. import atomic_write
+from .. import atomic_write, file_kinds
 from ..errors import UsageError
+from ..file_arguments import add_input, add_output
 from ..simulating import other_simulators
 from ..solving.record_json import record_json
 from ..verifying.verify_files import read_record
@@ -22,18 +22,18 @@ EXAMPLE = ("sixflip export record_a.bin --format imu_calib -o imu_calib.yaml\n"
 
 def capture_csv(path, output):
     """Text capture; gzipped when the name ends in .gz."""
-    capture_file.write(output, capture_file.read(path))
+    capture_file.write(output, capture_file.read_samples(path))
 
 
 def capture_bin(path, output):
     """A board's file."""
-    atomic_write.write_bytes(output, capture_binary.encode(capture_file.read(path)))
+    atomic_write.write_bytes(output, capture_binary.encode(capture_file.read_samples(path)))
 
 
 def capture_data(write):
     """A capture's raw counts for other tools; write: function(output, capture)."""
     def convert(path, output):
-        write(output, capture_file.read(path))
+        write(output, capture_file.read_samples(path))
     return convert
 
 
@@ -57,29 +57,34 @@ def frozen_text(make):
     return write
 
 
-# format: (made from, how, endings of a file name that ask for it)
+# format: (made from, how, endings of a file name that ask for it, kinds of file it is)
 FORMATS = {
-    "csv": ("capture", capture_csv, (".csv", ".csv.gz")),
-    "bin": ("capture", capture_bin, (".bin",)),
-    "json": ("record", record_to_json, (".json",)),
-    "imu_calib": ("record", frozen_text(export_formats.imu_calib_yaml), (".yaml", ".yml")),
-    "imufusion": ("record", frozen_text(export_formats.imufusion_python), (".py",)),
-    "imucal": ("record", frozen_text(export_formats.imucal_json), ()),
-    "c-header": ("record", record_text(export_c.c_header), (".h",)),
-    "parquet": ("capture", capture_data(export_tables.parquet), (".parquet",)),
-    "npz": ("capture", capture_data(export_tables.npz), (".npz",)),
-    "mcap": ("capture", capture_data(export_mcap.mcap), (".mcap",)),
-    "sdf": ("capture", other_simulators.capture_sdf, (".sdf",)),
-    "kalibr": ("capture", other_simulators.capture_kalibr, (".yaml", ".yml")),
-    "table": ("capture", other_simulators.capture_table, (".txt",)),
+    "csv": ("capture", capture_csv, (".csv", ".csv.gz"),
+            (file_kinds.CAPTURE, file_kinds.SIMULATED)),
+    "bin": ("capture", capture_bin, (".bin",), (file_kinds.BOARD_CAPTURE,)),
+    "json": ("record", record_to_json, (".json",), (file_kinds.RECORD_JSON,)),
+    "imu_calib": ("record", frozen_text(export_formats.imu_calib_yaml), (".yaml", ".yml"),
+                  (file_kinds.IMU_CALIB,)),
+    "imufusion": ("record", frozen_text(export_formats.imufusion_python), (".py",),
+                  (file_kinds.IMUFUSION,)),
+    "imucal": ("record", frozen_text(export_formats.imucal_json), (), (file_kinds.IMUCAL,)),
+    "c-header": ("record", record_text(export_c.c_header), (".h",), (file_kinds.C_HEADER,)),
+    "parquet": ("capture", capture_data(export_tables.parquet), (".parquet",),
+                (file_kinds.PARQUET,)),
+    "npz": ("capture", capture_data(export_tables.npz), (".npz",), (file_kinds.NPZ,)),
+    "mcap": ("capture", capture_data(export_mcap.mcap), (".mcap",), (file_kinds.MCAP,)),
+    "sdf": ("capture", other_simulators.capture_sdf, (".sdf",), (file_kinds.SDF,)),
+    "kalibr": ("capture", other_simulators.capture_kalibr, (".yaml", ".yml"),
+               (file_kinds.KALIBR,)),
+    "table": ("capture", other_simulators.capture_table, (".txt",), (file_kinds.TABLE,)),
 }
 FROZEN = ("imu_calib", "imufusion", "imucal")
 
 
 def add_arguments(parser):
     """The options of the verb."""
-    parser.add_argument("file", help="capture or record")
-    parser.add_argument("-o", "--output", required=True, help="file to write")
+    add_input(parser, "file", help="capture or record")
+    add_output(parser, "-o", "--output", required=True, kinds=_kinds, help="file to write")
     parser.add_argument("--format", "--to", dest="to", choices=FORMATS,
                         help="default: by the name of the output")
     parser.add_argument("--temperature", type=float, metavar="DEGC", help="at which a record that "
@@ -87,15 +92,22 @@ def add_arguments(parser):
                         "calibration's)")
 
 
+def _asked(args):
+    """The formats that are asked for: by --format, or by the name of the output."""
+    return [args.to] if args.to else _by_name(args.output)
+
+
+def _kinds(args):
+    return [kind for name in _asked(args) for kind in FORMATS[name][3]]
+
+
 def run(args):
     """Convert one file."""
-    asked = [args.to] if args.to else _by_name(args.output)
+    asked = _asked(args)
     kind = "record" if atomic_write.read_bytes(args.file).startswith(RECORD_MAGIC) else "capture"
     # where two formats have the same ending, the one that is made from such a file
     name = next((one for one in asked if FORMATS[one][0] == kind), asked[0])
-    made_from, how, _ = FORMATS[name]
-    if os.path.exists(args.output) and os.path.samefile(args.file, args.output):
-        raise UsageError("%s: expected another file to write than the one to read" % args.output)
+    made_from, how, *_ = FORMATS[name]
     if kind != made_from:
         raise UsageError("%s is a %s, and %s is made from a %s: expected --format %s" % (
             args.file, kind, name, made_from, " or ".join(
@@ -111,7 +123,7 @@ def run(args):
 
 def _by_name(output):
     """The formats an ending asks for."""
-    asked = [name for name, (_, _, endings) in FORMATS.items()
+    asked = [name for name, (_, _, endings, _) in FORMATS.items()
              if endings and output.endswith(endings)]
     if not asked:
         raise UsageError("%s: its name does not say the format, expected --format %s" % (

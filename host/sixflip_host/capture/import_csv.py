@@ -7,7 +7,9 @@ import numpy as np
 
 from sixflip.faces import pose_name
 
+from .. import file_kinds
 from ..errors import BadFile, UsageError
+from ..file_arguments import add_input, add_output
 from ..terminal import plain
 from . import capture_file, csv_mapping, ros_bag, units
 from .capture_header import ACCEL, GYRO, MAG, SENSORS, STANDARD_G
@@ -27,9 +29,11 @@ TEMPERATURE = {"mpu6050": (340, 36.53), "itg3205": (280, 82.142857), "gy85": (28
 def add_arguments(parser):
     """The options of the verb."""
     add = parser.add_argument
-    add("file", help="CSV, plain or gzipped; or a ROS bag with sensor_msgs/Imu: a rosbag2 "
-        "folder, .db3, .mcap, .bag")
-    add("-o", "--output", required=True, help="capture to write, .csv or .csv.gz")
+    add_input(parser, "file", help="CSV, plain or gzipped; or a ROS bag with sensor_msgs/Imu: a "
+              "rosbag2 folder, .db3, .mcap, .bag")
+    add_output(parser, "-o", "--output", required=True,
+               kinds=(file_kinds.CAPTURE, file_kinds.SIMULATED),
+               help="capture to write, .csv or .csv.gz")
     add("--sensor", default="other", choices=SENSORS, help="the chip (default: other)")
     add("--rate", type=float, metavar="HZ", help="sample rate, when there is no time column")
     add("--time-column", metavar="NAME", help="column of times (or of sample numbers)")
@@ -48,7 +52,8 @@ def add_arguments(parser):
     add("--mag-lsb", type=float, metavar="N", help="counts per µT of columns --map mx= my= mz=")
     add("--g", type=float, default=STANDARD_G, help="gravity there, m/s² (default 9.80665)")
     add("--label-column", metavar="NAME", help="column that names the still sections")
-    add("--sections", metavar="JSON", help="file that names the still sections by sample numbers")
+    add_input(parser, "--sections", metavar="JSON",
+              help="file that names the still sections by sample numbers")
     add("--label", action="append", metavar="up=Z+a", help="what one of their labels means")
     add("--json", action="store_true", help="what was found, as JSON")
     add("--no-poses", action="store_true", help="leave finding the poses to whoever reads it")

@@ -12,6 +12,7 @@ from sixflip.scale_form import scale_form
 from .. import atomic_write
 from ..board.ports import add_port, open_link
 from ..errors import BadFile
+from ..file_arguments import add_input
 from ..solving import solution
 from ..solving.record_json import record_json
 from ..solving.solve import finite
@@ -27,7 +28,7 @@ RECORD_MAGIC = b"6FLP"
 
 def add_arguments(parser):
     """The options of the verb."""
-    parser.add_argument("file", nargs="?", help="record or capture (default: a board's records)")
+    add_input(parser, "file", nargs="?", help="record or capture (default: a board's records)")
     add_port(parser)
     parser.add_argument("--json", action="store_true", help="the same as JSON")
 

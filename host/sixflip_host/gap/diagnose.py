@@ -1,9 +1,12 @@
 """sixflip diagnose: where the gap to the nominal simulator lies, what makes it, how far it
 shrinks once that is added."""
 import json
+import os
 
+from .. import file_kinds
 from ..capture import capture_file
 from ..errors import CheckFailed, UsageError
+from ..file_arguments import add_input, add_output
 from ..mounting import mount
 
 HELP = "find what the simulated sensor lacks: where the gap lies, which effect, how far it shrinks"
@@ -13,24 +16,30 @@ VERDICTS = ("no gap", "explained", "partly explained", "unexplained", "cannot te
 
 def add_arguments(parser):
     add = parser.add_argument
-    add("captures", nargs="+", metavar="CAPTURE", help="one capture or more, a session each")
-    add("--reference", metavar="NOISE", help="a capture at rest, to know the noise by")
-    add("--sim", action="append", default=[], metavar="SIM.csv",
-        help="compare with this capture of your own simulator instead of the nominal one")
+    add_input(parser, "captures", nargs="+", metavar="CAPTURE",
+              help="one capture or more, a session each")
+    add_input(parser, "--reference", metavar="NOISE",
+              help="a capture at rest, to know the noise by")
+    add_input(parser, "--sim", action="append", default=[], metavar="SIM.csv",
+              help="compare with this capture of your own simulator instead of the nominal one")
     add("--add", action="append", default=[], metavar="EFFECT",
         help="run the simulator again with this effect too (`found`: those found)")
-    add("--scenario", metavar="TOML", help="write the scenario with the effects added")
-    add("--record", metavar="RECORD", help="put what was found and the board can take out (drift "
-        "with temperature, g-sensitivity) into this correction record")
-    add("-o", "--output", metavar="NEW", help="the record to write, for sixflip restore --from")
-    add("--report", metavar="DIR", help="write a page with pictures")
+    add_output(parser, "--scenario", metavar="TOML", writes=scenario_files,
+               help="write the scenario with the effects added, and its plan beside it")
+    add_input(parser, "--record", metavar="RECORD", help="put what was found and the board can "
+              "take out (drift with temperature, g-sensitivity) into this correction record")
+    add_output(parser, "-o", "--output", metavar="NEW", kinds=(file_kinds.RECORD,),
+               help="the record to write, for sixflip restore --from")
+    add_output(parser, "--report", metavar="DIR", writes=report_files,
+               help="write a page with pictures")
     add("--certified-box", action="store_true", help="the box is known to be square")
     add("--without", default="", metavar="EFFECT,…", help="leave effects out of the library")
     add("--json", action="store_true", help="the answer as JSON")
     add("--fail-on", default="", metavar="VERDICT,…", help="exit 1 on any of these verdicts")
     add("--max-gap", type=float, metavar="X",
         help="exit 1 when the gap of a sensor exceeds X times its noise floor")
-    add("--junit", metavar="FILE", help="also write the checks as JUnit XML")
+    add_output(parser, "--junit", metavar="FILE", kinds=(file_kinds.JUNIT,),
+               help="also write the checks as JUnit XML")
     add("--jobs", type=int, default=0, metavar="N", help="threads (default: one a core)")
 
 
@@ -54,14 +63,14 @@ def run(args):
         raise UsageError("--record: expected no --sim, a record corrects the sensor and no "
                          "difference between sensor and simulator")
     record = mount.accelerometer_record(args.record) if args.record else None
-    sessions = [observations.Session(path, capture_file.read(path)) for path in args.captures]
-    noise = reference.levels(capture_file.read(args.reference), args.reference) \
+    read = capture_file.read_samples
+    sessions = [observations.Session(path, read(path)) for path in args.captures]
+    noise = reference.levels(read(args.reference), args.reference) \
         if args.reference else None
     settings = diagnosis.Settings(args.certified_box, without, noise, args.jobs)
     simulator = None
     if args.sim:
-        simulator = against_simulator.read([capture_file.read(p) for p in args.sim], args.sim,
-                                           settings)
+        simulator = against_simulator.read([read(p) for p in args.sim], args.sim, settings)
         settings.simulated = simulator.known
     found = diagnosis.Diagnosis(sessions, settings, simulator)
     loops = closed(found, args)
@@ -121,6 +130,20 @@ def closed(found, args):
     if args.scenario:
         scenario_out.write(args.scenario, found, [e for lo in loops.values() for e in lo.effects])
     return loops
+
+
+def scenario_files(value, args):
+    """The scenario and the plan that scenario_out.write puts beside it."""
+    from . import scenario_out
+    return [(value, (file_kinds.SCENARIO,)),
+            (str(scenario_out.plan_beside(value)), (file_kinds.PLAN,))]
+
+
+def report_files(value, args):
+    """The page and the pictures that report.write puts into a folder."""
+    from . import report
+    return [(os.path.join(value, report.PAGE), (file_kinds.PAGE,))] + [
+        (os.path.join(value, name + ".png"), (file_kinds.PNG,)) for name in report.PICTURES]
 
 
 def verdicts(text):

@@ -6,6 +6,10 @@ from ..errors import UsageError
 from ..reporting.page import Page
 from . import pictures, words
 
+PAGE = "index.html"
+PICTURES = ("where", "residuals_accel", "residuals_gyro", "poses_accel", "poses_gyro", "noise",
+            "alias")
+
 
 def write(folder, diagnosis, answer, loops):
     """Write index.html and the PNGs into a folder, made if it is not there."""
@@ -15,7 +19,7 @@ def write(folder, diagnosis, answer, loops):
     except OSError as error:
         raise UsageError("--report %s: %s" % (folder, error.strerror)) from None
     drawn = draw(folder, diagnosis, loops)
-    atomic_write.write_text(str(folder / "index.html"), page(answer, drawn))
+    atomic_write.write_text(str(folder / PAGE), page(answer, drawn))
 
 
 def draw(folder, diagnosis, loops):

@@ -31,11 +31,16 @@ def plan_of(session):
                                  tau)
 
 
+def plan_beside(path):
+    """Where the plan of a scenario file is."""
+    return Path(path).with_suffix(".plan.json")
+
+
 def write(path, diagnosis, effects):
     """Write PATH (TOML) and beside it the plan it names; returns both paths."""
     path = Path(path)
     sessions = next(iter(diagnosis.gaps.values())).sessions
-    plan = path.with_suffix(".plan.json")
+    plan = plan_beside(path)
     plan_file.write(str(plan), protocols.Protocol("measured", [plan_of(s) for s in sessions]))
     first = sessions[0]
     sensor = first.capture.meta["sensor"]

@@ -17,7 +17,7 @@ def run(folder, path, speed):
     sys.path.insert(1, str(shared_dir()))
     from ..capture import capture_file
     from .replay_chips import Replay, bus_of
-    capture = capture_file.read(path)
+    capture = capture_file.read_samples(path)
     replay = Replay(capture, speed)
     bus = bus_of(capture, replay)
     local_firmware.own_copy(folder)

@@ -13,7 +13,7 @@ from .replay_chips import settings_of
 
 def checked(path):
     """The settings to replay a capture file with; BadFile or UsageError where it cannot be."""
-    return settings_of(capture_file.read(path))
+    return settings_of(capture_file.read_samples(path))
 
 
 class ReplayLink(LocalLink):

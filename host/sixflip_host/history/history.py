@@ -4,7 +4,9 @@ import json
 import math
 from datetime import datetime, timezone
 
+from .. import file_kinds
 from ..errors import CheckFailed, UsageError
+from ..file_arguments import add_output
 from ..solving.solve import finite
 from ..terminal import console, plain, styled, table, verdict_text
 from . import drift, parameters, store
@@ -21,8 +23,8 @@ def add_arguments(parser):
     """The options of the verb."""
     parser.add_argument("board", nargs="?", metavar="BOARD",
                         help="id of a board, or how it begins (default: a list of all boards)")
-    parser.add_argument("--plot", metavar="FILE.png",
-                        help="draw the parameters over time and temperature; needs BOARD")
+    add_output(parser, "--plot", metavar="FILE.png", kinds=(file_kinds.PNG,),
+               help="draw the parameters over time and temperature; needs BOARD")
     parser.add_argument("--json", action="store_true", help="the same as JSON")
 
 

@@ -9,9 +9,10 @@ from sixflip import correction_record, mounting
 from sixflip.correction_of import correction_of
 from sixflip_sim.worlds import NOISE
 
-from .. import atomic_write
+from .. import atomic_write, file_kinds
 from ..capture import capture_file
 from ..errors import BadFile, CheckFailed, UsageError
+from ..file_arguments import add_input, add_output
 from ..simulating import still_rest
 from ..verifying.verify_files import read_record
 from . import mount_board, mount_words, robot_axes
@@ -30,16 +31,17 @@ LARGEST_BIAS_DPS = 40.0     # ITG3205 data sheet, zero-rate output
 def add_arguments(parser):
     """The options of the verb."""
     add = parser.add_argument
-    add("capture", nargs="?", help="capture of some seconds of rest, engine off")
+    add_input(parser, "capture", nargs="?", help="capture of some seconds of rest, engine off")
     add("--vector", nargs=3, type=float, metavar=("GX", "GY", "GZ"),
         help="instead: gravity as read, calibrated and averaged, in g")
-    add("--record", help="correction record of this sensor")
+    add_input(parser, "--record", help="correction record of this sensor")
     add("--axes", default="rep103", metavar="AXES",
         help="the robot's axes: rep103 (forward, left, up), ned (forward, right, down), or "
         "where each lies in the sensor, such as x=-y,y=x,z=z (default: rep103)")
     add("--order", choices=("xyz", "yxz"), help="default: the paper's rule (Promrit Eq. 6)")
     add("--both", action="store_true", help="both orders")
-    add("-o", "--output", metavar="RECORD", help="write --record with this mounting in it")
+    add_output(parser, "-o", "--output", metavar="RECORD", kinds=(file_kinds.RECORD,),
+               help="write --record with this mounting in it")
     add("--port", metavar="PORT", help="instead: the board there measures it, keeps it in its "
         "record and applies it from then on (as for the other verbs)")
     add("--json", action="store_true", help="the answer as one JSON object")
@@ -64,7 +66,7 @@ def run(args):
     if args.vector:
         G, rest = list(args.vector), None
     else:
-        G, rest = gravity_of(capture_file.read(args.capture), record)
+        G, rest = gravity_of(capture_file.read_samples(args.capture), record)
     found = answer(G, axes, args.order, record, calibrated=record is not None or rest is None)
     found["rest"] = rest
     if args.json:

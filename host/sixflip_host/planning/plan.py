@@ -2,7 +2,9 @@
 import json
 import math
 
+from .. import file_kinds
 from ..errors import UsageError
+from ..file_arguments import add_input, add_output
 from ..simulating import protocols
 from ..simulating.session_rows import rows_of
 from . import alias, plan_additions, plan_file
@@ -16,8 +18,8 @@ CAPTURES = ("paper", "return", "random", "backward", "thermal", "recommended")
 
 
 def add_arguments(parser):
-    parser.add_argument("--protocol", default="recommended", metavar="NAME|FILE",
-                        help="%s, or a plan file (default: recommended)" % ", ".join(CAPTURES))
+    add_input(parser, "--protocol", default="recommended", metavar="NAME|FILE",
+              help="%s, or a plan file (default: recommended)" % ", ".join(CAPTURES))
     parser.add_argument("--sensor", default="mpu6050", choices=SENSORS,
                         help="whose typical sizes and noise to judge by (default: mpu6050)")
     parser.add_argument("--certified-box", action="store_true",
@@ -27,8 +29,10 @@ def add_arguments(parser):
     parser.add_argument("--minutes", type=float, metavar="N",
                         help="propose only what keeps the whole capture within N minutes")
     parser.add_argument("--json", action="store_true", help="the answer as JSON")
-    parser.add_argument("--plot", metavar="PNG", help="draw the alias matrix")
-    parser.add_argument("--save", metavar="FILE", help="write the protocol as a plan file")
+    add_output(parser, "--plot", metavar="PNG", kinds=(file_kinds.PNG,),
+               help="draw the alias matrix")
+    add_output(parser, "--save", metavar="FILE", kinds=(file_kinds.PLAN,),
+               help="write the protocol as a plan file")
 
 
 def run(args):

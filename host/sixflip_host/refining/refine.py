@@ -7,9 +7,10 @@ import numpy as np
 from sixflip import correction_record
 from sixflip.faces import LEANING
 
-from .. import atomic_write
+from .. import atomic_write, file_kinds
 from ..capture import capture_file
 from ..errors import BadFile, CheckFailed, UsageError
+from ..file_arguments import add_input, add_output
 from ..history import remember
 from ..simulating import pose_runs
 from ..solving import gyro_rests, multiposition
@@ -18,9 +19,9 @@ from . import joint_refinement, kept_parameters, refinement_record, refinement_r
 from . import refinement_answer as answer
 
 HELP = "refine a calibration from all rests and moves of a capture, with uncertainties"
-EXAMPLE = ("sixflip refine capture.csv --record refined.bin\n"
+EXAMPLE = ("sixflip refine capture.csv -o refined.bin\n"
            "         sixflip refine hand_held.csv --free\n"
-           "         sixflip refine on_the_floor.csv --keep record.bin --record updated.bin")
+           "         sixflip refine on_the_floor.csv --record record.bin -o updated.bin")
 LABELS = "labels"
 SHORTEST = 20  # samples of a labelled rest that count
 
@@ -28,26 +29,27 @@ SHORTEST = 20  # samples of a labelled rest that count
 def add_arguments(parser):
     """The options of the verb."""
     add = parser.add_argument
-    add("capture", help="capture file, text or a board's own")
+    add_input(parser, "capture", help="capture file, text or a board's own")
     add("--json", action="store_true", help="the answer as one JSON object")
-    add("--record", metavar="OUT", help="write the refined correction record")
-    add("--keep", metavar="RECORD", help="solve only what this session tells, keep the rest "
-        "from this record (robots that cannot take all six faces)")
+    add_input(parser, "--record", metavar="RECORD", help="solve only what this session tells, "
+              "keep the rest from this record (robots that cannot take all six faces)")
+    add_output(parser, "-o", "--output", metavar="NEW", kinds=(file_kinds.RECORD,),
+               help="write the refined correction record")
     add("--free", action="store_true", help="faces and labels left aside: rests found by "
         "themselves, |a| = g in free poses, nine terms")
     add("--g-sensitivity", choices=("auto", "on", "off"), default="auto",
-        help="gyro's pull by gravity (default: when the rests show it; with --record only when "
-        "on: nothing is held out here that would show its gain, as diagnose --record does)")
+        help="gyro's pull by gravity (default: when the rests show it; with -o only when on: "
+        "nothing is held out here that would show its gain, as diagnose --record does)")
 
 
 def run(args):
     """Refine, print, write; 1 when the calibration is refused."""
-    if args.free and args.keep:
-        raise UsageError("--free and --keep: expected one of the two, a record has its axes")
-    capture = capture_file.read(args.capture)
-    record = read_record(args.keep) if args.keep else None
+    if args.free and args.record:
+        raise UsageError("--free and --record: expected one of the two, a record has its axes")
+    capture = capture_file.read_samples(args.capture)
+    record = read_record(args.record) if args.record else None
     pull = args.g_sensitivity
-    if args.record and pull == "auto":
+    if args.output and pull == "auto":
         pull = "off"
     found = refine(capture, args.free, record, pull)
     remember.refined(capture, found)
@@ -57,9 +59,9 @@ def run(args):
         print("\n".join(refinement_report.lines(found)))
     if found["verdict"] == "refused":
         return CheckFailed.exit_code
-    if args.record:
+    if args.output:
         data = correction_record.encode(refinement_record.build(capture, found, record))
-        atomic_write.write_bytes(args.record, data)
+        atomic_write.write_bytes(args.output, data)
     return 0
 
 

@@ -4,9 +4,10 @@ import os
 import tempfile
 from pathlib import Path
 
-from .. import atomic_write
+from .. import atomic_write, file_kinds
 from ..capture import capture_file
 from ..errors import BadFile, UsageError
+from ..file_arguments import add_input, add_output
 from ..solving import solution
 from ..terminal import plain
 from ..verifying import verify_files
@@ -18,11 +19,11 @@ EXAMPLE = ("sixflip report pulled/e6614c311b4c5a2f -o report.html\n"
 
 def add_arguments(parser):
     """The options of the verb."""
-    parser.add_argument("files", nargs="+", metavar="DIR | CAPTURE [RECORD]",
-                        help="the folder `pull` made, or a capture, or a capture and its record; "
-                             "with --gap more captures, a session each")
-    parser.add_argument("-o", "--output", default="report.html", metavar="FILE.html",
-                        help="default: report.html")
+    add_input(parser, "files", nargs="+", metavar="DIR | CAPTURE [RECORD]",
+              help="the folder `pull` made, or a capture, or a capture and its record; with --gap "
+                   "more captures, a session each")
+    add_output(parser, "-o", "--output", default="report.html", metavar="FILE.html",
+               kinds=(file_kinds.PAGE,), help="default: report.html")
     parser.add_argument("--gap", action="store_true",
                         help="diagnose the captures too (takes a while)")
 

@@ -142,7 +142,7 @@ def gap(page, folder, paths):
     from ..capture import capture_file
     from ..gap import answer, closed_loop, diagnosis, observations, report, words
     found = diagnosis.Diagnosis(
-        [observations.Session(path, capture_file.read(path)) for path in paths],
+        [observations.Session(path, capture_file.read_samples(path)) for path in paths],
         diagnosis.Settings())
     loops = {kind: loop for kind in found.gaps
              if (loop := closed_loop.close(found, kind, None))}

@@ -17,19 +17,19 @@ NAMES = {"accel": "linear_acceleration", "gyro": "angular_velocity"}
 
 def capture_sdf(path, output):
     """Write a <sensor type="imu"> for Gazebo."""
-    capture = capture_file.read(path)
+    capture = capture_file.read_samples(path)
     atomic_write.write_text(output, sdf(measure(capture), capture.meta))
 
 
 def capture_kalibr(path, output):
     """Write an imu.yaml."""
-    capture = capture_file.read(path)
+    capture = capture_file.read_samples(path)
     atomic_write.write_text(output, kalibr(measure(capture), capture.meta))
 
 
 def capture_table(path, output):
     """Write the plain table."""
-    capture = capture_file.read(path)
+    capture = capture_file.read_samples(path)
     effects = capture.meta.get("effects", [])
     atomic_write.write_text(output, plain_table(measure(capture), capture.meta, effects))
 

@@ -9,10 +9,12 @@ from sixflip_sim import noise, worlds
 from sixflip_sim.effects import make as make_effects
 from sixflip_sim.effects.library import make as make_effect
 
+from .. import file_kinds
 from ..atomic_write import write_text
 from ..capture import capture_file
 from ..capture.capture_file import Capture
 from ..errors import BadFile, UsageError
+from ..file_arguments import add_input, add_output
 from . import motion_scenes, scenario, simulator
 
 HELP = "simulate captures: noise, table, hand and any of the known effects, from a scenario file"
@@ -23,11 +25,12 @@ _DROPS = 0x500  # channel of the noise: which samples are lost
 
 
 def add_arguments(parser):
-    parser.add_argument("scenario", metavar="SCENARIO.toml")
-    parser.add_argument("-o", "--output", nargs="+", metavar="CSV", required=True,
-                        help="one capture file (.csv or .csv.gz) for each session of the scene")
-    parser.add_argument("--worlds", metavar="JSON",
-                        help="also write the worlds, for `sixflip virtual-board --world`")
+    add_input(parser, "scenario", metavar="SCENARIO.toml")
+    add_output(parser, "-o", "--output", nargs="+", metavar="CSV", required=True,
+               kinds=(file_kinds.SIMULATED,),
+               help="one capture file (.csv or .csv.gz) for each session of the scene")
+    add_output(parser, "--worlds", metavar="JSON", kinds=(file_kinds.WORLDS,),
+               help="also write the worlds, for `sixflip virtual-board --world`")
 
 
 def run(args):

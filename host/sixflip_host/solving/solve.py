@@ -8,6 +8,7 @@ from sixflip.six_faces import LEVELS
 
 from ..capture import capture_file
 from ..errors import UsageError
+from ..file_arguments import add_input
 from . import solution, solve_words
 
 HELP = "solve a capture file with the code that runs on the board"
@@ -17,7 +18,7 @@ EXAMPLE = "sixflip solve capture.csv --lat 48.1 --height 520"
 def add_arguments(parser):
     """The options of the verb."""
     add = parser.add_argument
-    add("capture", help="capture file: .csv, .csv.gz or a board's capture.bin")
+    add_input(parser, "capture", help="capture file: .csv, .csv.gz or a board's capture.bin")
     add("--json", action="store_true", help="the answer as one JSON object")
     add("--g", type=float, help="local gravity, m/s² (default: what the capture says)")
     add("--lat", type=float, metavar="DEG", help="latitude, for local gravity")

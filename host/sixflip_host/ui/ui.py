@@ -11,6 +11,7 @@ from pathlib import Path
 from ..board import calibrate
 from ..board.ports import add_port, open_link
 from ..errors import SixflipError, UsageError
+from ..file_arguments import add_input, add_output
 from ..planning import board_plan
 from ..terminal import plain
 
@@ -21,19 +22,19 @@ EXAMPLE = "sixflip ui"
 def add_arguments(parser):
     where = parser.add_mutually_exclusive_group()
     add_port(where)
-    where.add_argument("--replay", metavar="CAPTURE",
-                       help="no board: play a capture file through the firmware's own session")
+    add_input(where, "--replay", metavar="CAPTURE",
+              help="no board: play a capture file through the firmware's own session")
     parser.add_argument("--speed", metavar="N", type=float,
                         help="of --replay: seconds of the capture a second (default: 1)")
-    parser.add_argument("--plan", metavar="FILE|NAME",
-                        help="a session of a plan (sixflip plan --save FILE), or paper, "
-                             "recommended")
+    add_input(parser, "--plan", metavar="FILE|NAME",
+              help="a session of a plan (sixflip plan --save FILE), or paper, recommended")
     parser.add_argument("--session", metavar="N", type=int, default=1,
                         help="which session of the plan (default: the first)")
     parser.add_argument("--listen", metavar="N", type=int, default=0,
                         help="port on this machine for the browser (default: a free one)")
-    parser.add_argument("-o", "--output", metavar="DIR", default=".", type=Path,
-                        help="folder for what is pulled and reported (default: here)")
+    add_output(parser, "-o", "--output", metavar="DIR", default=".", type=Path,
+               writes=lambda value, args: [],     # pull and report look at what is there
+               help="folder for what is pulled and reported (default: here)")
     parser.add_argument("--open", action="store_true", help="open the browser too")
 
 

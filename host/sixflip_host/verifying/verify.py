@@ -5,6 +5,7 @@ import json
 from sixflip.record_terms import names_of
 
 from ..errors import UsageError
+from ..file_arguments import add_input
 from ..history import remember
 from ..solving import solution
 from ..solving.solve import finite
@@ -17,8 +18,8 @@ EXAMPLE = "sixflip verify pulled/e6614c311b4c5a2f"
 
 def add_arguments(parser):
     """The options of the verb."""
-    parser.add_argument("files", nargs="+", metavar="DIR | CAPTURE RECORD",
-                        help="the folder `pull` made, or a capture and a record")
+    add_input(parser, "files", nargs="+", metavar="DIR | CAPTURE RECORD",
+              help="the folder `pull` made, or a capture and a record")
     parser.add_argument("--json", action="store_true", help="every comparison as JSON")
 
 

@@ -17,7 +17,8 @@ from ..board.board_events import events, wait_for
 from ..board.board_files import shared_dir
 from ..board.board_link import MpremoteLink
 from ..board.console import GUIDED_ORDER, Console
-from ..errors import CheckFailed, SixflipError
+from ..errors import CheckFailed, SixflipError, UsageError
+from ..file_arguments import add_output
 from ..history import remember, store
 from ..terminal import plain
 from . import demo_truth, micropython_fetch
@@ -25,6 +26,7 @@ from . import demo_truth, micropython_fetch
 HELP = "watch a virtual board calibrate itself, and check its arithmetic"
 EXAMPLE = "sixflip demo --keep demo-output"
 TILT_DEG = 2.0
+EVENTS = "events.jsonl"    # what every demo leaves
 LIMIT_MG = 3.0  # a hand that places the box to 0.05 deg leaves about 1 mg across gravity
 
 
@@ -46,8 +48,8 @@ PACE = {"virtual": USUAL, "local": USUAL,
 
 
 def add_arguments(parser):
-    parser.add_argument("--keep", metavar="DIR", type=Path,
-                        help="keep flash image, capture, records, events and plot there")
+    add_output(parser, "--keep", metavar="DIR", type=Path, writes=lambda value, args: [],
+               help="keep flash image, capture, records, events and plot there")
     parser.add_argument("--board", choices=("virtual", "local", "pico"), default="virtual",
                         help="virtual: MicroPython (the default); local: the firmware under "
                              "CPython; pico: an emulated Raspberry Pi Pico, which takes its time")
@@ -234,6 +236,11 @@ def own_history(file):
             os.environ[store.VARIABLE] = before
 
 
+def may_be_used(folder):
+    """Whether nothing would be lost in a folder: it is new, empty or an earlier demo's."""
+    return not folder.is_dir() or not any(folder.iterdir()) or (folder / EVENTS).is_file()
+
+
 def run(args):
     import sys
     if str(shared_dir()) not in sys.path:
@@ -241,6 +248,9 @@ def run(args):
     with contextlib.ExitStack() as stack:
         if args.keep:
             folder = args.keep
+            if not args.force and not may_be_used(folder):
+                raise UsageError("%s: holds files, and not those of a demo, expected another "
+                                 "folder (or --force)" % folder)
             folder.mkdir(parents=True, exist_ok=True)
             # of an earlier demo: this one begins with an erased flash
             (folder / "flash.img").unlink(missing_ok=True)
@@ -250,7 +260,7 @@ def run(args):
             folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="sixflip-")))
         # the demo's board is none of the user's
         stack.enter_context(own_history(folder / "history.sqlite"))
-        log = Log(folder / "events.jsonl")
+        log = Log(folder / EVENTS)
         stack.callback(log.close)
         code = run_steps(args, folder, log)
     if args.keep:

@@ -7,6 +7,8 @@ from pathlib import Path
 from ..atomic_write import read_bytes
 from ..board.console import GUIDED_ORDER
 from ..errors import BadFile, UsageError
+from ..file_arguments import add_input, add_output
+from ..file_kinds import FLASH
 from .micropython_fetch import cache_dir
 
 HELP = "run a virtual board and print its serial port"
@@ -18,13 +20,13 @@ def add_arguments(parser):
     parser.add_argument("--tilt", metavar="DEG", type=float, default=2.0,
                         help="tilt of the table that the simulated operator works on")
     parser.add_argument("--seed", type=int, default=1, help="of sensor errors and noise")
-    parser.add_argument("--flash", metavar="FILE", type=Path,
-                        help="image of the flash, kept (default: in the cache)")
+    add_output(parser, "--flash", metavar="FILE", type=Path, kinds=(FLASH,),
+               help="image of the flash, kept (default: in the cache)")
     parser.add_argument("--speed", metavar="N", type=float, default=None,
                         help="simulated seconds a second (default: as fast as it can)")
-    parser.add_argument("--world", metavar="FILE|JSON",
-                        help="more of the simulated world: JSON, or a file of it, such as "
-                             "`sixflip simulate --worlds` writes")
+    add_input(parser, "--world", metavar="FILE|JSON",
+              help="more of the simulated world: JSON, or a file of it, such as `sixflip simulate "
+                   "--worlds` writes")
     parser.add_argument("--session", metavar="N", type=int, default=1,
                         help="which of the worlds in that file (default: the first)")
     parser.add_argument("--json", action="store_true", help="the port and the flash, as JSON")
