@@ -88,9 +88,10 @@ def _copy(unit, name, asked, scan):
         new = cb.BlockWriter(f.write, meta, scan.blocks.columns, 1)
         with open(root + name, "rb") as g:
             for kind, block in Scan(g).each():
-                if kind == cb.SAMPLES:
+                samples = kind in (cb.SAMPLES, cb.STEPS)
+                if samples:
                     moves.block(block)
-                if kind != cb.END and (kind != cb.SAMPLES or not asked.sums_only):
+                if kind != cb.END and not (samples and asked.sums_only):
                     f.write(block)
         new.note("%s, after a pause of unknown length: %d s stand for it"
                  % (FACES[asked.face] + " again" if asked.face >= 0 else "continued", GAP_S))

@@ -3,7 +3,7 @@
 from sixflip import capture_blocks
 from sixflip.faces import face_of_code
 
-from .capture_meta import columns, meta_bytes
+from .capture_meta import columns, expected_bytes, meta_bytes
 from .capture_store import CaptureStore
 from .flash_files import NEW
 
@@ -43,9 +43,8 @@ def store_of(unit, taken):
     rate_hz = unit.settings["rate_hz"]
     # six seconds of handling a pose
     samples = sum(asked.lengths) + (6 * len(asked.lengths) + 2 * asked.hold_s) * rate_hz
-    width = 2 + 2 * len(capture_blocks.places(mask))
     return CaptureStore(unit.board.root, meta_bytes(unit, taken.session), mask,
-                        samples * width * 11 // 10)
+                        expected_bytes(samples, mask))
 
 
 def _half(placements, face):

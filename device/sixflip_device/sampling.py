@@ -6,7 +6,6 @@ The old correction is out of force while samples are taken (power_up.py): raw me
 import os
 
 import sixflip.session  # noqa: F401 - the longest source first, while there is room
-from sixflip import capture_blocks
 
 from .capture_store import CaptureStore
 from .flash_files import FLAG, remove
@@ -26,13 +25,12 @@ class Taken:
 
 
 def _store(unit, number):
-    from .capture_meta import columns, meta_bytes
+    from .capture_meta import columns, expected_bytes, meta_bytes
     mask = columns(unit.sensor.imu)
-    width = 2 + 2 * len(capture_blocks.places(mask))
     # twelve poses with six seconds of handling each
     samples = 12 * (unit.settings["pose_samples"] + 6 * unit.settings["rate_hz"])
     return CaptureStore(unit.board.root, meta_bytes(unit, number), mask,
-                        samples * width * 11 // 10)
+                        expected_bytes(samples, mask))
 
 
 def run(unit):

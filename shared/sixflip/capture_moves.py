@@ -1,9 +1,9 @@
 """The moves of a session that is in a file, summed up from its samples as while they came."""
 
-import struct
 from array import array
 
-from sixflip.capture_blocks import TIME, US, places
+from sixflip.capture_blocks import US, places
+from sixflip.capture_samples import each, start
 from sixflip.placement_log import PlacementLog, add_window
 from sixflip.still_window import StillWindow
 
@@ -23,24 +23,22 @@ class CaptureMoves:
         self._window = StillWindow(LENGTH, US, gyro_rail, period_us)
         self._places = places(columns)
         self._row = array("h", [0] * 10)
+        self._counts = array("h", [0] * len(self._places))
         self._last_us = 0
         self._last_s = 0
         self._at = 0
 
     def block(self, block):
-        seconds, us, count = struct.unpack(TIME, block[4:14])
+        payload = block[4:-4]
+        seconds, us, count = start(payload)
         # in it the first sample has no interval
-        dt = (seconds - self._last_s) * US + us - self._last_us
-        at = 14
-        for _ in range(count):
-            dt += block[at] | block[at + 1] << 8
-            us += block[at] | block[at + 1] << 8
-            for i in self._places:
-                at += 2
-                self._row[i] = struct.unpack_from("<h", block, at)[0]
-            at += 2
-            self._sample(dt)
-            dt = 0
+        before = (seconds - self._last_s) * US + us - self._last_us
+        for dt in each(block[0], payload, count, self._counts):
+            us += dt
+            for k in range(len(self._places)):
+                self._row[self._places[k]] = self._counts[k]
+            self._sample(before + dt)
+            before = 0
         self._last_s = seconds + us // US
         self._last_us = us % US
 

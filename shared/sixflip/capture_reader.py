@@ -5,6 +5,7 @@ import struct
 from array import array
 
 from sixflip import capture_blocks as cb
+from sixflip import capture_samples
 from sixflip.faces import LEANING, MOST_LEANING
 from sixflip.placement import Placement
 
@@ -19,7 +20,8 @@ class Blocks:
     placements    in force, in the order they were accepted
     withdrawn     codes of the poses that were taken back
     notes         texts
-    samples       number taken (with sums_only more than are here)
+    lost          (first, n) of the samples that never came, by the board's count; missing: all
+    samples       number taken (with sums_only or lost ones more than are here)
     ended         the last block is there; complete: and says that no pose is missing
     truncated_at  offset of the first byte that is not part of a whole block, or None
     damage        a sentence about it, or ""
@@ -35,6 +37,8 @@ class Blocks:
         self.placements = []
         self.withdrawn = []
         self.notes = []
+        self.lost = []
+        self.missing = 0
         self.samples = 0
         self.ended = False
         self.complete = False
@@ -50,8 +54,8 @@ def _header(data):
     if len(data) < size:
         raise ValueError("the capture is cut off in its header")
     magic, version, columns, length = struct.unpack(cb.HEAD, data[:size])
-    if version != cb.VERSION:
-        raise ValueError("capture version %d: expected %d" % (version, cb.VERSION))
+    if not 1 <= version <= cb.VERSION:
+        raise ValueError("capture version %d: expected 1 to %d" % (version, cb.VERSION))
     end = size + length
     if len(data) < end + 4:
         raise ValueError("the capture is cut off in its header")
@@ -68,23 +72,29 @@ def _unpack(form, payload):
     return struct.unpack(form, payload)
 
 
-def _samples(blocks, payload):
-    width = len(blocks.names)
-    seconds, us, count = _unpack(cb.TIME, payload[:10])
-    if us >= cb.US or count == 0 or len(payload) != 10 + count * (2 + 2 * width):
-        raise ValueError("a block of samples contradicts itself")
+def _samples(blocks, kind, payload):
+    seconds, us, count = capture_samples.start(payload)
     t = seconds * cb.US + us
     if len(blocks.t_us) and t < blocks.t_us[-1]:
         raise ValueError("time runs backwards")
+    times, rows = array("q"), array("h")
+    row = array("h", [0] * len(blocks.names))
+    for dt in capture_samples.each(kind, payload, count, row):
+        t += dt
+        times.append(t)
+        rows.extend(row)
     blocks.starts.append(len(blocks.t_us))
-    form = "<H%dh" % width
-    at = 10
-    for _ in range(count):
-        row = struct.unpack(form, payload[at : at + 2 + 2 * width])
-        t += row[0]
-        blocks.t_us.append(t)
-        blocks.rows.extend(array("h", row[1:]))
-        at += 2 + 2 * width
+    blocks.t_us.extend(times)
+    blocks.rows.extend(rows)
+
+
+def _lost(blocks, payload):
+    first, n = _unpack("<II", payload)
+    if first != len(blocks.t_us) + blocks.missing or n == 0:
+        raise ValueError("samples %d to %d are lost after %d" % (
+            first, first + n, len(blocks.t_us) + blocks.missing))
+    blocks.lost.append((first, n))
+    blocks.missing += n
 
 
 def _pose(blocks, payload):
@@ -107,7 +117,7 @@ def _end(blocks, payload):
     blocks.samples, flags = _unpack(cb.FINISH, payload)
     blocks.ended = True
     blocks.sums_only = bool(flags & cb.SUMS_ONLY)
-    if not blocks.sums_only and blocks.samples != len(blocks.t_us):
+    if not blocks.sums_only and blocks.samples != len(blocks.t_us) + blocks.missing:
         raise ValueError(
             "%d samples were taken and %d are here" % (blocks.samples, len(blocks.t_us))
         )
@@ -115,8 +125,10 @@ def _end(blocks, payload):
 
 
 def _take(blocks, kind, payload):
-    if kind == cb.SAMPLES:
-        _samples(blocks, payload)
+    if kind == cb.SAMPLES or kind == cb.STEPS:
+        _samples(blocks, kind, payload)
+    elif kind == cb.LOST:
+        _lost(blocks, payload)
     elif kind == cb.POSE:
         _pose(blocks, payload)
     elif kind == cb.WITHDRAWN:
@@ -154,7 +166,7 @@ def read(data):
             except ValueError as error:
                 blocks.damage = "a block is wrong: %s" % error
     if not blocks.ended:
-        blocks.samples = max(blocks.samples, len(blocks.t_us))
+        blocks.samples = max(blocks.samples, len(blocks.t_us) + blocks.missing)
         blocks.damage = blocks.damage or "its end is missing"
     if blocks.damage:
         blocks.truncated_at = at

@@ -2,9 +2,11 @@
 
 import binascii
 import struct
+from array import array
 
 from sixflip import capture_blocks as cb
 from sixflip.capture_reader import _header, _take
+from sixflip.capture_samples import each, start
 
 MOST_META = 4096
 
@@ -30,6 +32,7 @@ class Scan:
             raise ValueError("its metadata has %d bytes, %d is the most" % (length, MOST_META))
         self.blocks = _header(head + stream.read(length + 4))[0]
         self.seconds = self.us = 0
+        self._row = array("h", [0] * len(self.blocks.names))
 
     def each(self):
         """(kind, the whole block in bytes) of every good block up to the end or the damage."""
@@ -44,8 +47,11 @@ class Scan:
             if len(block) != end + 4 or \
                     struct.unpack("<I", block[end:])[0] != binascii.crc32(block[:end]):
                 return
-            if kind == cb.SAMPLES:
-                self._time(block, end)
+            if kind == cb.SAMPLES or kind == cb.STEPS:
+                try:
+                    self._time(kind, block[4:end])
+                except ValueError:
+                    return
             elif kind == cb.END:
                 blocks.ended = True
                 blocks.samples, flags = struct.unpack(cb.FINISH, block[4:end])
@@ -57,12 +63,11 @@ class Scan:
                     return
             yield kind, block
 
-    def _time(self, block, end):
-        """Count the samples of a block and add up their intervals; no sample is unpacked."""
-        seconds, us, count = struct.unpack(cb.TIME, block[4:14])
-        width = 2 + 2 * len(self.blocks.names)
-        for at in range(14, end, width):
-            us += block[at] | block[at + 1] << 8
+    def _time(self, kind, payload):
+        """Count the samples of a block and add up their intervals."""
+        seconds, us, count = start(payload)
+        for dt in each(kind, payload, count, self._row):
+            us += dt
         self.blocks.samples += count
         self.seconds = seconds + us // cb.US
         self.us = us % cb.US

@@ -50,7 +50,7 @@ class Capture:
         self.parts.append(bytes(data))
         if self.ends:
             self.ends.append(self.ends[-1] + len(data))
-            more = struct.unpack("<H", bytes(data[12:14]))[0] if data[0] == cb.SAMPLES else 0
+            more = struct.unpack("<H", bytes(data[12:14]))[0] if data[0] == cb.STEPS else 0
             self.counts.append(self.counts[-1] + more)
 
     def data(self):
@@ -128,6 +128,73 @@ class RoundTrip(unittest.TestCase):
         self.assertEqual(len(blocks.t_us), 100)
 
 
+def old_block(seconds, us, intervals, rows):
+    """A block as version 1 wrote it: every sample whole."""
+    payload = struct.pack(cb.TIME, seconds, us, len(rows))
+    for dt, row in zip(intervals, rows):
+        payload += struct.pack("<H%dh" % len(row), dt, *row)
+    block = struct.pack(cb.BLOCK, cb.SAMPLES, 0, len(payload)) + payload
+    return block + struct.pack("<I", binascii.crc32(block))
+
+
+class Steps(unittest.TestCase):
+    """What a block holds when its samples are written as steps from one to the next."""
+
+    def back(self, rows, intervals, block_samples=32):
+        parts = []
+        writer = BlockWriter(lambda data: parts.append(bytes(data)), META, 7, block_samples)
+        for dt, row in zip(intervals, rows):
+            writer.add(dt, array("h", row))
+        writer.end(True)
+        return read_blocks(b"".join(parts)), sum([len(part) for part in parts])
+
+    def test_any_counts_come_back_as_they_were(self):
+        noise = Noise(7)
+        edges = (0, 1, -1, 127, -127, 128, -128, 129, 255, 32767, -32768)
+        for size in (0, 3, 90, 200, 32767):
+            rows = [[noise.uniform(size) if k % 3 else edges[(k + i) % 11] for i in range(7)]
+                    for k in range(150)]
+            steps = [(10000, 10127, 10255, 0, 65535, 65536, 3)[k % 7] for k in range(150)]
+            for block_samples in (1, 2, 32, 500):
+                blocks, _ = self.back(rows, steps, block_samples)
+                self.assertEqual(blocks.damage, "")
+                self.assertEqual(list(blocks.rows), [x for row in rows for x in row])
+                self.assertEqual(list(blocks.t_us), [sum(steps[:k + 1]) for k in range(150)])
+
+    def test_a_resting_sensor_takes_half_the_bytes_and_a_shaken_one_half_more_at_most(self):
+        noise = Noise(5)
+        for size, least, most in ((20, 8, 10), (32767, 20, 25)):
+            rows = [[noise.uniform(size) for _ in range(7)] for _ in range(1000)]
+            _, taken = self.back(rows, [10000] * 1000)
+            self.assertTrue(least < taken / 1000 < most, taken)
+
+    def test_a_capture_of_version_1_is_still_read(self):
+        head = struct.pack(cb.HEAD, cb.MAGIC, 1, 7, len(META)) + META
+        rows = [[k, -k, 16384, 300 * k, 5, 6, -3700] for k in range(3)]
+        data = head + struct.pack("<I", binascii.crc32(head)) + old_block(
+            2, 5, [0, 10000, 9999], rows) + old_block(3, 0, [0], rows[:1])
+        blocks = read_blocks(data)
+        self.assertEqual(list(blocks.t_us), [2000005, 2010005, 2020004, 3000000])
+        self.assertEqual(list(blocks.rows), [x for row in rows + rows[:1] for x in row])
+        scan = Scan(BytesIO(data))
+        self.assertEqual([kind for kind, _ in scan.each()], [cb.SAMPLES] * 2)
+        self.assertEqual((scan.blocks.samples, scan.seconds, scan.us), (4, 3, 0))
+
+    def test_samples_that_never_came_are_counted_and_the_rest_is_whole(self):
+        made = Capture(n=64)
+        made.writer.end(True)
+        first, second = made.ends[:2]
+        n = made.counts[1]
+        block = struct.pack(cb.BLOCK, cb.LOST, 0, 8) + struct.pack("<II", 0, n)
+        data = made.data()[:first] + block + struct.pack("<I", binascii.crc32(block)) + \
+            made.data()[second:]
+        blocks = read_blocks(data)
+        self.assertEqual((blocks.lost, blocks.missing, blocks.samples), ([(0, n)], n, 64))
+        self.assertEqual((blocks.damage, blocks.complete), ("", True))
+        self.assertEqual(list(blocks.t_us), made.t_us[n:])
+        self.assertIn("are here", read_blocks(made.data()[:first] + made.data()[second:]).damage)
+
+
 class Damage(unittest.TestCase):
     def test_cut_at_every_byte_it_is_readable_to_the_last_whole_block(self):
         made = Capture(n=60, block_samples=16)
@@ -173,7 +240,7 @@ class Damage(unittest.TestCase):
         return head + struct.pack("<I", binascii.crc32(head))
 
     def test_headers_that_are_wrong_though_their_crc_is_right(self):
-        for data, word in ((self.header(version=2), "version 2"), (self.header(columns=0), "mask"),
+        for data, word in ((self.header(version=3), "version 3"), (self.header(columns=0), "mask"),
                            (self.header(columns=16), "mask"), (self.header(length=9), "cut off")):
             with self.assertRaises(ValueError) as caught:
                 read_blocks(data)
@@ -185,6 +252,13 @@ class Damage(unittest.TestCase):
             (cb.SAMPLES, struct.pack(cb.TIME, 0, 0, 0)),
             (cb.SAMPLES, struct.pack(cb.TIME, 0, 1000000, 1) + bytes(16)),
             (cb.SAMPLES, b"\0"),
+            (cb.STEPS, struct.pack(cb.TIME, 0, 0, 2) + bytes(16)),
+            (cb.STEPS, struct.pack(cb.TIME, 0, 0, 2) + bytes(16) + b"\1\0\0\0\0\0\0\0\0"),
+            (cb.STEPS, struct.pack(cb.TIME, 0, 0, 2) + bytes(16) + b"\xff" + bytes(7)),
+            (cb.STEPS, struct.pack(cb.TIME, 0, 0, 2) + b"\0\0\xff\x7f" + bytes(12) +
+             b"\0\1" + bytes(6)),
+            (cb.LOST, struct.pack("<II", 1, 5)),
+            (cb.LOST, struct.pack("<II", 0, 0)),
             (cb.POSE, b"\1\0"),
             (cb.POSE, bytes(200)),
             (cb.POSE, struct.pack(cb.PLACEMENT, 0, 0, 400, 1, *range(13))),

@@ -6,7 +6,7 @@ from array import array
 
 from synthetic_operator import Operator
 
-from sixflip.capture_blocks import SAMPLES, BlockWriter
+from sixflip.capture_blocks import STEPS, BlockWriter
 from sixflip.capture_moves import CaptureMoves
 from sixflip.capture_scan import Scan
 from sixflip.move_turn import turned
@@ -68,7 +68,7 @@ class Kept:
         scan = Scan(self.file)
         found = CaptureMoves(self.session.placements, scan.blocks.columns, 10000, 32767)
         for kind, block in scan.each():
-            if kind == SAMPLES:
+            if kind == STEPS:
                 found.block(block)
         return found.moves()
 
