@@ -13,6 +13,7 @@ from array import array
 from sixflip import capture_blocks as cb
 from sixflip.capture_moves import CaptureMoves
 from sixflip.capture_scan import Scan
+from sixflip.capture_writer import BlockWriter
 from sixflip.faces import FACES
 
 from .bus_recovery import READ
@@ -85,7 +86,7 @@ def _copy(unit, name, asked, scan):
                          int(1000000 / unit.settings["rate_hz"] + 0.5), unit.sensor.imu.gyro_rail)
     with open(root + NEW, "wb") as f:
         meta = meta_bytes(unit, asked.session)
-        new = cb.BlockWriter(f.write, meta, scan.blocks.columns, 1)
+        new = BlockWriter(f.write, meta, scan.blocks.columns, 1)
         with open(root + name, "rb") as g:
             for kind, block in Scan(g).each():
                 samples = kind in (cb.SAMPLES, cb.STEPS)

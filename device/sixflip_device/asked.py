@@ -7,6 +7,8 @@
     {"redo": "X+"}                          that face of the session before again
     {"continue": true}                      the session before goes on where it ended; when
                                             there is none, or nothing is missing: six faces
+
+"record": true with the first two: every block of the capture is sent to the host (recording.py).
 """
 
 import json
@@ -87,11 +89,13 @@ def parse(request, pose_samples):
 
 
 def run(unit):
-    unit.asked = False
+    unit.asked = unit.recording = False
     request, unit.request = unit.request, None
     try:
         flag = _flag(unit)
         unit.taken = parse(request or flag, unit.settings["pose_samples"])
+        unit.recording = (request or flag or {}).get("record") is True and (
+            unit.taken is None or not unit.taken.before)
     except (ValueError, RuntimeError) as e:
         unit.events.error("no calibration: what was asked for cannot be understood: %s" % e,
                           "%s empty, or a plan or a face as sixflip calibrate writes it" % FLAG)

@@ -1,11 +1,12 @@
 """What sampling does otherwise when a plan, or a face of the session before, was asked for."""
 
-from sixflip import capture_blocks
+from sixflip.capture_writer import BlockWriter
 from sixflip.faces import face_of_code
 
-from .capture_meta import columns, expected_bytes, meta_bytes
+from .capture_meta import columns, meta_bytes
 from .capture_store import CaptureStore
 from .flash_files import NEW
+from .sampling import new_store
 
 
 class ContinuedStore(CaptureStore):
@@ -27,7 +28,7 @@ class ContinuedStore(CaptureStore):
             self._file = open(self._root + NEW, "ab")  # noqa: SIM115 - open for a session
         except OSError as e:
             self._fail(e)
-        self._writer = capture_blocks.BlockWriter(self._write, None, self._columns,
+        self._writer = BlockWriter(self._write, None, self._columns,
                                                   sums_only=self.sums_only)
         go_on(self._writer, asked.samples, asked.seconds, asked.us)
         return None
@@ -36,15 +37,14 @@ class ContinuedStore(CaptureStore):
 def store_of(unit, taken):
     """The CaptureStore; taken.session becomes that of the file that goes on."""
     asked = unit.taken
-    mask = columns(unit.sensor.imu)
     if asked.before:
         taken.session = asked.session
-        return ContinuedStore(unit.board.root, meta_bytes(unit, taken.session), mask, asked)
+        return ContinuedStore(unit.board.root, meta_bytes(unit, taken.session),
+                              columns(unit.sensor.imu), asked)
     rate_hz = unit.settings["rate_hz"]
     # six seconds of handling a pose
     samples = sum(asked.lengths) + (6 * len(asked.lengths) + 2 * asked.hold_s) * rate_hz
-    return CaptureStore(unit.board.root, meta_bytes(unit, taken.session), mask,
-                        expected_bytes(samples, mask))
+    return new_store(unit, taken.session, samples)
 
 
 def _half(placements, face):

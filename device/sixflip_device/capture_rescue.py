@@ -3,11 +3,11 @@
 from .flash_files import NEW, remove
 
 
-def _meta_of(name):
-    """The metadata in the header of a file, or None."""
+def meta_of(root):
+    """The metadata in the header of the session's file, or None."""
     from sixflip.capture_scan import Scan
     try:
-        with open(name, "rb") as f:
+        with open(root + NEW, "rb") as f:
             return Scan(f).blocks.meta_bytes
     except (OSError, ValueError):
         return None
@@ -16,7 +16,7 @@ def _meta_of(name):
 def write_again(store, placements, complete):
     """A half-written block lies in the way of the old one."""
     store._close()
-    meta = store._meta or _meta_of(store._root + NEW)
+    meta = store._meta or meta_of(store._root)
     if meta is None:
         return
     remove(store._root + NEW)

@@ -4,7 +4,7 @@ When space is short the samples are left out and the sums kept, and the file's e
 so. Room for the records is always left free.
 """
 
-from sixflip.capture_blocks import BlockWriter
+from sixflip.capture_writer import BlockWriter
 
 from .flash_files import NEW, REFUSED, free_bytes, remove
 
@@ -20,8 +20,11 @@ class CaptureStore:
 
     sums_only  True from the moment samples are no longer kept
     reason     why, in words
+    recorded   True where every sample is asked for, whatever the file holds (recording.py)
     samples    how many the session had, kept how many of them are in the file; bytes its size
     """
+
+    recorded = False
 
     def __init__(self, root, meta_bytes, columns, expected_bytes):
         self._root = root
@@ -53,7 +56,8 @@ class CaptureStore:
         except OSError as e:
             self._fail(e)
         # with a broken file its blocks go nowhere, and the samples are still counted
-        self._writer = BlockWriter(self._write, meta, self._columns, sums_only=self.sums_only)
+        self._writer = BlockWriter(self._write, meta, self._columns,
+                                   sums_only=self.sums_only and not self.recorded)
         self._flush()
         self._meta = meta if self._broken else None  # else it can be read from the file
 

@@ -5,7 +5,8 @@
     {"cmd": "redo", "face": "Z+"}                that face again, now or of the session before
     {"cmd": "undo"}                              while calibrating
     {"cmd": "stream", "raw": true, "hz": 50}     what is streamed; hz 0: nothing; "heading" in
-                                                 place of "raw", "binary": frames, not lines
+                                                 place of "raw", "binary": frames, not lines;
+                                                 "record" instead of all: blocks of a capture
     {"cmd": "check"}                             is the calibration still valid?
     {"cmd": "mount"}                             how the sensor sits in the robot: mount.py
     {"cmd": "restore"}                           the record before this one
@@ -37,9 +38,10 @@ def _stream(unit, command):
     if isinstance(hz, bool) or not isinstance(hz, (int, float)) or not 0 <= hz <= 500:
         unit.events.error("stream: hz is %s" % str(hz)[:20], "a number from 0 to 500")
         return
-    for value in (raw, heading, binary):
+    record = command.get("record", False)
+    for value in (raw, heading, binary, record):
         if not isinstance(value, bool):
-            unit.events.error("stream: raw, heading or binary is %s" % str(value)[:20],
+            unit.events.error("stream: raw, heading, binary or record is %s" % str(value)[:20],
                               "true or false")
             return
     if raw and heading:
@@ -49,13 +51,14 @@ def _stream(unit, command):
                           "a sensor with a gyro")
     else:
         unit.stream_hz = hz
-        unit.raw, unit.heading, unit.binary = raw, heading, binary
+        unit.raw, unit.heading, unit.binary, unit.recording = raw, heading, binary, record
         unit.output = None  # to be made as it is now wanted
-        unit.events.emit("stream", hz=hz, raw=raw, heading=heading, binary=binary)
+        unit.events.emit("stream", hz=hz, raw=raw, heading=heading, binary=binary, record=record)
 
 
 def _calibrate(unit, command):
-    unit.request = command if "poses" in command or "continue" in command else None
+    special = "poses" in command or "continue" in command or "record" in command
+    unit.request = command if special else None
     unit.asked = True
 
 

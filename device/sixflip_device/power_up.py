@@ -32,6 +32,7 @@ class Unit:
     asked       a calibration is wanted, request: which (asked.py); stopped: the host wants
                 the REPL
     raw, heading, binary, stream_hz    what is streamed and how; output: what sends it
+    recording   the host wants the blocks of a capture: of the session to come, or of the stream
     taken       what a phase left for the next: asked for sampling, sampling for solving,
                 when there is no sensor
     """
@@ -49,7 +50,7 @@ class Unit:
         self.asked = False
         self.request = None
         self.stopped = False
-        self.raw = self.heading = self.binary = False
+        self.raw = self.heading = self.binary = self.recording = False
         self.output = None
         self.stream_hz = settings["stream_hz"]
         self.first = True

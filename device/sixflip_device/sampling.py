@@ -24,13 +24,22 @@ class Taken:
     """
 
 
-def _store(unit, number):
+def new_store(unit, number, samples):
+    """The CaptureStore of a session that begins, of so many samples or fewer."""
     from .capture_meta import columns, expected_bytes, meta_bytes
     mask = columns(unit.sensor.imu)
+    what = unit.board.root, meta_bytes(unit, number), mask, expected_bytes(samples, mask)
+    recording, unit.recording = unit.recording, False
+    if not recording:
+        return CaptureStore(*what)
+    from .recording import RecordedStore
+    return RecordedStore(unit.board, *what)
+
+
+def _store(unit, number):
     # twelve poses with six seconds of handling each
-    samples = 12 * (unit.settings["pose_samples"] + 6 * unit.settings["rate_hz"])
-    return CaptureStore(unit.board.root, meta_bytes(unit, number), mask,
-                        expected_bytes(samples, mask))
+    return new_store(unit, number,
+                     12 * (unit.settings["pose_samples"] + 6 * unit.settings["rate_hz"]))
 
 
 def run(unit):
@@ -48,7 +57,8 @@ def run(unit):
     unit.taken = None
     unit.events.emit("calibrating", missing=names(guided.session.missing()),
                      plan=guided.session.wanted is not None,
-                     session=taken.session, sums_only=store.sums_only, reason=store.reason)
+                     session=taken.session, sums_only=store.sums_only, reason=store.reason,
+                     recorded=store.recorded)
     taken.how = "interrupted"
     try:
         taken.how = guided.run()

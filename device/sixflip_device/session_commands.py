@@ -18,6 +18,8 @@ def obey(command, unit, session, store, teller):
         _redo(face_of_code(placements[-1].pose), session, store, teller)
     elif cmd == "undo":
         unit.events.error("nothing to undo", "an accepted pose")
+    elif cmd == "record" and store.recorded:
+        store.header_again()
     else:
         unit.obey(command, True)
 

@@ -32,6 +32,9 @@ class LineOutput:
 
 def _output(unit):
     """step(sample, dt_us) with every sample, send(t_us, sample) with those that are sent."""
+    if unit.recording:
+        from .stream_blocks import BlockOutput
+        return BlockOutput(unit)
     if unit.heading:
         from .stream_heading import HeadingOutput
         return HeadingOutput(unit)

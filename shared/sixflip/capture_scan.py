@@ -13,7 +13,7 @@ MOST_META = 4096
 
 def go_on(writer, samples, seconds, us):
     """For a BlockWriter: so many samples are in the file, and the time is that."""
-    writer.samples = samples
+    writer.samples = writer.written = samples
     writer._seconds = seconds
     writer._us = us
 

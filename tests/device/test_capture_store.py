@@ -121,7 +121,7 @@ class TestCaptureStore(unittest.TestCase):
         capture_store.free_bytes = lambda root: asked.append(1) or 1200000
         store = self.store()
         del asked[:]  # before the first sample
-        self.session(store, 12)
+        self.session(store, 24)
         self.assertGreater(store.bytes, 2 * capture_store.CHECK_BYTES)
         self.assertEqual(asked, [])
         store.finish(True)

@@ -14,7 +14,7 @@ class Collected:
     def __init__(self, gyro=True):
         self.said = []
         self.frames = []
-        self.raw = self.heading = self.binary = False
+        self.raw = self.heading = self.binary = self.recording = False
         self.output = "old"
         self.stream_hz = 10
         self.settings = {"heading": None, "g": 9.80665}
@@ -57,7 +57,7 @@ class Asked(unittest.TestCase):
 
     def test_nonsense_changes_nothing(self):
         for command in ({"hz": -1}, {"hz": True}, {"raw": 1}, {"heading": "yes"}, {"binary": None},
-                        {"raw": True, "heading": True}):
+                        {"record": 1}, {"raw": True, "heading": True}):
             unit = Collected()
             self.assertEqual(unit.ask(**command)[0], "error", command)
             self.assertEqual((unit.raw, unit.heading, unit.binary, unit.output, unit.stream_hz),

@@ -10,7 +10,7 @@ import shutil
 import storm
 
 from sixflip import capture_reader, correction_record
-from sixflip.capture_blocks import BlockWriter
+from sixflip.capture_writer import BlockWriter
 from sixflip_host import cli
 from sixflip_host.board import board_link, calibrate, provision
 from sixflip_host.board.board_events import events

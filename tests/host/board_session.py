@@ -6,7 +6,8 @@ import numpy as np
 from hand_session import Sensor, session, six_faces
 
 from sixflip import accelerometer, correction_record, gyroscope, verdict
-from sixflip.capture_blocks import ACCEL, GYRO, TEMP, BlockWriter
+from sixflip.capture_blocks import ACCEL, GYRO, TEMP
+from sixflip.capture_writer import BlockWriter
 from sixflip.session import COMPLETE, POSE, REFUSED, Session
 
 SESSION = 0x5EED

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sixflip.capture_blocks import ACCEL, BlockWriter
+from sixflip.capture_blocks import ACCEL
+from sixflip.capture_writer import BlockWriter
 from sixflip_host.board import board_events, pull
 from sixflip_host.board.board_link import safe_name
 from sixflip_host.board.console import Console

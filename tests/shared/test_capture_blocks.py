@@ -7,10 +7,10 @@ from io import BytesIO
 from synthetic_operator import Noise
 
 from sixflip import capture_blocks as cb
-from sixflip.capture_blocks import BlockWriter
 from sixflip.capture_reader import NAMES
 from sixflip.capture_reader import read as read_blocks
 from sixflip.capture_scan import Scan, go_on
+from sixflip.capture_writer import BlockWriter
 from sixflip.placement import Placement
 
 META = b'{"sensor": "mpu6050", "rate_hz": 100}'
@@ -252,10 +252,11 @@ class Damage(unittest.TestCase):
             (cb.SAMPLES, struct.pack(cb.TIME, 0, 0, 0)),
             (cb.SAMPLES, struct.pack(cb.TIME, 0, 1000000, 1) + bytes(16)),
             (cb.SAMPLES, b"\0"),
-            (cb.STEPS, struct.pack(cb.TIME, 0, 0, 2) + bytes(16)),
-            (cb.STEPS, struct.pack(cb.TIME, 0, 0, 2) + bytes(16) + b"\1\0\0\0\0\0\0\0\0"),
-            (cb.STEPS, struct.pack(cb.TIME, 0, 0, 2) + bytes(16) + b"\xff" + bytes(7)),
-            (cb.STEPS, struct.pack(cb.TIME, 0, 0, 2) + b"\0\0\xff\x7f" + bytes(12) +
+            (cb.STEPS, struct.pack(cb.TIME, 0, 0, 2) + bytes(15)),
+            (cb.STEPS, struct.pack(cb.TIME, 0, 0, 2) + bytes(17)),
+            (cb.STEPS, struct.pack(cb.TIME, 0, 0, 2) + bytes(15) + b"\x80"),
+            (cb.STEPS, struct.pack(cb.TIME, 0, 0, 2) + bytes(8) + b"\xff" + bytes(7)),
+            (cb.STEPS, struct.pack(cb.TIME, 0, 0, 2) + b"\0\x80\xff\x7f" + bytes(6) +
              b"\0\1" + bytes(6)),
             (cb.LOST, struct.pack("<II", 1, 5)),
             (cb.LOST, struct.pack("<II", 0, 0)),

@@ -6,9 +6,10 @@ from array import array
 
 from synthetic_operator import Operator
 
-from sixflip.capture_blocks import STEPS, BlockWriter
+from sixflip.capture_blocks import STEPS
 from sixflip.capture_moves import CaptureMoves
 from sixflip.capture_scan import Scan
+from sixflip.capture_writer import BlockWriter
 from sixflip.move_turn import turned
 from sixflip.placement_log import add_window, empty_move
 from sixflip.session import Session

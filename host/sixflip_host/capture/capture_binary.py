@@ -4,8 +4,9 @@ import json
 
 import numpy as np
 
-from sixflip.capture_blocks import ACCEL, GAP_US, GROUPS, GYRO, MAG, TEMP, BlockWriter
+from sixflip.capture_blocks import ACCEL, GAP_US, GROUPS, GYRO, MAG, TEMP
 from sixflip.capture_reader import read as read_blocks
+from sixflip.capture_writer import BlockWriter
 
 from ..errors import BadFile
 from .capture_header import check_meta

@@ -79,7 +79,7 @@ def run(pose_samples):
     from float_lists import solve as solve_lists
 
     from sixflip import accelerometer
-    from sixflip.capture_blocks import BlockWriter
+    from sixflip.capture_writer import BlockWriter
     from sixflip.session import Session
     from sixflip.six_faces import solve as solve_means
     start()
