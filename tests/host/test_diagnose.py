@@ -5,7 +5,7 @@ import xml.etree.ElementTree as ElementTree
 import numpy as np
 import pytest
 
-from sixflip import capture_blocks
+from sixflip import capture_blocks, capture_writer
 from sixflip_host import cli
 from sixflip_host.capture import capture_file
 from sixflip_host.simulating import scenario, simulate
@@ -182,7 +182,7 @@ def board_file(path, counts, lost=0.0):
         data.extend(block)
         late.append(37000)
     meta = {"sensor": "mpu6050", "rate_hz": 100, "accel_lsb_per_g": 16384}
-    writer = capture_blocks.BlockWriter(write, json.dumps(meta).encode(), capture_blocks.ACCEL)
+    writer = capture_writer.BlockWriter(write, json.dumps(meta).encode(), capture_blocks.ACCEL)
     skipped = 0
     for row, gone in zip(counts.astype(int).tolist(), missing):
         if gone:
