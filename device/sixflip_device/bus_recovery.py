@@ -40,7 +40,8 @@ def sleeper(board):
 class Sensor:
     """The IMU, .imu, behind a bus that may fail.
 
-    .errors counts failed transfers, .recoveries how often the chip was set up anew.
+    .errors counts failed transfers, .recoveries how often the chip was set up anew; .shifted is
+    the sentence on the last offset register that somebody changed, or "".
     """
 
     def __init__(self, board, imu, settings, events):
@@ -50,6 +51,7 @@ class Sensor:
         self.imu = imu
         self.errors = 0
         self.recoveries = 0
+        self.shifted = ""
         self._vain = 0
 
     def read_into(self, sample):
@@ -73,7 +75,9 @@ class Sensor:
                 # a wrong answer may be a glitch on the bus: ask again before believing it
                 if self.imu.awake() or self.imu.awake():
                     return READ
-                self._report(None, "the chip was reset or fell asleep; configuring it again")
+                self.shifted = self._shifted()
+                self._report(None, (self.shifted or "the chip was reset or fell asleep")
+                             + "; configuring it again")
                 self.imu.configure(self._settings["rate_hz"])
                 self.recoveries += 1
                 return RECOVERED
@@ -82,6 +86,15 @@ class Sensor:
                 self.errors += 1
                 self._board.sleep_us(RETRY_US)
         return self._recover(error)
+
+    def _shifted(self):
+        """Said three times, by the chip that was there: a stuck SDA reads as zeros through
+        SoftI2C."""
+        said = self.imu.shifted()
+        for _ in range(2):
+            if not said or self.imu.shifted() != said:
+                return ""
+        return said if self.imu.answers(self._board.i2c) else ""
 
     def hangs(self):
         """Sets up anew a chip that answers with one reading over and over; RECOVERED."""

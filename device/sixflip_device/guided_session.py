@@ -13,7 +13,7 @@ from .session_teller import Teller, names
 
 
 class GuidedSession:
-    """run() -> "complete", "timed out", "stopped" or "bus lost"; the results are in
+    """run() -> "complete", "timed out", "stopped", "changed" or "bus lost"; the results are in
 
     .session (placements, moves) and .ended (a sentence, "" when complete).
     """
@@ -35,9 +35,18 @@ class GuidedSession:
         self.ended = ""
 
     def run(self):
+        sensor = self._unit.sensor
         self._teller.state()
         try:
-            return self._sample_until_done()
+            sensor.check()  # whatever was changed before is set up anew
+            sensor.shifted = ""
+            ended = self._sample_until_done()
+            if ended == "complete":
+                sensor.check()
+            if not sensor.shifted:
+                return ended
+            self.ended = sensor.shifted + ": what was captured since is not to be trusted"
+            return "changed"
         except BusLost as e:
             self.ended = str(e)
             return "bus lost"
@@ -54,6 +63,8 @@ class GuidedSession:
         while True:
             dt = next_sample(sample)
             if dt < 0:
+                if unit.sensor.shifted:
+                    return "changed"
                 # the attempt is thrown away, everything accepted stays
                 self.session.interrupt()
                 self._store.note("bus recovered or chip configured again")

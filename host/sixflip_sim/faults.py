@@ -18,8 +18,9 @@ One fault is a dict. "kind" is one of
 When: "at" (transaction number, from 0), or "at_ms" (the world's time), or "every" (each n-th
 transaction), or "rate" (probability of each transaction, with "seed"). "count" (1; with
 every and rate no limit) is how many transactions are hit. "address": only this chip's. A
-fault waits for a transaction it can happen to: torn, garbled, duplicate and noise for a burst of
-six or more registers, data_nak for a write, wrong_id for a read of the identification.
+fault waits for a transaction it can happen to: garbled for a burst of six or more registers,
+torn, duplicate and noise for one of samples, data_nak for a write, wrong_id for a read of the
+identification.
 """
 
 from sixflip_sim import noise
@@ -151,8 +152,10 @@ def _fits(kind, chip, register, n, writing):
         return True
     if chip is None:
         return False
-    if kind in ("torn", "garbled", "duplicate", "noise"):
+    if kind == "garbled":
         return n >= 6 and not writing
+    if kind in ("torn", "duplicate", "noise"):
+        return n >= 6 and not writing and register == getattr(chip, "data_register", register)
     if kind == "data_nak":
         return writing
     return kind != "wrong_id" or (register == chip.id_register and not writing)

@@ -165,6 +165,24 @@ class Configure(unittest.TestCase):
         imu.read_into(out)
         self.assertEqual(list(out), [0, 0, 256, 0, 0, 0, 0])
 
+    def test_what_is_written_into_offset_registers_shifts_and_is_named(self):
+        # register, value, column, counts: 0.98 mg and 4 / 131 deg/s a step, 1 / 4096 g a count
+        for who_am_i, register, value, column, shift in (
+                (0x68, 0x06, 0xFD, 0, 1024), (0x70, 0x7A, 0x03, 1, 2048),
+                (0x70, 0x15, 0x01, 4, 512), (0x68, 0x18, 0x10, 5, 32)):
+            world = still("mpu6050", who_am_i=who_am_i)
+            imu = MPU6050(world.i2c, 0x68, who_am_i)
+            imu.configure(100)
+            self.assertEqual(imu.shifted(), "")
+            before, after = sample(), sample()
+            imu.read_into(before)
+            world.i2c.writeto_mem(0x68, register, bytes([value]))
+            world.clock.sleep_ms(20)
+            imu.read_into(after)
+            self.assertEqual([a - b for a, b in zip(after, before)][column], shift)
+            self.assertFalse(imu.awake())
+            self.assertIn("register 0x%02x of" % register, imu.shifted())
+
     def test_gy85(self):
         world = still("gy85", temperature_c=35.0)
         imu = GY85(world.i2c)

@@ -66,7 +66,7 @@ class SimulatedADXL345(RegisterChip):
         self.model.accel_counts(k, t_us, lsb, rail, louder, counts)
         i = chip.DATAX0
         for axis in range(3):
-            offset = registers[chip.OFSX + axis]        # 15.6 mg a count, signed
+            offset = registers[chip.OFSX + axis]        # 15.6 mg a count, signed (table 19)
             count = counts[axis] + (((offset ^ 0x80) - 0x80) * lsb // 64 if offset else 0)
             registers[i] = count & 0xFF
             registers[i + 1] = count >> 8 & 0xFF

@@ -9,7 +9,7 @@ except ImportError:
         return value
 
 DEVID = const(0x00)
-OFSX = const(0x1E)              # three offset registers which the chip adds: kept at 0
+OFSX = const(0x1E)              # three offsets which the chip adds, 15.6 mg a count: kept at 0
 BW_RATE = const(0x2C)
 POWER_CTL = const(0x2D)         # bit 3: measure
 INT_ENABLE = const(0x2E)
@@ -49,15 +49,14 @@ class ADXL345(Registers):
     gyro_rail = 0
     temp_lsb_per_c = 0
     temp_offset_c = 0
-    shown = (BW_RATE, POWER_CTL, DATA_FORMAT)   # registers in a capture's header
+    setup = ((BW_RATE, 2), (DATA_FORMAT, 1))
+    offsets = ((OFSX, 3),)
 
     def __init__(self, i2c, address=0x53, sleep_ms=None):
         Registers.__init__(self, i2c, address, sleep_ms)
         self.rate_hz = 0
         self.output_rate_hz = self.filter_hz = 0
         self._burst = bytearray(BURST)
-        self._setup = bytearray(2)      # BW_RATE and POWER_CTL as they should read
-        self._found = bytearray(2)
 
     def configure(self, rate_hz):
         """Set up for polling at rate_hz at 256 counts per g; OSError when a register does
@@ -70,8 +69,7 @@ class ADXL345(Registers):
                                 (INT_ENABLE, 0), (OFSX, 0), (OFSX + 1, 0), (OFSX + 2, 0),
                                 (POWER_CTL, MEASURE)):
             self._set(register, value)
-        self._setup[0] = code
-        self._setup[1] = MEASURE
+        self._hold()
         self.output_rate_hz = hz
         self.filter_hz = hz / 2
         self.rate_hz = rate_hz
@@ -81,12 +79,6 @@ class ADXL345(Registers):
     def answers(self, i2c):
         """Whether the chip answers on this bus, to be used from now on, as what it is."""
         return self._answers(i2c, DEVID, DEVICE_ID)
-
-    def awake(self):
-        """Whether rate, measure bit and data format are still as configured. After a
-        brown-out POWER_CTL reads 0: standby. Two short reads, no allocation."""
-        self._i2c.readfrom_mem_into(self.address, BW_RATE, self._found)
-        return self._found == self._setup and self._read(DATA_FORMAT) == FULL_RES_16_G
 
     def read_into(self, sample):
         """One burst into sample, array('h', 7): ax ay az in counts, the others 0. False

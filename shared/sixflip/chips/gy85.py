@@ -42,8 +42,12 @@ class GY85:
         return self.gyro.answers(i2c, self.who_am_i[1]) and accel
 
     def awake(self):
-        """Whether both chips still have their set-up. Four short reads, no allocation."""
+        """Whether both chips are as configured. Short reads, no allocation."""
         return self.accel.awake() and self.gyro.awake()
+
+    def shifted(self):
+        """"" or which offset somebody has changed; the gyro has none."""
+        return self.accel.shifted()
 
     def read_into(self, sample):
         """ax ay az gx gy gz temp in counts; False when either chip's burst is empty."""

@@ -22,9 +22,9 @@ def metadata(imu):
 
 
 def _read_back(chip, prefix):
-    """Registers that a failing bus does not give in ATTEMPTS are left out."""
+    """What scales and shifts; what a failing bus does not give in ATTEMPTS is left out."""
     found = {}
-    for r in chip.shown:
+    for r in [first + i for first, n in chip.setup + chip.offsets for i in range(n)]:
         for _ in range(ATTEMPTS):
             try:
                 found[prefix + "0x%02x" % r] = chip._read(r)

@@ -34,13 +34,11 @@ class ITG3205(Registers):
     """The gyro half of a GY-85; it is no imu by itself."""
 
     chip = "ITG3205"
-    shown = (SMPLRT_DIV, DLPF_FS, PWR_MGM)      # registers in a capture's header
+    setup = ((SMPLRT_DIV, 2), (PWR_MGM, 1))     # it has no offset registers
 
     def __init__(self, i2c, address=0x68, sleep_ms=None):
         Registers.__init__(self, i2c, address, sleep_ms)
         self._burst = bytearray(BURST)
-        self._setup = bytearray(2)      # SMPLRT_DIV and DLPF_FS as they should read
-        self._found = bytearray(2)
 
     def configure(self, rate_hz):
         """Reset, wake and set up for polling at rate_hz; OSError when a register does not
@@ -52,20 +50,13 @@ class ITG3205(Registers):
         self._set(PWR_MGM, CLOCK_GYRO_X)
         self._set(SMPLRT_DIV, divider)
         self._set(DLPF_FS, dlpf_fs)
-        self._setup[0] = divider
-        self._setup[1] = dlpf_fs
+        self._hold()
         if self._sleep_ms is not None:
             self._sleep_ms(70)      # start-up 50 ms (section 3.1), filter settling
 
     def answers(self, i2c, who_am_i):
         """Whether the chip answers on this bus, to be used from now on, as to the probe."""
         return self._answers(i2c, WHO_AM_I, who_am_i)
-
-    def awake(self):
-        """Whether the chip is awake and set up as configured (FS_SEL is 0 after a
-        brown-out). Two short reads, no allocation."""
-        self._i2c.readfrom_mem_into(self.address, SMPLRT_DIV, self._found)
-        return self._found == self._setup and self._read(PWR_MGM) == CLOCK_GYRO_X
 
     def read_into(self, sample):
         """One burst into sample, array('h', 7): gx gy gz temp at 3..6, the others left as

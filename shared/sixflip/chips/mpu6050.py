@@ -1,7 +1,8 @@
 """InvenSense MPU6050 and its relatives: accelerometer, gyro and thermometer in one chip.
 
-Source: MPU-6000/6050 register map RM-MPU-6000A-00 rev. 4.2; the relatives' temperature and
-accelerometer filter: MPU-6500 register map RM-MPU-6500A-00 rev. 2.1.
+Source: MPU-6000/6050 register map RM-MPU-6000A-00 rev. 4.2; the relatives' temperature,
+accelerometer filter and offsets: MPU-6500 register map RM-MPU-6500A-00 rev. 2.1; the MPU6050's
+offsets: InvenSense application note "MPU Hardware Offset Registers" rev. 1.0.
 """
 
 from sixflip.chips.registers import Registers, filter_code, rate_divider
@@ -12,6 +13,8 @@ except ImportError:
     def const(value):
         return value
 
+XA_OFFS_H = const(0x06)         # accelerometer x y z, 16 bits each; the factory's trim is in them
+XG_OFFS_USR_H = const(0x13)     # gyro x y z, 16 bits each, 4 / 131 deg/s a count in any range
 SMPLRT_DIV = const(0x19)
 CONFIG = const(0x1A)
 GYRO_CONFIG = const(0x1B)
@@ -22,6 +25,7 @@ ACCEL_XOUT_H = const(0x3B)      # burst of 14: accel x y z, temperature, gyro x 
 PWR_MGMT_1 = const(0x6B)        # bit 7 reset, bit 6 sleep, bits 2:0 clock
 PWR_MGMT_2 = const(0x6C)
 WHO_AM_I = const(0x75)
+XA_OFFSET_H = const(0x77)       # relatives: as XA_OFFS_H, a byte between the axes
 RESET = const(0x80)
 SLEEP = const(0x40)
 CLOCK_GYRO_X = const(0x01)
@@ -64,7 +68,8 @@ class MPU6050(Registers):
     has_temp = True
     accel_rail = RAIL
     gyro_rail = RAIL
-    shown = (SMPLRT_DIV, CONFIG, GYRO_CONFIG, ACCEL_CONFIG, PWR_MGMT_1)  # in a capture's header
+    setup = ((SMPLRT_DIV, 4), (PWR_MGMT_1, 2))
+    offsets = ((XA_OFFS_H, 6), (XG_OFFS_USR_H, 6))
 
     def __init__(self, i2c, address=0x68, who_am_i=0x68, sleep_ms=None,
                  accel_range_g=2, gyro_range_dps=500):
@@ -80,8 +85,9 @@ class MPU6050(Registers):
             TEMPERATURE if who_am_i == 0x68 else TEMPERATURE_RELATIVES)
         self.rate_hz = self.filter_hz = self.output_rate_hz = 0
         self._burst = bytearray(BURST)
-        self._setup = bytearray(4)      # SMPLRT_DIV to ACCEL_CONFIG as they should read
-        self._found = bytearray(4)
+        if who_am_i != 0x68:
+            self.setup = ((SMPLRT_DIV, 5), (PWR_MGMT_1, 2))
+            self.offsets = ((XA_OFFSET_H, 8), (XG_OFFS_USR_H, 6))
 
     def configure(self, rate_hz):
         """Reset, wake and set up for polling at rate_hz; OSError when a register does not
@@ -96,10 +102,9 @@ class MPU6050(Registers):
                                 (GYRO_CONFIG, self._gyro_code << 3),
                                 (ACCEL_CONFIG, self._accel_code << 3)):
             self._set(register, value)
-            self._setup[register - SMPLRT_DIV] = value
         if self.who_am_i[0] != 0x68:
             self._set(ACCEL_CONFIG_2, dlpf)
-            self.shown = MPU6050.shown + (ACCEL_CONFIG_2,)
+        self._hold()
         if self._sleep_ms is not None:
             self._sleep_ms(50)      # gyro start-up 30 ms (datasheet 6.1), filter settling
         self.rate_hz = rate_hz
@@ -109,13 +114,6 @@ class MPU6050(Registers):
     def answers(self, i2c):
         """Whether the chip answers on this bus, to be used from now on, as to the probe."""
         return self._answers(i2c, WHO_AM_I, self.who_am_i[0])
-
-    def awake(self):
-        """Whether the chip still has the set-up configure() gave it. Two short reads and
-        no allocation: to be asked about once a second, and when read_into says False. A
-        brown-out shows in the filter (0 after a reset) and, MPU6050 only, as sleep."""
-        self._i2c.readfrom_mem_into(self.address, SMPLRT_DIV, self._found)
-        return self._found == self._setup and self._read(PWR_MGMT_1) == CLOCK_GYRO_X
 
     def read_into(self, sample):
         """One burst into sample, array('h', 7): ax ay az gx gy gz temp, counts. False when

@@ -8,15 +8,21 @@ class Registers:
 
     sleep_ms waits for a number of milliseconds; without one the driver waits by reading,
     a bounded number of times (a register read takes 0.1 ms at 400 kHz).
+
+    setup, offsets  (first register, how many), ...: every register that scales readings (range,
+                    filter, rate, power), and every one that shifts them; as they read at the
+                    end of configure() they have to stay
     """
 
     chip = "chip"
+    setup = offsets = ()
 
     def __init__(self, i2c, address, sleep_ms=None):
         self.address = address
         self._i2c = i2c
         self._sleep_ms = sleep_ms
         self._one = bytearray(1)
+        self._held = []  # (first register, values as configured, room for what it reads)
 
     def _answers(self, i2c, register, expected):
         """From now on on this bus. Whether the ID register reads as it did to the probe."""
@@ -41,6 +47,35 @@ class Registers:
                 return
         raise OSError(errno.EIO, "%s at 0x%02x: register 0x%02x reads 0x%02x, expected 0x%02x"
                       % (self.chip, self.address, register, found, value))
+
+    def _hold(self):
+        """Ends configure(): what setup and offsets read has to stay."""
+        held = self._held = []
+        for first, n in self.setup + self.offsets:
+            held.append((first, self._i2c.readfrom_mem(self.address, first, n), bytearray(n)))
+        if not self.awake():
+            raise OSError(errno.EIO, "%s at 0x%02x: registers read otherwise each time"
+                          % (self.chip, self.address))
+
+    def awake(self):
+        """Whether setup and offsets are as configure() left them, which they are not after a
+        brown-out. Short reads, no allocation: to be asked often, and when read_into says False."""
+        for first, kept, found in self._held:
+            self._i2c.readfrom_mem_into(self.address, first, found)
+            if found != kept:
+                return False
+        return True
+
+    def shifted(self):
+        """"" or a sentence: which offset somebody has changed. A reset changes none, it brings
+        back what was configured (0) or the factory's trim."""
+        for first, kept, found in self._held[len(self.setup):]:
+            self._i2c.readfrom_mem_into(self.address, first, found)
+            for i in range(len(kept)):
+                if found[i] != kept[i]:
+                    return ("register 0x%02x of the %s was 0x%02x when it was configured and "
+                            "reads 0x%02x" % (first + i, self.chip, kept[i], found[i]))
+        return ""
 
     def metadata(self):
         """What a capture's header says of the sensor."""
