@@ -7,10 +7,11 @@ from i2c_driver import EIO, ETIMEDOUT, Driver  # noqa: E402
 from rp2040py.rp2040 import RP2040  # noqa: E402
 
 from sixflip.chips import adxl345, itg3205, mpu6050  # noqa: E402
-from sixflip_host.emulated.i2c_device import SCL, ChipsOnI2C  # noqa: E402
+from sixflip_host.emulated.i2c_device import SCL, SDA, ChipsOnI2C  # noqa: E402
 from sixflip_sim import worlds  # noqa: E402
 
 MPU, ADXL = 0x68, 0x53
+PULLED_DOWN = 1 << 6 | 1 << 2  # IE and PDE of a pad, RP2040 datasheet 2.19.6.3
 
 
 def bench(**spec):
@@ -106,6 +107,22 @@ def test_a_stuck_line_comes_free_after_the_pulses_it_needs():
     pulse(driver, 1)
     driver.init()
     assert driver.read_mem(MPU, mpu6050.WHO_AM_I, 1) == b"\x68"
+
+
+def levels(driver):
+    """SDA and SCL as the pins read them against their own pull-downs."""
+    for line in (SDA, SCL):
+        driver.mcu.gpio[line].pad_value = PULLED_DOWN
+    return [driver.mcu.gpio[line].input_value for line in (SDA, SCL)]
+
+
+def test_the_modules_resistors_pull_both_lines_up_unless_a_chip_holds_one():
+    driver, _ = bench(faults=[{"kind": "stuck_sda", "at": 0, "pulses": 9}])
+    assert levels(driver) == [True, True]
+    assert failure(driver, MPU, mpu6050.WHO_AM_I, 1) == ETIMEDOUT
+    assert levels(driver) == [False, True]
+    pulse(driver, 9)
+    assert levels(driver) == [True, True]
 
 
 def test_power_up_begins_the_world_anew():

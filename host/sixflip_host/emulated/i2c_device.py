@@ -45,7 +45,8 @@ class ChipsOnI2C:
         self.began_ns = self.mcu.clock.nanos if self.mcu else 0
         if self.mcu:
             self.let_go.cancel()
-            self.mcu.gpio[SDA].release_input()
+            for line in (SDA, SCL):
+                self.pull(line, True)
 
     def now_us(self):
         """Emulated time since the world began."""
@@ -95,6 +96,10 @@ class ChipsOnI2C:
 
     # -- what is on the wires
 
+    def pull(self, line, level):
+        """Up by the module's resistor, which is stronger than a pad's own, or down by a chip."""
+        self.mcu.gpio[line].set_input_value(level)
+
     def find(self, address):
         for chip in self.world.chips:
             if chip.address == address:
@@ -120,7 +125,7 @@ class ChipsOnI2C:
         """True when a chip holds a line low, from now on if need be."""
         stuck = self.world.i2c.stuck_pulses
         if stuck:
-            self.mcu.gpio[SDA].set_input_value(False)
+            self.pull(SDA, False)
         elif "timeout" in self.active:
             self.let_go.schedule(HELD_NS)
         return bool(stuck or "timeout" in self.active)
@@ -131,7 +136,7 @@ class ChipsOnI2C:
         if bus.stuck_pulses and before == before.LOW:
             bus.pulse_scl()
             if not bus.stuck_pulses:
-                self.mcu.gpio[SDA].release_input()
+                self.pull(SDA, True)
                 self.i2c.reset()  # as the driver does next, which the emulator does not notice
 
     def release(self):
