@@ -5,6 +5,7 @@ import os
 
 from .. import file_kinds
 from ..capture import capture_file
+from ..did_you_mean import instead
 from ..errors import CheckFailed, UsageError
 from ..file_arguments import add_input, add_output
 from ..mounting import mount
@@ -51,8 +52,8 @@ def run(args):
     without = [name for name in args.without.split(",") if name]
     for name in without:
         if name not in NAMES:
-            raise UsageError("--without %s: expected effects out of: %s"
-                             % (name, " ".join(NAMES)))
+            raise UsageError("--without %s: %s" % (
+                name, instead(name, NAMES, "expected effects out of: %s")))
     if args.max_gap is not None and not args.max_gap > 0.0:
         raise UsageError("--max-gap is %g, expected more than 0" % args.max_gap)
     if args.jobs < 0:
@@ -101,8 +102,8 @@ def closed(found, args):
     named = [name for name in args.add if name != "found"]
     for name in named:
         if name not in NAMES:
-            raise UsageError("--add %s: expected found, or an effect out of: %s"
-                             % (name, " ".join(NAMES)))
+            raise UsageError("--add %s: %s" % (name, instead(
+                name, NAMES, "expected found, or an effect out of: %s")))
     if not (args.add or args.scenario or args.report) or not found.gaps:
         return {}
     loops = {}
@@ -151,8 +152,8 @@ def verdicts(text):
     out = [" ".join(part.replace("_", " ").split()) for part in text.split(",") if part.strip()]
     for verdict in out:
         if verdict not in VERDICTS:
-            raise UsageError("--fail-on %s: expected verdicts out of: %s"
-                             % (verdict, ", ".join(VERDICTS)))
+            raise UsageError("--fail-on %s: %s" % (verdict, instead(
+                verdict, VERDICTS, "expected verdicts out of: %s")))
     return out
 
 

@@ -3,6 +3,7 @@ import json
 import math
 
 from .. import file_kinds
+from ..did_you_mean import instead
 from ..errors import UsageError
 from ..file_arguments import add_input, add_output
 from ..simulating import protocols
@@ -70,8 +71,8 @@ def protocol_of(name):
         raise UsageError("%s is a scene to simulate, not a capture of still poses; expected "
                          "one of %s, or a plan file" % (name, ", ".join(CAPTURES)))
     if not any(c in name for c in "./\\"):
-        raise UsageError("no protocol named %r, expected one of %s, or a plan file"
-                         % (name, ", ".join(CAPTURES)))
+        raise UsageError("no protocol named %r, %s, or a plan file"
+                         % (name, instead(name, CAPTURES)))
     return plan_file.read(name)
 
 
