@@ -2,7 +2,7 @@
 import json
 import math
 
-from .. import file_kinds
+from .. import file_kinds, progress
 from ..did_you_mean import instead
 from ..errors import UsageError
 from ..file_arguments import add_input, add_output
@@ -46,9 +46,12 @@ def run(args):
     if placements > MOST_PLACEMENTS:
         raise UsageError("the protocol has %d placements, expected at most %d"
                          % (placements, MOST_PLACEMENTS))
-    findings = Findings(protocol, args.sensor, args.certified_box, args.rate)
-    additions = plan_additions.ranked(protocol, findings, args.sensor, args.certified_box,
-                                      args.rate, args.minutes)
+    with progress.during("plan"):
+        progress.doing("what the capture shows")
+        findings = Findings(protocol, args.sensor, args.certified_box, args.rate)
+        progress.doing("what could be added")
+        additions = plan_additions.ranked(protocol, findings, args.sensor, args.certified_box,
+                                          args.rate, args.minutes)
     answer = as_dict(protocol, args, findings, additions)
     if args.plot:
         from .alias_picture import draw

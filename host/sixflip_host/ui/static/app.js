@@ -188,7 +188,7 @@ function showFaces(v, running) {
 
 function showResult(v) {
   const over = v.stage === "over" && v.number > 0 && !v.busy;
-  element("main").className = over ? "over" : "";
+  element("main").className = over ? "over" : v.number === 0 && !v.busy ? "before" : "";
   element("result").hidden = !over;
   element("figures").hidden = !v.verdict;
   const s = v.solved, number = (x, n) => (typeof x === "number" ? x.toFixed(n) : "-");
