@@ -57,7 +57,7 @@ def run(args):
     if args.json:
         print(json.dumps(found, allow_nan=False))
     else:
-        print("\n".join(refinement_report.lines(found)))
+        refinement_report.show(found)
     if found["verdict"] == "refused":
         return CheckFailed.exit_code
     if args.output:
