@@ -4,6 +4,7 @@ import ast
 import os
 
 from ..errors import NoBoard, SixflipError
+from .value_kinds import Misfit
 
 LONGEST = 4096      # bytes of a literal: a version, a file's name, size and hash
 
@@ -12,14 +13,18 @@ class NoSpace(SixflipError):
     """The board's flash is full."""
 
 
-def parse(port, out):
-    """A Python literal that the board printed."""
+def parse(port, out, kind):
+    """A Python literal that the board printed, of a kind of board_schema's."""
     try:
         if len(out) > LONGEST:
             raise ValueError
-        return ast.literal_eval(out.decode("utf-8").strip())
+        return kind.take(ast.literal_eval(out.decode("utf-8").strip()))
+    except Misfit as misfit:
+        raise NoBoard("%s: cannot understand the board's answer %r: %s"
+                      % (port, out[:60], misfit)) from None
     except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
-        raise NoBoard("%s: cannot understand the board's answer %r" % (port, out[:60])) from None
+        raise NoBoard("%s: cannot understand the board's answer %r, expected %s"
+                      % (port, out[:60], kind.expected)) from None
 
 
 def short(error):

@@ -21,11 +21,14 @@ from ..errors import NoBoard, SixflipError, UsageError
 from ..narration import log
 from . import serial_ports
 from .board_answers import NoSpace, board_error, parse, short
-from .buffered_serial import BufferedSerial
+from .board_schema import ANSWERS
+from .buffered_serial import BufferedSerial, Endless
 from .on_board_scripts import UPDATE, script
 
-ANSWER_S = 10.0  # a board hashes 100 KB in about two seconds
+ANSWER_S = 10.0  # of silence; a board hashes 100 KB in about two seconds
+WHOLE_S = 60.0  # of an answer from first to last byte, however it drips: all but a file
 LONGEST_S = 300.0  # a full flash read through a UART at 115200 Bd takes two minutes
+SLOWEST = 2000  # bytes of a file a second, of which a UART at 115200 Bd carries four times as many
 OUTPUT = 1 << 17  # bytes of an answer; a listing of the firmware has 20 KB
 LONGEST_FILE = 1 << 25  # the same for a file in base64: no board's flash is larger
 HANDSHAKE_S = 5.0
@@ -139,22 +142,23 @@ class MpremoteLink:
             try:
                 with contextlib.redirect_stdout(io.StringIO()):
                     transport.enter_raw_repl(soft_reset=True, timeout_overall=allowed)
-            except TransportError:
+            except (TransportError, Endless):
                 return False
             finally:
                 wire.timeout, wire.deadline = ANSWER_S * self.patience, None
         return True
 
-    def run(self, code, doing, consumer=None, timeout=None, most=OUTPUT):
+    def run(self, code, doing, consumer=None, timeout=None, most=OUTPUT, whole=WHOLE_S):
         """Run code on the board; returns what it printed, as bytes.
 
-        A port that says more than `most` bytes is no board that runs this code.
+        timeout: seconds of silence; whole: seconds for all of it. A port that says more than
+        `most` bytes is no board that runs this code.
         """
         log.info("%s: %s", self.port, doing)
         self.enter()
         with self.guarded(doing) as transport:
             wire = transport.serial
-            wire.deadline, wire.most = time.monotonic() + LONGEST_S * self.patience, most
+            wire.deadline, wire.most = time.monotonic() + whole * self.patience, most
             try:
                 out, error = transport.exec_raw(code, (timeout or ANSWER_S) * self.patience,
                                                 consumer)
@@ -169,12 +173,12 @@ class MpremoteLink:
         out = self.run("import os\ntry:\n u = os.uname()\n print((u[3], u[4]))\nexcept "
                        "AttributeError:\n import sys\n print((sys.version, sys.platform))\n",
                        "asking for its version")
-        return parse(self.port, out)
+        return parse(self.port, out, ANSWERS["version"])
 
     def platform(self):
         """sys.platform of the board: rp2, esp32, pyboard, linux …"""
-        return str(parse(self.port, self.run("import sys\nprint(repr(sys.platform))",
-                                             "asking for its version")))
+        return parse(self.port, self.run("import sys\nprint(repr(sys.platform))",
+                                         "asking for its version"), ANSWERS["platform"])
 
     def board_id(self):
         """machine.unique_id() in hex; "board" where the port has none."""
@@ -195,13 +199,18 @@ class MpremoteLink:
                        timeout=60)
         found = {}
         for line in out.splitlines():
-            name, size, digest = parse(self.port, line)
-            if safe_name(str(name)):
-                found[str(name)] = (int(size), digest)
+            name, size, digest = parse(self.port, line, ANSWERS["file"])
+            if safe_name(name):
+                found[name] = (size, digest)
+        missing = set(wanted or ()) - set(found) if alone else ()
+        if missing:
+            raise NoBoard("%s: the board says nothing of %s, expected its size and hash"
+                          % (self.port, ", ".join(sorted(missing))))
         return found
 
-    def get(self, name, progress=None):
-        """The bytes of a file. progress(done bytes) is called on the way."""
+    def get(self, name, progress=None, size=None):
+        """The bytes of a file. progress(done bytes) is called on the way; size: where it is
+        known, so that no file takes longer than so many bytes may."""
         text = bytearray()
 
         def take(piece):
@@ -212,7 +221,9 @@ class MpremoteLink:
             if progress and piece == b"\n":
                 progress(len(text) * 3 // 4)
 
-        self.run(script("send_file", name=name), "reading " + name, take, most=LONGEST_FILE)
+        whole = LONGEST_S if size is None else min(LONGEST_S, WHOLE_S + size / SLOWEST)
+        self.run(script("send_file", name=name), "reading " + name, take, most=LONGEST_FILE,
+                 whole=whole)
         try:
             data = base64.b64decode(bytes(text).replace(b"\r", b"").replace(b"\n", b""),
                                     validate=True)
@@ -295,30 +306,31 @@ class MpremoteLink:
 
         A port that vanishes, as USB does in a reset, is opened again when it comes back.
         """
+        end = None
         while True:
             try:
                 with self.guarded("listening") as transport:
                     line = transport.serial.read_line(timeout * self.patience)
             except NoBoard:
-                self.reopen()
+                end = end or time.monotonic() + REOPEN_S    # it may open and fail, over and over
+                self.reopen(end)
                 continue
             if line is None:
                 return
+            end = None
             yield line
 
-    def reopen(self):
+    def reopen(self, end):
         self.raw = False
         self.close()
-        end = time.monotonic() + REOPEN_S
         while True:
             self.port = serial_ports.same_device(self.identity, self.port)
-            try:
-                return self.open()
-            except NoBoard:
-                if time.monotonic() > end:
-                    raise NoBoard("%s: the board went away and did not come back within %d s"
-                                  % (self.port, REOPEN_S)) from None
+            if time.monotonic() > end:
+                raise NoBoard("%s: the board went away and did not come back within %d s"
+                              % (self.port, REOPEN_S))
             time.sleep(0.1)
+            with contextlib.suppress(NoBoard):
+                return self.open()
 
     def send(self, line):
         """A line to the running firmware."""

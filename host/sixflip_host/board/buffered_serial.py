@@ -2,12 +2,18 @@
 
 import time
 
+import serial
+
+
+class Endless(serial.SerialException):
+    """A port that went on talking longer, or said more, than it may."""
+
 
 class BufferedSerial:
     """What mpremote's SerialTransport uses of pyserial, on top of a pyserial port.
 
     timeout   seconds that read() waits for its bytes
-    deadline  time.monotonic() after which a port that never stops talking counts as quiet
+    deadline  time.monotonic() after which reading raises Endless, None: no limit
     most      bytes after which it does, None: no limit
     """
 
@@ -22,15 +28,13 @@ class BufferedSerial:
         port.write_timeout = 5.0
 
     def inWaiting(self):  # noqa: N802  the name mpremote calls
-        if self.spent():
-            return 0
+        self.limits()
         return len(self.buffer) + self.port.in_waiting
 
     def read(self, n=1):
-        """n bytes, or fewer when they did not come in time; none after the deadline."""
+        """n bytes, or fewer when they did not come in time."""
         end = time.monotonic() + self.timeout
-        if self.spent():
-            return b""
+        self.limits()
         while len(self.buffer) < n:
             left = end - time.monotonic()
             if left <= 0:
@@ -42,10 +46,12 @@ class BufferedSerial:
             self.most -= len(taken)
         return taken
 
-    def spent(self):
-        """Whether a port that goes on talking has had its time, or its share."""
-        return (self.deadline is not None and time.monotonic() > self.deadline
-                or self.most is not None and self.most < 0)
+    def limits(self):
+        """Raises Endless where a port that goes on talking has had its time, or its share."""
+        if self.deadline is not None and time.monotonic() > self.deadline:
+            raise Endless("its answer did not come to an end in time")
+        if self.most is not None and self.most < 0:
+            raise Endless("its answer is too long")
 
     def fill(self, wait):
         """Take in what is there, waiting up to `wait` seconds for the first byte."""

@@ -7,18 +7,21 @@ from ..errors import Interrupted, NoBoard, SixflipError, UsageError
 from ..file_arguments import add_input
 from ..history import remember
 from ..planning import board_plan
-from . import typed_lines
+from . import provision, typed_lines
 from .board_events import events
 from .console import Console
 from .ending import Ending
 from .ports import add_port, open_link
+from .session_deadline import SessionDeadline
+from .value_kinds import Misfit, Number
 
 HELP = "calibrate a board now, guided face by face"
 EXAMPLE = "sixflip calibrate\n         sixflip calibrate --replay capture.bin --speed 5"
 FLAG = "calibrate.flag"
 FACES = ("Z+", "Z-", "X+", "X-", "Y+", "Y-")
 SILENCE_S = 30
-TOTAL_S = 3600
+TOTAL_S = 4 * 3600     # whatever goes on: the longest plan takes an hour
+RATE = Number(1, 1000)
 JOIN_S = 3
 STOP_S = 10
 
@@ -68,9 +71,8 @@ def ask_for_calibration(link, request=None):
 def rate_of(link):
     """rate_hz of the board's settings."""
     try:
-        rate = json.loads(link.get("sixflip.json"))["rate_hz"]
-        return rate if 1 <= rate <= 1000 else 100
-    except (SixflipError, OSError, ValueError, KeyError, TypeError):
+        return RATE.take(provision.json_settings(link.get("sixflip.json")).get("rate_hz"))
+    except (SixflipError, OSError, Misfit):
         return 100
 
 
@@ -89,10 +91,11 @@ def follow(link, show, typed=None, say=print, board=None):
 
 
 def _follow(link, show, typed, say, witness):
-    ending = Ending()
+    ending, deadline = Ending(), SessionDeadline(link)
     for event in events(link, SILENCE_S, TOTAL_S):
         witness.hear(event)
         show(event)
+        deadline.hear(event)
         if ending.take(event):
             break
         line = typed.poll() if typed else None
@@ -111,8 +114,8 @@ def under_way(link):
     for event in events(link, JOIN_S, JOIN_S):
         if event["event"] == "state":
             missing = missing or []
-            if isinstance(event.get("missing"), list):
-                return list(map(str, event["missing"]))
+            if event.get("missing") is not None:
+                return event["missing"]
     return missing
 
 

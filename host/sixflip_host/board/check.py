@@ -141,17 +141,15 @@ def ask_board(port):
         link.send(json.dumps({"cmd": "check"}))
         event = wait_for(link, ("check", "error"))
     if event["event"] == "error":
-        raise CheckFailed("not checked: %s; expected %s" % (event.get("what"),
-                                                            event.get("expected")))
-    if not event.get("still"):
+        raise CheckFailed("not checked: %s; expected %s" % (event["what"], event.get("expected")))
+    if not event["still"]:
         raise CheckFailed("not checked, there is no rest: %s" % event.get("reason"))
-    words = event.get("words") or []
     record = seen.get("record") or {}
-    valid = event.get("verdict") == "good"
+    valid = event["verdict"] == "good"
     board = seen.get("hello", {}).get("id") or board
     return board, {
         "format": 1, "kind": "sixflip check", "valid": valid,
-        "against": [] if valid else [str(one) for one in words],
+        "against": [] if valid else event.get("words") or [],
         "a_error_mg": event.get("a_error_mg"), "noise_mg": event.get("noise_mg"),
         "noise_then_mg": None, "temp_c": event.get("temp_c"),
         "temp_then_c": record.get("temp_c"), "record_verdict": record.get("verdict"),

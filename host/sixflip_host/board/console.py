@@ -25,7 +25,6 @@ HOW = {
 # sign of every gyro axis, which half turns do not.
 ROUND = ("Z+", "X+", "Y+", "Z-", "X-", "Y-")
 GUIDED_ORDER = [face + letter for face in ROUND for letter in "ab"]
-STRANGE = 300           # characters of an event that makes no sense
 
 
 def faces_left(missing):
@@ -57,7 +56,7 @@ def next_step(missing):
     if flips:
         return "next: turn the box half a turn on the table, same face up (%s)" % flips[0][:-1]
     onward = [face for face in ROUND if face + "a" in missing]
-    return "next: %s up; left: %s" % (onward[0], faces_left(missing))
+    return "%sleft: %s" % ("next: %s up; " % onward[0] if onward else "", faces_left(missing))
 
 
 def measured(event):
@@ -133,8 +132,11 @@ def _mounted(event):
             "sensor's %s; samples are %s; %s" % (
                 event["roll_deg"], event["pitch_deg"], event["order"], event["sigma_deg"],
                 event["frame"], event["axes"], "forward, right, down" if event["frame"] == "ned"
-                else "forward, left, up", "saved in slot %s, sequence %s" % (
-                    event["slot"], event["sequence"]) if event["written"] else "as stored"))
+                else "forward, left, up", _saved(event) if event["written"] else "as stored"))
+
+
+def _saved(event):
+    return "saved in slot %s, sequence %s" % (event.get("slot"), event.get("sequence"))
 
 
 def _capture(event):
@@ -159,7 +161,7 @@ WORDS = {
     "redo": lambda e: "%s again; left: %s" % (e.get("face"), faces_left(e.get("missing") or [])),
     "refused": lambda e: "%s not taken: %s" % (e.get("pose") or "placement", why(e)),
     "solved": _solved,
-    "saved": lambda e: "saved in slot %s, sequence %s" % (e.get("slot"), e.get("sequence")),
+    "saved": _saved,
     "capture": _capture,
     "rest": _rest,
     "mounted": _mounted,
@@ -171,6 +173,9 @@ WORDS = {
     "bus_error": lambda e: "bus error %s (%s so far): %s" % (
         e.get("errno"), e.get("count"), e.get("action")),
     "error": lambda e: "error: %s; expected %s" % (e.get("what"), e.get("expected")),
+    # one of many live ones is not worth a line
+    "misfit": lambda e: None if e["of"] in ("state", "sample", "heading")
+    else "the board says something that cannot be used: " + e["why"],
 }
 
 
@@ -183,8 +188,6 @@ def planned(event, step):
     if kind not in ("pose", "redo") or not isinstance(event.get("at"), int):
         return None
     done = "%s taken" % event.get("pose") if kind == "pose" else "%s again" % event.get("face")
-    if kind == "redo":
-        return "%s (%d of %s): as it lay before" % (done, event["at"], event.get("of"))
     return "%s (%d of %s); %s%s" % (done, event["at"], event.get("of"),
                                     "next " if event["at"] < event["of"] else "",
                                     step(event["at"]))
@@ -199,15 +202,9 @@ def words(event, step=None):
     return make(event) if make else None
 
 
-STRANGE_EVENT = (TypeError, ValueError, ArithmeticError, AttributeError, LookupError)
-
-
 def lasting(event, step=None):
-    """The lasting lines for an event, escaped; a damaged or strange one as it came."""
-    try:
-        text = words(event, step)
-    except STRANGE_EVENT:
-        text = "the board says: " + str(event)[:STRANGE].replace("\n", " ")
+    """The lasting lines for a checked event, escaped."""
+    text = words(event, step)
     return [] if text is None else [plain(line) for line in text.split("\n")]
 
 
@@ -226,7 +223,7 @@ class Console:
         self.shown = ""
 
     def show(self, event):
-        """One event; a damaged or strange one as it came."""
+        """One checked event."""
         with self.lock:
             if event["event"] == "state":
                 self.show_state(event)
@@ -236,10 +233,7 @@ class Console:
                 print(line, file=self.out, flush=True)
 
     def show_state(self, event):
-        try:
-            line = plain(state_line(event))
-        except STRANGE_EVENT:
-            line = plain(str(event)[:STRANGE])
+        line = plain(state_line(event))
         if self.live:
             self.state = line
             self.redraw()

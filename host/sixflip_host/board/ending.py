@@ -1,6 +1,7 @@
 """When a calibration is over, and what came of it."""
 
 from ..errors import CheckFailed, NoBoard
+from .board_events import unusable
 
 
 class Ending:
@@ -11,7 +12,7 @@ class Ending:
 
     def __init__(self):
         self.solved = None
-        self.failed = None
+        self.failed = self.misfit = None
         self.over = False
 
     def take(self, event):
@@ -22,6 +23,8 @@ class Ending:
             self.solved = event
         elif kind == "error":
             self.failed = event
+        elif kind == "misfit" and event["of"] == "solved":
+            self.misfit = event
         elif kind == "saved" and self.solved or kind in ("ready", "stopped"):
             self.over = True
         return self.over
@@ -30,6 +33,8 @@ class Ending:
         """The solved event; CheckFailed or NoBoard when there is none."""
         if self.solved:
             return self.solved
+        if self.misfit:
+            raise NoBoard(unusable(port, self.misfit))
         if self.failed:
             raise CheckFailed("not calibrated: %s" % self.failed.get("what"))
         raise NoBoard("%s: no calibration came to an end on this board; is its firmware of this "

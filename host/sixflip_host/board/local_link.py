@@ -71,7 +71,7 @@ class LocalLink:
                 found[name] = (len(data), hashlib.sha256(data).hexdigest() if wanted else None)
         return found
 
-    def get(self, name, progress=None):
+    def get(self, name, progress=None, size=None):
         return read_bytes(self.path(name))
 
     def put(self, name, data, progress=None):

@@ -7,8 +7,9 @@ import json
 from ..errors import NoBoard, SixflipError, UsageError
 from ..terminal import plain
 from .board_answers import NoSpace
-from .board_events import events
+from .board_events import events, unusable
 from .board_files import board_files
+from .board_schema import ANYTHING
 from .byte_progress import Bytes
 from .on_board_scripts import UPDATE
 from .ports import add_port, open_link
@@ -51,29 +52,21 @@ def wanted_settings(args):
     return wanted
 
 
+def json_settings(data):
+    """The settings of a sixflip.json, {} where it is damaged: they are written anew then."""
+    try:
+        return ANYTHING.take(json.loads(data))
+    except (ValueError, RecursionError):
+        return {}
+
+
 def merged_settings(link, present, wanted):
     """Bytes of sixflip.json: what is on the board, changed where the command line says so."""
-    values = {}
-    if SETTINGS in present:
-        with contextlib.suppress(ValueError):  # damaged: written anew
-            values = json.loads(link.get(SETTINGS))
-    if not isinstance(values, dict):
-        values = {}
+    values = json_settings(link.get(SETTINGS)) if SETTINGS in present else {}
     values.update(wanted)
     if "board" not in values:
         values["board"] = PLATFORMS.get(link.platform(), "pico")
     return (json.dumps(values, indent=1, sort_keys=True) + "\n").encode()
-
-
-def settings_line(data, wanted):
-    """What sixflip.json on the board says from now on, and what of it was there before."""
-    values = json.loads(data)
-    kept = [name for name in sorted(values) if name not in wanted and name != "sensor"]
-    sensor = values.get("sensor", "auto")
-    line = "sensor: %s" % ("found out at power-up" if sensor == "auto" else sensor)
-    if "sensor" not in wanted and "sensor" in values:
-        line += ", as configured on the board (--sensor changes it)"
-    return line + "".join("; %s: %s" % (name, json.dumps(values[name])) for name in kept)
 
 
 def copy(link, wanted, say=print):
@@ -89,7 +82,6 @@ def copy(link, wanted, say=print):
         link.finish()
         present = link.files(asked)
     files[SETTINGS] = merged_settings(link, present, wanted)
-    say(plain(settings_line(files[SETTINGS], wanted)))
     hashes = {name: hashlib.sha256(data).hexdigest() for name, data in files.items()}
     changed = [name for name in files if present.get(name, (0, ""))[1] != hashes[name]]
     changed.sort(key=lambda name: name == "main.py")  # a half-copied board never starts it
@@ -160,9 +152,11 @@ def first_words(link, silence_s, say):
             hello = event
         elif event["event"] == "selftest":
             return hello, event
+        elif event["event"] == "misfit" and event["of"] == "selftest":
+            raise NoBoard(unusable(link.port, event))
         elif event["event"] == "error":
-            line = "%s; expected %s" % (event.get("what"), event.get("expected"))
-            if str(event.get("what")).startswith(NO_SENSOR):
+            line = "%s; expected %s" % (event["what"], event.get("expected"))
+            if event["what"].startswith(NO_SENSOR):
                 raise NoBoard("%s: %s" % (link.port, line))
             say("the board says: " + plain(line))
     raise Silent("%s: no self-test within %d s of the reset" % (link.port, silence_s))
@@ -171,8 +165,8 @@ def first_words(link, silence_s, say):
 def verdict_line(hello, test):
     """One line for a person: which chip, and whether it does what it should."""
     chip = hello.get("chip") or hello.get("sensor") or "sensor"
-    if test.get("ok"):
-        return "self-test ok: %s, %.0f samples a second" % (chip, test.get("rate_hz", 0))
+    if test["ok"]:
+        return "self-test ok: %s, %.0f samples a second" % (chip, test.get("rate_hz") or 0)
     return "self-test failed: %s: %s" % (chip, "; ".join(test.get("problems") or ["no reason"]))
 
 

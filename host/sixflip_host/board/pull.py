@@ -58,7 +58,7 @@ def fetch(link, output, say=print, force=False):
     done = 0
     with Bytes("fetching", sum(present[name][0] for name in names)) as bar:
         for name in names:
-            data = link.get(name, lambda n, base=done: bar.at(base + n))
+            data = link.get(name, lambda n, base=done: bar.at(base + n), present[name][0])
             write_bytes(folder / name, data)
             done += len(data)
             say("%s (%d bytes)" % (plain(folder / name), len(data)))

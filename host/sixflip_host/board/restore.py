@@ -38,7 +38,7 @@ def run(args):
         link.send(json.dumps({"cmd": "restore"}))
         answer = wait_for(link, ("restored", "error"))
     if answer["event"] == "error":
-        raise CheckFailed("%s; expected %s" % (answer.get("what"), answer.get("expected")))
+        raise CheckFailed("%s; expected %s" % (answer["what"], answer.get("expected")))
     console.show(answer)
     return 0
 

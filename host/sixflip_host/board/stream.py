@@ -15,7 +15,7 @@ from ..file_arguments import add_output
 from ..terminal import plain
 from .console import words
 from .ports import add_port, open_link
-from .stream_session import StreamSession
+from .stream_session import SLOWEST_HZ, StreamSession
 
 HELP = "raw counts, corrected samples or the heading of a board, live"
 EXAMPLE = "sixflip stream --heading --hz 20"
@@ -48,8 +48,8 @@ def add_arguments(parser):
 
 def run(args):
     """Print samples as CSV; what else the board says and the count go to stderr."""
-    if args.hz is not None and not 0 < args.hz <= 500:
-        raise UsageError("--hz %g: expected more than 0 and at most 500" % args.hz)
+    if args.hz is not None and not SLOWEST_HZ <= args.hz <= 500:
+        raise UsageError("--hz %g: expected %g to 500" % (args.hz, SLOWEST_HZ))
     if args.seconds is not None and not args.seconds > 0:
         raise UsageError("--seconds %g: expected more than 0" % args.seconds)
     with open_link(args.port) as link:

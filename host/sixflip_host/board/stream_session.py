@@ -9,11 +9,13 @@ from sixflip.stream_frame import CORRECTED, HEADING, RAW
 from sixflip.stream_reader import FrameReader
 
 from ..errors import CheckFailed, NoBoard, SixflipError
-from .board_events import parse
+from .board_events import parse, unusable
 
 KINDS = {"raw": RAW, "corrected": CORRECTED, "heading": HEADING}
 ANSWER_S = 10
 SILENCE_S = 5
+SLOWEST_HZ = 0.01       # slower than that nobody can tell from a board that has stopped
+CLOCK_TIMES = 10        # real seconds a second of the board's, before its clock counts as standing
 WRAP_US = 1 << 32
 
 
@@ -31,7 +33,7 @@ class StreamSession:
         self.hz = hz
         self.show = show or (lambda event: None)
         self.reader = FrameReader()
-        self.taken = 0
+        self.taken = self.misfits = 0
         self.before = None
         self.silence = SILENCE_S
 
@@ -41,7 +43,7 @@ class StreamSession:
 
     @property
     def damaged(self):
-        return self.reader.damaged
+        return self.reader.damaged + self.misfits
 
     def _ask(self, cmd, answer, **fields):
         """The board's answer to a command; whatever it streams meanwhile is passed over."""
@@ -53,6 +55,8 @@ class StreamSession:
             event = parse(found) if isinstance(found, str) else None
             if event and event["event"] == answer:
                 return event
+            if event and event["event"] == "misfit" and event["of"] == answer:
+                raise NoBoard(unusable(self.link.port, event))
             self._refuse(event)
             if time.monotonic() > end:
                 break
@@ -65,7 +69,7 @@ class StreamSession:
             return
         if event["event"] == "error":
             raise CheckFailed("the board: %s, expected %s" % (
-                event.get("what"), event.get("expected")))
+                event["what"], event.get("expected")))
         if event["event"] in ("state", "calibrating"):
             raise CheckFailed("%s: a calibration is under way, nothing is streamed: finish it "
                               "with sixflip calibrate" % self.link.port)
@@ -80,17 +84,24 @@ class StreamSession:
         fields = {} if self.hz is None else {"hz": self.hz}
         now = self._ask("stream", "stream", raw=self.what == "raw", heading=self.what == "heading",
                         binary=self.binary, **fields)
-        if not now.get("hz"):
+        if not now["hz"]:
             raise CheckFailed("%s: the board is set to stream nothing, expected a rate: --hz"
                               % self.link.port)
+        if not now["hz"] >= SLOWEST_HZ:
+            raise CheckFailed("%s: the board is set to stream %g samples a second, expected %g at "
+                              "least: --hz" % (self.link.port, now["hz"], SLOWEST_HZ))
         self.silence = max(SILENCE_S, 3 / now["hz"])
-        first = None
+        first, began = None, time.monotonic()
         for t_us, values in self._timed():
             first = t_us if first is None else first
             if seconds is not None and t_us - first >= seconds * 1e6:
                 return
             self.taken += 1
             yield t_us, values
+            if seconds is not None and time.monotonic() - began > (
+                    self.silence + CLOCK_TIMES * seconds) * getattr(self.link, "patience", 1):
+                raise NoBoard("%s: in %.0f s the board's clock went on by %.3g s, expected %g" % (
+                    self.link.port, time.monotonic() - began, 1e-6 * (t_us - first), seconds))
 
     def _timed(self):
         """Samples with a time that does not wrap."""
@@ -121,20 +132,28 @@ class StreamSession:
 
     def _frame(self, found):
         kind, _, t_us, values = found
-        return (t_us, values) if self.binary and kind == KINDS[self.what] else None
+        if not self.binary or kind != KINDS[self.what]:
+            return None
+        if any(math.isinf(value) for value in values):
+            self.misfits += 1
+            return None
+        return t_us, values
 
     def _event(self, event):
         """The sample in an event, None when it is not of the kind asked for."""
         if self.binary or not event:
             return None
+        if event["event"] == "misfit":
+            self.misfits += event["of"] in ("sample", "heading")
+            return None
         keys = {"raw": ("raw",), "corrected": ("a", "w"),
                 "heading": ("roll_deg", "pitch_deg", "yaw_deg")}[self.what]
-        if event["event"] not in ("sample", "heading") or keys[0] not in event:
+        if event["event"] not in ("sample", "heading") or event.get(keys[0]) is None:
             return None
         values = [event.get(key) for key in keys]
         if self.what != "heading":
             values = values[0] + (values[1] or [math.nan] * 3) if len(values) > 1 else values[0]
-        return event.get("t_us"), tuple(values)
+        return event["t_us"], tuple(values)
 
     def _other(self, event):
         """Not a sample: perhaps the board started anew, with the stream it has by itself."""
@@ -151,6 +170,6 @@ class StreamSession:
             return
         with contextlib.suppress(SixflipError):
             self.link.send(json.dumps(dict(
-                {"cmd": "stream"}, hz=self.before.get("stream_hz", 10),
+                {"cmd": "stream"}, hz=self.before.get("stream_hz") or 0,
                 raw=bool(self.before.get("raw")), heading=bool(self.before.get("heading")),
                 binary=bool(self.before.get("binary")))))

@@ -10,6 +10,7 @@ from pathlib import Path
 from serial.tools import list_ports
 
 from ..board import board_answers
+from ..board.board_schema import BusAnswer
 from ..board.ports import add_port, open_link
 from ..errors import BadFile, CheckFailed, NoBoard, SixflipError
 from ..terminal import plain, styled
@@ -83,12 +84,9 @@ def on_board(link):
 
 def _of_the_bus(link):
     said = ask(link)
-    try:
-        found = wiring.judge(said)
-        if not any(one.unreachable for one in found):
-            found += wiring.record(said, slots(link))
-    except (TypeError, ValueError, LookupError, ArithmeticError, AttributeError):
-        raise NoBoard("%s: cannot understand what the board says of its bus" % link.port) from None
+    found = wiring.judge(said)
+    if not any(one.unreachable for one in found):
+        found += wiring.record(said, slots(link))
     return found
 
 
@@ -120,12 +118,15 @@ def parse(port, out):
     said = {}
     for line in out.splitlines():
         if line.strip():
-            one = board_answers.parse(port, line)
-            if not isinstance(one, tuple) or not one or not isinstance(one[0], str):
-                raise NoBoard("%s: cannot understand the board's answer %r" % (port, line[:60]))
-            said[one[0]] = one[1:]
-    if "settings" not in said and "stopped" not in said:
-        raise NoBoard("%s: the board said nothing of its bus" % port)
+            name, *values = board_answers.parse(port, line, BusAnswer())
+            said[name] = tuple(values)
+    if "stopped" in said:
+        return said
+    for name in ("settings", "scan", "ids"):
+        if name not in said:
+            raise NoBoard("%s: the board said nothing of its %s, expected a line" % (port, name))
+    if "means" in said and not {"selftest", "sensor"} <= set(said):
+        raise NoBoard("%s: the board told a mean of no sensor" % port)
     return said
 
 

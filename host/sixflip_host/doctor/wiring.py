@@ -172,7 +172,7 @@ def clock(said):
     found = []
     if "ready" in said:
         made, us, nominal, asked = said["ready"]
-        if not made:
+        if not made or not us:
             found.append(fault("clock", "the chip makes no new samples: its readings are frozen",
                                "take its power away for some seconds; if that does not help, it "
                                "is broken"))

@@ -5,6 +5,7 @@ import time
 
 from ..board.board_events import events
 from ..board.ending import Ending
+from ..board.session_deadline import SessionDeadline
 from ..errors import NoBoard
 from ..history import remember
 from .session_state import CALIBRATING, State, after, logged
@@ -26,6 +27,7 @@ class BoardSession:
         self.clock = clock
         self.state = State()
         self.ending = Ending()
+        self.deadline = SessionDeadline(link)
         self.witness = remember.Witness(board)
         self.heard_at = clock()
 
@@ -36,7 +38,7 @@ class BoardSession:
         """
         count = 0
         for event in events(self.link, wait_s, wait_s):
-            count += 1
+            count += event["event"] != "misfit"
             self.hear(event)
         now = self.clock()
         if count:
@@ -51,6 +53,8 @@ class BoardSession:
         self.witness.hear(event)
         if self.ending.take(event) and self.keep:
             self.witness.done()
+        if not self.ending.over:
+            self.deadline.hear(event)
 
     def say(self, line):
         """A lasting line of the host's own."""

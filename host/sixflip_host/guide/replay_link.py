@@ -29,6 +29,7 @@ class ReplayLink(LocalLink):
         self.temporary = tempfile.mkdtemp(prefix="sixflip-replay-")
         super().__init__(self.temporary)
         self.capture, self.speed = Path(path).resolve(), speed
+        self.patience = max(1.0, 1.0 / (speed or 1.0))    # its seconds last that long
         self.port = "replay of %s" % Path(path).name
         provision.copy(self, wanted, lambda line: None)
 

@@ -32,10 +32,10 @@ def ask(args):
                               "mounting needs a calibrated sensor" % link.port)
         link.send(json.dumps(asked))
         answer = wait_for(link, ("mounted", "not_mounted", "error"), silence_s=60)
-        while answer["event"] == "error" and "mount" not in str(answer.get("what")):
+        while answer["event"] == "error" and "mount" not in answer["what"]:
             answer = wait_for(link, ("mounted", "not_mounted", "error"), silence_s=60)
     if answer["event"] == "error":
-        raise CheckFailed("%s; expected %s" % (answer.get("what"), answer.get("expected")))
+        raise CheckFailed("%s; expected %s" % (answer["what"], answer.get("expected")))
     if answer["event"] == "not_mounted":
         raise CheckFailed("no mounting measured: %s; the board goes on with %s" % (
             answer.get("reason"), "the one it has" if answer.get("mounting") == "stored"

@@ -2,8 +2,7 @@
 import json
 import math
 
-from .. import file_kinds, progress
-from ..did_you_mean import instead
+from .. import file_kinds
 from ..errors import UsageError
 from ..file_arguments import add_input, add_output
 from ..simulating import protocols
@@ -46,12 +45,9 @@ def run(args):
     if placements > MOST_PLACEMENTS:
         raise UsageError("the protocol has %d placements, expected at most %d"
                          % (placements, MOST_PLACEMENTS))
-    with progress.during("plan"):
-        progress.doing("what the capture shows")
-        findings = Findings(protocol, args.sensor, args.certified_box, args.rate)
-        progress.doing("what could be added")
-        additions = plan_additions.ranked(protocol, findings, args.sensor, args.certified_box,
-                                          args.rate, args.minutes)
+    findings = Findings(protocol, args.sensor, args.certified_box, args.rate)
+    additions = plan_additions.ranked(protocol, findings, args.sensor, args.certified_box,
+                                      args.rate, args.minutes)
     answer = as_dict(protocol, args, findings, additions)
     if args.plot:
         from .alias_picture import draw
@@ -74,8 +70,8 @@ def protocol_of(name):
         raise UsageError("%s is a scene to simulate, not a capture of still poses; expected "
                          "one of %s, or a plan file" % (name, ", ".join(CAPTURES)))
     if not any(c in name for c in "./\\"):
-        raise UsageError("no protocol named %r, %s, or a plan file"
-                         % (name, instead(name, CAPTURES)))
+        raise UsageError("no protocol named %r, expected one of %s, or a plan file"
+                         % (name, ", ".join(CAPTURES)))
     return plan_file.read(name)
 
 
