@@ -2,11 +2,7 @@
 
 import os
 
-from sixflip.capture_blocks import COMPLETE, END
-
 from .flash_files import GOOD, NEW, REFUSED, remove, size
-
-END_BYTES = 13  # type, 0, length, samples u32, flags, CRC
 
 
 def move(source, target):
@@ -35,18 +31,6 @@ def keep(root):
 
 def refuse(root):
     move(root + NEW, root + REFUSED)
-
-
-def unfinished(root):
-    """Whether there is a capture of a session that did not come to its end: the last block of a
-    whole one says COMPLETE."""
-    try:
-        with open(root + REFUSED, "rb") as f:
-            f.seek(-END_BYTES, 2)
-            tail = f.read(END_BYTES)
-            return tail[0] != END or not tail[8] & COMPLETE
-    except OSError:
-        return False
 
 
 def refuse_first(root):

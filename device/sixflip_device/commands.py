@@ -18,7 +18,6 @@ from .flash_files import free_bytes
 
 
 def _info(unit, command):
-    from .capture_names import unfinished
     record = unit.record
     unit.events.emit(
         "info", board=unit.board.name, id=unit.board.unique_id,
@@ -27,7 +26,6 @@ def _info(unit, command):
         verdict=None if record is None else record.accel["verdict"],
         stream_hz=unit.stream_hz, raw=unit.raw, heading=unit.heading, binary=unit.binary,
         bias_dps=unit.bias_dps,
-        unfinished=unfinished(unit.board.root),
         bus_errors=0 if unit.sensor is None else unit.sensor.errors,
         free_bytes=free_bytes(unit.board.root))
 

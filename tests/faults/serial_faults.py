@@ -50,7 +50,7 @@ def impatient():
 def firmware(folder, version):
     """A firmware of three modules that says which version each of them is; main.py is ours."""
     hello = ('def main():\n    from sixflip_device import a\n    from sixflip import b\n'
-             '    print(\'{"event": "hello", "parts": [%d, %%d, %%d]}\' %% (a.V, b.V))\n')
+             '    print(\'{"event": "hello", "who_am_i": [%d, %%d, %%d]}\' %% (a.V, b.V))\n')
     sources = {PARTS[0]: hello % version, PARTS[1]: "V = %d\n" % version,
                PARTS[2]: "V = %d\n" % version,
                "sixflip/__init__.py": "", "sixflip_device/__init__.py": ""}
@@ -92,7 +92,7 @@ class Provisioned:
         link.reset()
         for event in events(link, 3, 10):
             if event["event"] == "hello":
-                return event["parts"]
+                return event["who_am_i"]
         return None
 
     def cut_at(self, operation):

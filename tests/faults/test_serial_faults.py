@@ -10,7 +10,7 @@ from mpremote.transport_serial import SerialTransport
 from serial_faults import BadCable, verb
 
 from sixflip_host.board.board_link import MpremoteLink
-from sixflip_host.board.buffered_serial import BufferedSerial
+from sixflip_host.board.buffered_serial import BufferedSerial, Endless
 from sixflip_host.errors import NoBoard
 from sixflip_host.virtual.virtual_board import VirtualBoard
 
@@ -79,7 +79,7 @@ def test_an_answer_cut_short_is_a_lost_board(monkeypatch):
         port.raw_paste_write(b"1")
 
 
-class Endless:
+class Talking:
     """A port that talks without end."""
 
     in_waiting = 4096
@@ -90,11 +90,14 @@ class Endless:
 
 
 def test_a_port_that_never_stops_talking_has_its_share():
-    wire = BufferedSerial(Endless(), timeout=60)
+    wire = BufferedSerial(Talking(), timeout=60)
     wire.most = 100000
     taken = 0
     started = time.monotonic()
-    while wire.inWaiting() and time.monotonic() < started + 60:
-        taken += len(wire.read(1000))
+    with pytest.raises(Endless, match="too long"):
+        while time.monotonic() < started + 60:
+            taken += len(wire.read(1000))
     assert 100000 < taken < 102000
-    assert wire.read(1) == b""
+    wire.most, wire.deadline = None, started
+    with pytest.raises(Endless, match="in time"):
+        wire.inWaiting()

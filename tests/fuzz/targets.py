@@ -24,6 +24,7 @@ from sixflip_device import settings as device_settings
 from sixflip_device.host_line import HostLine
 from sixflip_host import cli
 from sixflip_host.board import board_answers, board_events, console
+from sixflip_host.board.board_schema import ANSWERS
 from sixflip_host.capture import capture_binary, capture_file
 from sixflip_host.errors import SixflipError
 from sixflip_host.planning import plan_file
@@ -151,7 +152,7 @@ def lines_of_a_board(data):
     shown.clear()
     said_plainly(out.getvalue().replace("\r", ""))
     with contextlib.suppress(SixflipError):
-        board_answers.parse("port", data)
+        board_answers.parse("port", data, ANSWERS["file"])
 
 
 def settings(data):
