@@ -27,8 +27,8 @@ class Asked:
     """For sampling. wanted, lengths, hold_s: a plan, see PlannedSession; wanted None: none.
 
     before  it goes on with the session before; then face: 0..5 to be taken again, or -1, and
-    placements, moves, samples, seconds, us, kept, bytes, sums_only, reason, session: what
-    again.py took over of it
+    placements, moves, samples, seconds, us, kept, bytes, room, sums_only, reason, session: what
+    redo_session.py took over of it
     """
 
     wanted = None
@@ -89,7 +89,7 @@ def parse(request, pose_samples):
 
 
 def run(unit):
-    unit.asked = unit.recording = False
+    unit.recording = False
     request, unit.request = unit.request, None
     try:
         flag = _flag(unit)
@@ -99,7 +99,8 @@ def run(unit):
     except (ValueError, RuntimeError) as e:
         unit.events.error("no calibration: what was asked for cannot be understood: %s" % e,
                           "%s empty, or a plan or a face as sixflip calibrate writes it" % FLAG)
+        unit.asked = False
         return "put_in_force"
     if unit.taken is not None and unit.taken.before:
-        return "again"
+        return "redo_session"
     return "sampling"

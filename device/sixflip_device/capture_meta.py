@@ -1,9 +1,32 @@
-"""What stands in a capture's header."""
+"""What stands in a capture's header, the number of its session included."""
 
+import binascii
 import json
+import os
 
 import sixflip
 from sixflip import capture_blocks
+
+from .flash_files import GOOD, REFUSED, UNSAVED
+
+HEAD = 1200  # bytes of a file: a capture's metadata, or a whole record
+BEFORE = (GOOD, UNSAVED, REFUSED, "record_a.bin", "record_b.bin")
+
+
+def session_number(board):
+    """32 bits that name a new session in capture and record.
+
+    By chance; where there is none (an emulator's urandom is constant, and its ticks) it differs
+    all the same, for those of the sessions before go into it.
+    """
+    crc = binascii.crc32(os.urandom(8) + board.ticks_us().to_bytes(8, "little"))
+    for name in BEFORE:
+        try:
+            with open(board.root + name, "rb") as f:
+                crc = binascii.crc32(f.read(HEAD), crc)
+        except OSError:
+            pass  # none is there
+    return crc & 0xFFFFFFFF
 
 
 def meta_bytes(unit, number):

@@ -6,11 +6,9 @@ so. Room for the records is always left free.
 
 from sixflip.capture_writer import BlockWriter
 
-from .flash_files import NEW, REFUSED, free_bytes, remove
+from .flash_files import NEW, REFUSED, UNSAVED, free_bytes, remove
 
 RESERVE = 24576      # bytes left for the records, and for the file system's own needs
-CHECK_BYTES = 4096   # free space is asked for again after so many bytes at least: littlefs
-                     # goes through all of the flash for it, 0.15 s without a sample on a Pico
 SUMS_BYTES = 4096    # what the poses of a session take without their samples
 ENOSPC = 28          # everywhere; MicroPython's errno module does not list it
 
@@ -18,6 +16,11 @@ ENOSPC = 28          # everywhere; MicroPython's errno module does not list it
 class CaptureStore:
     """add() every sample, pose() every placement; none of them ever raises.
 
+    Free space is asked for once, before the file is open: littlefs counts one that is being
+    written up to three times, and goes through all of the flash for it, 0.15 s without a sample.
+
+    expected_bytes  what the session may take; for that much, captures of sessions that no record
+                    belongs to are removed. None: a file is continued, and they are left alone
     sums_only  True from the moment samples are no longer kept
     reason     why, in words
     recorded   True where every sample is asked for, whatever the file holds (recording.py)
@@ -26,7 +29,7 @@ class CaptureStore:
 
     recorded = False
 
-    def __init__(self, root, meta_bytes, columns, expected_bytes):
+    def __init__(self, root, meta_bytes, columns, expected_bytes=None):
         self._root = root
         self._meta = None
         self._columns = columns
@@ -37,14 +40,15 @@ class CaptureStore:
         self.reason = ""
         self.kept = 0
         self.bytes = 0
-        self._next_check = 0
         free = free_bytes(root)
-        if free is not None and free < RESERVE + expected_bytes:
-            remove(root + REFUSED)
-            remove(root + NEW)
-            free = free_bytes(root)
-        if free is not None and free < RESERVE + expected_bytes:
-            self._short("%d bytes free, a session takes about %d" % (free, expected_bytes))
+        if expected_bytes is not None:
+            for name in (NEW, REFUSED, UNSAVED):
+                if free is not None and free < RESERVE + expected_bytes:
+                    remove(root + name)
+                    free = free_bytes(root)
+            if free is not None and free < RESERVE + expected_bytes:
+                self._short("%d bytes free, a session takes about %d" % (free, expected_bytes))
+        self._free = free  # less what was written since; None: nobody knows
         self._open(meta_bytes)
 
     def _open(self, meta):
@@ -85,13 +89,10 @@ class CaptureStore:
             self._fail(e)
             return
         self.bytes += len(data)
-        if self.bytes >= self._next_check and not self.sums_only:
-            # not before half of what there is to spare is used
-            free = free_bytes(self._root)
-            self._next_check = self.bytes + max(
-                CHECK_BYTES, ((free or 0) - RESERVE - SUMS_BYTES) // 2)
-            if free is not None and free < RESERVE + SUMS_BYTES:
-                self._short("the flash is nearly full, %d bytes free" % free)
+        if self._free is not None:
+            self._free -= len(data)
+            if self._free < RESERVE + SUMS_BYTES and not self.sums_only:
+                self._short("the flash is nearly full, %d bytes free" % self._free)
 
     def add(self, dt_us, sample):
         """Counts the sample and, unless sums_only, keeps it."""

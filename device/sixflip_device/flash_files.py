@@ -5,8 +5,9 @@ import os
 FLAG = "calibrate.flag"  # its presence asks for a calibration at the next power-up
 OFFERED = "offered.bin"   # a record that a host wants in force (offered.py)
 NEW = "capture.new"
-GOOD = "capture.bin"      # belongs to the record in force
-REFUSED = "refused.bin"   # of the last session that did not become one
+GOOD = "capture.bin"      # of the sessions: see capture_files.py
+UNSAVED = "unsaved.bin"
+REFUSED = "refused.bin"
 
 
 def free_bytes(root):

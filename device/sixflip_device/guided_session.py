@@ -30,7 +30,7 @@ class GuidedSession:
                                            timeout_s=settings["timeout_s"])
         else:
             from .asked_session import session
-            self.session = session(unit, chip, store)
+            self.session = session(unit, chip)
         self._teller = Teller(unit.board, self.session, rate_hz, unit.events)
         self.ended = ""
 

@@ -50,7 +50,7 @@ def recall(unit):
         reason = "; ".join(["slot %s: %s" % r for r in refusals]) or "none is stored"
         unit.events.emit("no_record", reason=reason, refused=refused)
         return reason
-    from .capture_names import finish_interrupted
+    from .capture_files import finish_interrupted
     finish_interrupted(unit.board.root, record.session)
     accel = record.accel
     unit.events.emit("record", slot=slot, sequence=record.sequence, session=record.session,

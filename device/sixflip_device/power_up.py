@@ -5,7 +5,7 @@ phase is let go of when it ends: a small board must not hold solver and session 
 
     start     find the sensor, hello, self-test, grace window
     recall    newest valid record; put_in_force: it corrects; rest: gyro bias
-    asked     all six faces, a plan, or (again) one face of the session before
+    asked     all six faces, a plan, or (redo_session) the session before goes on
     sampling  guided session: six faces, each with a flip
     checking  the poses, then flips_turned: by an earlier gyro, solving: the parameters,
               judging: their verdict

@@ -1,9 +1,10 @@
-"""After the start: the newest record that fits. Without one a calibration comes first."""
+"""After the start: the newest record that fits. Without one a calibration comes first: where one
+was left unfinished, that one goes on."""
 
 import os
 
 from . import in_force
-from .flash_files import NEW, OFFERED, size
+from .flash_files import NEW, OFFERED, REFUSED, size
 
 
 def run(unit):
@@ -16,12 +17,14 @@ def run(unit):
     except OSError:
         pass  # no session was cut short
     else:
-        from .cut_short import file_away
+        from .capture_files import file_cut_short
         try:
-            file_away(unit.board.root)
+            file_cut_short(unit.board.root)
         except OSError as e:
             unit.events.error("the capture stays as capture.new: %s" % e, "a rename that works")
     first, unit.first = unit.first, False
-    if unit.record is None and first:
-        unit.asked = unit.asked or "nobody"  # has: the board does by itself
+    if unit.record is None and first and not unit.asked:
+        unit.asked = "nobody"  # has: the board does by itself
+        if size(unit.board.root + REFUSED):
+            unit.request = {"continue": True}
     return "asked" if unit.asked else "put_in_force"

@@ -3,8 +3,6 @@
 The old correction is out of force while samples are taken (power_up.py): raw means raw.
 """
 
-import os
-
 import sixflip.session  # noqa: F401 - the longest source first, while there is room
 
 from .capture_store import CaptureStore
@@ -17,7 +15,7 @@ from .session_teller import names
 class Taken:
     """What is left of sampling.
 
-    session     the random number that names it in capture and record
+    session     the number that names it in capture and record
     how, ended  "complete", "timed out", "stopped" or "bus lost", and a sentence
     placements, moves, missing (names)
     kept        the capture's file is whole
@@ -45,8 +43,9 @@ def _store(unit, number):
 def run(unit):
     remove(unit.board.root + FLAG)
     taken = Taken()
-    taken.session = int.from_bytes(os.urandom(4), "little")
     if unit.taken is None:
+        from .capture_meta import session_number
+        taken.session = session_number(unit.board)
         store = _store(unit, taken.session)
     else:
         from .asked_session import store_of
@@ -66,7 +65,7 @@ def run(unit):
         # after Ctrl-C too: what was captured stays readable
         taken.kept = store.finish(taken.how == "complete", guided.session.placements)
         if taken.how == "interrupted" and taken.kept:
-            from .capture_names import refuse_first
+            from .capture_files import refuse_first
             refuse_first(unit.board.root)
     taken.ended = guided.ended
     taken.placements = guided.session.placements

@@ -1,24 +1,20 @@
 """Last phase of a calibration: what came of it is told, and the record goes to flash.
 
 A refused session replaces nothing: its capture is kept as refused.bin, and the record
-before goes on.
+before goes on. A good one that says nothing new is kept as unsaved.bin.
 """
 
-from .capture_names import keep, refuse
+from .capture_files import file_cut_short, keep, keep_unsaved, refuse
+from .flash_files import UNSAVED
 
 
 def _file_away(unit, how):
-    """how: keep or refuse. A capture that cannot be renamed stays as capture.new."""
+    """how: of capture_files. A capture that cannot be renamed stays as capture.new."""
     if unit.taken.kept:
         try:
             how(unit.board.root)
         except OSError as e:
             unit.events.error("the capture stays as capture.new: %s" % e, "a rename that works")
-
-
-def _refuse_cut_short(root):
-    from .cut_short import file_away
-    file_away(root)
 
 
 def _tell(unit):
@@ -43,10 +39,10 @@ def _save(unit, new):
         new.terms = old.terms  # they count from whatever temperature it is calibrated at
         from .record_change import unchanged
         if unchanged(old, new):
-            unit.events.emit("saved", slot=unit.slot, sequence=old.sequence, written=False,
-                             reason="no number changed by more than its uncertainty: the "
-                             "record and its capture stay")
-            return _file_away(unit, refuse)
+            _file_away(unit, keep_unsaved)
+            return unit.events.emit(
+                "saved", slot=unit.slot, sequence=old.sequence, written=False, capture=UNSAVED,
+                reason="no number changed by more than its uncertainty")
     from .record_slots import RecordSlots
     unit.record = new
     try:
@@ -55,7 +51,7 @@ def _save(unit, new):
         unit.slot = None
         unit.events.error("the record could not be written: %s; it is in force until the "
                           "power goes" % e, "room for 1 KB on the flash")
-        return _file_away(unit, refuse)
+        return _file_away(unit, keep_unsaved)
     _file_away(unit, keep)
     return unit.events.emit("saved", slot=unit.slot, sequence=new.sequence, written=True)
 
@@ -66,7 +62,7 @@ def run(unit):
     if _tell(unit):
         _save(unit, taken.record)
     else:
-        _file_away(unit, refuse if taken.how == "complete" else _refuse_cut_short)
+        _file_away(unit, refuse if taken.how == "complete" else file_cut_short)
     unit.taken = None
     if taken.how == "bus lost":
         unit.events.error(taken.ended, "the sensor that was there a moment ago")

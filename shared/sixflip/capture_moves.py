@@ -4,7 +4,7 @@ from array import array
 
 from sixflip.capture_blocks import US, places
 from sixflip.capture_samples import each, start
-from sixflip.placement_log import PlacementLog, add_window
+from sixflip.placement_log import PlacementLog, add_window, empty_move
 from sixflip.still_window import StillWindow
 
 LENGTH = 32  # samples summed up in one go; any number will do
@@ -42,6 +42,10 @@ class CaptureMoves:
         self._last_s = seconds + us // US
         self._last_us = us % US
 
+    def skip(self, n):
+        """So many samples are left out: a gap in the move under way."""
+        self._at += n
+
     def _sample(self, dt_us):
         to_come = self._to_come
         if to_come and self._at == to_come[0].first:
@@ -65,10 +69,10 @@ class CaptureMoves:
         self._window.clear()
 
     def moves(self):
-        """To each of the placements, and the one that was under way at the end; None when not
-        all of the samples were there."""
+        """To each of the placements, and the one that was under way at the end. Where samples
+        were not kept nothing is known of a move: it has none."""
         if self._to_come:
-            return None
+            return self._log.moves + [empty_move(0) for _ in range(len(self._to_come) + 1)]
         if not self._resting():
             self._flush()
         return self._log.moves + [self._log.open]

@@ -18,10 +18,21 @@ def go_on(writer, samples, seconds, us):
     writer._us = us
 
 
+def samples_in(block):
+    """Their number in a block of samples."""
+    return block[12] | block[13] << 8
+
+
+def first_of(block):
+    """The first sample of a block of a pose."""
+    return struct.unpack_from("<I", block, 6)[0]
+
+
 class Scan:
     """blocks() of an open file; afterwards .blocks is a capture_reader.Blocks without samples.
 
-    seconds, us  time of the last sample; ValueError when the file has no readable header
+    seconds, us  time of the last sample; stored: the samples that are in the file; ValueError
+    when it has no readable header
     """
 
     def __init__(self, stream):
@@ -31,7 +42,7 @@ class Scan:
         if length > MOST_META:
             raise ValueError("its metadata has %d bytes, %d is the most" % (length, MOST_META))
         self.blocks = _header(head + stream.read(length + 4))[0]
-        self.seconds = self.us = 0
+        self.seconds = self.us = self.stored = 0
         self._row = array("h", [0] * len(self.blocks.names))
 
     def each(self):
@@ -68,6 +79,16 @@ class Scan:
         seconds, us, count = start(payload)
         for dt in each(kind, payload, count, self._row):
             us += dt
+        self.stored += count
         self.blocks.samples += count
         self.seconds = seconds + us // cb.US
         self.us = us % cb.US
+
+    def samples(self):
+        """Those that were taken: the poses tell it where the end is missing."""
+        blocks = self.blocks
+        return max([blocks.samples] + [p.first + p.n for p in blocks.placements])
+
+    def sums_only(self):
+        """Some of the samples were not kept."""
+        return self.blocks.sums_only or self.samples() > self.stored

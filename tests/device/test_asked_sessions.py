@@ -9,7 +9,7 @@ from test_power_up import STILL, Folder
 
 from sixflip.capture_reader import read as read_blocks
 from sixflip.faces import pose_name
-from sixflip_device import asked
+from sixflip_device import asked, redo_session
 from sixflip_host.capture import capture_binary
 
 FACES = "Z+a Z+b X+a X+b Y-a Y-b Z-a Z-b X-a X-b Y+a Y+b"
@@ -119,14 +119,15 @@ class Redo(Folder):
         self.assertEqual(self.files(), ["capture.bin", "record_a.bin"])
         new = read_blocks(self.read("capture.bin"))
         self.assertTrue(new.complete)
-        n = len(old.t_us)
-        self.assertEqual((list(new.t_us[:n]), new.rows[:7 * n]), (list(old.t_us), old.rows))
+        n = old.placements[-1].first + old.placements[-1].n
+        self.assertEqual((list(new.t_us[:n]), new.rows[:7 * n]),
+                         (list(old.t_us[:n]), old.rows[:7 * n]))
         self.assertGreater(new.t_us[n], old.t_us[-1] + 60000000)
         self.assertIn("Y- again", new.notes[-1])
         self.sums_agree()
 
-    def sums_agree(self):
-        capture = capture_binary.decode(self.read("capture.bin"))
+    def sums_agree(self, name="capture.bin"):
+        capture = capture_binary.decode(self.read(name))
         self.assertEqual(len(capture.board_placements), 12)
         for p in capture.board_placements:
             rows = np.column_stack([capture.accel, capture.gyro, capture.temp])
@@ -139,8 +140,32 @@ class Redo(Folder):
         self.assertEqual(board.only("calibrating")["missing"], ["X+a", "X+b"])
         self.assertEqual(board.only("solved")["verdict"], "good")
         self.assertAlmostEqual(board.only("solved")["tilt_deg"], 2.0, delta=0.1)
-        self.assertEqual(read_blocks(self.read("capture.bin")).withdrawn[-2:], [5, 6])
         self.sums_agree()
+
+    def test_any_number_of_times(self):
+        """The samples and flips of all else stay, the capture does not grow."""
+        self.calibrated()
+        first = read_blocks(self.read("capture.bin"))
+        for face in ("X+", "X+", "Y-", "X+"):
+            board = self.redo(face)
+            solved, capture = board.only("solved"), board.only("capture")
+            self.assertEqual((solved["verdict"], solved["gyro"]["verdict"]), ("good", "good"))
+            self.assertEqual(solved["gyro"]["reason"][:7], "6 flips")
+            self.assertEqual(capture["kept"], capture["samples"])
+            newest = [name for name in ("unsaved.bin", "capture.bin") if name in self.files()][0]
+            self.sums_agree(newest)
+            self.assertLess(len(self.read(newest)), 20 * (len(first.t_us) + 2500))
+
+    def test_there_is_no_room_for_a_copy(self):
+        self.calibrated()
+        before = self.files(), self.read("capture.bin")
+        real, redo_session.free_bytes = redo_session.free_bytes, lambda root: 100000
+        try:
+            board = self.redo("X+", **STILL)
+        finally:
+            redo_session.free_bytes = real
+        self.assertIn("100000 bytes are free, a copy", board.only("error")["what"])
+        self.assertEqual((self.files(), self.read("capture.bin")), before)
 
     def test_over_the_serial_line_when_ready(self):
         self.calibrated()

@@ -9,7 +9,7 @@ from array import array
 from sixflip.capture_blocks import ACCEL
 from sixflip.capture_reader import read as read_blocks
 from sixflip.placement import Placement
-from sixflip_device import capture_names, capture_store, cut_short, flash_files
+from sixflip_device import capture_files, capture_store, flash_files
 from sixflip_device.capture_store import CaptureStore
 
 
@@ -98,15 +98,9 @@ class TestCaptureStore(unittest.TestCase):
         store.finish(False)
 
     def test_room_runs_out_in_mid_session(self):
-        name = self.root + "capture.new"
-        room = capture_store.RESERVE + capture_store.SUMS_BYTES + 1500
-        capture_store.free_bytes = lambda root: room - flash_files.size(name)
-        capture_store.CHECK_BYTES, before = 512, capture_store.CHECK_BYTES
-        try:
-            store = self.store(expected=3000)
-            self.session(store, 6)
-        finally:
-            capture_store.CHECK_BYTES = before
+        self.free = capture_store.RESERVE + capture_store.SUMS_BYTES + 3000
+        store = self.store(expected=3000)
+        self.session(store, 6)
         self.assertTrue(store.finish(True, self.placements))
         got = self.content()
         self.assertTrue(got.sums_only)
@@ -116,13 +110,21 @@ class TestCaptureStore(unittest.TestCase):
         self.assertGreater(store.kept, 99)
         self.assertLess(store.kept, 600)
 
-    def test_free_space_is_not_asked_for_while_there_is_plenty(self):
+    def test_a_file_that_littlefs_counts_three_times_does_not_fill_the_flash(self):
+        name = self.root + "capture.new"
+        capture_store.free_bytes = lambda root: 59000 - 3 * flash_files.size(name)
+        store = self.store(expected=20000)
+        self.session(store, 12)
+        self.assertTrue(store.finish(True, self.placements))
+        self.assertGreater(3 * store.bytes, 59000 - capture_store.RESERVE)
+        self.assertFalse(store.sums_only, store.reason)
+
+    def test_free_space_is_not_asked_for_in_a_session(self):
         asked = []
         capture_store.free_bytes = lambda root: asked.append(1) or 1200000
         store = self.store()
         del asked[:]  # before the first sample
-        self.session(store, 24)
-        self.assertGreater(store.bytes, 2 * capture_store.CHECK_BYTES)
+        self.session(store, 12)
         self.assertEqual(asked, [])
         store.finish(True)
 
@@ -159,9 +161,9 @@ class TestCaptureStore(unittest.TestCase):
         store = self.store()
         self.session(store)
         store.finish(True, self.placements)
-        capture_names.finish_interrupted(self.root, 8)
+        capture_files.finish_interrupted(self.root, 8)
         self.assertEqual(os.listdir(self.root), ["capture.new"])
-        capture_names.finish_interrupted(self.root, 7)
+        capture_files.finish_interrupted(self.root, 7)
         self.assertEqual(os.listdir(self.root), ["capture.bin"])
 
     def test_a_session_whose_name_begins_like_the_records_is_another_one(self):
@@ -170,14 +172,14 @@ class TestCaptureStore(unittest.TestCase):
         os.rename(self.root + "capture.new", self.root + "x")
         with open(self.root + "x", "rb") as f, open(self.root + "capture.new", "wb") as g:
             g.write(f.read().replace(b'"session": 7', b'"session": 71'))
-        capture_names.finish_interrupted(self.root, 7)
+        capture_files.finish_interrupted(self.root, 7)
         self.assertIn("capture.new", os.listdir(self.root))
 
     def test_power_cut_in_mid_session(self):
         store = self.store()
         self.session(store)
         store._file.close()  # and no end block
-        cut_short.file_away(self.root)
+        capture_files.file_cut_short(self.root)
         self.assertEqual(os.listdir(self.root), ["refused.bin"])
         self.assertEqual(len(self.content("refused.bin").placements), 3)
 
@@ -186,13 +188,18 @@ class TestCaptureStore(unittest.TestCase):
             store = self.store()
             self.session(store, poses)
             store._file.close()
-            cut_short.file_away(self.root)
+            capture_files.file_cut_short(self.root)
             self.assertEqual(len(self.content("refused.bin").placements), left)
+
+    def test_power_cut_before_the_first_sample_leaves_nothing(self):
+        self.store()._file.close()
+        capture_files.file_cut_short(self.root)
+        self.assertEqual(os.listdir(self.root), [])
 
     def test_power_cut_before_the_header_is_whole(self):
         with open(self.root + "capture.new", "wb") as f:
             f.write(b"6CAP")
-        cut_short.file_away(self.root)
+        capture_files.file_cut_short(self.root)
         self.assertEqual(os.listdir(self.root), [])
 
     def test_power_cut_in_a_session_nobody_asked_for_leaves_one_with_more_poses(self):
@@ -202,11 +209,11 @@ class TestCaptureStore(unittest.TestCase):
                 store.add(10000, array("h", [1, -2, 16384, 0, 0, 0, 0]))
             self.session(store, poses)
             store._file.close()
-            cut_short.file_away(self.root)
+            capture_files.file_cut_short(self.root)
             self.assertEqual(os.listdir(self.root), ["refused.bin"])
             self.assertEqual(len(self.content("refused.bin").placements), 6)
         store = self.store()
         self.session(store, 2)
         store._file.close()
-        cut_short.file_away(self.root)
+        capture_files.file_cut_short(self.root)
         self.assertEqual(len(self.content("refused.bin").placements), 2)

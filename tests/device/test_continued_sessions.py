@@ -57,6 +57,23 @@ class Continued(Folder):
         power_on(self.root, {"order": ["Z+a", {"pose": "L1", "up": [0.6, 0.64, 0.48]}]})
         self.assertIn("plan", self.go_on([]).only("afresh")["reason"])
 
+    def test_without_a_record_it_goes_on_at_the_next_power_up(self):
+        """What was promised to stay on the board is what goes on."""
+        self.stopped()
+        board = power_on(self.root, {"order": REST[:4]}, answers=[
+            after("Y+b", {"cmd": "stop"}), STOP_WHEN_READY])
+        self.assertEqual(board.only("calibrating")["missing"][0], "Z-a")
+        board = self.go_on(REST[4:])
+        self.assertEqual(board.only("calibrating")["missing"], [
+            "Z-a", "Z-b", "X-a", "X-b", "Y-a", "Y-b"])
+        self.assertEqual(board.only("solved")["verdict"], "good")
+
+    def test_a_session_of_its_own_that_is_cut_off_drops_no_face(self):
+        self.stopped()
+        power_on(self.root, dict(STILL, order=[]), answers=[
+            ["calibrating", {"cmd": "stop"}, 1], STOP_WHEN_READY])
+        self.assertEqual(len(self.go_on(REST).only("calibrating")["missing"]), 10)
+
     def test_it_goes_on_over_the_serial_line(self):
         self.stopped()
         board = power_on(self.root, dict(STILL, order=[]), answers=[

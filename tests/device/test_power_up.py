@@ -158,7 +158,19 @@ class TestAskedFor(Folder):
         self.assertFalse(saved["written"])
         self.assertIn("uncertainty", saved["reason"])
         self.assertEqual((self.read("record_a.bin"), self.read("capture.bin")), before)
-        self.assertNotIn("record_b.bin", self.files())
+        self.assertEqual(self.files(), ["capture.bin", "record_a.bin", saved["capture"]])
+        self.assertTrue(read_blocks(self.read("unsaved.bin")).complete)
+
+    def test_sessions_have_numbers_of_their_own_where_chance_is_constant(self):
+        numbers = set()
+        real, os.urandom = os.urandom, lambda n: bytes(n)
+        try:
+            for _ in range(3):
+                numbers.add(self.calibrated().only("calibrating")["session"])
+                self.write("calibrate.flag", b"")
+        finally:
+            os.urandom = real
+        self.assertEqual(len(numbers), 3)
 
     def test_restore_goes_back_and_forth(self):
         self.calibrated()

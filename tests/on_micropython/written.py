@@ -8,7 +8,7 @@ from sixflip import capture_reader
 from sixflip.capture_blocks import ACCEL, GYRO, TEMP
 from sixflip.placement import Placement
 from sixflip.record import Record
-from sixflip_device import again, capture_meta, flash_files, record_slots, saving
+from sixflip_device import capture_meta, flash_files, record_slots, redo_session, saving
 from sixflip_device.capture_store import CaptureStore
 
 MASK = ACCEL | GYRO | TEMP
@@ -52,7 +52,7 @@ class Events:
 
 
 def unit_at(root):
-    """A power_up.Unit, as far as recall, saving and again look at one."""
+    """A power_up.Unit, as far as recall, saving and redo_session look at one."""
     unit = Nothing()
     unit.events = Events()
     unit.board = Nothing()
@@ -157,20 +157,18 @@ class Written:
         store.finish(poses == POSES, [])
 
     def redo(self, root, log):
-        """What again.py and sampling.py do: the old capture copied, then a face more."""
+        """What redo_session.py and sampling.py do: the old capture copied, then a face more."""
         from sixflip_device import asked_session
         unit = unit_at(root)
         unit.taken = asked = Nothing()
         asked.face, asked.wanted, asked.before = 0, None, True
         flash_files.remove(root + flash_files.REFUSED)  # of the good session, this time
-        again.os = Seeded(again.os)
-        if again.run(unit) != "sampling":
+        redo_session.session_number = lambda board: NEW
+        if redo_session.run(unit) != "sampling":
             raise ValueError(unit.events.told)
         taken = Nothing()
         taken.session = 0
         store = asked_session.store_of(unit, taken)
-        for code in (1, 2):
-            store.withdraw(code)
         self.sample(store, NEW, log, 2, POSES - 2)
 
     def save(self, root, number, how="complete"):
@@ -248,16 +246,3 @@ class Written:
                                  len(captures[REFUSED].placements) >= poses):
             found.append(("last pose" if have == poses - 1 else "poses",
                           "%d of %d poses that were on the flash" % (have, poses)))
-
-
-class Seeded:
-    """os with a session's name that is known."""
-
-    def __init__(self, os):
-        self._os = os
-
-    def urandom(self, n):
-        return NEW.to_bytes(n, "little")
-
-    def __getattr__(self, name):
-        return getattr(self._os, name)
