@@ -9,7 +9,6 @@ is not the table's.
 """
 
 import json
-import os
 from array import array
 
 from sixflip import capture_blocks as cb

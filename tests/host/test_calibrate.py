@@ -32,8 +32,14 @@ def test_calibrate_pull_restore(provisioned, tmp_path, capsys):
     assert "verdict: good" in out
     assert cli.main(["restore", *port]) == 1
     assert "no record before this one" in capsys.readouterr().err
+    assert cli.main(["calibrate", *port]) == 0
+    assert "not written, no better than slot a, sequence 1" in capsys.readouterr().out
+    with MpremoteLink(provisioned.port) as link:      # cut off before the first sample
+        link.put("refused.bin", link.get("unsaved.bin")[:600])
     assert cli.main(["pull", *port, "-o", str(tmp_path)]) == 0
+    assert "refused.bin is empty" in (out := capsys.readouterr().out) and "next: sixflip" in out
     folder = tmp_path / provisioned.unique_id
+    assert capture_file.read(folder / "unsaved.csv").complete
     capture = capture_file.read(folder / "capture.csv")
     assert len(capture.t_us) > 5000
     assert len(set(capture.pose.tolist())) == 13  # twelve poses and moving

@@ -98,6 +98,20 @@ def _solved(event):
     return line
 
 
+def saved(event):
+    """What became of the record."""
+    where = "slot %s, sequence %s" % (event.get("slot"), event.get("sequence"))
+    if event.get("written") is not False:
+        return "saved in " + where
+    return "not written, no better than %s: %s" % (where, event.get("reason") or "no reason given")
+
+
+def _saved(event):
+    kept = event.get("capture")
+    return saved(event) + (
+        "; the raw capture of this session is kept as %s" % kept if kept else "")
+
+
 def _record(event):
     return "correction in force: slot %s, sequence %s, verdict %s%s" % (
         event.get("slot"), event.get("sequence"), event.get("verdict"), _terms(event))

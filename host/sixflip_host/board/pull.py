@@ -15,13 +15,13 @@ from .ports import add_port, open_link
 
 HELP = "fetch the raw capture and the correction records from a board"
 EXAMPLE = "sixflip pull -o captures"
-WANTED = ("record_a.bin", "record_b.bin", "sixflip.json", "capture.bin", "refused.bin")
-CAPTURES = ("capture.bin", "refused.bin")
+CAPTURES = ("capture.bin", "unsaved.bin", "refused.bin")
+WANTED = ("record_a.bin", "record_b.bin", "sixflip.json", *CAPTURES)
 # What a file there may be to be replaced, those of convert() with them.
 KINDS = {"record_a.bin": (file_kinds.RECORD,), "record_b.bin": (file_kinds.RECORD,),
-         "sixflip.json": (file_kinds.JSON,), "capture.bin": (file_kinds.BOARD_CAPTURE,),
-         "refused.bin": (file_kinds.BOARD_CAPTURE,), "capture.csv": (file_kinds.CAPTURE,),
-         "refused.csv": (file_kinds.CAPTURE,)}
+         "sixflip.json": (file_kinds.JSON,),
+         **{name: (file_kinds.BOARD_CAPTURE,) for name in CAPTURES},
+         **{name.replace(".bin", ".csv"): (file_kinds.CAPTURE,) for name in CAPTURES}}
 
 
 def add_arguments(parser):
@@ -66,7 +66,8 @@ def fetch(link, output, say=print, force=False):
 
 
 def convert(folder, say=print):
-    """Write a .csv beside every capture that holds samples."""
+    """Write a .csv beside every capture that holds samples; a BadFile for each that is none."""
+    unreadable = []
     for name in CAPTURES:
         path = Path(folder) / name
         if not path.exists():
@@ -75,13 +76,18 @@ def convert(folder, say=print):
         if capture_binary.is_empty(data):
             say("%s is empty: its session ended before anything was captured" % plain(path))
             continue
-        capture = capture_binary.decode(data, str(path))
+        try:
+            capture = capture_binary.decode(data, str(path))
+        except BadFile as error:
+            unreadable.append(error)
+            continue
         if len(capture.t_us):
             table = path.with_suffix(".csv")
             capture_file.write(table, capture)
             say("%s (%d samples)" % (plain(table), len(capture.t_us)))
         else:
             say("%s holds the poses' sums only, no samples" % plain(path))
+    return unreadable
 
 
 def run(args):
@@ -90,11 +96,13 @@ def run(args):
         folder = fetch(link, args.output, say, args.force)
         board = link.board_id()
         link.reset()
-    convert(folder, say)
+    unreadable = convert(folder, say)
     remember.pulled(folder, board)
     if args.json:
         print(json.dumps({
             "format": 1, "kind": "sixflip pull", "board": board, "folder": str(folder),
             "files": sorted(path.name for path in folder.iterdir() if path.is_file())}))
+    if unreadable:
+        raise unreadable[0]
     say("next: sixflip verify %s" % plain(folder))
     return 0

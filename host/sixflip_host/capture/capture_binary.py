@@ -22,12 +22,13 @@ LATEST_US = (1 << 32) * 1000000
 
 
 def is_empty(data):
-    """True for a board's file that is whole and holds nothing: nothing was captured."""
+    """True for a board's file that holds nothing: its session ended, or the power was cut, before
+    anything was captured."""
     try:
         blocks = read_blocks(data)
     except ValueError:
         return False
-    return not (blocks.rows or blocks.placements or blocks.damage)
+    return not (blocks.rows or blocks.placements)
 
 
 def decode(data, path="capture"):

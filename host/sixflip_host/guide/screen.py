@@ -2,7 +2,7 @@
 
 from rich.text import Text
 
-from ..board.console import ROUND
+from ..board.console import ROUND, saved
 from . import box_drawings
 from .gauges import bar, measured
 from .next_step import HOLD, next_step, why_it_waits
@@ -97,8 +97,7 @@ def result(state):
     if isinstance(gyro, dict):
         lines.append(Text("gyro: %s" % gyro.get("verdict")))
     if state.saved:
-        lines.append(Text("saved in slot %s, sequence %s" % (
-            state.saved.get("slot"), state.saved.get("sequence"))))
+        lines += [Text(piece) for piece in wrapped(saved(state.saved), WIDTH - LEFT - 2)[:3]]
         lines.append(Text("next: sixflip pull, and sixflip verify"))
     return lines
 

@@ -178,6 +178,12 @@ function showFaces(v, running) {
   if (v.plan) say("plan", v.plan.at + " of " + v.plan.of + " placements; next " + v.plan.next);
 }
 
+function savedWords(saved) {
+  if (!saved.slot) return "no";
+  const where = "slot " + saved.slot + ", sequence " + saved.sequence;
+  return saved.written === false ? "not written, no better than " + where + ": " + saved.reason : where;
+}
+
 function showResult(v) {
   element("result").hidden = !v.verdict;
   if (!v.verdict) return;
@@ -193,7 +199,7 @@ function showResult(v) {
     ["gyro", gyro ? gyro.verdict + ": " + gyro.reason : "-"],
     ["gyro scale x y z", gyro ? three(gyro.scale, 4) : "-"],
     ["gyro bias x y z", gyro ? three(gyro.bias_dps, 3) + " deg/s" : "-"],
-    ["saved", v.saved.slot ? "slot " + v.saved.slot + ", sequence " + v.saved.sequence : "no"]];
+    ["saved", savedWords(v.saved)]];
   const table = element("numbers");
   while (table.rows.length < rows.length) { const row = table.insertRow(); row.insertCell(); row.insertCell(); }
   rows.forEach(([name, value], n) => {
