@@ -22,6 +22,7 @@ class Blocks:
     notes         texts
     lost          (first, n) of the samples that never came, by the board's count; missing: all
     samples       number taken (with sums_only or lost ones more than are here)
+    sums_only     not all of the samples were kept; it shows in the poses where the end is missing
     ended         the last block is there; complete: and says that no pose is missing
     truncated_at  offset of the first byte that is not part of a whole block, or None
     damage        a sentence about it, or ""
@@ -166,7 +167,10 @@ def read(data):
             except ValueError as error:
                 blocks.damage = "a block is wrong: %s" % error
     if not blocks.ended:
-        blocks.samples = max(blocks.samples, len(blocks.t_us) + blocks.missing)
+        here = len(blocks.t_us) + blocks.missing
+        last = max([p.first + p.n for p in blocks.placements] + [here])
+        blocks.sums_only = last > here
+        blocks.samples = max(blocks.samples, last)
         blocks.damage = blocks.damage or "its end is missing"
     if blocks.damage:
         blocks.truncated_at = at

@@ -13,7 +13,6 @@ from sixflip.capture_writer import BlockWriter
 from sixflip_host.board import board_events, pull
 from sixflip_host.board.board_link import safe_name
 from sixflip_host.board.console import Console
-from sixflip_host.errors import SixflipError
 
 NAMES = ("../../x", "/etc/x", "..", ".", "", "a/../../x", "x\0y", "\\..\\x", "C:x", "a" * 5000,
          "CAPTURE.BIN", "capture.bin/../../x", "\x1b[2J.bin", "capture.bin\n", "~/x")

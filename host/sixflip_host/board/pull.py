@@ -20,7 +20,7 @@ WANTED = ("record_a.bin", "record_b.bin", "sixflip.json", *CAPTURES)
 # What a file there may be to be replaced, those of convert() with them.
 KINDS = {"record_a.bin": (file_kinds.RECORD,), "record_b.bin": (file_kinds.RECORD,),
          "sixflip.json": (file_kinds.JSON,),
-         **{name: (file_kinds.BOARD_CAPTURE,) for name in CAPTURES},
+         **dict.fromkeys(CAPTURES, (file_kinds.BOARD_CAPTURE,)),
          **{name.replace(".bin", ".csv"): (file_kinds.CAPTURE,) for name in CAPTURES}}
 
 

@@ -9,12 +9,11 @@ from sixflip.capture_reader import read as read_blocks
 from sixflip.capture_writer import BlockWriter
 
 from ..errors import BadFile
+from . import board_extras
+from .board_extras import EXTRAS, PAUSES
 from .capture_header import check_meta
 from .capture_rows import quoted
 
-# In a text capture made from a board's: what only the board's file has a place for.
-EXTRAS = "board_capture"
-PAUSES = "write_pauses_us"
 LATE = 1.5              # an interval so many times the usual one covers another sample's time
 UNLABELLED = "nobody labelled the poses"
 BLOCK_SAMPLES = 256
@@ -36,7 +35,7 @@ def decode(data, path="capture"):
 
     board_placements  what the board summed up itself, as sixflip.placement.Placement
     truncated         a sentence when the file was cut off or damaged, else None
-    sums_only         the board had no room for samples: none are here
+    sums_only         the board had no room for all samples: taken says how many there were
     Raises BadFile when there is no readable header or not one sample.
     """
     from .capture_file import Capture
@@ -54,20 +53,22 @@ def decode(data, path="capture"):
     capture = Capture(meta, np.array(blocks.t_us, np.int64), _triple(columns, "a"),
                       _triple(columns, "g"), columns.get("temp"), _triple(columns, "m"))
     capture.board_placements = blocks.placements
-    capture.notes = [note for note in blocks.notes if note != UNLABELLED]
-    capture.truncated = blocks.damage or None
     capture.sums_only = blocks.sums_only or not len(rows)
-    capture.complete = blocks.complete
-    capture.withdrawn = blocks.withdrawn
     if UNLABELLED not in blocks.notes:
         capture.pose = _labels(path, blocks)
-    extras = {"complete": blocks.complete, "notes": capture.notes, "withdrawn": blocks.withdrawn}
-    kept = meta.pop(EXTRAS, None)       # of a file that encode() made: its blocks tell nothing
-    pauses = kept.get(PAUSES, []) if isinstance(kept, dict) else write_pauses_us(blocks)
-    if pauses:
-        extras[PAUSES] = pauses
-    if extras != {"complete": False, "notes": [], "withdrawn": []}:
+    # of a file that encode() made the blocks tell nothing of pauses
+    kept = meta.pop(EXTRAS, None)
+    extras = {"complete": blocks.complete, "withdrawn": blocks.withdrawn,
+              "notes": [note for note in blocks.notes if note != UNLABELLED],
+              "truncated": blocks.damage or None,
+              PAUSES: kept.get(PAUSES) if isinstance(kept, dict) else write_pauses_us(blocks)}
+    extras = {name: value for name, value in extras.items() if value}
+    if capture.sums_only:
+        extras.update(taken=blocks.samples,
+                      placements=[board_extras.as_json(each) for each in blocks.placements])
+    if extras:
         meta[EXTRAS] = extras
+    board_extras.take(capture, path)
     return capture
 
 
@@ -141,10 +142,8 @@ def encode(capture):
         raise BadFile("the times go from %d to %d us, a board's file holds 0 to %d" % (
             capture.t_us[0], capture.t_us[-1], LATEST_US - 1))
     meta = dict(capture.meta)
-    extras = meta.pop(EXTRAS, {})
-    if not isinstance(extras, dict):
-        raise BadFile("the key %s is %s, expected an object" % (EXTRAS, quoted(repr(extras))))
-    meta[EXTRAS] = {PAUSES: extras.get(PAUSES, [])}
+    extras = board_extras.of(meta, "the capture")
+    meta[EXTRAS] = {PAUSES: extras.pauses}
     data = bytearray()      # the writer's buffer is used again: copy what it hands over
     mask = ACCEL | (GYRO if capture.gyro is not None else 0) \
         | (TEMP if capture.temp is not None else 0) | (MAG if capture.mag is not None else 0)
@@ -154,13 +153,15 @@ def encode(capture):
     except ValueError as error:
         raise BadFile("the capture cannot be written as a board's file: %s" % error)
     _write_samples(writer, capture)
-    for note in [UNLABELLED] * (capture.pose is None) + list(extras.get("notes", [])):
-        writer.note(str(note))
-    for code in extras.get("withdrawn", []):
-        writer.withdraw(int(code))
+    for note in [UNLABELLED] * (capture.pose is None) + extras.notes:
+        writer.note(note)
+    for code in extras.withdrawn:
+        writer.withdraw(code)
     for placement in capture.placements():
         writer.pose(placement)
-    writer.end(bool(extras.get("complete")))
+    if extras.placements is not None:
+        writer.sums_only, writer.samples = True, max(len(capture), extras.taken)
+    writer.end(extras.complete)
     return bytes(data)
 
 

@@ -13,6 +13,7 @@ from sixflip.faces import pose_name
 from .. import atomic_write
 from ..errors import BadFile
 from ..simulating import pose_runs
+from . import board_extras, capture_binary
 from .capture_header import ACCEL, GYRO, MAG, STANDARD_G, VERSION, check_meta, parse_header
 from .capture_rows import parse_rows, quoted
 from .gunzip import MAGIC as GZIP_MAGIC
@@ -28,8 +29,8 @@ class Capture:
     t_us    int64 (n,) microseconds, not decreasing
     accel   int16 (n, 3) counts; gyro, mag likewise or None; temp int16 (n,) or None
     pose    int16 (n,) codes of sixflip.faces, 0 while moving; None when nobody labelled
-    board_placements, notes, truncated, sums_only, complete, withdrawn
-            what only a board's own file knows, see capture_binary.decode
+    board_placements, notes, truncated, sums_only, taken, complete, withdrawn
+            what only a board's own file knows, see capture_binary
     """
 
     def __init__(self, meta, t_us, accel, gyro=None, temp=None, mag=None, pose=None):
@@ -44,6 +45,7 @@ class Capture:
         self.notes = []
         self.truncated = None
         self.sums_only = False
+        self.taken = len(t_us)
         self.complete = True
         self.withdrawn = []
 
@@ -66,7 +68,7 @@ class Capture:
     def placements(self):
         """Every unbroken run of a label as a sixflip.placement.Placement; sums are exact.
 
-        Where the board kept no samples, the placements are the board's.
+        Where the board did not keep all samples, the placements are the board's.
         """
         if self.sums_only:
             return list(self.board_placements)
@@ -84,7 +86,6 @@ def read(path):
     """
     data = atomic_write.read_bytes(path)
     if data.startswith(BOARD_MAGIC):
-        from . import capture_binary
         return capture_binary.decode(data, str(path))
     if data.startswith(GZIP_MAGIC):
         data = gunzip(path, data)
@@ -120,12 +121,14 @@ def parse(path, data):
         raise BadFile.at(path, 3 + rows, "%s after %d rows" % (
             "the file was cut short" if rows < samples else "the file goes on", rows),
             "the %d rows its header promises" % samples)
-    return Capture(meta, values["t_us"], *(
+    capture = Capture(meta, values["t_us"], *(
         np.stack([values[name] for name in group], axis=1) if group[0] in values else None
         for group in (ACCEL, GYRO)),
         values.get("temp"),
         np.stack([values[name] for name in MAG], axis=1) if "mx" in values else None,
         values.get("pose"))
+    board_extras.take(capture, path)
+    return capture
 
 
 def write(path, capture):

@@ -4,6 +4,7 @@ import numpy as np
 
 from sixflip.faces import FACES, pose_name
 
+from ..simulating import pose_runs
 from .figures import COLOURS, canvas
 
 RAW, CORRECTED = "#b5651d", "#2a6f97"
@@ -139,10 +140,10 @@ def session(capture):
 
 
 def _shade(ax, capture, seconds, named):
-    for one in capture.placements():
-        start, end = seconds[one.first], seconds[one.first + one.n - 1]
+    for code, first, after in pose_runs.runs(capture.pose):
+        start, end = seconds[first], seconds[after - 1]
         ax.axvspan(start, end, color="0.92", zorder=0)
         if named:
-            ax.annotate(pose_name(one.pose), (0.5 * (start + end), 1.01),
+            ax.annotate(pose_name(code), (0.5 * (start + end), 1.01),
                         xycoords=("data", "axes fraction"), ha="center", va="bottom",
                         fontsize=7, rotation=60)

@@ -57,8 +57,9 @@ def white_noise(counts, window):
 
 
 def moves(capture, rests):
-    """list of Move between consecutive placements; none without a gyro."""
-    if capture.gyro is None or len(rests) < 2:
+    """list of Move between consecutive placements; none without a gyro, or where the board did
+    not keep all of the samples."""
+    if capture.gyro is None or capture.sums_only or len(rests) < 2:
         return []
     return [_move(capture, index, rests[index], rests[index + 1])
             for index in range(len(rests) - 1)]

@@ -1,0 +1,73 @@
+"""What only a board's own file of a capture has a place for, under one key of a text's header.
+
+Notes, poses that were withdrawn, what is wrong with the file, and the board's sums of the poses
+where not all of the samples were kept: so both forms of a capture say the same.
+"""
+
+from typing import NamedTuple
+
+from sixflip.faces import pose_name
+from sixflip.placement import Placement
+from sixflip.pose_codes import pose_code
+
+from ..errors import BadFile
+from .capture_rows import quoted
+
+EXTRAS = "board_capture"
+PAUSES = "write_pauses_us"
+
+
+def as_json(placement):
+    """A board's placement as it stands under the key `placements`."""
+    return {"pose": pose_name(placement.pose), "first": placement.first, "n": placement.n,
+            "duration_us": placement.duration_us, "sums": list(placement.sums),
+            "noise": list(placement.noise)}
+
+
+def _placement(found):
+    sums, noise = [int(x) for x in found["sums"]], [float(x) for x in found["noise"]]
+    first, n = int(found["first"]), int(found["n"])
+    if len(sums) != 7 or len(noise) != 6 or first < 0 or n <= 0:
+        raise ValueError("a placement contradicts itself")
+    return Placement(pose_code(found["pose"]), first, n, sums, noise, int(found["duration_us"]))
+
+
+class Extras(NamedTuple):
+    """notes: texts; withdrawn: pose codes; truncated: what is wrong with the file, or None;
+    complete: no pose was missing; pauses: times in us after which the board wrote to its flash;
+    taken: samples there were; placements: the board's, None where all samples are there."""
+
+    notes: list
+    withdrawn: list
+    truncated: str
+    complete: bool
+    taken: int
+    placements: list
+    pauses: list
+
+
+def of(meta, path):
+    """The Extras in a capture's metadata; BadFile when they make no sense."""
+    found = meta.get(EXTRAS, {})
+    try:
+        return Extras([str(note) for note in found.get("notes", [])],
+                      [int(code) for code in found.get("withdrawn", [])],
+                      str(found["truncated"]) if found.get("truncated") else None,
+                      found.get("complete", False) is True, int(found.get("taken", 0)),
+                      [_placement(each) for each in found["placements"]]
+                      if "placements" in found else None,
+                      [int(t) for t in found.get(PAUSES, [])])
+    except (ValueError, TypeError, KeyError, AttributeError, OverflowError) as error:
+        raise BadFile("%s: in its metadata the key %s makes no sense: %s" % (
+            path, EXTRAS, quoted(str(error))))
+
+
+def take(capture, path):
+    """Sets on a capture what its metadata says of the board's file it came from."""
+    extras = of(capture.meta, path)
+    capture.notes, capture.withdrawn = extras.notes, extras.withdrawn
+    capture.truncated = extras.truncated
+    capture.complete = extras.complete or EXTRAS not in capture.meta
+    capture.taken = max(len(capture), extras.taken)
+    if extras.placements is not None:
+        capture.sums_only, capture.board_placements = True, extras.placements
