@@ -1,4 +1,4 @@
-"""A board's capture and its text say the same, however the session was cut, withdrawn, continued."""
+"""A board's capture and its text say the same, however the session was cut or continued."""
 
 import json
 import random

@@ -57,7 +57,8 @@ def test_it_is_24_lines_of_80_characters_in_unicode_and_in_ascii(name, asking):
     ("plan", ["1 of 2", "next  L1", "leaned"]),
     ("good", ["verdict: good", "scale known to 0.1 mg per g", "table tilt 2.00 deg",
               "saved in slot a, sequence 4", "next: sixflip pull"]),
-    ("unsaved", ["verdict: good", "not written, no better than slot a, sequence 4:", "nothing new"]),
+    ("unsaved", ["verdict: good", "not written, no better than slot a, sequence 4:",
+                 "nothing new"]),
     ("refused", ["verdict: refused", "timed out timed out"])])
 def test_what_stands_on_it(name, words):
     steps = (lambda at: "L1: lean the box on something, still: leaned") if name == "plan" else None
