@@ -1,12 +1,10 @@
 """Every sample to the host as the blocks of a capture (sixflip.capture_pieces), without a
 session: for logs of hours, whose times do not wrap."""
 
-import os
-
 from sixflip.capture_pieces import PieceWriter
 from sixflip.capture_writer import BlockWriter
 
-from .capture_meta import columns, meta_bytes
+from .capture_meta import columns, meta_bytes, session_number
 
 
 class BlockOutput:
@@ -15,8 +13,8 @@ class BlockOutput:
     def __init__(self, unit):
         self._pieces = PieceWriter(unit.board.write_bytes)
         self._writer = None
-        number = int.from_bytes(os.urandom(4), "little")
-        self._writer = BlockWriter(self._write, meta_bytes(unit, number), columns(unit.sensor.imu))
+        self._writer = BlockWriter(self._write, meta_bytes(unit, session_number(unit.board)),
+                                   columns(unit.sensor.imu))
 
     def _write(self, data):
         self._pieces.send(self._writer.written if self._writer else 0, data)
