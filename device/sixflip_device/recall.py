@@ -4,7 +4,7 @@ was left unfinished, that one goes on."""
 import os
 
 from . import in_force
-from .flash_files import NEW, OFFERED, REFUSED, size
+from .flash_files import NEW, OFFERED, size
 
 
 def run(unit):
@@ -25,6 +25,7 @@ def run(unit):
     first, unit.first = unit.first, False
     if unit.record is None and first and not unit.asked:
         unit.asked = "nobody"  # has: the board does by itself
-        if size(unit.board.root + REFUSED):
+        from .capture_files import unfinished
+        if unfinished(unit.board.root):
             unit.request = {"continue": True}
     return "asked" if unit.asked else "put_in_force"
