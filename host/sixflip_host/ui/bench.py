@@ -4,6 +4,7 @@ State lives here alone. A browser sends an action with the session number it saw
 meant for an earlier session, or is done already, changes nothing, however often it is clicked.
 """
 
+import contextlib
 import queue
 import subprocess
 import sys
@@ -12,9 +13,10 @@ import time
 from pathlib import Path
 
 from ..board import calibrate, pull
-from ..errors import SixflipError
+from ..errors import SixflipError, internal_error
 from ..guide.board_session import BoardSession
 from ..guide.session_state import CALIBRATING, OVER, State
+from ..narration import log
 from ..terminal import plain
 from . import snapshot
 
@@ -96,6 +98,9 @@ class Bench:
                 self.lost(str(error))
             except OSError as error:
                 self.lost("%s: %s" % (error.filename or "the board", error.strerror or error))
+            except Exception as error:      # noqa: BLE001  without this thread no click does more
+                log.debug("the page's thread", exc_info=True)
+                self.lost(internal_error(error))
 
     def turn(self):
         """One action or a tenth of a second of the board's words."""
@@ -115,7 +120,8 @@ class Bench:
         self.problem, self.busy = plain(line)[:400], ""
         link, self.link = self.link, None
         if link:
-            link.close()
+            with contextlib.suppress(SixflipError, OSError):
+                link.close()
         self.told()
 
     def stage(self):
@@ -212,5 +218,7 @@ class Bench:
                 self.report = path.read_bytes()
         except (OSError, subprocess.TimeoutExpired) as error:
             self.problem = plain(str(error))[:400]
+        except Exception as error:      # noqa: BLE001  shown on the page, as everything is
+            self.problem = plain(internal_error(error))[:400]
         self.reporting = None
         self.told()

@@ -9,6 +9,8 @@ import hmac
 
 from aiohttp import web
 
+from ..errors import internal_error
+
 TOKEN_HEADER = "X-Sixflip-Token"
 PAGE_POLICY = ("default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
                "img-src 'self' data:; frame-src 'self'; base-uri 'none'; form-action 'none'; "
@@ -56,6 +58,8 @@ def middleware(port, token):
                 response = await handler(request)
             except web.HTTPException as error:
                 response = web.json_response({"error": error.reason}, status=error.status)
+            except Exception as error:      # noqa: BLE001  for the page, not the terminal
+                response = web.json_response({"error": internal_error(error)}, status=500)
         if not response.prepared:
             response.headers.update(HEADERS)
             response.headers.setdefault("Content-Security-Policy", PAGE_POLICY)

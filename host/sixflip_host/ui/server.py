@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import logging
 import secrets
 from pathlib import Path
 
@@ -16,6 +17,9 @@ STATIC = Path(__file__).resolve().parent / "static"
 FILES = {"/": ("index.html", "text/html"), "/style.css": ("style.css", "text/css"),
          "/app.js": ("app.js", "text/javascript"), "/box.js": ("box.js", "text/javascript"),
          "/plots.js": ("plots.js", "text/javascript")}
+# aiohttp's own words on requests that are none: who sent them has had his answer.
+QUIET = logging.Logger("requests")  # noqa: LOG001  beside the tree of loggers: it is heard nowhere
+QUIET.disabled = True
 FASTEST_S = 0.1         # between two states of a stream
 SLOWEST_S = 2.0
 
@@ -62,7 +66,8 @@ class Server:
     async def start(self):
         self.loop = asyncio.get_running_loop()
         self.changed = asyncio.Event()
-        self.runner = web.AppRunner(self.app(), access_log=None, shutdown_timeout=1.0)
+        self.runner = web.AppRunner(self.app(), access_log=None, shutdown_timeout=1.0,
+                                    logger=QUIET)
         await self.runner.setup()
         site = web.TCPSite(self.runner, "127.0.0.1", self.wanted_port)
         await site.start()
@@ -105,7 +110,7 @@ class Server:
             asked = await request.json()
             action, number = asked["action"], asked["number"]
             what = asked.get("what", "")
-        except (ValueError, KeyError, TypeError, AttributeError):
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
             raise web.HTTPBadRequest(reason="expected action and number") from None
         if action not in ACTIONS or type(number) is not int or not isinstance(what, str) \
                 or len(what) > 8 or action == "redo" and what not in FACES:

@@ -151,6 +151,39 @@ def test_a_lost_board_is_said_and_a_start_tries_again(tmp_path):
     assert bench.close() == ""
 
 
+@pytest.mark.parametrize("action", ["start", "continue", "pull"])
+def test_any_failure_is_shown_and_can_be_tried_again(bench, action, monkeypatch):
+    monkeypatch.setattr(bench.board, "files", lambda hashed=None: [1 / 0])
+    bench.ask(action, 0)
+    until(lambda: bench.view()["problem"])
+    view = bench.view()
+    assert "internal error" in view["problem"] and "ZeroDivisionError" in view["problem"]
+    assert view["busy"] == "" and not view["live"]
+    monkeypatch.undo()
+    begun(bench)
+
+
+def test_answers_of_another_form_are_passed_over_or_said(bench):
+    begun(bench)
+    bench.board.said.put('{"event": "state", "state": [], "left_s": {}, "value": 1e999}')
+    bench.board.said.put('{"event": "pose", "pose": {"x": 1}, "n": [[[[]]]]}')
+    bench.board.say("pose", pose="Z+a", n=400, missing=ALL[1:])
+    until(lambda: bench.session.state.taken)
+    assert "cannot be used: pose: pose is an object" in " ".join(bench.view()["log"])
+    bench.board.say("solved", verdict={"good": 1})
+    bench.board.say("ready")
+    until(lambda: bench.view()["stage"] == "over")
+    assert "expected one of good, doubtful, refused" in bench.view()["log"][-1]
+
+
+def test_a_report_that_fails_in_any_way_is_said(bench, monkeypatch):
+    monkeypatch.setattr(bench, "report_command", lambda what, path: [1 / 0])
+    bench.pulled = "somewhere"
+    bench.ask("report", 0)
+    until(lambda: bench.view()["problem"])
+    assert not bench.view()["reporting"] and "ZeroDivisionError" in bench.view()["problem"]
+
+
 def test_the_end_of_the_server_ends_the_session_in_order(tmp_path):
     link, make = scripted(tmp_path)
     bench = make(lambda: None)

@@ -3,6 +3,7 @@
 import json
 import re
 import signal
+import socket
 import subprocess
 import sys
 from http.client import HTTPConnection
@@ -77,11 +78,33 @@ def test_with_the_token_and_our_own_origin(served):
     ('{"action": "start", "number": "0"}', "application/json"),
     ('{"action": "start", "number": true}', "application/json"),
     ('{"action": "undo", "number": 0, "what": "%s"}' % ("x" * 9), "application/json"),
-    ("x" * 5000, "application/json")])
+    ("x" * 5000, "application/json"), ("[" * 3000, "application/json"),
+    ('{"action": "start", "number": 0, "what": %s1}' % ('{"a":' * 600), "application/json"),
+    ('{"action": ["start"], "number": 0}', "application/json")])
 def test_actions_that_make_no_sense(served, body, kind):
     status, _, _ = served.request("/api/do", "POST", body, Content_Type=kind,
                                   X_Sixflip_Token=served.server.token)
     assert status in (400, 403, 413) and served.link.resets == 0
+
+
+@pytest.mark.parametrize("sent", [
+    b"\x16\x03\x01\x02\x00\x01\r\n\r\n", b"GET\r\n\r\n", b"GET / HTTP/9.x\r\n\r\n",
+    b"GET / HTTP/1.1\r\nHost\r\n\r\n", b"GET / HTTP/1.1\r\nA: " + b"x" * 70000 + b"\r\n\r\n",
+    b"POST /api/do HTTP/1.1\r\nHost: x\r\nContent-Length: -5\r\n\r\n",
+    b"POST /api/do HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n"])
+def test_a_request_that_is_none_leaves_the_terminal_alone(served, sent, caplog, capfd):
+    with socket.create_connection(("127.0.0.1", served.server.port), timeout=30) as link:
+        link.sendall(sent)
+        assert link.recv(100).split()[1] in (b"400", b"403")
+    assert served.request("/")[0] == 200
+    assert caplog.records == [] and capfd.readouterr().err == ""
+
+
+def test_a_failure_of_ours_is_a_sentence_and_no_traceback(served, monkeypatch, caplog):
+    monkeypatch.setattr(served.server.bench, "ask", lambda *words: 1 / 0)
+    status, answer = served.do("start", 0)
+    assert status == 500 and "internal error" in answer["error"]
+    assert caplog.records == []
 
 
 @pytest.mark.parametrize("path", [
