@@ -8,7 +8,7 @@ import sys
 import traceback
 
 from . import file_arguments
-from .errors import SixflipError, UsageError
+from .errors import SixflipError, UsageError, internal_error
 from .narration import log, narrated
 from .terminal import plain
 
@@ -51,7 +51,9 @@ GLOBAL = {
 TALKS = ("stream", "completion", "virtual-board", "ui")    # what they print is what they are for
 
 EXIT_CODES = ("exit codes: 0 done, 1 a check failed or a calibration was refused, "
-              "2 wrong command line, 3 no board or no chip, 4 a bad file")
+              "2 wrong command line, 3 no board or no chip, 4 a bad file;\n"
+              "130 stopped with Ctrl-C, 70 an error of sixflip's own: please report it, with\n"
+              "what the same command says with --debug, sixflip --version, and the file if any")
 INTERNAL_ERROR = 70     # sysexits.h EX_SOFTWARE
 INTERRUPTED = 130       # what shells report after Ctrl-C
 BROKEN_PIPE = 141       # what shells report after SIGPIPE
@@ -149,8 +151,7 @@ def main(argv=None):
             throw_away_stdout()
         return complain("%s%s" % (name, error.strerror or error), code, debug)
     except Exception as error:      # a bug of ours: still one line
-        return complain("internal error, please report it: %s: %s (--debug shows where)"
-                        % (type(error).__name__, error), INTERNAL_ERROR, debug)
+        return complain(internal_error(error), INTERNAL_ERROR, debug)
 
 
 @contextlib.contextmanager

@@ -7,6 +7,13 @@ class SixflipError(Exception):
     exit_code = 1
 
 
+def internal_error(error):
+    """The one line for a bug of ours, for a terminal or a page."""
+    return ("internal error: %s: %s; please report it, with what the same command says with "
+            "--debug, sixflip --version, and the file or board it was about"
+            % (type(error).__name__, error))
+
+
 class CheckFailed(SixflipError):
     """Something was measured or compared, and the answer is no."""
 

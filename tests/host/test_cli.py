@@ -63,6 +63,36 @@ def test_ctrl_c(monkeypatch, capsys):
     assert capsys.readouterr().err == "sixflip: stopped\n"
 
 
+PRESSED = """
+import runpy, sys
+class Press:
+    def find_spec(self, name, path=None, target=None):
+        if name == %r:
+            raise KeyboardInterrupt
+sys.meta_path.insert(0, Press())
+sys.argv[1:] = ["solve", "x"]
+runpy.run_module("sixflip_host", run_name="__main__")
+"""
+
+
+@pytest.mark.parametrize("module", ["sixflip_host.cli", "sixflip_host.narration", "argparse",
+                                    "sixflip_host.solving.solve", "numpy"])
+def test_ctrl_c_while_modules_are_imported(module):
+    done = subprocess.run([sys.executable, "-c", PRESSED % module], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (cli.INTERRUPTED, "sixflip: stopped\n")
+
+
+def test_the_command_begins_where_ctrl_c_is_caught():
+    project = (ROOT / "pyproject.toml").read_text()
+    assert '\nsixflip = "sixflip_host.__main__:main"\n' in project
+
+
+def test_help_says_what_to_send_with_an_internal_error(capsys):
+    assert main(["--help"]) == 0
+    out = capsys.readouterr().out
+    assert "130 stopped" in out and "70 an error of sixflip's own" in out and "--debug" in out
+
+
 def test_a_closed_pipe_is_no_error():
     command = "%s -m sixflip_host --help | true" % sys.executable
     done = subprocess.run(["bash", "-o", "pipefail", "-c", command], capture_output=True,
