@@ -47,5 +47,9 @@ class TestLineReader(unittest.TestCase):
     def test_lines(self):
         self.assertEqual(self.lines("ab\r\ncd\n\nef"), ["ab", "cd"])
 
+    def test_a_ctrl_c_that_came_while_the_board_started_is_one(self):
+        with self.assertRaises(KeyboardInterrupt):
+            self.lines("\r\x03")
+
     def test_overlong_line_is_dropped_whole(self):
         self.assertEqual(self.lines("x" * 40 + "\nok\n"), ["ok"])

@@ -65,7 +65,7 @@ class Asked(unittest.TestCase):
 
     def test_control_characters_are_not_the_firmwares(self):
         reader = LineReader()
-        lines = [reader.feed(ch) for ch in '\x02\x03{"cmd": 1}\r\n']
+        lines = [reader.feed(ch) for ch in '\x02\x01{"cmd": 1}\r\n']
         self.assertIn('{"cmd": 1}', lines)
 
 

@@ -59,6 +59,29 @@ def test_silent_port_is_no_board(silent_port, monkeypatch):
         link.files()
 
 
+def test_a_board_that_hears_no_ctrl_c_while_it_starts():
+    master, slave = os.openpty()
+    tty.setraw(slave)
+    heard = []
+
+    def board():
+        while True:
+            for letter in os.read(master, 64):
+                heard.append(letter)
+                if letter == 1 and heard.count(3) > 3:
+                    os.write(master, b"raw REPL; CTRL-B to exit\r\n>")
+                elif letter == 4:
+                    return os.write(master, b"soft reboot\r\nraw REPL; CTRL-B to exit\r\n>")
+    starting = threading.Thread(target=board)
+    starting.start()
+    with MpremoteLink(os.ttyname(slave)) as link:
+        link.enter()
+        assert link.raw and heard.count(3) > 3
+    starting.join()
+    os.close(master)
+    os.close(slave)
+
+
 def test_port_that_never_stops_talking_is_no_board(silent_port, monkeypatch):
     monkeypatch.setattr(board_link, "HANDSHAKE_S", 1.0)
     with MpremoteLink(silent_port) as link:

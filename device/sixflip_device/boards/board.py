@@ -61,7 +61,8 @@ class LineReader:
     """Collects characters into lines: feed(ch) -> a finished line or None.
 
     A line longer than limit is thrown away whole: the host never sends one, noise might.
-    Control characters are passed over: they were meant for the REPL.
+    Control characters are passed over: they were meant for the REPL. A Ctrl-C among them came
+    while the board started, before it was one for MicroPython: KeyboardInterrupt now.
     """
 
     def __init__(self, limit=512):
@@ -75,6 +76,8 @@ class LineReader:
             self._chars = []
             self._overlong = False
             return line
+        if ch == "\x03":
+            raise KeyboardInterrupt
         if ch < " ":
             return None
         if len(self._chars) >= self._limit:

@@ -32,6 +32,8 @@ SLOWEST = 2000  # bytes of a file a second, of which a UART at 115200 Bd carries
 OUTPUT = 1 << 17  # bytes of an answer; a listing of the firmware has 20 KB
 LONGEST_FILE = 1 << 25  # the same for a file in base64: no board's flash is larger
 HANDSHAKE_S = 5.0
+KNOCK_S, LONGEST_KNOCK_S = 0.3, 5.0  # from one Ctrl-C to the next, while nothing answers
+RAW_REPL = b"raw REPL; CTRL-B to exit\r\n>"
 ATTEMPTS = 2
 REOPEN_S = 15.0  # a USB port comes back after a reset
 CHUNK = 1024
@@ -121,7 +123,7 @@ class MpremoteLink:
     def enter(self):
         """Stop what runs and enter the raw REPL; NoBoard when that has no effect in time.
 
-        Tried twice: a Ctrl-C that comes in the middle of a reset is lost.
+        Tried twice: what is said meanwhile may arrive damaged.
         """
         for _ in range(ATTEMPTS):
             if not self.raw:
@@ -136,6 +138,8 @@ class MpremoteLink:
         with self.guarded("connecting") as transport:
             wire = transport.serial
             allowed = HANDSHAKE_S * self.patience
+            if not self.knock(transport, allowed):
+                return False
             wire.deadline = time.monotonic() + allowed
             # mpremote takes ten silent seconds for the end, unless a single read waits longer
             wire.timeout = 0.5 if self.patience == 1 else allowed
@@ -147,6 +151,25 @@ class MpremoteLink:
             finally:
                 wire.timeout, wire.deadline = ANSWER_S * self.patience, None
         return True
+
+    def knock(self, transport, allowed):
+        """Ctrl-C at short intervals until the REPL answers; one that comes while a board starts,
+        or resets, is lost. False when it does not within so many seconds."""
+        wire = transport.serial
+        end = time.monotonic() + allowed
+        wait = KNOCK_S
+        try:
+            while (now := time.monotonic()) < end:
+                wire.timeout = min(wait, end - now)
+                wire.deadline = now + wire.timeout
+                wire.write(b"\r\x03\r\x01")
+                with contextlib.suppress(Endless):
+                    if transport.read_until(1, RAW_REPL, timeout=wait).endswith(RAW_REPL):
+                        return True
+                wait = min(1.5 * wait, LONGEST_KNOCK_S)
+            return False
+        finally:
+            wire.timeout, wire.deadline = ANSWER_S * self.patience, None
 
     def run(self, code, doing, consumer=None, timeout=None, most=OUTPUT, whole=WHOLE_S):
         """Run code on the board; returns what it printed, as bytes.
