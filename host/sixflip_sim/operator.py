@@ -15,6 +15,7 @@ FACES = ("Z+", "Z-", "X+", "X-", "Y+", "Y-")
 PAPER_ORDER = ("Z+a", "Z+b", "Z-a", "Z-b", "X+a", "X+b",
                "X-a", "X-b", "Y+a", "Y+b", "Y-a", "Y-b")
 _DEGREE = math.pi / 180.0
+LOOKS_S, REACTS_S = 1.5, 0.5    # a box at rest is seen as such after 0.75 s
 _FLIP, _SCATTER, _LEAN, _TOUCH = 0x100, 0x101, 0x102, 0x103     # streams of the hand
 
 
@@ -75,6 +76,14 @@ class Operator:
         """Leave the box alone at least up to a time: for an operator who reacts."""
         if t_us > self.scene.end_us():
             self.rest((t_us - self.scene.end_us()) * 1e-6)
+
+    def asked(self, now_us, pose, up=None):
+        """Somebody asks for a pose, over and over until it is taken. Nothing while the last move
+        goes on and the box has not lain for LOOKS_S; else it is brought there after REACTS_S."""
+        if now_us < self.scene.end_us() + LOOKS_S * 1e6:
+            return
+        self.rest_until(now_us + REACTS_S * 1e6)
+        self.place(pose, up=up)
 
     def place(self, pose, move_s=None, turned_deg=180.0, turn=None, up=None):
         """Bring the box into a pose. turned_deg: what the hand takes for half a turn; turn:

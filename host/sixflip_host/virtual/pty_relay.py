@@ -55,6 +55,7 @@ class PtyRelay(threading.Thread):
         self.wake_read, self.wake_write = os.pipe()
         self.ask_read, self.ask_write = os.pipe()  # Ctrl-C for code that looks at the time
         self.asked_until = None
+        self.hand_read, self.hand_write = os.pipe()  # what the box's operator is asked for
 
     def run(self):
         to_host, to_board = b"", b""
@@ -78,6 +79,7 @@ class PtyRelay(threading.Thread):
                 to_host = to_host[write_some(self.outer_master, to_host):]
             if self.inner_master in readable:
                 to_host = read_some(self.inner_master)
+                self.ask_operator(to_host)
                 if self.corrupt:
                     to_host = self.corrupt(to_host)
             if self.outer_master in readable:
@@ -132,10 +134,18 @@ class PtyRelay(threading.Thread):
             os.read(self.ask_read, CHUNK)
         self.asked_until = None
 
+    def ask_operator(self, data):
+        """What the board says is heard by the one who handles the box, too."""
+        for command in self.board.hand_asked.hear(data) if self.board.hand_asked else ():
+            if not select.select([self.hand_read], [], [], 0)[0]:
+                os.write(self.hand_write, command)
+
     def restart(self):
         """Start the process again; True when it died young for no reason of its own."""
         code = self.board.child.returncode
         self.take_back()
+        while select.select([self.hand_read], [], [], 0)[0]:
+            os.read(self.hand_read, CHUNK)
         tty.setraw(self.inner_slave, termios.TCSANOW)
         self.board.start_again(code)
         return code == 1
@@ -150,5 +160,5 @@ class PtyRelay(threading.Thread):
     def close(self):
         for descriptor in (self.outer_master, self.outer_slave, self.inner_master,
                            self.inner_slave, self.wake_read, self.wake_write,
-                           self.ask_read, self.ask_write):
+                           self.ask_read, self.ask_write, self.hand_read, self.hand_write):
             os.close(descriptor)

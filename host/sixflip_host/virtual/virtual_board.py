@@ -36,10 +36,12 @@ class VirtualBoard:
     heapsize    of MicroPython, the simulated world's own needs included
     wiring      {"scl_pin": 5, "button_pin": 15, "button_held": true}, as far as it matters
     speed       virtual seconds a real second; None: as fast as the processor
+    hand        an asked_hand.AskedHand that does what the board asks for; None: the world's
+                operator does what was planned
     """
 
     def __init__(self, world, image_path, heapsize="4m", micropython=None, speed=None,
-                 flash_bytes=FLASH_BYTES, wiring=None):
+                 flash_bytes=FLASH_BYTES, wiring=None, hand=None):
         self.world = dict(world)
         self.image_path = Path(image_path).resolve()
         self.heapsize = heapsize
@@ -47,6 +49,7 @@ class VirtualBoard:
         if not self.micropython:
             raise NoBoard(micropython_fetch.MISSING)
         self.speed = speed
+        self.hand_asked = hand
         self.wiring = dict(wiring or {})
         self.flash_bytes = flash_bytes
         self.cut_after = None  # block operations until the supply fails, once
@@ -125,6 +128,7 @@ class VirtualBoard:
             "flash_bytes": self.flash_bytes, "cut_after": self.cut_after, "raw": raw,
             "flash_times": (SECTOR_ERASE_US, PAGE_US, PAGE),
             "cause": cause, "unique_id": self.unique_id, "asked": self.relay.ask_read,
+            "hand": self.relay.hand_read,
             "path": [str(tools), str(host_dir()), str(shared_dir()), ".frozen"],
             "terminal": {
                 "repl": [0, 0, 0],
@@ -138,7 +142,7 @@ class VirtualBoard:
             [self.micropython, "-X", "heapsize=" + self.heapsize, str(tools / "boot.py"),
              str(path)],
             stdin=tty, stdout=tty, stderr=tty, start_new_session=True, cwd=self.folder.name,
-            pass_fds=(self.relay.ask_read,),
+            pass_fds=(self.relay.ask_read, self.relay.hand_read),
             preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0))
         self.starts += 1
 

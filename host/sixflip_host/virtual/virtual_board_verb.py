@@ -5,7 +5,6 @@ import time
 from pathlib import Path
 
 from ..atomic_write import read_bytes
-from ..board.console import GUIDED_ORDER
 from ..errors import BadFile, UsageError
 from ..file_arguments import add_input, add_output
 from ..file_kinds import FLASH
@@ -22,8 +21,9 @@ def add_arguments(parser):
     parser.add_argument("--seed", type=int, default=1, help="of sensor errors and noise")
     add_output(parser, "--flash", metavar="FILE", type=Path, kinds=(FLASH,),
                help="image of the flash, kept (default: in the cache)")
-    parser.add_argument("--speed", metavar="N", type=float, default=None,
-                        help="simulated seconds a second (default: as fast as it can)")
+    parser.add_argument("--speed", metavar="N", type=float, default=1.0,
+                        help="simulated seconds a second (default: 1, as with a real board; 20 "
+                             "for tests)")
     add_input(parser, "--world", metavar="FILE|JSON",
               help="more of the simulated world: JSON, or a file of it, such as `sixflip simulate "
                    "--worlds` writes")
@@ -35,7 +35,7 @@ def add_arguments(parser):
 def world_spec(args):
     """The spec for sixflip_sim.worlds of a command line."""
     spec = {"sensor": args.sensor, "tilt_deg": args.tilt, "seed": args.seed,
-            "order": GUIDED_ORDER,
+            "order": [],       # the operator does what the board asks for
             "flip_error_deg": 0.4}
     if args.world:
         spec.update(more_of_it(args.world, args.session))
@@ -65,12 +65,15 @@ def more_of_it(given, session):
 
 
 def run(args):
+    from .asked_hand import AskedHand
     from .virtual_board import VirtualBoard
-    if args.speed is not None and args.speed <= 0:
+    if not args.speed > 0:
         raise UsageError("--speed %s: expected a number above 0" % args.speed)
     image = args.flash or cache_dir() / "virtual-board.flash"
     image.parent.mkdir(parents=True, exist_ok=True)
-    with VirtualBoard(world_spec(args), image, speed=args.speed) as board:
+    spec = world_spec(args)
+    hand = None if spec["order"] else AskedHand()
+    with VirtualBoard(spec, image, speed=args.speed, hand=hand) as board:
         if args.json:
             print(json.dumps({"format": 1, "kind": "sixflip virtual-board", "port": board.port,
                               "board": board.unique_id, "flash": str(image)}), flush=True)

@@ -31,7 +31,12 @@ def make_world(config):
     world = worlds.make(config["world"])
     machine.start(world, bytes.fromhex(config["unique_id"]), config["wiring"])
     machine.cause = config["cause"]
-    time.start(world.clock, config["speed"], open(config["asked"], "rb"))  # noqa: SIM115
+
+    def move(line):
+        world.operator.asked(world.clock.now_us(), **json.loads(line))
+
+    time.start(world.clock, config["speed"], open(config["asked"], "rb"),  # noqa: SIM115
+               open(config["hand"], "rb"), move)  # noqa: SIM115
     # The firmware has to bring its own copy of sixflip: the chips' tables of the simulated
     # world are not on the board's flash.
     for name in list(sys.modules):

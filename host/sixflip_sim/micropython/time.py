@@ -9,6 +9,8 @@ import utime
 
 clock = None
 _asked = None  # a pipe that the relay writes Ctrl-C to
+_hand = None  # a pipe with what somebody asks the box's operator for
+_move = None  # called with a line of it
 _poll = select.poll()
 speed = None  # virtual seconds in a real second; None: as fast as the processor
 _started_us = 0
@@ -19,20 +21,26 @@ mktime = utime.mktime
 ticks_cpu = utime.ticks_cpu
 
 
-def start(virtual_clock, factor, asked):
-    global clock, speed, _started_us, _asked
+def start(virtual_clock, factor, asked, hand=None, move=None):
+    global clock, speed, _started_us, _asked, _hand, _move
     clock = virtual_clock
     _asked = asked
+    _hand = hand
+    _move = move
     _poll.register(asked, select.POLLIN)
+    if hand:
+        _poll.register(hand, select.POLLIN)
     speed = factor
     _started_us = utime.time_ns() // 1000 - int(clock.now_us() / (factor or 1))
 
 
 def _look():
     """KeyboardInterrupt when Ctrl-C was pressed: see sixflip_host.virtual.pty_relay."""
-    if _poll.poll(0):
-        _asked.read(1)
-        raise KeyboardInterrupt
+    for ready in _poll.poll(0):
+        if ready[0] is _asked:
+            _asked.read(1)
+            raise KeyboardInterrupt
+        _move(_hand.readline())
 
 
 def _pace():

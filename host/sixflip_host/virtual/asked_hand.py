@@ -1,0 +1,48 @@
+"""The hand of a virtual board: what the board asks for over its port, as the pose to bring it to.
+
+It reads what a person at the board's terminal reads, and lets the box lie while it is measured.
+"""
+
+import json
+
+from ..board import board_events
+from ..guide.board_values import poses
+from ..guide.next_step import following
+
+LEAN = (0.6, 0.64, 0.48)    # 50 degrees off the nearest face
+LONGEST = 4096              # bytes of a line
+
+
+class AskedHand:
+    """hear() every byte the board sends."""
+
+    def __init__(self):
+        self.line = b""
+        self.wanted = ""
+
+    def hear(self, data):
+        """The commands for the simulated operator, a line of JSON each."""
+        commands = []
+        *lines, self.line = (self.line + data).split(b"\n")
+        self.line = self.line[-LONGEST:]
+        for line in lines:
+            event = board_events.parse(line.decode("utf-8", "replace"))
+            if event and self.now(event):
+                commands.append(self.command())
+        return commands
+
+    def now(self, event):
+        """Takes in what is wanted; whether the board waits for it with the box at rest."""
+        if isinstance(event.get("missing"), list):
+            missing = poses(event["missing"])
+            self.wanted = missing[0] if event.get("plan") and missing else following(missing)
+        elif "next" in event:
+            self.wanted = next(iter(poses(event["next"])), "")
+        return event["event"] == "state" and event.get("state") == "moving" and bool(self.wanted)
+
+    def command(self):
+        command = {"pose": self.wanted}
+        if self.wanted[0] == "L":
+            k = int(self.wanted[1:])
+            command["up"] = [LEAN[(axis + k) % 3] * (-1) ** (k >> axis) for axis in range(3)]
+        return json.dumps(command).encode() + b"\n"
