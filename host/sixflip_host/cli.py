@@ -26,6 +26,7 @@ VERBS = {
     "check": "sixflip_host.board.check",
     "mount": "sixflip_host.mounting.mount",
     "stream": "sixflip_host.board.stream",
+    "record": "sixflip_host.board.record",
     "show": "sixflip_host.capture.show",
     "import": "sixflip_host.capture.import_csv",
     "export": "sixflip_host.capture.export",

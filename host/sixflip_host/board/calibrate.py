@@ -4,14 +4,16 @@ import contextlib
 import json
 
 from ..errors import Interrupted, NoBoard, SixflipError, UsageError
-from ..file_arguments import add_input
+from ..file_arguments import add_input, add_output
 from ..history import remember
 from ..planning import board_plan
+from ..terminal import plain
 from . import provision, typed_lines
 from .board_events import events
 from .console import Console
 from .ending import Ending
 from .ports import add_port, open_link
+from .recording import Recording, RecordingLink
 from .session_deadline import SessionDeadline
 from .value_kinds import Misfit, Number
 
@@ -45,6 +47,11 @@ def add_arguments(parser):
     parser.add_argument("--speed", metavar="N", type=float,
                         help="of --replay: seconds of the capture a second (default: 1 on the "
                              "guided screen, as fast as it goes in lines)")
+    add_output(parser, "--record", "-o", "--output", metavar="FILE", kinds=(), dest="recording",
+               help="write the raw capture down on this computer while it is taken, whatever the "
+                    "board's flash has room for (with --plan it is, as DEVICE-SESSION.bin here)")
+    parser.add_argument("--no-record", action="store_true",
+                        help="with --plan: leave the capture to the board's flash")
     parser.add_argument("--plain", action="store_true",
                         help="lines instead of the guided screen, for scripts and screen readers; "
                              "so it is anyway where the output is no terminal of 80 by 24")
@@ -148,8 +155,16 @@ def stop(link):
     return "stopped; nothing on the board has changed"
 
 
-def start(link, args, session):
+def recording_of(args, session):
+    """The Recording that a command line asks for, None without one."""
+    if args.recording is None and (session is None or args.no_record):
+        return None
+    return Recording(args.recording)
+
+
+def start(link, args, session, recorded=False):
     """Ask for what the command line says; the board's id, None when it was not asked."""
+    record = {"record": True} if recorded else {}
     if args.redo:
         if join(link, args.redo):
             return None
@@ -159,8 +174,9 @@ def start(link, args, session):
             return None
         return ask_for_calibration(link, {"continue": True})
     if session:
-        return ask_for_calibration(link, board_plan.request(session, rate_of(link)))
-    return ask_for_calibration(link)
+        return ask_for_calibration(
+            link, dict(board_plan.request(session, rate_of(link)), **record))
+    return ask_for_calibration(link, record)
 
 
 def checked(args):
@@ -171,6 +187,10 @@ def checked(args):
     if args.replay and (args.plan or getattr(args, "redo", None) or getattr(args, "go_on", None)):
         raise UsageError("--replay plays a capture as it was taken: not with --plan, --redo or "
                          "--continue")
+    if getattr(args, "recording", None) is not None and (
+            args.replay or args.redo or args.go_on or args.no_record):
+        raise UsageError("--record writes a session down from its beginning: not with --replay, "
+                         "--redo, --continue or --no-record")
     if args.speed is not None and (not args.replay or not args.speed > 0):
         raise UsageError("--speed %g: expected a number above 0, with --replay" % args.speed)
     return session
@@ -208,15 +228,29 @@ def on_a_screen(link, args, step, board):
     return session.ending.answer(link.port)
 
 
+def say_recorded(recording):
+    """What became of the file on this computer."""
+    if recording is None:
+        return
+    recording.close()
+    for line in [*recording.words(), recording.slow_link()]:
+        if line:
+            print(plain(line))
+
+
 def run(args):
     session = checked(args)
     from ..guide import terminal_guide
     guided = not args.plain and terminal_guide.possible()
     step = (lambda at: board_plan.step(session, at)) if session else None
+    recording = recording_of(args, session)
     with link_of(args, guided) as link:
-        board = start(link, args, session)
+        board = start(link, args, session, recording is not None)
+        listened = link if recording is None else RecordingLink(link, recording)
         try:
-            solved = (on_a_screen if guided else in_lines)(link, args, step, board)
+            solved = (on_a_screen if guided else in_lines)(listened, args, step, board)
         except KeyboardInterrupt:
-            raise Interrupted(stop(link)) from None
+            raise Interrupted(stop(listened)) from None
+        finally:
+            say_recorded(recording)
     return 1 if solved.get("verdict") == "refused" else 0

@@ -74,16 +74,20 @@ class StreamSession:
             raise CheckFailed("%s: a calibration is under way, nothing is streamed: finish it "
                               "with sixflip calibrate" % self.link.port)
 
+    def ask_for(self, **fields):
+        """The board's answer to the stream command; close() puts back what was before."""
+        self.before = self._ask("info", "info")
+        return self._ask("stream", "stream", **fields)
+
     def samples(self, seconds=None):
         """(t_us, values) of every sample, until so many seconds of the board's time are over.
 
         values  7 counts; ax ay az m/s² and gx gy gz rad/s; or roll, pitch, yaw in degrees; NaN
                 for a gyro that the chip has not
         """
-        self.before = self._ask("info", "info")
         fields = {} if self.hz is None else {"hz": self.hz}
-        now = self._ask("stream", "stream", raw=self.what == "raw", heading=self.what == "heading",
-                        binary=self.binary, **fields)
+        now = self.ask_for(raw=self.what == "raw", heading=self.what == "heading",
+                           binary=self.binary, **fields)
         if not now["hz"]:
             raise CheckFailed("%s: the board is set to stream nothing, expected a rate: --hz"
                               % self.link.port)

@@ -15,6 +15,7 @@ from .capture_rows import quoted
 
 EXTRAS = "board_capture"
 PAUSES = "write_pauses_us"
+LOST = "lost_on_the_way"
 
 
 def as_json(placement):
@@ -32,10 +33,16 @@ def _placement(found):
     return Placement(pose_code(found["pose"]), first, n, sums, noise, int(found["duration_us"]))
 
 
+def _lost(found):
+    return [int(found[0]), [int(t) for t in found[1]]] if found else []
+
+
 class Extras(NamedTuple):
     """notes: texts; withdrawn: pose codes; truncated: what is wrong with the file, or None;
     complete: no pose was missing; pauses: times in us after which the board wrote to its flash;
-    taken: samples there were; placements: the board's, None where all samples are there."""
+    taken: samples there were; placements: the board's, None where all samples are there; lost:
+    [samples, times in us after which they are missing] that a recording over the port never got.
+    """
 
     notes: list
     withdrawn: list
@@ -44,6 +51,7 @@ class Extras(NamedTuple):
     taken: int
     placements: list
     pauses: list
+    lost: list
 
 
 def of(meta, path):
@@ -56,8 +64,8 @@ def of(meta, path):
                       found.get("complete", False) is True, int(found.get("taken", 0)),
                       [_placement(each) for each in found["placements"]]
                       if "placements" in found else None,
-                      [int(t) for t in found.get(PAUSES, [])])
-    except (ValueError, TypeError, KeyError, AttributeError, OverflowError) as error:
+                      [int(t) for t in found.get(PAUSES) or []], _lost(found.get(LOST)))
+    except (ValueError, TypeError, LookupError, AttributeError, OverflowError) as error:
         raise BadFile("%s: in its metadata the key %s makes no sense: %s" % (
             path, EXTRAS, quoted(str(error))))
 

@@ -10,7 +10,7 @@ from sixflip.capture_writer import BlockWriter
 
 from ..errors import BadFile
 from . import board_extras
-from .board_extras import EXTRAS, PAUSES
+from .board_extras import EXTRAS, LOST, PAUSES
 from .capture_header import check_meta
 from .capture_rows import quoted
 
@@ -60,8 +60,9 @@ def decode(data, path="capture"):
     kept = meta.pop(EXTRAS, None)
     extras = {"complete": blocks.complete, "withdrawn": blocks.withdrawn,
               "notes": [note for note in blocks.notes if note != UNLABELLED],
-              "truncated": blocks.damage or None,
-              PAUSES: kept.get(PAUSES) if isinstance(kept, dict) else write_pauses_us(blocks)}
+              "truncated": blocks.damage or None}
+    extras.update({name: kept.get(name) for name in (PAUSES, LOST)}
+                  if isinstance(kept, dict) else _gaps(blocks))
     extras = {name: value for name, value in extras.items() if value}
     if capture.sums_only:
         extras.update(taken=blocks.samples,
@@ -70,6 +71,18 @@ def decode(data, path="capture"):
         meta[EXTRAS] = extras
     board_extras.take(capture, path)
     return capture
+
+
+def _gaps(blocks):
+    """What the recorder is to blame for, as it stands in a text made of the capture."""
+    found = {PAUSES: write_pauses_us(blocks)}
+    if blocks.lost:
+        rows = [first - sum(n for _, n in blocks.lost[:k])
+                for k, (first, _) in enumerate(blocks.lost)]
+        times = [blocks.t_us[row - 1] for row in rows if 0 < row < len(blocks.t_us)]
+        found = {PAUSES: [t for t in found[PAUSES] if t not in times],
+                 LOST: [blocks.missing, times]}
+    return found
 
 
 def write_pauses_us(blocks):
@@ -94,10 +107,18 @@ def write_pauses_us(blocks):
 def write_pauses(capture):
     """Indices of the intervals in which the board wrote to its flash instead of reading; of a
     board's file or of a text made from one."""
-    extras = capture.meta.get(EXTRAS)
-    times = extras.get(PAUSES) if isinstance(extras, dict) else None
-    if not isinstance(times, list) or not all(type(t) is int for t in times):
-        return np.zeros(0, int)
+    return _intervals(capture, board_extras.of(capture.meta, "the capture").pauses)
+
+
+def lost_on_the_way(capture):
+    """(samples, indices of the intervals they are missing in) that the link lost while a
+    recording came from the board: the sensor and the board had them."""
+    lost = board_extras.of(capture.meta, "the capture").lost
+    return (lost[0], _intervals(capture, lost[1])) if lost else (0, np.zeros(0, int))
+
+
+def _intervals(capture, times):
+    """Indices of the intervals that begin at times."""
     return np.flatnonzero(np.isin(capture.t_us[:-1], times))
 
 
@@ -125,12 +146,15 @@ def _triple(columns, letter):
 def _labels(path, blocks):
     """int16 codes of every sample from the placements in force."""
     pose = np.zeros(len(blocks.t_us), np.int16)
+    number = np.arange(len(pose))       # by the board's count, those that were lost among them
+    for first, n in blocks.lost:
+        number[number >= first] += n
     for one in blocks.placements:
-        if len(pose) and one.first + one.n > len(pose) and not (
+        if len(pose) and one.first + one.n > len(pose) + blocks.missing and not (
                 blocks.damage or blocks.sums_only):
             raise BadFile("%s: a pose ends at sample %d of %d" % (
-                path, one.first + one.n, len(pose)))
-        pose[one.first:one.first + one.n] = one.pose
+                path, one.first + one.n, len(pose) + blocks.missing))
+        pose[(number >= one.first) & (number < one.first + one.n)] = one.pose
     return pose
 
 
@@ -143,7 +167,7 @@ def encode(capture):
             capture.t_us[0], capture.t_us[-1], LATEST_US - 1))
     meta = dict(capture.meta)
     extras = board_extras.of(meta, "the capture")
-    meta[EXTRAS] = {PAUSES: extras.pauses}
+    meta[EXTRAS] = {PAUSES: extras.pauses, LOST: extras.lost}
     data = bytearray()      # the writer's buffer is used again: copy what it hands over
     mask = ACCEL | (GYRO if capture.gyro is not None else 0) \
         | (TEMP if capture.temp is not None else 0) | (MAG if capture.mag is not None else 0)

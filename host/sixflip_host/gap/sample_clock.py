@@ -3,7 +3,7 @@ import math
 
 import numpy as np
 
-from ..capture.capture_binary import write_pauses
+from ..capture.capture_binary import lost_on_the_way, write_pauses
 from .finding import CERTAIN, Finding
 
 RATE_OFF, JITTER_SHARE, MISSING, SPAN = 1e-3, 1.5, 0.7, 20
@@ -68,8 +68,9 @@ def drops(sessions):
 
 
 def without_pauses(capture):
-    """t_us (n,) as if every pause of the recorder had lasted a usual interval."""
-    found = write_pauses(capture)
+    """t_us (n,) as if every pause of the recorder, and every gap that the link tore into what
+    it recorded, had lasted a usual interval."""
+    found = np.union1d(write_pauses(capture), lost_on_the_way(capture)[1])
     if not len(found):
         return capture.t_us
     gaps = np.diff(capture.t_us)
@@ -87,6 +88,11 @@ def remarks(sessions):
                         "without a sample; that is the recorder's doing, not the sensor's" % (
                             session.name, len(found),
                             np.diff(session.capture.t_us)[found].max() / 1e3))
+        lost, places = lost_on_the_way(session.capture)
+        if lost:
+            said.append("%s: %d samples were lost on the way from the board, in %d place%s; that "
+                        "is the link's doing, not the sensor's" % (
+                            session.name, lost, len(places), "s" if len(places) > 1 else ""))
     return said
 
 
