@@ -3,6 +3,7 @@
 What fuzzing found lies beside it under names that say what it was.
 """
 
+import struct
 import sys
 from pathlib import Path
 
@@ -13,7 +14,8 @@ sys.path[:0] = [str(Path(__file__).resolve().parents[1] / name) for name in ("ho
 import hostile_sessions
 from test_term_correction import fields_of
 
-from sixflip import correction_record, record_terms
+from sixflip import capture_blocks as cb
+from sixflip import capture_pieces, correction_record, record_terms
 from sixflip.term_numbers import TERMS
 from sixflip_host.capture import capture_binary, capture_file
 
@@ -49,6 +51,23 @@ def a_record():
     return correction_record.encode(r)
 
 
+def pieces_of(capture):
+    """A board's file as recorded_pieces takes it, one block lost."""
+    data, out = capture_binary.encode(capture), b""
+    at, end = 0, struct.calcsize(cb.HEAD) + struct.unpack_from("<H", data, 6)[0] + 4
+    samples = 0
+    while at < len(data):
+        piece = data[at:end]
+        if len(out) < 2000 or len(out) > 4000:
+            body = struct.pack(capture_pieces.HEAD, 0, samples) + piece
+            out += struct.pack("<H", len(body)) + body
+        if at and piece[0] == cb.STEPS:
+            samples += struct.unpack_from("<H", piece, 12)[0]
+        at = end
+        end += 8 + struct.unpack_from("<H", data, min(at, len(data) - 4) + 2)[0]
+    return out
+
+
 LINES = b"""{"event": "hello", "board": "pico", "id": "e661", "chip": "MPU6050", "sensor": "auto"}
 {"event": "state", "state": "capturing", "pose": "Z+a", "progress": 5, "total": 9, "left_s": 3}
 {"event": "state", "state": "moving", "reason": "moving", "value": 1.5, "limit": 1, "unit": "mg"}
@@ -82,6 +101,7 @@ def main():
     seeds = {"capture_text": [capture_file.text(mpu)[:4000].rpartition(b"\n")[0].replace(
                  b', "samples": %d' % len(mpu), b"") + b"\n", capture_file.text(adxl)],
              "capture_of_a_board": [capture_binary.encode(adxl)],
+             "recorded_pieces": [pieces_of(adxl)],
              "record": [a_record()], "lines_of_a_board": [LINES, b"{'main.py': (3, None)}"],
              "settings": [SETTINGS], "host_line": [b'{"cmd": "stream", "hz": 50, "raw": true}'],
              "somebodys_csv": [CSV, b"\3" + b"1 2 3 0.01 4 5 6\n" * 5],

@@ -5,6 +5,7 @@ one exception it is allowed; what it does accept is used as the product would us
 the parser's leftovers cannot hurt what comes behind it.
 """
 
+import base64
 import binascii
 import contextlib
 import io
@@ -25,6 +26,7 @@ from sixflip_device.host_line import HostLine
 from sixflip_host import cli
 from sixflip_host.board import board_answers, board_events, console
 from sixflip_host.board.board_schema import ANSWERS
+from sixflip_host.board.recording import Recording
 from sixflip_host.capture import capture_binary, capture_file
 from sixflip_host.errors import SixflipError
 from sixflip_host.planning import plan_file
@@ -109,6 +111,26 @@ def capture_of_a_board(data):
     verb("solve", path, "--json")
     if len(capture):
         verb("export", path, "-o", os.path.join(FOLDER, "out.csv"), "--force")
+
+
+def recorded_pieces(data):
+    """What a board sends of its capture while it is recorded: pieces with a length before each
+    and right CRCs. The file is there, it is read as any other, and it never holds more."""
+    path = os.path.join(FOLDER, "recorded.bin")
+    recording = Recording(path)
+    taken = 0
+    while len(data) > 2:
+        length = int.from_bytes(data[:2], "little")
+        body, data = data[2:2 + length], data[2 + length:]
+        line = b"\xa5" + base64.b64encode(body + struct.pack("<I", binascii.crc32(body)))
+        taken += len(body) if recording.take(line) else 0
+    recording.close()
+    assert all(isinstance(line, str) for line in recording.words())
+    recording.slow_link()
+    if recording.header is not None:
+        assert os.path.getsize(path) <= 4 * taken + 1024
+        with contextlib.suppress(SixflipError):
+            use(capture_file.read(path))
 
 
 def stream(correction):
@@ -221,5 +243,5 @@ def plan(data):
 
 
 TARGETS = {one.__name__: one for one in (
-    capture_text, capture_of_a_board, record, lines_of_a_board, settings, host_line,
-    somebodys_csv, sections, scenario_file, plan)}
+    capture_text, capture_of_a_board, recorded_pieces, record, lines_of_a_board, settings,
+    host_line, somebodys_csv, sections, scenario_file, plan)}

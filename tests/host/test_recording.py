@@ -1,11 +1,6 @@
 """Captures written down on the host while the board takes them: whole, with gaps, cut off."""
 
 import json
-import os
-import signal
-import subprocess
-import sys
-import time
 from array import array
 from pathlib import Path
 
@@ -13,14 +8,11 @@ import numpy as np
 import pytest
 
 from sixflip.capture_pieces import PieceWriter, decode
-from sixflip.capture_reader import read as read_blocks
 from sixflip.capture_writer import BlockWriter
 from sixflip.placement import Placement
 from sixflip_host import cli
 from sixflip_host.board.recording import Recording, RecordingLink, name_of
 from sixflip_host.capture import capture_binary, capture_file
-from sixflip_host.virtual import virtual_board_verb
-from sixflip_host.virtual.virtual_board import FLASH_BYTES, VirtualBoard
 
 META = {"sensor": "mpu6050", "rate_hz": 100, "accel_lsb_per_g": 16384, "gyro_lsb_per_dps": 65.5,
         "temp_lsb_per_c": 340, "temp_offset_c": 36.53, "device_id": "e661", "session": 0x9F3C2A11}
@@ -118,7 +110,8 @@ def test_a_header_that_got_lost_is_asked_for_and_costs_no_sample(tmp_path):
         def send(self, line):
             self.sent.append(json.loads(line))
     recording = Recording(tmp_path / "r.bin")
-    assert list(RecordingLink(Link(), recording).lines(1)) == []
+    assert set(RecordingLink(Link(), recording).lines(1)) == {""}
+    recording.close()
     assert Link.sent == [{"cmd": "record"}]
     assert (recording.samples, recording.lost, recording.ended) == (400, 0, True)
 

@@ -24,10 +24,10 @@ from ..narration import log
 SYNC_S = 1.0            # so much may be lost where this computer loses its power
 WAITING = 2000          # pieces kept while the header has not come: ten minutes
 ASK_EVERY = 20          # pieces from one question for the header to the next
-# Bytes on the wire; all three are printed by tests/bench/capture_size.py.
+# Bytes on the wire, as tests/bench/capture_size.py prints them.
 UART_BYTES = 11520      # a second at 115200 baud, of a board without USB of its own
 SHAKEN_BYTES = 33       # a sample of seven columns that jump by more than a byte, in base64
-EVENTS_BYTES = 600      # a second that a session's events take
+EVENTS_BYTES = 1000     # a second that a session's events take: three states of 300 bytes
 SLOW = 0.97             # of rate_hz: a board that is held up by more, not by its flash alone
 
 
@@ -235,10 +235,10 @@ class RecordingLink:
         return getattr(self.link, name)
 
     def lines(self, timeout):
-        """Text lines alone; what is a piece of the capture is in the file."""
+        """Text lines; an empty one for each piece of the capture, which is in the file."""
         for line in self.link.raw_lines(timeout):
-            if not self.recording.take(line):
-                yield line.decode("utf-8", "replace")
-            elif self.recording.wants_header():
+            piece = self.recording.take(line)
+            if piece and self.recording.wants_header():
                 with contextlib.suppress(SixflipError):
                     self.link.send('{"cmd": "record"}')
+            yield "" if piece else line.decode("utf-8", "replace")
