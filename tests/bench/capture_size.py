@@ -107,8 +107,8 @@ def main():
     shaken = np.random.default_rng(1).integers(-32768, 32767, (5000, 7))
     _, wire = show("noise over the whole range", np.arange(5000) * 10000, shaken,
                    ACCEL | GYRO | TEMP)
-    print("\nA port of 115200 baud carries %.1f KB/s, less %.1f for a session's events: enough for "
-          "%d samples a second of the worst kind." % (
+    print("\nA port of 115200 baud carries %.1f KB/s, less %.1f for a session's events: enough "
+          "for %d samples a second of the worst kind." % (
               UART_BYTES / 1e3, EVENTS_BYTES / 1e3, (UART_BYTES - EVENTS_BYTES) / SHAKEN_BYTES))
     micropython = micropython_fetch.find()
     if micropython:

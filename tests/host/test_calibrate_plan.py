@@ -50,7 +50,8 @@ z = 4
 
 
 @pytest.fixture
-def plan(tmp_path):
+def plan(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # what is recorded by itself is left here
     path = tmp_path / "plan.json"
     path.write_text(json.dumps(PLAN))
     return path

@@ -33,11 +33,13 @@ OUTPUTS = {
     ("plan", "--save"): "plan --protocol READ --save WRITTEN",
     ("history", "--plot"): "history e66 --plot WRITTEN",
     ("stream", "--output"): "stream --port local:READ -o WRITTEN",
+    ("record", "--output"): "record --port local:READ -o WRITTEN",
+    ("calibrate", "--output"): "calibrate --port local:x --plan READ -o WRITTEN",
     ("virtual-board", "--flash"): "virtual-board --world READ --flash WRITTEN",
 }
 # of folders, whose files a verb looks at when it knows their names: tests of their own
 FOLDERS = {("pull", "--output"), ("ui", "--output"), ("demo", "--keep")}
-READS_NO_FILE = {("history", "--plot"), ("stream", "--output")}
+READS_NO_FILE = {("history", "--plot"), ("stream", "--output"), ("record", "--output")}
 # what looks like a name and is no file
 WORDS = {"--port", "--pins", "--axes", "--time-column", "--columns", "--map", "--delimiter",
          "--units", "--topic", "--label-column", "--label", "--add", "--without", "--fail-on",

@@ -1,6 +1,11 @@
 """Captures written down on the host while the board takes them: whole, with gaps, cut off."""
 
 import json
+import random
+import signal
+import subprocess
+import sys
+import time
 from array import array
 from pathlib import Path
 
@@ -8,19 +13,27 @@ import numpy as np
 import pytest
 
 from sixflip.capture_pieces import PieceWriter, decode
+from sixflip.capture_reader import read as read_blocks
 from sixflip.capture_writer import BlockWriter
 from sixflip.placement import Placement
 from sixflip_host import cli
+from sixflip_host.board import provision
+from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.board.recording import Recording, RecordingLink, name_of
 from sixflip_host.capture import capture_binary, capture_file
+from sixflip_host.planning import plan_file
+from sixflip_host.simulating import protocols
+from sixflip_host.virtual import virtual_board_verb
+from sixflip_host.virtual.virtual_board import VirtualBoard
 
 META = {"sensor": "mpu6050", "rate_hz": 100, "accel_lsb_per_g": 16384, "gyro_lsb_per_dps": 65.5,
         "temp_lsb_per_c": 340, "temp_offset_c": 36.53, "device_id": "e661", "session": 0x9F3C2A11}
 SCENARIO = """sensor = "mpu6050"
-scene = "recommended"
+plan = "plan.json"
 seed = 4
 [world]
 tilt_deg = 1.5
+first_rest_s = 45.0
 """
 
 
@@ -134,3 +147,148 @@ def test_the_file_is_named_by_device_and_session(meta, name, tmp_path, monkeypat
     assert name_of(meta) == name
     Path(name).write_text("")
     assert name_of(meta) == name[:-4] + "-2.bin"
+
+
+# -- on a virtual board
+
+
+@pytest.fixture
+def resting(micropython, tmp_path):
+    """start(**settings): a provisioned virtual board at rest, and --port of it."""
+    boards = []
+
+    def start(**settings):
+        board = VirtualBoard({"sensor": "mpu6050", "seed": 3, "order": []},
+                             tmp_path / "flash.img", micropython=micropython)
+        boards.append(board)
+        board.__enter__()
+        with MpremoteLink(board.port) as link:
+            provision.copy(link, dict({"sensor": "mpu6050", "grace_ms": 100}, **settings),
+                           lambda text: None)
+        board.power_cycle()
+        return board, ["--port", board.port]
+    yield start
+    for board in boards:
+        board.close()
+
+
+def test_a_log_of_twenty_minutes_is_as_long_as_the_clock_says(resting, tmp_path, capsys):
+    """The board's microseconds wrap after 17.9 minutes; a board without a record began a session
+    by itself, which is ended."""
+    _, port = resting(rate_hz=10)
+    log = tmp_path / "log.bin"
+    assert cli.main(["record", *port, "--hours", "0.33", "-o", str(log), "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    capture = capture_file.read(log)
+    assert capture.t_us[-1] > 1 << 30 and (answer["lost"], answer["gaps"]) == (0, 0)
+    assert (np.diff(capture.t_us) < 150000).all() and len(capture) == answer["samples"]
+    assert capture.pose is None and capture.temp is not None and not capture.truncated
+    assert abs(len(capture) - 0.33 * 36000) < 70
+    assert cli.main(["stream", *port, "--raw", "--seconds", "1"]) == 0  # it streams lines again
+
+
+def readable(path):
+    """The capture of a recording that was cut off between two blocks, or in its last one."""
+    data = path.read_bytes()
+    blocks = read_blocks(data)
+    assert len(data) - (blocks.truncated_at or len(data)) < 600
+    return capture_file.read(path)
+
+
+def recording_process(port, *words):
+    return subprocess.Popen([sys.executable, "-m", "sixflip_host", *words, *port],
+                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+
+def wait_for_bytes(path, size, process):
+    end = time.monotonic() + 60
+    while not path.exists() or path.stat().st_size < size:
+        assert time.monotonic() < end and process.poll() is None, process.stdout.read()
+        time.sleep(0.02)
+
+
+def test_killing_the_program_loses_the_last_block_at_most(resting, tmp_path):
+    board, port = resting()
+    path = tmp_path / "killed.bin"
+    process = recording_process(port, "calibrate", "--record", str(path), "--plain")
+    wait_for_bytes(path, 20000, process)
+    process.send_signal(signal.SIGKILL)
+    process.communicate()
+    capture = readable(path)
+    assert len(capture) > 1500 and "end is missing" in capture.truncated
+    assert cli.main(["show", str(path)]) == 0
+
+
+def test_pulling_the_plug_loses_the_last_block_at_most(resting, tmp_path):
+    board, port = resting()
+    path = tmp_path / "pulled.bin"
+    process = recording_process(port, "record", "-o", str(path))
+    wait_for_bytes(path, 20000, process)
+    board.unplug()
+    said = process.communicate(timeout=60)[0]
+    assert process.returncode == 3 and said.count("\n") == 1, said
+    assert len(readable(path)) > 1500
+
+
+def test_ctrl_c_ends_a_log_whole(resting, tmp_path):
+    _, port = resting()
+    path = tmp_path / "log.bin"
+    process = recording_process(port, "record", "-o", str(path))
+    wait_for_bytes(path, 9000, process)
+    process.send_signal(signal.SIGINT)
+    said = process.communicate(timeout=60)[0]
+    assert process.returncode == 130 and "stopped; recorded: " in said
+    assert capture_file.read(path).truncated is None
+    assert cli.main(["record", *port, "-o", str(path), "--seconds", "1"]) == 2  # it is there
+
+
+def test_over_a_bad_cable_the_gaps_are_said(resting, tmp_path, capsys):
+    board, port = resting()
+    rng = random.Random(4)
+
+    def bad_cable(data):
+        data = bytearray(data)
+        if rng.random() < 0.05 and b"\xa5" in data:
+            data[rng.randrange(len(data))] ^= 1 + rng.randrange(255)
+        return bytes(data)
+    path = tmp_path / "bad.bin"
+    with MpremoteLink(board.port) as link:
+        link.restart_firmware()
+    board.relay.corrupt = bad_cable
+    code = cli.main(["record", *port, "-o", str(path), "--seconds", "120"])
+    board.relay.corrupt = None
+    out = capsys.readouterr()
+    assert code == 0, out.err
+    assert "never came, in" in out.out
+    capture = capture_file.read(path)
+    assert not capture.truncated and capture.notes[0].startswith("recorded over the port")
+    assert abs(capture.t_us[-1] * 1e-6 - 120) < 2
+    assert capture_binary.lost_on_the_way(capture)[0] > 0
+
+
+def test_the_recommended_plan_on_a_picos_flash_leaves_every_sample(micropython, tmp_path, capsys,
+                                                                  monkeypatch):
+    """calibrate --plan recommended --record, then diagnose; what the documentation shows."""
+    monkeypatch.chdir(tmp_path)
+    Path("plan.json").write_text(json.dumps(plan_file.to_plan(protocols.named("recommended"))))
+    Path("scenario.toml").write_text(SCENARIO)
+    assert cli.main(["simulate", "scenario.toml", "-o", "a.csv", "b.csv", "--worlds",
+                     "worlds.json"]) == 0
+    world = virtual_board_verb.more_of_it("worlds.json", 2)
+    with VirtualBoard(world, "flash.img", micropython=micropython) as board:
+        port = ["--port", board.port]
+        assert cli.main(["provision", *port]) == 0
+        assert cli.main(["calibrate", *port, "--plan", "recommended", "--session", "2",
+                         "--record", "two.bin"]) == 0
+        capsys.readouterr()
+        assert cli.main(["pull", *port]) == 0
+    capture = capture_file.read("two.bin")
+    assert capture.complete and not capture.truncated and not capture.sums_only
+    assert len(capture) > 60000 and len(capture.placements()) == 39
+    kept = capture_file.read(Path(board.unique_id) / "capture.bin")
+    assert not kept.sums_only  # as steps it fits the flash, too
+    assert Path("two.bin").read_bytes() == (Path(board.unique_id) / "capture.bin").read_bytes()
+    assert cli.main(["verify", "two.bin", str(Path(board.unique_id) / "record_a.bin")]) == 0
+    capsys.readouterr()
+    assert cli.main(["diagnose", "two.bin", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["verdict"]

@@ -9,7 +9,7 @@ from ..errors import CheckFailed, Interrupted, NoBoard, UsageError
 from ..file_arguments import add_output
 from ..terminal import plain
 from . import calibrate
-from .board_events import parse
+from .board_events import events, parse
 from .ports import add_port, open_link
 from .recording import Recording
 from .stream_session import StreamSession
@@ -17,6 +17,7 @@ from .stream_session import StreamSession
 HELP = "write a board's raw samples down for minutes or hours, without a session"
 EXAMPLE = "sixflip record --hours 8 -o night.bin"
 SILENCE_S = 5
+LOOK_S = 8              # what is missing is said every few seconds; a board that powers up, later
 
 
 def add_arguments(parser):
@@ -56,14 +57,18 @@ def run(args):
 
 
 def free_for_a_log(link):
-    """A board without a record begins a session by itself: ended where nothing is in it yet."""
-    missing = calibrate.under_way(link)
-    if missing is None:
-        return
-    if len(missing) != 12:
-        raise CheckFailed("%s: a calibration is under way: finish it with sixflip calibrate, or "
-                          "end it with Ctrl-C there" % link.port)
-    calibrate.stop(link)
+    """A board without a record begins a session by itself, and a box that lies still on a face
+    gives it one pose: ended where there are no more."""
+    for event in events(link, LOOK_S, LOOK_S):
+        missing = event.get("missing")
+        if event["event"] in ("sample", "heading", "ready"):
+            return
+        if event["event"] == "state" and isinstance(missing, list) and len(missing) > 10:
+            calibrate.stop(link)
+            return
+        if event["event"] == "state" and ("at" in event or isinstance(missing, list)):
+            raise CheckFailed("%s: a calibration is under way: finish it with sixflip calibrate, "
+                              "or end it with Ctrl-C there" % link.port)
 
 
 def receive(link, recording, wanted_s, quiet):
