@@ -63,10 +63,10 @@ def free_for_a_log(link):
         missing = event.get("missing")
         if event["event"] in ("sample", "heading", "ready"):
             return
-        if event["event"] == "state" and isinstance(missing, list) and len(missing) > 10:
+        if event["event"] == "state" and missing is not None and len(missing) > 10:
             calibrate.stop(link)
             return
-        if event["event"] == "state" and ("at" in event or isinstance(missing, list)):
+        if event["event"] == "state" and (missing is not None or event.get("at") is not None):
             raise CheckFailed("%s: a calibration is under way: finish it with sixflip calibrate, "
                               "or end it with Ctrl-C there" % link.port)
 
