@@ -175,6 +175,13 @@ def table(title, columns, rows, prose=False):
     return Table(title, columns, rows, prose)
 
 
+def say(lines):
+    """Print lines of sentences, escaped."""
+    out = console()
+    for line in lines:
+        out.print(plain(line))
+
+
 def styled(text, style):
     """A piece of text for a table or a print, in a colour where colours are shown."""
     from rich.text import Text

@@ -2,7 +2,9 @@
 
 import io
 
+from sixflip.faces import FACES
 from sixflip_host import terminal
+from sixflip_host.board.console import Console
 from sixflip_host.gap import words
 
 GAP = {
@@ -75,3 +77,13 @@ def test_sentences_break_between_words_and_a_path_is_left_in_one_piece(monkeypat
 def test_a_sentence_in_a_pipe_is_one_line(capsys):
     terminal.console().print("word " * 50 + "end")
     assert capsys.readouterr().out == "word " * 50 + "end\n"
+
+
+def test_what_a_board_says_breaks_between_words_and_the_live_line_is_left_alone(monkeypatch):
+    screen = of_80_columns(monkeypatch)
+    console = Console(screen)
+    console.show({"event": "redo", "face": "Z+", "missing": [
+        face + letter for face in FACES for letter in "ab"]})
+    shown = lines(screen.getvalue())
+    assert len(shown) == 2 and max(map(len, shown)) <= 80
+    assert " ".join(" ".join(shown).split()).count("and its flip") == 6

@@ -12,6 +12,7 @@ from ..history import remember
 from ..mounting import mount
 from ..simulating import still_rest
 from ..solving.solve import local_gravity
+from ..terminal import say
 from . import check_words
 from .board_events import wait_for
 from .ports import add_port, open_link
@@ -62,7 +63,7 @@ def run(args):
     if args.json:
         print(json.dumps(found))
     else:
-        print("\n".join(check_words.lines(found)))
+        say(check_words.lines(found))
     return 0 if found["valid"] else CheckFailed.exit_code
 
 

@@ -2,6 +2,7 @@
 
 import shutil
 import sys
+import textwrap
 import threading
 
 from sixflip.faces import FACES
@@ -243,8 +244,7 @@ class Console:
                 self.show_state(event)
                 return
             for line in lasting(event, self.step):
-                self.clear()
-                print(line, file=self.out, flush=True)
+                self.last(line)
 
     def show_state(self, event):
         line = plain(state_line(event))
@@ -275,8 +275,16 @@ class Console:
     def say(self, line):
         """A lasting line of the host's own."""
         with self.lock:
-            self.clear()
-            print(plain(line), file=self.out, flush=True)
+            self.last(plain(line))
+
+    def last(self, line):
+        """A line that stays; on a terminal it breaks between words."""
+        self.clear()
+        columns = shutil.get_terminal_size().columns
+        if self.live and len(line) > columns:
+            line = textwrap.fill(line, max(20, columns), subsequent_indent="  ",
+                                 break_long_words=False, break_on_hyphens=False)
+        print(line, file=self.out, flush=True)
 
     def clear(self):
         if self.live and self.shown:

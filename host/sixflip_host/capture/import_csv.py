@@ -10,7 +10,7 @@ from sixflip.faces import pose_name
 from .. import file_kinds
 from ..errors import BadFile, UsageError
 from ..file_arguments import add_input, add_output
-from ..terminal import plain
+from ..terminal import plain, say
 from . import capture_file, csv_mapping, ros_bag, units
 from .capture_header import ACCEL, GYRO, MAG, SENSORS, STANDARD_G
 from .csv_table import read_table
@@ -78,8 +78,7 @@ def run(args):
     print("%s: %d samples, %.1f s, %g counts per g" % (
         plain(args.output), len(capture), (capture.t_us[-1] - capture.t_us[0]) / 1e6,
         capture.meta["accel_lsb_per_g"]))
-    for remark in remarks:
-        print(plain("  " + remark))
+    say("  " + remark for remark in remarks)
     return 0
 
 

@@ -14,6 +14,7 @@ from ..capture import capture_file
 from ..errors import BadFile, CheckFailed, UsageError
 from ..file_arguments import add_input, add_output
 from ..simulating import still_rest
+from ..terminal import say
 from ..verifying.verify_files import read_record
 from . import mount_board, mount_words, robot_axes
 
@@ -72,7 +73,7 @@ def run(args):
     if args.json:
         print(json.dumps(found))
     else:
-        print("\n".join(mount_words.lines(found, args.both)))
+        say(mount_words.lines(found, args.both))
     if args.output:
         record.mounting = found["mounting"]
         record.sequence += 1
