@@ -18,6 +18,7 @@ from .flash_files import free_bytes
 
 
 def _info(unit, command):
+    from .capture_files import unfinished
     record = unit.record
     unit.events.emit(
         "info", board=unit.board.name, id=unit.board.unique_id,
@@ -26,6 +27,7 @@ def _info(unit, command):
         verdict=None if record is None else record.accel["verdict"],
         stream_hz=unit.stream_hz, raw=unit.raw, heading=unit.heading, binary=unit.binary,
         bias_dps=unit.bias_dps,
+        unfinished=unfinished(unit.board.root),
         bus_errors=0 if unit.sensor is None else unit.sensor.errors,
         free_bytes=free_bytes(unit.board.root))
 

@@ -4,10 +4,14 @@ import argparse
 import contextlib
 import importlib
 import os
+import re
+import shutil
 import sys
+import textwrap
 import traceback
 
 from . import file_arguments
+from .did_you_mean import closest, instead
 from .errors import SixflipError, UsageError, internal_error
 from .narration import log, narrated
 from .terminal import plain
@@ -62,10 +66,37 @@ LONGEST_LINE = 1000     # of an error: what a file or a board holds must not flo
 
 
 class Parser(argparse.ArgumentParser):
-    """argparse whose complaints are one line, like every other error of this tool."""
+    """argparse whose complaints are one line, like every other error of this tool, and ask what
+    was meant; whose help keeps within the line."""
 
     def error(self, message):
-        raise UsageError("%s (see %s --help)" % (message, self.prog))
+        raise UsageError("%s (see %s --help)" % (self.asked_back(message), self.prog))
+
+    def asked_back(self, message):
+        """argparse's sentence on an unknown option or choice, with the nearest one there is."""
+        option = re.search(r"unrecognized arguments: (--[^ =]+)", message)
+        if option:
+            near = closest(option[1], self._option_string_actions)
+            return message + (", did you mean %s?" % near if near else "")
+        choice = re.search(r"invalid choice: (.*) \(choose from (.*)\)", message)
+        if choice:
+            near = closest(choice[1].strip("'"), re.findall(r"[^', ]+", choice[2]))
+            return message + (", did you mean %s?" % near if near else "")
+        return message
+
+    def format_help(self):
+        return "\n".join(filled(line) for line in super().format_help().split("\n"))
+
+
+def filled(line):
+    """A line of help broken between words at the width of the terminal, 80 in a pipe; its
+    further lines begin where its text began, behind a column of names."""
+    columns = shutil.get_terminal_size().columns
+    if len(line) <= columns:
+        return line
+    indent = re.match(r" *(\S+ {2,})?", line).end()
+    return textwrap.fill(line, max(40, columns), subsequent_indent=" " * indent,
+                         break_long_words=False, break_on_hyphens=False)
 
 
 def overview():
@@ -77,7 +108,7 @@ def overview():
     lines += ["", "sixflip VERB --help says more about one of them. With every verb:"]
     lines += ["  %-14s %s" % item for item in GLOBAL.items()]
     lines += ["", EXIT_CODES]
-    return "\n".join(lines)
+    return "\n".join(filled(line) for line in lines)
 
 
 def load(verb):
@@ -113,7 +144,7 @@ def run(argv):
         return 0
     verb = argv[0]
     if verb not in VERBS:
-        raise UsageError("there is no verb %r, expected one of %s" % (verb, " ".join(VERBS)))
+        raise UsageError("there is no verb %r, %s" % (verb, instead(verb, VERBS)))
     parser = parser_for(verb)
     args = parser.parse_args(argv[1:])
     file_arguments.check(parser, args)

@@ -111,6 +111,8 @@ class Table:
 
     def __rich_console__(self, console, options):
         from rich.text import Text
+        if self.title:
+            yield Sentence(Text(self.title, style="bold"))
         table = self._table()
         room = options.max_width
         if self._widest(console, table) <= room or self.prose and self._least(console) <= room:
@@ -123,8 +125,7 @@ class Table:
         from rich import box
         from rich.table import Table as RichTable
         from rich.text import Text
-        out = RichTable(title=Text(self.title) if self.title else None, title_justify="left",
-                        title_style="bold", box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+        out = RichTable(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
         last = len(self.columns) - 1
         for number, column in enumerate(self.columns):
             prose = self.prose and number == last
@@ -148,8 +149,6 @@ class Table:
         """The first cell of a row alone, then the others behind the names of their columns, as
         many in a line as there is room for."""
         from rich.text import Text
-        if self.title:
-            yield Text(self.title, style="bold")
         for row in self.rows:
             yield from wrapped(row[0], options.max_width, 2, 4)
             line = Text()

@@ -29,6 +29,12 @@ def test_overview_names_every_verb(capsys):
 
 @pytest.mark.parametrize("argv,code,words", [
     (["fly"], 2, "there is no verb 'fly', expected one of boards"),
+    (["diagnoze"], 2, "'diagnoze', did you mean diagnose? expected one of"),
+    (["solve", "x", "--flip", "180"], 2, "--flip 180, did you mean --flips?"),
+    (["export", "x", "-o", "y", "--format", "parket"], 2, "did you mean parquet?"),
+    (["plan", "--protocol", "recomended"], 2, "did you mean recommended?"),
+    (["diagnose", "x", "--without", "thermal_bais"], 2, "did you mean thermal_bias?"),
+    (["diagnose", "x", "--fail-on", "unexplaned"], 2, "did you mean unexplained?"),
     (["solve"], 2, "required"), (["solve", "x", "--level", "best"], 2, "invalid choice"),
     (["solve", "x", "--lat", "91"], 2, "expected -90 to 90"),
     (["solve", "x", "--height", "3"], 2, "--height needs --lat"),
@@ -42,6 +48,17 @@ def test_errors_are_one_line(argv, code, words, capsys):
     assert main(argv) == code
     error = capsys.readouterr().err
     assert words in error and error.startswith("sixflip: ") and error.count("\n") == 1
+
+
+@pytest.mark.parametrize("words", [[], ["diagnose"], ["mount"], ["calibrate"]])
+def test_piped_help_is_80_wide_and_keeps_every_word(words, capsys, monkeypatch):
+    monkeypatch.delenv("COLUMNS", raising=False)
+    assert main([*words, "--help"]) == 0
+    narrow = capsys.readouterr().out
+    assert max(map(len, narrow.splitlines())) <= 80
+    monkeypatch.setenv("COLUMNS", "2000")
+    assert main([*words, "--help"]) == 0
+    assert sorted(narrow.split()) == sorted(capsys.readouterr().out.split())
 
 
 def test_a_bug_is_one_line_too(monkeypatch, capsys):

@@ -14,7 +14,7 @@ def test_demo_on_the_virtual_board(micropython, sensor, tmp_path, capsys, monkey
     monkeypatch.setenv("SIXFLIP_MICROPYTHON", micropython)
     assert cli.main(["demo", "--keep", str(tmp_path / "kept"), "--sensor", sensor]) == 0
     out = capsys.readouterr().out
-    assert "worst vector" in out
+    assert "worst vector" in out and "The README's 0.20 mg is" in out
     kept = tmp_path / "kept"
     assert (kept / "raw_corrected.png").read_bytes()[:4] == b"\x89PNG"
     assert (kept / "flash.img").exists()

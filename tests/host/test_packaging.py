@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from sixflip_host import optional
 from sixflip_host.board import mip_package
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -36,6 +37,24 @@ def test_every_package_of_the_tree_is_shipped(setuptools_table):
     wanted |= {packed + "device." + name for name in packages_below(ROOT / "device")}
     wanted.add(packed + "device")
     assert set(setuptools_table["packages"]) == wanted
+
+
+def test_the_authors_are_those_of_the_license():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    holder = re.search(r"Copyright \(c\) \d+ (.+)", (ROOT / "LICENSE").read_text())[1]
+    assert [one["name"] for one in project["authors"]] == [holder]
+    assert project["license"]["text"] + " License" in (ROOT / "LICENSE").read_text()
+
+
+@pytest.mark.parametrize("extra", ["ui", "data", "pico"])
+def test_what_to_install_names_the_libraries_and_needs_no_index_that_has_sixflip(
+        extra, monkeypatch):
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    names = [re.match(r"[\w-]+", one)[0] for one in project["optional-dependencies"][extra]]
+    said = optional.how(extra)
+    assert all("'%s" % name in said for name in names) and "sixflip[" not in said
+    monkeypatch.setattr(optional.metadata, "requires", lambda name: None)   # not installed
+    assert optional.how(extra).endswith("-m pip install '%s[%s]'" % (ROOT, extra))
 
 
 def test_package_json_lists_the_tree():

@@ -49,6 +49,17 @@ def test_settings_of_the_user_stay(link):
         "board": "pico", "grace_ms": 700, "sensor": "gy85"}
 
 
+def test_what_is_configured_on_the_board_is_kept_and_said(link):
+    said = []
+    provision.copy(link, {"sensor": "gy85", "sda": 8}, said.append)
+    assert said[0] == 'sensor: gy85; board: "pico"'
+    provision.copy(link, {}, said.append)
+    assert said[2] == "sensor: gy85, as configured on the board (--sensor changes it); " \
+        'board: "pico"; sda: 8'
+    provision.copy(link, {"sensor": "auto"}, said.append)
+    assert said[4].startswith("sensor: found out at power-up; ")
+
+
 def test_pulled_out_and_gone_on_with(board):
     def pull_out(name, *rest):
         if name == "sixflip/faces.py":

@@ -1,6 +1,8 @@
 """`sixflip refine` as a user meets it: answers, records, and one sentence for bad input."""
 
 import argparse
+import contextlib
+import io
 import json
 
 import hand_session
@@ -37,7 +39,10 @@ def written(tmp_path, capture, name="capture.csv"):
 
 
 def text(found):
-    return "\n".join(refinement_report.lines(found))
+    """What is printed of it."""
+    with contextlib.redirect_stdout(io.StringIO()) as out:
+        refinement_report.show(found)
+    return out.getvalue()
 
 
 def test_json_has_the_form_of_solve(tmp_path, capture, sensor, capsys):

@@ -128,6 +128,17 @@ def test_wrong_command_lines(words, capsys):
     assert err.startswith("sixflip: ")
 
 
+def test_the_port_of_the_environment_is_the_board_where_no_file_is_given(monkeypatch, capsys):
+    asked = []
+    monkeypatch.setattr(mount_board, "open_link", lambda port: asked.append(port) or Spoken(
+        {"event": "not_mounted", "reason": "not at rest: moving"}))
+    monkeypatch.delenv("SIXFLIP_PORT", raising=False)
+    assert run(capsys, "mount")[0] == 2
+    monkeypatch.setenv("SIXFLIP_PORT", "/dev/ttyACM7")
+    assert run(capsys, "mount")[0] == 1 and asked == [None]     # open_link() looks it up
+    assert run(capsys, "mount", "rest.csv")[0] == 4 and len(asked) == 1
+
+
 def test_on_micropython(micropython, offered, tmp_path, capsys):
     with VirtualBoard(WORLD, tmp_path / "flash.img", micropython=micropython) as one:
         assert cli.main(["provision", "--port", one.port]) == 0

@@ -207,6 +207,7 @@ def test_worlds_of_a_scenario_are_what_the_virtual_board_runs(tmp_path):
     ("rate_hz = 0", "rate_hz is 0"), ("seed = 1.5", "seed is 1.5, expected a whole number"),
     ("flicker = 3", "flicker is 3, expected true or false"),
     ('[[effects]]\neffect = "gremlins"', "unknown effect 'gremlins'"),
+    ('[[effects]]\neffect = "thermal_bais"', "did you mean thermal_bias? expected one of"),
     ('[[effects]]\neffect = "creep"\nz = 1e6', "expected a number from -200 to 200 mg/g"),
     ("effects = 3", "expected [[effects]] tables"),
     ("[world]\ntilt = 1", "[world] has an unknown key 'tilt'"),

@@ -203,6 +203,8 @@ def planned(event, step):
     if kind not in ("pose", "redo") or not isinstance(event.get("at"), int):
         return None
     done = "%s taken" % event.get("pose") if kind == "pose" else "%s again" % event.get("face")
+    if kind == "redo":
+        return "%s (%d of %s): as it lay before" % (done, event["at"], event.get("of"))
     return "%s (%d of %s); %s%s" % (done, event["at"], event.get("of"),
                                     "next " if event["at"] < event["of"] else "",
                                     step(event["at"]))

@@ -5,6 +5,7 @@ import os
 from ..errors import NoBoard
 from . import serial_ports
 
+VARIABLE = "SIXFLIP_PORT"
 HELP = ("serial port of the board (default: $SIXFLIP_PORT, or the only one plugged in), or "
         "local:DIR for the firmware on this computer with DIR as its flash")
 
@@ -16,7 +17,7 @@ def add_port(parser):
 def open_link(port=None):
     """A Link; NoBoard with one line when there is none or the choice is not clear."""
     if port is None:
-        port = os.environ.get("SIXFLIP_PORT") or only_board()
+        port = os.environ.get(VARIABLE) or only_board()
     if port.startswith("local:"):
         from .local_link import LocalLink
         return LocalLink(port[len("local:"):] or None)

@@ -69,6 +69,17 @@ def merged_settings(link, present, wanted):
     return (json.dumps(values, indent=1, sort_keys=True) + "\n").encode()
 
 
+def settings_line(data, wanted):
+    """What sixflip.json on the board says from now on, and what of it was there before."""
+    values = json.loads(data)
+    kept = [name for name in sorted(values) if name not in wanted and name != "sensor"]
+    sensor = values.get("sensor", "auto")
+    line = "sensor: %s" % ("found out at power-up" if sensor == "auto" else sensor)
+    if "sensor" not in wanted and "sensor" in values:
+        line += ", as configured on the board (--sensor changes it)"
+    return line + "".join("; %s: %s" % (name, json.dumps(values[name])) for name in kept)
+
+
 def copy(link, wanted, say=print):
     """Bring the board's files up to date; returns (number copied, number already there).
 
@@ -82,6 +93,7 @@ def copy(link, wanted, say=print):
         link.finish()
         present = link.files(asked)
     files[SETTINGS] = merged_settings(link, present, wanted)
+    say(plain(settings_line(files[SETTINGS], wanted)))
     hashes = {name: hashlib.sha256(data).hexdigest() for name, data in files.items()}
     changed = [name for name in files if present.get(name, (0, ""))[1] != hashes[name]]
     changed.sort(key=lambda name: name == "main.py")  # a half-copied board never starts it

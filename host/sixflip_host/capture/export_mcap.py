@@ -11,10 +11,10 @@ import math
 import numpy as np
 
 from .. import atomic_write
+from ..optional import need
 from .apply import corrected
 from .capture_header import STANDARD_G
 from .export_tables import KEY, about
-from .optional import need
 
 TOPIC = "/imu/data_raw"
 TEMPERATURE_TOPIC = "/imu/temperature"
@@ -35,7 +35,7 @@ TEMPERATURE = "std_msgs/Header header\nfloat64 temperature\nfloat64 variance\n" 
 
 def mcap(output, capture, record=None, tell=None):
     """Write MCAP; the header of the capture is metadata of the name `sixflip`."""
-    ros2 = need("format mcap", "mcap_ros2.writer")
+    ros2 = need("format mcap", "data", "mcap_ros2.writer")
     t_us, accel, gyro, celsius = in_units(capture, record, tell)
     data = io.BytesIO()
     writer = ros2.Writer(data)

@@ -13,10 +13,10 @@ import numpy as np
 from sixflip.faces import pose_name
 
 from .. import atomic_write
+from ..optional import need
 from ..solving.record_json import record_json
 from .apply import corrected
 from .capture_header import ACCEL, GYRO, MAG
-from .optional import need
 
 KEY = "sixflip"             # of the JSON in the file's metadata
 
@@ -58,7 +58,7 @@ def about(capture, record=None):
 
 def parquet(output, capture, record=None, tell=None):
     """Write Parquet; the JSON stands under the key `sixflip` of the schema's metadata."""
-    arrow, pq = need("format parquet", "pyarrow", "pyarrow.parquet")
+    arrow, pq = need("format parquet", "data", "pyarrow", "pyarrow.parquet")
     table = arrow.table({
         name: arrow.array(values).dictionary_encode() if name == "pose" else arrow.array(values)
         for name, values in columns(capture, record, tell).items()})

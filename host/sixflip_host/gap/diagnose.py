@@ -3,8 +3,9 @@ shrinks once that is added."""
 import json
 import os
 
-from .. import file_kinds
+from .. import file_kinds, progress
 from ..capture import capture_file
+from ..did_you_mean import instead
 from ..errors import CheckFailed, UsageError
 from ..file_arguments import add_input, add_output
 from ..mounting import mount
@@ -46,13 +47,13 @@ def add_arguments(parser):
 def run(args):
     from sixflip_sim.effects.library import NAMES
 
-    from . import against_simulator, answer, diagnosis, observations, reference, words
+    from . import terms_out, words
     wanted = verdicts(args.fail_on)
     without = [name for name in args.without.split(",") if name]
     for name in without:
         if name not in NAMES:
-            raise UsageError("--without %s: expected effects out of: %s"
-                             % (name, " ".join(NAMES)))
+            raise UsageError("--without %s: %s" % (
+                name, instead(name, NAMES, "expected effects out of: %s")))
     if args.max_gap is not None and not args.max_gap > 0.0:
         raise UsageError("--max-gap is %g, expected more than 0" % args.max_gap)
     if args.jobs < 0:
@@ -63,7 +64,24 @@ def run(args):
         raise UsageError("--record: expected no --sim, a record corrects the sensor and no "
                          "difference between sensor and simulator")
     record = mount.accelerometer_record(args.record) if args.record else None
-    read = capture_file.read_samples
+    with progress.during("diagnose"):
+        result, terms = answered(args, without, record)
+    if args.json:
+        print(json.dumps(result, indent=1, allow_nan=False, ensure_ascii=False))
+    else:
+        words.show(result)
+    if record:
+        terms_out.write(terms, args)
+    return checked(result, wanted, args)
+
+
+def answered(args, without, record):
+    """(the answer of --json, Terms for a record or None); report and scenario are written."""
+    from . import against_simulator, answer, diagnosis, observations, reference, terms_out
+
+    def read(path):
+        progress.doing("reading %s" % path)
+        return capture_file.read_samples(path)
     sessions = [observations.Session(path, read(path)) for path in args.captures]
     noise = reference.levels(read(args.reference), args.reference) \
         if args.reference else None
@@ -77,20 +95,15 @@ def run(args):
     result = answer.of(found)
     if loops:
         result["simulated"] = {kind: answer.of_loop(kind, loop) for kind, loop in loops.items()}
+    terms = None
     if record:
-        from . import terms_out
         terms = terms_out.found(found, record, args)
         result["terms"] = terms_out.answer(terms, args.output)
     if args.report:
         from . import report
+        progress.doing("drawing the report")
         report.write(args.report, found, result, loops)
-    if args.json:
-        print(json.dumps(result, indent=1, allow_nan=False, ensure_ascii=False))
-    else:
-        words.show(result)
-    if record:
-        terms_out.write(terms, args)
-    return checked(result, wanted, args)
+    return result, terms
 
 
 def closed(found, args):
@@ -101,12 +114,13 @@ def closed(found, args):
     named = [name for name in args.add if name != "found"]
     for name in named:
         if name not in NAMES:
-            raise UsageError("--add %s: expected found, or an effect out of: %s"
-                             % (name, " ".join(NAMES)))
+            raise UsageError("--add %s: %s" % (name, instead(
+                name, NAMES, "expected found, or an effect out of: %s")))
     if not (args.add or args.scenario or args.report) or not found.gaps:
         return {}
     loops = {}
     for kind, gap in found.gaps.items():
+        progress.doing("the simulator again, with what was found")
         mine = [n for n in named if n in {o.effect for o in gap.options}]
         for name in mine[:-1]:
             closed_loop.force(gap, name)
@@ -151,8 +165,8 @@ def verdicts(text):
     out = [" ".join(part.replace("_", " ").split()) for part in text.split(",") if part.strip()]
     for verdict in out:
         if verdict not in VERDICTS:
-            raise UsageError("--fail-on %s: expected verdicts out of: %s"
-                             % (verdict, ", ".join(VERDICTS)))
+            raise UsageError("--fail-on %s: %s" % (verdict, instead(
+                verdict, VERDICTS, "expected verdicts out of: %s")))
     return out
 
 

@@ -4,6 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
+from .. import progress
 from . import (
     attitude_fit,
     axis_order,
@@ -64,6 +65,7 @@ class Diagnosis:
         self.remarks += ["%s: its timestamps stand still, rate_hz was used instead" % s.name
                          for s in sessions if s.timeless]
         self.remarks += sample_clock.remarks(sessions)
+        progress.doing("registers, clock and spectra")
         self.stuck = counts.stuck(sessions)
         self.remarks += self.stuck
         self.findings = [f for f in integrity.findings(sessions)
@@ -72,6 +74,7 @@ class Diagnosis:
         settings.coarse = any(f.sensor == "accel" and f.effect in COARSE for f in self.findings)
         self._poses()
         if not self.gaps:
+            progress.doing("the longest rest")
             self.rest = single_rest.SingleRest(sessions, settings)
             more = list(self.rest.findings)
             if not any(f.effect == "vibration" and f.sensor == "accel" for f in self.findings):
@@ -133,6 +136,7 @@ class Diagnosis:
         usable = self._off_the_rails(usable)
         if not usable:
             return
+        progress.doing("the nominal sensor")
         nominal = [attitude_fit.fit(s) for s in usable]
         self.scale_remark = axis_order.full_scale(usable, nominal)
         if self.scale_remark:
@@ -165,6 +169,7 @@ class Diagnosis:
                 self._turns(sessions, nominal)
                 self.gaps["gyro"] = still.result()
             self.gaps["accel"] = accel.result()
+        progress.doing("what moves between the rests show")
         self.gaps = {k: self.gaps[k] for k in ("accel", "gyro") if k in self.gaps}
         self.motion = motion_gap.of(self.sessions, sessions, nominal, self.turns, self.settings)
         # What the rests do not explain would be carried into the moves.

@@ -3,6 +3,7 @@ import numpy as np
 
 from sixflip_sim.effects.library import EFFECTS
 
+from .. import progress
 from . import (
     adequacy,
     between,
@@ -41,6 +42,7 @@ class SensorGap:
     def __init__(self, kind, sessions, nominal, settings):
         self.kind, self.sessions, self.nominal = kind, sessions, nominal
         self.settings = settings
+        progress.doing("effects of the %s" % ("gyro" if kind == "gyro" else "accelerometer"))
         self.chip = sessions[0].capture.meta["sensor"]
         self.parts = [(s, m) for s, m in zip(sessions, nominal)]
         parts = self.parts

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import atomic_write
+from .. import atomic_write, progress
 from . import which
 
 RUNS, BATCH = 240, 80
@@ -70,7 +70,7 @@ def simulated(units, options, levels):
     """Thresholds from RUNS simulated data sets."""
     generator = np.random.default_rng(20190919)
     named, generic = [], []
-    for _ in range(RUNS // BATCH):
+    for _ in progress.steps(range(RUNS // BATCH), "what chance alone shows"):
         draws = [u.draw(i, generator, BATCH) for u, i in zip(units, levels)]
         gains = which.gains(which.Data(units, draws), options)
         for out, kind in ((named, False), (generic, True)):

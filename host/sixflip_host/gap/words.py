@@ -93,7 +93,7 @@ def show(answer):
     if answer["where"]:
         out.print(table("Where", ("sensor", "axis", "domain", "share", "p"), [
             (SENSOR[w["sensor"]], w["axis"] or "-", w["domain"].replace("_", " "),
-             "%.0f %%" % (100 * w["share"]), "%.1g" % w["p"]) for w in answer["where"][:12]]))
+             "%.0f %%" % (100 * w["share"]), chance(w["p"])) for w in answer["where"][:12]]))
     if answer["causes"]:
         out.print(table("Which", WHICH, [row(c) for c in answer["causes"]], prose=True))
     for kind, gap in answer["gap"].items():
@@ -104,6 +104,11 @@ def show(answer):
     if "terms" in answer:
         from . import terms_out
         terms_out.show(out, answer["terms"])
+
+
+def chance(p):
+    """A probability; far below what any of its assumptions holds to, only that it is small."""
+    return "%.1g" % p if p >= 1e-6 else "< 1e-6"
 
 
 def row(c):

@@ -10,6 +10,9 @@ CAUSES = {"moving": "it moves", "noisy": "it shakes", "saturated": "full scale",
           "stale": "readings do not change"}
 
 
+AS_IT_LIES = "lift it first if it lay badly, and put it back the same way"
+
+
 @dataclass(frozen=True)
 class Step:
     """kind: place, flip, hold, rest, lean, wait, done; face: that is to be up, "" for none;
@@ -32,12 +35,13 @@ def face_up(state):
     return "XYZ"[axis] + ("+" if state.vector[axis] > 0 else "-")
 
 
-def following(missing):
-    """The pose to take next of those missing: a flip that is due, else the next of the round."""
+def following(missing, again=""):
+    """The pose to take next of those missing: a flip that is due, else the face that was taken
+    back, else the next of the round."""
     for pose in missing:
         if pose.endswith("b") and pose[:-1] + "a" not in missing:
             return pose
-    for face in ROUND:
+    for face in (again, *ROUND):
         for letter in "ab":
             if face + letter in missing:
                 return face + letter
@@ -61,7 +65,7 @@ def next_step(state, step=None):
         return Step(REST, up, up, "leave the box alone", what)
     if state.plan:
         return planned(state, up, step)
-    pose = following(state.missing)
+    pose = following(state.missing, state.again)
     if not pose:
         return Step(WAIT, "", up, "all six faces are done", "")
     face = pose[:2]
@@ -70,12 +74,18 @@ def next_step(state, step=None):
         return Step(FLIP, face, up, "half a turn, %s stays up" % face,
                     "lift it, turn it, put it down again" if no_gyro
                     else "turn it flat on the table, either way round")
+    if face == state.again == up:
+        return Step(PLACE, face, up, "%s again, as the box lies" % face, AS_IT_LIES)
     return Step(PLACE, face, up, "lay the box down with %s up" % face,
                 "flat on the table, then let go")
 
 
 def planned(state, up, step):
     """By a plan: the drawing where there is one, and the plan's own words."""
+    if state.again and state.again == state.next:
+        leans = state.next[:1] == "L"
+        return Step(LEAN if leans else PLACE, "" if leans else state.next[:2], up,
+                    "%s again, as the box lies" % state.next, AS_IT_LIES)
     words = step(state.at) if step else "next %s" % state.next
     head, _, detail = words.partition(": ")
     detail = detail or words

@@ -34,7 +34,8 @@ class State:
     since, taken_at, now   seconds of the caller's clock: begin of the session, last placement
                  taken, last event; paces: seconds from placement to placement
     log          lasting lines, oldest first; error: the last one that is in force
-    redone       how often placements were taken back in this session
+    redone       how often placements were taken back in this session; again: the face, or the
+                 plan's pose, that was taken back last, "" once a placement is taken
     """
 
     stage: str = WAITING
@@ -71,6 +72,7 @@ class State:
     log: tuple = ()
     error: str = ""
     redone: int = 0
+    again: str = ""
 
     def left(self):
         """Seconds until all placements are taken, at the usual pace so far; None before the
@@ -174,8 +176,15 @@ def _pose(state, event):
     for name in poses([event.get("pose")]):
         others = {pose: n for pose, n in state.taken.items() if pose != name}
         state = replace(state, taken={**others, name: whole(event.get("n"))})   # the last one
-    return replace(_todo(state, event), refusal="", error="", taken_at=state.now,
+    return replace(_todo(state, event), refusal="", error="", again="", taken_at=state.now,
                    paces=state.paces + (state.now - state.taken_at,))
+
+
+def _redo(state, event):
+    """Of a plan only the last placement lies as it was: one before it is laid down anew."""
+    back = text(event.get("face"), 8)
+    return replace(_todo(state, event), redone=state.redone + 1,
+                   again="" if state.plan and state.again else back)
 
 
 def _refused(state, event):
@@ -205,7 +214,7 @@ def _end(state, event):
 AFTER = {
     "hello": _hello, "calibrating": _calibrating, "state": _live, "sample": _sample,
     "pose": _pose, "refused": _refused, "capture": _capture, "solved": _solved,
-    "redo": lambda s, e: replace(_todo(s, e), redone=s.redone + 1),
+    "redo": _redo,
     "saved": lambda s, e: replace(s, stage=OVER, saved=cleaned(e)),
     "record": lambda s, e: replace(s, record=cleaned(e)),
     "error": _error, "ready": _end, "stopped": _end,

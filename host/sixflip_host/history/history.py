@@ -181,10 +181,6 @@ def drift_notes(drifts):
             for note in dict.fromkeys(one.note for one in drifts if one.note)]
 
 
-def _only(head, rows, columns):
-    return [head[k] for k in columns], [[row[k] for k in columns] for row in rows]
-
-
 def _coloured_rows(head, rows, column):
     return head, [[_coloured(cell) if k == column else cell for k, cell in enumerate(row)]
                   for row in rows]

@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from sixflip.correction_of import correction_of
 from sixflip_sim.worlds import NOISE
 
 from .. import atomic_write, file_kinds
+from ..board.ports import VARIABLE as PORT
 from ..capture import capture_file
 from ..errors import BadFile, CheckFailed, UsageError
 from ..file_arguments import add_input, add_output
@@ -44,19 +46,20 @@ def add_arguments(parser):
     add_output(parser, "-o", "--output", metavar="RECORD", kinds=(file_kinds.RECORD,),
                help="write --record with this mounting in it")
     add("--port", metavar="PORT", help="instead: the board there measures it, keeps it in its "
-        "record and applies it from then on (as for the other verbs)")
+        "record and applies it from then on (default, without a capture: $SIXFLIP_PORT)")
     add("--json", action="store_true", help="the answer as one JSON object")
 
 
 def run(args):
     """Measure and answer."""
-    if args.port:
+    on_board = args.port or not (args.capture or args.vector or args.record)
+    if on_board and (args.port or os.environ.get(PORT)):
         if args.capture or args.vector or args.record or args.output or args.both:
             raise UsageError("--port: the board measures with its own record; expected only "
                              "--axes, --order and --json with it")
         return mount_board.run(args)
     if (args.capture is None) == (args.vector is None):
-        raise UsageError("expected a capture, --vector GX GY GZ, or --port")
+        raise UsageError("expected a capture, --vector GX GY GZ, or --port (or %s)" % PORT)
     if args.output and not args.record:
         raise UsageError("--output needs --record, the record to put the mounting into")
     axes = robot_axes.parse(args.axes)

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 
+from .. import progress
 from ..errors import UsageError
 from ..terminal import console, plain, styled, table
 from . import heading_turns, paper_tables, repeated_calibrations
@@ -36,8 +37,11 @@ def run(args):
                          % (args.sessions, FEWEST))
     if not 0 <= args.seed < SEEDS:
         raise UsageError("--seed %d: expected 0 to %d" % (args.seed, SEEDS - 1))
-    repeated, claims = table_3(args.seed)
-    turned, more = table_4(args.sessions, args.seed)
+    with progress.during("reproduce"):
+        progress.doing("Table 3")
+        repeated, claims = table_3(args.seed)
+        progress.doing("Table 4, %d calibrations" % args.sessions)
+        turned, more = table_4(args.sessions, args.seed)
     found = {"format": 1, "kind": "sixflip reproduce", "seed": args.seed,
              "sessions": args.sessions, "table_3": repeated, "table_4": turned,
              "claims": claims + more}

@@ -2,7 +2,8 @@
 import json
 import math
 
-from .. import file_kinds
+from .. import file_kinds, progress
+from ..did_you_mean import instead
 from ..errors import UsageError
 from ..file_arguments import add_input, add_output
 from ..simulating import protocols
@@ -45,9 +46,12 @@ def run(args):
     if placements > MOST_PLACEMENTS:
         raise UsageError("the protocol has %d placements, expected at most %d"
                          % (placements, MOST_PLACEMENTS))
-    findings = Findings(protocol, args.sensor, args.certified_box, args.rate)
-    additions = plan_additions.ranked(protocol, findings, args.sensor, args.certified_box,
-                                      args.rate, args.minutes)
+    with progress.during("plan"):
+        progress.doing("what the capture shows")
+        findings = Findings(protocol, args.sensor, args.certified_box, args.rate)
+        progress.doing("what could be added")
+        additions = plan_additions.ranked(protocol, findings, args.sensor, args.certified_box,
+                                          args.rate, args.minutes)
     answer = as_dict(protocol, args, findings, additions)
     if args.plot:
         from .alias_picture import draw
@@ -70,8 +74,8 @@ def protocol_of(name):
         raise UsageError("%s is a scene to simulate, not a capture of still poses; expected "
                          "one of %s, or a plan file" % (name, ", ".join(CAPTURES)))
     if not any(c in name for c in "./\\"):
-        raise UsageError("no protocol named %r, expected one of %s, or a plan file"
-                         % (name, ", ".join(CAPTURES)))
+        raise UsageError("no protocol named %r, %s, or a plan file"
+                         % (name, instead(name, CAPTURES)))
     return plan_file.read(name)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from sixflip import correction_record
 from sixflip.faces import LEANING
 
-from .. import atomic_write, file_kinds
+from .. import atomic_write, file_kinds, progress
 from ..capture import capture_file
 from ..errors import BadFile, CheckFailed, UsageError
 from ..file_arguments import add_input, add_output
@@ -51,12 +51,13 @@ def run(args):
     pull = args.g_sensitivity
     if args.output and pull == "auto":
         pull = "off"
-    found = refine(capture, args.free, record, pull)
+    with progress.during("refine: all rests and moves together"):
+        found = refine(capture, args.free, record, pull)
     remember.refined(capture, found)
     if args.json:
         print(json.dumps(found, allow_nan=False))
     else:
-        print("\n".join(refinement_report.lines(found)))
+        refinement_report.show(found)
     if found["verdict"] == "refused":
         return CheckFailed.exit_code
     if args.output:

@@ -4,7 +4,7 @@ import os
 import tempfile
 from pathlib import Path
 
-from .. import atomic_write, file_kinds
+from .. import atomic_write, file_kinds, progress
 from ..capture import capture_file
 from ..errors import BadFile, UsageError
 from ..file_arguments import add_input, add_output
@@ -32,9 +32,10 @@ def run(args):
     """Write the page; 0 whatever it says."""
     if not args.output.endswith((".html", ".htm")):
         raise UsageError("-o %s: expected the name of an .html file" % args.output)
-    path, capture, record_path, record, more = _find(args.files, args.gap)
-    atomic_write.write_text(args.output, page(path, capture, record_path, record,
-                                              [path, *more] if args.gap else []))
+    with progress.during("report"):
+        path, capture, record_path, record, more = _find(args.files, args.gap)
+        atomic_write.write_text(args.output, page(path, capture, record_path, record,
+                                                  [path, *more] if args.gap else []))
     print(plain(args.output))
     return 0
 

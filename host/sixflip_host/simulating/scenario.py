@@ -23,9 +23,11 @@ import math
 
 from sixflip_sim import worlds
 from sixflip_sim.effects import typical
+from sixflip_sim.effects.library import NAMES
 from sixflip_sim.effects.library import make as make_effect
 from sixflip_sim.sensor_model import STANDARD_G, typical_truth
 
+from ..did_you_mean import instead
 from ..errors import BadFile
 from ..planning import plan_file
 from . import protocols
@@ -89,6 +91,9 @@ def from_dict(content):
     if not isinstance(effects, list):
         raise ValueError("effects is %r, expected [[effects]] tables" % (effects,))
     for spec in effects:
+        name = spec.get("effect") if isinstance(spec, dict) else None
+        if isinstance(name, str) and name not in NAMES:
+            raise ValueError("unknown effect %r, %s" % (name, instead(name, NAMES)))
         make_effect(spec)
     flicker = content.get("flicker", True)
     if not isinstance(flicker, bool):
@@ -111,7 +116,7 @@ def from_dict(content):
     elif isinstance(scene, str) and scene in SCENES:
         protocol = protocols.named(scene, numbers["seed"] + 6)
     else:
-        raise ValueError("scene is %r, expected one of %s" % (scene, " ".join(SCENES)))
+        raise ValueError("scene is %r, %s" % (scene, instead(scene, SCENES)))
     specs = [_session(session, k, common, numbers) for k, session in
              enumerate(protocol.sessions)]
     for spec in specs:

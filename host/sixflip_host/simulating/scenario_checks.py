@@ -3,6 +3,8 @@ import math
 
 from sixflip_sim import worlds
 
+from ..did_you_mean import instead
+
 # Limits of the world's numbers; what is not here is a list, a word or a flag.
 LIMITS = {"tilt_deg": (0, 45), "tilt_dir_deg": (-360, 360), "flip_error_deg": (0, 45),
           "placement_scatter_deg": (0, 10), "g": (9.7, 9.9), "accel_noise_mg": (0, 1000),
@@ -64,5 +66,5 @@ def known(table, keys, what):
         raise ValueError("%s is %r, expected a table" % (what, table))
     for key in table:
         if key not in keys:
-            raise ValueError("%s has an unknown key %r, expected one of %s"
-                             % (what, key, " ".join(sorted(keys))))
+            raise ValueError("%s has an unknown key %r, %s"
+                             % (what, key, instead(key, sorted(keys))))

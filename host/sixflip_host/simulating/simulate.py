@@ -9,7 +9,7 @@ from sixflip_sim import noise, worlds
 from sixflip_sim.effects import make as make_effects
 from sixflip_sim.effects.library import make as make_effect
 
-from .. import file_kinds
+from .. import file_kinds, progress
 from ..atomic_write import write_text
 from ..capture import capture_file
 from ..capture.capture_file import Capture
@@ -43,10 +43,11 @@ def run(args):
         write_text(args.worlds, json.dumps(plan.worlds, indent=1) + "\n")
     for path, number in zip(args.output, range(len(plan.worlds))):
         try:
-            capture = session(plan, number)
+            with progress.during("simulate: %s, %d of %d" % (path, number + 1, len(plan.worlds))):
+                capture = session(plan, number)
+                capture_file.write(path, capture)
         except ValueError as error:
             raise BadFile("%s: %s" % (args.scenario, error)) from None
-        capture_file.write(path, capture)
         print("%s: %d samples, %d placements, %.1f minutes" % (
             path, len(capture), np.count_nonzero(np.diff(capture.pose) > 0)
             + (capture.pose[0] > 0), capture.t_us[-1] / 6e7))

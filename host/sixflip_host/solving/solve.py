@@ -6,6 +6,7 @@ import math
 from sixflip import gravity
 from sixflip.six_faces import LEVELS
 
+from .. import progress
 from ..capture import capture_file
 from ..errors import UsageError
 from ..file_arguments import add_input
@@ -32,8 +33,9 @@ def add_arguments(parser):
 def run(args):
     """Solve and answer; 1 when the verdict is refused."""
     g = local_gravity(args)
-    capture = capture_file.read(args.capture)
-    found = solution.solve(capture, g, args.level, args.flips == "180")
+    with progress.during("solve"):
+        capture = capture_file.read(args.capture)
+        found = solution.solve(capture, g, args.level, args.flips == "180")
     if args.json:
         print(json.dumps(finite(solution.to_json(found)), ensure_ascii=False))
     else:

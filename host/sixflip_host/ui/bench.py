@@ -18,10 +18,10 @@ from ..guide.board_session import BoardSession
 from ..guide.session_state import CALIBRATING, OVER, State
 from ..narration import log
 from ..terminal import plain
-from . import snapshot
+from . import snapshot, unfinished
 
 TICK_S = 0.1
-ACTIONS = ("start", "continue", "redo", "undo", "stop", "pull", "report")
+ACTIONS = ("look", "start", "continue", "redo", "undo", "stop", "pull", "report")
 REPORT_S = 1800
 ANSWER_S = 3.0          # a board that has not answered by then is asked again
 
@@ -48,6 +48,8 @@ class Bench:
         self.link = None
         self.busy = ""
         self.problem = ""
+        self.found = ""         # where a board was, before the first session
+        self.left = False       # it told of an unfinished session
         self.done = {}          # (number, action, what): when sent, and State.redone then
         self.pulled = None
         self.report = None      # bytes of the page
@@ -68,6 +70,7 @@ class Bench:
         answer = snapshot.snapshot(state, self.step)
         answer.update(number=self.number, busy=self.busy, problem=self.problem,
                       live=self.link is not None, replay=self.capture is not None,
+                      found=plain(self.found), unfinished=self.unfinished(),
                       port=self.link.port if self.link else "",
                       pulled=plain(self.pulled) if self.pulled else "",
                       reporting=self.reporting is not None, report=self.report is not None)
@@ -129,7 +132,9 @@ class Bench:
 
     def act(self, action, what):
         under_way = self.link is not None and self.stage() != OVER
-        if action in ("start", "continue"):
+        if action == "look":
+            self.look()
+        elif action in ("start", "continue"):
             if not under_way:
                 self.begin(action)
         elif action in ("pull", "report"):
@@ -137,6 +142,29 @@ class Bench:
                 self.fetch() if action == "pull" else self.make_report()
         elif self.link and not self.waiting((self.number, action, what)):
             self.tell(action, what)
+
+    def look(self):
+        """Before the first session: which board is there, and what it has left unfinished. That
+        there is none is no fault yet; the port is left to others again."""
+        if self.number or self.found or self.capture is not None:
+            return
+        with contextlib.suppress(SixflipError, OSError):
+            link = self.open_link()
+            try:
+                self.left = unfinished.on_board(link)
+                self.found = link.port
+            finally:
+                link.close()
+
+    def unfinished(self):
+        """Whether there is something for "continue"."""
+        if self.capture is not None:
+            return False
+        if self.session is None:
+            return self.left
+        state = self.session.state
+        return bool(state.taken and not state.plan and state.missing and (
+            state.stage == OVER or self.link is None))
 
     def begin(self, action):
         """A new session, or the one that was left unfinished."""

@@ -24,13 +24,13 @@ def snapshot(state, step=None):
     """A dict for json.dumps."""
     here = next_step(state, step)
     share = noise_share(state)
+    pose = state.pose if here.kind == "hold" else following(state.missing, state.again)
     return {
         "stage": state.stage, "board": state.board, "chip": state.chip,
         "faces": faces(state), "plan": {"at": state.at, "of": state.of, "next": state.next}
         if state.plan else None,
         "step": {"kind": here.kind, "face": here.face, "up": here.now, "head": here.head,
-                 "detail": here.detail,
-                 "pose": state.pose if here.kind == "hold" else following(state.missing)},
+                 "detail": here.detail, "pose": pose},
         "waits": why_it_waits(state), "box": state.box, "pose": state.pose,
         "noise": {"value": share[0], "limit": share[1]} if share else None,
         "capture": {"progress": state.progress, "total": state.total, "left_s": state.left_s}

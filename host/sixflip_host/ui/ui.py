@@ -8,6 +8,7 @@ import signal
 import webbrowser
 from pathlib import Path
 
+from .. import optional
 from ..board import calibrate
 from ..board.ports import add_port, open_link
 from ..errors import SixflipError, UsageError
@@ -51,7 +52,8 @@ def run(args):
     try:
         from .server import Server
     except ImportError:
-        raise SixflipError("sixflip ui needs aiohttp: pip install 'sixflip[ui]'") from None
+        raise SixflipError("sixflip ui needs aiohttp, which is not installed: %s"
+                           % optional.how("ui")) from None
     session = calibrate.checked(args)
     if not 0 <= args.listen <= 65535:
         raise UsageError("--listen %d: expected a port, 1 to 65535" % args.listen)

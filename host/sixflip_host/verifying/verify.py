@@ -4,6 +4,7 @@ import json
 
 from sixflip.record_terms import names_of
 
+from .. import progress
 from ..errors import UsageError
 from ..file_arguments import add_input
 from ..history import remember
@@ -27,8 +28,9 @@ def run(args):
     """Compare; 0 when everything agrees, 1 with a table of what differs."""
     if len(args.files) > 2:
         raise UsageError("%d files, expected DIR or CAPTURE RECORD" % len(args.files))
-    capture_path, capture, record_path, record = verify_files.find(args.files)
-    checks, remarks = verify(capture, record, verify_files.record_before(record_path, record))
+    with progress.during("verify"):
+        capture_path, capture, record_path, record = verify_files.find(args.files)
+        checks, remarks = verify(capture, record, verify_files.record_before(record_path, record))
     failed = [check for check in checks if not check.ok]
     remember.verified(capture, record, checks)
     if args.json:

@@ -5,6 +5,7 @@ The same commands as with a real board; only the board is virtual.
 
 import contextlib
 import json
+import math
 import os
 import shutil
 import tempfile
@@ -28,6 +29,14 @@ EXAMPLE = "sixflip demo --keep demo-output"
 TILT_DEG = 2.0
 EVENTS = "events.jsonl"    # what every demo leaves
 LIMIT_MG = 3.0  # a hand that places the box to 0.05 deg leaves about 1 mg across gravity
+
+PLACEMENT_DEG, FLIP_DEG = 0.05, 0.4  # how exactly a hand lays the box down, and turns it
+WHY_NOT_LESS = (
+    "Most of that is the hand: laid down to %g degrees, which is %.1f mg, and turned by half a\n"
+    "turn to %g degrees. The README's 0.20 mg is what the sensor's noise alone leaves where the\n"
+    "box is laid down exactly, in the median of 100 calibrations (make bench-accuracy); this is\n"
+    "the worst of the faces in one." % (PLACEMENT_DEG, 1e3 * math.radians(PLACEMENT_DEG),
+                                        FLIP_DEG))
 
 
 class Pace(NamedTuple):
@@ -71,7 +80,7 @@ def first_spec(args):
     """The sensor, and a person with a table that is not level."""
     return {"sensor": args.sensor, "seed": args.seed, "tilt_deg": TILT_DEG,
             "order": GUIDED_ORDER, **PACE[args.board].hand,
-            "flip_error_deg": 0.4, "placement_scatter_deg": 0.05}
+            "flip_error_deg": FLIP_DEG, "placement_scatter_deg": PLACEMENT_DEG}
 
 
 def second_spec(args, first):
@@ -208,6 +217,7 @@ def judge(pulled, spec, counts, corrected, hz, folder):
     before, now = demo_truth.worst(rows)
     plot(folder / "raw_corrected.png", rows)
     print("worst vector: %.2f mg raw, %.2f mg corrected (limit %.1f mg)" % (before, now, LIMIT_MG))
+    print(WHY_NOT_LESS)
     return 0 if now <= LIMIT_MG else 1
 
 

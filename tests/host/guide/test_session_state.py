@@ -65,6 +65,27 @@ def test_undo_and_redo_give_the_poses_back():
     assert state.taken == {} and state.missing == SIX
 
 
+def test_after_an_undo_the_next_step_is_the_face_taken_back_not_the_first_of_the_round():
+    lies = live(live=[0, -1000, 0, 0, 0, 0])
+    state = fed(calibrating(), taken("Y-a", without("Y-a")), lies,
+                {"event": "redo", "face": "Y-", "missing": ALL})
+    assert steps.next_step(state).head == "Y- again, as the box lies"
+    lifted = fed(live(live=[0, 0, 1000, 0, 0, 0]), state=state)
+    assert steps.next_step(lifted).head == "lay the box down with Y- up"
+    assert steps.next_step(fed(taken("Y-a", without("Y-a")), state=lifted)).kind == steps.FLIP
+
+
+def test_an_undone_flip_of_a_plan_is_not_turned_once_more():
+    words = ("Z+a: lay it down", "Z+b: half a turn to the left", "L1: lean it")
+    gone = {"event": "redo", "face": "Z+b", "at": 1, "of": 3, "next": ["Z+b"]}
+    state = fed(dict(calibrating(["Z+a", "Z+b", "L1"]), plan=True),
+                {"event": "pose", "pose": "Z+b", "n": 400, "at": 2, "of": 3, "next": ["L1"]}, gone)
+    assert steps.next_step(state, words.__getitem__).head == "Z+b again, as the box lies"
+    assert lasting(gone, words.__getitem__) == ["Z+b again (1 of 3): as it lay before"]
+    state = fed(dict(gone, face="Z+a", at=0, next=["Z+a"]), state=state)    # and one more
+    assert steps.next_step(state, words.__getitem__).detail == "lay it down"
+
+
 def test_a_session_that_goes_on_knows_what_is_done_already():
     state = fed(calibrating(without("X+a", "X+b")))
     assert set(state.taken) == {"X+a", "X+b"}

@@ -102,6 +102,10 @@ class ScriptedLink:
             self.say("capture", samples=700)
             self.say("ready")
 
+    def asked(self, name):
+        """Whether a command was sent to it."""
+        return any(isinstance(sent, dict) and sent.get("cmd") == name for sent in self.sent)
+
     def close(self):
         self.closed += 1
 

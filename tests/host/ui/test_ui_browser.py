@@ -14,8 +14,10 @@ from served import ScriptedLink, Served, until
 
 from sixflip.faces import FACES
 from sixflip_host.capture import capture_file
+from sixflip_host.errors import NoBoard
 from sixflip_host.guide import box_drawings
 from sixflip_host.guide.replay_link import ReplayLink
+from sixflip_host.guide.session_state import SIX
 from sixflip_host.ui.bench import Bench
 
 MALICE = "<img src=x onerror='document.title=9'>"
@@ -148,6 +150,98 @@ def test_a_session_from_start_to_report(browser, capture, tmp_path):
         assert browser.title == "Sixflip"
         refused = [e["message"] for e in browser.get_log("browser") if e["level"] == "SEVERE"]
         assert all(re.search("sandbox|Blocked script", line) for line in refused), refused
+
+
+SIZES = ((1280, 800), (390, 844))
+SEEN = """const [id] = arguments, e = document.getElementById(id), r = e.getBoundingClientRect();
+return r.width > 0 && r.height > 0 && r.top >= 0 && r.left >= 0 && r.bottom <= innerHeight &&
+  r.right <= innerWidth ? e.innerText || e.id : "";"""
+
+
+def resized(browser, width, height):
+    """The viewport itself, not the window around it, has that many points."""
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
+        "width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500})
+
+
+def seen(browser, name):
+    """What stands in an element that is wholly within the window, without scrolling."""
+    return browser.execute_script(SEEN, name)
+
+
+def fits(browser):
+    """Nothing sticks out to the side."""
+    return browser.execute_script("return document.documentElement.scrollWidth <= innerWidth")
+
+
+@pytest.fixture
+def window(browser):
+    yield browser
+    browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_what_counts_is_seen_without_scrolling(window, tmp_path, size):
+    link = ScriptedLink()
+    boards = []
+
+    def plugged():
+        if not boards:
+            raise NoBoard("no board is plugged in")
+        return link
+    with Served(lambda told: Bench(plugged, tmp_path, told, keep=False)) as served:
+        resized(window, *size)
+        window.get(served.server.url)
+        until(lambda: "Plug the board into this computer" in seen(window, "detail"))
+        assert seen(window, "start") == "Start" and not seen(window, "continue")
+        shot(window, "begin-%d" % size[0])
+        boards.append(link)
+        until(lambda: "board found at scripted" in text(window, "link"))
+        assert "Plug" not in seen(window, "detail")
+        click(window, "start")
+        until(lambda: link.resets)
+        link.say("calibrating", missing=list(SIX), plan=False)
+        link.say("state", state="moving", reason="moving", value=9, limit=2, unit="x noise",
+                 live=[20, 0, 1001, 5, 4, 12])
+        until(lambda: "lay the box down with Z+ up" in seen(window, "head"))
+        assert "not at rest yet" in seen(window, "waits") and seen(window, "next")
+        assert seen(window, "capture") and seen(window, "stop") and fits(window)
+        shot(window, "during-%d" % size[0])
+        for k, pose in enumerate(SIX):
+            link.say("pose", pose=pose, n=400, missing=list(SIX[k + 1:]))
+        link.say("solved", verdict="doubtful", reason="the faces disagree in the tilt by 0.9 "
+                 "degrees", v=[0.551, 0.01, 9.80665e-3], scale=[1.0, 1.0, 1.0], tilt_deg=2.0,
+                 tilt_spread_deg=0.9, residual_mg_rms=3.1)
+        link.say("saved", slot="a", sequence=3)
+        until(lambda: seen(window, "verdict") == "doubtful")
+        assert "the faces disagree" in seen(window, "reason")
+        assert "Next: take the face" in seen(window, "next-do") and seen(window, "pull")
+        assert "-56.19 -1.02 -1.00 mg" in text(window, "numbers") and fits(window)
+        assert window.execute_script("return scrollY") == 0
+        shot(window, "end-%d" % size[0])
+
+
+def test_continue_is_there_only_where_something_is_unfinished(browser, tmp_path):
+    link = ScriptedLink()
+    with Served(lambda told: Bench(lambda: link, tmp_path, told, keep=False)) as served:
+        browser.get(served.server.url)
+        until(lambda: link.asked("info"))
+        link.say("info", unfinished=True)
+        until(lambda: browser.find_element("id", "continue").is_displayed())
+        click(browser, "start")
+        until(lambda: link.resets)
+        until(lambda: not browser.find_element("id", "continue").is_displayed())
+        link.say("calibrating", missing=list(SIX), plan=False)
+        link.say("ready")                               # stopped with nothing taken
+        until(lambda: "start again" in text(browser, "next-do"))
+        assert not browser.find_element("id", "continue").is_displayed()
+        click(browser, "start")
+        until(lambda: link.resets == 2)
+        link.say("calibrating", missing=list(SIX), plan=False)
+        link.say("pose", pose="Z+a", n=400, missing=list(SIX[1:]))
+        link.say("ready")
+        until(lambda: browser.find_element("id", "continue").is_displayed())
+        assert "Next: continue the unfinished" in text(browser, "next-do")
 
 
 def test_what_a_board_says_is_text_and_nothing_else(browser, tmp_path):

@@ -7,6 +7,12 @@ import { bars, lines } from "/plots.js";
 const element = (id) => document.getElementById(id);
 const KEY = "sixflip-token";
 const KEPT_S = 60;
+const LOOK_MS = 4000;
+const STANDARD_G = 9.80665;
+const PLUG = "Plug the board into this computer: USB, the sensor wired to it, the firmware on it " +
+  "(sixflip provision). ";
+const LAY = "Lay the box on a table that does not shake, then start.";
+const PLAYED = "A capture is played; no board is needed. Start when you like.";
 let view = null, trail = [], shownAt = performance.now(), reportShown = false;
 const attitude = new Attitude();
 
@@ -74,6 +80,7 @@ function heard(now) {
   trail = trail.filter(([t]) => last - t < KEPT_S);
   attitude.heard(now.vector, now.rate, now.box === "capturing");
   show();
+  look();
 }
 const moved = (a, b) => !a.vector || a.vector.some((v, k) => v !== b.vector[k]) ||
   (b.rate && (!a.rate || a.rate.some((v, k) => v !== b.rate[k])));
@@ -101,14 +108,14 @@ const signed = (v, n) => (v < 0 ? "" : "+") + v.toFixed(n);
 
 function show() {
   const v = view, running = v.live && v.stage !== "over";
-  say("link", v.live ? "board connected" : "no board connected");
+  say("link", v.live ? "board connected" : v.found ? "board found at " + v.found : "no board connected");
   say("chip", v.chip);
   say("board", v.board && "board " + v.board);
   say("port", v.port);
   problem(v.problem || (v.stage === "calibrating" ? "" : v.error));
   const none = v.number === 0 && !v.busy, gone = !none && !v.live && v.stage !== "over" && !v.busy;
   say("head", v.busy ? v.busy + "…" : none ? "ready to begin" : gone ? "the board is gone" : v.step.head);
-  say("detail", none ? "Lay the box on a table that does not shake, then start." :
+  say("detail", none ? (v.replay ? PLAYED : v.found ? LAY : PLUG + LAY) :
     gone ? "Plug it in again; then continue with what it has kept." : v.step.detail);
   say("waits", none ? "" : v.waits);
   showCapture(v);
@@ -121,7 +128,8 @@ function show() {
   lines(element("accel"), trail.map(([t, a]) => [t, a]), 1.2, "g");
   lines(element("gyro"), trail.map(([t, , w]) => [t, w]), 20, "deg/s");
   element("start").disabled = running || !!v.busy;
-  element("continue").disabled = running || !!v.busy || v.replay;
+  element("start").textContent = v.stage === "over" && !none ? "Start again" : "Start";
+  element("continue").hidden = running || !!v.busy || !v.unfinished;
   element("undo").disabled = !running || !v.undo;
   element("stop").disabled = !running || v.stage !== "calibrating";
   element("pull").disabled = running || !!v.busy;
@@ -185,17 +193,21 @@ function savedWords(saved) {
 }
 
 function showResult(v) {
-  element("result").hidden = !v.verdict;
-  if (!v.verdict) return;
-  say("verdict", v.verdict);
-  element("verdict").className = ["good", "doubtful", "refused"].includes(v.verdict) ? v.verdict : "";
+  const over = v.stage === "over" && v.number > 0 && !v.busy;
+  element("main").className = over ? "over" : v.number === 0 && !v.busy ? "before" : "";
+  element("result").hidden = !over;
+  element("figures").hidden = !v.verdict;
   const s = v.solved, number = (x, n) => (typeof x === "number" ? x.toFixed(n) : "-");
-  say("reason", typeof s.reason === "string" ? s.reason : "");
+  say("verdict", v.verdict || "none");
+  element("verdict").className = ["good", "doubtful", "refused"].includes(v.verdict) ? v.verdict : "";
+  say("reason", typeof s.reason === "string" ? s.reason : v.verdict ? "" : "The session ended before it was computed.");
+  say("next-do", afterwards(v));
+  if (!v.verdict) return;
   const three = (x, n) => (Array.isArray(x) ? x.map((y) => number(y, n)).join("  ") : "-");
   const gyro = s.gyro && typeof s.gyro === "object" ? s.gyro : null;
   const rows = [["table tilt", number(s.tilt_deg, 2) + " deg, faces agree to " + number(s.tilt_spread_deg, 2) + " deg"],
     ["residual", number(s.residual_mg_rms, 2) + " mg rms"], ["scale x y z", three(s.scale, 4)],
-    ["offset v x y z", three(s.v, 4) + " m/s²"],
+    ["bias x y z", three(biasInMg(s.v), 2) + " mg"],
     ["gyro", gyro ? gyro.verdict + ": " + gyro.reason : "-"],
     ["gyro scale x y z", gyro ? three(gyro.scale, 4) : "-"],
     ["gyro bias x y z", gyro ? three(gyro.bias_dps, 3) + " deg/s" : "-"],
@@ -207,6 +219,23 @@ function showResult(v) {
     table.rows[n].cells[1].textContent = value;
   });
   bars(element("residuals"), s.residual_mg && typeof s.residual_mg === "object" ? s.residual_mg : {});
+}
+
+// As everywhere: the reading of an axis without any force on it, in thousandths of g.
+const biasInMg = (v) => (Array.isArray(v) ? v.map((x) =>
+  (typeof x === "number" ? -1e3 * x / STANDARD_G : x)) : v);
+
+function afterwards(v) {
+  if (v.unfinished) return "Next: continue the unfinished; what was taken is kept. Or start again.";
+  if (v.replay) return "Next: the report, or play it again. Of a replay nothing is kept.";
+  if (v.verdict === "refused" || !v.verdict)
+    return "Next: put right what is said here, then start again. The board keeps what it had before.";
+  const kept = v.saved.slot && v.saved.written !== false;
+  const now = kept ? "It is saved: from now on the board corrects every sample with it. " :
+    "It was not saved; the board goes on with the correction it has. ";
+  return now + (v.verdict === "doubtful" ?
+    "Next: take the face with the longest residual again, or fetch the report to see why." :
+    "Next: fetch capture and record, and look at the report; or unplug the board and use it.");
 }
 
 let logged = "";
@@ -243,6 +272,13 @@ async function ask(action, what = "") {
   } catch {
     problem("the server does not answer; is sixflip ui still running?");
   }
+}
+let looked = -LOOK_MS;
+function look() {       // is a board there by now, and does it hold an unfinished session?
+  if (view.number || view.busy || view.found || view.replay) return;
+  if (performance.now() - looked < LOOK_MS) return;
+  looked = performance.now();
+  ask("look");
 }
 for (const id of ["start", "continue", "stop", "pull", "report"])
   element(id).addEventListener("click", () => ask(id));
