@@ -106,7 +106,7 @@ def test_the_command_begins_where_ctrl_c_is_caught():
 
 def test_help_says_what_to_send_with_an_internal_error(capsys):
     assert main(["--help"]) == 0
-    out = capsys.readouterr().out
+    out = " ".join(capsys.readouterr().out.split())
     assert "130 stopped" in out and "70 an error of sixflip's own" in out and "--debug" in out
 
 

@@ -107,7 +107,7 @@ EVENTS = {
     "not_mounted": Fields(reason=TEXT, mounting=TEXT),
     "info": Fields(board=TEXT, id=TEXT, sensor=TEXT, slot=SLOT, sequence=COUNT, verdict=VERDICT,
                    stream_hz=HZ, raw=FLAG, heading=FLAG, binary=FLAG, bias_dps=VECTOR,
-                   bus_errors=COUNT, free_bytes=COUNT),
+                   unfinished=FLAG, bus_errors=COUNT, free_bytes=COUNT),
     "stream": Fields("hz", hz=HZ, raw=FLAG, heading=FLAG, binary=FLAG, record=FLAG),
     "sample": Fields("t_us", t_us=COUNT, raw=RAW, a=THREE, w=THREE),
     "heading": Fields("t_us", t_us=COUNT, roll_deg=NUMBER, pitch_deg=NUMBER, yaw_deg=NUMBER),

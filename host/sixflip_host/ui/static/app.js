@@ -232,7 +232,8 @@ function afterwards(v) {
     return "Next: put right what is said here, then start again. The board keeps what it had before.";
   const kept = v.saved.slot && v.saved.written !== false;
   const now = kept ? "It is saved: from now on the board corrects every sample with it. " :
-    "It was not saved; the board goes on with the correction it has. ";
+    "It was not saved" + (v.saved.reason ? " (" + v.saved.reason + ")" : "") +
+    "; the board goes on with the correction it has. ";
   return now + (v.verdict === "doubtful" ?
     "Next: take the face with the longest residual again, or fetch the report to see why." :
     "Next: fetch capture and record, and look at the report; or unplug the board and use it.");
