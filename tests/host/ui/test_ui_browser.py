@@ -252,16 +252,18 @@ def test_what_a_board_says_is_text_and_nothing_else(browser, tmp_path):
         click(browser, "start")
         until(lambda: link.resets)
         link.say("hello", id=MALICE, chip="<b>chip</b>")
-        link.say("calibrating", missing=["Z+a", MALICE, 7], plan=False)
-        link.say("state", state="moving", reason=MALICE, value=1e308, limit=-1, unit="\u202e\x1b",
-                 live=[1, 2, "x"])
+        link.say("calibrating", missing=["Z+a"], plan=False)
+        link.say("calibrating", missing=["Z+a", MALICE, 7], plan=MALICE)    # of no use
+        link.say("state", state="moving", reason=MALICE, value=1e308, limit=-1,
+                 unit="\u202e\x1b", live=[1, 2, 1000])
         link.say("error", what=MALICE, expected="<script>document.title='taken over'</script>")
-        link.say("solved", verdict="good", reason=MALICE, scale=["<i>", None, 1.0],
-                 residual_mg={MALICE: [1, 2, 3], "Z+a": "x"}, gyro={"verdict": MALICE})
         link.say("saved", slot=MALICE, sequence=[MALICE])
+        link.say("solved", verdict="good", reason=MALICE, scale=[1.0, 1.0, 1.0],
+                 residual_mg={"Z+a": [1, 2, 3]})
+        link.say("saved", slot="a", sequence=2)
         until(lambda: text(browser, "verdict") == "good")
         until(lambda: MALICE in text(browser, "log"))
-        assert text(browser, "chip") == "<b>chip</b>" and MALICE in text(browser, "numbers")
+        assert text(browser, "chip") == "<b>chip</b>" and MALICE in text(browser, "reason")
         assert not browser.find_elements("css selector", "img, b, i, script:not([src])")
         assert browser.title == "Sixflip" and quiet(browser)
 
