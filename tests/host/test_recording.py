@@ -153,9 +153,10 @@ def test_the_file_is_named_by_device_and_session(meta, name, tmp_path, monkeypat
 
 
 @pytest.fixture
-def resting(micropython, tmp_path):
+def resting(micropython, tmp_path, monkeypatch):
     """start(**settings): a provisioned virtual board at rest, and --port of it."""
     boards = []
+    monkeypatch.setenv("SIXFLIP_PATIENCE", "4")  # other tests run beside this one
 
     def start(**settings):
         board = VirtualBoard({"sensor": "mpu6050", "seed": 3, "order": []},
