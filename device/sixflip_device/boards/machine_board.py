@@ -8,7 +8,6 @@ import machine
 
 from .board import Board, LineReader
 
-CTRL_C = "\x03"
 HALF_CLOCK_US = 5  # 100 kHz, slow enough for any chip on the bus
 
 
@@ -84,8 +83,6 @@ class MachineBoard(Board):
             ch = sys.stdin.read(1)
             if not ch:
                 return None
-            if ch == CTRL_C:  # typed before MicroPython listened for it, at power-up
-                raise KeyboardInterrupt
             line = self._reader.feed(ch)
             if line is not None:
                 return line
