@@ -158,7 +158,7 @@ def _take_over(unit, asked):
     if asked.face >= 0 and not asked.room:
         raise ValueError(asked.reason)
     if scan.sums_only():
-        asked.reason = "the session before kept only the sums"
+        asked.reason = "so did the session before; its flips do not count for the gyro"
     asked.sums_only = asked.reason != ""
     asked.samples = scan.samples()
     asked.seconds, asked.us = scan.seconds + GAP_S, scan.us
