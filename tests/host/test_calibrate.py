@@ -35,7 +35,8 @@ def test_calibrate_pull_restore(provisioned, tmp_path, capsys):
     assert cli.main(["calibrate", *port]) == 0
     assert "not written, no better than slot a, sequence 1" in capsys.readouterr().out
     with MpremoteLink(provisioned.port) as link:      # cut off before the first sample
-        link.put("refused.bin", link.get("unsaved.bin")[:600])
+        data = link.get("unsaved.bin")
+        link.put("refused.bin", data[:40 + int.from_bytes(data[6:8], "little")])
     assert cli.main(["pull", *port, "-o", str(tmp_path)]) == 0
     assert "refused.bin is empty" in (out := capsys.readouterr().out) and "next: sixflip" in out
     folder = tmp_path / provisioned.unique_id

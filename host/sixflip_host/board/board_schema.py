@@ -100,7 +100,7 @@ EVENTS = {
                      tilt_deg=NUMBER, tilt_spread_deg=NUMBER, residual_mg_rms=NUMBER,
                      residual_mg=MapOf(POSE, THREE), scale=THREE, v=THREE, noise_mg=NUMBER,
                      flips=FLIPS, gyro=GYRO),
-    "saved": Fields(slot=SLOT, sequence=COUNT, written=FLAG, reason=TEXT),
+    "saved": Fields(slot=SLOT, sequence=COUNT, written=FLAG, reason=TEXT, capture=TEXT),
     "restored": Fields(**KEPT),
     "not_restored": Fields(reason=TEXT),
     "mounted": Mounted(off=FLAG, slot=SLOT, sequence=COUNT, written=FLAG),

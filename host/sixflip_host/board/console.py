@@ -147,11 +147,7 @@ def _mounted(event):
             "sensor's %s; samples are %s; %s" % (
                 event["roll_deg"], event["pitch_deg"], event["order"], event["sigma_deg"],
                 event["frame"], event["axes"], "forward, right, down" if event["frame"] == "ned"
-                else "forward, left, up", _saved(event) if event["written"] else "as stored"))
-
-
-def _saved(event):
-    return "saved in slot %s, sequence %s" % (event.get("slot"), event.get("sequence"))
+                else "forward, left, up", saved(event) if event["written"] else "as stored"))
 
 
 def _capture(event):
