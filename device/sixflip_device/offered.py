@@ -11,11 +11,12 @@ from .in_force import misfit
 def _take(unit, name):
     """(slot, record); ValueError or OSError when it is not to be had."""
     from sixflip.correction_record import MOST, decode
+    from sixflip.plausibility import implausible
 
     from .record_slots import RecordSlots
     with open(name, "rb") as f:
         record = decode(f.read(MOST + 1))
-    reason = misfit(blank_record(unit))(record)
+    reason = implausible(record) or misfit(blank_record(unit))(record)
     if reason:
         raise ValueError(reason)
     from sixflip.correction_of import correction_of

@@ -8,6 +8,8 @@ one valid record is complete on the flash, and a cut leaves the old one or the n
 
 import os
 
+from sixflip.record import following, newer
+
 from .flash_files import remove
 
 SLOTS = ("a", "b")
@@ -32,10 +34,13 @@ class RecordSlots:
         except OSError:
             return None, ""
         from sixflip.correction_record import decode  # not needed while sampling
+        from sixflip.plausibility import implausible
         try:
-            return decode(data), ""
+            record = decode(data)
         except ValueError as e:
             return None, str(e)
+        reason = implausible(record)
+        return (None, "it cannot be a sensor's: " + reason) if reason else (record, "")
 
     def _settle(self):
         """Finish or clear away what a power cut left behind."""
@@ -45,7 +50,7 @@ class RecordSlots:
                 os.remove(self._root + NEW)
             return
         slot, newest = self._newest()
-        if newest is not None and newest.sequence >= new.sequence:
+        if newest is not None and not newer(new.sequence, newest.sequence):
             os.remove(self._root + NEW)
         else:
             self._place(self._other(slot))
@@ -54,7 +59,8 @@ class RecordSlots:
         best = None, None
         for slot in SLOTS:
             record = self._read(self._name(slot))[0]
-            if record is not None and (best[1] is None or record.sequence > best[1].sequence):
+            if record is not None and (best[1] is None or newer(record.sequence,
+                                                                best[1].sequence)):
                 best = slot, record
         return best
 
@@ -102,7 +108,8 @@ class RecordSlots:
                 reason = misfit(record)
             if reason:
                 refusals.append((slot, reason))
-            elif record is not None and (best[1] is None or record.sequence > best[1].sequence):
+            elif record is not None and (best[1] is None or newer(record.sequence,
+                                                                  best[1].sequence)):
                 best = slot, record
         return best[0], best[1], refusals
 
@@ -113,7 +120,7 @@ class RecordSlots:
         """
         self._settle()
         slot, newest = self._newest()
-        record.sequence = 1 if newest is None else newest.sequence + 1
+        record.sequence = 1 if newest is None else following(newest.sequence)
         slot = self._other(slot)
         self._write(record, slot)
         return slot
@@ -135,6 +142,6 @@ class RecordSlots:
         reason = misfit(record)
         if reason:
             raise ValueError("the record before this one does not fit: " + reason)
-        record.sequence = newest.sequence + 1
+        record.sequence = following(newest.sequence)
         self._write(record, slot)
         return slot, record

@@ -24,6 +24,11 @@ def _tell(unit):
         unit.events.emit("solved", verdict="refused", reason=taken.ended,
                          missing=taken.missing)
         return False
+    if taken.verdict != "refused":
+        from sixflip.plausibility import implausible
+        reason = implausible(taken.record)
+        if reason:  # it would not be read back
+            taken.verdict, taken.reason = "refused", "no sensor is like that: " + reason
     unit.events.emit("solved", verdict=taken.verdict, reason=taken.reason, **taken.facts)
     taken.facts = None
     return taken.verdict != "refused"

@@ -3,6 +3,17 @@
 MEASURED = ("accel", "gyro", "gyro_bias", "mounting")
 
 
+def newer(sequence, other):
+    """Whether one sequence number comes after another: they begin again behind 2^32 - 1
+    (serial number arithmetic, RFC 1982, 3.2)."""
+    return 0 < (sequence - other) & 0xFFFFFFFF < 0x80000000
+
+
+def following(sequence):
+    """The sequence number of the next record."""
+    return (sequence + 1) & 0xFFFFFFFF
+
+
 class Record:
     """What a board keeps of a calibration; None where nothing was measured.
 

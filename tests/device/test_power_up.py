@@ -355,6 +355,23 @@ class TestRecordsThatDoNotFit(Folder):
         self.assertEqual(board.only("record")["slot"], "a")
         self.assertIn("b", board.only("record")["refused"])
 
+    def test_one_no_sensor_has_and_its_board_calibrates_anew(self):
+        self.calibrated()
+        whole = correction_record.decode(self.read("record_a.bin"))
+        for change in ({"g": 0.0}, {"sequence": 0xFFFFFFFF},
+                       {"mounting": {"roll_deg": 0.0, "pitch_deg": 0.0, "order": "xyz",
+                                     "axes": "x y y", "frame": "ned"}},
+                       {"accel": dict(whole.accel, P=[[0.0] * 3] * 3 + [[0.0, 0.0, 0.0, 1.0]])}):
+            record = correction_record.decode(self.read("record_a.bin"))
+            for name in change:
+                setattr(record, name, change[name])
+            self.write("record_b.bin", correction_record.encode(record))
+            os.remove(self.path("record_a.bin"))
+            board = power_on(self.root, {"seed": 9}, [["hello", {"cmd": "calibrate"}, 1],
+                                                      STOP_WHEN_READY])
+            self.assertTrue(board.only("saved")["written"], change)
+            self.assertTrue(board.only("ready")["corrected"])
+
     def test_other_chip_and_other_range(self):
         self.calibrated()
         board = power_on(self.root, dict(STILL, sensor="gy85"), timeout_s=6)
@@ -362,7 +379,7 @@ class TestRecordsThatDoNotFit(Folder):
         board = power_on(self.root, dict(STILL, who_am_i=0x70), timeout_s=6)
         self.assertIn("0x70", board.only("no_record")["reason"])
         record = correction_record.decode(self.read("record_a.bin"))
-        record.accel_range_g = 8
+        record.accel_range_g, record.accel_lsb_per_g = 8, 4096
         self.write("record_a.bin", correction_record.encode(record))
         board = power_on(self.root, STILL, timeout_s=6)
         self.assertIn("8 g", board.only("no_record")["reason"])

@@ -6,7 +6,7 @@ import os
 import tempfile
 import unittest
 
-from sixflip.correction_record import Record
+from sixflip.correction_record import Record, encode
 from sixflip_device import flash_files, record_slots
 from sixflip_device.record_slots import RecordSlots
 
@@ -127,6 +127,25 @@ class TestSlots(SlotsTest):
             self.assertEqual((slot, found.session), ("a", 1))
             self.assertEqual(refusals[0][0], "b")
             self.assertTrue(refusals[0][1])
+
+    def test_a_record_no_sensor_has_is_passed_over_with_the_reason(self):
+        self.slots.save(record(1))
+        spoilt = record(2)
+        spoilt.g = 98.0
+        self.slots.save(spoilt)
+        slot, found, refusals = self.slots.load(fits)
+        self.assertEqual((slot, found.session, refusals[0][0]), ("a", 1, "b"))
+        self.assertIn("g is 98", refusals[0][1])
+        self.assertEqual(self.slots.save(record(3)), "b")  # the good one stays
+        self.assertEqual(self.session(), 3)
+
+    def test_sequence_numbers_begin_again(self):
+        last = record(1)
+        last.sequence = 0xFFFFFFFF
+        self.flash.files["/record_a.bin"] = encode(last)
+        self.assertEqual([self.slots.save(record(n)) for n in (2, 3)], ["b", "a"])
+        slot, newest, _ = self.slots.load(fits)
+        self.assertEqual((slot, newest.session, newest.sequence), ("a", 3, 1))
 
     def test_record_of_another_chip_is_refused_but_not_destroyed_at_once(self):
         self.slots.save(record(1))

@@ -74,7 +74,7 @@ def make_record(capture, placements, float_bits=64, moves=None):
     return record
 
 
-def leave_files(folder, capture, sums_only=False, gyro=False):
+def leave_files(folder, capture, sums_only=False, gyro=True):
     """capture.bin and record_a.bin in a folder as `sixflip pull` leaves them; the Record."""
     data, placements, moves = run_board(capture, sums_only)
     record = make_record(capture, placements, moves=moves if gyro else None)

@@ -71,7 +71,8 @@ def test_a_record_from_a_file_and_a_mounting(board, offered, capsys):
 
 def test_another_chips_record_is_refused_with_the_reason(board, offered, capsys):
     path, record = offered
-    record.chip = "gy85"
+    record.chip, record.accel_range_g, record.accel_lsb_per_g = "gy85", 16, 256
+    record.gyro_range_dps, record.gyro_lsb_per_dps = 2000, 14.375
     path.write_bytes(correction_record.encode(record))
     code, _, err = run(capsys, "restore", "--from", str(path), "--port", "local:flash")
     assert code == 1

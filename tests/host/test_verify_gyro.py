@@ -19,7 +19,7 @@ SESSION = dict(seed=4, wobble_deg=0.5)
 def pulled(tmp_path_factory):
     """(folder, Record with a gyro) of an honest board."""
     folder = tmp_path_factory.mktemp("board")
-    return folder, leave_files(folder, unlabelled(**SESSION), gyro=True)
+    return folder, leave_files(folder, unlabelled(**SESSION))
 
 
 def verify(folder, capsys):
@@ -105,7 +105,7 @@ def test_a_changed_sample_of_a_flip_is_caught(pulled, tmp_path, capsys):
 
 
 def test_sums_only_does_not_vouch_for_the_gyro(tmp_path, capsys):
-    leave_files(tmp_path, unlabelled(**SESSION), sums_only=True, gyro=True)
+    leave_files(tmp_path, unlabelled(**SESSION), sums_only=True)
     assert main(["verify", str(tmp_path)]) == 0
     assert "the gyro's section is not checked" in capsys.readouterr().out
 

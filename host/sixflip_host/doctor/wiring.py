@@ -5,6 +5,7 @@ import math
 
 from sixflip.chips import adxl345, itg3205, mpu6050
 
+from ..verifying.verify_files import newest_of
 from .finding import Finding, fault, ok, warning
 
 # WHO_AM_I (register 0x75) of InvenSense chips that are not driven by this firmware; their data
@@ -227,7 +228,7 @@ def record(said, slots):
         damaged = ["%s: %s" % (name, one) for name, one in slots]
         return [Finding("record", "warning" if damaged else "ok", "; ".join(damaged) or
                         "no correction in flash", "sixflip calibrate")]
-    newest = max(readable, key=lambda one: one.sequence)
+    newest = newest_of(readable)
     if "sensor" in said:
         kind, _, who, _, lsb, _, _ = said["sensor"]
         if newest.chip != kind or abs(newest.accel_lsb_per_g - lsb) > 5.1e-4:

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from sixflip import record_terms
+from sixflip.record import following
 
 from ..errors import CheckFailed
 from . import which
@@ -45,7 +46,8 @@ class Terms:
         self.record = copy.deepcopy(record)
         for term in self.found:
             record_terms.put(self.record, term.name, term.fields)
-        self.record.sequence += bool(self.found)
+        if self.found:
+            self.record.sequence = following(self.record.sequence)
 
     def _gaps(self):
         turns = [self.diagnosis.turns] if self.diagnosis.turns else []

@@ -8,6 +8,7 @@ import numpy as np
 
 from sixflip import correction_record, mounting
 from sixflip.correction_of import correction_of
+from sixflip.record import following
 from sixflip_sim.worlds import NOISE
 
 from .. import atomic_write, file_kinds
@@ -79,7 +80,7 @@ def run(args):
         say(mount_words.lines(found, args.both))
     if args.output:
         record.mounting = found["mounting"]
-        record.sequence += 1
+        record.sequence = following(record.sequence)
         atomic_write.write_bytes(args.output, correction_record.encode(record))
     return 0
 

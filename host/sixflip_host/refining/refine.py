@@ -15,6 +15,7 @@ from ..history import remember
 from ..simulating import pose_runs
 from ..solving import gyro_rests, multiposition
 from ..solving.rests_and_moves import RestsAndMoves
+from ..verifying.verify_files import read_record
 from . import joint_refinement, kept_parameters, refinement_record, refinement_report
 from . import refinement_answer as answer
 
@@ -64,14 +65,6 @@ def run(args):
         data = correction_record.encode(refinement_record.build(capture, found, record))
         atomic_write.write_bytes(args.output, data)
     return 0
-
-
-def read_record(path):
-    """The Record in a file, or BadFile."""
-    try:
-        return correction_record.decode(atomic_write.read_bytes(path))
-    except ValueError as error:
-        raise BadFile("%s: %s" % (path, error))
 
 
 def refine(capture, free=False, record=None, g_sensitivity="auto"):

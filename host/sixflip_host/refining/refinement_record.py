@@ -4,6 +4,7 @@ import numpy as np
 
 from sixflip import record_terms
 from sixflip.correction_record import Record
+from sixflip.record import following
 
 from ..errors import CheckFailed
 
@@ -36,7 +37,7 @@ def build(capture, found, kept=None):
         # A term that follows the temperature counts from that of the bias.
         record.temp_c = (float(np.mean(capture.temp)) / meta["temp_lsb_per_c"]
                          + meta["temp_offset_c"])
-    record.sequence += 1
+    record.sequence = following(record.sequence)
     record.accel = _accelerometer(found, kept)
     gyro = found["gyro"]
     if gyro is not None:

@@ -2,16 +2,17 @@
 
 import json
 
-from sixflip.record_terms import names_of
+from sixflip.accelerometer import best_level
+from sixflip.faces import face_of_code
 
 from .. import progress
-from ..errors import UsageError
+from ..errors import BadFile, UsageError
 from ..file_arguments import add_input
 from ..history import remember
 from ..solving import solution
 from ..solving.solve import finite
 from ..terminal import console, plain, styled, table
-from . import verify_checks, verify_files, verify_flips, verify_gyro
+from . import unverifiable, verify_checks, verify_files, verify_flips, verify_gyro
 
 HELP = "recompute everything from the raw capture and compare with the board's record"
 EXAMPLE = "sixflip verify pulled/e6614c311b4c5a2f"
@@ -30,7 +31,12 @@ def run(args):
         raise UsageError("%d files, expected DIR or CAPTURE RECORD" % len(args.files))
     with progress.during("verify"):
         capture_path, capture, record_path, record = verify_files.find(args.files)
-        checks, remarks = verify(capture, record, verify_files.record_before(record_path, record))
+        before = verify_files.record_before(record_path, record)
+        if not (capture.board_placements or capture.placements()):
+            raise BadFile("%s: no placement in it, cut short before the first one: nothing to "
+                          "compare the record with" % capture_path)
+        checks, remarks = verify(capture, record, before)
+    others = unverifiable.fields(capture, record, before)
     failed = [check for check in checks if not check.ok]
     remember.verified(capture, record, checks)
     if args.json:
@@ -38,9 +44,10 @@ def run(args):
             "format": 1, "ok": not failed, "capture": str(capture_path),
             "record": str(record_path), "float_bits": record.float_bits,
             "sums_only": capture.sums_only, "remarks": remarks,
-            "checks": [vars(check) for check in checks]})))
+            "checks": [vars(check) for check in checks],
+            "not_verifiable": [{"field": field, "why": why} for field, why in others]})))
         return 1 if failed else 0
-    _words(capture_path, record_path, record, checks, failed, remarks)
+    _words(capture_path, record_path, record, checks, failed, remarks, others)
     return 1 if failed else 0
 
 
@@ -71,23 +78,18 @@ def verify(capture, record, before=None):
     checks += found
     remarks += said
     old_gyro = before and before.gyro["P"]
-    checks.append(_verdict(capture, record, placements, old_gyro))
-    if record.gyro is not None:
-        found, said = verify_gyro.checks(capture, record, placements, old_gyro)
-        checks += found
-        remarks += said
-    if record.gyro_bias is not None and placements and record.gyro_lsb_per_dps:
+    checks += _verdict(capture, record, placements, old_gyro)
+    found, said = verify_gyro.checks(capture, record, placements, old_gyro)
+    checks += found
+    remarks += said
+    if record.gyro_lsb_per_dps:
         checks += verify_checks.gyro_bias(record, placements)
     checks += verify_checks.temperature(record, capture, placements)
-    names = names_of(record)
-    if names:
-        remarks.append("not recomputed, other captures than this one told them: %s (sixflip "
-                       "diagnose --record)" % ", ".join(names))
     return checks, remarks
 
 
 def _verdict(capture, record, placements, old_gyro):
-    """The verdict the shared judge gives now that the samples are at hand."""
+    """Level, and the verdict the shared judge gives now that the samples are at hand."""
     again = solution.judge(capture, placements, record.g, record.accel["level"],
                            angles=verify_flips.angles(record))
     verify_flips.doubts(capture, record, placements, again, old_gyro)
@@ -97,16 +99,24 @@ def _verdict(capture, record, placements, old_gyro):
         check.ok = True     # what the gyro saw of the flips was not kept
     if not check.ok:
         check.host = "%s: %s" % (again.verdict, again.reason)
-    return check
+    checks = [check, verify_checks.same("level", record.accel["level"], best_level(
+        [one.pose for one in placements if face_of_code(one.pose) >= 0]))]
+    if check.ok and not capture.sums_only:
+        checks.append(verify_checks.same_words("reason", record.accel["reason"], again.reason,
+                                               record.float_bits))
+    return checks
 
 
-def _words(capture_path, record_path, record, checks, failed, remarks):
+def _words(capture_path, record_path, record, checks, failed, remarks, others):
     """What was compared, what differs, and the answer."""
     out = console()
     out.print(plain("%s against %s (%d comparisons, board with %d-bit floats)" % (
         record_path, capture_path, len(checks), record.float_bits)))
     for remark in remarks:
         out.print(plain("  " + remark))
+    for why in dict.fromkeys(why for _, why in others):
+        out.print(plain("  not verifiable: %s (%s)" % (", ".join(
+            field for field, reason in others if reason == why), why)))
     if not failed:
         out.print(styled("the board's arithmetic is right", "bold green"))
         return

@@ -1,6 +1,7 @@
 """Everything the board said, next to what the host finds from the raw capture."""
 
 import math
+import re
 
 import numpy as np
 
@@ -15,6 +16,7 @@ DOUBLE_REL = 1e-9
 DOUBLE_ABS = 1e-13      # below this an element has no digits left to compare
 SINGLE_MG = 0.01
 STORED_REL = 3e-7       # numbers the record keeps in 32 bits
+NUMBER = re.compile(r"\d+(?:\.\d+)?")
 
 
 class Check:
@@ -41,17 +43,36 @@ def same(name, board, host):
     return Check(name, board, host, board == host, "equal")
 
 
+# What the header of a board's capture says besides, by the record's names.
+STATED = ("who_am_i", "accel_range_g", "gyro_range_dps", "float_bits")
+
+
 def belong_together(capture, record):
-    """Capture and record: same session, sensor, numbers of the chip."""
+    """Capture and record: same session, sensor, numbers of the chip, floats of the board."""
     meta = capture.meta
     checks = [same("session", record.session, meta.get("session")),
               same("sensor", record.chip, meta["sensor"]),
               close("g, m/s²", record.g, capture.g, 1e-7),
-              close("counts per g", record.accel_lsb_per_g, meta["accel_lsb_per_g"], 0, 5.1e-4)]
-    if capture.gyro is not None:
-        checks.append(close("counts per deg/s", record.gyro_lsb_per_dps,
-                            meta["gyro_lsb_per_dps"], 0, 5.1e-4))
+              close("counts per g", record.accel_lsb_per_g, meta["accel_lsb_per_g"], 0, 5.1e-4),
+              close("counts per deg/s", record.gyro_lsb_per_dps,
+                    meta.get("gyro_lsb_per_dps", 0), 0, 5.1e-4)]
+    for name in STATED:
+        if name in meta:
+            there = getattr(record, name)
+            checks.append(same(name, list(there) if name == "who_am_i" else there, meta[name]))
     return checks
+
+
+def same_words(name, board, host, float_bits):
+    """A Check of two sentences; numbers of a board with short floats may be one off in the last
+    digit that is printed."""
+    host = host[:200]       # so much of a reason a record keeps
+    alike = board == host
+    if not alike and float_bits != 64 and NUMBER.sub("#", board) == NUMBER.sub("#", host):
+        pairs = zip(NUMBER.findall(board), NUMBER.findall(host))
+        alike = all(abs(float(a) - float(b)) <= 1.01 * 10.0 ** -len(b.partition(".")[2])
+                    for a, b in pairs)
+    return Check(name, board, host, alike, "the same words")
 
 
 def pose_blocks(capture):
@@ -132,18 +153,22 @@ def vector_check(P, host, double, g):
 
 
 def gyro_bias(record, placements):
-    """The mean rate at rest over all placements, deg/s."""
+    """The mean rate at rest over all placements, deg/s, and the temperature it was at."""
+    if record.gyro_bias is None:
+        return [Check("gyro bias", "not in the record", "the capture has a gyro", False)]
     n = sum(one.n for one in placements)
     relative = DOUBLE_REL if record.float_bits == 64 else 1e-5
     return [close("gyro bias %s, deg/s" % "xyz"[k], record.gyro_bias["bias_dps"][k],
                   sum(one.sums[3 + k] for one in placements) / n / record.gyro_lsb_per_dps,
-                  relative, 1e-12 if record.float_bits == 64 else 1e-6) for k in range(3)]
+                  relative, 1e-12 if record.float_bits == 64 else 1e-6) for k in range(3)] + [
+        close("temperature of the gyro bias, °C", record.gyro_bias["temp_c"], record.temp_c,
+              1e-6, 1e-5)]
 
 
 def temperature(record, capture, placements):
     """Mean temperature over all placements, °C."""
-    if record.temp_c is None or "temp_lsb_per_c" not in capture.meta:
-        return []
+    if "temp_lsb_per_c" not in capture.meta or capture.temp is None and not capture.sums_only:
+        return [same("temperature, °C", record.temp_c, None)]
     n = sum(one.n for one in placements)
     host = sum(one.sums[6] for one in placements) / n / capture.meta["temp_lsb_per_c"] \
         + capture.meta["temp_offset_c"]

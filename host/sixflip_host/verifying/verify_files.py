@@ -1,11 +1,12 @@
 """Which capture and which record `verify` compares."""
 
+import functools
 import os
 import struct
 
 from sixflip import correction_record, record_terms
-from sixflip.mounting import parse_axes
-from sixflip.scale_form import scale_form
+from sixflip.plausibility import implausible
+from sixflip.record import newer
 
 from .. import atomic_write
 from ..capture import capture_file
@@ -20,14 +21,12 @@ def decode_record(path, data):
     try:
         record = correction_record.decode(data)
         record_terms.terms(record)
-        for fields in (record.accel, record.gyro):
-            if fields is not None:
-                scale_form(fields["P"])     # raises where it cannot be a correction
-        if record.mounting is not None and record.mounting["axes"]:
-            parse_axes(record.mounting["axes"])
-        return record
     except (ValueError, IndexError, struct.error) as error:
         raise BadFile("%s: %s" % (path, error))
+    reason = implausible(record)
+    if reason:
+        raise BadFile("%s: the record cannot be a sensor's: %s" % (path, reason))
+    return record
 
 
 def read_record(path):
@@ -69,7 +68,15 @@ def _record_of(folder, session):
     if not good:
         raise BadFile("; ".join(faults) or "%s: no record in it, expected %s" % (
             folder, " or ".join(RECORDS)))
-    return max(good, key=lambda one: (one[1].session == session, one[1].sequence))
+    newest = newest_of([record for _, record in good if record.session == session]
+                       or [record for _, record in good])
+    return next(one for one in good if one[1] is newest)
+
+
+def newest_of(records):
+    """The Record that was saved last."""
+    return functools.reduce(
+        lambda last, one: one if newer(one.sequence, last.sequence) else last, records)
 
 
 def record_before(path, record):
@@ -83,6 +90,6 @@ def record_before(path, record):
             older = read_record(other)
         except BadFile:
             continue
-        if older.sequence < record.sequence and older.gyro:
+        if newer(record.sequence, older.sequence) and older.gyro:
             return older
     return None

@@ -30,8 +30,9 @@ def checks(capture, record, placements, before):
     if capture.gyro is None:
         return [Check("flip angles", "in the record", "no gyro in the capture", False)], []
     if before is None or before.gyro is None or before.sequence != section["sequence"]:
-        return [], ["the flip angles came from the gyro of record %d, which is not here: they "
-                    "are taken as stated" % section["sequence"]]
+        return [], ["the flip angles came from the gyro of record %s, which is not here: they "
+                    "are taken as stated" % ("number nan" if section["sequence"] is None
+                                             else "%d" % section["sequence"])]
     known = [k for k in range(3) if k not in before.gyro["missing"]]
     sigma = max(before.gyro["sigma_P"][k][k] for k in known)
     double = record.float_bits == 64

@@ -5,7 +5,7 @@ import numpy as np
 from ..errors import CheckFailed
 from ..simulating import pose_runs
 from ..solving import reference_gyro, solution
-from .verify_checks import Check, close, same
+from .verify_checks import Check, close, same, same_words
 
 # A board with 32-bit floats: 1e-5 of the matrix is 0.002 degrees of half a turn, a 300th of
 # what a good hand leaves; of the last row it is 0.0006 deg/s.
@@ -19,6 +19,8 @@ def checks(capture, record, placements, old=None):
     old  P of the record before this one, kept for axes that were not flipped; None: nominal
     """
     section = record.gyro
+    if section is None:
+        return _left_out(capture, record, placements, old), []
     if capture.sums_only:
         return [], ["no samples of the moves were kept: the gyro's section is not checked"]
     if capture.gyro is None:
@@ -37,8 +39,22 @@ def checks(capture, record, placements, old=None):
     for i, j in np.ndindex(4, 3):
         out.append(close("gyro sigma P[%d][%d]" % (i, j), section["sigma_P"][i][j],
                          host.sigma[i, j], 1e-4 if double else 0.05, 1e-7))
-    out.append(_verdict(capture, section, placements, accel_P, old))
+    again, why = _again(capture, placements, accel_P, old)
+    out.append(same("gyro verdict", section["verdict"],
+                    again.verdict if again else "none: " + why))
+    if again:
+        out.append(same_words("gyro reason", section["reason"], again.reason, record.float_bits))
     return out, _remarks(section, old)
+
+
+def _left_out(capture, record, placements, old):
+    """A board leaves the gyro out where its own is refused, or there is none."""
+    if capture.sums_only or capture.gyro is None:
+        return []
+    again, _ = _again(capture, placements, record.accel["P"], old)
+    there = again is not None and again.verdict != "refused"
+    return [Check("gyro", "not in the record", "verdict " + again.verdict if again else "none",
+                  not there)]
 
 
 def _remarks(section, old):
@@ -49,9 +65,7 @@ def _remarks(section, old):
         "the matrix of the record before" if old else "the data sheet's scale")]
 
 
-def _verdict(capture, section, placements, accel_P, old):
-    """The verdict the shared judge gives from the host's own sums of the moves."""
-    moves = pose_runs.moves(capture, placements)
-    again, why = solution.solve_gyro(capture, placements, moves, accel_P, old)
-    return same("gyro verdict", section["verdict"],
-                again.verdict if again else "none: " + why)
+def _again(capture, placements, accel_P, old):
+    """(GyroscopeResult, "") of the shared judge from the host's own sums, or (None, why not)."""
+    return solution.solve_gyro(capture, placements, pose_runs.moves(capture, placements), accel_P,
+                               old)
