@@ -16,6 +16,11 @@ def misfit(own):
         if ranges != (own.accel_range_g, own.gyro_range_dps):
             return "it is for the ranges %s g and %s deg/s, the sensor is set to %s and %s" % (
                 ranges + (own.accel_range_g, own.gyro_range_dps))
+        if abs(record.accel_lsb_per_g - own.accel_lsb_per_g) > 0.001 or \
+                abs(record.gyro_lsb_per_dps - own.gyro_lsb_per_dps) > 0.001:
+            return "it is for %s counts per g and %s per deg/s, the sensor has %s and %s" % (
+                record.accel_lsb_per_g, record.gyro_lsb_per_dps, own.accel_lsb_per_g,
+                own.gyro_lsb_per_dps)
         if record.accel is None:
             return "it holds no accelerometer correction"
         if record.accel["verdict"] == "refused":

@@ -358,17 +358,18 @@ class TestRecordsThatDoNotFit(Folder):
     def test_one_no_sensor_has_and_its_board_calibrates_anew(self):
         self.calibrated()
         whole = correction_record.decode(self.read("record_a.bin"))
-        for change in ({"g": 0.0}, {"sequence": 0xFFFFFFFF},
-                       {"mounting": {"roll_deg": 0.0, "pitch_deg": 0.0, "order": "xyz",
-                                     "axes": "x y y", "frame": "ned"}},
-                       {"accel": dict(whole.accel, P=[[0.0] * 3] * 3 + [[0.0, 0.0, 0.0, 1.0]])}):
+        changes = ({"g": 0.0}, {"sequence": 0xFFFFFFFF},
+                   {"mounting": {"roll_deg": 0.0, "pitch_deg": 0.0, "order": "xyz",
+                                 "axes": "x y y", "frame": "ned"}},
+                   {"accel": dict(whole.accel, P=[[0.0] * 3] * 3 + [[0.0, 0.0, 0.0, 1.0]])})
+        for seed, change in enumerate(changes):
             record = correction_record.decode(self.read("record_a.bin"))
             for name in change:
                 setattr(record, name, change[name])
             self.write("record_b.bin", correction_record.encode(record))
             os.remove(self.path("record_a.bin"))
-            board = power_on(self.root, {"seed": 9}, [["hello", {"cmd": "calibrate"}, 1],
-                                                      STOP_WHEN_READY])
+            board = power_on(self.root, {"seed": 9 + seed}, [["hello", {"cmd": "calibrate"}, 1],
+                                                             STOP_WHEN_READY])
             self.assertTrue(board.only("saved")["written"], change)
             self.assertTrue(board.only("ready")["corrected"])
 
@@ -383,6 +384,10 @@ class TestRecordsThatDoNotFit(Folder):
         self.write("record_a.bin", correction_record.encode(record))
         board = power_on(self.root, STILL, timeout_s=6)
         self.assertIn("8 g", board.only("no_record")["reason"])
+        record.accel_range_g = 2
+        self.write("record_a.bin", correction_record.encode(record))
+        board = power_on(self.root, STILL, timeout_s=6)
+        self.assertIn("4096.0 counts per g", board.only("no_record")["reason"])
 
     def test_bias_is_not_poisoned_by_a_robot_that_moves(self):
         self.calibrated()

@@ -135,7 +135,7 @@ class TestSlots(SlotsTest):
         self.slots.save(spoilt)
         slot, found, refusals = self.slots.load(fits)
         self.assertEqual((slot, found.session, refusals[0][0]), ("a", 1, "b"))
-        self.assertIn("g is 98", refusals[0][1])
+        self.assertIn("g in m/s2 is 98", refusals[0][1])
         self.assertEqual(self.slots.save(record(3)), "b")  # the good one stays
         self.assertEqual(self.session(), 3)
 

@@ -48,15 +48,28 @@ def test_a_healthy_board(bench):
         "settings", "lines", "chips", "sensor", "clock", "range"}
 
 
+def test_a_chip_that_answers_overrules_idle_lines(bench):
+    found = judged(bench, {}, "no pull-ups")
+    assert [one.state for one in found] == ["ok"] * len(found)
+    assert "but the MPU6050 (0x68) answers" in found[1].found
+
+
+def test_both_chips_of_a_gy85_are_listed(bench):
+    found = judged(bench, {"sensor": "gy85"})
+    assert [one.found for one in found if one.check == "chips"] == [
+        "ITG3205 at 0x68", "ADXL345 at 0x53"]
+
+
+GONE = {"faults": [{"kind": "unplugged", "at": 0}]}
 TWICE = [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]]
 
 
 @pytest.mark.parametrize("world,lines,check,state,words,todo", [
     ({"faults": [{"kind": "unplugged", "at": 0}]}, None, "chips", "fault",
      "nothing answers at 0x68, 0x69, 0x53 or 0x1d", "check the four wires"),
-    ({}, "no pull-ups", "lines", "fault", "no pull-up on SDA (4) and SCL (5)", "4.7 kΩ"),
-    ({}, "sda low", "lines", "fault", "SDA (4) held low", "short to ground"),
-    ({}, "scl low", "lines", "fault", "SCL (5) held low", "short to ground"),
+    (GONE, "no pull-ups", "lines", "fault", "no pull-up on SDA (4) and SCL (5)", "4.7 kΩ"),
+    (GONE, "sda low", "lines", "fault", "SDA (4) held low", "short to ground"),
+    (GONE, "scl low", "lines", "fault", "SCL (5) held low", "short to ground"),
     ({"faults": [{"kind": "timeout", "every": 1}]}, None, "bus", "fault",
      "every transfer times out", "check the four wires"),
     ({"flavour": "soft", "faults": [{"kind": "stuck_sda", "at": 0, "pulses": 1 << 30}]}, None,

@@ -116,9 +116,9 @@ def test_mapping_units_and_delimiter(tmp_path, capsys):
     source = tmp_path / "in.csv"
     source.write_text("logger 7\n" + TABLE)
     capture, words = imported(tmp_path, capsys, source, "--units", "si", "--time-column", "time",
-                              "--time-unit", "s", "--no-poses", "--g", 10)
-    assert "steps of 1/20 g" in words
-    assert capture.meta["accel_lsb_per_g"] == pytest.approx(20)
+                              "--time-unit", "s", "--no-poses", "--g", 9.8)
+    assert "steps of 1/19.6 g" in words
+    assert capture.meta["accel_lsb_per_g"] == pytest.approx(19.6)
     assert capture.accel.tolist() == [[0, 1, 19], [1, -2, 20]]
     assert capture.t_us.tolist() == [0, 10000]
     capture, _ = imported(tmp_path, capsys, source, "--units", "g", "--rate", 50, "--no-poses",

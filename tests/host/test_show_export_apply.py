@@ -15,7 +15,7 @@ from sixflip_host.cli import main
 @pytest.fixture(scope="module")
 def pulled(tmp_path_factory):
     folder = tmp_path_factory.mktemp("board")
-    return folder, leave_files(folder, unlabelled())
+    return folder, leave_files(folder, unlabelled(), gyro=False)
 
 
 def test_show_a_record(pulled, capsys):

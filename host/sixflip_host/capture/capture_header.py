@@ -4,6 +4,7 @@ import json
 import math
 
 from ..errors import BadFile
+from . import chip_scales
 from .capture_rows import quoted
 
 MAGIC = b"# sixflip-capture"
@@ -14,6 +15,7 @@ GYRO = ("gx", "gy", "gz")
 MAG = ("mx", "my", "mz")
 COLUMNS = ("t_us",) + ACCEL + GYRO + ("temp",) + MAG + ("pose",)
 STANDARD_G = 9.80665
+G = (9.7, 9.9)          # m/s², as sixflip.plausibility
 LONGEST_LINE = 1 << 20      # bytes; what comes behind the header has no limit of its own
 POSITIVE = ("rate_hz", "accel_lsb_per_g", "gyro_lsb_per_dps", "temp_lsb_per_c", "mag_lsb_per_ut",
             "accel_range_g", "gyro_range_dps", "g")
@@ -127,9 +129,26 @@ def check_meta(meta, columns, fault):
         if key in meta and not _is_number(meta[key], positive=key != "temp_offset_c"):
             raise fault("%s is %s" % (key, quoted(json.dumps(meta[key]))),
                         "a number" if key == "temp_offset_c" else "a number above 0")
+    check_sensor(meta, columns, fault)
     by_hand = meta.get("held_by_hand", [])
     if not isinstance(by_hand, list) or not all(isinstance(name, str) for name in by_hand):
         raise fault("held_by_hand is %s" % quoted(json.dumps(by_hand)), "a list of pose names")
+
+
+def check_sensor(meta, columns, fault):
+    """Raise fault(found, expected) for numbers that are not of this sensor, or of no planet."""
+    if not G[0] <= meta.get("g", STANDARD_G) <= G[1]:
+        raise fault("g is %g m/s²" % meta["g"], "%g to %g" % G)
+    if meta["sensor"] == "adxl345":
+        for column, what in (("gx", "gyro"), ("temp", "thermometer")):
+            if column in columns:
+                raise fault("an adxl345 with a column %s, it has no %s" % (column, what),
+                            "another sensor, or no such column")
+    wrong = chip_scales.wrong(
+        meta["sensor"], meta.get("accel_range_g"), meta["accel_lsb_per_g"],
+        meta.get("gyro_range_dps"), meta.get("gyro_lsb_per_dps"))
+    if wrong:
+        raise fault(*wrong)
 
 
 def _is_number(value, positive):

@@ -12,7 +12,7 @@ from ..errors import BadFile, UsageError
 from ..file_arguments import add_input, add_output
 from ..terminal import plain, say
 from . import capture_file, csv_mapping, ros_bag, units
-from .capture_header import ACCEL, GYRO, MAG, SENSORS, STANDARD_G
+from .capture_header import ACCEL, GYRO, MAG, SENSORS, STANDARD_G, check_sensor
 from .csv_table import read_table
 
 HELP = "make a capture file from somebody else's CSV or ROS bag, finding the poses by itself"
@@ -193,6 +193,8 @@ def _in_counts(args, table, columns, t_us):
     if "temp" in columns:
         capture.temp = _temperature(args, meta, np.array(table.numbers(columns["temp"])))
     meta["imported_from"] = os.path.basename(args.file)
+    check_sensor(meta, capture.columns(), lambda found, expected: BadFile(
+        "%s: %s, expected %s" % (args.file, found, expected)))
     return capture, remarks
 
 

@@ -53,6 +53,8 @@ def lines(said):
     pins = {"SDA (%s)" % sda: levels[0::2], "SCL (%s)" % scl: levels[1::2]}
     low = [name for name, (_, pulled_up) in pins.items() if not pulled_up]
     weak = [name for name, (alone, pulled_up) in pins.items() if pulled_up and not alone]
+    if "sensor" in said and (low or weak):  # it was identified and set up: no line hangs
+        return [_overruled(said, " and ".join(low + weak))]
     if low:
         return [fault("lines", "%s held low" % " and ".join(low),
                       "a short to ground, a chip without power, or a wire in the wrong hole: "
@@ -63,6 +65,16 @@ def lines(said):
                       "the sensor is not connected or has no power (its board brings the "
                       "pull-ups); a bare chip needs 4.7 kΩ from each line to 3.3 V", True)]
     return [ok("lines", "SDA and SCL are high at rest")]
+
+
+def _overruled(said, names):
+    """A chip that answers says more of the bus than a line that was measured while idle."""
+    found = "%s read low with the board's own pulls, but the %s answers" % (
+        names, said["sensor"][1])
+    if "lost" in said or "selftest" in said and said["selftest"][6]:
+        return warning("lines", found, "transfers fail: its pull-ups are weak or missing; 4.7 kΩ "
+                       "from each line to 3.3 V")
+    return ok("lines", found + " and no transfer fails")
 
 
 def chips(said):
@@ -85,6 +97,8 @@ def chips(said):
         return [fault("chips", "nothing answers at 0x68, 0x69, 0x53 or 0x1d" + more, WIRES, True)]
     found = shared_address(ids) or [one for address in (0x68, 0x69)
                                     for one in gyro_address(ids, address)]
+    found += [ok("chips", "ADXL345 at 0x%02x" % address) for address in (0x53, 0x1D)
+              if byte(ids, address, adxl345.DEVID) == adxl345.DEVICE_ID]
     found += magnetometers(ids)
     if "no sensor" in said and not any(one.state == "fault" for one in found):
         found.append(fault("chips", "; ".join(said["no sensor"][0]),

@@ -9,7 +9,7 @@ from sixflip.plausibility import implausible
 from sixflip.record import newer
 
 from .. import atomic_write
-from ..capture import capture_file
+from ..capture import capture_file, chip_scales
 from ..errors import BadFile, UsageError
 
 CAPTURES = ("capture.bin", "capture.csv", "capture.csv.gz")
@@ -24,6 +24,10 @@ def decode_record(path, data):
     except (ValueError, IndexError, struct.error) as error:
         raise BadFile("%s: %s" % (path, error))
     reason = implausible(record)
+    wrong = chip_scales.wrong(record.chip, record.accel_range_g, record.accel_lsb_per_g,
+                              record.gyro_range_dps, record.gyro_lsb_per_dps)
+    if wrong and not reason:
+        reason = "%s, expected %s" % wrong
     if reason:
         raise BadFile("%s: the record cannot be a sensor's: %s" % (path, reason))
     return record
