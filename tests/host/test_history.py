@@ -334,6 +334,6 @@ def test_writers_at_the_same_time(file):
 def test_all_rows_or_none(file):
     good = store.Happened("ab", "check", "check", 1.0, "holds")
     bad = store.Happened("ab", "check", "check", None, "holds")
-    with pytest.raises(Exception, match="NOT NULL"):
+    with pytest.raises(Exception, match="at is nothing"):
         store.add(file, [good, bad])
     assert store.read(file) == []

@@ -4,7 +4,7 @@ import ast
 import os
 
 from ..errors import NoBoard, SixflipError
-from .value_kinds import Misfit
+from ..value_kinds import Misfit
 
 LONGEST = 4096      # bytes of a literal: a version, a file's name, size and hash
 

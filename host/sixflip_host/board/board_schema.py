@@ -6,11 +6,11 @@ A field that the firmware emits and no table lists is left out; a test reads the
 for such fields.
 """
 
-from .value_kinds import (
-    Anything,
+from ..value_kinds import (
     Either,
     Fields,
     Flag,
+    Json,
     ListOf,
     MapOf,
     Misfit,
@@ -122,7 +122,7 @@ EVENTS = {
 LEVEL = Number(0, 1, whole=True)
 ADDRESS = Number(0, 127, whole=True)
 POSITIVE = Number(1e-6, 1e9)
-ANYTHING = Anything()       # a sixflip.json: the firmware judges what is in it
+SETTINGS = MapOf(TEXT, Json(3))     # a sixflip.json: the firmware judges what is in it
 # The literals that our scripts print, by what was asked.
 ANSWERS = {
     "version": Row(TEXT, TEXT),

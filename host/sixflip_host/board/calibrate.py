@@ -8,6 +8,7 @@ from ..file_arguments import add_input, add_output
 from ..history import remember
 from ..planning import board_plan
 from ..terminal import plain
+from ..value_kinds import Misfit, Number
 from . import provision, typed_lines
 from .board_events import events
 from .console import Console
@@ -15,7 +16,6 @@ from .ending import Ending
 from .ports import add_port, open_link
 from .recording import Recording, RecordingLink
 from .session_deadline import SessionDeadline
-from .value_kinds import Misfit, Number
 
 HELP = "calibrate a board now, guided face by face"
 EXAMPLE = "sixflip calibrate\n         sixflip calibrate --replay capture.bin --speed 5"

@@ -6,10 +6,10 @@ import json
 
 from ..errors import NoBoard, SixflipError, UsageError
 from ..terminal import plain
+from . import board_schema
 from .board_answers import NoSpace
 from .board_events import events, unusable
 from .board_files import board_files
-from .board_schema import ANYTHING
 from .byte_progress import Bytes
 from .on_board_scripts import UPDATE
 from .ports import add_port, open_link
@@ -55,7 +55,7 @@ def wanted_settings(args):
 def json_settings(data):
     """The settings of a sixflip.json, {} where it is damaged: they are written anew then."""
     try:
-        return ANYTHING.take(json.loads(data))
+        return board_schema.SETTINGS.take(json.loads(data))
     except (ValueError, RecursionError):
         return {}
 

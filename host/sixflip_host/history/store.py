@@ -13,6 +13,7 @@ from pathlib import Path
 
 from ..errors import BadFile
 from ..narration import log
+from ..value_kinds import Either, Fields, Json, MapOf, Nothing, Number, Octets, OneOf, Text
 
 VARIABLE = "SIXFLIP_HISTORY"
 OURS = 0x36464C50           # "6FLP"
@@ -27,6 +28,12 @@ TABLE = """CREATE TABLE happened (
     verdict TEXT NOT NULL, reason TEXT NOT NULL, temp_c REAL, record BLOB, answer TEXT NOT NULL)"""
 COLUMNS = ("board", "kind", "verb", "at", "time_is", "chip", "session", "sequence", "verdict",
            "reason", "temp_c", "record", "answer")
+WHOLE = Either(Number(0, 1 << 53, whole=True), Nothing())
+ROW = Fields(       # what is written, and what is taken for a row when it is read
+    "board kind verb at verdict reason time_is answer", board=Text(), kind=OneOf(*KINDS),
+    verb=Text(), at=Number(-1e11, 1e11), verdict=Text(), reason=Text(), time_is=OneOf(MADE, SEEN),
+    chip=Text(), session=WHOLE, sequence=WHOLE, temp_c=Number(-1e6, 1e6), record=Octets(),
+    answer=MapOf(Text(), Json(8)))
 
 
 @dataclass
@@ -68,9 +75,12 @@ def add(file, rows):
     """Put Happened rows into the file, made when missing; all of them or none.
 
     A record that is there already is not put there twice; one that a `calibrate` told of
-    completes its row, whose time stays. Raises BadFile.
+    completes its row, whose time stays. Raises BadFile, and ValueError for a row that could not
+    be read again.
     """
     file = Path(file)
+    for row in rows:
+        ROW.take(vars(row))
     log.info("keeping %d rows in the history %s", len(rows), file)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -118,7 +128,8 @@ def _opened(file, mode):
         yield connection
     except sqlite3.OperationalError as error:
         raise BadFile("%s: cannot be used as history: %s" % (file, error)) from None
-    except sqlite3.DatabaseError as error:
+    except (sqlite3.Error, ValueError, TypeError, LookupError, ArithmeticError, MemoryError,
+            RecursionError) as error:       # sqlite3 itself trips over some damages
         raise _damaged(file, error) from None
     finally:
         if connection is not None:
@@ -169,12 +180,6 @@ def _row(file, values):
     """A Happened of what stands in the table; whoever changed it by hand hears of it."""
     try:
         values["answer"] = json.loads(values["answer"])
-        numbers = [values["at"], *(values[name] for name in ("temp_c", "session", "sequence")
-                                   if values[name] is not None)]
-        if not isinstance(values["answer"], dict) or values["kind"] not in KINDS or \
-                not all(isinstance(one, (int, float)) for one in numbers) or \
-                not isinstance(values["record"], (bytes, type(None))):
-            raise ValueError("a row of kind %r" % values["kind"])
+        return Happened(**ROW.take(values))
     except (ValueError, TypeError, RecursionError) as error:
         raise _damaged(file, error) from None
-    return Happened(**values)

@@ -1,4 +1,4 @@
-"""Kinds of values that a board may send: what is expected, and the value once it is checked.
+"""Kinds of values that come from a board or a file: what is expected, and the value once checked.
 
 A kind has `expected`, words for a person, and take(value), which returns the value or raises
 Misfit. Nothing that comes out is of another type, out of range, or deeper than its table says.
@@ -109,7 +109,7 @@ class Flag:
 
 
 class Octets:
-    """Bytes, one or more (of a literal; JSON has none)."""
+    """Bytes, one or more (of a literal or a database; JSON has none)."""
 
     expected = "one byte or more"
 
@@ -197,19 +197,19 @@ class MapOf:
         return taken
 
 
-class Anything:
-    """An object of texts, finite numbers, flags and nulls, and lists and objects of them."""
+class Json:
+    """Text, finite number, flag or null, or a list or an object of those, so and so deep."""
 
-    expected = "an object whose values are at most four deep"
-
-    def __init__(self, deep=4):
-        inner = Anything(deep - 1) if deep else None
-        simple = (Nothing(), Flag(), Number(-1e300, 1e300), Text())
-        kind = Either(*simple, *([ListOf(Either(*simple, inner)), inner] if deep else []))
-        self.kind = MapOf(Text(), kind)
+    def __init__(self, deep):
+        self.expected = "values at most %d deep" % deep
+        self.simple = Either(Nothing(), Flag(), Number(-1e300, 1e300), Text())
+        inner = Json(deep - 1) if deep else self.simple
+        self.list, self.object = ListOf(inner), MapOf(Text(), inner)
 
     def take(self, value):
-        return self.kind.take(value)
+        kind = self.list if isinstance(value, (list, tuple)) else \
+            self.object if isinstance(value, dict) else self.simple
+        return kind.take(value)
 
 
 class Fields:
