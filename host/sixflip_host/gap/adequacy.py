@@ -1,20 +1,25 @@
 """Stage 5: is what is left no more than noise?
 
-Absolute: the contrasts after the causes found, against white noise, placement and as much
-flicker as a reference capture shows; without one, what the wandering within the rests shows, at
-least half more and at most four times the chip's typical level. Relative: generic discrepancies,
-smooth in one variable, must not add anything.
+Absolute: the contrasts after the likeliest set, against white noise, placement and flicker at
+their likeliest levels, of which the prior says what is usual: as much flicker as a reference
+capture shows, or as the chip's data sheet and published plots have.
 """
+from dataclasses import dataclass
+
 import numpy as np
 from scipy import stats
+from scipy.linalg import solve_triangular
 
 from sixflip_sim.effects import typical
-from sixflip_sim.effects.drift import TIMES_S
 
-from . import which
-from .nominal_fit import FURTHER_S
+from . import between, evidence
+from .evidence import Levels
 
-TIMES_TYPICAL, TIMES_SEEN, TIMES_LEAST = 4.0, 1.5, 1.5
+PLACEMENT = {"accel": 0.87, "gyro": 0.003}  # 0.05 deg across gravity, mg; the Earth's rate
+TIMES_TYPICAL = 4.0
+ABSORBED = 0.6  # leverage above which a residual is mostly fitted away
+FEWEST = 20  # innovations of a session
+KURTOSIS_SIGMAS, UNLIKE = 4.0, 1.5
 DOUBTFUL_P, DOUBTFUL_RATIO = 1e-3, 1.3  # white noise itself is known to some 5 %
 
 
@@ -23,160 +28,119 @@ def usual(sensor, kind):
     return typical.FLICKER[typical.chip_of(sensor, kind)]
 
 
-def allowance(sensor, kind, reference=None, seen=None):
-    """Largest flicker level that counts as noise, mg or deg/s. reference: level of a noise
-    capture; seen: level that the wandering within the rests shows, where there is none."""
-    level = usual(sensor, kind)
+def levels(sensor, kind, reference=None):
+    """evidence.Levels of a chip; reference: flicker level of a capture of noise."""
     if reference is not None:
-        return max(2.0 * reference, level)
-    if seen is None:
-        return TIMES_TYPICAL * level
-    return float(np.clip(TIMES_SEEN * seen, TIMES_LEAST * level, TIMES_TYPICAL * level))
+        return Levels(PLACEMENT[kind], max(reference, usual(sensor, kind) / 4.0),
+                      between.UNUSUAL[kind], True)
+    return Levels(PLACEMENT[kind], usual(sensor, kind), between.UNUSUAL[kind])
 
 
-def level_within(parts, kind):
-    """Flicker level that explains the wandering between the blocks of the rests; None without
-    such blocks. Causes that change from pose to pose are not in it."""
-    seen = expected = 0.0
-    for part, _ in parts:
-        values, noise = (part.accel, part.noise_accel) if kind == "accel" else (
-            part.gyro, part.noise_gyro)
-        found = wandering(part, values, noise, 1.0)
-        if found:
-            seen, expected = seen + found[0], expected + found[1]
-    return float(np.sqrt(max(seen, 0.0) / expected)) if expected else None
+def allowance(sensor, kind, reference=None):
+    """Largest flicker level that counts as noise in one rest, mg or deg/s."""
+    level = usual(sensor, kind)
+    return TIMES_TYPICAL * level if reference is None else max(2.0 * reference, level)
 
 
+@dataclass(frozen=True)
 class Adequacy:
     """ok; ratio: chi2 a degree of freedom; p; index: of each unit's grid; excess, excess_before:
-    chi2 beyond the degrees of freedom, with and without the causes."""
+    chi2 beyond the degrees of freedom, with and without the set; parts: (chi2, freedom) of each
+    unit; odd: how what is left differs from noise, or ""."""
 
-    def __init__(self, data, chosen, allowed):
-        columns = np.concatenate([c.columns for c in chosen] + [np.zeros(0, dtype=int)])
-        prior = np.concatenate([c.prior for c in chosen] + [np.zeros(0)])
-        self.index, self.parts = [], []
-        total, freedom, before, size = 0.0, 0, 0.0, 0
-        for unit, (quadratic, projections) in zip(data.units, data.statistics):
-            chi2, index, rank = allowed_fit(unit, quadratic[:, 0], projections[:, :, 0], columns,
-                                            prior, allowed)
-            self.index.append(index)
-            self.parts.append((chi2, unit.freedom - rank))
-            total, freedom = total + chi2, freedom + unit.freedom - rank
-            before, size = before + quadratic[index, 0], size + unit.freedom
-        freedom = max(freedom, 1)
-        self.ratio, self.p = total / freedom, float(stats.chi2.sf(total, freedom))
-        self.worst = min((float(stats.chi2.sf(c, max(f, 1))) for c, f in self.parts), default=1.0)
-        self.excess, self.excess_before = total - freedom, before - size
-        self.ok = not (min(self.p, 0.5 * self.worst) < DOUBTFUL_P
-                       and max([self.ratio] + [c / max(f, 1) for c, f in self.parts])
-                       > DOUBTFUL_RATIO)
+    ok: bool
+    ratio: float
+    p: float
+    index: tuple
+    excess: float
+    excess_before: float
+    parts: tuple
+    odd: str = ""
 
 
-def excess_at(data, chosen, index):
-    """chi2 beyond the degrees of freedom with these causes, at given points of the grids."""
+def of(units, statistics, scored):
+    """Adequacy of a posterior.Scored."""
+    shared = scored.shared
+    theta = evidence.coefficients(scored.fits, shared)[0][0]
+    index, parts, before = [], [], 0.0
+    for unit, one, fit, private in zip(units, statistics, scored.fits, scored.private):
+        point = int(fit.index[0])
+        index.append(point)
+        chi2 = float(fit.quadratic[0] - 2.0 * theta @ fit.inner[0]
+                     + theta @ fit.gram[0] @ theta)
+        freedom = unit.freedom - len(shared) / len(units) - _taken(unit, point, private)
+        parts.append((chi2, max(freedom, 1.0)))
+        before += float(one[0][point, 0]) - unit.freedom
+    chi2, freedom = (sum(part[k] for part in parts) for k in (0, 1))
+    p = float(stats.chi2.sf(chi2, freedom))
+    worst = min(float(stats.chi2.sf(*part)) for part in parts)
+    largest = max([chi2 / freedom] + [c / f for c, f in parts])
+    ok = not (min(p, 0.5 * worst) < DOUBTFUL_P and largest > DOUBTFUL_RATIO)
+    odd = _odd(units, scored, theta)
+    return Adequacy(ok and not odd, chi2 / freedom, p, tuple(index), chi2 - freedom, before,
+                    tuple(parts), odd)
+
+
+def _odd(units, scored, theta):
+    """"" or how what is left differs from noise of the kinds that are in the model, which is
+    normal, of one size on all axes and independent between them: what jumps has heavy tails,
+    what is shared or on one axis alone has another cause than noise has."""
+    left = [innovations(u, u.grid[int(f.index[0])], private,
+                        u.raw(scored.shared.index) @ theta)
+            for u, f, private in zip(units, scored.fits, scored.private)
+            if getattr(u, "rows", None) is not None and not u.between]
+    left = [x for x in left if np.isfinite(x).all(axis=1).sum() >= FEWEST]
+    if not left:
+        return ""
+    x = np.concatenate([one[np.isfinite(one).all(axis=1)] for one in left])
+    number = len(x)
+    if float(stats.kurtosis(x, axis=None)) > KURTOSIS_SIGMAS * np.sqrt(24.0 / x.size) + 0.5:
+        return "heavy tails"
+    size = (x ** 2).mean(axis=0)
+    if size.max() / size.min() > stats.f.isf(DOUBTFUL_P / 3.0, number, number) * UNLIKE ** 2:
+        return "one axis more than the others"
+    together = np.abs(np.corrcoef(x.T)[np.triu_indices(3, 1)]).max()
+    if together > 4.0 / np.sqrt(number) + 0.1:
+        return "axes move together"
+    return ""
+
+
+def innovations(unit, point, private, explained):
+    """(n, 3) residuals of a session's nuisance fit, whitened in the order of time to a standard
+    deviation of 1 at a point (placement, flicker) of its grid; NaN where the fit takes them up.
+    explained (3n,): what the shared columns add; private columns are fitted as the nuisance."""
+    rows = unit.rows
+    covariance = rows.white + point[0] ** 2 * rows.lateral @ rows.lateral.T \
+        + point[1] ** 2 * rows.kernel
+    factor = np.linalg.cholesky(covariance if rows.fixed is None else covariance + rows.fixed)
+    fitted = np.hstack([rows.nuisance, unit.raw(private.index)])
+    columns, y = (solve_triangular(factor, v, lower=True) for v in (fitted, rows.y - explained))
+    basis, s, _ = np.linalg.svd(columns, full_matrices=False)
+    basis = basis[:, s > 1e-9 * s[0]]
+    left, leverage = y - basis @ (basis.T @ y), (basis ** 2).sum(axis=1)
+    left = left / np.sqrt(np.maximum(1.0 - leverage, 1e-9))
+    left[leverage > ABSORBED] = np.nan
+    return left.reshape(-1, 3)
+
+
+def _taken(unit, point, private):
+    """Degrees of freedom that private columns take off."""
+    if not len(private):
+        return 0.0
+    gram = unit.gram[point][np.ix_(private.index, private.index)]
+    return float(np.trace(np.linalg.solve(gram + np.diag(private.prior ** -2.0), gram)))
+
+
+def excess_at(units, statistics, chosen, index):
+    """chi2 beyond the degrees of freedom with these Forms, at given points of the grids, each
+    unit with sizes of its own."""
     columns = np.concatenate([c.columns for c in chosen] + [np.zeros(0, dtype=int)])
     prior = np.concatenate([c.prior for c in chosen] + [np.zeros(0)])
     total = 0.0
-    for unit, (quadratic, projections), point in zip(data.units, data.statistics, index):
+    for unit, (quadratic, projections), point in zip(units, statistics, index):
         total += quadratic[point, 0] - unit.freedom
         if len(columns):
             gram = unit.gram[point][np.ix_(columns, columns)] + np.diag(1.0 / prior ** 2)
             inner = projections[point][columns, 0]
             total -= inner @ np.linalg.solve(gram, inner) - (~unit.silent[columns]).sum()
     return float(total)
-
-
-def allowed_fit(unit, quadratic, projections, columns, prior, allowed):
-    """(chi2 after the fit, index of the grid, rank) at the likeliest point of the grid whose
-    flicker is no more than allowed."""
-    best = None
-    for index, (_, level) in enumerate(unit.grid):
-        if level > allowed * 1.001 and best is not None:
-            continue
-        chi2 = quadratic[index]
-        logdet = unit.logdet[index]
-        if len(columns):
-            gram = unit.gram[index][np.ix_(columns, columns)] + np.diag(1.0 / prior ** 2)
-            inner = projections[index][columns]
-            chi2 = chi2 - inner @ np.linalg.solve(gram, inner)
-            logdet = logdet + 0.5 * np.linalg.slogdet(gram)[1]
-        loglik = -0.5 * chi2 - logdet
-        if best is None or loglik > best[0]:
-            best = loglik, float(chi2), index
-    seen = columns[~unit.silent[columns]] if len(columns) else columns
-    return best[1], best[2], len(seen)
-
-
-def generic_gains(data, options, chosen):
-    """{domain: (gain in nats, candidate)} of the generic discrepancies beside the causes."""
-    gains = which.gains(data, [o for o in options if o.generic], chosen)
-    found = {}
-    for option, gain in gains.items():
-        domain = option.effect[1:]
-        if domain not in found or gain[0] > found[domain][0]:
-            found[domain] = (float(gain[0]), option)
-    return found
-
-
-def session_gain(data, options, chosen):
-    """Log evidence (nats) that something smooth in time is left in the sessions, each with its
-    own coefficients: what does not repeat from session to session is a discrepancy, too."""
-    mine = [o for o in options if o.effect == "~time" and o.axis is None]
-    if not mine:
-        return 0.0
-    columns = np.concatenate([c.columns for c in chosen] + [np.zeros(0, dtype=int)])
-    prior = np.concatenate([c.prior for c in chosen] + [np.zeros(0)])
-    more = np.concatenate([columns, mine[0].columns])
-    wide = np.concatenate([prior, 0.3 * mine[0].prior])
-    total = 0.0
-    for unit, statistics in zip(data.units, data.statistics):
-        with_time = _evidence(which.Fit(unit, statistics, more, wide), wide)
-        total += with_time - _evidence(which.Fit(unit, statistics, columns, prior), prior)
-    return total
-
-
-def _evidence(fit, prior):
-    """Log density of a unit's contrasts, coefficients normal about 0 with these sizes."""
-    k = len(prior)
-    theta, covariance = np.zeros((1, k)), np.diag(prior ** 2)[None]
-    return float(which.predictive(fit, theta, covariance)[0])
-
-
-def wandering(session, values, noise, level, ordinary=0.0):
-    """(seen, expected, expected of a random walk) of the excess variance between the blocks of a
-    rest, over white noise and ordinary flicker, in the unit of values squared; a p of the excess.
-    Only true wandering (drift) shows there.
-
-    values (n, 3) block means; noise (3,) of a second; level: flicker that is claimed, the random
-    walk being the one that wanders as far from one rest to the next; ordinary: level that every
-    part has.
-    """
-    same = np.flatnonzero(np.diff(session.placement) == 0)
-    moved = np.flatnonzero(np.diff(session.placement) != 0)
-    if len(same) < 4:
-        return None
-    difference = np.diff(values, axis=0)[same]
-    gap = np.diff(session.t)[same]
-    over = noise[None] ** 2 * (1.0 / session.seconds[same] + 1.0 / session.seconds[same + 1]
-                               )[:, None] + ordinary ** 2 * _flicker(gap, gap)[:, None]
-    claimed = level ** 2 * _flicker(gap, gap)
-    walk = claimed
-    if len(moved):
-        pause = np.diff(session.t)[moved]
-        block = 0.5 * (session.seconds[moved] + session.seconds[moved + 1])
-        # Of two neighbouring means over g seconds a walk of rate q differs by 2/3 q g.
-        rate = level ** 2 * np.mean(_flicker(pause, block) / (pause - block / 3.0))
-        walk = np.minimum(claimed, rate * gap * 2.0 / 3.0)
-    seen = float((difference ** 2 - over).sum())
-    return (seen, 3.0 * float(claimed.sum()), 3.0 * float(walk.sum()),
-            float(stats.chi2.sf(float((difference ** 2 / over).sum()), difference.size)))
-
-
-def _flicker(gap, block):
-    """Variance of the difference of two means over `block` seconds, their middles `gap` >= block
-    apart, of unit flicker: per exponential 2 var - 2 cov, averaged over the blocks."""
-    times = np.array(FURTHER_S + TIMES_S)[:, None]
-    x = block[None] / times
-    own = 2.0 / x * (1.0 - (1.0 - np.exp(-x)) / x)
-    both = ((1.0 - np.exp(-x)) / x) ** 2 * np.exp(-(gap - block)[None] / times)
-    return 2.0 * (own - both).sum(axis=0)

@@ -29,8 +29,8 @@ class Simulator:
             columns = np.concatenate([c.columns for c in gap.chosen])
             prior = np.concatenate([c.prior for c in gap.chosen])
             theta = which.coefficients(which.fits(gap.data, columns, prior), prior)[0][0]
-            keys = [(c.effect, c.variant, k) for c in gap.chosen for k in c.keys]
-            self.known[kind] = [(*key, float(t)) for key, t in zip(keys, theta)]
+            every = [(d.effect, d.variant, key) for d in gap.units[0].designs for key in d.keys]
+            self.known[kind] = [(*every[column], float(t)) for column, t in zip(columns, theta)]
         if not self.found.gaps:
             self.remarks.append("the simulator's capture holds too few poses: only its noise, "
                                 "steps, lines and timing are compared")

@@ -86,10 +86,10 @@ def _finding(f):
 
 
 def _drift(kind, gap):
-    level, gain = gap.drift
-    floor = level * FLOOR_OF_KERNEL
+    level, low, high, gain = gap.drift
+    floor, low, high = (v * FLOOR_OF_KERNEL for v in (level, low, high))
     return _entry(kind, [], ["drift"], gain, dict.fromkeys("xyz", floor), UNITS[kind],
-                  dict.fromkeys("xyz", (floor / 2, floor * 2)), True, None)
+                  dict.fromkeys("xyz", (low, high)), True, None)
 
 
 def _gap(kind, gap):

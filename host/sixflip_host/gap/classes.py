@@ -1,19 +1,18 @@
 """Stage 4: never a name inside an unresolved class.
 
-Two effects are one class when one reproduces more than 0.9 of the other (alias index, in the
-metric of the noise, nominal model and the other causes projected out; averaged over coefficients,
-or of the very sizes found), when their scores are
-less than 3 nats apart, or when what tells them apart is less than 3 standard deviations. One
-session that tells them apart by itself is enough: the others must not dilute it. What lies
-between sessions counts as much in the alias index as all that lies within them: there are few
-such contrasts, but no error in the form of an effect can turn them round.
+A class is what holds 95 % of a member's place in the likeliest set (posterior.py), and every
+effect that reproduces more than 0.9 of the one that stands there (alias index, in the metric of
+the noise, nominal model and the other causes projected out; averaged over coefficients, or of the
+very sizes found), or that less than 3 standard deviations tell from it. One session that tells
+them apart by itself is enough: the others must not dilute it. What lies between sessions counts
+as much in the alias index as all that lies within them: there are few such contrasts, but no
+error in the form of an effect can turn them round.
 """
 import math
 
 import numpy as np
 
-from . import selection, which
-from .regressors import DOMAIN
+from . import evidence
 
 SAME, NATS, SIGMAS = 0.9, 3.0, 3.0
 
@@ -34,71 +33,79 @@ class Cause:
         return [self.effect] + sorted(self.members)
 
 
-def pooled(data, chosen):
-    """([gram (K, K) within sessions, between them], [gram of each session], theta (k,), V (k, k),
-    columns) with the chosen effects in."""
-    columns = np.concatenate([c.columns for c in chosen])
-    prior = np.concatenate([c.prior for c in chosen])
-    found = which.fits(data, columns, prior)
-    theta, covariance = which.coefficients(found, prior)
-    grams, each = [0.0, 0.0], []  # within sessions, between them
-    for unit, fit in zip(data.units, found):
+def causes(found, units, forms):
+    """list of Cause of the named members of a Posterior's best set, largest score first."""
+    best = found.best
+    shared = best.shared
+    if not len(shared):
+        return []
+    theta, covariance = (v[0] for v in evidence.coefficients(best.fits, shared))
+    grams, each = _grams(units, best.fits)
+    out = []
+    for form in best.forms:
+        if form.generic or not len(form.shared):
+            continue
+        cause = Cause(form.effect, [form], found.gains[form.effect])
+        place = _places(shared.index, form.columns)
+        cause.keys, cause.axes = list(form.keys), list(form.axes)
+        cause.theta, cause.covariance = theta[place], covariance[np.ix_(place, place)]
+        cause.sigma = np.sqrt(np.diag(cause.covariance))
+        cause.members = {name: "probability %.2f" % found.places[form.effect][name]
+                         for name in found.alternatives(form.effect)
+                         if name not in ("", form.effect) and not name.startswith("~")
+                         and name != "drift"}
+        _aliases(cause, forms, best.forms, grams, each)
+        out.append(cause)
+    out.sort(key=lambda c: -c.score)
+    return [c for k, c in enumerate(out) if not any(
+        c.effect in b.members and b.effect in c.members for b in out[:k])]
+
+
+def _grams(units, fits):
+    """([gram (K, K) within sessions, between them], [gram of each session])."""
+    grams, each = [0.0, 0.0], []
+    for unit, fit in zip(units, fits):
         gram = unit.gram[fit.index[0]]
         grams[unit.between] = grams[unit.between] + gram
         each += [] if unit.between else [gram]
-    return grams, each, theta[0], covariance[0], columns
+    return grams, each
 
 
-def causes(data, options, chosen):
-    """list of Cause, largest score first, with the members of their classes."""
-    if not chosen:
-        return []
-    grams, each, theta, covariance, columns = pooled(data, chosen)
-    out = []
-    for name in dict.fromkeys(c.effect for c in chosen):
-        mine = [c for c in chosen if c.effect == name]
-        others = [c for c in chosen if c.effect != name]
-        total = np.concatenate([c.columns for c in mine])
-        base = which.score(data, *_joined(others)) if others else data.base
-        cause = Cause(name, mine, float((which.score(data, *_joined(chosen)) - base)[0]))
-        where = np.isin(columns, total)
-        cause.keys = [k for c in mine for k in c.keys]
-        cause.axes = [a for c in mine for a in c.axes]
-        cause.theta = np.concatenate([theta[_places(columns, c.columns)] for c in mine])
-        sigma = np.sqrt(np.diag(covariance))
-        cause.sigma = np.concatenate([sigma[_places(columns, c.columns)] for c in mine])
-        own = np.concatenate([_places(columns, c.columns) for c in mine])
-        cause.covariance = covariance[np.ix_(own, own)]
-        out.append(cause)
-        _rivals(cause, data, options, others, (grams, each), columns[~where])
-        cause.other_axes = _other_axes(cause, data, options, others)
-    out.sort(key=lambda c: -c.score)
-    return [c for k, c in enumerate(out) if not any(_form_of(c, b) for b in out[:k])]
+def _places(columns, wanted):
+    return [int(np.flatnonzero(columns == w)[0]) for w in wanted]
 
 
-FORM = 0.08  # of an effect's score that its true form may be off by
+def _aliases(cause, forms, beside, grams, each):
+    """Add to cause.members every other effect that cannot be told from it in principle, the
+    other members of the set projected out."""
+    own = [i for i, key in enumerate(cause.keys) if not key.endswith("+")]
+    mine, theta = cause.chosen[0].columns[own], cause.theta[own]
+    even = balanced(grams, mine)
+    for name in dict.fromkeys(f.effect for f in forms if not f.generic and len(f.shared)):
+        if name == cause.effect or name in cause.members:
+            continue
+        others = [f.columns for f in beside if f.effect not in (name, cause.effect)]
+        others = np.concatenate([*others, np.zeros(0, dtype=int)])
+        others = others[~np.isin(others, mine)].astype(int)
+        spaces = [f.columns for f in forms if f.effect == name and f.axis is None
+                  and not f.variant.endswith("+")]
+        left = reproduced(even, mine, theta, spaces, others)
+        if left is None:
+            continue
+        apart = reproduced(grams[0] + grams[1], mine, theta, spaces, others)[1]
+        if left[0] > SAME and not any(_told(g, mine, theta, spaces, others)
+                                      for g in each if len(each) > 1):
+            cause.members[name] = "alias index %.2f" % left[0]
+        elif apart < SIGMAS:
+            cause.members[name] = "%.1f standard deviations apart" % apart
+
+
 KIN = ({"temperature", "time"}, {"history", "time_since_move"})
 
 
 def related(one, other):
     """Whether two domains are one variable, or two that go together."""
     return one == other or any({one, other} <= kin for kin in KIN)
-
-
-def _form_of(cause, larger):
-    """True for what only corrects the form of a far larger cause on the same axes, in the same
-    variable: no library has the very curve of a part."""
-    return related(DOMAIN[cause.effect], DOMAIN[larger.effect]) \
-        and set(cause.axes) <= set(larger.axes) and cause.score < FORM * larger.score
-
-
-def _joined(chosen):
-    return (np.concatenate([c.columns for c in chosen]),
-            np.concatenate([c.prior for c in chosen]))
-
-
-def _places(columns, wanted):
-    return [int(np.flatnonzero(columns == w)[0]) for w in wanted]
 
 
 def balanced(grams, mine):
@@ -108,49 +115,10 @@ def balanced(grams, mine):
     return grams[0] + grams[1] * (within / between if between > 0.0 else 1.0)
 
 
-def _rivals(cause, data, options, others, grams, other_columns):
-    """Fill cause.members with every other effect that cannot be told from it."""
-    mine = np.concatenate([c.columns for c in cause.chosen])
-    grams, each = grams
-    gram, even = grams[0] + grams[1], balanced(grams, mine)
-    taken = {c.effect for c in others}
-    for name in dict.fromkeys(o.effect for o in options):
-        if name == cause.effect or name in taken:
-            continue
-        _, gain = selection.of_effect(data, options, name, others)
-        if cause.score - gain < NATS:
-            cause.members[name] = "score"
-            continue
-        variants = [o for o in options if o.effect == name and o.axis is None
-                    and not o.variant.endswith("+")]
-        spaces = [o.columns for o in variants]
-        left = reproduced(even, mine, cause.theta, spaces, other_columns)
-        if left is None:
-            continue
-        index = left[0]
-        apart = reproduced(gram, mine, cause.theta, spaces, other_columns)[1]
-        if index > SAME and not any(_told(g, mine, cause.theta, spaces, other_columns)
-                                    for g in each if len(each) > 1):
-            cause.members[name] = "alias index %.2f" % index
-        elif apart < SIGMAS:
-            cause.members[name] = "%.1f standard deviations apart" % apart
-
-
 def _told(gram, mine, theta, spaces, others):
     """Whether one session's gram alone tells an effect from another's variants."""
     found = reproduced(gram, mine, theta, spaces, others)
     return found is not None and found[0] <= SAME and found[1] >= SIGMAS
-
-
-def _other_axes(cause, data, options, others):
-    """Axes (0..2) on which the same effect would do as well: where a pose's attitude is free,
-    x: f_y f_z and y: f_x f_z add the same along gravity."""
-    if len(cause.chosen) != 1 or cause.chosen[0].axis is None:
-        return []
-    mine = cause.chosen[0]
-    same = [o for o in options if o.effect == cause.effect and o.axis not in (None, mine.axis)]
-    gains = which.gains(data, same, others)
-    return sorted({o.axis for o, gain in gains.items() if gain[0] > cause.score - NATS})
 
 
 def reproduced(gram, mine, theta, alternatives, others):

@@ -18,7 +18,7 @@ from sixflip_sim.sensor_model import STANDARD_G, SensorModel, Triad
 from ..capture.capture_file import Capture
 from ..papers import replica
 from ..simulating.session_rows import body_to_table
-from . import adequacy, attitude_fit, nominal_fit, observations, selection, shrinkage, which
+from . import attitude_fit, nominal_fit, observations, posterior, shrinkage, which
 
 TAUS_S = (30.0, 60.0, 120.0, 200.0, 300.0, 400.0, 600.0, 1000.0, 3000.0)
 
@@ -202,7 +202,7 @@ def force(gap, name):
     mine = [o for o in gap.options if o.effect == name]
     if name in {c.effect for c in gap.chosen} or not mine:
         return
-    taken, _ = selection.of_effect(gap.data, gap.options, name, gap.chosen)
-    gap.chosen = gap.chosen + taken
-    gap.adequacy = adequacy.Adequacy(gap.data, gap.chosen, gap.allowed)
+    model = posterior.Model(gap.units, gap.data.statistics, gap.noise)
+    best = max(mine, key=lambda form: model.scored((*gap.found.best.forms, form)).score)
+    gap.chosen = [*gap.chosen, best]
     gap.shrinkage = shrinkage.of(gap.data, gap.chosen, gap.adequacy.index)

@@ -185,7 +185,7 @@ def plain(gap, cause):
     """The candidates of a cause in the form that the board can take out."""
     out = []
     for c in cause.chosen:
-        bend = "+" if c.variant.endswith("+") and cause.effect == "thermal_bias" else ""
+        bend = "+" if c.variant.endswith("~") and cause.effect == "thermal_bias" else ""
         out += [o for o in gap.options if (o.effect, o.axis, o.variant) == (c.effect, c.axis, bend)
                 and not any(np.isin(o.columns, one.columns).any() for one in out)]
     return out

@@ -224,7 +224,7 @@ class Diagnosis:
         drifting = any(g.drift for g in gaps)
         unexplained = any(g.unexplained for g in gaps) or bool(
             self.stuck or self.scale_remark or self.nameless
-            or self.turns and self.turns.misnamed)
+            or self.turns and self.turns.unexplained)
         believed = [c for _, c in self.causes if c.plausible]
         incredible = [c for _, c in self.causes if not c.plausible]
         resolved = drifting or any(not f.rivals for f in self.findings) or any(

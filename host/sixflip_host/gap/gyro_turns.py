@@ -8,17 +8,19 @@ Everything is divided by the length of the move: deg/s, as the causes are.
 import itertools
 
 import numpy as np
+from scipy import linalg
 
 from sixflip_sim.effects.moment import Moment
 
 from ..simulating import noise_arrays
 from ..solving.attitude import _rotation
-from . import nominal_fit, regressors, thresholds
+from . import nominal_fit, regressors
+from .evidence import Levels
 from .finding import Finding
 from .sensor_gap import SensorGap
 
 EFFECTS = ("asymmetry", "quadratic", "cubic", "thermal_scale")
-LEVELS_DEG = (0.03, 0.06, 0.12, 0.25, 0.5, 1.0, 2.0, 5.0)
+LEVELS_DEG = tuple(0.03 * 1.35 ** k for k in range(18))
 ATTITUDE_DEG = 0.03  # of gravity's direction at rest
 FLIP_DEG = 0.6  # of half a turn by hand; 0.4 is usual (METHOD section 2)
 ROUNDS = 2  # of taking off scale and misalignment, so that what is left is small
@@ -26,7 +28,7 @@ SHORTEST_S, LONGEST_S, LEAST_DEG = 0.3, 60.0, 20.0
 FEWEST_MOVES = 6
 WRONG_DEG, RIGHT_DEG = 25.0, 12.0
 RAIL = 32767
-MARGIN_NATS = 2.0  # the errors of moves are not as normal as those of rests
+USUAL_DEG = 0.25  # of a move from rest to rest, beside white noise
 
 
 class Turn:
@@ -52,6 +54,7 @@ class Turn:
             b - 1) // 2
         self.temperature = None if session.thermometer is None \
             else session.thermometer.at(self.t[1:])
+        self.wander = np.zeros(3)
 
     def integrate(self, matrix=None):
         """Fill attitude: of each sample's middle since the start; and end."""
@@ -83,12 +86,18 @@ def turns(session, nominal):
 
 
 def _turns(session, nominal):
-    rest = np.array([session.gyro[session.placement == p].mean(axis=0)
-                     for p in np.unique(session.placement)])
+    kept = np.unique(session.placement).tolist()
+    rest = {p: session.gyro[session.placement == p].mean(axis=0) for p in kept}
+    pairs = [p for p in kept if p + 1 in rest]
+    if not pairs:
+        return []
+    # A bias that changes from rest to rest is known to about half of that in between.
+    wander = np.sqrt(np.mean([(rest[p + 1] - rest[p]) ** 2 for p in pairs], axis=0)) / 2.0
     found = []
-    for place in range(len(session.runs) - 1):
+    for place in pairs:
         # What drifts, or feels gravity, is halfway between the rests before and after.
         turn = Turn(session, nominal, 0.5 * (rest[place] + rest[place + 1]), place)
+        turn.wander = wander
         if fit(turn, session.rate):
             found.append(turn.integrate())
     return found
@@ -143,6 +152,15 @@ def projected(turn, added):
     return rows(turn, nominal_fit.lateral_basis(turn.before)) @ phi
 
 
+def wandering(chosen):
+    """(m, m) covariance of what is observed, by a bias that is not known between two rests."""
+    parts = []
+    for turn in chosen:
+        constant = projected(turn, np.broadcast_to(np.eye(3), (len(turn.dt), 3, 3)))
+        parts.append(constant @ np.diag(turn.wander ** 2) @ constant.T)
+    return linalg.block_diag(*parts)
+
+
 def nuisance(chosen):
     """Columns: scale and misalignment (9), bias (3)."""
     parts = []
@@ -171,7 +189,9 @@ def calibrated(chosen):
 
 
 class TurnsGap(SensorGap):
-    """SensorGap of the gyro in motion: only named effects, no flicker."""
+    """SensorGap of the gyro in motion: no flicker, and no bias between the sessions."""
+
+    drifts = False
 
     def unit(self, part, model, certified):
         chosen = turns(part, model)
@@ -180,23 +200,57 @@ class TurnsGap(SensorGap):
         white = np.concatenate([[ATTITUDE_DEG] * 2 + [FLIP_DEG] * t.flip for t in chosen])
         names = [n for n in EFFECTS if n != "thermal_scale" or part.thermal]
         designs = [design(n, chosen, self.settings.reference_c, self.chip) for n in names]
+        designs += [nameless(chosen, name, of_rate) for name, of_rate in STRANGERS.items()]
         unit = nominal_fit.Unit(
             y, nuisance(chosen), np.diag((white / seconds) ** 2), np.diag(1.0 / seconds),
-            np.zeros((len(y), len(y))), (LEVELS_DEG, (0.0,)), designs)
+            np.zeros((len(y), len(y))), (LEVELS_DEG, (0.0,)), designs, wandering(chosen))
         unit.signature = ("turns", tuple((t.flip, round(t.turned, -1)) for t in chosen))
         return unit
+
+    def _levels(self):
+        return Levels(USUAL_DEG, 1.0, 1.0)
 
     def _between(self):
         return []
 
-    def _search(self):
-        self.limits = thresholds.of(self.units, self.options, self.levels())
-        self.limits.named += MARGIN_NATS
-        self._choose()
 
-    def _judge(self):
-        SensorGap._judge(self)
-        self.unexplained, self.added, self.drift = False, {}, None
+def _bends(w, dt):
+    """Of each axis' own rate: what no power names."""
+    return [np.clip(w, -20.0, 20.0) / 20.0, np.clip(w, -60.0, 60.0) / 60.0,
+            np.clip(np.abs(w), 0.0, 30.0) / 30.0]
+
+
+def _of_motion(w, dt):
+    """Of the rate of the others, and of how fast the rates change."""
+    change = np.gradient(w, axis=0) / dt[:, None]
+    size = np.linalg.norm(w, axis=1)[:, None] / 100.0
+    product = np.stack([w[:, 1] * w[:, 2], w[:, 2] * w[:, 0], w[:, 0] * w[:, 1]], 1) / 1e4
+    return [change / 100.0, np.broadcast_to(size, w.shape), size * w / 100.0, product]
+
+
+STRANGERS = {"amplitude": _bends, "motion": _of_motion}
+
+
+def nameless(chosen, name, of_rate):
+    """Design of functions of the rate that no effect of the library has."""
+    return _of_rates("~" + name, "", chosen, of_rate, 10.0)
+
+
+def _of_rates(effect, variant, chosen, functions, prior):
+    """Design of functions (n, 3) of rates (n, 3) and steps (n,), a coefficient an axis each."""
+    parts, number = [], 0
+    for turn in chosen:
+        values = functions(turn.middle, turn.dt)
+        number = len(values)
+        added = np.zeros((len(turn.dt), 3, 3 * number))
+        for k, value in enumerate(values):
+            for axis in range(3):
+                added[:, axis, 3 * k + axis] = value[:, axis]
+        parts.append(projected(turn, added))
+    keys = ["%s%s" % ("xyz"[a], "" if not k and effect[0] != "~" else k)
+            for k in range(number) for a in range(3)]
+    return regressors.Design(effect, variant, keys, [0, 1, 2] * number, np.vstack(parts),
+                             np.full(3 * number, prior))
 
 
 def usable(session, nominal):

@@ -7,7 +7,6 @@ WINDOW_S = 1.0
 QUIET = 0.02  # share of the windows that counts as quiet
 SHAKEN = 3.0  # times the quiet level, root mean square, in at least half of the windows
 FEWEST_WINDOWS = 8
-CERTAIN = 99.0
 
 
 def findings(sessions):
@@ -29,9 +28,21 @@ def findings(sessions):
     axes = [i for i in range(3) if usual[i] > SHAKEN * max(quiet[i], 1e-9)]
     if not axes:
         return []
-    value = {"xyz"[i]: float("%.3g" % np.sqrt(2.0 * (usual[i] ** 2 - quiet[i] ** 2)))
-             for i in axes}
-    spread = {"xyz"[i]: (float(np.sqrt(2) * np.quantile(level[:, i], 0.25)),
-                         float(np.sqrt(2) * np.quantile(level[:, i], 0.75))) for i in axes}
-    return [Finding("vibration", "accel", sorted(value), value, "mg", CERTAIN, "frequency",
-                    "it is shaken most of the time", spread)]
+    value, interval, score = {}, {}, 0.0
+    for i in axes:
+        ranked = np.sort(level[:, i])
+        # Ranks of the 90 % interval of a median [Conover, Practical Nonparametric Statistics].
+        off = 0.5 * 1.645 * np.sqrt(len(ranked))
+        ends = ranked[[int(max(0.5 * len(ranked) - off, 0)),
+                       int(min(0.5 * len(ranked) + off, len(ranked) - 1))]]
+        value["xyz"[i]] = float("%.3g" % _amplitude(usual[i], quiet[i]))
+        interval["xyz"[i]] = tuple(float(_amplitude(end, quiet[i])) for end in ends)
+        # Half of the windows above a level that QUIET of them are below, if they were alike.
+        score += 0.5 * len(ranked) * np.log(0.25 / (QUIET * (1.0 - QUIET)))
+    return [Finding("vibration", "accel", sorted(value), value, "mg", score, "frequency",
+                    "it is shaken most of the time", interval)]
+
+
+def _amplitude(level, quiet):
+    """Amplitude of a sine that lifts the root mean square from quiet to level."""
+    return np.sqrt(2.0 * max(level ** 2 - quiet ** 2, 0.0))

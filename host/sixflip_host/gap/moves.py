@@ -13,7 +13,7 @@ from sixflip_sim.effects.moment import Moment
 
 from ..simulating import noise_arrays
 from ..solving.attitude import _rotation
-from . import nominal_fit, regressors
+from . import nominal_fit, strangers
 
 EFFECT_NAMES = ("lever_arm", "filter_lag")
 BIN_S, FEWEST_BINS, MOST_BINS = 0.1, 12, 60
@@ -162,7 +162,7 @@ class _Seen:
 
 def _orientation(felt):
     """(n, 3, 36): harmonics of degree 2 and 3 on each axis, mg."""
-    harmonics = regressors._harmonics(felt, "accel")
+    harmonics = strangers.harmonics(felt, "accel")
     out = np.zeros((len(felt), 3, 3 * len(harmonics)))
     for number, values in enumerate(harmonics):
         for i in range(3):

@@ -145,6 +145,7 @@ class Unit:
     """
 
     signature = ()
+    within = {}  # (effect, number of its choice): nats that the blocks of the rests say for it
     between = False  # True for what lies between the sessions, see between.py
 
     def __init__(self, y, nuisance, white, lateral, kernel, levels, designs, fixed=None):
@@ -157,11 +158,14 @@ class Unit:
         raw = np.hstack([d.columns for d in designs])
         self.columns = self.contrasts.T @ raw
         energy, left = (raw ** 2).sum(axis=0), (self.columns ** 2).sum(axis=0)
+        self.energy = 3.0 * (raw ** 2).mean(axis=0)  # of the rows of a column's own axis
         self.silent = left <= NOTHING * np.maximum(energy, 1e-300)
         self.columns[:, self.silent] = 0.0
         self.grid = [(a, b) for a in levels[0] for b in levels[1]]
         if not lateral.shape[1]:
             self.grid = [(levels[0][0], b) for b in levels[1]]
+        self.shape = tuple(len({pair[k] for pair in self.grid}) for k in (0, 1))
+        self.coarse = np.arange(len(self.grid)).reshape(self.shape)[::2, ::2].ravel()
         base = white if fixed is None else white + fixed
         q = self.contrasts
         self._parts = (q.T @ base @ q, q.T @ lateral, q.T @ kernel @ q)
@@ -183,6 +187,16 @@ class Unit:
                 self.gram[index] = one.gram - one.cross.T @ (share[:, None] * one.cross)
                 self.logdet[index] = one.logdet + 0.5 * np.log1p(placement ** 2 * one.sizes).sum()
             self.flickers.append(one)
+
+    def around(self, point):
+        """Indices of a point of the grid and its neighbours."""
+        a, b = divmod(point, self.shape[1])
+        every = np.arange(len(self.grid)).reshape(self.shape)
+        return every[max(a - 1, 0):a + 2, max(b - 1, 0):b + 2].ravel()
+
+    def raw(self, columns):
+        """(rows, k) columns before projection."""
+        return np.hstack([d.columns for d in self.designs])[:, columns]
 
     def covariance(self, placement, level):
         """(m, m) of the contrasts for a placement and a flicker level."""

@@ -19,6 +19,7 @@ SHORT_REST_BLOCKS = 2
 LONG_REST_S = 12.0
 SUBMEAN_S = 0.25  # white noise is judged on means this long, so that a filter's colour is in it
 SHORTEST_S = 0.8
+PLAY_S = 0.1  # step at which hysteresis follows the way
 MOST_BAD = 0.005  # share of a rest's samples
 FAR_OFF_DEG = 25.0  # a label that gravity contradicts
 
@@ -162,6 +163,22 @@ class Session:
             state[k] = up[k - 1] + (state[k - 1] - up[k - 1]) * fade
         return state[self.placement]
 
+    def played(self, widths_g):
+        """[(n, 3)] a width: how far a play operator of that width (g) lags behind the specific
+        force of each axis, over the whole way that the box was taken, -1 to 1 [Krejci,
+        Hysteresis, Convexity and Dissipation in Hyperbolic Equations (1996), chapter II]."""
+        step = max(1, int(PLAY_S * self.rate))
+        counts = self.capture.accel[:len(self.capture.accel) // step * step]
+        f = counts.reshape(-1, step, 3).mean(axis=1) / self.capture.meta["accel_lsb_per_g"]
+        width = np.array(widths_g)[:, None]
+        state, behind = np.repeat(f[:1], len(widths_g), axis=0), np.empty(
+            (len(f), len(widths_g), 3))
+        for k, now in enumerate(f):
+            state = np.minimum(np.maximum(state, now - width), now + width)
+            behind[k] = (state - now) / width
+        middle = np.minimum((self.first + self.end) // 2 // step, len(f) - 1)
+        return [behind[middle, k] for k in range(len(widths_g))]
+
     def moment(self, up, number=0):
         """moment.Moment of all blocks; up (placements, 3): unit vectors against gravity."""
         m = Moment(np.exp, np.sin, np.floor, noise_arrays.gauss)
@@ -195,6 +212,7 @@ class Session:
         """The same session with some of its placements only."""
         other = object.__new__(Session)
         other.__dict__.update(self.__dict__)
+        other.__dict__.pop("turns", None)  # a part turns between its own placements only
         keep = np.isin(self.placement, list(placements))
         for name, value in self.__dict__.items():
             if isinstance(value, np.ndarray) and len(value) == self.n and name not in (

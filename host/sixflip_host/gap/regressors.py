@@ -8,7 +8,6 @@ import copy
 
 import numpy as np
 
-from sixflip import faces
 from sixflip_sim.effects import typical
 from sixflip_sim.effects.library import EFFECTS
 
@@ -18,6 +17,7 @@ LAGS_S = (0.0, 15.0, 30.0, 60.0, -30.0)
 WARM_UP_S = (30.0, 60.0, 120.0, 240.0, 480.0)
 CREEP_S = (5.0, 15.0, 30.0, 60.0, 120.0)
 LONG_MEMORY_S = 30.0
+PLAY_G = (0.1, 0.2, 0.4)  # widths of a play operator
 LEAST_VIBRATION_MG = 5.0
 DOMAIN = {  # where an effect shows itself
     "thermal_bias": "temperature", "thermal_scale": "temperature", "thermal_rate": "temperature",
@@ -42,6 +42,7 @@ class Design:
     def __init__(self, effect, variant, keys, axes, columns, prior):
         self.effect, self.variant, self.keys = effect, variant, tuple(keys)
         self.axes, self.columns, self.prior = tuple(axes), columns, prior
+        self.choices = ()
 
     @property
     def generic(self):
@@ -103,17 +104,14 @@ def library(session, up, sensor, reference_c, chip):
         _thermal(session, m, terms, found, sensor, reference_c)
     for tau in WARM_UP_S:
         terms("warm_up", "tau %g s" % tau, shape={"tau_s": tau})
-    history = terms("hysteresis")
-    found.append(powered(history, history.columns ** 3, history.prior[0]))
+    terms("hysteresis")
+    if sensor == "accel":
+        found += remembered(session, m, found[-1])
     if sensor == "gyro":
-        full = terms("g_sensitivity")
-        found.append(powered(full, full.columns ** 3, full.prior[0]))
+        terms("g_sensitivity")
         return found
-    for name in ("quadratic", "cubic"):
-        plain = terms(name)
-        felt = np.stack(m.f, 1)
-        felt2 = np.stack([np.where(np.arange(3) == i, felt ** 2, 0.0) for i in range(3)], 2)
-        found.append(powered(plain, plain.columns * _own(felt2, plain.axes), plain.prior[0]))
+    terms("quadratic")
+    terms("cubic")
     cross = terms("cross_quadratic")
     terms("cross_quadratic", "squares", only=[k for k in cross.keys if k[1] == k[2]])
     terms("cross_quadratic", "products", only=[k for k in cross.keys if k[1] != k[2]])
@@ -130,13 +128,21 @@ def library(session, up, sensor, reference_c, chip):
     return found
 
 
-def _own(table, axes):
-    """(3n, k): column i of table (n, 3, 3), spread as its axis has it."""
-    return np.stack([table[:, :, i].reshape(-1) for i in axes], 1)
+def remembered(session, m, plain):
+    """Designs of hysteresis in other forms than a share of the pose before: only from which
+    side the pose was reached, and a play operator along the whole way."""
+    side = np.tanh(3.0 * (np.stack(m.before, 1) - np.stack(m.f, 1)))
+    forms = [("side", side)] + [("play %g g" % width, behind) for width, behind in zip(
+        PLAY_G, session.played(PLAY_G))]
+    found = []
+    for variant, values in forms:
+        columns = np.einsum("ni,ij->nij", values, np.eye(3)).reshape(-1, 3)
+        found.append(Design("hysteresis", variant, plain.keys, plain.axes, columns, plain.prior))
+    return found
 
 
 def _thermal(session, m, terms, found, sensor, reference_c):
-    """Slopes over the temperature with and without a lag, and with a square."""
+    """Slopes over the temperature with and without a lag."""
     for lag in LAGS_S:
         felt = copy.copy(m)
         felt.temperature = session.thermometer.lagged(session.t, lag)
@@ -144,73 +150,9 @@ def _thermal(session, m, terms, found, sensor, reference_c):
         label = "lag %g s" % lag if lag else ""
         shape = {"reference_c": reference_c}
         bias = terms("thermal_bias", label, felt, only=("x", "y", "z"), shape=shape)
-        dt = np.repeat(felt.temperature - reference_c, 3)[:, None]
-        found.append(powered(bias, bias.columns * dt, 0.1 * bias.prior[0]))
+        if not lag:  # a record of the board holds a square, too
+            dt = np.repeat(felt.temperature - reference_c, 3)[:, None]
+            found.append(powered(bias, bias.columns * dt, 0.1 * bias.prior[0]))
         if sensor == "accel":
-            scale = terms("thermal_scale", label, felt, shape=shape)
-            if not lag:
-                found.append(powered(scale, scale.columns * dt, 0.1 * scale.prior[0]))
+            terms("thermal_scale", label, felt, shape=shape)
         terms("thermal_rate", label, felt)
-
-
-def generics(session, up, sensor):
-    """list of Design whose effect is "~domain": smooth in one variable, named after none."""
-    n, m = session.n, session.moment(up)
-    f = np.stack(m.f, 1)
-    scale = 5.0 if sensor == "accel" else 0.05
-    found = [_generic("time", _hats(session.t, 6), n, scale)]
-    if session.thermal:
-        t = (session.temperature - session.temperature.mean()) / 5.0
-        found.append(_generic("temperature", [t, t ** 2, t ** 3], n, scale))
-    before = np.stack(m.before, 1)
-    fade = np.exp(-session.since / 20.0)
-    history = [before[:, i] for i in range(3)] + [before[:, i] * before[:, j] for i in range(3)
-                                                  for j in range(i)]
-    found.append(_generic("history", history, n, scale))
-    since = [fade] + [(before[:, i] - f[:, i]) * fade for i in range(3)]
-    found.append(_generic("time_since_move", since, n, scale))
-    found.append(_generic("orientation", _harmonics(f, sensor), n, scale))
-    return [*found, _flip(session, scale)]
-
-
-def _flip(session, scale):
-    """Along the axis of each face, what changes sign with the flip; zero where no flip was.
-    Across it that is the table's tilt and the box's."""
-    sign = np.where(session.code % 2 == 1, 1.0, -1.0)  # codes 1, 3, ... are a, the others b
-    keys, axes, columns = [], [], []
-    for face in range(len(faces.AXIS)):
-        on = session.face == face
-        column = np.zeros((session.n, 3))
-        if len(np.unique(sign[on])) == 2:
-            column[on, faces.AXIS[face]] = sign[on]
-        keys.append("%s%d" % ("xyz"[faces.AXIS[face]], face))
-        axes.append(faces.AXIS[face])
-        columns.append(column.reshape(-1))
-    return Design("~flip", "", keys, axes, np.stack(columns, 1), np.full(len(keys), scale))
-
-
-def _generic(domain, functions, n, scale):
-    keys, axes, columns = [], [], []
-    for number, values in enumerate(functions):
-        for axis in range(3):
-            column = np.zeros((n, 3))
-            column[:, axis] = values
-            keys.append("%s%d" % ("xyz"[axis], number))
-            axes.append(axis)
-            columns.append(column.reshape(-1))
-    return Design("~" + domain, "", keys, axes, np.stack(columns, 1),
-                  np.full(len(keys), scale))
-
-
-def _hats(x, number):
-    """Piecewise straight functions between equally spaced corners."""
-    u = (x - x.min()) / max(float(np.ptp(x)), 1e-9) * (number - 1)
-    return [np.clip(1.0 - np.abs(u - k), 0.0, None) for k in range(number)]
-
-
-def _harmonics(f, sensor):
-    """Functions of the direction of gravity: degrees 2 and 3 (gyro: 1, too)."""
-    x, y, z = f.T
-    second = [x * x, y * y, x * y, x * z, y * z]
-    third = [x ** 3, y ** 3, z ** 3, x * y * z, x * y * y, y * z * z, z * x * x]
-    return ([x, y, z] if sensor == "gyro" else []) + second + third

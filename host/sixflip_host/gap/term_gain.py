@@ -8,7 +8,7 @@ from sixflip import record_terms
 from sixflip.correction_of import correction_of
 
 from ..capture.corrected_rows import corrected_rows
-from . import adequacy, attitude_fit, gyro_turns, nominal_fit, sensor_gap, which
+from . import attitude_fit, gyro_turns, nominal_fit, sensor_gap, which
 
 
 def corrected(session, record):
@@ -47,7 +47,7 @@ class Gains:
             if not halves:
                 return
             self.data = which.Data([gap.unit(p, m, certified) for p, m in halves])
-            index = adequacy.Adequacy(self.data, gap.chosen, gap.allowed).index
+            index = gap.halved_levels(self.data)
         self.units = [u for u in self.data.units if not getattr(u, "between", False)]
         covariances = [u.covariance(*u.grid[k]) for u, k in zip(self.units, index)]
         self.floor = float(np.sqrt(sum(np.trace(c) for c in covariances)

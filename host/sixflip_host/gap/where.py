@@ -3,7 +3,7 @@ discoveries controlled [Benjamini & Hochberg, JRSS B 57 (1995) 289]."""
 import numpy as np
 from scipy import linalg, stats
 
-from . import between, crooked
+from . import between, crooked, hypotheses
 
 FALSE_DISCOVERIES = 0.01
 LEAST_SHARE = 0.01  # of the excess: less is no place to look at
@@ -31,13 +31,27 @@ def places(gap):
         for letter in cause.letters or [None]:
             named.append(Place(gap.kind, letter, cause.domain, cause.share or 0.0,
                                np.exp(-min(cause.score, 600.0))))
-    if gap.drift:
-        named.append(Place(gap.kind, None, "time", 1.0, np.exp(-min(gap.drift[1], 600.0))))
+    for form in gap.strangers:
+        named += _strange(gap, form, tested)
+    if "drift" in gap.found.best.names:
+        gain = gap.found.gains["drift"]
+        named.append(Place(gap.kind, None, "time", 1.0, np.exp(-min(gain, 600.0))))
     for place in named:
         place.named = True
     known = {(p.axis, p.domain) for p in named}
     return sorted(named + [t for t in tested if (t.axis, t.domain) not in known
                            and t.share >= LEAST_SHARE], key=order)
+
+
+def _strange(gap, form, tested):
+    """Places of a nameless member of the likeliest set: its axes where it has any, else those
+    that the tests of its domain show."""
+    gain, domain = gap.found.gains[form.effect], hypotheses.domain(form.effect)
+    share = gain / max(gain, 0.5 * gap.adequacy.excess_before, 1e-9)
+    p = np.exp(-min(gain, 600.0))
+    letters = ["xyz"[axis] for axis, _ in gap.strange_axes[form.effect]] or [
+        t.axis for t in tested if t.domain == domain] or [None]
+    return [Place(gap.kind, letter, domain, share, p) for letter in letters]
 
 
 def order(place):
@@ -91,7 +105,10 @@ def across(gap):
     if worst <= ORDINARY_PLACEMENT_MG:
         return []
     share = 1.0 - (ORDINARY_PLACEMENT_MG / worst) ** 2
-    return [Place("accel", None, "across_gravity", share, 1e-6)]
+    # As many placements as there are, two directions each, against what a hand does.
+    number = 2 * sum(s.placements() for s in gap.sessions)
+    p = stats.chi2.sf(number * (worst / ORDINARY_PLACEMENT_MG) ** 2, number)
+    return [Place("accel", None, "across_gravity", share, p)]
 
 
 def along(gap):

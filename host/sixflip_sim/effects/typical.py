@@ -89,8 +89,9 @@ SIZES = {
         "mpu6050-gyro": (4.8, "MPU-6050 RM rev 4.2, register 26"),
         "adxl345": (5.0, _JUDGED), "itg3205": (5.0, _JUDGED)},
     "hysteresis": {
-        "mpu6050-accel": (1.0, _JUDGED), "mpu6050-gyro": (0.01, _JUDGED),
-        "adxl345": (1.0, _JUDGED), "itg3205": (0.02, _JUDGED)},
+        "mpu6050-accel": (5.0, "as creep: what fades slowly and what stays are one memory"),
+        "mpu6050-gyro": (0.01, _JUDGED),
+        "adxl345": (5.0, "as creep"), "itg3205": (0.02, _JUDGED)},
     "creep": {
         "mpu6050-accel": (5.0, "5 mg, tau 60-70 s, seen on Z"), "adxl345": (5.0, _JUDGED)},
     "lever_arm": {

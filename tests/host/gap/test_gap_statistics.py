@@ -1,60 +1,7 @@
 """The statistics of the gap on small made-up problems whose answer is known."""
 import numpy as np
-import pytest
-from scipy import stats
 
-from sixflip_host.gap import shrinkage, thermometer, where, which
-from sixflip_host.gap.nominal_fit import Unit
-from sixflip_host.gap.regressors import Design
-
-
-def unit(generator, theta=0.0, n=40):
-    """A session of n blocks of one axis that matters, with a slope in it."""
-    slope = np.zeros((n, 3))
-    slope[:, 0] = np.linspace(-1.0, 1.0, n)
-    other = np.zeros((n, 3))
-    other[:, 1] = generator.standard_normal(n)
-    design = Design("slope", "", ["x"], [0], slope.reshape(-1, 1), np.array([100.0]))
-    rival = Design("other", "", ["y"], [1], other.reshape(-1, 1), np.array([100.0]))
-    y = (theta * slope + generator.standard_normal((n, 3))).reshape(-1)
-    nuisance = np.kron(np.ones((n, 1)), np.eye(3))
-    return Unit(y, nuisance, np.eye(3 * n), np.zeros((3 * n, 0)), np.eye(3 * n),
-                ((0.0,), (0.01, 1.0)), [design, rival])
-
-
-def test_the_score_is_the_log_density_of_the_session_held_out():
-    generator = np.random.default_rng(5)
-    units = [unit(generator, 2.0), unit(generator, 2.0)]
-    data = which.Data(units)
-    columns, prior = np.array([0]), np.array([100.0])
-    found = which.score(data, columns, prior)[0] - data.base[0]
-    fits = which.fits(data, columns, prior)
-    expected = 0.0
-    for held, train in ((0, 1), (1, 0)):
-        theta, spread = which.coefficients([fits[train]], prior)
-        s = units[held].columns[:, 0]
-        for fit, sign, mean, extra in ((fits[held], 1, theta[0, 0] * s, spread[0, 0, 0]),
-                                       (which.fits(data, columns[:0], prior[:0])[held], -1, 0 * s,
-                                        0.0)):
-            point = units[held].grid[fit.index[0]]
-            cov = units[held].covariance(*point) + extra * np.outer(s, s)
-            expected += sign * stats.multivariate_normal.logpdf(units[held].z, mean, cov)
-    assert found == pytest.approx(expected, abs=1e-6)
-
-
-def test_only_the_effect_that_is_there_gains():
-    generator = np.random.default_rng(8)
-    data = which.Data([unit(generator, 3.0), unit(generator, 3.0)])
-    gains = {o.effect: g[0] for o, g in which.gains(data, which.candidates(data.units)).items()}
-    assert gains["slope"] > 20.0
-    assert gains["other"] < 2.0
-
-
-def test_a_coefficient_that_differs_between_sessions_does_not_gain():
-    generator = np.random.default_rng(9)
-    data = which.Data([unit(generator, 3.0), unit(generator, -3.0)])
-    options = [o for o in which.candidates(data.units) if o.effect == "slope"]
-    assert next(iter(which.gains(data, options).values()))[0] < 0.0
+from sixflip_host.gap import shrinkage, thermometer, where
 
 
 def test_fieller_covers_the_true_share_and_owns_up_to_too_small_a_gap():

@@ -1,0 +1,39 @@
+"""What the rests themselves say of a drift: it goes on while the box lies still.
+
+A random walk is given to the contrasts as a few slow terms (strangers.walk). What it does from
+one block of a rest to the next is faster than those, and is judged here: what only differs from
+pose to pose does nothing within a rest, and is no drift.
+"""
+import numpy as np
+
+from sixflip_sim.effects.drift import TIMES_S
+
+from .nominal_fit import FURTHER_S
+
+
+def within_rests(part, kind, size, flicker):
+    """(3,) log likelihood ratio (nats), axis by axis, of the differences between neighbouring
+    blocks of the rests of a session: a random walk that ends `size` off on average, against
+    noise and usual flicker alone. size, flicker in mg or deg/s."""
+    values, noise = (part.accel, part.noise_accel) if kind == "accel" else (
+        part.gyro, part.noise_gyro)
+    same = np.flatnonzero(np.diff(part.placement) == 0)
+    if not len(same):
+        return np.zeros(3)
+    difference, gap = np.diff(values, axis=0)[same], np.diff(part.t)[same]
+    over = noise[None] ** 2 * (1.0 / part.seconds[same] + 1.0 / part.seconds[same + 1])[:, None]
+    over = over + flicker ** 2 * differences(gap, gap)[:, None]
+    # Two neighbouring means over g seconds of a walk of rate q differ by 2/3 q g.
+    more = (size ** 2 / max(float(np.ptp(part.t)), 1.0) * gap * 2.0 / 3.0)[:, None] + over
+    ratio = np.log(over / more) + difference ** 2 * (1.0 / over - 1.0 / more)
+    return 0.5 * ratio.sum(axis=0)
+
+
+def differences(gap, block):
+    """Variance of the difference of two means over `block` seconds, their middles `gap` >= block
+    apart, of unit flicker: per exponential 2 var - 2 cov, averaged over the blocks."""
+    times = np.array(FURTHER_S + TIMES_S)[:, None]
+    x = block[None] / times
+    own = 2.0 / x * (1.0 - (1.0 - np.exp(-x)) / x)
+    both = ((1.0 - np.exp(-x)) / x) ** 2 * np.exp(-(gap - block)[None] / times)
+    return 2.0 * (own - both).sum(axis=0)

@@ -1,0 +1,118 @@
+"""The score of sets of hypotheses on small made-up problems whose answer is known."""
+import numpy as np
+import pytest
+from scipy import stats
+
+from sixflip_host.gap import cutoffs, evidence, hypotheses, posterior
+from sixflip_host.gap.evidence import NONE, Columns, Levels
+from sixflip_host.gap.nominal_fit import Unit
+from sixflip_host.gap.regressors import Design
+
+USUAL = Levels(1.0, 0.01, 1.0)
+
+
+def unit(generator, theta=0.0, jump=0.0, n=40):
+    """A session of n blocks of one axis that matters, with a slope and a jump in it."""
+    slope = np.zeros((n, 3))
+    slope[:, 0] = np.linspace(-1.0, 1.0, n)
+    other = np.zeros((n, 3))
+    other[:, 1] = generator.standard_normal(n)
+    steps = np.zeros((n, 3, 3))
+    for k, start in enumerate((10, 20, 30)):
+        steps[:, 2, k] = np.arange(n) >= start
+    y = theta * slope + generator.standard_normal((n, 3))
+    y[:, 2] += jump * steps[:, 2, generator.integers(3)]
+    jumps = Design("~jump", "", ["z0", "z1", "z2"], [2, 2, 2], steps.reshape(-1, 3),
+                   np.full(3, 10.0))
+    jumps.choices = [(0,), (1,), (2,)]
+    designs = [Design("thermal_bias", "", ["x"], [0], slope.reshape(-1, 1), np.array([10.0])),
+               Design("warm_up", "", ["y"], [1], other.reshape(-1, 1), np.array([10.0])), jumps]
+    nuisance = np.kron(np.ones((n, 1)), np.eye(3))
+    return Unit(y.reshape(-1), nuisance, np.eye(3 * n), np.zeros((3 * n, 0)), np.eye(3 * n),
+                ((0.0,), (0.01, 1.0)), designs)
+
+
+def model_of(units):
+    return posterior.Model(units, [u.statistics() for u in units], USUAL)
+
+
+def form(units, effect):
+    return next(f for f in hypotheses.of(units) if f.effect == effect)
+
+
+def found(units):
+    forms = hypotheses.of(units)
+    return posterior.search(model_of(units), forms, cutoffs.simulated(
+        units, forms, USUAL, [0] * len(units)))
+
+
+def test_the_score_is_the_log_density_of_the_session_held_out():
+    generator = np.random.default_rng(5)
+    units = [unit(generator, 0.1), unit(generator, 0.1)]
+    shared = Columns(np.array([0]), np.array([1e4]))
+    level = [USUAL.prior(u, ()) for u in units]
+    fits = [evidence.fit(u, u.statistics(), shared, NONE, p) for u, p in zip(units, level)]
+    expected = 0.0
+    for held, train in ((0, 1), (1, 0)):
+        theta, spread = evidence.coefficients([fits[train]], shared)
+        s, point = units[held].columns[:, 0], int(fits[held].index[0])
+        covariance = units[held].covariance(*units[held].grid[point])
+        expected += level[held][point] + stats.multivariate_normal.logpdf(
+            units[held].z, theta[0, 0] * s, covariance + spread[0, 0, 0] * np.outer(s, s))
+        expected += 0.5 * units[held].freedom * np.log(2.0 * np.pi)
+    assert evidence.score(fits, shared)[0] == pytest.approx(expected, abs=1e-6)
+
+
+def test_a_size_beyond_what_parts_have_is_unlikely_however_well_it_fits():
+    generator = np.random.default_rng(7)
+    units = [unit(generator, 50.0), unit(generator, 50.0)]
+    narrow, wide = (evidence.score([evidence.fit(u, u.statistics(), one, NONE, np.zeros(2))
+                                    for u in units], one)[0]
+                    for one in (Columns(np.array([0]), np.array([size])) for size in (1.0, 100.0)))
+    assert wide - narrow > 0.9 * np.log1p(50.0 ** 2)
+
+
+def test_private_columns_are_integrated_out_with_their_prior():
+    one = unit(np.random.default_rng(6), 0.0, 3.0)
+    private = Columns(np.array([2, 3]), np.array([0.7, 2.0]))
+    fit = evidence.fit(one, one.statistics(), NONE, private, np.zeros(len(one.grid)))
+    s = one.columns[:, private.index]
+    covariance = one.covariance(*one.grid[int(fit.index[0])]) + s @ np.diag(
+        private.prior ** 2) @ s.T
+    expected = stats.multivariate_normal.logpdf(one.z, np.zeros(one.freedom), covariance)
+    assert fit.evidence[0] == pytest.approx(
+        expected + 0.5 * one.freedom * np.log(2.0 * np.pi), abs=1e-6)
+
+
+def test_only_the_effect_that_is_there_is_found():
+    generator = np.random.default_rng(8)
+    said = found([unit(generator, 3.0), unit(generator, 3.0)])
+    assert said.best.names == {"thermal_bias"}
+    assert said.places["thermal_bias"]["thermal_bias"] > 0.95
+
+
+def test_nothing_is_found_where_nothing_is():
+    generator = np.random.default_rng(18)
+    wrong = sum(bool(found([unit(generator), unit(generator)]).best.forms) for _ in range(20))
+    assert wrong <= 1
+
+
+def test_a_coefficient_that_differs_between_sessions_does_not_gain():
+    generator = np.random.default_rng(9)
+    units = [unit(generator, 3.0), unit(generator, -3.0)]
+    model = model_of(units)
+    assert model.scored((form(units, "thermal_bias"),)).score < model.scored(()).score
+
+
+def test_a_jump_of_each_sessions_own_is_a_stranger_beside_the_effect():
+    generator = np.random.default_rng(10)
+    said = found([unit(generator, 3.0, 4.0), unit(generator, 3.0, 4.0)])
+    assert said.best.names == {"thermal_bias", "~jump"}
+    assert posterior.domains_left(said).keys() == {"time"}
+
+
+def test_a_level_of_noise_beyond_the_usual_costs_unless_it_may_be_anything():
+    one = unit(np.random.default_rng(11))
+    usual, free = USUAL.prior(one, ()), USUAL.prior(one, {"flicker"})
+    assert one.grid[1][1] == 1.0 and usual[1] < -10.0 and usual[0] == 0.0
+    assert not free.any()
