@@ -110,7 +110,7 @@ def closed(found, args):
     """{sensor: Loop} of the simulator run again; the scenario file where asked for."""
     from sixflip_sim.effects.library import NAMES
 
-    from . import closed_loop, closed_loop_motion, closed_loop_turns, scenario_out
+    from . import loops, scenario_out
     named = [name for name in args.add if name != "found"]
     for name in named:
         if name not in NAMES:
@@ -118,32 +118,11 @@ def closed(found, args):
                 name, NAMES, "expected found, or an effect out of: %s")))
     if not (args.add or args.scenario or args.report) or not found.gaps:
         return {}
-    loops = {}
-    for kind, gap in found.gaps.items():
-        progress.doing("the simulator again, with what was found")
-        mine = [n for n in named if n in {o.effect for o in gap.options}]
-        for name in mine[:-1]:
-            closed_loop.force(gap, name)
-        loop = closed_loop.close(found, kind, mine[-1] if mine else None)
-        if loop:
-            loops[kind] = loop
-    turns = found.turns
-    if turns:
-        for name in named:
-            closed_loop.force(turns, name)
-        loop = closed_loop_turns.close(turns, found.settings.reference_c)
-        if loop:
-            loops["gyro_turns"] = loop
-    motion = found.motion
-    if motion:
-        for name in named:
-            motion.force(name)
-        loop = closed_loop_motion.close(motion)
-        if loop:
-            loops["accel_motion"] = loop
+    closed_again = loops.of(found, named)
     if args.scenario:
-        scenario_out.write(args.scenario, found, [e for lo in loops.values() for e in lo.effects])
-    return loops
+        scenario_out.write(args.scenario, found,
+                           [e for lo in closed_again.values() for e in lo.effects])
+    return closed_again
 
 
 def scenario_files(value, args):

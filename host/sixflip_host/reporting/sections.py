@@ -140,16 +140,15 @@ def board_history(page, board):
 def gap(page, folder, paths):
     """What a nominal simulator of this sensor lacks, by `diagnose`; folder: for its pictures."""
     from ..capture import capture_file
-    from ..gap import answer, closed_loop, diagnosis, observations, report, words
+    from ..gap import answer, diagnosis, loops, observations, report, words
     found = diagnosis.Diagnosis(
         [observations.Session(path, capture_file.read_samples(path)) for path in paths],
         diagnosis.Settings())
-    loops = {kind: loop for kind in found.gaps
-             if (loop := closed_loop.close(found, kind, None))}
+    closed = loops.of(found)
     result = answer.of(found)
-    if loops:
-        result["simulated"] = {kind: answer.of_loop(kind, one) for kind, one in loops.items()}
+    if closed:
+        result["simulated"] = {kind: answer.of_loop(kind, one) for kind, one in closed.items()}
     page.heading("The gap to a nominal simulator")
     page.paragraph(words.sentence(result))
     report.sections(page, result, [(caption, path.read_bytes())
-                                   for caption, path in report.draw(folder, found, loops)])
+                                   for caption, path in report.draw(folder, found, closed)])
