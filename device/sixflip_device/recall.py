@@ -4,7 +4,7 @@ was left unfinished, that one goes on."""
 import os
 
 from . import in_force
-from .flash_files import NEW, OFFERED, size
+from .flash_files import NEW, OFFERED, REFUSED, size
 
 
 def run(unit):
@@ -17,7 +17,7 @@ def run(unit):
     except OSError:
         pass  # no session was cut short
     else:
-        from .capture_files import file_cut_short
+        from .cut_short import file_cut_short
         try:
             file_cut_short(unit.board.root)
         except OSError as e:
@@ -25,7 +25,8 @@ def run(unit):
     first, unit.first = unit.first, False
     if unit.record is None and first and not unit.asked:
         unit.asked = "nobody"  # has: the board does by itself
-        from .capture_files import unfinished
-        if unfinished(unit.board.root):
-            unit.request = {"continue": True}
+        if size(unit.board.root + REFUSED):
+            from .cut_short import unfinished
+            if unfinished(unit.board.root):
+                unit.request = {"continue": True}
     return "asked" if unit.asked else "put_in_force"

@@ -4,7 +4,7 @@ A refused session replaces nothing: its capture is kept as refused.bin, and the 
 before goes on. A good one that says nothing new is kept as unsaved.bin.
 """
 
-from .capture_files import file_cut_short, keep, keep_unsaved, refuse
+from .capture_files import keep, keep_unsaved, refuse
 from .flash_files import UNSAVED
 
 
@@ -66,8 +66,11 @@ def run(unit):
     taken.placements = taken.moves = None
     if _tell(unit):
         _save(unit, taken.record)
+    elif taken.how == "complete":
+        _file_away(unit, refuse)
     else:
-        _file_away(unit, refuse if taken.how == "complete" else file_cut_short)
+        from .cut_short import file_cut_short
+        _file_away(unit, file_cut_short)
     unit.taken = None
     if taken.how == "bus lost":
         unit.events.error(taken.ended, "the sensor that was there a moment ago")

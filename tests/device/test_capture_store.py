@@ -9,7 +9,7 @@ from array import array
 from sixflip.capture_blocks import ACCEL
 from sixflip.capture_reader import read as read_blocks
 from sixflip.placement import Placement
-from sixflip_device import capture_files, capture_store, flash_files
+from sixflip_device import capture_files, capture_store, cut_short, flash_files
 from sixflip_device.capture_store import CaptureStore
 
 
@@ -188,7 +188,7 @@ class TestCaptureStore(unittest.TestCase):
         store = self.store()
         self.session(store)
         store._file.close()  # and no end block
-        capture_files.file_cut_short(self.root)
+        cut_short.file_cut_short(self.root)
         self.assertEqual(os.listdir(self.root), ["refused.bin"])
         self.assertEqual(len(self.content("refused.bin").placements), 3)
 
@@ -197,18 +197,18 @@ class TestCaptureStore(unittest.TestCase):
             store = self.store()
             self.session(store, poses)
             store._file.close()
-            capture_files.file_cut_short(self.root)
+            cut_short.file_cut_short(self.root)
             self.assertEqual(len(self.content("refused.bin").placements), left)
 
     def test_power_cut_before_the_first_sample_leaves_nothing(self):
         self.store()._file.close()
-        capture_files.file_cut_short(self.root)
+        cut_short.file_cut_short(self.root)
         self.assertEqual(os.listdir(self.root), [])
 
     def test_power_cut_before_the_header_is_whole(self):
         with open(self.root + "capture.new", "wb") as f:
             f.write(b"6CAP")
-        capture_files.file_cut_short(self.root)
+        cut_short.file_cut_short(self.root)
         self.assertEqual(os.listdir(self.root), [])
 
     def test_power_cut_in_a_session_nobody_asked_for_leaves_one_with_more_poses(self):
@@ -218,11 +218,11 @@ class TestCaptureStore(unittest.TestCase):
                 store.add(10000, array("h", [1, -2, 16384, 0, 0, 0, 0]))
             self.session(store, poses)
             store._file.close()
-            capture_files.file_cut_short(self.root)
+            cut_short.file_cut_short(self.root)
             self.assertEqual(os.listdir(self.root), ["refused.bin"])
             self.assertEqual(len(self.content("refused.bin").placements), 6)
         store = self.store()
         self.session(store, 2)
         store._file.close()
-        capture_files.file_cut_short(self.root)
+        cut_short.file_cut_short(self.root)
         self.assertEqual(len(self.content("refused.bin").placements), 2)
