@@ -18,7 +18,7 @@ from .flash_files import free_bytes
 
 
 def _info(unit, command):
-    from .capture_files import unfinished
+    from .cut_short import unfinished
     record = unit.record
     unit.events.emit(
         "info", board=unit.board.name, id=unit.board.unique_id,

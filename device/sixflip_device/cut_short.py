@@ -4,7 +4,6 @@ Apart from capture_files.py, for a session that ends well needs none of it in it
 """
 
 from sixflip.capture_blocks import COMPLETE, END
-from sixflip.capture_scan import Scan
 
 from .capture_files import refuse
 from .flash_files import NEW, REFUSED, remove
@@ -27,6 +26,7 @@ def unfinished(root):
 def _look(name):
     """(poses a capture holds, its samples, whether somebody asked for it); -1 poses when there
     is none."""
+    from sixflip.capture_scan import Scan  # long, and not needed for unfinished()
     try:
         with open(name, "rb") as f:
             scan = Scan(f)

@@ -66,13 +66,13 @@ class TestCaptureStore(unittest.TestCase):
             return read_blocks(f.read())
 
     def test_a_capture_that_lacks_poses_is_unfinished_and_a_complete_one_is_not(self):
-        self.assertFalse(capture_files.unfinished(self.root))       # there is none
+        self.assertFalse(cut_short.unfinished(self.root))       # there is none
         for complete in (True, False):
             store = self.store()
             self.session(store)
             store.finish(complete, self.placements)
             capture_files.refuse(self.root)
-            self.assertEqual(capture_files.unfinished(self.root), not complete)
+            self.assertEqual(cut_short.unfinished(self.root), not complete)
 
     def test_all_of_it(self):
         store = self.store()
