@@ -10,7 +10,7 @@ import sys
 import textwrap
 import traceback
 
-from . import file_arguments
+from . import file_arguments, sample_limit
 from .did_you_mean import closest, instead
 from .errors import SixflipError, UsageError, internal_error
 from .narration import log, narrated
@@ -128,9 +128,11 @@ def parser_for(verb):
 
 
 def add_global(parser):
-    """The options of every verb; main() has obeyed them before a parser sees the rest."""
+    """The options of every verb; main() has obeyed GLOBAL before a parser sees the rest."""
     for name, words in GLOBAL.items():
         parser.add_argument(name, action="store_true", help=words)
+    parser.add_argument("--limit", type=int, default=sample_limit.USUAL, metavar="SAMPLES",
+                        help="how many there may be in a file (default: %(default)d)")
 
 
 def run(argv):
@@ -148,7 +150,8 @@ def run(argv):
     parser = parser_for(verb)
     args = parser.parse_args(argv[1:])
     file_arguments.check(parser, args)
-    return load(verb).run(args) or 0
+    with sample_limit.at_most(args.limit):
+        return load(verb).run(args) or 0
 
 
 def main(argv=None):
@@ -182,6 +185,8 @@ def main(argv=None):
         except OSError:                 # a full disk behind stdout: Python would say so again
             throw_away_stdout()
         return complain("%s%s" % (name, error.strerror or error), code, debug)
+    except MemoryError:
+        return complain("there is not enough memory for this", 4, debug)
     except Exception as error:      # a bug of ours: still one line
         return complain(internal_error(error), INTERNAL_ERROR, debug)
 

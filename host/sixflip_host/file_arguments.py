@@ -5,7 +5,7 @@ something of its own kind, or with --force."""
 import os
 
 from . import file_kinds
-from .errors import BadFile, UsageError
+from .errors import UsageError
 
 
 def add_input(parser, *names, **options):
@@ -55,10 +55,7 @@ def may_replace(written, force=False):
     for path, kinds in written:
         if force or not os.path.isfile(path):
             continue
-        try:
-            kind = file_kinds.kind_of(path)
-        except OSError as error:
-            raise BadFile("%s: cannot be replaced: %s" % (path, error.strerror)) from None
+        kind = file_kinds.kind_of(path)
         if kind not in ("", *kinds):
             raise UsageError("%s: is there already and is %s, expected another name, or %s there "
                              "(or --force)" % (path, kind or "of another kind",

@@ -2,6 +2,8 @@
 
 import zlib
 
+from .errors import BadFile
+
 HEAD = 1 << 14          # bytes that are looked at
 GZIP = b"\x1f\x8b"
 
@@ -63,8 +65,11 @@ SIGNS = (
 
 def kind_of(path):
     """One of the kinds above; None for any other file, "" for one without content."""
-    with open(path, "rb") as file:
-        head = file.read(HEAD)
+    try:
+        with open(path, "rb") as file:
+            head = file.read(HEAD)
+    except OSError as error:
+        raise BadFile("%s: cannot be read: %s" % (path, error.strerror)) from None
     if head.startswith(GZIP):
         try:
             head = zlib.decompressobj(wbits=31).decompress(head, HEAD)

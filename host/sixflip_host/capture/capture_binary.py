@@ -8,6 +8,7 @@ from sixflip.capture_blocks import ACCEL, GAP_US, GROUPS, GYRO, MAG, TEMP
 from sixflip.capture_reader import read as read_blocks
 from sixflip.capture_writer import BlockWriter
 
+from .. import sample_limit
 from ..errors import BadFile
 from . import board_extras
 from .board_extras import EXTRAS, LOST, PAUSES
@@ -17,6 +18,7 @@ from .capture_rows import quoted
 LATE = 1.5              # an interval so many times the usual one covers another sample's time
 UNLABELLED = "nobody labelled the poses"
 BLOCK_SAMPLES = 256
+MOST_BYTES = 32             # of a board's file for a sample, its share of a block included
 LATEST_US = (1 << 32) * 1000000
 
 
@@ -45,13 +47,14 @@ def decode(data, path="capture"):
         raise BadFile("%s: %s" % (path, error))
     meta = _meta(path, blocks)
     width = len(blocks.names)
-    rows = np.array(blocks.rows, np.int16).reshape(-1, width)
+    rows = _array(blocks.rows, np.int16).reshape(-1, width)
     if not len(rows) and not blocks.placements:
         raise BadFile("%s: %s, and before it there is not one sample" % (
             path, blocks.damage or "the capture is empty"))
-    columns = {name: rows[:, index] for index, name in enumerate(blocks.names)}
-    capture = Capture(meta, np.array(blocks.t_us, np.int64), _triple(columns, "a"),
-                      _triple(columns, "g"), columns.get("temp"), _triple(columns, "m"))
+    sample_limit.check_samples(path, len(rows))
+    named = {name: rows[:, index:index + 3] for index, name in enumerate(blocks.names)}
+    capture = Capture(meta, _array(blocks.t_us, np.int64), named["ax"], named.get("gx"),
+                      named["temp"][:, 0] if "temp" in named else None, named.get("mx"))
     capture.board_placements = blocks.placements
     capture.sums_only = blocks.sums_only or not len(rows)
     if UNLABELLED not in blocks.notes:
@@ -137,10 +140,9 @@ def _meta(path, blocks):
     return meta
 
 
-def _triple(columns, letter):
-    if letter + "x" not in columns:
-        return None
-    return np.stack([columns[letter + axis] for axis in "xyz"], axis=1)
+def _array(buffer, dtype):
+    """A numpy array of what the shared reader found, in the same memory."""
+    return np.frombuffer(buffer, dtype) if len(buffer) else np.zeros(0, dtype)
 
 
 def _labels(path, blocks):

@@ -3,23 +3,33 @@
 The text format is sixflip-capture 1: a version line, a JSON line, column names, whole numbers.
 """
 
-import gzip
+import itertools
 import json
+import zlib
 
 import numpy as np
 
 from sixflip.faces import pose_name
 
-from .. import atomic_write
+from .. import atomic_write, sample_limit
 from ..errors import BadFile
 from ..simulating import pose_runs
 from . import board_extras, capture_binary
-from .capture_header import ACCEL, GYRO, MAG, STANDARD_G, VERSION, check_meta, parse_header
+from .capture_header import (
+    ACCEL,
+    GYRO,
+    LONGEST_LINE,
+    MAG,
+    STANDARD_G,
+    VERSION,
+    check_meta,
+    parse_header,
+)
 from .capture_rows import parse_rows, quoted
-from .gunzip import MAGIC as GZIP_MAGIC
-from .gunzip import gunzip
+from .unpack import Source
 
 BOARD_MAGIC = b"6CAP"
+ROWS_WRITTEN = 10_000    # at a time: as Python objects they take half a kilobyte each
 
 
 class Capture:
@@ -84,12 +94,25 @@ def read(path):
 
     Raises BadFile with one line: the file, the line in it, what was found and expected.
     """
-    data = atomic_write.read_bytes(path)
-    if data.startswith(BOARD_MAGIC):
+    pieces = Source(path).pieces()
+    head = _begins(pieces, lambda head: len(head) < len(BOARD_MAGIC))
+    if head.startswith(BOARD_MAGIC):
+        data = bytearray(head)
+        for piece in pieces:
+            data += piece
+            sample_limit.check_samples(path, len(data) // capture_binary.MOST_BYTES)
         return capture_binary.decode(data, str(path))
-    if data.startswith(GZIP_MAGIC):
-        data = gunzip(path, data)
-    return parse(path, data)
+    return _parse(path, head, pieces)
+
+
+def _begins(pieces, more, head=b""):
+    """The head of a file: pieces joined as long as more(head) asks for them."""
+    while more(head):
+        piece = next(pieces, None)
+        if piece is None:
+            break
+        head += piece
+    return head
 
 
 def read_samples(path):
@@ -104,29 +127,24 @@ def read_samples(path):
 
 def parse(path, data):
     """A capture from the bytes of its text; `path` is for the error."""
-    meta, columns, samples, offset = parse_header(path, data)
-    body = data[offset:]
-    if not body:
-        raise BadFile.at(path, 4, "no rows", "%s rows" % samples if samples else "a row a sample")
-    try:
-        values = parse_rows(path, body, columns, first_line=4)
-    except BadFile:
-        rows = body.count(b"\n")
-        if samples is not None and rows < samples and not body.endswith(b"\n"):
-            raise BadFile.at(path, 4 + rows, "the file was cut short in its row %d" % (rows + 1),
-                             "%d rows" % samples)
-        raise
+    return _parse(path, data, iter(()))
+
+
+def _parse(path, head, pieces):
+    """A capture from the beginning of its text, and the pieces behind that."""
+    head = _begins(pieces, lambda head: head.count(b"\n") < 3 and len(head) <= 3 * LONGEST_LINE,
+                   head)
+    meta, columns, samples, offset = parse_header(path, head)
+    values = parse_rows(path, itertools.chain([head[offset:]], pieces), columns, 4, samples)
     rows = len(values["t_us"])
+    if not rows:
+        raise BadFile.at(path, 4, "no rows", "%s rows" % samples if samples else "a row a sample")
     if samples is not None and rows != samples:
         raise BadFile.at(path, 3 + rows, "%s after %d rows" % (
             "the file was cut short" if rows < samples else "the file goes on", rows),
             "the %d rows its header promises" % samples)
-    capture = Capture(meta, values["t_us"], *(
-        np.stack([values[name] for name in group], axis=1) if group[0] in values else None
-        for group in (ACCEL, GYRO)),
-        values.get("temp"),
-        np.stack([values[name] for name in MAG], axis=1) if "mx" in values else None,
-        values.get("pose"))
+    capture = Capture(meta, values["t_us"], values["ax"], values.get("gx"), values.get("temp"),
+                      values.get("mx"), values.get("pose"))
     board_extras.take(capture, path)
     return capture
 
@@ -136,14 +154,24 @@ def write(path, capture):
 
     The same capture gives the same bytes, always.
     """
-    data = text(capture)
-    if str(path).endswith(".gz"):
-        data = gzip.compress(data, mtime=0)
-    atomic_write.write_bytes(path, data)
+    pieces = _text(capture)
+    atomic_write.write_pieces(path, _gzipped(pieces) if str(path).endswith(".gz") else pieces)
+
+
+def _gzipped(pieces):
+    packer = zlib.compressobj(9, wbits=31)      # no name and no time in it
+    for piece in pieces:
+        yield packer.compress(piece)
+    yield packer.flush()
 
 
 def text(capture):
     """The bytes of a text capture."""
+    return b"".join(_text(capture))
+
+
+def _text(capture):
+    """The same piece by piece."""
     if not len(capture):
         raise BadFile("the board kept only the sums of this capture: no samples to write")
     columns = capture.columns()
@@ -156,13 +184,17 @@ def text(capture):
     except (TypeError, ValueError) as error:
         raise BadFile("the capture's header cannot be written as JSON: %s" % quoted(str(error)))
     head = "# sixflip-capture %d\n# %s\n%s\n" % (VERSION, header, ",".join(columns))
-    fields = [capture.t_us.tolist()]
-    for block in (capture.accel, capture.gyro, capture.temp, capture.mag):
-        if block is not None:
-            fields += block.T.tolist() if block.ndim == 2 else [block.tolist()]
-    if capture.pose is not None:
-        names = {code: pose_name(code) if code else "" for code in set(capture.pose.tolist())}
-        fields.append([names[code] for code in capture.pose.tolist()])
-    row = ",".join(["%d"] * (len(columns) - (capture.pose is not None))
-                   + ["%s"] * (capture.pose is not None)) + "\n"
-    return (head + "".join([row % values for values in zip(*fields)])).encode("utf-8")
+    yield head.encode("utf-8")
+    names = None if capture.pose is None else {
+        code: pose_name(code) if code else "" for code in np.unique(capture.pose).tolist()}
+    row = ",".join(["%d"] * (len(columns) - (names is not None))
+                   + ["%s"] * (names is not None)) + "\n"
+    for first in range(0, len(capture), ROWS_WRITTEN):
+        some = slice(first, first + ROWS_WRITTEN)
+        fields = [capture.t_us[some].tolist()]
+        for block in (capture.accel, capture.gyro, capture.temp, capture.mag):
+            if block is not None:
+                fields += block[some].reshape(len(fields[0]), -1).T.tolist()
+        if names is not None:
+            fields.append([names[code] for code in capture.pose[some].tolist()])
+        yield "".join([row % values for values in zip(*fields)]).encode()

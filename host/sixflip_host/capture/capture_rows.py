@@ -1,4 +1,4 @@
-"""The rows of a text capture: all at once with numpy, or one by one to name the first fault.
+"""The rows of a text capture: a block at once with numpy, or one by one to name the first fault.
 
 The fast way accepts nothing but `-?[0-9]+` in a count column and a known pose name in `pose`;
 whatever it does not accept goes the slow way, which either reads it too or says what is wrong
@@ -13,38 +13,55 @@ from sixflip.faces import pose_name
 from sixflip.pose_codes import pose_code
 
 from ..errors import BadFile
+from .growing import Growing
+from .unpack import whole_lines
 
 INT16 = (-32768, 32767)
 TIMES = (-(1 << 62), (1 << 62) - 1)      # differences still fit into 64 bits
-PIECE = 1 << 22             # bytes read in one go: reading takes ten times as much memory
+LONGEST_ROW = 1 << 16       # bytes
+GROUPS = (("t_us",), ("ax", "ay", "az"), ("gx", "gy", "gz"), ("temp",), ("mx", "my", "mz"),
+          ("pose",))
 FAST_DIGITS = 18            # what a sum in int64 can hold without looking
 WHOLE_NUMBER = re.compile(r"\s*([+-]?[0-9]+)\s*\Z", re.ASCII)
 
 
-def parse_rows(path, body, columns, first_line):
-    """Rows of a capture -> {column: array}; t_us int64, pose int16 codes, the rest int16.
+def parse_rows(path, blocks, columns, first_line, samples=None):
+    """Rows of a capture -> {group: array}, as many groups as there are columns of.
 
-    body        bytes after the line of column names, every line ended by a newline
+    blocks      pieces of the text behind the line of column names
     columns     names in the order of the file
     first_line  line number of the first row, for the error
-    Raises BadFile with the line number and what was expected.
+    samples     rows that are promised, or None
+    The groups: "t_us" int64 (n,), "ax", "gx", "mx" int16 (n, 3), "temp" int16 (n,), "pose" int16
+    codes (n,). Raises BadFile with the line number and what was expected.
     """
-    parts, at, line = [], 0, first_line
-    while at < len(body):
-        end = body.find(b"\n", at + PIECE) + 1 or len(body)
-        part = body[at:end].replace(b"\r\n", b"\n")
-        values = _fast(part, columns)
-        parts.append(_slow(path, part, columns, line) if values is None else values)
-        line += len(parts[-1]["t_us"])
-        at = end
-    values = {name: np.concatenate([part[name] for part in parts]) for name in columns}
-    backwards = np.flatnonzero(np.diff(values["t_us"]) < 0)
+    groups = [group for group in GROUPS if group[0] in columns]
+    parts = {group: Growing(np.int64 if group[0] == "t_us" else np.int16,
+                            len(group) if len(group) > 1 else None) for group in groups}
+    last = None
+    for line, body in whole_lines(path, blocks, first_line, LONGEST_ROW):
+        if samples is not None and not body.endswith(b"\n") and line - first_line < samples:
+            raise BadFile.at(path, line, "the file was cut short in its row %d" % (
+                line - first_line + 1), "%d rows" % samples)
+        values = _fast(body, columns)
+        if values is None:
+            values = _slow(path, body, columns, line)
+        last = _forwards(path, values["t_us"], last, line)
+        for group, part in parts.items():
+            part.add(values[group[0]] if len(group) == 1 else
+                     np.stack([values[name] for name in group], axis=1))
+    return {group[0]: part.array() for group, part in parts.items()}
+
+
+def _forwards(path, times, last, line):
+    """The last of the times of a block; BadFile where one of them is before the one before it."""
+    steps = np.diff(times, prepend=times[0] if last is None else last)
+    backwards = np.flatnonzero(steps < 0)
     if len(backwards):
-        row = int(backwards[0]) + 1
-        times = values["t_us"]
-        raise BadFile.at(path, first_line + row, "t_us runs backwards, from %d to %d"
-                         % (times[row - 1], times[row]), "a time that does not decrease")
-    return values
+        row = int(backwards[0])
+        raise BadFile.at(path, line + row, "t_us runs backwards, from %d to %d"
+                         % (times[row] - steps[row], times[row]), "a time that does not decrease")
+    return times[-1]
 
 
 def _fast(body, columns):

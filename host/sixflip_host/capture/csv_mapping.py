@@ -63,7 +63,7 @@ def choose_columns(table, given):
             absent = next(name for name in group if name not in chosen)
             raise BadFile("%s: no column for %s, expected --map %s=NAME with one of %s" % (
                 table.path, absent, absent, " ".join(
-                    table.names or ["1 to %d" % len(table.rows[0])])))
+                    table.names or ["1 to %d" % table.width])))
     return chosen
 
 
@@ -88,11 +88,14 @@ def label_pose(label, given):
     return 0
 
 
-def poses_from_labels(labels, given):
-    """int16 codes from a column of labels, and the labels that were taken as moving."""
-    codes = {label: label_pose(label, given) for label in sorted(set(labels))}
-    ignored = [label for label, code in codes.items() if label and not code]
-    return np.array([codes[label] for label in labels], np.int16), ignored
+def poses_from_labels(labels, number, given):
+    """int16 codes of samples with labels[number], and the labels that were taken as moving.
+
+    labels  distinct ones; number: int (n,), which of them a sample has
+    """
+    codes = [label_pose(label, given) for label in labels]
+    ignored = sorted(label for label, code in zip(labels, codes) if label and not code)
+    return np.array(codes, np.int16)[number], ignored
 
 
 def poses_from_sections(path, rows, given):

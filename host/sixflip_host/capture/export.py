@@ -13,7 +13,6 @@ from ..simulating import other_simulators
 from ..solving.record_json import record_json
 from ..verifying.verify_files import read_record
 from . import capture_binary, capture_file, export_c, export_formats, export_mcap, export_tables
-from .show import RECORD_MAGIC
 
 HELP = "a capture or a record in another format"
 EXAMPLE = ("sixflip export record_a.bin --format imu_calib -o imu_calib.yaml\n"
@@ -104,7 +103,7 @@ def _kinds(args):
 def run(args):
     """Convert one file."""
     asked = _asked(args)
-    kind = "record" if atomic_write.read_bytes(args.file).startswith(RECORD_MAGIC) else "capture"
+    kind = "record" if file_kinds.kind_of(args.file) == file_kinds.RECORD else "capture"
     # where two formats have the same ending, the one that is made from such a file
     name = next((one for one in asked if FORMATS[one][0] == kind), asked[0])
     made_from, how, *_ = FORMATS[name]

@@ -14,6 +14,7 @@ from ..terminal import plain, say
 from . import capture_file, csv_mapping, ros_bag, units
 from .capture_header import ACCEL, GYRO, MAG, SENSORS, STANDARD_G, check_sensor
 from .csv_table import read_table
+from .growing import Growing
 
 HELP = "make a capture file from somebody else's CSV or ROS bag, finding the poses by itself"
 EXAMPLE = ("sixflip import session.csv.gz -o capture.csv --units si,dps --rate 102.4\n"
@@ -93,7 +94,7 @@ def convert(args):
     if args.topic and not ros_bag.is_bag(args.file):
         raise UsageError("--topic: only of a ROS bag, %s is none" % args.file)
     if ros_bag.is_bag(args.file):
-        table = ros_bag.read_bag(args.file, args.topic)
+        table = ros_bag.BagTable(args.file, args.topic)
         args.units = args.units or "si"
         args.time_column, args.time_unit = ros_bag.NAMES[0], "us"
     else:
@@ -101,9 +102,10 @@ def convert(args):
                            csv_mapping.looks_like_header)
     labels = csv_mapping.parse_pairs("--label", args.label)
     columns = csv_mapping.choose_columns(table, csv_mapping.parse_pairs("--map", args.map))
-    pose, remarks = _labelled(args, table, labels)
-    t_us, order = _times(args, table)
-    capture, more = _in_counts(args, table, columns, t_us)
+    read = _Columns(args, table, columns)
+    pose, remarks = _labelled(args, read, labels)
+    t_us, order = _times(args, table, read)
+    capture, more = _in_counts(args, read, t_us)
     capture.pose = pose
     if order is not None:
         for name in ("t_us", "accel", "gyro", "temp", "mag", "pose"):
@@ -113,14 +115,117 @@ def convert(args):
     return capture, more + remarks
 
 
-def _labelled(args, table, labels):
-    """Pose codes from a label column or a sections file, or None; remarks."""
+class _Columns:
+    """What is wanted of a table, as arrays: rows, times, labels and number, temp, counts.
+
+    counts  {ACCEL, GYRO, MAG: units.Counts}; those whose step has to be found first cost a
+            second reading of the table, but no room for all their values
+    """
+
+    def __init__(self, args, table, columns):
+        _check_options(args)
+        self.rows, self._last = 0, -np.inf
+        self.labels, self._number = {}, Growing(np.int32)
+        self._times, self._temp, self.temp_meta = Growing(float), Growing(np.int16), {}
+        self.counts = _counts(args, columns)
+        wanted = {group: [columns[name] for name in group] for group in self.counts}
+        wanted.update({name: [columns["temp"]] for name in ("temp",) if name in columns})
+        wanted.update({"time": [args.time_column]} if args.time_column else {})
+        for block in _split(table, wanted, args.label_column):
+            self._take(args, table, block)
+        looked = [group for group, one in self.counts.items() if one.lsb is None]
+        for group in looked:
+            self.counts[group].settle()
+        for _, values, _ in _split(table, {group: wanted[group] for group in looked}):
+            for group in looked:
+                self.counts[group].add(_si(args, group, values[group]))
+
+    def _take(self, args, table, block):
+        lines, values, labels = block
+        self.rows += len(lines)
+        if labels is not None:
+            self._number.add([self.labels.setdefault(one, len(self.labels)) for one in labels])
+        if "time" in values:
+            times = values["time"][:, 0]
+            if not args.sort:
+                _forwards(args, table, lines, times, self._last)
+            self._last = times[-1]
+            self._times.add(times)
+        if "temp" in values:
+            self._temp.add(_temperature(args, self.temp_meta, values["temp"][:, 0]))
+        for group, one in self.counts.items():
+            (one.look if one.lsb is None else one.add)(_si(args, group, values[group]))
+
+    def take_times(self):
+        """The times, which are here no longer."""
+        times, self._times = self._times.array(), None
+        return times
+
+    @property
+    def number(self):
+        return self._number.array()
+
+    @property
+    def temp(self):
+        return self._temp.array() if len(self._temp) else None
+
+
+def _split(table, wanted, label=None):
+    """(line numbers, {name: float (n, columns)}, labels) of every block; none of nothing."""
+    if not wanted:
+        return
+    names = [name for columns in wanted.values() for name in columns]
+    for block in table.blocks(names, label):
+        values, at = {}, 0
+        for name, columns in wanted.items():
+            values[name] = block.values[:, at:at + len(columns)]
+            at += len(columns)
+        yield block.lines, values, block.labels
+
+
+def _counts(args, columns):
+    """{group: units.Counts} of the groups that have columns."""
+    accel_unit, gyro_unit = _units(args.units or "counts")
+    if "mx" in columns and args.mag_lsb is None:
+        raise UsageError("columns mx my mz need --mag-lsb, counts per µT")
+    settings = {ACCEL: ("accelerometer", accel_unit, args.accel_lsb, units.ACCEL_UNITS),
+                GYRO: ("gyro", gyro_unit, args.gyro_lsb, units.GYRO_UNITS),
+                MAG: ("magnetometer", "counts", args.mag_lsb, units.ACCEL_UNITS)}
+    return {group: units.Counts(args.file, *settings[group]) for group in settings
+            if group[0] in columns}
+
+
+def _si(args, group, values):
+    """Values of a group; an acceleration in m/s² as if gravity were the standard one."""
+    if group == ACCEL and _units(args.units or "counts")[0] in ("si", "m/s2"):
+        return values * (STANDARD_G / args.g)
+    return values
+
+
+def _check_options(args):
+    """UsageError for numbers that cannot be, before anything is read."""
+    for name in ("accel_lsb", "gyro_lsb", "mag_lsb", "g"):
+        value = getattr(args, name)
+        if value is not None and not 0 < value < 1e9:
+            raise UsageError("--%s %g: expected a number above 0" % (
+                name.replace("_", "-"), value))
+    if args.rate is not None and not 0 < args.rate < 1e6:
+        raise UsageError("--rate %g: expected samples per second" % args.rate)
+    if not args.time_column and args.rate is None:
+        raise UsageError("expected --rate HZ, or --time-column with --time-unit")
+    if args.time_column and (not args.time_unit or (
+            args.time_unit == "samples" and args.rate is None)):
+        raise UsageError("--time-column needs --time-unit us, ms, s, or samples and --rate HZ")
     if args.label_column and args.sections:
         raise UsageError("--label-column and --sections: expected one of the two")
+
+
+def _labelled(args, read, labels):
+    """Pose codes from a label column or a sections file, or None; remarks."""
     if args.label_column:
-        pose, moving = csv_mapping.poses_from_labels(table.words(args.label_column), labels)
+        pose, moving = csv_mapping.poses_from_labels(list(read.labels), read.number, labels)
     elif args.sections:
-        pose, moving = csv_mapping.poses_from_sections(args.sections, len(table.rows), labels)
+        pose, moving = csv_mapping.poses_from_sections(args.sections, read.rows, labels)
     else:
         return None, []
     if not pose.any():
@@ -129,69 +234,54 @@ def _labelled(args, table, labels):
     return pose, ["taken as moving: " + " ".join(moving)] if moving else []
 
 
-def _times(args, table):
-    """int64 microseconds, and the order that sorts them or None."""
-    if args.rate is not None and not 0 < args.rate < 1e6:
-        raise UsageError("--rate %g: expected samples per second" % args.rate)
-    if not args.time_column:
-        if args.rate is None:
-            raise UsageError("expected --rate HZ, or --time-column with --time-unit")
-        if not len(table.rows) / args.rate < LATEST_US / 1e6:
-            raise UsageError("--rate %g: expected samples per second" % args.rate)
-        return np.rint(np.arange(len(table.rows)) * (1e6 / args.rate)).astype(np.int64), None
-    if not args.time_unit or (args.time_unit == "samples" and args.rate is None):
-        raise UsageError("--time-column needs --time-unit us, ms, s, or samples and --rate HZ")
-    scale = TIME_UNITS.get(args.time_unit) or 1e6 / args.rate
-    times = np.array(table.numbers(args.time_column))
-    order = np.argsort(times, kind="stable") if args.sort else np.arange(len(times))
-    steps = np.diff(times[order])
+def _forwards(args, table, lines, times, last):
+    """BadFile for the first time that is before the one before it."""
+    steps = np.diff(times, prepend=last)
     if (steps < 0).any():
-        row = int(np.argmax(steps < 0)) + 1
-        raise BadFile.at(table.path, table.lines[row], "%s runs backwards, from %g to %g" % (
-            args.time_column, times[row - 1], times[row]), "increasing times (or --sort)")
-    longest = float(times.max() - times.min()) * scale
+        row = int(np.argmax(steps < 0))
+        raise BadFile.at(table.path, lines[row], "%s runs backwards, from %g to %g" % (
+            args.time_column, times[row] - steps[row], times[row]), "increasing times (or --sort)")
+
+
+def _times(args, table, read):
+    """int64 microseconds, and the order that sorts them or None."""
+    if not args.time_column:
+        if not read.rows / args.rate < LATEST_US / 1e6:
+            raise UsageError("--rate %g: expected samples per second" % args.rate)
+        return np.rint(np.arange(read.rows) * (1e6 / args.rate)).astype(np.int64), None
+    scale = TIME_UNITS.get(args.time_unit) or 1e6 / args.rate
+    times = read.take_times()
+    order = None
+    if args.sort and (np.diff(times) < 0).any():
+        order = np.argsort(times, kind="stable")
+    times -= times.min()
+    longest = float(times.max()) * scale
     if not longest < LATEST_US:
         raise BadFile("%s: %s spans %.3g s, expected less than %.0g: is --time-unit %s right?" % (
             table.path, args.time_column, longest / 1e6, LATEST_US / 1e6, args.time_unit))
-    t_us = np.rint((times - times.min()) * scale).astype(np.int64)
-    return t_us, order if (np.diff(order) != 1).any() else None
+    times *= scale
+    return np.rint(times, out=times).astype(np.int64), order
 
 
-def _in_counts(args, table, columns, t_us):
+def _in_counts(args, read, t_us):
     """A Capture of whole counts, and remarks on how they were recovered."""
     accel_unit, gyro_unit = _units(args.units or "counts")
-    for name in ("accel_lsb", "gyro_lsb", "mag_lsb", "g"):
-        value = getattr(args, name)
-        if value is not None and not 0 < value < 1e9:
-            raise UsageError("--%s %g: expected a number above 0" % (
-                name.replace("_", "-"), value))
-    block = {group: np.array([table.numbers(columns[name]) for name in group]).T
-             for group in (ACCEL, GYRO, MAG) if group[0] in columns}
-    if accel_unit in ("si", "m/s2"):
-        block[ACCEL] = block[ACCEL] * (STANDARD_G / args.g)
-    remarks = []
-    accel, accel_lsb, rounding = units.to_counts(
-        args.file, "accelerometer", block[ACCEL], accel_unit, args.accel_lsb, units.ACCEL_UNITS)
-    remarks += _remarks("accelerometer", "g", accel_unit, args.accel_lsb, accel_lsb, rounding)
+    accel = read.counts[ACCEL].array()
+    accel_lsb = read.counts[ACCEL].lsb
+    remarks = _remarks("accelerometer", "g", accel_unit, args.accel_lsb, read.counts[ACCEL])
     step = units.common_step(accel)
     if step > 1:
         remarks.append("every accelerometer count is a multiple of %d: its resolution is %.2f mg"
                        % (step, 1e3 * step / accel_lsb))
     meta = {"sensor": args.sensor, "rate_hz": args.rate or _rate(t_us), "g": args.g,
             "accel_lsb_per_g": accel_lsb}
-    capture = capture_file.Capture(meta, t_us, accel)
-    if GYRO in block:
-        capture.gyro, meta["gyro_lsb_per_dps"], rounding = units.to_counts(
-            args.file, "gyro", block[GYRO], gyro_unit, args.gyro_lsb, units.GYRO_UNITS)
-        remarks += _remarks("gyro", "deg/s", gyro_unit, args.gyro_lsb,
-                            meta["gyro_lsb_per_dps"], rounding)
-    if MAG in block:
-        if args.mag_lsb is None:
-            raise UsageError("columns mx my mz need --mag-lsb, counts per µT")
-        capture.mag, meta["mag_lsb_per_ut"], _ = units.to_counts(
-            args.file, "magnetometer", block[MAG], "counts", args.mag_lsb, units.ACCEL_UNITS)
-    if "temp" in columns:
-        capture.temp = _temperature(args, meta, np.array(table.numbers(columns["temp"])))
+    capture = capture_file.Capture(meta, t_us, accel, temp=read.temp)
+    if GYRO in read.counts:
+        capture.gyro, meta["gyro_lsb_per_dps"] = read.counts[GYRO].array(), read.counts[GYRO].lsb
+        remarks += _remarks("gyro", "deg/s", gyro_unit, args.gyro_lsb, read.counts[GYRO])
+    if MAG in read.counts:
+        capture.mag, meta["mag_lsb_per_ut"] = read.counts[MAG].array(), args.mag_lsb
+    meta.update(read.temp_meta)
     meta["imported_from"] = os.path.basename(args.file)
     check_sensor(meta, capture.columns(), lambda found, expected: BadFile(
         "%s: %s, expected %s" % (args.file, found, expected)))
@@ -210,15 +300,15 @@ def _units(text):
     return accel, gyro
 
 
-def _remarks(what, of, unit, given, lsb, rounding):
+def _remarks(what, of, unit, given, counts):
     """What was found out about the counts behind the units."""
     if unit == "counts":
         return []
     if given is None:
-        return ["%s values are whole steps of 1/%.6g %s" % (what, lsb, of)]
-    if rounding > units.ON_GRID:
+        return ["%s values are whole steps of 1/%.6g %s" % (what, counts.lsb, of)]
+    if counts.rounding > units.ON_GRID:
         return ["%s values are not whole counts at %g per %s: rounded by up to %.2f count" % (
-            what, lsb, of, rounding)]
+            what, counts.lsb, of, counts.rounding)]
     return []
 
 

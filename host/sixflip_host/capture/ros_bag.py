@@ -1,17 +1,21 @@
 """sensor_msgs/Imu out of a ROS bag: rosbag2 folders, .db3, .mcap, and ROS 1's .bag."""
 
+import itertools
 import os
 from pathlib import Path
 
 import numpy as np
 
+from .. import sample_limit
 from ..errors import BadFile, UsageError
 from ..optional import need
+from .csv_table import Block
 
 ENDINGS = (".db3", ".mcap", ".bag")
 IMU = "sensor_msgs/msg/Imu"
 NAMES = ("stamp_us", "ax", "ay", "az", "gx", "gy", "gz")
 LONGEST_US = 1e16       # of a bag: three centuries
+ROWS = 10_000           # messages at a time
 
 
 def is_bag(path):
@@ -23,17 +27,20 @@ def is_bag(path):
 class BagTable:
     """The messages of one topic, to be read like a csv_table.Table; SI units.
 
-    stamp_us counts from the first message; the stamps are the messages' own, or where they all
-    are 0 the times at which they were recorded.
+    stamp_us counts from the first message; the stamps are the messages' own, or where the first
+    ones are 0 the times at which they were recorded.
     """
 
-    def __init__(self, path, topic, values):
+    def __init__(self, path, topic=None):
         self.path = path
-        self.topic = topic
-        self.values = values            # float (n, 7)
-        self.names = [name for k, name in enumerate(NAMES) if np.isfinite(values[:, k]).all()]
-        self.rows = values
-        self.lines = [0] * len(values)  # a bag has none to name
+        self._asked = topic
+        first = list(itertools.islice(self._messages(), 2))     # simulated time begins with one 0
+        if not first:
+            raise BadFile("%s: %s holds no message" % (path, self._topic))
+        self._recorded = not any(row[0] for row in first)
+        self._start = first[0][self._recorded]
+        self.names = [name for name, value in zip(NAMES, first[0][1:]) if np.isfinite(value)]
+        self.width = len(self.names)
 
     def index(self, column):
         """Position of a column given by name."""
@@ -42,35 +49,56 @@ class BagTable:
         raise BadFile("%s: there is no column %s, expected one of %s" % (
             self.path, column, " ".join(self.names)))
 
-    def numbers(self, column):
-        """The column as a list of floats."""
-        return self.values[:, self.index(column)].tolist()
+    def blocks(self, columns, label=None):
+        """csv_table.Block after Block of columns; BadFile for values missing here and there."""
+        if label is not None:
+            raise UsageError("%s: a bag has no column of labels, expected --sections" % self.path)
+        places = [self.index(column) for column in columns]
+        messages = self._messages()
+        count = 0
+        while rows := list(itertools.islice(messages, ROWS)):
+            stamps = [row[self._recorded] - self._start for row in rows]
+            values = np.array([row[1:] for row in rows], float)
+            values[:, 0] = [stamp / 1000 for stamp in stamps]
+            self._check(values, count)
+            count += len(rows)
+            sample_limit.check_samples(self.path, count)
+            yield Block([0] * len(rows), values[:, places], None)
 
-    def words(self, column):
-        """A bag has no labels."""
-        raise UsageError("%s: a bag has no column of labels, expected --sections" % self.path)
+    def _messages(self):
+        """(stamp ns, recorded ns, ax … gz) of every message."""
+        highlevel, typesys = need("a ROS bag", "data", "rosbags.highlevel", "rosbags.typesys")
+        try:
+            store = typesys.get_typestore(typesys.Stores.ROS2_HUMBLE)
+            with sample_limit.little_memory(), \
+                    highlevel.AnyReader([Path(self.path)], default_typestore=store) as reader:
+                chosen = _chosen(self.path, self._asked, reader.connections)
+                self._topic = chosen[0].topic
+                for connection, at, data in reader.messages(chosen):
+                    yield _row(reader.deserialize(data, connection.msgtype), at)
+        except (BadFile, UsageError):
+            raise
+        except MemoryError:
+            raise BadFile("%s: its messages need more than %d MB, unpacked, expected less, or "
+                          "--limit with the number of samples there may be" % (
+                              self.path, sample_limit.memory() >> 20)) from None
+        except OSError as error:
+            raise BadFile("%s: cannot be read: %s" % (self.path, error.strerror or error)) \
+                from None
+        except Exception as error:      # a library that is fed with whatever the file holds
+            raise BadFile("%s: is no ROS bag or a damaged one: %s" % (
+                self.path, (str(error) or type(error).__name__).splitlines()[0][:200])) from None
 
-
-def read_bag(path, topic=None):
-    """BagTable of the only Imu topic, or of the one that is asked for.
-
-    Raises BadFile for what is no bag, or has no Imu topic; UsageError where the choice is open.
-    """
-    highlevel, typesys = need("a ROS bag", "data", "rosbags.highlevel", "rosbags.typesys")
-    try:
-        store = typesys.get_typestore(typesys.Stores.ROS2_HUMBLE)
-        with highlevel.AnyReader([Path(path)], default_typestore=store) as reader:
-            chosen = _chosen(path, topic, reader.connections)
-            rows = [_row(reader.deserialize(data, connection.msgtype), at)
-                    for connection, at, data in reader.messages(chosen)]
-    except (BadFile, UsageError):
-        raise
-    except OSError as error:
-        raise BadFile("%s: cannot be read: %s" % (path, error.strerror or error))
-    except Exception as error:      # a library that is fed with whatever the file holds
-        raise BadFile("%s: is no ROS bag or a damaged one: %s" % (
-            path, (str(error) or type(error).__name__).splitlines()[0][:200]))
-    return _table(path, chosen[0].topic, rows)
+    def _check(self, values, count):
+        for group, first in (("linear_acceleration", 1), ("angular_velocity", 4)):
+            whole = np.isfinite(values[:, first:first + 3]).all(axis=1)
+            there = NAMES[first] in self.names or group == "linear_acceleration"
+            if not (whole.all() if there else np.isnan(values[:, first:first + 3]).all()):
+                raise BadFile("%s: message %d of %s has no %s, expected finite numbers" % (
+                    self.path, count + int(np.argmin(whole)) + 1, self._topic, group))
+        if not np.abs(values[:, 0]).max() < LONGEST_US:
+            raise BadFile("%s: the stamps of %s span %.3g s, expected a recording" % (
+                self.path, self._topic, np.abs(values[:, 0]).max() / 1e6))
 
 
 def _chosen(path, topic, connections):
@@ -100,28 +128,3 @@ def _row(message, at):
     if message.angular_velocity_covariance[0] == -1:
         gyro = (np.nan,) * 3
     return (stamp.sec * 1000000000 + stamp.nanosec, at, *accel, *gyro)
-
-
-def _table(path, topic, rows):
-    if not rows:
-        raise BadFile("%s: %s holds no message" % (path, topic))
-    stamps = [row[0] for row in rows]
-    if not any(stamps):
-        stamps = [row[1] for row in rows]
-    values = np.array([row[1:] for row in rows], dtype=float)
-    values[:, 0] = [(stamp - stamps[0]) / 1000 for stamp in stamps]
-    _check(path, topic, values)
-    return BagTable(path, topic, values)
-
-
-def _check(path, topic, values):
-    """BadFile for values that are missing here and there: all of them, or none."""
-    for group, first in (("linear_acceleration", 1), ("angular_velocity", 4)):
-        whole = np.isfinite(values[:, first:first + 3]).all(axis=1)
-        if not whole.all() and (group == "linear_acceleration"
-                                or not np.isnan(values[:, first:first + 3]).all()):
-            raise BadFile("%s: message %d of %s has no %s, expected finite numbers" % (
-                path, int(np.argmin(whole)) + 1, topic, group))
-    if not np.abs(values[:, 0]).max() < LONGEST_US:
-        raise BadFile("%s: the stamps of %s span %.3g s, expected a recording" % (
-            path, topic, np.abs(values[:, 0]).max() / 1e6))

@@ -9,7 +9,7 @@ from sixflip import record_terms
 from sixflip.faces import pose_name
 from sixflip.scale_form import scale_form
 
-from .. import atomic_write
+from .. import atomic_write, file_kinds
 from ..board.ports import add_port, open_link
 from ..errors import BadFile
 from ..file_arguments import add_input
@@ -23,7 +23,6 @@ from .capture_binary import EXTRAS, PAUSES, write_pauses
 
 HELP = "what is in a record or a capture, or in the flash of a board, in words"
 EXAMPLE = "sixflip show capture.csv"
-RECORD_MAGIC = b"6FLP"
 
 
 def add_arguments(parser):
@@ -37,9 +36,8 @@ def run(args):
     """Print one record or capture, or both records of a board."""
     if args.file is None:
         return _board(args)
-    data = atomic_write.read_bytes(args.file)
-    if data.startswith(RECORD_MAGIC):
-        return _show_record(args.file, data, args.json)
+    if file_kinds.kind_of(args.file) == file_kinds.RECORD:
+        return _show_record(args.file, atomic_write.read_bytes(args.file), args.json)
     capture = capture_file.read(args.file)
     if args.json:
         print(json.dumps(finite(_capture_json(capture))))

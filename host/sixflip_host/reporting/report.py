@@ -58,7 +58,7 @@ def _find(files, gap):
 def _is_record(name):
     if os.path.isdir(name):
         raise BadFile("%s: is a folder, expected it alone, or captures" % name)
-    return atomic_write.read_bytes(name).startswith(b"6FLP")
+    return file_kinds.kind_of(name) == file_kinds.RECORD
 
 
 def page(path, capture, record_path, record, gap_of=()):
