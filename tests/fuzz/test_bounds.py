@@ -40,6 +40,38 @@ def bomb(text, repeat):
     return out + b"".join(member.compress(block) for _ in range(repeat)) + member.flush()
 
 
+def zstd_of_zeros(size):
+    """A zstd frame of so many bytes."""
+    from rosbags.rosbag2 import storage_mcap
+    packer = storage_mcap.zstd.ZstdCompressor()
+    block = bytes(MILLION)
+    return b"".join([packer.compress(block) for _ in range(size // MILLION)] + [packer.flush()])
+
+
+def mcap_bomb(size):
+    """An MCAP with one chunk that says what it unpacks to, and does."""
+    def sized(data):
+        return struct.pack("<I", len(data)) + data
+
+    def record(code, data):
+        return bytes([code]) + struct.pack("<Q", len(data)) + data
+    packed = zstd_of_zeros(size)
+    chunk = struct.pack("<QQQI", 0, 1, size, 0) + sized(b"zstd") + \
+        struct.pack("<Q", len(packed)) + packed
+    return b"\x89MCAP0\r\n" + record(1, sized(b"ros2") + sized(b"")) + record(6, chunk) + \
+        record(2, bytes(20)) + b"\x89MCAP0\r\n"
+
+
+def compressed_bag(folder, size):
+    """A rosbag2 folder whose one file is packed by zstd."""
+    (folder / "imu.db3.zstd").write_bytes(zstd_of_zeros(size))
+    (folder / "metadata.yaml").write_text(json.dumps({"rosbag2_bagfile_information": {
+        "version": 4, "storage_identifier": "sqlite3", "relative_file_paths": ["imu.db3.zstd"],
+        "duration": {"nanoseconds": 1}, "starting_time": {"nanoseconds_since_epoch": 0},
+        "message_count": 1, "topics_with_message_count": [], "compression_format": "zstd",
+        "compression_mode": "FILE"}}))
+
+
 def board_header(length, declared):
     """The start of a board's file that claims more than there is."""
     return b"6CAP" + struct.pack("<BBI", 1, 1, declared)[:6] + b"{" * length
@@ -61,6 +93,14 @@ HOSTILE = {
                                         ("solve",)),
     "gzip bomb for import": ("x.csv.gz", lambda: bomb(b"ax,ay,az\n", 600),
                              ("import", "-o", "OUT", "--rate", "100", "--accel-lsb", "1")),
+    "gzip bomb of a row in four columns": ("x.csv.gz", lambda: bomb(b"ax,ay,az,b\n", 400),
+        ("import", "-o", "OUT", "--rate", "100", "--accel-lsb", "1", "--limit", "1000000")),
+    "gzip bomb of numbers in units": ("x.csv.gz", lambda: bomb(b"ax,ay,az,b\n", 400),
+        ("import", "-o", "OUT", "--rate", "100", "--units", "si", "--limit", "1000000")),
+    "gzip bomb of empty lines": ("x.csv.gz", lambda: gzip.compress(b"ax,ay,az\n" + b"\n" * (
+        100 * MILLION)), ("import", "-o", "OUT", "--rate", "100", "--accel-lsb", "1")),
+    "MCAP bomb": ("x.mcap", lambda: mcap_bomb(4 << 30), ("import", "-o", "OUT", "--limit",
+                                                         "1000000")),
     "nested brackets": ("x.csv", lambda: b"# sixflip-capture 1\n# " + b"[" * 10**8, ("show",)),
     "nested brackets, short": ("x.csv", lambda: b"# sixflip-capture 1\n# " + b"[" * 10**6
                                + b"\nt_us,ax,ay,az\n", ("show",)),
@@ -122,3 +162,75 @@ def test_hostile_file(name, tmp_path, of_the_tool_itself):
     assert len(done.stderr) < 1200
     peak = int(done.stdout.split()[-1]) - of_the_tool_itself
     assert peak < max(MOST_MB, 8 * path.stat().st_size >> 20), "%d MB" % peak
+
+
+def measured(words, folder):
+    """(exit code, error line, MB at most) of a command in a process of its own."""
+    done = subprocess.run(
+        [sys.executable, "-c", RUN, json.dumps(words)], capture_output=True, text=True,
+        preexec_fn=limits, cwd=folder, env=dict(os.environ, OPENBLAS_NUM_THREADS="1"))
+    return done.returncode, done.stderr, int(done.stdout.split()[-1])
+
+
+@pytest.mark.parametrize("words", (["show", "/dev/zero"], ["solve", "/dev/zero"],
+                                   ["import", "/dev/zero", "-o", "OUT", "--rate", "1"],
+                                   ["restore", "--from", "/dev/zero", "--port", "local:none"],
+                                   ["plan", "--protocol", "/dev/zero"]))
+def test_a_file_without_end_is_not_read_to_its_end(words, tmp_path):
+    code, said, peak = measured(words, tmp_path)
+    assert (code, said.count("\n")) == (4, 1), said
+    assert peak < 350
+
+
+def test_a_compressed_bag_is_unpacked_no_further_than_the_limit(tmp_path):
+    (tmp_path / "bag").mkdir()
+    compressed_bag(tmp_path / "bag", 1 << 30)
+    code, said, peak = measured(["import", "bag", "-o", "out.csv", "--limit", "100000"], tmp_path)
+    assert (code, said.count("\n")) == (4, 1), said
+    assert "File too large" in said and peak < 350
+
+
+BYTES_A_SAMPLE = 50
+SAMPLES = 1000000
+READ = """
+import resource, sys
+from sixflip_host.capture import capture_file, import_csv
+from sixflip_host.cli import parser_for
+before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+%s
+print((resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) * 1024)
+"""
+IMPORT = "import_csv.convert(parser_for('import').parse_args(sys.argv[1:]))"
+
+
+@pytest.fixture(scope="module")
+def long_session(tmp_path_factory):
+    """A million samples in every format that is read."""
+    import numpy as np
+
+    from sixflip_host.capture import capture_binary, capture_file
+    folder = tmp_path_factory.mktemp("long")
+    counts = np.random.default_rng(1).integers(-2000, 2000, (SAMPLES, 7)).astype(np.int16)
+    meta = {"sensor": "mpu6050", "rate_hz": 100, "accel_lsb_per_g": 16384,
+            "gyro_lsb_per_dps": 131, "temp_lsb_per_c": 340, "temp_offset_c": 36.53}
+    capture = capture_file.Capture(meta, np.arange(SAMPLES) * 10000, counts[:, :3],
+                                   counts[:, 3:6], counts[:, 6])
+    capture_file.write(folder / "x.csv", capture)
+    capture_file.write(folder / "x.csv.gz", capture)
+    (folder / "x.bin").write_bytes(capture_binary.encode(capture))
+    np.savetxt(folder / "si.csv", np.c_[np.arange(SAMPLES) / 100, counts[:, :3] * 0.000598,
+                                        counts[:, 3:6] * 0.000133], "%.7g", ",", comments="",
+               header="t,ax,ay,az,gx,gy,gz")
+    return folder
+
+
+@pytest.mark.parametrize("how, words", [
+    ("capture_file.read(sys.argv[1])", ["x.csv"]),
+    ("capture_file.read(sys.argv[1])", ["x.csv.gz"]),
+    ("capture_file.read(sys.argv[1])", ["x.bin"]),
+    (IMPORT, ["si.csv", "-o", "x", "--units", "si", "--time-column", "t", "--time-unit", "s"])])
+def test_no_file_takes_more_than_fifty_bytes_a_sample(how, words, long_session):
+    done = subprocess.run([sys.executable, "-c", READ % how, *words], capture_output=True,
+                          text=True, cwd=long_session)
+    assert done.returncode == 0, done.stderr
+    assert 10 * SAMPLES < int(done.stdout) < BYTES_A_SAMPLE * SAMPLES

@@ -13,23 +13,30 @@ def heading_change(capture, rests, bias, axis, sign):
     Returns None when the gyro touched its rail or samples are missing on the way.
     """
     first, last = rests[0].end, rests[-1].first
-    gyro = capture.gyro[first - 1:last].astype(float)
+    gyro = capture.gyro[first - 1:last]
     gaps = np.diff(capture.t_us[first - 1:last]) / 1e6
-    if len(gaps) and (np.abs(gyro).max() >= 32767 or gaps.max() - np.median(gaps) > 1e-6 * GAP_US):
+    if len(gaps) and (max(int(gyro.max()), -int(gyro.min())) >= 32767
+                      or gaps.max() - np.median(gaps) > 1e-6 * GAP_US):
         return None
-    middle = (gyro[1:] + gyro[:-1]) / 2
-    rate = np.radians((middle - bias) / capture.meta["gyro_lsb_per_dps"])
-    turns = _rotation(rate * gaps[:, None])
     attitude = np.eye(3)            # body -> frame of the first rest
     up = _unit(rests[0].mean)
     for before, rest in zip(rests, rests[1:]):
-        for turn in turns[before.end - first:rest.first - first]:
+        move = slice(before.end - first, rest.first - first)
+        for turn in _turns(capture, gyro, gaps, bias, move):
             attitude = attitude @ turn
         attitude = _between(attitude @ _unit(rest.mean), up) @ attitude
     # twist about the face's axis, up: what is left once gravity agrees
     i, j = (axis + 1) % 3, (axis + 2) % 3
     return sign * float(np.degrees(np.arctan2(attitude[j, i] - attitude[i, j],
                                               attitude[i, i] + attitude[j, j])))
+
+
+def _turns(capture, gyro, gaps, bias, move):
+    """Rotation matrices (n, 3, 3) of a move, one a sample."""
+    counts = gyro[move.start:move.stop + 1].astype(float)
+    middle = (counts[1:] + counts[:-1]) / 2
+    rate = np.radians((middle - bias) / capture.meta["gyro_lsb_per_dps"])
+    return _rotation(rate * gaps[move, None])
 
 
 def _unit(vector):

@@ -5,6 +5,7 @@ is there: the noise is that of its quietest second.
 """
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from sixflip.faces import AXIS, FACES, LEANING, SIGN, nearest_face, pose_name
 from sixflip.noise_floor import CAP, ENTER, LEAVE, WINDOWS, NoiseFloor
@@ -82,15 +83,18 @@ def _windows(capture):
     """The recording as a list of full windows, each a StillWindow of its own."""
     rate = capture.meta["rate_hz"]
     length = window_length(rate, POSE_SAMPLES)
-    gyro = capture.gyro if capture.gyro is not None else np.zeros((len(capture), 3), int)
-    samples = np.column_stack([capture.accel, gyro, np.zeros(len(capture), int)]).tolist()
-    intervals = np.diff(capture.t_us, prepend=capture.t_us[:1]).tolist()
+    gyro = capture.gyro if capture.gyro is not None else np.broadcast_to(0, (len(capture), 3))
     gyro_rail = RAIL if capture.gyro is not None else 0
     out = []
-    for start in steps(range(0, len(samples) - length + 1, length), "looking for rests"):
+    for start in steps(range(0, len(capture) - length + 1, length), "looking for rests"):
+        some = slice(start, start + length)
+        samples = np.column_stack([capture.accel[some], gyro[some],
+                                   np.zeros(length, int)]).tolist()
+        intervals = np.diff(capture.t_us[some],
+                            prepend=capture.t_us[max(0, start - 1)]).tolist()
         window = StillWindow(length, _rail(capture), gyro_rail, int(1e6 / rate + 0.5))
-        for index in range(start, start + length):
-            window.add(intervals[index], samples[index])
+        for interval, sample in zip(intervals, samples):
+            window.add(interval, sample)
         out.append(window)
     return out
 
@@ -105,28 +109,32 @@ def _quietest(capture, windows):
     lsb = (capture.meta["accel_lsb_per_g"],
            capture.meta["gyro_lsb_per_dps"] if capture.gyro is not None else 0)
     axes = 6 if lsb[1] else 3
-    best = None
-    for index in range(len(windows) - WINDOWS + 1):
-        run = windows[index:index + WINDOWS]
-        if any(one.accel_saturated or one.gyro_saturated or one.stale or one.jumped
-               for one in run):
-            continue
-        spread = np.array([[max(one.variance(axis), one.step(axis // 3) ** 2 / 12)
-                            for axis in range(axes)] for one in run])
-        means = np.array([[one.mean(axis) for axis in range(axes)] for one in run])
-        scale = np.repeat([lsb[0] / 1e3, lsb[1]], 3)[:axes]
-        wander = means.var(axis=0, ddof=1)
-        total = ((spread.mean(axis=0) + wander) / scale ** 2 / np.repeat(CAP, 3)[:axes] ** 2)
-        if (total < 1).all() and (best is None or total.sum() < best[0]):
-            best = total.sum(), np.sqrt(spread.mean(axis=0)), means.mean(axis=0)
-    if best is None:
+    if len(windows) < WINDOWS:
+        return None
+    spread = np.array([[max(one.variance(axis), one.step(axis // 3) ** 2 / 12)
+                        for axis in range(axes)] for one in windows])
+    means = np.array([[one.mean(axis) for axis in range(axes)] for one in windows])
+    spread, means, unusual = (sliding_window_view(each, WINDOWS, axis=0) for each in (
+        spread, means, _unusual(windows)))
+    scale = np.repeat([lsb[0] / 1e3, lsb[1]], 3)[:axes]
+    total = ((spread.mean(axis=-1) + means.var(axis=-1, ddof=1)) / scale ** 2
+             / np.repeat(CAP, 3)[:axes] ** 2)
+    total = np.where((total < 1).all(axis=1) & ~unusual.any(axis=-1), total.sum(axis=1), np.inf)
+    best = int(np.argmin(total))
+    if total[best] == np.inf:
         return None
     noise = NoiseFloor(*lsb)
     noise.known = True
     for axis in range(axes):
-        noise.sd[axis] = float(best[1][axis])
-    noise.bias = best[2][3:].tolist() or [0.0] * 3
+        noise.sd[axis] = float(np.sqrt(spread[best, axis].mean()))
+    noise.bias = means[best].mean(axis=-1)[3:].tolist() or [0.0] * 3
     return noise
+
+
+def _unusual(windows):
+    """Which of the windows cannot be a rest's, whatever their noise; bool (n,)."""
+    return np.array([bool(one.accel_saturated or one.gyro_saturated or one.stale or one.jumped)
+                     for one in windows])
 
 
 def _rests(capture, windows, noise):
@@ -138,9 +146,11 @@ def _rests(capture, windows, noise):
     rests = _runs(capture, windows, still, SHORTEST_S)
     faces = {rest.face for rest in rests if rest.off_deg <= CROOKED_DEG}
     if len(faces) < len(FACES):
-        taken = {index for rest in rests for index in range(rest.first, rest.end)}
+        taken = np.zeros(len(capture), bool)
+        for rest in rests:
+            taken[rest.first:rest.end] = True
         by_hand = _runs(capture, windows, _steadied(capture, windows), HAND_S, by_hand=True)
-        rests += [rest for rest in by_hand if taken.isdisjoint(range(rest.first, rest.end))]
+        rests += [rest for rest in by_hand if not taken[rest.first:rest.end].any()]
     return sorted(rests, key=lambda rest: rest.first)
 
 
@@ -162,10 +172,8 @@ def _steadied(capture, windows):
     spread = np.array([[one.variance(axis) ** 0.5 for axis in range(axes)] for one in windows])
     means = np.array([[one.mean(axis) for axis in range(3)] for one in windows])
     wander = np.abs(np.diff(means, axis=0, prepend=means[:1])).max(axis=1) / scale[0]
-    unusual = np.array([bool(one.accel_saturated or one.gyro_saturated or one.stale or one.jumped)
-                        for one in windows])
     return ((spread / scale <= np.repeat(HAND, 3)[:axes]).all(axis=1)
-            & (wander <= HAND_WANDER_MG) & ~unusual)
+            & (wander <= HAND_WANDER_MG) & ~_unusual(windows))
 
 
 def _name(capture, rests, noise):
