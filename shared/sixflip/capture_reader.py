@@ -17,7 +17,7 @@ class Blocks:
     t_us          array('q'): microseconds since the start of the session
     rows          array('h'): samples one after the other, len(names) counts each
     starts        array('l'): number of the first sample of every block of samples
-    placements    in force, in the order they were accepted
+    placements    in force, in the order they were accepted (while they are read, all)
     withdrawn     codes of the poses that were taken back
     notes         texts
     lost          (first, n) of the samples that never came, by the board's count; missing: all
@@ -37,6 +37,7 @@ class Blocks:
         self.starts = array("l")
         self.placements = []
         self.withdrawn = []
+        self.until = {}  # (pose, first or -1): so many placements were there when it was withdrawn
         self.notes = []
         self.lost = []
         self.missing = 0
@@ -110,8 +111,17 @@ def _pose(blocks, payload):
 def _withdrawn(blocks, payload):
     code, first = _unpack("<HI", payload) if len(payload) == 6 else _unpack("<H", payload) + (-1,)
     blocks.withdrawn.append(code)
-    blocks.placements = [p for p in blocks.placements
-                         if p.pose != code or (first >= 0 and p.first != first)]
+    blocks.until[code, first] = len(blocks.placements)
+
+
+def settle(blocks):
+    """Takes out the placements that were withdrawn after they had been accepted, in one pass."""
+    until = blocks.until
+    if until:
+        blocks.placements = [p for i, p in enumerate(blocks.placements)
+                             if i >= until.get((p.pose, -1), 0)
+                             and i >= until.get((p.pose, p.first), 0)]
+        until.clear()
 
 
 def _end(blocks, payload):
@@ -166,6 +176,7 @@ def read(data):
                 at = end + 4
             except ValueError as error:
                 blocks.damage = "a block is wrong: %s" % error
+    settle(blocks)
     if not blocks.ended:
         here = len(blocks.t_us) + blocks.missing
         last = max([p.first + p.n for p in blocks.placements] + [here])

@@ -5,7 +5,7 @@ import struct
 from array import array
 
 from sixflip import capture_blocks as cb
-from sixflip.capture_reader import _header, _take
+from sixflip.capture_reader import _header, _take, settle
 from sixflip.capture_samples import each, start
 
 MOST_META = 4096
@@ -47,6 +47,10 @@ class Scan:
 
     def each(self):
         """(kind, the whole block in bytes) of every good block up to the end or the damage."""
+        yield from self._blocks()
+        settle(self.blocks)
+
+    def _blocks(self):
         blocks = self.blocks
         while not blocks.ended:
             head = self._stream.read(4)

@@ -175,3 +175,32 @@ def test_finds_the_step_of_values(step):
 
 def test_noise_has_no_step():
     assert units.find_step(np.random.default_rng(1).normal(size=(500, 3))) is None
+
+
+@pytest.mark.parametrize("value, words, line", [
+    ("1e308", ("--units", "si"), "the accelerometer reaches 1e+308, expected less than 1e+09"),
+    ("1e308", ("--units", "si", "--accel-lsb", "16384"), "the accelerometer reaches 1e+308"),
+    ("-1e300", ("--accel-lsb", "1"), "the accelerometer reaches 1e+300")])
+def test_values_of_no_sensor(tmp_path, capsys, value, words, line):
+    (tmp_path / "in.csv").write_text("ax,ay,az\n1,2,3\n%s,0,0\n" % value)
+    code, said = refused(tmp_path, capsys, tmp_path / "in.csv", "--rate", 100, *words)
+    assert code == 4 and line in said
+
+
+@pytest.mark.parametrize("step, line", [
+    (0, "all 200 samples have the time 0 us, expected times that run"),
+    (100, "its samples are 100 us apart, expected about 1e+04: rate_hz is 100"),
+    (1000000, "its samples are 1e+06 us apart, expected about 1e+04")])
+def test_times_that_no_rate_explains(tmp_path, capsys, step, line):
+    (tmp_path / "in.csv").write_text("t,ax,ay,az\n" + "".join(
+        "%d,0,0,%d\n" % (k * step, 256 + k % 2) for k in range(200)))
+    given = [tmp_path / "in.csv", "--accel-lsb", 256, "--time-column", "t", "--time-unit", "us"]
+    code, said = refused(tmp_path, capsys, *given, "--rate", 100)
+    assert code == 4 and line in said
+    path = tmp_path / "walk.csv"
+    path.write_text("# sixflip-capture 1\n# " + json.dumps({
+        "sensor": "adxl345", "rate_hz": 100, "accel_lsb_per_g": 256}) + "\nt_us,ax,ay,az\n"
+        + (tmp_path / "in.csv").read_text().split("\n", 1)[1])
+    for verb in ("show", "solve", "diagnose"):
+        assert main([verb, str(path)]) == 4
+        assert line in capsys.readouterr().err

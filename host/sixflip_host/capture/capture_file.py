@@ -29,6 +29,8 @@ from .capture_rows import parse_rows, quoted
 from .unpack import Source
 
 BOARD_MAGIC = b"6CAP"
+FAR = 5.0               # times an interval that is no drift of a clock any more but another rate
+FEW_TIMES = 20          # too few to say what is usual
 ROWS_WRITTEN = 10_000    # at a time: as Python objects they take half a kilobyte each
 
 
@@ -101,8 +103,31 @@ def read(path):
         for piece in pieces:
             data += piece
             sample_limit.check_samples(path, len(data) // capture_binary.MOST_BYTES)
-        return capture_binary.decode(data, str(path))
-    return _parse(path, head, pieces)
+        capture = capture_binary.decode(data, str(path))
+    else:
+        capture = _parse(path, head, pieces)
+    check_times(path, capture.t_us, capture.meta["rate_hz"])
+    return capture
+
+
+def check_times(path, t_us, rate_hz):
+    """BadFile for times that stand still, or that are far from the sample rate.
+
+    Both the usual and the mean interval have to be: gaps lengthen one, coarse stamps the other.
+    """
+    if len(t_us) < 2:
+        return
+    span = int(t_us[-1]) - int(t_us[0])
+    if not span:
+        raise BadFile("%s: all %d samples have the time %d us, expected times that run" % (
+            path, len(t_us), t_us[0]))
+    if len(t_us) < FEW_TIMES:
+        return
+    usual, mean = float(np.median(np.diff(t_us))), span / (len(t_us) - 1)
+    for off in (lambda us: us * rate_hz > FAR * 1e6, lambda us: us * rate_hz * FAR < 1e6):
+        if off(usual) and off(mean):
+            raise BadFile("%s: its samples are %.4g us apart, expected about %.4g: rate_hz is %g"
+                          % (path, usual, 1e6 / rate_hz, rate_hz))
 
 
 def _begins(pieces, more, head=b""):

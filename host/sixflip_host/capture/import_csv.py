@@ -275,6 +275,7 @@ def _in_counts(args, read, t_us):
                        % (step, 1e3 * step / accel_lsb))
     meta = {"sensor": args.sensor, "rate_hz": args.rate or _rate(t_us), "g": args.g,
             "accel_lsb_per_g": accel_lsb}
+    capture_file.check_times(args.file, np.sort(t_us), meta["rate_hz"])
     capture = capture_file.Capture(meta, t_us, accel, temp=read.temp)
     if GYRO in read.counts:
         capture.gyro, meta["gyro_lsb_per_dps"] = read.counts[GYRO].array(), read.counts[GYRO].lsb

@@ -13,6 +13,7 @@ ACCEL_UNITS = {"counts": None, "si": 1 / STANDARD_G, "m/s2": 1 / STANDARD_G, "g"
                "mg": 1e-3}
 GYRO_UNITS = {"counts": None, "si": 180 / math.pi, "rad/s": 180 / math.pi, "dps": 1.0,
               "deg/s": 1.0}
+LARGEST = 1e9           # in any unit: no sensor, and squares of more leave a float
 MOST_DISTINCT = 1 << 17 # sizes of values in whole steps: 16 bits have a quarter of that
 ON_GRID = 0.02          # of a step: how far values may lie off whole steps to be called counts
 
@@ -61,6 +62,7 @@ class Counts:
 
     def look(self, values):
         """Values (n, 3) to find the step of."""
+        self._plausible(values)
         self._distinct = np.union1d(self._distinct, np.abs(values * self.per_unit))
         if len(self._distinct) > MOST_DISTINCT:
             self._no_step()
@@ -76,8 +78,14 @@ class Counts:
         raise BadFile("%s: the %s is not in whole steps, so its LSB must be given" % (
             self.path, self.what))
 
+    def _plausible(self, values):
+        if not np.abs(values).max() < LARGEST:
+            raise BadFile("%s: the %s reaches %g, expected less than %g" % (
+                self.path, self.what, np.abs(values).max(), LARGEST))
+
     def add(self, values):
         """Values (n, 3) as counts behind those that are there."""
+        self._plausible(values)
         counts = values if self.per_unit is None else values * self.per_unit * self.lsb
         whole = np.rint(counts)
         off = np.abs(counts - whole)
