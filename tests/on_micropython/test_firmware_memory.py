@@ -9,6 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from sixflip.capture_pieces import decode
+from sixflip.capture_reader import read as read_blocks
+
 from . import session_tape
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -123,3 +126,22 @@ def test_a_late_redo_costs_no_session_in_102_kb(micropython, tmp_path, sensor):
     kept = "refused.bin" if answers[0]["event"] == "redo" else "capture.bin"
     assert (tmp_path / kept).exists()
     assert only(events, "capture")["kept"] > 9000
+
+
+@pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])
+def test_a_session_that_the_host_records_in_102_kb(micropython, tmp_path, sensor):
+    """Every block reaches the host, and the session is as good as without."""
+    flash(tmp_path, sensor)
+    (tmp_path / "calibrate.flag").write_text('{"record": true}')
+    _, harness = power_up(micropython, tmp_path, 1 << 20, "recorded_wire")
+    (tmp_path / "record_a.bin").unlink()
+    (tmp_path / "calibrate.flag").write_text('{"record": true}')
+    heap = HEAP + 3 * MORE + harness - bare(micropython, tmp_path)
+    events, _ = power_up(micropython, tmp_path, heap, "recorded_wire")
+    assert only(events, "calibrating")["recorded"]
+    assert only(events, "saved")["written"]
+    found = [decode(line) for line in (tmp_path / "wire").read_bytes().splitlines()]
+    assert [piece[0] for piece in found] == list(range(len(found)))
+    blocks = read_blocks(b"".join(dict.fromkeys(piece for _, _, piece in found)))
+    assert (blocks.complete, blocks.damage, len(blocks.placements)) == (True, "", 12)
+    assert len(blocks.t_us) == only(events, "capture")["samples"] > 9000
