@@ -9,9 +9,9 @@ block   type u8, 0 u8, length u16, payload, CRC32 of all of it
   POSE       pose u16, first u32, n u32, duration_us u64, seven sums i64, six noises f32
   WITHDRAWN  pose u16: its placements so far do not count; followed by first u32: only that one
   NOTE       UTF-8 text
-  LOST       first u32, n u32: samples that never came to whoever wrote the file down
+  7          first u32, n u32: samples that never came to whoever wrote the file down
   END        samples u32, flags u8 (COMPLETE, SUMS_ONLY)
-A cut-off file is readable up to its last whole block. Version 1 had neither STEPS nor LOST.
+A cut-off file is readable up to its last whole block. Version 1 had neither STEPS nor 7.
 With STEPS a session takes 9 to 10 bytes a sample of seven columns instead of 16.6,
 and no more time in the sampling loop: tests/bench/capture_size.py.
 """
@@ -33,7 +33,6 @@ WITHDRAWN = 3
 NOTE = 4
 END = 5
 STEPS = 6
-LOST = 7
 COMPLETE = 1
 SUMS_ONLY = 2
 

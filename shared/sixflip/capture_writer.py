@@ -20,7 +20,7 @@ class BlockWriter:
         self._places = cb.places(columns)
         if columns & ~15 or not self._places:
             raise ValueError("column mask %d: expected a sum of 1, 2, 4 and 8" % columns)
-        numbers = 1 + len(self._places)  # the interval and the counts
+        n = 1 + len(self._places)  # the interval and the counts
         if not 0 < block_samples <= cb.MOST_SAMPLES:
             raise ValueError("a block has 1 to %d samples" % cb.MOST_SAMPLES)
         self._write = write
@@ -35,8 +35,8 @@ class BlockWriter:
         self._start_us = 0
         self._last = array("h", [0] * 10)
         self._last_dt = 0
-        self._buffer = bytearray(0 if sums_only else 18 + (2 * block_samples + 1) * numbers)
-        self._full = len(self._buffer) - 4 - 3 * numbers  # beyond: no room for a wide sample
+        self._buffer = bytearray(0 if sums_only else 18 + (2 * block_samples + 1) * n)
+        self._full = len(self._buffer) - 4 - 3 * n  # beyond: no room for a wide sample
         self._at = 14
         if meta_bytes is not None:
             write(cb.header(meta_bytes, columns))

@@ -7,7 +7,7 @@ from io import BytesIO
 from synthetic_operator import Noise
 
 from sixflip import capture_blocks as cb
-from sixflip.capture_reader import NAMES
+from sixflip.capture_reader import LOST, NAMES
 from sixflip.capture_reader import read as read_blocks
 from sixflip.capture_scan import Scan, go_on
 from sixflip.capture_writer import BlockWriter
@@ -185,7 +185,7 @@ class Steps(unittest.TestCase):
         made.writer.end(True)
         first, second = made.ends[:2]
         n = made.counts[1]
-        block = struct.pack(cb.BLOCK, cb.LOST, 0, 8) + struct.pack("<II", 0, n)
+        block = struct.pack(cb.BLOCK, LOST, 0, 8) + struct.pack("<II", 0, n)
         data = made.data()[:first] + block + struct.pack("<I", binascii.crc32(block)) + \
             made.data()[second:]
         blocks = read_blocks(data)
@@ -258,8 +258,8 @@ class Damage(unittest.TestCase):
             (cb.STEPS, struct.pack(cb.TIME, 0, 0, 2) + bytes(8) + b"\xff" + bytes(7)),
             (cb.STEPS, struct.pack(cb.TIME, 0, 0, 2) + b"\0\x80\xff\x7f" + bytes(6) +
              b"\0\1" + bytes(6)),
-            (cb.LOST, struct.pack("<II", 1, 5)),
-            (cb.LOST, struct.pack("<II", 0, 0)),
+            (LOST, struct.pack("<II", 1, 5)),
+            (LOST, struct.pack("<II", 0, 0)),
             (cb.POSE, b"\1\0"),
             (cb.POSE, bytes(200)),
             (cb.POSE, struct.pack(cb.PLACEMENT, 0, 0, 400, 1, *range(13))),

@@ -15,6 +15,7 @@ import zlib
 
 from sixflip import capture_blocks as cb
 from sixflip import capture_pieces
+from sixflip.capture_reader import LOST
 from sixflip.capture_samples import start
 
 from ..capture.capture_binary import UNLABELLED
@@ -105,7 +106,7 @@ class Recording:
         if self.ended or self.other or samples < self.expected:
             return
         if samples > self.expected:
-            self._block(cb.LOST, struct.pack("<II", self.expected, samples - self.expected))
+            self._block(LOST, struct.pack("<II", self.expected, samples - self.expected))
             self.lost += samples - self.expected
             self.gaps += 1
             self.expected = samples
