@@ -129,14 +129,14 @@ def test_a_late_redo_costs_no_session_in_102_kb(micropython, tmp_path, sensor):
 
 
 @pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])
-def test_a_session_that_the_host_records_in_102_kb(micropython, tmp_path, sensor):
+def test_a_session_that_the_host_records_in_104_kb(micropython, tmp_path, sensor):
     """Every block reaches the host, and the session is as good as without."""
     flash(tmp_path, sensor)
     (tmp_path / "calibrate.flag").write_text('{"record": true}')
     _, harness = power_up(micropython, tmp_path, 1 << 20, "recorded_wire")
     (tmp_path / "record_a.bin").unlink()
     (tmp_path / "calibrate.flag").write_text('{"record": true}')
-    heap = HEAP + 3 * MORE + harness - bare(micropython, tmp_path)
+    heap = HEAP + 2 * MORE + harness - bare(micropython, tmp_path)
     events, _ = power_up(micropython, tmp_path, heap, "recorded_wire")
     assert only(events, "calibrating")["recorded"]
     assert only(events, "saved")["written"]
