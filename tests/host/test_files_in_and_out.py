@@ -1,6 +1,7 @@
 """What a verb reads it never overwrites, and what it finds in its place it replaces only if that
 is of its own kind: one rule for every output of every verb."""
 
+import json
 import os
 
 import pytest
@@ -200,3 +201,12 @@ def test_a_capture_of_sums_alone_is_one_sentence_with_what_can_still_be_done(
     assert said.count("\n") == 1 and "sixflip solve works with the sums" in said
     assert [path.name for path in tmp_path.iterdir()] == ["sums"]
     assert cli.main(["solve", sums]) == 0
+
+
+def test_show_of_a_board_is_one_document(pulled, tmp_path, capsys):
+    (tmp_path / "record_a.bin").write_bytes((pulled / "record_a.bin").read_bytes())
+    (tmp_path / "record_b.bin").write_bytes(b"6FLP and then nothing")
+    assert cli.main(["show", "--port", "local:%s" % tmp_path, "--json"]) == 0
+    records = json.loads(capsys.readouterr().out)["records"]
+    assert records["record_a.bin"]["kind"] == "sixflip correction record"
+    assert "record_b.bin" in records["record_b.bin"]["error"]

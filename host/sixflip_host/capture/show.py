@@ -53,12 +53,24 @@ def _board(args):
         link.reset()
     if not contents:
         raise BadFile("the board holds no record: sixflip calibrate")
+    if args.json:
+        print(json.dumps({"format": 1, "kind": "sixflip records of a board", "records": {
+            name: _json_of(name, data) for name, data in contents}}))
+        return 0
     for name, data in contents:
         try:
-            _show_record(name, data, args.json)
+            _show_record(name, data, False)
         except BadFile as error:
             console().print(plain(str(error)))
     return 0
+
+
+def _json_of(name, data):
+    """A record as JSON, or why it cannot be read."""
+    try:
+        return record_json(decode_record(name, data))
+    except BadFile as error:
+        return {"error": str(error)}
 
 
 def _show_record(name, data, as_json):
