@@ -12,7 +12,7 @@ from real_dialogue import dialogue
 from sixflip_host.board import board_schema
 
 DEVICE = Path(__file__).resolve().parents[2] / "device" / "sixflip_device"
-SEEDS = {"provision": 8, "provision --json": 4, "pull": 15}
+SEEDS = {"provision": 4, "provision --json": 2, "pull": 12}
 SAMPLE = b'{"event": "sample", "t_us": 5, "a": [0, 0, 9.8]}\r\n'
 NESTED = b"[" * 3000 + b"]" * 3000
 
@@ -86,6 +86,14 @@ def test_a_board_without_end_has_an_end(verb, attack, limit_s, tmp_path, monkeyp
     code, out, error = run(board, *hostile_board.VERBS[verb][0])
     assert code in (1, 3) and (out if verb == "doctor" else error).strip()
     assert board.now < limit_s, error
+
+
+@pytest.mark.parametrize("verb", ["restore", "check", "mount"])
+def test_a_board_that_talks_on_while_it_is_reset_is_given_up(verb):
+    board = HostileBoard(Dripping("paste", [b"x" * 100], 0.25))
+    code, _, error = run(board, *hostile_board.VERBS[verb][0])
+    assert code == 3 and "did not come to an end" in error
+    assert board.now < 70
 
 
 def waiting(left_s):

@@ -307,8 +307,13 @@ class MpremoteLink:
         log.info("%s: reset", self.port)
         self.enter()
         with self.guarded("resetting") as transport:
-            transport.exec_raw_no_follow(
-                "import time, machine\ntime.sleep_ms(100)\nmachine.reset()")
+            wire = transport.serial
+            wire.deadline = time.monotonic() + ANSWER_S * self.patience
+            try:
+                transport.exec_raw_no_follow(
+                    "import time, machine\ntime.sleep_ms(100)\nmachine.reset()")
+            finally:
+                wire.deadline = None
         self.raw = False
 
     def restart_firmware(self):
