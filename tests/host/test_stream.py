@@ -22,7 +22,7 @@ G = 9.80665
 STILL = {"sensor": "mpu6050", "seed": 3, "order": [], "ideal": True}
 # A box that rests for a minute and is then turned by half a turn.
 TURN = dict(STILL, order=["Z+a", "Z+b"], first_rest_s=60.0, flip_error_deg=3.0)
-SCALE = 1.25
+SCALE = 1.15
 
 
 def record(sensor="mpu6050", who_am_i=(0x68, 0x68), gyro=True):

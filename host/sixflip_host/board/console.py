@@ -130,6 +130,13 @@ def _term_range(event):
 
 
 def _rest(event):
+    """The bias, and what speaks against the calibration in this rest."""
+    against = event.get("words") if event.get("verdict") == "doubtful" else None
+    return "\n".join(filter(None, [_bias(event), against and "the calibration is doubtful: "
+                                   + "; ".join(map(str, against))])) or None
+
+
+def _bias(event):
     if event.get("bias") == "measured now":
         return "gyro bias measured at rest; %s" % event.get("note")
     if not event.get("reason"):
