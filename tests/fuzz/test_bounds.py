@@ -99,7 +99,7 @@ HOSTILE = {
         ("import", "-o", "OUT", "--rate", "100", "--units", "si", "--limit", "1000000")),
     "gzip bomb of empty lines": ("x.csv.gz", lambda: gzip.compress(b"ax,ay,az\n" + b"\n" * (
         100 * MILLION)), ("import", "-o", "OUT", "--rate", "100", "--accel-lsb", "1")),
-    "MCAP bomb": ("x.mcap", lambda: mcap_bomb(4 << 30), ("import", "-o", "OUT", "--limit",
+    "MCAP bomb": ("x.mcap", lambda: mcap_bomb(1 << 30), ("import", "-o", "OUT", "--limit",
                                                          "1000000")),
     "nested brackets": ("x.csv", lambda: b"# sixflip-capture 1\n# " + b"[" * 10**8, ("show",)),
     "nested brackets, short": ("x.csv", lambda: b"# sixflip-capture 1\n# " + b"[" * 10**6
