@@ -156,6 +156,7 @@ def test_without_mounting_and_gyro_measured(tmp_path):
 def test_a_sensor_without_gyro(tmp_path):
     record = make_record(False, False)
     record.chip, record.gyro_lsb_per_dps, record.gyro_range_dps = "adxl345", 0.0, 0
+    record.accel_range_g, record.accel_lsb_per_g = 16, 256
     text = header(tmp_path, record)
     assert "SIXFLIP_HAS_GYRO 0" in text and "gyro_table" not in text
     counts = samples(200)

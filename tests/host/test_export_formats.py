@@ -101,6 +101,7 @@ def test_imucal(case, tmp_path):
 def test_a_sensor_without_gyro(tmp_path, name, key):
     record = make_record(False, False)
     record.chip, record.gyro_lsb_per_dps, record.gyro_range_dps = "adxl345", 0.0, 0
+    record.accel_range_g, record.accel_lsb_per_g = 16, 256
     (tmp_path / "r.bin").write_bytes(correction_record.encode(record))
     text = export((tmp_path / "r.bin",), name, tmp_path / "out")
     assert key in text and "gyroscope_" not in text and "raw rate" not in text
