@@ -52,7 +52,8 @@ def solve(placements, lsb_per_g, g, level="tilt solved", angles=None):
         P = _lstsq(X, flips.truths(across))
     out = _summary(P, X, flips, across, g)
     left = np.array([out.residual[int(pose)] for pose in poses])
-    out.sigma_P = sigma_P(poses, X, left, mean_variance(used, lsb_per_g), g)
+    out.sigma_P = sigma_P(poses, X, P, left, mean_variance(used, lsb_per_g), g,
+                          np.array([one.first for one in used]) / 1000)
     out.residual_rms_g = float(np.sqrt(np.mean(np.square(list(out.residual.values())))))
     out.noise_g = float(np.sqrt(np.mean([np.square(one.noise[:3]) for one in used])) / lsb_per_g)
     return out
