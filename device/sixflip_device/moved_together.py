@@ -22,8 +22,10 @@ def copied(x):
     if isinstance(x, Placement):
         return Placement(x.pose, x.first, x.n, copied(x.sums), copied(x.noise), x.duration_us)
     if isinstance(x, Move):
-        return Move(x.before, x.after, x.first, x.n, copied(x.gyro_sums), x.duration_us,
-                    copied(x.late), x.saturated, x.largest_gap_us)
+        new = Move(x.before, x.after, x.first, x.n, copied(x.gyro_sums), x.duration_us,
+                   copied(x.late), x.saturated, x.largest_gap_us)
+        new.path = copied(x.path)
+        return new
     if not hasattr(x, "__dict__"):
         return x
     new = type(x)()

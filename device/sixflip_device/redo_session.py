@@ -116,7 +116,7 @@ def _copy(unit, name, asked, stretches):
         scan = Scan(g)
         moves = CaptureMoves(placements, scan.blocks.columns,
                              int(1000000 / unit.settings["rate_hz"] + 0.5),
-                             unit.sensor.imu.gyro_rail)
+                             unit.sensor.imu.gyro_rail, unit.sensor.imu.gyro_lsb_per_dps)
         writer = BlockWriter(f.write, meta_bytes(unit, asked.session), scan.blocks.columns, 1)
         for kind, block in scan.each():
             if kind == cb.SAMPLES or kind == cb.STEPS:

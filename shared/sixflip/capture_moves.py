@@ -4,7 +4,7 @@ from array import array
 
 from sixflip.capture_blocks import US, places
 from sixflip.capture_samples import each, start
-from sixflip.placement_log import PlacementLog, add_window, empty_move
+from sixflip.placement_log import PlacementLog, empty_move
 from sixflip.still_window import StillWindow
 
 LENGTH = 32  # samples summed up in one go; any number will do
@@ -14,12 +14,12 @@ class CaptureMoves:
     """block() of every block of samples in the file's order; then moves() has them.
 
     placements  in force in that file; columns: its mask; gyro_rail: |count| at or beyond is
-                saturated, 0 without a gyro
+                saturated, 0 without a gyro; lsb_per_dps: its counts
     """
 
-    def __init__(self, placements, columns, period_us, gyro_rail):
+    def __init__(self, placements, columns, period_us, gyro_rail, lsb_per_dps):
         self._to_come = list(placements)
-        self._log = PlacementLog(period_us)
+        self._log = PlacementLog(period_us, lsb_per_dps if gyro_rail else 0)
         self._window = StillWindow(LENGTH, US, gyro_rail, period_us)
         self._places = places(columns)
         self._row = array("h", [0] * 10)
@@ -57,7 +57,7 @@ class CaptureMoves:
         if placements and self._at == placements[-1].first + placements[-1].n:
             self._window.clear()
         elif full and not self._resting():
-            add_window(self._log.open, self._window)
+            self._log.add(self._window)
 
     def _resting(self):
         placements = self._log.placements
@@ -65,7 +65,7 @@ class CaptureMoves:
 
     def _flush(self):
         if self._window.n < LENGTH:  # a full one is in the move already
-            add_window(self._log.open, self._window)
+            self._log.add(self._window)
         self._window.clear()
 
     def moves(self):

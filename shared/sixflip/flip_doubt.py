@@ -1,15 +1,44 @@
 """Half turns were assumed: what the gyro's view of the same flips says about that.
 
 Six flips short by one angle look like another tilt to the accelerometer. To the gyro they are
-a scale no chip of its kind has; and one flip off the others shows in any case.
+another scale, which the moves between the faces contradict (half_turns.py); and one flip off
+the others shows in any case.
 """
 
 import math
 
 from sixflip.faces import AXIS, FACES
+from sixflip.gyro_spread import HAND
 
 APART_DEG = 3.0
 MATTERS_MG = 1.0
+# False alarms, where the moves contradict: 1 axis in 2000.
+SIGMAS = 3.5
+PAIR = HAND / math.pi / math.sqrt(2.0)  # of two flips' mean, a part of half a turn
+# A scale known no better is doubtful (gyro_verdict.py), and so is one held against no better.
+HELD = 0.01
+
+
+def not_half_turns(r):
+    """{axis: degrees by which its flips were too long} of axes where the moves show it."""
+    found = {}
+    for k in range(3):
+        if r.excess and k not in r.missing:
+            x, sigma = r.excess[0][k], r.excess[1][k]
+            if abs(x) > SIGMAS * math.sqrt(sigma * sigma + PAIR * PAIR):
+                found[k] = 180.0 * x
+    return found
+
+
+def _which(found, r):
+    """"every flip was short by 6.0 degrees", or those about one axis or two."""
+    worst = max(found, key=lambda k: abs(found[k]))
+    axes = [k for k in sorted(found)
+            if abs(found[k] - found[worst]) < SIGMAS * 180.0 * (r.excess[1][k] + PAIR)]
+    return "%s %s by %.1f degrees" % (
+        "every flip was" if len(axes) == 3 else
+        "the flips about %s were" % " and ".join(["xyz"[k] for k in axes]),
+        "too long" if found[worst] > 0 else "short", abs(found[worst]))
 
 
 def scale_off(r, tolerance):
@@ -27,10 +56,21 @@ def scale_off(r, tolerance):
 
 
 def scale_doubt(r, tolerance):
-    """The sentence about a gyro whose scale is beyond its tolerance, or ""."""
+    """The sentence about a gyro whose scale the moves contradict, or which no move confirms
+    and its tolerance does not allow either; or ""."""
+    if r.excess:
+        found = not_half_turns(r)
+        if found:
+            return ("%s, by the moves between the faces: its scale is off by %.1f %%"
+                    % (_which(found, r), max([abs(found[k]) for k in found]) / 1.8))
+        known = max([0.0] + [r.excess[1][k] for k in range(3) if k not in r.missing])
+        if not known <= HELD:
+            return ("the moves between the faces tell by how much the flips turned to %.1f "
+                    "degrees only, %.1f is the limit" % (180.0 * known, 180.0 * HELD))
+        return ""
     off = scale_off(r, tolerance)
     if not off:
-        return ""
+        return "no move between the faces could be used to hold its half turns against"
     return ("gyro scale %.3f, %.0f %% off is the data sheet's limit: the chip is off, or every "
             "flip was %s by %.0f degrees" % (off[0], 100 * tolerance, _side(off[1]), abs(off[1])))
 
@@ -60,11 +100,11 @@ def apart(r, axis):
 
 def accelerometer_doubt(r, tolerance, tilt_deg, known=()):
     """The sentence about flips that were no half turns where the table's tilt makes that
-    matter, or "".
+    matter, or "". Asked of a gyro with a scale that no chip has, too: its flips show that.
 
     known  faces 0..5 whose turn was measured by another gyro scale and taken into account
     """
-    if tilt_deg is None or r.verdict == "refused":
+    if tilt_deg is None or r.wrong_axes:
         return ""
     for axis in range(3):
         found = apart(r, axis)
@@ -74,7 +114,16 @@ def accelerometer_doubt(r, tolerance, tilt_deg, known=()):
                 return ("the flip of %s or of the opposite face was off half a turn by %.1f "
                         "degrees, %.0f is the limit: about %.1f mg at %.1f degrees of tilt"
                         % (found[1], found[0], APART_DEG, mg, tilt_deg))
-    off = None if len(known) == 6 else scale_off(r, tolerance)
+    if len(known) == 6:
+        return ""
+    if r.excess:
+        short = not_half_turns(r)
+        mg = error_mg(tilt_deg, max([0.0] + [abs(short[k]) for k in short]))
+        if mg > MATTERS_MG:
+            return ("%s, by the moves between the faces: about %.1f mg at %.1f degrees of tilt"
+                    % (_which(short, r), mg, tilt_deg))
+        return ""
+    off = scale_off(r, tolerance)
     if off and error_mg(tilt_deg, abs(off[1])) > MATTERS_MG:
         return ("gyro scale %.3f: the chip is off, or every flip was %s by %.0f degrees, that "
                 "is about %.1f mg at %.1f degrees of tilt" % (

@@ -26,19 +26,26 @@ class GyroscopeResult:
     flips     {"Z+": {"angle_deg", "used", "reason"}, ...}; the angle by the solved P
     missing   axes 0..2 without a usable flip: P keeps the old matrix there
     wrong_axes  sentence or ""; signs_seen: axes whose sign the moves confirmed
+    excess    ([3], standard errors [3]): by what part of half a turn the flips about each axis
+              were too long, by the moves between the faces (half_turns.py); None: not known
     hand_deg  how far the flips of an axis disagree, at least 0.4; across_deg: see gyro_spread
     verdict, reason
     """
 
+    excess = None
 
-def solve(placements, moves, lsb_per_dps, accel_P=None, old=None):
-    """What solve_matrix() gives, judged."""
+
+def solve(placements, moves, lsb_per_dps, accel_P=None, old=None, lsb_per_g=0):
+    """What solve_matrix() gives, judged; with lsb_per_g and accel_P held against the moves."""
     from sixflip.gyro_axes import wrong_axes  # a board has phases of their own for these
     from sixflip.gyro_verdict import judge_gyroscope
     r = solve_matrix(placements, moves, lsb_per_dps, accel_P, old)
     r.wrong_axes, r.signs_seen = wrong_axes(placements, moves, lsb_per_dps,
                                             mean_rate(placements, lsb_per_dps))
     r.verdict, r.reason = judge_gyroscope(r)
+    if accel_P and lsb_per_g:
+        from sixflip.half_turns import excess
+        r.excess = excess(placements, moves, lsb_per_g, r, accel_P)
     return r
 
 

@@ -1,6 +1,20 @@
-"""Placements in force and the moves between them, in the order of the session."""
+"""Placements in force and the moves between them, in the order of the session.
 
-from sixflip.placement import Move
+While a move lasts its path (see Move) grows window by window, R from 0 and J from 9 on, behind
+them what the last window turned. Within a window of a quarter of a second the axis of the turn
+goes on changing as since the window before: a + (b x a) / 12 (Bortz' equation by two samples;
+Savage 1998, eq. 33).
+"""
+
+import math
+from array import array
+
+from sixflip.placement import COARSE, FINE, LATE_US, Move
+
+STILL = 1e-3  # rad in a window: nothing turns
+
+
+IN_TIME = (0, 0, 0, 0)  # late of every move whose samples came when they should: one object
 
 
 def empty_move(first):
@@ -23,8 +37,7 @@ def absorb(move, later):
     """Append a later, adjoining stretch to a move."""
     move.n += later.n
     move.duration_us += later.duration_us
-    for i in range(4):
-        move.late[i] += later.late[i]
+    move.late = [move.late[i] + later.late[i] for i in range(4)]
     move.saturated = move.saturated or later.saturated
     move.largest_gap_us = max(move.largest_gap_us, later.largest_gap_us)
     for i in range(3):
@@ -45,14 +58,51 @@ def span_of(placement, period_us):
 class PlacementLog:
     """moves[i] leads to placements[i]: before is i - 1 (-1: session's start), after is i.
 
-    open is the move under way since the last placement.
+    open is the move under way since the last placement. lsb_per_dps: of the gyro, 0 without.
     """
 
-    def __init__(self, period_us):
+    def __init__(self, period_us, lsb_per_dps=0):
         self.period_us = period_us
+        self.lsb_per_dps = lsb_per_dps
         self.placements = []
         self.moves = []
         self.open = empty_move(0)
+        self._path = array("f", range(42)) if lsb_per_dps else None  # of the open move
+        self._known = False  # since the placement before
+
+    def add(self, window):
+        """Append a window to the open move."""
+        add_window(self.open, window)
+        self.turn(window)
+
+    def turn(self, window):
+        """The path goes on by a window; the bias is what the gyro read in the last placement."""
+        if not self._known:
+            return
+        path = self._path
+        rest = self.placements[-1]
+        us = window.us - LATE_US * window.late[3]
+        for k in range(3):
+            path[39 + k] = path[36 + k]
+            path[36 + k] = math.radians(
+                (window.total(3 + k) / window.n * us + window.late[k] * (LATE_US // 2)
+                 - rest.sums[3 + k] / rest.n * window.us) / self.lsb_per_dps / 1000000)
+        x, y, z, a, b, c = path[36:]
+        a, b, c = (x + (b * z - c * y) / 12, y + (c * x - a * z) / 12, z + (a * y - b * x) / 12)
+        angle = math.sqrt(a * a + b * b + c * c)
+        if angle < STILL:
+            return
+        turned = (a, b, c)
+        s = math.sin(angle) / angle
+        for i in (0, 3, 6):
+            x, y, z = row = path[i:i + 3]
+            d = (1 - math.cos(angle)) / angle * (x * a + y * b + z * c) / angle
+            for k in range(3):
+                x = (math.cos(angle) * row[k] + d * turned[k]
+                     + s * (row[k - 2] * turned[k - 1] - row[k - 1] * turned[k - 2]))
+                path[i + k] = x
+                for j in range(3):
+                    path[9 + 3 * (i + k) + j] += (row[k] + x) / 2 * turned[j]
 
     def accept(self, placement):
         """Close the open move with a placement that begins where it ends."""
@@ -61,7 +111,17 @@ class PlacementLog:
         self.open.after = i
         self.placements.append(placement)
         self.moves.append(self.open)
+        if self._known and (self.placements[-2].pose - 1) // 2 != (placement.pose - 1) // 2:
+            path = self.open.path = array("h", range(36))  # of a flip the sums tell enough
+            for k in range(36):
+                path[k] = int(self._path[k] * (FINE if k < 9 else COARSE))
+        if not any(self.open.late):
+            self.open.late = IN_TIME
         self.open = empty_move(placement.first + placement.n)
+        if self.lsb_per_dps:
+            for k in range(42):
+                self._path[k] = k in (0, 4, 8)
+            self._known = True
 
     def drop(self, code):
         """Withdraw every placement of a pose; its samples join the moves around it."""
@@ -78,12 +138,14 @@ class PlacementLog:
     def drop_at(self, i):
         merged = self.moves.pop(i)
         absorb(merged, span_of(self.placements.pop(i), self.period_us))
+        merged.path = None
         if i < len(self.moves):
             absorb(merged, self.moves[i])
             self.moves[i] = merged
         else:
             absorb(merged, self.open)
             self.open = merged
+            self._known = False
         for k in range(i, len(self.moves)):
             self.moves[k].before = k - 1
             self.moves[k].after = k

@@ -53,7 +53,7 @@ class Session:
             length, accel_rail, gyro_rail if gyro_lsb_per_dps else 0, period_us
         )
         self._noise = NoiseFloor(accel_lsb_per_g, gyro_lsb_per_dps)
-        self._log = PlacementLog(period_us)
+        self._log = PlacementLog(period_us, gyro_lsb_per_dps)
         self.placements = self._log.placements  # in force
         self.moves = self._log.moves
         self._pose = None
@@ -148,7 +148,7 @@ class Session:
         self._us %= US
         self.left_s = max(0, self.timeout_s - (self._seconds - self._since))
         if self._pose is None:
-            add_window(self._log.open, window)
+            self._log.add(window)
         known = self._noise.known
         self._noise.look(window)
         if self.state == "done":
@@ -257,6 +257,7 @@ class Session:
             if not pose.full():  # a full one has this window in already
                 add_window(pose.span, self._window)
             self._give_up_pose()
+            self._log.turn(self._window)
             self._moving(self._window)
             self.state = "moving"
             self._show_of(noise)

@@ -67,7 +67,8 @@ class Kept:
         self.writer.flush()
         self.file.rewind()
         scan = Scan(self.file)
-        found = CaptureMoves(self.session.placements, scan.blocks.columns, 10000, 32767)
+        found = CaptureMoves(self.session.placements, scan.blocks.columns, 10000, 32767,
+                             65.5)
         for kind, block in scan.each():
             if kind == STEPS:
                 found.block(block)

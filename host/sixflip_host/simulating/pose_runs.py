@@ -3,6 +3,7 @@
 import numpy as np
 
 from sixflip.placement import LATE_US, Move, Placement
+from sixflip.placement_log import PlacementLog
 from sixflip.still_window import window_length
 
 POSE_SAMPLES = 400      # of a pose on the board: sets the length of its windows
@@ -73,11 +74,39 @@ def _move(capture, index, before, after):
     rail = min(INT16_RAIL, capture.meta.get("gyro_range_dps", np.inf)
                * capture.meta["gyro_lsb_per_dps"])
     saturated = bool(len(gyro)) and bool((np.abs(gyro.astype(np.int32)) >= rail - 1).any())
-    return Move(index, index + 1, first, end - first,
+    move = Move(index, index + 1, first, end - first,
                 [int(s) for s in gyro.sum(axis=0, dtype=np.int64)],
                 # n samples span n intervals, each sample the one before it, as on the board
                 int(capture.t_us[end - 1] - capture.t_us[first - 1]),
                 _late(capture, first, end, gaps), saturated, int(gaps.max(initial=0)))
+    move.path = _path(capture, before, after)
+    return move
+
+
+class _Window:
+    """Samples first..end-1 as PlacementLog takes them from a StillWindow."""
+
+    def __init__(self, capture, first, end):
+        self.n = end - first
+        self.us = int(capture.t_us[end - 1] - capture.t_us[first - 1])
+        self.late = _late(capture, first, end, np.diff(capture.t_us[first - 1:end]))
+        self._sums = capture.gyro[first:end].sum(axis=0, dtype=np.int64)
+
+    def total(self, i):
+        """Sum of gyro axis i - 3."""
+        return int(self._sums[i - 3])
+
+
+def _path(capture, before, after):
+    """Move.path, by windows as long as the board's."""
+    log = PlacementLog(0, capture.meta["gyro_lsb_per_dps"])
+    log.accept(before)
+    length = window_length(capture.meta["rate_hz"], POSE_SAMPLES)
+    first, end = before.first + before.n, after.first
+    for at in range(first, end, length):
+        log.turn(_Window(capture, at, min(at + length, end)))
+    log.accept(after)
+    return log.moves[-1].path
 
 
 def _late(capture, first, end, gaps):

@@ -187,7 +187,7 @@ def solve_gyro(capture, placements, moves, accel_P=None, old=None, flips=None):
         return None, "the board kept only the sums: the gyro needs the samples of the moves"
     try:
         found = gyroscope.solve(placements, moves, capture.meta["gyro_lsb_per_dps"], accel_P,
-                                old)
+                                old, capture.meta["accel_lsb_per_g"])
     except (ValueError, ZeroDivisionError) as error:
         return None, str(error)
     if found.verdict == "good":
