@@ -77,7 +77,7 @@ class PlacementLog:
 
     def turn(self, window):
         """The path goes on by a window; the bias is what the gyro read in the last placement."""
-        if not self._known:
+        if not (self._known and window.n):
             return
         path = self._path
         rest = self.placements[-1]

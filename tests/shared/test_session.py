@@ -27,7 +27,7 @@ class SixFaces(unittest.TestCase):
             self.assertEqual(move.gyro_sums, [
                 recorder.total(3 + k, at, p.first) for k in range(3)])
             self.assertEqual(move.duration_us, 10000 * move.n)
-            self.assertEqual((move.late, move.saturated, move.largest_gap_us),
+            self.assertEqual((list(move.late), move.saturated, move.largest_gap_us),
                              ([0, 0, 0, 0], False, 10000))
             end = p.first + p.n
             self.assertEqual(p.sums, [recorder.total(k, p.first, end) for k in range(7)])
