@@ -1,4 +1,4 @@
-"""Nothing wrong is called good, whatever a person does wrong: tests/bench/mistakes.py runs more."""
+"""Nothing wrong is called good, whatever goes wrong; tests/bench/mistakes.py runs more."""
 
 import mistaken_sessions as mistaken
 import pytest
