@@ -69,7 +69,8 @@ class Row:
     def healthy(self):
         """Share of sessions of which both sensors are good."""
         runs = sum(self.accel.values())
-        return min(sum(one[word] for word in COLUMNS[:3]) for one in (self.accel, self.gyro)) / runs
+        return min(sum(one[word] for word in COLUMNS[:3])
+                   for one in (self.accel, self.gyro)) / runs
 
 
 HEAD = "%-36s%s%7s  %s\n%-36s%s%7s  %s" % (

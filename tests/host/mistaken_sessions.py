@@ -20,7 +20,15 @@ from sixflip import session as machine
 from sixflip.faces import AXIS, FACES, SIGN
 from sixflip.pose_check import judge_session
 from sixflip.record import Record
-from sixflip_device import gyro_signs, judging, judging_flips, judging_gyro, solving, solving_gyro
+from sixflip_device import (
+    gyro_signs,
+    holding_flips,
+    judging,
+    judging_flips,
+    judging_gyro,
+    solving,
+    solving_gyro,
+)
 
 G = 9.80665
 RATE_HZ = 100
@@ -284,6 +292,7 @@ def judged(plan, s, refusals=()):
         return out
     if solving_gyro.run(unit) == "gyro_signs":
         gyro_signs.run(unit)
+        holding_flips.run(unit)
         P, sigma = taken.gyro.P, taken.gyro.sigma
         judging_gyro.run(unit)
         judging_flips.run(unit)
@@ -390,7 +399,7 @@ def tap(plan):
     """Somebody knocks at the table."""
     for rest in plan.rng.choice(plan.rests, 3):
         rest.tap = plan.rng.uniform(0.1, 0.8)
-        rest.seconds += 2
+        rest.seconds += 5
 
 
 def _parted(plan, first):

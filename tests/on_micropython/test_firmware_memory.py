@@ -1,4 +1,4 @@
-"""The whole guided session, import of the firmware included, in 100 KB of heap, and a second one.
+"""The whole guided session, import of the firmware included, in 102 KB of heap, and a second one.
 
 Simulated chip and board are not counted: what the harness holds of the heap before the first
 line of firmware is imported is measured, and just as much is added.
@@ -15,7 +15,7 @@ from sixflip.capture_reader import read as read_blocks
 from . import session_tape
 
 ROOT = Path(__file__).resolve().parents[2]
-HEAP = 100 * 1024
+HEAP = 102 * 1024
 # Where the bus fails or a face is taken again while the heap is fullest. (Names of code stay in
 # the heap for good, and room for them comes in steps: the next one, of 14 KB, is at 1260 names.)
 MORE = 4 * 1024
@@ -58,7 +58,7 @@ def only(events, name):
 
 
 @pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])
-def test_a_whole_session_in_100_kb(micropython, tmp_path, sensor):
+def test_a_whole_session_in_102_kb(micropython, tmp_path, sensor):
     flash(tmp_path, sensor)
     events, harness = power_up(micropython, tmp_path, 1 << 20, "live")
     most = {}
