@@ -28,18 +28,20 @@ def excess(placements, moves, lsb_per_g, r, accel_P):
     """
     try:
         turned = Turned(r.P)
+        rows = []
+        for m in moves:
+            if not m.path or m.before < 0 or m.after < 0 or m.saturated or has_gap(m):
+                continue
+            ends = (placements[m.before], placements[m.after])
+            if min([face_of_code(p.pose) for p in ends]) >= 0:
+                rows += turned.rows(m.path, [_gravity(p, lsb_per_g, accel_P) for p in ends])
+        return _solve(rows, r)
     except ValueError:
         return None
-    rows = []
-    for m in moves:
-        if not m.path or m.before < 0 or m.after < 0 or m.saturated or has_gap(m):
-            continue
-        ends = (placements[m.before], placements[m.after])
-        faces = [face_of_code(p.pose) for p in ends]
-        if faces[0] >= 0 and faces[1] >= 0 and faces[0] != faces[1]:
-            rows += turned.rows(m.path, [_gravity(p, lsb_per_g, accel_P) for p in ends])
-    if not rows:
-        return None
+
+
+def _solve(rows, r):
+    """Least squares for x of three axes and what they have in common."""
     hand = r.hand_deg / 180.0 / math.sqrt(2.0)  # of two flips' mean
     scatter = MOVE
     for _ in range(2):

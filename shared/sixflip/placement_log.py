@@ -70,6 +70,13 @@ class PlacementLog:
         self._path = array("f", range(42)) if lsb_per_dps else None  # of the open move
         self._known = False  # since the placement before
 
+    def follow(self, known):
+        """From here on the open move's path is followed, or not known."""
+        self._known = known and self._path is not None
+        if self._known:
+            for k in range(42):
+                self._path[k] = k in (0, 4, 8)
+
     def add(self, window):
         """Append a window to the open move."""
         add_window(self.open, window)
@@ -118,10 +125,7 @@ class PlacementLog:
         if not any(self.open.late):
             self.open.late = IN_TIME
         self.open = empty_move(placement.first + placement.n)
-        if self.lsb_per_dps:
-            for k in range(42):
-                self._path[k] = k in (0, 4, 8)
-            self._known = True
+        self.follow(True)
 
     def drop(self, code):
         """Withdraw every placement of a pose; its samples join the moves around it."""
@@ -145,7 +149,7 @@ class PlacementLog:
         else:
             absorb(merged, self.open)
             self.open = merged
-            self._known = False
+            self.follow(False)
         for k in range(i, len(self.moves)):
             self.moves[k].before = k - 1
             self.moves[k].after = k

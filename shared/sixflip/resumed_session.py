@@ -14,7 +14,9 @@ def resume(session, placements, samples, moves=None):
     log = session._log
     for i, placement in enumerate(placements):
         log.open = moves[i] if moves else empty_move(placement.first)
+        log.follow(False)  # the path is in the move, if it is known
         log.accept(placement)
+    log.follow(False)
     log.open = moves[-1] if moves else empty_move(samples)
     log.open.largest_gap_us = PAUSE_US
     session.samples = samples
