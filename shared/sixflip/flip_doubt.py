@@ -8,13 +8,13 @@ the others shows in any case.
 import math
 
 from sixflip.faces import AXIS, FACES
-from sixflip.gyro_spread import HAND
 
 APART_DEG = 3.0
 MATTERS_MG = 1.0
 # False alarms, where the moves contradict: 1 axis in 2000.
 SIGMAS = 3.5
-PAIR = HAND / math.pi / math.sqrt(2.0)  # of two flips' mean, a part of half a turn
+# Of two flips' mean by a hand good to 0.4 degrees (gyro_spread.HAND), a part of half a turn.
+PAIR = 0.4 / 180.0 / math.sqrt(2.0)
 # A scale known no better is doubtful (gyro_verdict.py), and so is one held against no better.
 HELD = 0.01
 
