@@ -1,5 +1,5 @@
-"""A record with every term in it, in the heap of a small board: loaded and streamed by in 102 KB,
-kept through a new session in 104. Without terms none of their code is in the heap."""
+"""A record with every term in it, in the heap of a small board: loaded and streamed by in 106 KB,
+kept through a new session in 108. Without terms none of their code is in the heap."""
 
 import sys
 
@@ -28,7 +28,7 @@ def give_terms(path):
 
 
 @pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])
-def test_terms_in_force_in_102_kb_and_a_session_in_104(micropython, tmp_path, sensor):
+def test_terms_in_force_in_106_kb_and_a_session_in_108(micropython, tmp_path, sensor):
     flash(tmp_path, sensor)
     events, harness = power_up(micropython, tmp_path, 1 << 20, "live")
     plain = only(events, "ready")["live"]
