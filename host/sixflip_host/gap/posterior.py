@@ -19,6 +19,7 @@ FORM_COST = 1.0  # nats
 UNKNOWN_FORM = {True: 0.06, False: 0.02}  # of the gain of a stranger, of a name: a quarter or
 # a seventh of its size, squared, is not described
 AS_WELL = 3.0  # nats, GAP stage 4
+NOISE_FORM = 0.2  # of a name's gain, that its true form may leave to noise that wanders
 KEPT = 8  # eliminations of each unit that are kept
 NEAR = 14  # forms that are looked at with all levels of noise
 LEAST_GAIN = 2.0  # nats that one more member must gain for the search to go on
@@ -219,11 +220,10 @@ def _pruned(model, best, cost):
     gain more than a share of what they gain."""
     while best.forms:
         gains = _gains(model, best)
-        whole = {f: max(gains[f], _alone(model, f)) if f.generic else gains[f]
-                 for f in best.forms}
-        needed = {form: cost + PRESENT + max([_unknown(form, f) * whole[f] for f in best.forms
-                                              if f is not form], default=0.0)
-                  for form in best.forms}
+        alone = {f: max(gains[f], _alone(model, f)) for f in best.forms}
+        needed = {form: cost + PRESENT + max(
+            [_unknown(form, f) * (alone[f] if f.generic or form.effect == "drift" else gains[f])
+             for f in best.forms if f is not form], default=0.0) for form in best.forms}
         weakest = min(best.forms, key=lambda f: gains[f] - needed[f])
         if gains[weakest] >= needed[weakest]:
             break
@@ -236,8 +236,8 @@ def _unknown(form, other):
     could be another one, and takes up whatever form a stranger has beyond what is described."""
     if other.effect == "drift":
         return 0.0
-    if other.generic and form.effect == "drift":
-        return 1.0
+    if form.effect == "drift":
+        return 1.0 if other.generic else NOISE_FORM
     return UNKNOWN_FORM[other.generic]
 
 
