@@ -202,7 +202,7 @@ def test_worlds_of_a_scenario_are_what_the_virtual_board_runs(tmp_path):
 
 
 @pytest.mark.parametrize("text, expected", [
-    ("scene = ", "not TOML"), ('scene = "papr"', "scene is 'papr', expected one of paper"),
+    ("scene = ", "not TOML"), ('scene = "papr"', "scene is 'papr', did you mean paper?"),
     ('sensor = "bmi270"', "expected mpu6050, gy85 or adxl345"), ("sed = 1", "unknown key 'sed'"),
     ("rate_hz = 0", "rate_hz is 0"), ("seed = 1.5", "seed is 1.5, expected a whole number"),
     ("flicker = 3", "flicker is 3, expected true or false"),
