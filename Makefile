@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 export SIXFLIP_CACHE ?= $(CURDIR)/.cache
 
 .PHONY: help setup micropython demo test test-qemu test-pico size check bench bench-accuracy fidelity blind \
-	blind-studies reproduce package.json clean
+	blind-studies reproduce pictures box package.json clean
 
 help:
 	@echo "make demo            a virtual board calibrates itself and the host checks it (no hardware)"
@@ -21,6 +21,8 @@ help:
 	@echo "make fidelity        the simulator against real recordings"
 	@echo "make blind           the diagnosis on sealed cases of an independent generator"
 	@echo "make blind-studies   real noise, real recordings, effects taken out, captures recommended"
+	@echo "make pictures        the pictures of the README and of docs/"
+	@echo "make box             the STL of the box to print, with Debian's openscad"
 	@echo "make reproduce       the paper's tables 3 and 4"
 
 setup: $(VENV)/.installed
@@ -75,6 +77,13 @@ blind-studies: setup
 
 reproduce: setup
 	@$(BIN)/sixflip reproduce
+
+# the drawings of the pages, and what terminal, browser and report look like
+pictures: setup
+	@$(BIN)/python docs/draw.py
+
+box:
+	openscad -q -o docs/box/sixflip_box.stl docs/box/sixflip_box.scad
 
 package.json: setup
 	$(BIN)/python -m sixflip_host.board.mip_package > $@.new && mv $@.new $@

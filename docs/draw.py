@@ -1,20 +1,31 @@
 """Draws the pictures of these pages: python docs/draw.py writes docs/pictures/*.svg."""
 
+import math
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "host"))
+from sixflip_host.guide import box_drawings  # noqa: E402
+
+SEEN = box_drawings.SEEN
 HERE = Path(__file__).resolve().parent / "pictures"
-SIZE = (1.5, 1.0, 0.5)  # of the box along its own x, y, z
-INK, PAPER, FAINT = "#222222", "#ffffff", "#bbbbbb"
+SIZE = (1.5, 1.25, 1.0)  # of the box along its own x, y, z: the printable one's, box.md
+SCALE = 52.0             # pixels a unit of it
+INK, PAPER, FAINT, TABLE = "#222222", "#ffffff", "#bbbbbb", "#e9e2d6"
 COLOURS = {"X": "#c0392b", "Y": "#1e8449", "Z": "#1f618d"}
-# Rows: where the box's x, y and z point in the world (x right, y away, z up).
-ATTITUDES = {
-    "Z+": ((1, 0, 0), (0, 1, 0), (0, 0, 1)), "Z-": ((1, 0, 0), (0, -1, 0), (0, 0, -1)),
-    "X+": ((0, 0, 1), (0, 1, 0), (-1, 0, 0)), "X-": ((0, 0, -1), (0, 1, 0), (1, 0, 0)),
-    "Y+": ((1, 0, 0), (0, 0, 1), (0, -1, 0)), "Y-": ((1, 0, 0), (0, 0, -1), (0, 1, 0))}
 ORDER = ("Z+", "X+", "Y+", "Z-", "X-", "Y-")
 CUBE = [(a, b, c) for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)]
 SIDES = {"X": 0, "Y": 1, "Z": 2}
+
+
+def attitude(up, seen):
+    """Rows: where the box's x, y and z point in the world (x right, y away, z up), from the
+    names of the faces on top, in front and on the right."""
+    axes = [None] * 3
+    for face, (k, sign) in zip((up, *seen), ((2, 1), (1, -1), (0, 1))):
+        sign = sign if face[1] == "+" else -sign
+        axes[SIDES[face[0]]] = tuple(sign * (i == k) for i in range(3))
+    return axes
 
 
 def turned(axes, point):
@@ -22,11 +33,12 @@ def turned(axes, point):
     return tuple(sum(axes[i][k] * point[i] for i in range(3)) for k in range(3))
 
 
-def flat(point, centre, scale=46.0):
-    """World to paper, seen from the front, right and above."""
+def flat(point, centre):
+    """World to paper, seen from the front, right and above; the table is z = 0, centre the
+    middle of what lies on it."""
     x, y, z = point
-    return (centre[0] + scale * (0.92 * x + 0.42 * y),
-            centre[1] - scale * (0.95 * z + 0.42 * y - 0.18 * x))
+    return (centre[0] + SCALE * (0.92 * x + 0.42 * y),
+            centre[1] - SCALE * (0.95 * z + 0.42 * y - 0.18 * x))
 
 
 def line(a, b, colour=INK, width=1.5, dash=""):
@@ -49,25 +61,44 @@ def arrow(a, b, colour, width=2.5):
         '<polygon points="%s" fill="%s"/>' % (" ".join(tip), colour))
 
 
-def box(axes, centre):
-    """The box in an attitude, its faces named, its axes as arrows from the middle of a face."""
+def ring_of(points, fill, stroke=INK):
+    return '<polygon points="%s" fill="%s" stroke="%s" stroke-width="1.5"/>' % (
+        " ".join("%.1f,%.1f" % p for p in points), fill, stroke)
+
+
+def table(centre, half=1.45):
+    """The table's top under a box, a little larger than it."""
+    corners = ((-half, -1.15), (half, -1.15), (half, 1.15), (-half, 1.15))
+    return ring_of([flat((x, y, 0.0), centre) for x, y in corners], TABLE, FAINT)
+
+
+def box(axes, centre, letters=None):
+    """The box on the table in an attitude, with the names of the faces that are seen; letters:
+    {face: (along, along)}, where a name stands off the middle of its face, in half sizes."""
     out = []
+    height = sum(abs(axes[i][2]) * SIZE[i] for i in range(3))
+
+    def on_paper(point):
+        x, y, z = turned(axes, point)
+        return flat((x, y, z + height / 2), centre)
+
     for letter, i in SIDES.items():
         for sign in (1, -1):
             normal = turned(axes, [sign * (k == i) for k in range(3)])
             if normal[2] > 0.5 or normal[1] < -0.5 or normal[0] > 0.5:  # seen
                 corners = [c for c in CUBE if c[i] == sign]
                 ring = [corners[0], corners[1], corners[3], corners[2]]
-                points = [flat(turned(axes, [c[k] * SIZE[k] / 2 * 1.3 for k in range(3)]), centre)
-                          for c in ring]
+                points = [on_paper([c[k] * SIZE[k] / 2 for k in range(3)]) for c in ring]
                 shade = "#f2f2f2" if normal[2] > 0.5 else "#dddddd" if normal[1] < -0.5 \
                     else "#cccccc"
-                out.append('<polygon points="%s" fill="%s" stroke="%s" stroke-width="1.5"/>' % (
-                    " ".join("%.1f,%.1f" % p for p in points), shade, INK))
-                middle = flat(turned(axes, [0.65 * sign * SIZE[k] * (k == i) for k in range(3)]),
-                              centre)
-                out.append(text((middle[0], middle[1] + 4), letter + ("+" if sign > 0 else "−"),
-                                13, COLOURS[letter], weight="bold"))
+                out.append(ring_of(points, shade))
+                aside = list((letters or {}).get(letter + "-+"[sign > 0], (0, 0)))
+                middle = on_paper([SIZE[k] / 2 * (sign if k == i else aside.pop(0))
+                                   for k in range(3)])
+                size = 10 if letters else 14
+                out.append(text((middle[0], middle[1] + 0.35 * size),
+                                letter + ("+" if sign > 0 else "−"), size, COLOURS[letter],
+                                weight="bold"))
     return "".join(out)
 
 
@@ -81,32 +112,82 @@ def faces():
     """The six faces in the order that the board asks for them."""
     parts = []
     for k, name in enumerate(ORDER):
-        centre = (120 + 220 * (k % 3), 110 + 210 * (k // 3))
-        axes = ATTITUDES[name]
-        parts.append(line((centre[0] - 95, centre[1] + 62), (centre[0] + 95, centre[1] + 62),
-                          FAINT, 2))
-        parts.append(box(axes, centre))
-        parts.append(text((centre[0], centre[1] + 88), "%d.  %s up" % (
-            k + 1, name.replace("-", "−")), 15, weight="bold"))
-    return picture(680, 430, parts)
+        centre = (120 + 220 * (k % 3), 140 + 220 * (k // 3))
+        parts += [table(centre), box(attitude(name, SEEN[name]), centre),
+                  text((centre[0], centre[1] + 64), "%d.  %s up" % (
+                      k + 1, name.replace("-", "−")), 15, weight="bold")]
+    return picture(680, 450, parts)
+
+
+def turn_on_the_table(centre, start, end, radius=1.38, steps=40):
+    """An arrow that lies on the table round what stands there; angles in degrees, from x
+    (right) over y (away), anticlockwise from above."""
+    points = []
+    for k in range(steps + 1):
+        angle = math.radians(start + (end - start) * k / steps)
+        points.append(flat((radius * math.cos(angle), radius * math.sin(angle), 0.0), centre))
+    path = " ".join("%.1f,%.1f" % p for p in points[:-2])
+    return '<polyline points="%s" fill="none" stroke="%s" stroke-width="2.5"/>' % (path, INK) \
+        + arrow(points[-4], points[-1], INK)
 
 
 def flip():
     """The half turn on one face."""
     parts = []
-    half = {"a": ATTITUDES["Z+"], "b": ((-1, 0, 0), (0, -1, 0), (0, 0, 1))}
-    for k, (name, axes) in enumerate(half.items()):
-        centre = (125 + 330 * k, 100)
-        parts.append(line((centre[0] - 100, 165), (centre[0] + 100, 165), FAINT, 2))
-        parts.append(box(axes, centre))
-        parts.append(text((centre[0], 192), "Z+%s" % name, 15, weight="bold"))
-    parts.append('<path d="M 245 70 C 275 30, 315 30, 342 66" fill="none" stroke="%s" '
-                 'stroke-width="2.5"/>' % INK)
-    parts.append(arrow((338, 59), (346, 74), INK))
-    parts.append(text((292, 26), "180°, flat on the table"))
-    parts.append(text((292, 215), "what the table's tilt adds changes its sign, "
-                      "what the sensor adds does not", 12))
-    return picture(585, 230, parts)
+    half = {"Z+a": SEEN["Z+"], "Z+b": box_drawings.turned(SEEN["Z+"])}
+    for k, (name, seen) in enumerate(half.items()):
+        centre = (135 + 340 * k, 120)
+        parts += [table(centre, 1.6)]
+        if not k:
+            parts.append(turn_on_the_table(centre, 10, 170))
+        parts.append(box(attitude("Z+", seen), centre))
+        if not k:
+            parts.append(turn_on_the_table(centre, 190, 350))
+        parts.append(text((centre[0], 200), name, 15, weight="bold"))
+    parts += [arrow((270, 105), (342, 105), INK), text((306, 80), "half a turn"),
+              text((306, 95), "on the table", 12),
+              text((306, 228), "the same face stays up; it is turned round, not tipped over",
+                   13),
+              text((306, 248), "what the table's tilt adds changes its sign, "
+                      "what the sensor adds does not", 12)]
+    return picture(612, 262, parts)
+
+
+CABLE, HOLLOW = "#b9770e", "#8f8f8f"
+
+
+def on_box(axes, points, centre):
+    """Points of the box, in parts of its half sizes, on paper."""
+    height = sum(abs(axes[i][2]) * SIZE[i] for i in range(3))
+    for point in points:
+        x, y, z = turned(axes, [p * s / 2 for p, s in zip(point, SIZE)])
+        yield flat((x, y, z + height / 2), centre)
+
+
+def cable(points):
+    return ('<polyline points="%s" fill="none" stroke="%s" stroke-width="4" '
+            'stroke-linejoin="round"/>' % (" ".join("%.1f,%.1f" % p for p in points), CABLE))
+
+
+def printed_box():
+    """The printable box (box/sixflip_box.scad) on Z-, on X- and on Y-, with its cable."""
+    pocket = ((-0.5, -0.48, 1), (-0.13, -0.48, 1), (-0.13, -1, 1), (0.13, -1, 1), (0.13, -0.48, 1),
+              (0.5, -0.48, 1), (0.5, 0.48, 1), (-0.5, 0.48, 1))
+    slot = ((-0.13, -1, 1), (0.13, -1, 1), (0.13, -1, -0.4), (-0.13, -1, -0.4))
+    shown = (("Z+", SEEN["Z+"], "Z+ up", ((0, -1, -0.3), (0, -1.9, -0.3), (-0.6, -2.3, -0.9))),
+             ("X+", SEEN["X+"], "X+ up", ((0, -1, 0.2), (0.02, -1.7, 0.2), (-0.8, -2.3, 0.5))),
+             ("Y+", SEEN["Y+"], "Y+ up, slot below", ((0, -0.93, 1), (0, -0.95, 1.7),
+                                                      (0.5, -0.98, 2.6))))
+    parts = []
+    for k, (up, seen, words, way) in enumerate(shown):
+        centre, axes = (120 + 220 * k, 140), attitude(up, seen)
+        parts += [table(centre, 1.7), box(axes, centre, {"Z+": (0, 0.75), "Y-": (-0.57, 0)})]
+        parts.append(ring_of(on_box(axes, pocket, centre), HOLLOW))
+        if up != "Y+":
+            parts.append(ring_of(on_box(axes, slot, centre), HOLLOW))
+        parts.append(cable(list(on_box(axes, way, centre))))
+        parts.append(text((centre[0], centre[1] + 66), words, 15, weight="bold"))
+    return picture(680, 225, parts)
 
 
 BOARDS = {
@@ -133,7 +214,7 @@ def wiring(board):
 
 
 def pictures():
-    found = {"faces.svg": faces(), "flip.svg": flip()}
+    found = {"faces.svg": faces(), "flip.svg": flip(), "box.svg": printed_box()}
     found.update(("wiring-%s.svg" % board, wiring(board)) for board in BOARDS)
     return found
 
