@@ -97,12 +97,14 @@ class Diagnosis:
         named = {f.sensor for f in self.findings if f.effect in NOISY}
         bursts = [b for b in noise_bursts.found(sessions) if b[0] not in named]
         bits = counts.stuck_bits(sessions)
-        self.remarks += [words for _, words in bursts]
+        self.remarks += [words for _, words, _ in bursts]
         self.remarks += ["bit %d of the %s axis of the %s always reads %d"
                          % (bit, axis, "gyro" if sensor == "gyro" else "accelerometer", value)
                          for sensor, axis, bit, value in bits]
-        self.nameless = [where.Place(sensor, None, "noise", 1.0, 1e-6) for sensor, _ in bursts]
-        self.nameless += [where.Place(sensor, axis, "amplitude", 1.0, 1e-6)
+        self.nameless = [where.Place(sensor, None, "noise", 1.0, p) for sensor, _, p in bursts]
+        # Each sample would show a bit that is free on one side or the other.
+        samples = sum(len(s.capture) for s in sessions)
+        self.nameless += [where.Place(sensor, axis, "amplitude", 1.0, 0.5 ** min(samples, 900))
                           for sensor, axis, _, _ in bits]
 
     def _compared(self, simulator):

@@ -1,8 +1,10 @@
-"""Noise that comes in bursts: rests in which some seconds are far louder than the others.
+"""How the samples of the rests are distributed: seconds far louder than the others, and single
+samples far off their neighbours.
 
 No effect of the library does that, and no touch does it often: it is said where, not what.
 """
 import numpy as np
+from scipy import stats
 
 WINDOW_S = 0.5
 LOUD = 9.0  # times the usual variance of the differences from sample to sample
@@ -28,14 +30,46 @@ def loud(session, sensor):
     return int(high.sum()), len(np.unique(place[high])), len(high)
 
 
+SPIKE = 4.5  # standard deviations of a single sample off its neighbours, which agree
+AGREE = 4.0
+SPIKE_CHANCE = 5e-5  # of such a sample, where noise is a little heavier than normal
+LEAST_SPIKES, SPIKES_P = 10, 1e-6
+
+
+def spikes(session, sensor):
+    """(single samples far off the two before and the two after, samples looked at) of a
+    session's rests; counts within a step of their neighbours never are."""
+    counts, number, looked = getattr(session.capture, sensor), 0, 0
+    for _, first, end in session.runs:
+        x = counts[first:end].astype(float)
+        if len(x) < 20:
+            continue
+        beside = np.stack([x[:-4], x[1:-3], x[3:-1], x[4:]])
+        middle = np.median(beside, axis=0)
+        off = np.abs(x[2:-2] - middle)
+        sigma = np.maximum(np.median(off, axis=0) / 0.6745, 1.0)
+        agree = np.abs(beside - middle).max(axis=0) < AGREE * sigma
+        number += int(((off > SPIKE * sigma) & agree).any(axis=1).sum())
+        looked += len(off)
+    return number, looked
+
+
 def found(sessions):
-    """[(sensor, sentence)]"""
+    """[(sensor, sentence, p)]"""
     out = []
     for sensor, words in (("accel", "accelerometer"), ("gyro", "gyro")):
         if any(getattr(s.capture, sensor) is None for s in sessions):
             continue
         sums = np.sum([loud(s, sensor) for s in sessions], axis=0)
         if sums[0] >= FEWEST and sums[1] >= FEWEST_RESTS:
+            m = max(8, int(WINDOW_S * sessions[0].rate))
+            chance = 3.0 * stats.chi2.sf(LOUD * m / 2.0, m / 2.0)  # differences share samples
             out.append((sensor, "the %s is far louder in %d of %d half seconds at rest: noise "
-                        "that comes in bursts" % (words, sums[0], sums[2])))
+                        "that comes in bursts" % (words, sums[0], sums[2]),
+                        float(stats.binom.sf(sums[0] - 1, sums[2], min(chance, 1.0)))))
+        number, looked = np.sum([spikes(s, sensor) for s in sessions], axis=0)
+        p = float(stats.binom.sf(number - 1, looked, 3.0 * SPIKE_CHANCE)) if looked else 1.0
+        if number >= LEAST_SPIKES and p < SPIKES_P:
+            out.append((sensor, "%d of %d samples of the %s at rest are far off those before and "
+                        "after them: spikes" % (number, looked, words), p))
     return out

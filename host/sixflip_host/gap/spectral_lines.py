@@ -8,12 +8,13 @@ Source: Percival & Walden, Spectral Analysis for Physical Applications (1993), s
 import math
 
 import numpy as np
-from scipy import ndimage, stats
+from scipy import ndimage, signal, stats
 
 from .counts import steps
 from .finding import Finding
 
-LENGTH_S, SHORTEST_S, LOWEST_HZ = 5.0, 2.0, 2.0
+LENGTH_S, SHORTEST_S = 5.0, 2.0
+LOWEST_HZ, LOWEST_MOVING_HZ = 0.7, 2.0  # a hand or a vehicle moves more slowly than that
 CHANCE = 0.001
 FEWEST = 4  # stretches
 MEDIAN_SHARE, OF_MEDIAN = 0.25, math.log(2.0)
@@ -76,7 +77,7 @@ def spectrum(stretches, axis):
     """(mean power (k,), the same with every stretch counted alike, R, window)."""
     window = np.hanning(len(stretches[0]))
     x = np.array([s[:, axis] for s in stretches])
-    x = x - x.mean(axis=1, keepdims=True)
+    x = signal.detrend(x, axis=1)  # what creeps or drifts is no line
     power = np.abs(np.fft.rfft(x * window, axis=1)) ** 2 / (window ** 2).sum()
     # Every stretch counts alike: a burst of noise in one of them is no line.
     level = np.median(power[:, 1:], axis=1)
@@ -112,7 +113,7 @@ def strongest(sessions, sensor, axis):
     if not resting:  # what shakes a sensor in use comes and goes
         mean = plain
     rate, n = sessions[0].rate, len(stretches[0])
-    first = int(LOWEST_HZ * n / rate) + 1
+    first = int((LOWEST_HZ if resting else LOWEST_MOVING_HZ) * n / rate) + 1
     band = mean[first:-1]
     if len(band) < 20 or not band.any():
         return None
