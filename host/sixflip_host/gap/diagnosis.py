@@ -244,7 +244,7 @@ class Diagnosis:
         """True when the capture would have shown most of what it is asked about."""
         from . import unseen
         if not self.gaps:
-            return any(s.t_s[-1] >= LEAST_S for s in self.sessions)
+            return any(s.runs and s.t_s[-1] >= LEAST_S for s in self.sessions)
         return unseen.visible_share(self) >= 0.5
 
 

@@ -2,6 +2,7 @@
 import numpy as np
 import pytest
 
+from sixflip_host.capture import capture_file
 from sixflip_host.gap import answer, diagnosis, observations
 from sixflip_host.simulating import scenario, simulate
 
@@ -23,3 +24,20 @@ def test_a_step_at_another_time_in_each_session_is_unexplained(two_sessions):
     assert found["verdict"] == "unexplained"
     assert [c["effect"] for c in found["causes"]] == []
     assert (found["where"][0]["sensor"], found["where"][0]["domain"]) == ("accel", "time")
+
+
+def test_a_log_without_a_rest_cannot_tell_that_there_is_no_gap():
+    t = np.arange(0.0, 40.0, 0.01)
+    generator = np.random.default_rng(3)
+    angle = 1.0 * np.sin(2.0 * np.pi * 0.4 * t) + 0.5 * np.sin(2.0 * np.pi * 0.23 * t)
+    force = np.stack([np.sin(angle), np.zeros_like(t), np.cos(angle)], 1) * 16384
+    rate = np.stack([np.zeros_like(t), np.degrees(np.gradient(angle, 0.01)) * 65.5,
+                     np.zeros_like(t)], 1)
+    counts = [np.rint(x + generator.normal(0.0, 40.0, x.shape)).astype(np.int16)
+              for x in (force, rate)]
+    meta = {"sensor": "mpu6050", "rate_hz": 100, "accel_lsb_per_g": 16384.0,
+            "gyro_lsb_per_dps": 65.5, "g": 9.80665}
+    capture = capture_file.Capture(meta, (t * 1e6).astype(np.int64), *counts)
+    found = diagnosis.Diagnosis([observations.Session("moving", capture)], diagnosis.Settings())
+    assert not found.sessions[0].runs
+    assert found.verdict == "cannot tell"
