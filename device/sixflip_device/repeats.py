@@ -7,7 +7,7 @@ has its own eye on this, its windows.
 
 from array import array
 
-SAME = 32    # as in still_window.py, which is not in the heap while numbers are streamed
+SAME = 32    # as in still_window.py, which a small heap has no room for while it streams
 MOST = 4096  # repeats from one attempt to the next
 
 

@@ -44,6 +44,15 @@ def _output(unit):
     return LineOutput(unit)
 
 
+def _gravity_watch(unit):
+    """A GravityWatch, or None where the heap has no room for it beside the stream."""
+    from .put_in_force import small
+    if small():
+        return None
+    from .gravity_watch import GravityWatch
+    return GravityWatch(unit)
+
+
 def run(unit):
     """Until a calibration is asked for, the host says stop, or the sensor is lost."""
     if unit.correction is None:
@@ -83,10 +92,13 @@ def _stream(unit):
         lamp.step()
         if unit.output is None:  # so has a command left it
             unit.output = _output(unit)
+            watch = _gravity_watch(unit)  # who has just asked for the stream is told as well
         if repeats.seen(sample):
             unseen_us += dt
         else:
             unit.output.step(sample, unseen_us + dt)
+            if watch is not None:
+                watch.step(unseen_us + dt, sample)
             unseen_us = 0
             hz = unit.stream_hz
             due += dt * hz

@@ -94,6 +94,14 @@ def test_lines_and_frames_are_the_same_samples(running, tmp_path, capsys):
         assert said.count(", 0 frames lost") == (2 if wire else 0)
 
 
+def test_a_calibration_that_no_longer_holds_is_said_beside_the_samples(running, tmp_path, capsys):
+    board = running(STILL)
+    code, table = stream(board, tmp_path, "--hz", "10", "--seconds", "13")
+    assert code == 0 and len(table) == pytest.approx(130, abs=3)
+    said = capsys.readouterr().err
+    assert said.count("|a| at rest is +50.8 mg off, 5 is the limit: calibrate again") == 1, said
+
+
 def test_the_board_is_left_as_it_was(running, tmp_path, capsys):
     board = running(STILL)
     assert stream(board, tmp_path, "--raw", "--binary", "--hz", "40", "--seconds", "1")[0] == 0

@@ -86,6 +86,7 @@ EVENTS = {
     "no_record": Fields(reason=TEXT, refused=MapOf(TEXT, TEXT)),
     "rest": Fields(**REST),
     "check": Fields("still verdict", **REST),
+    "gravity": Fields("a_error_mg limit_mg", a_error_mg=NUMBER, limit_mg=NUMBER),
     "ready": Fields(corrected=FLAG, stream_hz=HZ),
     "calibrating": Fields(missing=POSES, plan=FLAG, session=COUNT, sums_only=FLAG, reason=TEXT,
                           recorded=FLAG),

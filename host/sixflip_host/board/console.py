@@ -146,6 +146,11 @@ def _bias(event):
         event["reason"], "there is none" if held == "none" else "the %s one is used" % held)
 
 
+def _gravity(event):
+    return ("the calibration is doubtful: |a| at rest is %+.1f mg off, %.0f is the limit: "
+            "calibrate again" % (event["a_error_mg"], event["limit_mg"]))
+
+
 def _mounted(event):
     if event.get("off"):
         return "no mounting any more: samples are in the sensor's axes"
@@ -182,6 +187,7 @@ WORDS = {
     "saved": _saved,
     "capture": _capture,
     "rest": _rest,
+    "gravity": _gravity,
     "mounted": _mounted,
     "not_mounted": lambda e: "mounting not measured: %s" % e.get("reason"),
     "not_restored": lambda e: "the record offered was refused: %s" % e.get("reason"),
