@@ -1,6 +1,6 @@
 """A whole guided session under MicroPython, to be run with a small heap:
 
-    micropython -X heapsize=106k firmware_in_a_small_heap.py FOLDER [live|hanging_bus|locked_loop]
+    micropython -X heapsize=128k firmware_in_a_small_heap.py FOLDER [live|hanging_bus|locked_loop]
 
 FOLDER is the board's flash, the firmware included: as on a board its files have short names,
 which MicroPython keeps in the heap. The chips' bursts come from a tape in FOLDER

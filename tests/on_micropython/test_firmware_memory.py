@@ -1,4 +1,4 @@
-"""The whole guided session, import of the firmware included, in 106 KB of heap, and a second one.
+"""The whole guided session, import of the firmware included, in a small heap, and a second one.
 
 Simulated chip and board are not counted: what the harness holds of the heap before the first
 line of firmware is imported is measured, and just as much is added.
@@ -15,10 +15,10 @@ from sixflip.capture_reader import read as read_blocks
 from . import session_tape
 
 ROOT = Path(__file__).resolve().parents[2]
-HEAP = 106 * 1024
-# Where the bus fails or a face is taken again while the heap is fullest. (Names of code stay in
-# the heap for good, and room for them comes in steps: the next one, of 14 KB, is at 1260 names.)
-MORE = 4 * 1024
+# For every kind of session. The limit for boards is 100 KB of a 32-bit heap, held on a Cortex-M3 by
+# tests/on_qemu/test_whole_session.py; objects are about twice as large here, where pointers have
+# 64 bits, so that this finds what grows or is never let go of, and is no board's limit.
+HEAP = 128 * 1024
 SCRIPT = "firmware_in_a_small_heap.py"
 
 
@@ -58,7 +58,7 @@ def only(events, name):
 
 
 @pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])
-def test_a_whole_session_in_106_kb(micropython, tmp_path, sensor):
+def test_a_whole_session_in_a_small_heap(micropython, tmp_path, sensor):
     flash(tmp_path, sensor)
     events, harness = power_up(micropython, tmp_path, 1 << 20, "live")
     most = {}
@@ -86,13 +86,13 @@ def test_a_whole_session_in_106_kb(micropython, tmp_path, sensor):
 
 
 @pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])
-def test_a_bus_that_hangs_before_the_last_pose_is_recovered_in_108_kb(
+def test_a_bus_that_hangs_before_the_last_pose_is_recovered(
         micropython, tmp_path, sensor):
     """Nothing accepted is lost, and the chip, its registers at zero, is set up anew."""
     flash(tmp_path, sensor)
     _, harness = power_up(micropython, tmp_path, 1 << 20, "hanging_bus")
     (tmp_path / "record_a.bin").unlink()
-    heap = HEAP + MORE + harness - bare(micropython, tmp_path)
+    heap = HEAP + harness - bare(micropython, tmp_path)
     events, _ = power_up(micropython, tmp_path, heap, "hanging_bus")
     actions = [e["action"] for e in events if e["event"] == "bus_error"]
     assert actions[0].startswith("freeing the bus") and actions[-1] == "recovered"
@@ -113,13 +113,13 @@ def test_the_firmwares_sampling_loop_allocates_nothing(micropython, tmp_path, se
 
 
 @pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])
-def test_a_late_redo_costs_no_session_in_108_kb(micropython, tmp_path, sensor):
+def test_a_late_redo_costs_no_session(micropython, tmp_path, sensor):
     """It is done, or said to have no room; what was captured is there either way."""
     flash(tmp_path, sensor)
     _, harness = power_up(micropython, tmp_path, 1 << 20, "redo_late")
     for name in ("record_a.bin", "capture.bin", "refused.bin"):
         (tmp_path / name).unlink(missing_ok=True)
-    heap = HEAP + MORE + harness - bare(micropython, tmp_path)
+    heap = HEAP + harness - bare(micropython, tmp_path)
     events, _ = power_up(micropython, tmp_path, heap, "redo_late")
     answers = [e for e in events if e["event"] == "redo" or e.get("what", "").startswith("no mem")]
     assert len(answers) == 1
@@ -129,14 +129,14 @@ def test_a_late_redo_costs_no_session_in_108_kb(micropython, tmp_path, sensor):
 
 
 @pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])
-def test_a_session_that_the_host_records_in_108_kb(micropython, tmp_path, sensor):
+def test_a_session_that_the_host_records(micropython, tmp_path, sensor):
     """Every block reaches the host, and the session is as good as without."""
     flash(tmp_path, sensor)
     (tmp_path / "calibrate.flag").write_text('{"record": true}')
     _, harness = power_up(micropython, tmp_path, 1 << 20, "recorded_wire")
     (tmp_path / "record_a.bin").unlink()
     (tmp_path / "calibrate.flag").write_text('{"record": true}')
-    heap = HEAP + 2 * MORE + harness - bare(micropython, tmp_path)
+    heap = HEAP + harness - bare(micropython, tmp_path)
     events, _ = power_up(micropython, tmp_path, heap, "recorded_wire")
     assert only(events, "calibrating")["recorded"]
     assert only(events, "saved")["written"]
