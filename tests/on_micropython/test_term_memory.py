@@ -13,16 +13,21 @@ sys.path.insert(0, str(ROOT / "tests" / "shared"))
 from test_term_correction import ALL, fields_of  # noqa: E402
 
 
-def give_terms(path):
-    """All five terms into a board's record."""
-    record = correction_record.decode(path.read_bytes())
+def with_terms(record):
+    """A board's record, now with all five terms."""
     record.terms = []
     for name in ALL:
         fields = fields_of(name)
         if record.chip == "gy85" and "temp_lsb_per_c" in fields:
             fields.update(temp_lsb_per_c=280.0, temp_offset_c=82.142857)
         record_terms.put(record, name, fields)
-    path.write_bytes(correction_record.encode(record))
+    return record
+
+
+def give_terms(path):
+    """All five terms into the file of a board's record."""
+    record = correction_record.decode(path.read_bytes())
+    path.write_bytes(correction_record.encode(with_terms(record)))
 
 
 @pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])

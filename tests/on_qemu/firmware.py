@@ -49,7 +49,7 @@ def frozen_files():
             files[path.name] = path
     for path in sorted((ROOT / "tests" / "on_qemu" / "on_board").glob("*.py")):
         files[path.name] = path
-    for name in ("unittest.py", "locked_loop.py"):
+    for name in ("unittest.py", "locked_loop.py", "redo_late.py"):
         files[name] = ROOT / "tests" / "on_micropython" / name
     return files
 

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sixflip import correction_record
+from on_micropython.test_term_memory import ALL, with_terms
+from sixflip import correction_record, record_terms
 from sixflip_device import power_up, settings
 from sixflip_sim.tape import open_tape
 
@@ -22,11 +23,12 @@ sys.path.append(str(Path(__file__).resolve().parent / "on_board"))
 from taped_board import TapedBoard  # noqa: E402  also runs on the board
 
 HEAP = 140032  # what the port leaves of its 140 KB
-SMALL_HEAP = 80 * 1024  # of which the test itself holds some 5
+SMALL_HEAP = 80 * 1024  # of which the test itself holds some 5; the limit is 100 KB
+SMALL = {"ballast": HEAP - SMALL_HEAP, "pose_samples": POSE_SAMPLES}
 
 
 def session(board, sensor, **how):
-    """(events, their bytes in use, record, {word: value} of what else it printed)."""
+    """(events, their bytes in use, newest record, {word: value} of the rest that it printed)."""
     code = "import whole_session\nwhole_session.run(%r, **%r)" % (sensor, how)
     events, used, said = [], [], {}
     for line in board.exec(code).splitlines():
@@ -36,7 +38,8 @@ def session(board, sensor, **how):
         else:
             words = line.split()
             said.update(zip(words[::2], words[1::2]))
-    return events, used, correction_record.decode(bytes.fromhex(said.pop("record"))), said
+    record = said.pop("record", None)
+    return events, used, record and correction_record.decode(bytes.fromhex(record)), said
 
 
 def in_double_precision(sensor, folder, monkeypatch):
@@ -73,8 +76,7 @@ def differing(one, other):
 @pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])
 def test_a_whole_session_with_the_heap_locked_while_sampling(board, sensor, tmp_path,
                                                              monkeypatch):
-    events, used, record, said = session(board, sensor, lock=True, pose_samples=POSE_SAMPLES,
-                                         ballast=HEAP - SMALL_HEAP)
+    events, used, record, said = session(board, sensor, mode="locked_loop", **SMALL)
     harness = int(said["harness"])
     assert int(said["heap"]) == SMALL_HEAP
     assert named(events, "hello")[0]["float_bits"] == 32
@@ -108,6 +110,32 @@ def test_a_whole_session_with_the_heap_locked_while_sampling(board, sensor, tmp_
                                          locked["of"], vector_mg, gyro))
     assert vector_mg < 0.01
     assert gyro < 1e-5
+
+
+@pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])
+def test_a_late_redo_costs_no_session(board, sensor):
+    """The tape has no more of the face that is taken again: the session ends without it."""
+    events, used, _, said = session(board, sensor, mode="redo_late", timeout_s=30, **SMALL)
+    assert int(said["heap"]) == SMALL_HEAP
+    assert [event["face"] for event in named(events, "redo")] == ["X-"]
+    assert named(events, "capture")[0]["kept"] > 5000
+    assert "still missing: X-a X-b" in named(events, "solved")[0]["reason"]
+    print("\n%s: at most %d bytes in use of %d with a late redo" % (sensor, max(used), SMALL_HEAP))
+
+
+@pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])
+def test_every_term_in_force_and_kept_through_a_session(board, sensor):
+    _, _, record, _ = session(board, sensor, **SMALL)
+    events, used, record, said = session(
+        board, sensor, record=bytes(correction_record.encode(with_terms(record))).hex(), **SMALL)
+    assert int(said["heap"]) == SMALL_HEAP
+    assert named(events, "record")[0]["terms"] == [16, 17, 18, 19, 20]
+    assert len(named(events, "pose")) == 12
+    assert named(events, "solved")[0]["verdict"] == "good", named(events, "solved")[0]["reason"]
+    assert named(events, "ready")[0]["corrected"]
+    assert (named(events, "saved")[0]["slot"], record.sequence) == ("b", 2)
+    assert record_terms.names_of(record) == ALL
+    print("\n%s: at most %d bytes in use of %d with five terms" % (sensor, max(used), SMALL_HEAP))
 
 
 LIVE = {"tilt_deg": 2.0, "first_rest_s": 8.0, "dwell_s": 4.5, "move_s": 2.0, "seed": 3}

@@ -1,9 +1,10 @@
 """A power-up of the firmware with a whole session, its sources compiled here as on a board.
 
-run(sensor): bursts from a tape; run(sensor, world={}): a simulated chip inside; lock=True: the
-heap is locked while it samples; ballast: bytes that are gone from the heap beforehand; other
-names are settings. Prints the events with the bytes in use after each, and the record in
-hexadecimal.
+run(sensor): bursts from a tape; run(sensor, world={}): a simulated chip inside; mode: a module
+that changes the board (locked_loop: the heap is locked while it samples; redo_late: a face is
+asked for again); ballast: bytes that are gone from the heap beforehand; record: in hexadecimal,
+one in force already, when a session is asked for; other names are settings. Prints the events
+with the bytes in use after each, and the newest record in hexadecimal, if there is one.
 """
 
 import gc
@@ -39,10 +40,13 @@ class Teller:
         print(gc.mem_alloc() - self.ballast, text)
 
 
-def run(sensor, world=None, lock=False, ballast=0, **changed):
+def run(sensor, world=None, mode="", ballast=0, record="", **changed):
     weight = bytearray(ballast)  # a smaller heap
     import sources
     disk = Disk(sources.FILES)
+    if record:
+        disk.open("record_a.bin", "wb").write(bytes.fromhex(record))
+        disk.open("calibrate.flag", "wb")
     i2c, clock = tape(sensor) if world is None else live(sensor, world)
     for name in list(sys.modules):
         if name.split(".")[0] in ("sixflip", "sixflip_sim", "sources"):
@@ -59,9 +63,11 @@ def run(sensor, world=None, lock=False, ballast=0, **changed):
     del settings
     board = TapedBoard(i2c, "/", Teller(ballast).told, clock)
     power_up.free_unlasting()
-    if lock:
-        import locked_loop
-        locked_loop.install(board, power_up)
+    if mode:
+        __import__(mode).install(board, power_up)
     power_up.run(board, values, problems)
     assert len(weight) == ballast
-    print("record", "".join(["%02x" % b for b in disk.written["record_a.bin"].data]))
+    for name in ("record_b.bin", "record_a.bin"):
+        if name in disk.written:
+            print("record", "".join(["%02x" % b for b in disk.written[name].data]))
+            break
