@@ -15,9 +15,9 @@ from sixflip.capture_reader import read as read_blocks
 from . import session_tape
 
 ROOT = Path(__file__).resolve().parents[2]
-# For every kind of session. The limit for boards is 100 KB of a 32-bit heap, held on a Cortex-M3 by
-# tests/on_qemu/test_whole_session.py; objects are about twice as large here, where pointers have
-# 64 bits, so that this finds what grows or is never let go of, and is no board's limit.
+# For every kind of session. The limit for boards is 100 KB of a 32-bit heap, which a Cortex-M3
+# holds in tests/on_qemu/test_whole_session.py; objects are about twice as large here, where
+# pointers have 64 bits: this shows what grows or is never let go of, and is no board's limit.
 HEAP = 128 * 1024
 SCRIPT = "firmware_in_a_small_heap.py"
 

@@ -1,5 +1,5 @@
-"""A record with every term in it, in the heap of a small board: loaded, streamed by and kept through
-a new session. Without terms none of their code is in the heap."""
+"""A record with every term in it, in the heap of a small board: loaded, streamed by and kept
+through a new session. Without terms none of their code is in the heap."""
 
 import sys
 

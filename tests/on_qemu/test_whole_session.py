@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from on_micropython.test_term_memory import ALL, with_terms
+
 from sixflip import correction_record, record_terms
 from sixflip_device import power_up, settings
 from sixflip_sim.tape import open_tape
