@@ -2,13 +2,15 @@
 
 import io
 
-ENOENT = 2
+ENOENT, EIO = 2, 5
 FOLDER, FILE = 0x4000, 0x8000
 BLOCK, BLOCKS = 4096, 256
 
 
 class Counted:
-    """A file on a flash that is not in the heap: only its length is kept."""
+    """A file on a flash that is not in the heap: only its length is kept, reading it fails."""
+
+    data = None
 
     def __init__(self):
         self.size = 0
@@ -76,6 +78,8 @@ class Disk:
             if path not in self.written:
                 raise OSError(ENOENT)
             data = self.written[path].data
+            if data is None:
+                raise OSError(EIO)
         return io.BytesIO(data) if "b" in mode else io.StringIO(str(data, "utf-8"))
 
     def stat(self, path):
