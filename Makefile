@@ -79,8 +79,9 @@ reproduce: setup
 	@$(BIN)/sixflip reproduce
 
 # the drawings of the pages, and what terminal, browser and report look like
-pictures: setup
+pictures: micropython
 	@$(BIN)/python docs/draw.py
+	@$(BIN)/python docs/screenshots.py
 
 box:
 	openscad -q -o docs/box/sixflip_box.stl docs/box/sixflip_box.scad
