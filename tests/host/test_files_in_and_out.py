@@ -170,6 +170,25 @@ def test_pull_replaces_what_it_pulled_and_nothing_else(pulled, tmp_path):
         assert (folder / "capture.csv").read_bytes() == NOTES
 
 
+def test_pull_keeps_the_captures_of_earlier_sessions(tmp_path, capsys):
+    (flash := tmp_path / "flash").mkdir()
+    leave_files(flash, earlier := unlabelled())
+    (flash / "unsaved.bin").write_bytes(kept := (flash / "capture.bin").read_bytes())
+    pulled = ["pull", "--port", "local:%s" % flash, "-o", str(tmp_path)]
+    assert cli.main(pulled) == cli.main(pulled) == 0
+    (flash / "unsaved.bin").unlink()
+    earlier.meta["session"] = 7
+    leave_files(flash, earlier, sums_only=True)
+    capsys.readouterr()
+    assert cli.main(pulled) == 0
+    (aside,) = tmp_path.glob("*/capture-00005eed.bin")
+    folder = aside.parent
+    assert aside.read_bytes() == (folder / "unsaved-00005eed.bin").read_bytes() == kept
+    assert capture_file.read(folder / "capture-00005eed.csv").meta["session"] == 0x5EED
+    assert not list(folder.glob("unsaved.*")) and not (folder / "capture.csv").exists()
+    assert "the capture of an earlier session" in capsys.readouterr().out
+
+
 def test_a_demo_erases_no_folder_but_that_of_a_demo(tmp_path, capsys):
     (tmp_path / "flash").mkdir()
     (tmp_path / "flash" / "photo.png").write_bytes(PICTURE)

@@ -3,6 +3,8 @@
 import json
 from pathlib import Path
 
+from sixflip import capture_reader
+
 from .. import file_kinds
 from ..atomic_write import write_bytes
 from ..capture import capture_binary, capture_file
@@ -16,6 +18,7 @@ from .ports import add_port, open_link
 HELP = "fetch the raw capture and the correction records from a board"
 EXAMPLE = "sixflip pull -o captures"
 CAPTURES = ("capture.bin", "unsaved.bin", "refused.bin")
+LONGEST_HEADER = 8192   # bytes, many times what the firmware writes in front of the samples
 WANTED = ("record_a.bin", "record_b.bin", "sixflip.json", *CAPTURES)
 # What a file there may be to be replaced, those of convert() with them.
 KINDS = {"record_a.bin": (file_kinds.RECORD,), "record_b.bin": (file_kinds.RECORD,),
@@ -44,6 +47,7 @@ def fetch(link, output, say=print, force=False):
     force: replace there what is none of a board's files, too.
 
     Only names of WANTED are asked for and written: no name of the board's reaches a path here.
+    A capture there of another session than the board's is kept: keep_earlier().
     """
     present = link.files([])
     names = [name for name in WANTED if name in present]
@@ -59,10 +63,41 @@ def fetch(link, output, say=print, force=False):
     with Bytes("fetching", sum(present[name][0] for name in names)) as bar:
         for name in names:
             data = link.get(name, lambda n, base=done: bar.at(base + n), present[name][0])
+            if name in CAPTURES:
+                keep_earlier(folder / name, session_of(data), say, force)
             write_bytes(folder / name, data)
             done += len(data)
             say("%s (%d bytes)" % (plain(folder / name), len(data)))
+    for name in set(CAPTURES).difference(names):
+        keep_earlier(folder / name, None, say, force)
     return folder
+
+
+def session_of(data):
+    """The number of a board's capture's session, None where the file does not tell."""
+    try:
+        header = capture_reader.read(data[:LONGEST_HEADER]).meta_bytes
+        number = json.loads(header)["session"]
+    except (KeyError, TypeError, ValueError, RecursionError):
+        return None
+    return number if type(number) is int and 0 <= number < 1 << 32 else None
+
+
+def keep_earlier(path, session, say, force):
+    """Renames a capture of an earlier session, with its text form, to NAME-SESSION: the board
+    keeps one of a kind, and what is here may be all that is left of it.
+
+    session  of the board's capture of that name, None where the board has none
+    """
+    earlier = session_of(path.read_bytes()) if path.exists() else None
+    if earlier in (None, session):
+        return
+    moves = [(was, was.with_name("%s-%08x%s" % (was.stem, earlier, was.suffix)))
+             for was in (path, path.with_suffix(".csv")) if was.exists()]
+    may_replace([(to, KINDS[was.name]) for was, to in moves], force)
+    for was, to in moves:
+        was.replace(to)
+    say("%s: the capture of an earlier session that was pulled here" % plain(moves[0][1]))
 
 
 def convert(folder, say=print):
