@@ -47,7 +47,8 @@ class CaptureStore:
                     remove(root + name)
                     free = free_bytes(root)
             if free is not None and free < RESERVE + expected_bytes:
-                self._short("%d bytes free, a session takes about %d" % (free, expected_bytes))
+                self._short("%d bytes free, %d of them for the records; a session may take %d" % (
+                    free, RESERVE, expected_bytes))
         self._free = free  # less what was written since; None: nobody knows
         self._open(meta_bytes)
 

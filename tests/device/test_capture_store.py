@@ -88,6 +88,8 @@ class TestCaptureStore(unittest.TestCase):
         self.free = 30000
         store = self.store()
         self.assertTrue(store.sums_only)
+        self.assertEqual(store.reason, "30000 bytes free, 24576 of them for the records; a "
+                                       "session may take 50000")
         self.assertIn("30000", store.reason)
         self.session(store)
         self.assertTrue(store.finish(True, self.placements))
