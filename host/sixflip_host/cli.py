@@ -145,6 +145,8 @@ def run(argv):
         print("sixflip", __version__)
         return 0
     verb = argv[0]
+    if verb.startswith("-"):
+        raise UsageError("no option %r, %s" % (verb, instead(verb, ("--help", "--version"))))
     if verb not in VERBS:
         raise UsageError("there is no verb %r, %s" % (verb, instead(verb, VERBS)))
     parser = parser_for(verb)

@@ -33,6 +33,8 @@ def test_overview_names_every_verb(capsys):
     (["solve", "x", "--flip", "180"], 2, "--flip 180, did you mean --flips?"),
     (["export", "x", "-o", "y", "--format", "parket"], 2, "did you mean parquet?"),
     (["plan", "--protocol", "recomended"], 2, "did you mean recommended?"),
+    (["calibrate", "--plan", "recomended"], 2, "did you mean recommended?"),
+    (["--verson"], 2, "no option '--verson', did you mean --version?"),
     (["diagnose", "x", "--without", "thermal_bais"], 2, "did you mean thermal_bias?"),
     (["diagnose", "x", "--fail-on", "unexplaned"], 2, "did you mean unexplained?"),
     (["solve"], 2, "required"), (["solve", "x", "--level", "best"], 2, "invalid choice"),

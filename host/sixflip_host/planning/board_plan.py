@@ -4,6 +4,7 @@ import math
 
 from sixflip import faces
 
+from ..did_you_mean import instead
 from ..errors import UsageError
 from ..simulating import protocols
 from . import plan_file
@@ -21,6 +22,9 @@ def session_of(name, number):
         if name in protocols.NAMES:
             raise UsageError("--plan %s is a motion, no placements: expected paper, recommended "
                              "or a plan file" % name) from None
+        if not any(c in name for c in "./\\"):
+            raise UsageError("no plan named %r, %s, or a plan file" % (
+                name, instead(name, protocols.STILL))) from None
         protocol = plan_file.read(name)
     if not 1 <= number <= len(protocol.sessions):
         raise UsageError("--session %d: the plan %s has %d" % (

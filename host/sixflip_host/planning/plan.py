@@ -15,12 +15,11 @@ HELP = "say what a capture can tell apart, what it cannot, and what to add; no c
 EXAMPLE = "sixflip plan --protocol recommended --sensor mpu6050 --save session.json"
 SENSORS = ("mpu6050", "gy85", "adxl345", "itg3205")
 MOST_PLACEMENTS = 120  # dense algebra: the time grows with the cube
-CAPTURES = ("paper", "return", "random", "backward", "thermal", "recommended")
 
 
 def add_arguments(parser):
     add_input(parser, "--protocol", default="recommended", metavar="NAME|FILE",
-              help="%s, or a plan file (default: recommended)" % ", ".join(CAPTURES))
+              help="%s, or a plan file (default: recommended)" % ", ".join(protocols.STILL))
     parser.add_argument("--sensor", default="mpu6050", choices=SENSORS,
                         help="whose typical sizes and noise to judge by (default: mpu6050)")
     parser.add_argument("--certified-box", action="store_true",
@@ -68,14 +67,14 @@ def run(args):
 
 def protocol_of(name):
     """A named protocol, or the one in a plan file; UsageError when it is neither."""
-    if name in CAPTURES:
+    if name in protocols.STILL:
         return protocols.named(name)
     if name in protocols.NAMES:
         raise UsageError("%s is a scene to simulate, not a capture of still poses; expected "
-                         "one of %s, or a plan file" % (name, ", ".join(CAPTURES)))
+                         "one of %s, or a plan file" % (name, ", ".join(protocols.STILL)))
     if not any(c in name for c in "./\\"):
         raise UsageError("no protocol named %r, %s, or a plan file"
-                         % (name, instead(name, CAPTURES)))
+                         % (name, instead(name, protocols.STILL)))
     return plan_file.read(name)
 
 

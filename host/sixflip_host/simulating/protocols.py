@@ -9,6 +9,7 @@ from sixflip import faces, pose_codes
 
 NAMES = ("paper", "return", "random", "backward", "recommended", "thermal", "soak",
          "turntable", "drive")
+STILL = ("paper", "return", "random", "backward", "thermal", "recommended")  # poses, no motion
 DWELL_S, MOVE_S = 5.0, 10.0
 OFF_FACES = math.cos(math.radians(22.0))  # the board takes what leans 15 degrees for a face
 STATES = {"warming": (22.0, 9.0, 300.0), "warm": (31.0, 2.0, 200.0),
