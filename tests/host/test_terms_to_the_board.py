@@ -170,7 +170,9 @@ def test_wrong_command_lines_and_another_parts_record(drifting, corrected, tmp_p
     words = ["diagnose", paths[0], "--record", str(path), "-o", str(tmp_path / "o")]
     assert cli.main(words) == 1
     assert "it is the record of another part" in capsys.readouterr().err
-    other.chip = "gy85"
+    other.chip, other.who_am_i = "gy85", (0xE5, 0x68)
+    other.accel_range_g, other.accel_lsb_per_g = 16, 256.0
+    other.gyro_range_dps, other.gyro_lsb_per_dps = 2000, 14.375
     path.write_bytes(correction_record.encode(other))
     assert cli.main(words) == 4
     assert "the record is for a gy85" in capsys.readouterr().err
