@@ -15,16 +15,20 @@ import sys
 import zlib
 from binascii import crc32
 
+import numpy as np
 import pytest
+
+from sixflip_host.capture import capture_file
 
 MOST_MB = 350
 SECONDS = 60
 LIMIT = 6 << 30
 RUN = """
-import json, resource, sys
+import json, sys
 from sixflip_host.cli import main
 code = main(json.loads(sys.argv[1]))
-print("PEAK", resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024)
+with open("/proc/self/status") as file:     # ru_maxrss begins with what the parent had
+    print("PEAK", int(file.read().split("VmHWM:")[1].split()[0]) // 1024)
 sys.exit(code)
 """
 HEAD = (b'# sixflip-capture 1\n# {"sensor": "other", "rate_hz": 100, "accel_lsb_per_g": 16384}\n'
@@ -191,44 +195,67 @@ def test_a_compressed_bag_is_unpacked_no_further_than_the_limit(tmp_path):
 
 
 BYTES_A_SAMPLE = 50
-SAMPLES = 1000000
+SAMPLES = (100_000, 400_000)    # the slope between them: what a reader takes whatever the file
 READ = """
-import resource, sys
+import sys
 from sixflip_host.capture import capture_file, import_csv
 from sixflip_host.cli import parser_for
-before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 %s
-print((resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) * 1024)
+with open("/proc/self/status") as file:
+    print(int(file.read().split("VmHWM:")[1].split()[0]) * 1024)
 """
-IMPORT = "import_csv.convert(parser_for('import').parse_args(sys.argv[1:]))"
+CAPTURE = "capture_file.read(sys.argv[1])"
+IMPORT = "import_csv.run(parser_for('import').parse_args(sys.argv[1:]))"
+META = {"sensor": "mpu6050", "rate_hz": 100, "accel_lsb_per_g": 16384, "gyro_lsb_per_dps": 131,
+        "temp_lsb_per_c": 340, "temp_offset_c": 36.53}
+
+
+def board_file(counts):
+    """The bytes of a board's file of int16 (n, 7), without delta coding: its longest form."""
+    from sixflip import capture_blocks as cb
+
+    def sealed(kind, payload):
+        block = struct.pack(cb.BLOCK, kind, 0, len(payload)) + payload
+        return block + struct.pack("<I", crc32(block))
+    out = [cb.header(json.dumps(META).encode(), cb.ACCEL | cb.GYRO | cb.TEMP)]
+    for first in range(0, len(counts), 2000):
+        some = counts[first:first + 2000]
+        steps = np.where(np.arange(len(some)), 10000, 0)
+        out.append(sealed(cb.SAMPLES, struct.pack(cb.TIME, first // 100, 0, len(some))
+                          + np.c_[steps, some].astype("<i2").tobytes()))
+    return b"".join(out) + sealed(cb.END, struct.pack(cb.FINISH, len(counts), cb.COMPLETE))
 
 
 @pytest.fixture(scope="module")
-def long_session(tmp_path_factory):
-    """A million samples as text, packed text and somebody else's CSV."""
-    import numpy as np
-
-    from sixflip_host.capture import capture_file
+def long_sessions(tmp_path_factory):
+    """A folder for each of SAMPLES: rests of 40 s as text, packed text, a board's file and
+    somebody else's CSV."""
     folder = tmp_path_factory.mktemp("long")
-    counts = np.random.default_rng(1).integers(-2000, 2000, (SAMPLES, 7)).astype(np.int16)
-    meta = {"sensor": "mpu6050", "rate_hz": 100, "accel_lsb_per_g": 16384,
-            "gyro_lsb_per_dps": 131, "temp_lsb_per_c": 340, "temp_offset_c": 36.53}
-    capture = capture_file.Capture(meta, np.arange(SAMPLES) * 10000, counts[:, :3],
-                                   counts[:, 3:6], counts[:, 6])
-    capture_file.write(folder / "x.csv", capture)
-    capture_file.write(folder / "x.csv.gz", capture)
-    np.savetxt(folder / "si.csv", np.c_[np.arange(SAMPLES) / 100, counts[:, :3] * 0.000598,
+    for samples in SAMPLES:
+        at = folder / str(samples)
+        at.mkdir()
+        counts = np.random.default_rng(1).integers(-40, 40, (samples, 7)).astype(np.int16)
+        up = np.arange(samples) // 4000 % 6
+        counts[np.arange(samples), up % 3] += np.where(up < 3, 16384, -16384).astype(np.int16)
+        capture = capture_file.Capture(META, np.arange(samples) * 10000, counts[:, :3],
+                                       counts[:, 3:6], counts[:, 6])
+        capture_file.write(at / "x.csv", capture)
+        capture_file.write(at / "x.csv.gz", capture)
+        (at / "x.bin").write_bytes(board_file(counts))
+        np.savetxt(at / "si.csv", np.c_[np.arange(samples) / 100, counts[:, :3] * 0.000598,
                                         counts[:, 3:6] * 0.000133], "%.7g", ",", comments="",
-               header="t,ax,ay,az,gx,gy,gz")
+                   header="t,ax,ay,az,gx,gy,gz")
     return folder
 
 
 @pytest.mark.parametrize("how, words", [
-    ("capture_file.read(sys.argv[1])", ["x.csv"]),
-    ("capture_file.read(sys.argv[1])", ["x.csv.gz"]),
+    (CAPTURE, ["x.csv"]), (CAPTURE, ["x.csv.gz"]), (CAPTURE, ["x.bin"]),
     (IMPORT, ["si.csv", "-o", "x", "--units", "si", "--time-column", "t", "--time-unit", "s"])])
-def test_no_file_takes_more_than_fifty_bytes_a_sample(how, words, long_session):
-    done = subprocess.run([sys.executable, "-c", READ % how, *words], capture_output=True,
-                          text=True, cwd=long_session)
-    assert done.returncode == 0, done.stderr
-    assert 10 * SAMPLES < int(done.stdout) < BYTES_A_SAMPLE * SAMPLES
+def test_no_file_takes_more_than_fifty_bytes_a_sample(how, words, long_sessions):
+    most = []
+    for samples in SAMPLES:
+        done = subprocess.run([sys.executable, "-c", READ % how, *words], capture_output=True,
+                              text=True, cwd=long_sessions / str(samples))
+        assert done.returncode == 0, done.stderr
+        most.append(int(done.stdout.split()[-1]))
+    assert 10 < (most[1] - most[0]) / (SAMPLES[1] - SAMPLES[0]) < BYTES_A_SAMPLE

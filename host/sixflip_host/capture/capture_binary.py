@@ -16,6 +16,7 @@ from .capture_header import check_meta
 from .capture_rows import quoted
 
 LATE = 1.5              # an interval so many times the usual one covers another sample's time
+MANY_TIMES = 100_000    # enough to say what is usual: an hour takes no more memory than a minute
 UNLABELLED = "nobody labelled the poses"
 BLOCK_SAMPLES = 256
 MOST_BYTES = 32             # of a board's file for a sample, its share of a block included
@@ -96,15 +97,19 @@ def write_pauses_us(blocks):
     usual ones is such a write. A longer one than GAP_US before a start begins a block by
     itself; it counts only where a placement ends.
     """
-    t_us = np.array(blocks.t_us, np.int64)
+    t_us = _array(blocks.t_us, np.int64)
     if len(t_us) < 2:
         return []
-    gaps = np.diff(t_us)
     starts = np.array(blocks.starts[1:], np.int64)
     ends = [one.first + one.n for one in blocks.placements]
-    before = starts[(gaps[starts - 1] <= GAP_US) | np.isin(starts, ends)] - 1
-    beside = np.union1d(before, starts[starts < len(gaps)])
-    return t_us[beside[gaps[beside] > LATE * np.median(gaps)]].tolist()
+    before = starts[(t_us[starts] - t_us[starts - 1] <= GAP_US) | np.isin(starts, ends)] - 1
+    beside = np.union1d(before, starts[starts < len(t_us) - 1])
+    return t_us[beside[t_us[beside + 1] - t_us[beside] > LATE * usual_us(t_us)]].tolist()
+
+
+def usual_us(t_us):
+    """The median interval, by the first MANY_TIMES of int64 (n,) times, µs."""
+    return float(np.median(np.diff(t_us[:MANY_TIMES])))
 
 
 def write_pauses(capture):
@@ -148,16 +153,19 @@ def _array(buffer, dtype):
 def _labels(path, blocks):
     """int16 codes of every sample from the placements in force."""
     pose = np.zeros(len(blocks.t_us), np.int16)
-    number = np.arange(len(pose))       # by the board's count, those that were lost among them
-    for first, n in blocks.lost:
-        number[number >= first] += n
     for one in blocks.placements:
         if len(pose) and one.first + one.n > len(pose) + blocks.missing and not (
                 blocks.damage or blocks.sums_only):
             raise BadFile("%s: a pose ends at sample %d of %d" % (
                 path, one.first + one.n, len(pose) + blocks.missing))
-        pose[(number >= one.first) & (number < one.first + one.n)] = one.pose
+        pose[_here(blocks, one.first):_here(blocks, one.first + one.n)] = one.pose
     return pose
+
+
+def _here(blocks, number):
+    """Row of the first sample from this number on, by the board's count, in which those that
+    were lost have numbers, too."""
+    return number - sum(min(n, number - first) for first, n in blocks.lost if first < number)
 
 
 def encode(capture):

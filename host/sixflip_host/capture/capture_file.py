@@ -31,7 +31,6 @@ from .unpack import Source
 BOARD_MAGIC = b"6CAP"
 FAR = 5.0               # times an interval that is no drift of a clock any more but another rate
 FEW_TIMES = 20          # too few to say what is usual
-MANY_TIMES = 100_000    # enough to
 ROWS_WRITTEN = 10_000    # at a time: as Python objects they take half a kilobyte each
 
 
@@ -124,7 +123,7 @@ def check_times(path, t_us, rate_hz):
             path, len(t_us), t_us[0]))
     if len(t_us) < FEW_TIMES:
         return
-    usual, mean = float(np.median(np.diff(t_us[:MANY_TIMES]))), span / (len(t_us) - 1)
+    usual, mean = capture_binary.usual_us(t_us), span / (len(t_us) - 1)
     for off in (lambda us: us * rate_hz > FAR * 1e6, lambda us: us * rate_hz * FAR < 1e6):
         if off(usual) and off(mean):
             raise BadFile("%s: its samples are %.4g us apart, expected about %.4g: rate_hz is %g"

@@ -8,6 +8,7 @@ from sixflip.still_window import window_length
 
 POSE_SAMPLES = 400      # of a pose on the board: sets the length of its windows
 INT16_RAIL = 32767      # where the chip's count ends
+AT_A_TIME = 1000        # windows as floats, which take four times the room of counts
 
 
 def runs(pose):
@@ -50,8 +51,10 @@ def white_noise(counts, window):
     """
     windows = len(counts) // window
     if windows:
-        cut = counts[:windows * window].astype(float).reshape(windows, window, -1)
-        return np.sqrt(cut.var(axis=1, ddof=1).mean(axis=0)).tolist()
+        cut = counts[:windows * window].reshape(windows, window, -1)
+        variance = [cut[first:first + AT_A_TIME].astype(float).var(axis=1, ddof=1)
+                    for first in range(0, windows, AT_A_TIME)]
+        return np.sqrt(np.concatenate(variance).mean(axis=0)).tolist()
     if len(counts) > 1:
         return counts.astype(float).std(axis=0, ddof=1).tolist()
     return [0.0] * counts.shape[1]

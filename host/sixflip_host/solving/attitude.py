@@ -4,6 +4,8 @@ import numpy as np
 
 from sixflip.move_turn import GAP_US
 
+AT_A_TIME = 10_000      # samples whose rotations are there at once: each takes 300 bytes
+
 
 def heading_change(capture, rests, bias, axis, sign):
     """Degrees (-180..180) the box turned about one of its axes from the first to the last rest.
@@ -32,11 +34,13 @@ def heading_change(capture, rests, bias, axis, sign):
 
 
 def _turns(capture, gyro, gaps, bias, move):
-    """Rotation matrices (n, 3, 3) of a move, one a sample."""
-    counts = gyro[move.start:move.stop + 1].astype(float)
-    middle = (counts[1:] + counts[:-1]) / 2
-    rate = np.radians((middle - bias) / capture.meta["gyro_lsb_per_dps"])
-    return _rotation(rate * gaps[move, None])
+    """Rotation matrices (3, 3) of a move, one a sample."""
+    for first in range(move.start, move.stop, AT_A_TIME):
+        end = min(move.stop, first + AT_A_TIME)
+        counts = gyro[first:end + 1].astype(float)
+        middle = (counts[1:] + counts[:-1]) / 2
+        rate = np.radians((middle - bias) / capture.meta["gyro_lsb_per_dps"])
+        yield from _rotation(rate * gaps[first:end, None])
 
 
 def _unit(vector):

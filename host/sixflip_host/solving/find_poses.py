@@ -10,7 +10,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from sixflip.faces import AXIS, FACES, LEANING, SIGN, nearest_face, pose_name
 from sixflip.noise_floor import CAP, ENTER, LEAVE, WINDOWS, NoiseFloor
 from sixflip.pose_label import CROOKED_DEG, HALF_TURN_DEG, SAME_DEG
-from sixflip.still_window import StillWindow, window_length
+from sixflip.still_window import SAME, StillWindow, window_length
 
 from ..progress import steps
 from .attitude import heading_change
@@ -79,43 +79,95 @@ def find_poses(capture):
     return FoundPoses(pose, rests, noise)
 
 
+class _Windows:
+    """The statistics of a recording's full windows, in arrays: as many objects would take more
+    memory than the samples do. One window after the other is what NoiseFloor looks at.
+
+    length  samples in a window
+    mean, variance      float (n, axes)
+    step                int (n, 2) of accelerometer and gyro
+    saturated           int (n, 2), the counts at the rail or 0
+    stale, jumped       bool (n,)
+    """
+
+    def __init__(self, length, count, axes):
+        self.length = length
+        self.axes = axes
+        self.mean = np.zeros((count, axes))
+        self.variance = np.zeros((count, axes))
+        self.step = np.ones((count, 2), np.int32)
+        self.saturated = np.zeros((count, 2), np.int32)
+        self.stale, self.jumped = np.zeros((2, count), bool)
+
+    def __len__(self):
+        return len(self.mean)
+
+    def keep(self, index, window):
+        """Take what a full StillWindow found."""
+        for axis in range(self.axes):
+            self.mean[index, axis] = window.mean(axis)
+            self.variance[index, axis] = window.variance(axis)
+        for which in range(2):
+            self.step[index, which] = window.step(which)
+        self.saturated[index] = window.accel_saturated, window.gyro_saturated
+        self.stale[index], self.jumped[index] = bool(window.stale), window.jumped
+
+    def unusual(self):
+        """Which of the windows cannot be a rest's, whatever their noise; bool (n,)."""
+        return self.saturated.any(axis=1) | self.stale | self.jumped
+
+
+class _Window:
+    """One of _Windows as NoiseFloor asks a StillWindow."""
+
+    def __init__(self, windows, index, rails):
+        self.n = windows.length
+        self.accel_rail, self.gyro_rail = rails
+        self.accel_saturated, self.gyro_saturated = windows.saturated[index].tolist()
+        self.stale = SAME if windows.stale[index] else 0
+        self.jumped = bool(windows.jumped[index])
+        self.mean = windows.mean[index].tolist().__getitem__
+        self.variance = windows.variance[index].tolist().__getitem__
+        self.step = windows.step[index].tolist().__getitem__
+
+
 def _windows(capture):
-    """The recording as a list of full windows, each a StillWindow of its own."""
+    """The recording's full windows as _Windows."""
     rate = capture.meta["rate_hz"]
     length = window_length(rate, POSE_SAMPLES)
-    gyro = capture.gyro if capture.gyro is not None else np.broadcast_to(0, (len(capture), 3))
-    gyro_rail = RAIL if capture.gyro is not None else 0
-    out = []
-    for start in steps(range(0, len(capture) - length + 1, length), "looking for rests"):
+    no_gyro = np.broadcast_to(np.int16(0), (length, 3))
+    out = _Windows(length, len(capture) // length, 3 if capture.gyro is None else 6)
+    for index in steps(range(len(out)), "looking for rests"):
+        start = index * length
         some = slice(start, start + length)
-        samples = np.column_stack([capture.accel[some], gyro[some],
-                                   np.zeros(length, int)]).tolist()
+        samples = np.column_stack([
+            capture.accel[some], no_gyro if capture.gyro is None else capture.gyro[some],
+            np.zeros(length, int)]).tolist()
         intervals = np.diff(capture.t_us[some],
                             prepend=capture.t_us[max(0, start - 1)]).tolist()
-        window = StillWindow(length, _rail(capture), gyro_rail, int(1e6 / rate + 0.5))
+        window = StillWindow(length, *_rails(capture), int(1e6 / rate + 0.5))
         for interval, sample in zip(intervals, samples):
             window.add(interval, sample)
-        out.append(window)
+        out.keep(index, window)
     return out
 
 
-def _rail(capture):
+def _rails(capture):
+    """Counts at which accelerometer and gyro are saturated; 0 where there is no gyro."""
     full_scale = capture.meta.get("accel_range_g", np.inf) * capture.meta["accel_lsb_per_g"]
-    return int(min(RAIL, full_scale - 1))
+    return int(min(RAIL, full_scale - 1)), RAIL if capture.gyro is not None else 0
 
 
 def _quietest(capture, windows):
     """A NoiseFloor that knows the quietest second, or None when there is none."""
     lsb = (capture.meta["accel_lsb_per_g"],
            capture.meta["gyro_lsb_per_dps"] if capture.gyro is not None else 0)
-    axes = 6 if lsb[1] else 3
+    axes = windows.axes
     if len(windows) < WINDOWS:
         return None
-    spread = np.array([[max(one.variance(axis), one.step(axis // 3) ** 2 / 12)
-                        for axis in range(axes)] for one in windows])
-    means = np.array([[one.mean(axis) for axis in range(axes)] for one in windows])
+    step = np.repeat(windows.step, 3, axis=1)[:, :axes]
     spread, means, unusual = (sliding_window_view(each, WINDOWS, axis=0) for each in (
-        spread, means, _unusual(windows)))
+        np.maximum(windows.variance, step ** 2 / 12), windows.mean, windows.unusual()))
     scale = np.repeat([lsb[0] / 1e3, lsb[1]], 3)[:axes]
     total = ((spread.mean(axis=-1) + means.var(axis=-1, ddof=1)) / scale ** 2
              / np.repeat(CAP, 3)[:axes] ** 2)
@@ -131,16 +183,12 @@ def _quietest(capture, windows):
     return noise
 
 
-def _unusual(windows):
-    """Which of the windows cannot be a rest's, whatever their noise; bool (n,)."""
-    return np.array([bool(one.accel_saturated or one.gyro_saturated or one.stale or one.jumped)
-                     for one in windows])
-
-
 def _rests(capture, windows, noise):
     """Stretches without motion, as Rests in time order."""
     still = []
-    for window in windows:
+    rails = _rails(capture)
+    for index in range(len(windows)):
+        window = _Window(windows, index, rails)
         noise.look(window)
         still.append(not noise.judge(window, LEAVE if still and still[-1] else ENTER))
     rests = _runs(capture, windows, still, SHORTEST_S)
@@ -156,7 +204,7 @@ def _rests(capture, windows, noise):
 
 def _runs(capture, windows, still, shortest_s, by_hand=False):
     """A Rest for every unbroken run of still windows that lasts long enough."""
-    length = windows[0].length
+    length = windows.length
     shortest = max(2, int(shortest_s * capture.meta["rate_hz"] / length))
     edges = np.flatnonzero(np.diff([0, *still, 0]))
     return [Rest(capture, start * length, end * length, by_hand)
@@ -166,14 +214,12 @@ def _runs(capture, windows, still, shortest_s, by_hand=False):
 
 def _steadied(capture, windows):
     """For every window: does it look like a box steadied by hand?"""
-    axes = 6 if capture.gyro is not None else 3
     scale = np.repeat([capture.meta["accel_lsb_per_g"] / 1e3,
-                       capture.meta.get("gyro_lsb_per_dps", 1)], 3)[:axes]
-    spread = np.array([[one.variance(axis) ** 0.5 for axis in range(axes)] for one in windows])
-    means = np.array([[one.mean(axis) for axis in range(3)] for one in windows])
+                       capture.meta.get("gyro_lsb_per_dps", 1)], 3)[:windows.axes]
+    means = windows.mean[:, :3]
     wander = np.abs(np.diff(means, axis=0, prepend=means[:1])).max(axis=1) / scale[0]
-    return ((spread / scale <= np.repeat(HAND, 3)[:axes]).all(axis=1)
-            & (wander <= HAND_WANDER_MG) & ~_unusual(windows))
+    return ((np.sqrt(windows.variance) / scale <= np.repeat(HAND, 3)[:windows.axes]).all(axis=1)
+            & (wander <= HAND_WANDER_MG) & ~windows.unusual())
 
 
 def _name(capture, rests, noise):
