@@ -52,9 +52,7 @@ def test_at_an_honest_board_every_verb_does_its_work(verb, tmp_path):
     ("calibrate", "solved", b'{"event": "solved", "verdict": "good", "tilt_deg": 1%s}\n'
      % (b"0" * 400), "a number"),
 ])
-def test_an_answer_of_another_form_is_said_with_what_was_expected(verb, name, said, expected,
-                                                                  tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_an_answer_of_another_form_is_said_with_what_was_expected(verb, name, said, expected):
     code, out, error = run(HostileBoard(Instead(**{name: said})), *hostile_board.VERBS[verb][0])
     assert code == (0 if verb == "doctor" and not error else 3) or code == 1, error
     assert expected in out + error
@@ -80,8 +78,7 @@ def test_provision_repairs_a_settings_file_that_is_none(text):
     ("check", Dripping("check", [SAMPLE], 0.1), 200),
     ("stream", Instead(stream=b'{"event": "stream", "hz": 1e-12}\r\n'), 60),
     ("stream", Dripping("sample", [SAMPLE], 0.1), 60)])
-def test_a_board_without_end_has_an_end(verb, attack, limit_s, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_a_board_without_end_has_an_end(verb, attack, limit_s):
     board = HostileBoard(attack)
     code, out, error = run(board, *hostile_board.VERBS[verb][0])
     assert code in (1, 3) and (out if verb == "doctor" else error).strip()
