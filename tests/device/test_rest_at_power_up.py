@@ -189,7 +189,8 @@ class TestTurns(unittest.TestCase):
                         self.assertFalse(rest.still, (sensor, rate, axis, stored))
 
     def test_slower_still_is_within_the_limit_or_refused(self):
-        for rate in (0.02, 0.04, 0.06, 0.08):
+        # The mean of a rest has a noise of its own of 0.003 deg/s: 0.038 and four of these.
+        for rate in (0.02, 0.038, 0.06, 0.08):
             for seed in range(1, 9):
                 rest, error, _ = look(steady(rate), (1.0, 0.0, 0.0), seed=seed)
                 if rest.still:
