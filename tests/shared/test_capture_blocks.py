@@ -140,33 +140,44 @@ def old_block(seconds, us, intervals, rows):
 class Steps(unittest.TestCase):
     """What a block holds when its samples are written as steps from one to the next."""
 
-    def back(self, rows, intervals, block_samples=32):
-        parts = []
-        writer = BlockWriter(lambda data: parts.append(bytes(data)), META, 7, block_samples)
-        for dt, row in zip(intervals, rows):
-            writer.add(dt, array("h", row))
+    def written(self, write, rows, intervals, block_samples=32):
+        """rows: one array, seven counts a sample; a small board has no room for lists of them."""
+        writer = BlockWriter(write, META, 7, block_samples)
+        for k in range(len(intervals)):
+            writer.add(intervals[k], rows[7 * k:7 * k + 7])
         writer.end(True)
-        return read_blocks(b"".join(parts)), sum([len(part) for part in parts])
+
+    def bytes_of(self, rows, intervals):
+        sizes = []
+        self.written(lambda data: sizes.append(len(data)), rows, intervals)
+        return sum(sizes)
 
     def test_any_counts_come_back_as_they_were(self):
         noise = Noise(7)
         edges = (0, 1, -1, 127, -127, 128, -128, 129, 255, 32767, -32768)
+        steps = [(10000, 10127, 10255, 0, 65535, 65536, 3)[k % 7] for k in range(150)]
+        times = [sum(steps[:k + 1]) for k in range(150)]
         for size in (0, 3, 90, 200, 32767):
-            rows = [[noise.uniform(size) if k % 3 else edges[(k + i) % 11] for i in range(7)]
-                    for k in range(150)]
-            steps = [(10000, 10127, 10255, 0, 65535, 65536, 3)[k % 7] for k in range(150)]
-            for block_samples in (1, 2, 32, 500):
-                blocks, _ = self.back(rows, steps, block_samples)
+            rows = array("h")
+            for k in range(150):
+                rows.extend(array("h", [noise.uniform(size) if k % 3 else edges[(k + i) % 11]
+                                        for i in range(7)]))
+            for block_samples in (1, 2, 32, 200):
+                data = bytearray()
+                self.written(data.extend, rows, steps, block_samples)
+                blocks = read_blocks(data)
                 self.assertEqual(blocks.damage, "")
-                self.assertEqual(list(blocks.rows), [x for row in rows for x in row])
-                self.assertEqual(list(blocks.t_us), [sum(steps[:k + 1]) for k in range(150)])
+                self.assertEqual(blocks.rows, rows)
+                self.assertEqual(list(blocks.t_us), times)
 
     def test_a_resting_sensor_takes_half_the_bytes_and_a_shaken_one_half_more_at_most(self):
         noise = Noise(5)
         for size, least, most in ((20, 8, 10), (32767, 20, 25)):
-            rows = [[noise.uniform(size) for _ in range(7)] for _ in range(1000)]
-            _, taken = self.back(rows, [10000] * 1000)
-            self.assertTrue(least < taken / 1000 < most, taken)
+            rows = array("h")
+            for _ in range(500):
+                rows.extend(array("h", [noise.uniform(size) for _ in range(7)]))
+            taken = self.bytes_of(rows, [10000] * 500)
+            self.assertTrue(least < taken / 500 < most, taken)
 
     def test_a_capture_of_version_1_is_still_read(self):
         head = struct.pack(cb.HEAD, cb.MAGIC, 1, 7, len(META)) + META
