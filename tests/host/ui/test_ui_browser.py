@@ -10,6 +10,7 @@ from pathlib import Path
 import chromium
 import pytest
 from board_session import unlabelled
+from selenium.common.exceptions import StaleElementReferenceException
 from served import ScriptedLink, Served, until
 
 from sixflip.faces import FACES
@@ -26,10 +27,18 @@ REPORT = ("import sys; open(sys.argv[1], 'w').write('<h1>the gap</h1><script>"
 
 
 @pytest.fixture(scope="module")
-def browser():
+def chrome():
     chromium.require()
     with chromium.Browser() as driver:
         yield driver
+
+
+@pytest.fixture
+def browser(chrome):
+    """The browser without what the page of the test before complained of."""
+    chrome.get("about:blank")
+    chrome.get_log("browser")
+    return chrome
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +52,12 @@ def capture(tmp_path_factory):
 
 
 def text(browser, name):
-    return browser.find_element("id", name).text
+    """What an element shows; the page may draw it anew between two looks."""
+    while True:
+        try:
+            return browser.find_element("id", name).text
+        except StaleElementReferenceException:
+            continue
 
 
 def click(browser, name, often=1):
