@@ -38,9 +38,10 @@ class Move:
                      plus the count then, times by how much, and by how much; LATE_US is the unit
     saturated        True when a gyro axis touched full scale
     largest_gap_us   the longest interval between two samples
-    path             from face to face, where a placement was before and none was withdrawn
-                     since, else None: 36 whole numbers. R (3 x 3, rows, FINE) takes vectors of
-                     the box at the end to what they are in the box at the start, by the gyro's
+    path             from face to face, where a placement was before, none was withdrawn since
+                     and it turned less than 32 rad, else None: 36 whole numbers.
+                     R (3 x 3, rows, FINE) takes vectors of the box at the end to what they
+                     are in the box at the start, by the gyro's
                      nominal scale. Where w = (1 + D) w_read, the start sees it turn J D more:
                      J[row][i][j] (COARSE), the sum over the path of R[row][i] times what axis
                      j turned

@@ -12,6 +12,7 @@ from array import array
 from sixflip.placement import COARSE, FINE, LATE_US, Move
 
 STILL = 1e-3  # rad in a window: nothing turns
+MOST = 32767  # that an array of "h" holds: 32 rad in units of COARSE
 
 
 IN_TIME = (0, 0, 0, 0)  # late of every move whose samples came when they should: one object
@@ -119,13 +120,21 @@ class PlacementLog:
         self.placements.append(placement)
         self.moves.append(self.open)
         if self._known and (self.placements[-2].pose - 1) // 2 != (placement.pose - 1) // 2:
-            path = self.open.path = array("h", range(36))  # of a flip the sums tell enough
-            for k in range(36):
-                path[k] = int(self._path[k] * (FINE if k < 9 else COARSE))
+            self.open.path = self._whole()  # of a flip the sums tell enough
         if not any(self.open.late):
             self.open.late = IN_TIME
         self.open = empty_move(placement.first + placement.n)
         self.follow(True)
+
+    def _whole(self):
+        """The path in whole numbers; None where it turned farther than they tell."""
+        path = array("h", range(36))
+        for k in range(36):
+            value = int(self._path[k] * (FINE if k < 9 else COARSE))
+            if abs(value) > MOST:
+                return None
+            path[k] = value
+        return path
 
     def drop(self, code):
         """Withdraw every placement of a pose; its samples join the moves around it."""

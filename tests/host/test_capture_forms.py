@@ -4,7 +4,7 @@ import json
 import random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from sixflip.capture_blocks import ACCEL, GYRO, TEMP
@@ -58,6 +58,7 @@ def said(capture):
 @settings(max_examples=150, deadline=None)
 @given(st.lists(st.sampled_from(STEPS), min_size=1, max_size=14), st.integers(0, 999),
        st.sampled_from(["whole", "incomplete", "no end", "cut", "damaged"]))
+@example(["pose", "pause", "pose"], 0, "whole")     # a turn through far more than a path can tell
 def test_text_and_binary_agree(steps, seed, how):
     data, writer = written(steps, seed)
     if how in ("whole", "incomplete"):

@@ -16,7 +16,7 @@ def test_counts_of_a_chip(stated):
 @pytest.mark.parametrize("stated,found,expected", [
     (("mpu6050", 16, 16384, 500, 65.5), "16384 counts per g at ±16 g", "2048"),
     (("mpu6050", 2, 16384, 500, 62.5), "62.5 counts per deg/s", "65.536"),
-    (("adxl345", None, 16384, None, None), "16384 counts per g", "256"),
+    (("adxl345", None, 16384, None, None), "an adxl345 with 16384 counts per g", "256"),
     (("gy85", 16, 256, 2000, 16.4), "16.4 counts per deg/s", "14.375")])
 def test_counts_of_another_chip(stated, found, expected):
     said = chip_scales.wrong(*stated)

@@ -151,14 +151,14 @@ def test_mcap_and_back(pulled, tmp_path, capsys):
 
 def test_csv_of_a_sensor_without_gyro_and_temperature(tmp_path):
     capture = unlabelled()
-    alone = capture_file.Capture({"sensor": "adxl345", "rate_hz": 100, "accel_lsb_per_g": 16384},
+    alone = capture_file.Capture({"sensor": "adxl345", "rate_hz": 100, "accel_lsb_per_g": 256},
                                  capture.t_us[:50] - 70000, capture.accel[:50])
     capture_file.write(tmp_path / "a.csv", alone)
     assert main(["export", str(tmp_path / "a.csv"), "-o", str(tmp_path / "a.mcap")]) == 0
     messages = [message for _, message in by_mcap(tmp_path / "a.mcap")]
     assert len(messages) == 50 and messages[0].angular_velocity_covariance[0] == -1
     assert main(["import", str(tmp_path / "a.mcap"), "-o", str(tmp_path / "b.csv"), "--no-poses",
-                 "--accel-lsb", "16384"]) == 0
+                 "--accel-lsb", "256"]) == 0
     back = capture_file.read(tmp_path / "b.csv")
     assert back.gyro is None and (back.accel == alone.accel).all()
 

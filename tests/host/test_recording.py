@@ -287,8 +287,12 @@ def test_the_recommended_plan_on_a_picos_flash_leaves_every_sample(micropython, 
     assert capture.complete and not capture.truncated and not capture.sums_only
     assert len(capture) > 60000 and len(capture.placements()) == 39
     kept = capture_file.read(Path(board.unique_id) / "capture.bin")
-    assert not kept.sums_only  # as steps it fits the flash, too
-    assert Path("two.bin").read_bytes() == (Path(board.unique_id) / "capture.bin").read_bytes()
+    # beside the firmware and the room for the records the flash has not quite enough for it
+    assert kept.complete and kept.taken == len(capture)
+    assert 50000 < len(kept) < len(capture) and kept.sums_only
+    assert (kept.accel == capture.accel[:len(kept)]).all()
+    assert [(p.pose, p.first, p.n, p.sums) for p in kept.placements()] == [
+        (p.pose, p.first, p.n, p.sums) for p in capture.placements()]
     assert cli.main(["verify", "two.bin", str(Path(board.unique_id) / "record_a.bin")]) == 0
     capsys.readouterr()
     assert cli.main(["diagnose", "two.bin", "--json"]) == 0

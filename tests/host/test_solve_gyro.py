@@ -100,11 +100,24 @@ def test_time_jumps_inside_a_rest(tmp_path, capsys):
 
 
 def test_milliseconds_for_microseconds(tmp_path, capsys):
-    """A clock that does not fit the header is named: half a turn would be a fifth of a degree."""
+    """Half a turn would be a fifth of a degree: what to correct is said in one line."""
     _, capture = labelled()
     capture.t_us //= 1000
+    path = tmp_path / "capture.csv"
+    capture_file.write(path, capture)
+    assert main(["solve", str(path)]) == 4
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert "its samples are 10 us apart, expected about 1e+04: rate_hz is 100; correct the one " \
+        "that is wrong, times are in microseconds" in said
+
+
+def test_a_clock_at_twice_the_rate(tmp_path, capsys):
+    """One that does not fit the header is named: half a turn would be a quarter."""
+    _, capture = labelled()
+    capture.t_us //= 2
     answer, words = solve(tmp_path, capsys, capture)
-    assert "the timestamps say 1e+05 samples a second, the header 100" in words
+    assert "the timestamps say 200 samples a second, the header 100" in words
     assert answer["gyro"]["verdict"] == "refused"
 
 

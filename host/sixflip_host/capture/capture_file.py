@@ -126,7 +126,8 @@ def check_times(path, t_us, rate_hz):
     usual, mean = capture_binary.usual_us(t_us), span / (len(t_us) - 1)
     for off in (lambda us: us * rate_hz > FAR * 1e6, lambda us: us * rate_hz * FAR < 1e6):
         if off(usual) and off(mean):
-            raise BadFile("%s: its samples are %.4g us apart, expected about %.4g: rate_hz is %g"
+            raise BadFile("%s: its samples are %.4g us apart, expected about %.4g: rate_hz is %g; "
+                          "correct the one that is wrong, times are in microseconds"
                           % (path, usual, 1e6 / rate_hz, rate_hz))
 
 

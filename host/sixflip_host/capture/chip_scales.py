@@ -14,10 +14,15 @@ def wrong(chip, range_g, accel_lsb, range_dps, gyro_lsb):
     if chip in ("gy85", "adxl345") and accel_lsb:
         ranges = (2, range_g) if range_g else (2, 4, 8, 16)
         if all(abs(accel_lsb * full / ADXL345_PRODUCT - 1) > ADXL345_OFF for full in ranges):
-            return "a %s with %g counts per g" % (chip, accel_lsb), "256"
+            return "%s with %g counts per g" % (_a(chip), accel_lsb), "256"
     for product, full, lsb, unit in ((accel, range_g, accel_lsb, "g"),
                                      (gyro, range_dps, gyro_lsb, "deg/s")):
         if product and full and lsb and abs(full * lsb / product - 1) > OFF:
-            return "a %s with %g counts per %s at ±%g %s" % (chip, lsb, unit, full, unit), \
+            return "%s with %g counts per %s at ±%g %s" % (_a(chip), lsb, unit, full, unit), \
                 "%.5g" % (product / full)
     return None
+
+
+def _a(chip):
+    """The chip's name with its article, by how it is said."""
+    return ("an " if chip[0] in "ai" else "a ") + chip
