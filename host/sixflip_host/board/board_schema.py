@@ -38,7 +38,7 @@ IDS = ListOf(BYTE)
 TERMS = ListOf(Number(0, 1 << 16, whole=True))
 HZ = Number(0, 500)
 WAITS = dict(pose=POSE, reason=TEXT, value=NUMBER, limit=NUMBER, unit=TEXT)
-TODO = dict(missing=POSES, next=POSES, at=COUNT, of=COUNT)
+REMAINING = dict(missing=POSES, next=POSES, at=COUNT, of=COUNT)
 REST = dict(still=FLAG, reason=TEXT, bias_dps=VECTOR, bias=TEXT, unseen_turn_dps=NUMBER, note=TEXT,
             verdict=OneOf("none", "good", "doubtful"), words=TEXTS, a_error_mg=NUMBER,
             noise_mg=NUMBER, temp_c=NUMBER)
@@ -92,10 +92,10 @@ EVENTS = {
                           recorded=FLAG),
     "afresh": Fields(reason=TEXT),
     "state": Waiting(state=TEXT, progress=COUNT, total=COUNT, left_s=SECONDS,
-                     live=NUMBERS, **WAITS, **TODO),
-    "pose": Fields("pose", pose=POSE, n=COUNT, mean=NUMBERS, noise=NUMBERS, **TODO),
+                     live=NUMBERS, **WAITS, **REMAINING),
+    "pose": Fields("pose", pose=POSE, n=COUNT, mean=NUMBERS, noise=NUMBERS, **REMAINING),
     "refused": Waiting(**WAITS),
-    "redo": Fields(face=POSE, **TODO),
+    "redo": Fields(face=POSE, **REMAINING),
     "capture": Fields(samples=COUNT, kept=COUNT, sums_only=FLAG, bytes=COUNT, reason=TEXT),
     "solved": Fields("verdict", verdict=VERDICT, reason=TEXT, missing=POSES, level=TEXT,
                      tilt_deg=NUMBER, tilt_spread_deg=NUMBER, residual_mg_rms=NUMBER,
