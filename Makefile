@@ -4,26 +4,28 @@ VENV := .venv
 BIN := $(VENV)/bin
 export SIXFLIP_CACHE ?= $(CURDIR)/.cache
 
-.PHONY: help setup micropython demo test test-qemu test-pico size check bench bench-accuracy fidelity blind \
-	blind-studies reproduce pictures box package.json clean
+.PHONY: help setup micropython demo test test-qemu test-pico size check bench bench-accuracy fidelity real blind \
+	blind-studies zoo reproduce pictures box package.json clean
 
 help:
 	@echo "make demo            a virtual board calibrates itself and the host checks it (no hardware)"
 	@echo "make test            every test: CPython, real MicroPython, an emulated Cortex-M3"
 	@echo "make setup           the command 'sixflip' in $(BIN)"
 	@echo "make micropython     the MicroPython interpreter that the virtual board runs on"
-	@echo "make test-qemu       the tests on the emulated Cortex-M3 and micro:bit alone"
+	@echo "make test-qemu       the tests on the emulated Cortex-M3 and micro:bit, a session of every chip"
 	@echo "make test-pico       the whole product on an emulated Raspberry Pi Pico (an hour or two)"
 	@echo "make size            flash and heap of every module of the firmware"
 	@echo "make check           ruff"
 	@echo "make bench-accuracy  vector error against imucal, imu_calib and the theoretical bound"
 	@echo "make bench           that, and every other benchmark"
 	@echo "make fidelity        the simulator against real recordings"
+	@echo "make real            every claim on real recordings beside a plain computation"
 	@echo "make blind           the diagnosis on sealed cases of an independent generator"
 	@echo "make blind-studies   real noise, real recordings, effects taken out, captures recommended"
+	@echo "make zoo             simulators' documented bugs on MuJoCo's motion, and whether they are named"
 	@echo "make pictures        the pictures of the README and of docs/"
 	@echo "make box             the STL of the box to print, with Debian's openscad"
-	@echo "make reproduce       the paper's tables 3 and 4"
+	@echo "make reproduce       the paper's tables 3 and 4 (its map: sixflip reproduce --map)"
 
 setup: $(VENV)/.installed
 
@@ -42,7 +44,7 @@ test: micropython check
 	$(BIN)/python -m pytest -n auto --dist loadfile
 
 test-qemu: setup
-	$(BIN)/python -m pytest -s tests/on_qemu tests/on_microbit
+	SIXFLIP_QEMU_CHIPS=all $(BIN)/python -m pytest -s tests/on_qemu tests/on_microbit
 
 test-pico: micropython
 	SIXFLIP_PICO=whole $(BIN)/python -m pytest -v -n 3 --dist load --maxschedchunk 1 \
@@ -62,7 +64,7 @@ bench: bench-accuracy
 		echo; echo "== $$each"; $(BIN)/python $$each || exit 1; done
 
 fidelity: setup
-	@$(BIN)/python -m sixflip_host.simulating.fidelity
+	@$(BIN)/python -m sixflip_host.simulation.fidelity
 
 # COUNT=220 cases, SEED=1, JOBS=2; the result is in blind-output/
 blind: setup
@@ -74,6 +76,14 @@ blind-studies: setup
 	@failed=0; for each in unattended null_study left_out resolved; do \
 		echo; echo "== $$each"; $(BIN)/python tests/blind/studies/$$each.py \
 		$$([ $$each = unattended ] || echo --jobs $(or $(JOBS),2)) || failed=1; done; exit $$failed
+
+# SEEDS=3 of each defect, KINDS=box,rover; the printed table is the result
+zoo: setup
+	@$(BIN)/python tests/zoo/zoo_run.py --seeds $(or $(SEEDS),3) --kinds $(or $(KINDS),box,rover)
+
+# every claim on the recordings of ../shared/data beside a plain computation; ONLY=name
+real: setup
+	@$(BIN)/python tests/real/real_run.py --only "$(ONLY)"
 
 reproduce: setup
 	@$(BIN)/sixflip reproduce

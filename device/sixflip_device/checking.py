@@ -18,6 +18,7 @@ def _begin_record(unit, taken):
     imu = unit.sensor.imu
     taken.record = record = blank_record(unit)
     record.session = taken.session
+    taken.gyro_tolerance = imu.gyro_tolerance
     record.temp_c = _temperature(imu, taken.placements)
     unit.sensor = None
 

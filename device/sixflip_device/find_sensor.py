@@ -12,7 +12,12 @@ def find(board, settings, tries=3):
 
     for k in range(tries):
         try:
-            imu, report = probe.find(board.i2c, sleeper(board), settings["sensor"])
+            imu, report = probe.find(board.i2c, sleeper(board), settings["sensor"],
+                                    (settings["accel_range_g"], settings["gyro_range_dps"]))
+            if settings["rate_hz"] > imu.MOST_HZ:
+                report.append("%d samples a second are more than the %s is polled: %d are used"
+                              % (settings["rate_hz"], imu.name, imu.MOST_HZ))
+                settings["rate_hz"] = imu.MOST_HZ
             imu.configure(settings["rate_hz"])
             return imu, report
         except OSError as e:

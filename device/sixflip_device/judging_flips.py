@@ -1,7 +1,6 @@
 """What the gyro saw of the flips reaches both verdicts: a good one becomes doubtful."""
 
 from sixflip import flip_doubt
-from sixflip.chips.gyro_tolerance import GYRO_SCALE
 
 
 def run(unit):
@@ -9,7 +8,7 @@ def run(unit):
     record = taken.record
     r = taken.gyro
     taken.gyro = None
-    tolerance = GYRO_SCALE.get(record.chip)
+    tolerance = taken.gyro_tolerance
     if r.verdict == "good":
         said = flip_doubt.scale_doubt(r, tolerance)
         if said:

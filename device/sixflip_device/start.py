@@ -39,7 +39,7 @@ def _no_sensor(unit, report):
     wanted = unit.settings["sensor"]
     unit.events.error(
         "no usable sensor: " + "; ".join(report),
-        "an MPU6050 or relative at 0x68/0x69, a GY-85 or an ADXL345"
+        "an MPU6050 or another sensor that docs/wiring.md lists"
         if wanted == "auto" else "sensor %s as in sixflip.json" % wanted)
 
 

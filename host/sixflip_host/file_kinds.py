@@ -30,6 +30,8 @@ C_HEADER = "a correction as C header"
 SDF = "a sensor in SDF"
 KALIBR = "an imu.yaml of Kalibr"
 TABLE = "a table of noise and bias"
+DIAGNOSIS = "a diagnosis as JSON"
+PUT_BACK = "a simulator's settings"
 JSON = "a JSON object"
 FLASH = "an image of a flash"
 
@@ -47,6 +49,7 @@ SIGNS = (
     (PNG, b"\x89PNG", b""),
     (PAGE, b"<!doctype html><html lang=en><meta charset=utf-8><meta http-equiv", b""),
     (JUNIT, b"<?xml", b'<testsuite name="sixflip'),
+    (PUT_BACK, b"", b"put back by sixflip export"),
     (SDF, b"<?xml", b"stddev = N sqrt(rate)"),
     (SCENARIO, b"#", b"`sixflip diagnose` found"),
     (IMU_CALIB, b"#", b"formula of imu_calib"),
@@ -57,14 +60,15 @@ SIGNS = (
     (IMUCAL, b"{", b"formula of imucal"),
     (RECORD_JSON, b"{", b'"kind": "sixflip correction record"'),
     (PLAN, b"{", b'"sixflip_plan"'),
+    (DIAGNOSIS, b"{", b'"causes": '),
     (JSON, b"{", b""),
     (WORLDS, b"[", b'"sensor"'),
     (FLASH, b"", b"littlefs"),
 )
 
 
-def kind_of(path):
-    """One of the kinds above; None for any other file, "" for one without content."""
+def head_of(path):
+    """The first bytes of a file's content, unpacked; None where it is no gzip but begins so."""
     try:
         with open(path, "rb") as file:
             head = file.read(HEAD)
@@ -75,6 +79,14 @@ def kind_of(path):
             head = zlib.decompressobj(wbits=31).decompress(head, HEAD)
         except zlib.error:
             return None
+    return head
+
+
+def kind_of(path):
+    """One of the kinds above; None for any other file, "" for one without content."""
+    head = head_of(path)
+    if head is None:
+        return None
     if not head.strip(b"\xff\0 \r\n"):      # an erased flash is one, too
         return ""
     for kind, start, somewhere in SIGNS:

@@ -78,20 +78,25 @@ class TapeI2C:
         """A tape's bus is never stuck."""
 
 
+def described(sensor):
+    """[(address, data register, bytes of a burst, {register: identification}, {register: bits
+    that clear themselves})] of a sensor's chips, accelerometer first."""
+    from sixflip.chips import catalogue
+    from sixflip_sim import worlds
+    found = []
+    for name in worlds.parts_of(sensor):
+        chip, row = worlds.simulated(name), catalogue.row_of(name)
+        found.append((row[2][0], chip.data_register, chip.data_length,
+                      {chip.id_register: min(row[4])},
+                      dict([chip.self_clearing]) if chip.self_clearing else {}))
+    return found
+
+
 def open_tape(sensor, files):
-    """TapeI2C of an "mpu6050" (one file) or a "gy85" (two: accelerometer, gyro)."""
-    from sixflip.chips import adxl345, itg3205, mpu6050
-    if sensor == "mpu6050":
-        return TapeI2C([TapeChip(
-            0x68, mpu6050.ACCEL_XOUT_H, mpu6050.BURST, files[0], {mpu6050.WHO_AM_I: 0x68},
-            {mpu6050.PWR_MGMT_1: mpu6050.RESET})])
-    if sensor != "gy85":
-        raise ValueError("sensor is %r, expected mpu6050 or gy85" % sensor)
-    return TapeI2C([
-        TapeChip(0x53, adxl345.DATAX0, adxl345.BURST, files[0],
-                 {adxl345.DEVID: adxl345.DEVICE_ID}, {}),
-        TapeChip(0x68, itg3205.TEMP_OUT_H, itg3205.BURST, files[1],
-                 {itg3205.WHO_AM_I: itg3205.ID}, {itg3205.PWR_MGM: itg3205.RESET})])
+    """TapeI2C of a sensor; files: one for each of its chips, accelerometer first."""
+    return TapeI2C([TapeChip(address, data_register, length, file, identity, clearing)
+                    for (address, data_register, length, identity, clearing), file
+                    in zip(described(sensor), files)])
 
 
 def record(world, files, rate_hz=100, seconds=None):

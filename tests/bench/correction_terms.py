@@ -19,9 +19,9 @@ sys.path[:0] = [str(ROOT / part) for part in ("shared", "host", "tests/host")]
 import drifting_part  # noqa: E402
 
 from sixflip_host import cli  # noqa: E402
-from sixflip_host.board import restore, stream  # noqa: E402
 from sixflip_host.board.board_files import board_files  # noqa: E402
 from sixflip_host.board.local_link import LocalLink  # noqa: E402
+from sixflip_host.verbs import restore, stream  # noqa: E402
 
 
 def streamed(folder, record):

@@ -36,7 +36,8 @@ print(json.dumps(stepwise([capture_file.read(path) for path in sys.argv[2:]])))
 def made(folder, dwell_s):
     """Paths of the two sessions, and how many samples each has."""
     from sixflip_host.capture import capture_file
-    from sixflip_host.simulating import protocols, scenario, simulate
+    from sixflip_host.planning import protocols
+    from sixflip_host.simulation import scenario, simulated_session
     rests = len(protocols.named("recommended").sessions[0].rests)
     move_s = (SAMPLES / 100.0 - 2 * SETTLE_S - rests * dwell_s) / (rests - 1)
     plan = scenario.from_dict({
@@ -45,7 +46,7 @@ def made(folder, dwell_s):
                   "move_s": move_s}})
     paths, sizes = [], []
     for number in (0, 1):
-        capture = simulate.session(plan, number)
+        capture = simulated_session.session(plan, number)
         paths.append(str(folder / ("session%d.csv" % number)))
         capture_file.write(paths[-1], capture)
         sizes.append(len(capture))

@@ -18,7 +18,7 @@ sys.path[:0] = [str(ROOT / "shared"), str(ROOT / "host")]
 
 from sixflip import accelerometer, gyroscope
 from sixflip.faces import AXIS, face_of_code
-from sixflip_host.simulating.simulated_capture import capture
+from sixflip_host.simulation.simulated_capture import capture
 from sixflip_sim import worlds
 
 HAND_DEG = 0.4

@@ -18,10 +18,15 @@ import hand_session
 import xsens_recording
 
 from sixflip import accelerometer
-from sixflip_host.refining import joint_refinement, refine, refinement_answer
-from sixflip_host.simulating import pose_runs
-from sixflip_host.solving import gyro_rests, multiposition
-from sixflip_host.solving.rests_and_moves import RestsAndMoves
+from sixflip_host.calibrate import (
+    gyro_rests,
+    joint_refinement,
+    multiposition,
+    refinement,
+    refinement_answer,
+)
+from sixflip_host.calibrate.rests_and_moves import RestsAndMoves
+from sixflip_host.capture import rests
 
 RAD = np.pi / 180
 
@@ -37,7 +42,7 @@ def xsens(folder):
     began = time.perf_counter()
     fit = multiposition.search(measured, g, xsens_recording.INITIAL_REST)
     seconds = time.perf_counter() - began
-    means = np.array([measured[f : f + 100].mean(axis=0) for f, _ in fit.rests])
+    means = np.array([measured[f : f + 100].mean(axis=0) for _, f, _ in fit.rests])
     off = multiposition.norm_residual(fit.parameters, means, g)
     left = multiposition.leave_one_out(means, g, fit.parameters)
     print("Xsens recording, imu_tk's own problem      imu_tk      ours")
@@ -46,7 +51,7 @@ def xsens(folder):
     print("  leave one pose out, mg rms            %9.3f %9.3f" % (0.207, 1e3 * rms(left) / g))
     print("  rest detection, search and fit, s     %9.1f %9.2f" % (0.7, seconds))
     began = time.perf_counter()
-    runs, _ = refine.rests_of(capture, free=True)
+    runs, _ = refinement.rests_of(capture, free=True)
     session = RestsAndMoves(capture, runs)
     plain = joint_refinement.refine(session)
     fuller = joint_refinement.refine(session, per_g=True)
@@ -78,7 +83,7 @@ def one_session(seed, off, hand, scatter):
     sensor = hand_session.Sensor(seed)
     poses = hand_session.six_faces(seed, 2.0, off, scatter, hand)
     capture = hand_session.session(sensor, poses, seed)
-    session = RestsAndMoves(capture, pose_runs.runs(capture.pose))
+    session = RestsAndMoves(capture, rests.labelled(capture.pose))
     result = joint_refinement.refine(session)
     errors = []
     for angles in (None, refinement_answer.angles(session, result)):
@@ -96,7 +101,7 @@ def free_hand(sessions):
     for seed in range(sessions):
         sensor = hand_session.Sensor(seed)
         capture = hand_session.session(sensor, hand_session.free_poses(seed, 30), seed)
-        session = RestsAndMoves(capture, pose_runs.runs(capture.pose))
+        session = RestsAndMoves(capture, rests.labelled(capture.pose))
         result = joint_refinement.refine(session)
         U, _, V = np.linalg.svd(result.accelerometer()[0] @ sensor.K)
         error = (U @ V).T @ result.gyro()[0] @ sensor.Kw - np.eye(3)

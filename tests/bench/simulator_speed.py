@@ -4,7 +4,7 @@ import time
 import numpy as np
 
 from sixflip.chips import probe
-from sixflip_host.simulating import simulator
+from sixflip_host.simulation import simulator
 from sixflip_sim import worlds
 from sixflip_sim.effects import make
 

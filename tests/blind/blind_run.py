@@ -76,12 +76,16 @@ def diagnosed(job):
     return outcome
 
 
-def pooled(work, jobs, workers, what):
-    """Results in order, with a line of progress now and then on stderr."""
+def pooled(work, jobs, workers, what, minutes=0.0):
+    """Results in order, with a line of progress now and then on stderr; of as many jobs as fit
+    into these minutes, 0: of all."""
     out, begin, shown = [], time.monotonic(), 0.0
     with ProcessPoolExecutor(workers) as pool:
-        for done in pool.map(work, jobs):
-            out.append(done)
+        for future in [pool.submit(work, job) for job in jobs]:
+            if minutes and time.monotonic() - begin > 60.0 * minutes:
+                pool.shutdown(wait=False, cancel_futures=True)
+                break
+            out.append(future.result())
             now = time.monotonic() - begin
             if now - shown > 20 or len(out) == len(jobs):
                 shown = now
@@ -103,11 +107,11 @@ def make(specifications, folder, workers, compare=0):
     seal.write(folder, cases, sorted(HELD_OUT))
 
 
-def diagnose(folder, workers, keep):
-    """Step 2: answers.json from the manifest and the captures."""
+def diagnose(folder, workers, keep, minutes=0.0):
+    """Step 2: answers.json from the manifest and the captures; minutes: as pooled has it."""
     manifest = json.loads((folder / seal.MANIFEST).read_text())
     jobs = [(public, str(folder / "captures"), keep) for public in manifest["cases"]]
-    answers = pooled(diagnosed, jobs, workers, "diagnosed")
+    answers = pooled(diagnosed, jobs, workers, "diagnosed", minutes)
     (folder / "answers.json").write_text(json.dumps(answers))
     return answers
 
@@ -121,6 +125,9 @@ def score(folder):
     results = [scored(labels[a["id"]], a) for a in answers]
     (folder / "scores.json").write_text(json.dumps(results))
     text, never = target_tables.report(results)
+    if len(answers) < len(labels):
+        text = "The first %d of %d cases (their order is random): no more fitted into the time " \
+               "given.\n\n\n" % (len(answers), len(labels)) + text
     both = [a for a in answers if a["baselines"]]
     if both:
         text += "\n\n\nBaselines on the same cases\n\n" + beside.report(labels, both)
@@ -142,6 +149,9 @@ def arguments(argv):
     parser.add_argument("--effect", help="only cases with this effect")
     parser.add_argument("--compare", type=int, default=16, metavar="N",
                         help="put N of the cases to the baselines too (half a minute each)")
+    parser.add_argument("--minutes", type=float, default=0.0, metavar="N",
+                        help="diagnose as many of the cases, in their random order, as fit into "
+                             "N minutes (0: all)")
     parser.add_argument("-o", "--output", type=Path, default=HERE.parents[1] / "blind-output")
     parser.add_argument("--keep", action="store_true", help="keep the captures")
     parser.add_argument("--score-only", action="store_true",
@@ -158,7 +168,7 @@ def main(argv=None):
             chosen = [(s, spec) for s, spec in chosen
                       if any(name == args.effect for name, _, _ in spec.effects)]
         make(chosen, args.output, args.jobs, args.compare)
-        diagnose(args.output, args.jobs, args.keep)
+        diagnose(args.output, args.jobs, args.keep, args.minutes)
     return score(args.output)
 
 

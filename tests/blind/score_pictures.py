@@ -7,7 +7,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 from statsmath import wilson  # noqa: E402
-from target_tables import confusion, reliability  # noqa: E402
+from target_tables import calibration_error, confusion, reliability  # noqa: E402
 
 
 def draw(results, folder):
@@ -49,23 +49,25 @@ def _confusion(results):
 
 
 def _reliability(results):
-    bins = [b for b in reliability(results) if b[2]]
+    bins = [b for b in reliability(results) if b[3]]
     if not bins:
         return None
-    figure, axes = plt.subplots(figsize=(6, 4))
-    shares = [right / n for _, _, n, right in bins]
-    bounds = [wilson(right, n) for _, _, n, right in bins]
-    axes.errorbar(range(len(bins)), shares,
+    figure, axes = plt.subplots(figsize=(5, 4.5))
+    stated, shares = [b[2] for b in bins], [right / n for *_, n, right in bins]
+    bounds = [wilson(right, n) for *_, n, right in bins]
+    axes.plot([0, 1], [0, 1], color="grey", lw=0.8, ls="--")
+    axes.errorbar(stated, shares,
                   yerr=[[max(0, s - low) for s, (low, _) in zip(shares, bounds)],
                         [max(0, high - s) for s, (_, high) in zip(shares, bounds)]],
                   fmt="o", capsize=4)
-    axes.set_xticks(range(len(bins)), ["%g-%s\nn=%d" % (low, "" if high > 1e8 else "%g" % high, n)
-                                       for low, high, n, _ in bins])
-    axes.axhline(0.95, color="grey", lw=0.8, ls="--")
+    for x, y, (*_, n, _) in zip(stated, shares, bins):
+        axes.annotate("n=%d" % n, (x, y), textcoords="offset points", xytext=(-8, -14),
+                      ha="right", fontsize=8)
+    axes.set_xlim(-0.03, 1.03)
     axes.set_ylim(0, 1.03)
-    axes.set_xlabel("stated score, nats")
+    axes.set_xlabel("stated probability")
     axes.set_ylabel("share of causes that were there")
-    axes.set_title("Reliability of a stated cause, 95 % intervals")
+    axes.set_title("Reliability; expected calibration error %.3f" % calibration_error(results)[0])
     return figure
 
 

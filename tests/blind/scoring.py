@@ -161,8 +161,8 @@ def scored(label, outcome):
     if answer is None:
         return out
     causes = answer["causes"]
-    out["named"] = [[c["sensor"], c["effect"] or "|".join(c["class"]), c["score_nats"]]
-                    for c in causes]
+    out["named"] = [[c["sensor"], c["effect"] or "|".join(c["class"]), c["score_nats"],
+                     c.get("probability")] for c in causes]
     out["where"] = [[r["sensor"], r["axis"], r["domain"], r["p"]] for r in answer["where"]][:6]
     out["false"] = [[c["sensor"], c["effect"] or "|".join(c["class"])]
                     for c in causes if not belongs(c, label)]

@@ -30,7 +30,7 @@ SHARE = [("thermal_bias", "accel"), ("thermal_bias", "gyro"), ("g_sensitivity", 
 KNOWN_PAIRS = [(name, sensor) for name, (_, sensors) in KNOWN.items() for sensor in sensors]
 
 # Parts of a run of all suites.
-SHARES = {"null": 20, "single": 38, "pair": 8, "stranger": 10, "held out": 8, "left out": 4,
+SHARES = {"null": 20, "single": 38, "pair": 8, "stranger": 15, "held out": 9, "left out": 4,
           "paper": 6, "power": 6, "share": 7}
 
 
@@ -63,7 +63,7 @@ def _specification(rng, effects, **more):
     protocol = "recommended"
     if any(name in ("lever_arm", "filter_lag") for name, _, _ in effects):
         protocol = "driving"
-    if effects and effects[0][0] == "drift" and rng.random() < 0.3:
+    if len(effects) == 1 and effects[0][0] == "drift" and rng.random() < 0.3:
         protocol = "rest"
     return Specification(seed_of(rng), more.pop("chip", None) or chip_of(rng),
                          more.pop("protocol", protocol), effects, habits, **more)
@@ -97,11 +97,11 @@ def _families(rng, families, count, sizes):
 
 
 def stranger(rng, count):
-    return _families(rng, STRANGERS, count, (1.0, 3.0))
+    return _families(rng, STRANGERS, count, SIZES)
 
 
 def held_out(rng, count):
-    return _families(rng, HELD_OUT, count, (1.0, 3.0))
+    return _families(rng, HELD_OUT, count, SIZES)
 
 
 def left_out(rng, count):

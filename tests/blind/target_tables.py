@@ -86,7 +86,10 @@ def report(results):
     rows.number("single name in a silent or aliased class", "never", len(violations),
                 len(answered), not violations)
     for suite in ("stranger", "held out"):
-        here = suites[suite]
+        here = [r for r in suites[suite] if r["effects"][0]["multiple"] < 1]
+        rows.share("family not in the library (%s), 0.3x: not called explained" % suite,
+                   [r["verdict"] != "explained" for r in here], 0.9)
+        here = [r for r in suites[suite] if r["effects"][0]["multiple"] >= 1]
         rows.share("family not in the library (%s): said so" % suite,
                    [r["verdict"] in SHOWN for r in here], 0.9)
         rows.share("  and in the right domain",
@@ -103,6 +106,9 @@ def report(results):
     _shrinkage(rows, answered)
     rows.share("12 poses of the paper: no false name", [not r["single_false"] and not r["never"]
                                                        for r in suites["paper"]], 1.0)
+    error, number = calibration_error(results)
+    rows.number("stated probabilities: expected calibration error", "<= 0.05", "%.3f" % error,
+                number, error <= 0.05)
     crashed = [r for r in results if r["verdict"] is None]
     rows.number("runs without an answer", "0 (but axis_swap refused)", len(crashed), len(results),
                 all(any(t[0] == "axis_swap" for t in r["truth"]) for r in crashed))
@@ -208,26 +214,38 @@ def _confusion(results):
     return "Confusion: what was there, what was named\n\n" + table(("true", "n", "named"), rows)
 
 
+EDGES = (0.0, 0.5, 0.8, 0.9, 0.95, 0.99, 1.0)
+
+
 def reliability(results):
-    """[(low, high, n, right)] of single causes by stated score in nats."""
-    edges = (4, 6, 10, 20, 50, 1e9)
+    """[(low, high, mean stated probability, n, right)] of causes by stated probability."""
+    flat = [(c[3], [c[0], c[1]] not in r["false"]) for r in results for c in r["named"]
+            if c[3] is not None]
     out = []
-    flat = [(c[2], [c[0], c[1]] not in r["false"]) for r in results for c in r["named"]
-            if c[2] is not None]
-    for low, high in zip(edges[:-1], edges[1:]):
-        here = [right for nats, right in flat if low <= nats < high]
-        out.append((low, high, len(here), sum(here)))
+    for low, high in zip(EDGES[:-1], EDGES[1:]):
+        here = [one for one in flat if low <= one[0] < high or one[0] == high == 1.0]
+        stated = sum(p for p, _ in here) / len(here) if here else None
+        out.append((low, high, stated, len(here), sum(right for _, right in here)))
     return out
+
+
+def calibration_error(results):
+    """(expected calibration error, number of causes): how far the share of causes that were
+    there is off the mean probability stated, averaged over the causes [Naeini, Cooper &
+    Hauskrecht, AAAI 2015]."""
+    bins = [b for b in reliability(results) if b[3]]
+    number = sum(n for *_, n, _ in bins)
+    return sum(abs(n * stated - right) for _, _, stated, n, right in bins) / max(number, 1), number
 
 
 def _reliability(results):
     rows = []
-    for low, high, n, right in reliability(results):
+    for low, high, stated, n, right in reliability(results):
         interval = "%.0f-%.0f" % tuple(100 * x for x in wilson(right, n)) if n else ""
-        rows.append(("%g-%s" % (low, "" if high > 1e8 else "%g" % high), n,
-                     "%.0f %%" % (100 * right / n) if n else "-", interval))
-    return "Reliability: causes that were there, by stated score\n\n" + table(
-        ("nats", "causes", "were there", "95 % interval"), rows)
+        rows.append(("%g-%g" % (low, high), n, "%.3f" % stated if n else "-",
+                     "%.3f" % (right / n) if n else "-", interval))
+    return "Reliability: causes that were there, by stated probability\n\n" + table(
+        ("stated", "causes", "mean", "were there", "95 % interval, %"), rows)
 
 
 def _families(suites):

@@ -68,9 +68,11 @@ def test_nothing_was_named_inside_a_silent_or_aliased_class(run):
 def test_the_tables_count_what_was_wrong(run):
     """The scorer itself: a wrong name, a false alarm and a crash must show in its tables."""
     wrong = json.loads(json.dumps(run["null"]))
-    wrong.update(verdict="explained", named=[["accel", "cubic", 9.0]], false=[["accel", "cubic"]],
-                 single_false=["cubic"], never=["accel cubic is silent in this protocol"])
+    wrong.update(verdict="explained", named=[["accel", "cubic", 9.0, 0.97]],
+                 false=[["accel", "cubic"]], single_false=["cubic"],
+                 never=["accel cubic is silent in this protocol"])
     text, failed = target_tables.report([wrong] * 3 + list(run.values()))
     assert failed and "false alarm" in text and "cubic is silent" in text
+    assert target_tables.calibration_error([wrong] * 3) == (pytest.approx(0.97), 3)
     _, fine = target_tables.report(list(run.values()))
     assert not fine

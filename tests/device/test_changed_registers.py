@@ -13,7 +13,8 @@ from sixflip_device import power_up, settings  # noqa: E402
 from sixflip_sim import worlds  # noqa: E402
 
 # sensor, who_am_i, register, and what it reads as configured
-SHIFTING = (("adxl345", 0x68, 0x1E, 0x00), ("gy85", 0x68, 0x20, 0x00),
+SHIFTING = (("adxl345", None, 0x1E, 0x00), ("gy85", None, 0x20, 0x00),
+            ("lsm6dsv", None, 0x74, 0x00),
             ("mpu6050", 0x68, 0x08, 0x02), ("mpu6050", 0x68, 0x13, 0x00),
             ("mpu6050", 0x70, 0x7D, 0x05), ("mpu6050", 0x70, 0x17, 0x00))
 

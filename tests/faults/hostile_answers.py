@@ -102,7 +102,7 @@ class Attack:
         lines = data.splitlines()
         k = rng.randrange(len(lines)) if lines else 0
         try:
-            literal = name in ("files", "version", "platform", "bus")
+            literal = name in ("files", "version", "platform", "mpy", "bus")
             value = ast.literal_eval(lines[k].decode()) if literal else json.loads(lines[k])
         except (ValueError, SyntaxError, IndexError):
             return rng.choice((b"", b"()", b"nonsense\n"))

@@ -185,6 +185,8 @@ class HostileBoard:
                                   for i in range(0, len(self.files[name]), 57))
         if b"os.uname" in code:
             return "version", b"('v1.22.0 on 2023-12-27', 'Raspberry Pi Pico with RP2040')\r\n"
+        if b"'_mpy'" in code:
+            return "mpy", b"4102\r\n"
         if b"repr(sys.platform)" in code:
             return "platform", b"'rp2'\r\n"
         if b"unique_id" in code:

@@ -12,10 +12,11 @@ import storm
 from sixflip import capture_reader, correction_record
 from sixflip.capture_writer import BlockWriter
 from sixflip_host import cli
-from sixflip_host.board import board_link, calibrate, provision
+from sixflip_host.board import board_link, firmware_update
 from sixflip_host.board.board_events import events
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.errors import SixflipError
+from sixflip_host.verbs import calibrate
 from sixflip_host.virtual.virtual_board import VirtualBoard
 from sixflip_sim import worlds
 
@@ -58,9 +59,9 @@ def firmware(folder, version):
     for name, text in sources.items():
         files[name] = folder / str(version) / name
         files[name].parent.mkdir(parents=True, exist_ok=True)
-        files[name].write_text(text + "# %d\n" % version * 40)
+        files[name].write_text(text + "PAD = %r\n" % (str(version) * 200))
     main = folder / str(version) / "main.py"
-    own = (provision.board_files()["main.py"]).read_text()
+    own = (firmware_update.board_files()["main.py"]).read_text()
     main.write_text(own + "# %d\n" % version)
     files["main.py"] = main
     return files
@@ -80,11 +81,11 @@ class Provisioned:
 
     @staticmethod
     def copy(link, files):
-        before, provision.board_files = provision.board_files, lambda: files
+        before, firmware_update.board_files = firmware_update.board_files, lambda: files
         try:
-            return provision.copy(link, {}, lambda line: None)
+            return firmware_update.copy(link, {}, lambda line: None)
         finally:
-            provision.board_files = before
+            firmware_update.board_files = before
 
     @staticmethod
     def parts(link):

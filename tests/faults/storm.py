@@ -21,6 +21,7 @@ from reacting_hand import ReactingHand  # noqa: E402
 from simulated_board import SimulatedBoard, TooLong  # noqa: E402
 
 from sixflip import correction_record  # noqa: E402
+from sixflip.chips import catalogue  # noqa: E402
 from sixflip_device import power_up, settings  # noqa: E402
 from sixflip_sim import worlds  # noqa: E402
 from sixflip_sim.sensor_model import STANDARD_G  # noqa: E402
@@ -30,6 +31,7 @@ SETTINGS = {"rate_hz": 25, "pose_samples": 50, "rest_s": 6, "grace_ms": 0, "time
 WORLD = {"order": [], "first_rest_s": 1.0, "move_s": 1.2, "tilt_deg": 2.0,
          "flip_error_deg": 0.0}
 SENSORS = ({"sensor": "mpu6050"}, {"sensor": "gy85"}, {"sensor": "mpu6050", "who_am_i": 0x70})
+MORE = tuple({"sensor": name} for name in catalogue.SENSORS if name not in worlds.SEEN)
 FLAVOURS = ("rp2", "esp32", "stm32", "soft", "linux")
 PATIENCE_S = 400.0      # then the person has had enough,
 LIMIT_S = 500.0         # and a firmware that does not listen hangs
@@ -91,7 +93,7 @@ def calibration(seed=1, sensor=0, flavour="rp2", faults=(), faults_later=(), wat
     write in the first.
     """
     outcome = Outcome()
-    spec = dict(WORLD, seed=seed, flavour=flavour, **SENSORS[sensor])
+    spec = dict(WORLD, seed=seed, flavour=flavour, **(SENSORS + MORE)[sensor])
     with tempfile.TemporaryDirectory() as root:
         first = worlds.make(dict(spec, faults=list(faults)))
         if watch is not None:
@@ -263,9 +265,13 @@ def _fault(rng, kind, seconds, sensor):
     return fault
 
 
-def storm(seed):
-    """(Outcome, kinds of faults) of one random storm."""
+def storm(seed, instead=None):
+    """(Outcome, kinds of faults) of one random storm. instead: another sensor than is drawn, its
+    index in SENSORS + MORE."""
     sensor, flavour, faults, later, kinds = weather(seed)
+    sensor = sensor if instead is None else instead
+    for fault in faults + later if instead is not None else ():
+        fault.pop("address", None)
     return calibration(seed, sensor, flavour, faults, later), kinds
 
 

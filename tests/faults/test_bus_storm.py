@@ -53,6 +53,16 @@ def test_random_storms(part):
     assert words["good"] > 5 and words["refused"] > 0, words
 
 
+@pytest.mark.parametrize("sensor", range(len(storm.SENSORS), len(storm.SENSORS + storm.MORE)))
+def test_random_storms_over_every_other_chip(sensor):
+    words = collections.Counter()
+    for seed in range(8 * sensor, 8 * sensor + 8):
+        outcome, kinds = storm.storm(seed, sensor)
+        assert outcome.word != "wrong", (storm.MORE[sensor - 3], seed, kinds, outcome.reason)
+        words[outcome.word] += 1
+    assert words["good"] > 1, words
+
+
 def test_a_wrong_correction_is_noticed_as_one():
     """The judge of all the above, on a record that says another scale than the world has."""
     outcome = storm.calibration()

@@ -3,6 +3,7 @@
 What fuzzing found lies beside it under names that say what it was.
 """
 
+import io
 import struct
 import sys
 from pathlib import Path
@@ -12,6 +13,9 @@ import targets  # noqa: F401  sets sys.path
 sys.path[:0] = [str(Path(__file__).resolve().parents[1] / name) for name in ("host", "shared")]
 
 import hostile_sessions
+import numpy as np
+import test_import_presets
+from scipy.io import savemat
 from test_term_correction import fields_of
 
 from sixflip import capture_blocks as cb
@@ -95,6 +99,23 @@ PLAN = (b'{"sixflip_plan": 1, "name": "p", "sessions": [{"state": "warming", "st
         b'"poses": ["Z+a", {"pose": "L1", "up": [0, 1, 1], "dwell_s": 5, "turn": "left"}]}]}')
 
 
+def foreign_files():
+    """A few rows in each of the formats that import tells by their content."""
+    table = np.arange(24.0).reshape(8, 3) % 5
+    npz, mat = io.BytesIO(), io.BytesIO()
+    np.savez(npz, accel=table, gyro=table, t=np.arange(8) / 100)
+    savemat(mat, {"accelReadings": table, "Fs": 100.0})
+    betaflight = (b'"acc_1G","2048"\n"loopIteration","time","gyroADC[0]","gyroADC[1]",'
+                  b'"gyroADC[2]","accSmooth[0]","accSmooth[1]","accSmooth[2]"\n'
+                  + b"".join(b"%d,%d,1,2,3,4,5,2048\n" % (k, 1000 * k) for k in range(30)))
+    undated = b"MATLAB 5.0 MAT-file, small".ljust(116) + mat.getvalue()[116:]
+    return [test_import_presets.ulog_bytes(8), npz.getvalue(), undated,
+            test_import_presets.gazebo_text(3).encode(), betaflight,
+            b'Time (s);"Acceleration x (m/s^2)";Acceleration y (m/s^2);Acceleration z (m/s^2)\n'
+            + b"".join(b"%d,%02d;0,1;0,2;9,8%d\n" % (k // 100, k % 100, k % 7)
+                       for k in range(60))]
+
+
 def main():
     """Write them all."""
     mpu, adxl = small_capture("mpu6050"), small_capture("adxl345")
@@ -105,6 +126,7 @@ def main():
              "record": [a_record()], "lines_of_a_board": [LINES, b"{'main.py': (3, None)}"],
              "settings": [SETTINGS], "host_line": [b'{"cmd": "stream", "hz": 50, "raw": true}'],
              "somebodys_csv": [CSV, b"\3" + b"1 2 3 0.01 4 5 6\n" * 5],
+             "foreign_file": foreign_files(),
              "sections": [b'{"x_p": {"start": 5, "end": 90}, "z_a": {"start": 100, "end": 200}}'],
              "scenario_file": [TOML], "plan": [PLAN, b'["Z+a", "Z+b"]']}
     for name, contents in seeds.items():

@@ -23,15 +23,15 @@ from sixflip import capture_blocks, capture_reader, correction_record
 from sixflip.correction_of import correction_of
 from sixflip_device import settings as device_settings
 from sixflip_device.host_line import HostLine
-from sixflip_host import cli
+from sixflip_host import cli, json_numbers
 from sixflip_host.board import board_answers, board_events, console
 from sixflip_host.board.board_schema import ANSWERS
 from sixflip_host.board.recording import Recording
-from sixflip_host.capture import capture_binary, capture_file
+from sixflip_host.calibrate import solution
+from sixflip_host.capture import capture_binary, capture_file, open_recording
 from sixflip_host.errors import SixflipError
 from sixflip_host.planning import plan_file
-from sixflip_host.simulating import scenario
-from sixflip_host.solving import solution, solve
+from sixflip_host.simulation import scenario
 
 FOLDER = tempfile.mkdtemp(prefix="sixflip-fuzz-")
 BUG = cli.INTERNAL_ERROR
@@ -65,7 +65,7 @@ def kept(name, data):
 
 def use(capture):
     """What solve does with a capture, and a round trip through both formats."""
-    answer = solve.finite(solution.to_json(solution.solve(capture)))
+    answer = json_numbers.finite(solution.to_json(solution.solve(capture)))
     json.dumps(answer, allow_nan=False)
 
 
@@ -219,6 +219,16 @@ def somebodys_csv(data):
     verb("import", kept("in.csv", data[1:]), "-o", os.path.join(FOLDER, "out.csv"), *chosen)
 
 
+def foreign_file(data):
+    """A file whose reader is told by its content: by import, and by a verb that opens it."""
+    path = kept("foreign", data)
+    verb("import", path, "-o", os.path.join(FOLDER, "out.csv"), "--no-poses")
+    try:
+        use(open_recording.read(path, gravity=False))
+    except SixflipError as error:
+        said_plainly(cli.plain(str(error)))
+
+
 def sections(data):
     """The JSON of somebody's still sections."""
     rows = b"".join(b"%d,0,1000\n" % (k % 3) for k in range(300))
@@ -244,4 +254,4 @@ def plan(data):
 
 TARGETS = {one.__name__: one for one in (
     capture_text, capture_of_a_board, recorded_pieces, record, lines_of_a_board, settings,
-    host_line, somebodys_csv, sections, scenario_file, plan)}
+    host_line, somebodys_csv, foreign_file, sections, scenario_file, plan)}

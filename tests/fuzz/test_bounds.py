@@ -198,14 +198,15 @@ BYTES_A_SAMPLE = 50
 SAMPLES = (100_000, 400_000)    # the slope between them: what a reader takes whatever the file
 READ = """
 import sys
-from sixflip_host.capture import capture_file, import_csv
+from sixflip_host.capture import capture_file
+from sixflip_host.verbs import import_recording
 from sixflip_host.cli import parser_for
 %s
 with open("/proc/self/status") as file:
     print(int(file.read().split("VmHWM:")[1].split()[0]) * 1024)
 """
 CAPTURE = "capture_file.read(sys.argv[1])"
-IMPORT = "import_csv.run(parser_for('import').parse_args(sys.argv[1:]))"
+IMPORT = "import_recording.run(parser_for('import').parse_args(sys.argv[1:]))"
 META = {"sensor": "mpu6050", "rate_hz": 100, "accel_lsb_per_g": 16384, "gyro_lsb_per_dps": 131,
         "temp_lsb_per_c": 340, "temp_offset_c": 36.53}
 

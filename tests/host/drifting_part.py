@@ -8,8 +8,8 @@ from board_session import make_record, run_board
 
 from sixflip import correction_record
 from sixflip_host.capture import capture_file
-from sixflip_host.planning import plan_file
-from sixflip_host.simulating import protocols, scenario, simulate
+from sixflip_host.planning import plan_file, protocols
+from sixflip_host.simulation import scenario, simulated_session
 
 TERMS = [{"effect": "thermal_bias", "sensor": "accel", "z": -1.8},
          {"effect": "thermal_bias", "sensor": "gyro", "y": 0.15},
@@ -37,7 +37,7 @@ def captures(folder, effects):
     paths = []
     for number in range(len(found.worlds)):
         paths.append(str(folder / ("session%d.csv" % number)))
-        capture_file.write(paths[-1], simulate.session(found, number))
+        capture_file.write(paths[-1], simulated_session.session(found, number))
     return paths
 
 
@@ -45,7 +45,7 @@ def calibrated(folder, effects):
     """Path of the record that a board makes of the part at CALIBRATED_C."""
     world = {"tilt_deg": 1.0, "move_s": 2.5, "dwell_s": 6.5, "first_rest_s": 8.0,
              "temperature_c": CALIBRATED_C, "warm_c": 0.0}
-    capture = simulate.session(described(effects, scene="paper", world=world), 0)
+    capture = simulated_session.session(described(effects, scene="paper", world=world), 0)
     capture.pose[:] = 0
     _, placements, moves = run_board(capture)
     record = make_record(capture, placements, moves=moves)

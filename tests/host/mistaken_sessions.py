@@ -17,6 +17,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from sixflip import session as machine
+from sixflip.chips import catalogue
 from sixflip.faces import AXIS, FACES, SIGN
 from sixflip.pose_check import judge_session
 from sixflip.record import Record
@@ -284,6 +285,7 @@ def judged(plan, s, refusals=()):
     taken.record.chip = plan.chip
     taken.record.accel_lsb_per_g, taken.record.gyro_lsb_per_dps = plan.lsb, plan.gyro_lsb
     taken.found = judge_session(s.placements, plan.lsb, rail=plan.rails[0])
+    taken.gyro_tolerance = catalogue.driver(plan.chip).gyro_tolerance
     unit = SimpleNamespace(taken=taken, record=None, slot=None)
     solving.run(unit)
     judging.run(unit)

@@ -3,7 +3,7 @@
 import hostile_sessions as hostile
 import numpy as np
 
-from sixflip_host.solving import solution
+from sixflip_host.calibrate import solution
 
 
 def coverage(sensor, seeds, scatter_deg):

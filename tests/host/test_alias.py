@@ -5,23 +5,16 @@ Ranks exactly; shares within 0.1 for 5 s rests, 10 s moves and 8-9 degC with tau
 import numpy as np
 import pytest
 
-from sixflip_host.planning.alias import (
-    ACCEL,
-    Design,
-    alias_index,
-    alias_matrix,
-    even_contrasts,
-    norm_only_rank,
-    rank,
-)
-from sixflip_host.simulating import protocols
-from sixflip_host.simulating.session_rows import rows_of
+from sixflip_host.experiment.projection import alias_index, alias_matrix, rank
+from sixflip_host.experiment.session_rows import rows_of
+from sixflip_host.planning import protocols
+from sixflip_host.planning.alias import ACCEL, PlannedModel, even_contrasts, norm_only_rank
 
 
 def design(protocol, blocks=1, certified_box=True, **options):
     if isinstance(protocol, str):
         protocol = protocols.named(protocol)
-    return Design(rows_of(protocol, blocks), certified_box=certified_box, **options)
+    return PlannedModel(rows_of(protocol, blocks), certified_box=certified_box, **options)
 
 
 def index(of, by, *args, **options):
@@ -51,7 +44,8 @@ def test_silent_on_faces(effect, protocol):
 
 
 def test_constant_rectification_is_silent_and_vertical_is_not():
-    from sixflip_host.planning.alias import effect_columns, without
+    from sixflip_host.experiment.projection import without
+    from sixflip_host.planning.alias import effect_columns
     from sixflip_sim.effects.library import make
     found = design("paper")
     for vertical, silent in ((0, True), (1, False)):

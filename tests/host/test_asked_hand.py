@@ -5,9 +5,10 @@ import json
 import pytest
 
 from sixflip_host import cli
-from sixflip_host.board import calibrate, provision
+from sixflip_host.board import calibration_request, firmware_update
 from sixflip_host.board.board_events import wait_for
 from sixflip_host.board.board_link import MpremoteLink
+from sixflip_host.verbs import calibrate
 from sixflip_host.virtual.asked_hand import AskedHand
 from sixflip_host.virtual.virtual_board import VirtualBoard
 
@@ -20,7 +21,7 @@ def board(micropython, tmp_path):
     with VirtualBoard(WORLD, tmp_path / "flash.img", micropython=micropython, speed=20.0,
                       hand=AskedHand()) as board:
         with MpremoteLink(board.port) as link:
-            provision.copy(link, {"sensor": "mpu6050", "pose_samples": 100})
+            firmware_update.copy(link, {"sensor": "mpu6050", "pose_samples": 100})
         yield board
 
 
@@ -36,7 +37,7 @@ def test_a_session_a_redo_and_a_redo_without_a_restart(board, capsys):
 
 def test_a_plan_with_leaning_poses_and_repeats(board):
     with MpremoteLink(board.port) as link:
-        calibrate.ask_for_calibration(link, {"poses": PLAN, "samples": 100, "rest_s": 2})
+        calibration_request.ask_for_calibration(link, {"poses": PLAN, "samples": 100, "rest_s": 2})
         taken = []
         wait_for(link, ("capture",), seen=lambda event: taken.append(event.get("pose")) if
                  event["event"] == "pose" else None)

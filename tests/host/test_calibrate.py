@@ -7,7 +7,7 @@ import pytest
 from micropython_tier import SESSION
 
 from sixflip_host import cli
-from sixflip_host.board import console, pull
+from sixflip_host.board import console, pulled_files
 from sixflip_host.board.board_events import parse
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.capture import capture_file
@@ -66,14 +66,14 @@ def test_board_without_the_firmware(board, tmp_path, capsys):
 
 
 def test_folder_name_of_a_malicious_id():
-    assert pull.folder_name("../../etc") == "etc"
-    assert pull.folder_name("..") == "board"
+    assert pulled_files.folder_name("../../etc") == "etc"
+    assert pulled_files.folder_name("..") == "board"
 
 
 def test_pull_from_a_board_that_lists_strange_names(link, tmp_path):
     link.put("readme", b"x")
     with pytest.raises(NoBoard, match="nothing of sixflip"):
-        pull.fetch(link, tmp_path)
+        pulled_files.fetch(link, tmp_path)
     assert not [path for path in tmp_path.iterdir() if path.is_dir()]
 
 

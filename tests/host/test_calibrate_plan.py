@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 
 from sixflip_host import cli
-from sixflip_host.board import calibrate, console, provision, typed_lines
+from sixflip_host.board import console, firmware_update, typed_lines
 from sixflip_host.board.local_link import LocalLink
 from sixflip_host.capture import capture_file
 from sixflip_host.errors import UsageError
 from sixflip_host.planning import board_plan
 from sixflip_host.planning.plan_file import from_plan
-from sixflip_host.simulating import simulator
-from sixflip_host.virtual import virtual_board_verb
+from sixflip_host.simulation import simulator
+from sixflip_host.verbs import calibrate, virtual_board_verb
 from sixflip_host.virtual.virtual_board import VirtualBoard
 from sixflip_sim import worlds
 
@@ -130,7 +130,7 @@ def test_a_plan_through_micropython(micropython, tmp_path, plan, world, capsys):
 def local(tmp_path, monkeypatch):
     """calibrate(world, *argv) -> exit code, on the firmware under CPython."""
     with LocalLink(tmp_path / "flash", world={"order": []}) as link:
-        provision.copy(link, {"timeout_s": 15, "pose_samples": 100}, lambda text: None)
+        firmware_update.copy(link, {"timeout_s": 15, "pose_samples": 100}, lambda text: None)
 
     def run(world, *argv):
         monkeypatch.setattr(calibrate, "open_link",

@@ -101,7 +101,7 @@ def test_faults_in_a_row(change, line, words):
     (text(header="# " + HEADER.replace("mpu6050", "bno") % ""), 'line 2: sensor is'),
     (text(header="# " + HEADER % ', "g": 12'), "line 2: g is 12 m/s², expected 9.7 to 9.9"),
     (text(header="# " + HEADER % ', "accel_range_g": 16'), "at ±16 g, expected 2048"),
-    (text(header="# " + HEADER % ', "gyro_range_dps": 2000'), "expected 16.384"),
+    (text(header="# " + HEADER % ', "gyro_range_dps": 2000'), "expected 16.4"),
     (text(header="# " + HEADER.replace("mpu6050", "adxl345") % ""), "it has no gyro"),
     (text(header="# " + HEADER.replace("mpu6050", "gy85") % ""), "16384 counts per g, expected"),
     (text(header="# " + HEADER.replace('"gyro_lsb_per_dps": 65.5, ', "") % ""),

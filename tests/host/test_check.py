@@ -11,8 +11,9 @@ from micropython_tier import SESSION, STILL
 from resting import rest
 
 from sixflip_host import cli
-from sixflip_host.board import check, check_words
+from sixflip_host.board import check_words
 from sixflip_host.capture import capture_file
+from sixflip_host.verbs import check
 from sixflip_host.virtual.virtual_board import VirtualBoard
 
 DEVICE = Path(__file__).resolve().parents[2] / "device" / "sixflip_device"

@@ -66,7 +66,7 @@ def test_piped_help_is_80_wide_and_keeps_every_word(words, capsys, monkeypatch):
 def test_a_bug_is_one_line_too(monkeypatch, capsys):
     def broken(args):
         raise RuntimeError("boom\x1b[2J")
-    monkeypatch.setattr("sixflip_host.solving.solve.run", broken)
+    monkeypatch.setattr("sixflip_host.verbs.solve.run", broken)
     assert main(["solve", "x"]) == cli.INTERNAL_ERROR
     error = capsys.readouterr().err
     assert error.count("\n") == 1 and "boom\\x1b[2J" in error
@@ -77,7 +77,7 @@ def test_a_bug_is_one_line_too(monkeypatch, capsys):
 def test_ctrl_c(monkeypatch, capsys):
     def interrupted(args):
         raise KeyboardInterrupt
-    monkeypatch.setattr("sixflip_host.solving.solve.run", interrupted)
+    monkeypatch.setattr("sixflip_host.verbs.solve.run", interrupted)
     assert main(["solve", "x"]) == cli.INTERRUPTED
     assert capsys.readouterr().err == "sixflip: stopped\n"
 
@@ -95,10 +95,17 @@ runpy.run_module("sixflip_host", run_name="__main__")
 
 
 @pytest.mark.parametrize("module", ["sixflip_host.cli", "sixflip_host.narration", "argparse",
-                                    "sixflip_host.solving.solve", "numpy"])
+                                    "sixflip_host.verbs.solve", "numpy"])
 def test_ctrl_c_while_modules_are_imported(module):
     done = subprocess.run([sys.executable, "-c", PRESSED % module], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (cli.INTERRUPTED, "sixflip: stopped\n")
+
+
+def test_the_help_of_all_verbs_loads_neither_scipy_nor_matplotlib():
+    code = ("import sys\nfrom sixflip_host import cli\nassert cli.main(['--help']) == 0\n"
+            "sys.exit(' '.join({'scipy', 'matplotlib', 'mujoco', 'rosbags'} & set(sys.modules)))")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (done.stderr.strip(), "diagnose" in done.stdout) == ("", True)
 
 
 def test_the_command_begins_where_ctrl_c_is_caught():

@@ -5,11 +5,11 @@ import json
 import pytest
 
 from sixflip_host import cli
-from sixflip_host.board import calibrate, provision, pull
+from sixflip_host.board import calibration_request, firmware_update, pulled_files
 from sixflip_host.board.board_events import wait_for
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.board.console import GUIDED_ORDER
-from sixflip_host.virtual import demo
+from sixflip_host.verbs import calibrate, demo
 from sixflip_host.virtual.virtual_board import VirtualBoard
 
 PACE = demo.PACE["pico"]  # the fewest samples a turn
@@ -25,17 +25,17 @@ def test_the_flips_from_before_count(micropython, tmp_path, sensor, settings, ha
     spec = {"sensor": sensor, "seed": 3, "tilt_deg": 2.0, **hand}
     with VirtualBoard(dict(spec, order=first), tmp_path / "flash.img",
                       micropython=micropython) as board, MpremoteLink(board.port) as link:
-        provision.copy(link, {"sensor": sensor, **settings})
+        firmware_update.copy(link, {"sensor": sensor, **settings})
         link.reset()
         for _ in first:
             wait_for(link, ("pose",))
         link.send(json.dumps({"cmd": "stop"}))
         assert wait_for(link, ("solved",))["missing"] == left
-        link.put(calibrate.FLAG, json.dumps({"continue": True}).encode())
+        link.put(calibration_request.FLAG, json.dumps({"continue": True}).encode())
         board.world = dict(spec, order=again)
         link.reset()
         solved = calibrate.follow(link, lambda event: None)
         assert solved["verdict"] == "good", solved
         assert solved["gyro"]["reason"].startswith("6 flips, "), solved["gyro"]
-        pulled = pull.fetch(link, tmp_path / "pulled")
+        pulled = pulled_files.fetch(link, tmp_path / "pulled")
     assert cli.main(["verify", str(pulled)]) == 0

@@ -152,7 +152,7 @@ def test_mcap_and_back(pulled, tmp_path, capsys):
 def test_csv_of_a_sensor_without_gyro_and_temperature(tmp_path):
     capture = unlabelled()
     alone = capture_file.Capture({"sensor": "adxl345", "rate_hz": 100, "accel_lsb_per_g": 256},
-                                 capture.t_us[:50] - 70000, capture.accel[:50])
+                                 capture.t_us[:50] - 70000, capture.accel[:50] // 64)
     capture_file.write(tmp_path / "a.csv", alone)
     assert main(["export", str(tmp_path / "a.csv"), "-o", str(tmp_path / "a.mcap")]) == 0
     messages = [message for _, message in by_mcap(tmp_path / "a.mcap")]
@@ -249,11 +249,12 @@ def test_the_topic(tmp_path, capsys):
 
 
 def test_values_that_are_no_counts(pulled, tmp_path, capsys):
-    """Corrected data has no steps: an LSB must be given, and the rounding is told."""
+    """Corrected data has no steps: it is kept as it is, or rounded to an LSB that is given."""
     path = str(apply(pulled, tmp_path, "d.mcap"))
     words = ["import", path, "-o", str(tmp_path / "c.csv"), "--no-poses"]
-    assert main(words) == 4
-    assert "is not in whole steps, so its LSB must be given" in capsys.readouterr().err
+    assert main(words) == 0
+    assert "accelerometer values are no whole steps" in capsys.readouterr().out
+    assert capture_file.read(tmp_path / "c.csv").meta["accel_values"] == "float"
     assert main([*words, "--accel-lsb", "8192", "--gyro-lsb", "65.5"]) == 0
     assert "rounded by up to 0.5" in capsys.readouterr().out
 

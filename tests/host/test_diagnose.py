@@ -8,11 +8,11 @@ import pytest
 from sixflip import capture_blocks, capture_writer
 from sixflip_host import cli
 from sixflip_host.capture import capture_file
-from sixflip_host.simulating import scenario, simulate
+from sixflip_host.simulation import scenario, simulated_session
 
 KEYS = {"format", "verdict", "causes", "where", "gap", "unseen", "next"}
 CAUSE_KEYS = {"sensor", "axes", "effect", "class", "score_nats", "value", "unit", "interval_90",
-              "plausible", "share"}
+              "plausible", "share", "probability", "class_probabilities"}
 EFFECTS = [{"effect": "thermal_bias", "sensor": "accel", "z": -1.8},
            {"effect": "g_sensitivity", "sensor": "gyro", "xy": 0.1}]
 
@@ -25,7 +25,7 @@ def captures(folder, scene, effects, seed=9):
     paths = []
     for number in range(len(plan.worlds)):
         path = folder / ("%s%d.csv" % (scene, number))
-        capture_file.write(str(path), simulate.session(plan, number))
+        capture_file.write(str(path), simulated_session.session(plan, number))
         paths.append(str(path))
     return paths
 
@@ -79,11 +79,15 @@ def test_two_causes_are_named_with_size_axis_and_share(two_sessions, capsys, tmp
     assert len(again.worlds) == 2
 
 
-def test_a_simulator_that_has_the_effects_leaves_no_gap(two_sessions, tmp_path, capsys):
+def test_a_simulator_that_has_the_effects_differs_by_its_parameters_alone(
+        two_sessions, tmp_path, capsys):
     twin = captures(tmp_path, "recommended", EFFECTS, seed=31)
     answer = diagnosed(capsys, *two_sessions, "--sim", twin[0], "--sim", twin[1])
     assert answer["causes"] == []
-    assert answer["verdict"] == "no gap"
+    assert answer["simulator"]["conventions"] == []
+    bias = answer["simulator"]["parameters"]["accel"]["bias"]["x"]
+    assert bias["differs"] and bias["set"] == pytest.approx(bias["real"], abs=0.1)
+    assert answer["verdict"] == "explained"
     assert "thermal_bias" in " ".join(answer["remarks"])
 
 
@@ -134,16 +138,18 @@ def quiet(seconds=60, seed=1):
 
 def test_a_quiet_rest_has_no_gap(tmp_path, capsys):
     answer = diagnosed(capsys, still(tmp_path, "quiet.csv", quiet()))
-    assert (answer["verdict"], answer["causes"], answer["gap"]) == ("no gap", [], {})
+    assert (answer["verdict"], answer["causes"]) == ("no gap", [])
+    assert all(gap["explained_share"] is None and gap["before"] < 1.3 * gap["floor"]
+               for gap in answer["gap"].values())
 
 
 def test_steps_lines_drift_and_rails_of_a_single_rest(tmp_path, capsys):
     t = np.arange(6000) / 100.0
     counts = quiet()
-    walk = np.cumsum(np.random.default_rng(2).normal(0.0, 2.5, 6000))
+    walk = np.cumsum(np.random.default_rng(2).normal(0.0, 2.5, (6000, 3)), axis=0)
     cases = {"quantisation": np.rint(counts / 4) * 4,
              "vibration": counts + np.outer(np.sin(2 * np.pi * 31.0 * t), [0, 80, 0]),
-             "drift": counts + np.outer(walk, [0, 0, 1])}
+             "drift": counts + walk}
     spiked = counts.copy()
     spiked[3000, 2] = 32767
     cases["saturation"] = spiked

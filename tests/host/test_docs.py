@@ -9,13 +9,18 @@ from pathlib import Path
 
 import pytest
 from micropython_tier import SESSION
+from test_stream_for_robots import LOOPBACK, record
 
+from sixflip import correction_record
 from sixflip_host import cli
+from sixflip_host.board import firmware_update
+from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.virtual.virtual_board import VirtualBoard
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = sorted((ROOT / "docs").glob("*.md"))
 NEEDS_A_BOARD = {"first-calibration.md"}
+NEEDS_A_RECORD = {"robot-localization.md", "slam-toolbox.md"}
 
 
 def commands(page):
@@ -40,6 +45,17 @@ def run(line, folder, port=None):
 @pytest.mark.parametrize("page", [p for p in PAGES if commands(p)], ids=lambda p: p.name)
 def test_the_commands_of_a_page(page, micropython, tmp_path, monkeypatch):
     monkeypatch.setenv("SIXFLIP_MICROPYTHON", micropython)
+    if page.name in NEEDS_A_RECORD:
+        monkeypatch.setenv("CYCLONEDDS_URI", LOOPBACK)
+        with VirtualBoard({"sensor": "gy85", "order": []}, tmp_path / "flash.img",
+                          micropython=micropython) as board:
+            with MpremoteLink(board.port) as link:
+                firmware_update.copy(link, {"sensor": "gy85", "rest_s": 1}, lambda text: None)
+                link.put("record_a.bin", correction_record.encode(record()))
+            board.power_cycle()
+            for line in commands(page):
+                run(line, tmp_path, board.port)
+        return
     if page.name not in NEEDS_A_BOARD:
         for line in commands(page):
             run(line, tmp_path)
@@ -112,3 +128,10 @@ def test_pictures_are_those_that_the_script_draws():
         sys.path.pop(0)
     for name, svg in draw.pictures().items():
         assert (draw.HERE / name).read_text() == svg
+
+
+def test_the_files_of_the_map_are_there():
+    named = re.findall(r"`((?:host|shared|device|tests)/[\w/]+\.py)`",
+                       (ROOT / "docs" / "architecture.md").read_text())
+    assert len(named) > 15
+    assert [path for path in named if not (ROOT / path).exists()] == []

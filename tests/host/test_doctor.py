@@ -9,13 +9,14 @@ import pytest
 from test_export_formats import make_record
 
 from sixflip import correction_record
-from sixflip_host.board import provision
+from sixflip_host.board import firmware_update
 from sixflip_host.board.board_events import wait_for
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.board.local_link import LocalLink
 from sixflip_host.cli import main
-from sixflip_host.doctor import doctor, reach, wiring
+from sixflip_host.doctor import reach, wiring
 from sixflip_host.errors import NoBoard
+from sixflip_host.verbs import doctor
 from sixflip_host.virtual.virtual_board import VirtualBoard
 
 STILL = {"sensor": "mpu6050", "seed": 3, "order": []}
@@ -27,7 +28,7 @@ def bench(micropython, tmp_path_factory):
     image = tmp_path_factory.mktemp("board") / "flash.img"
     with VirtualBoard(STILL, image, micropython=micropython) as board, \
             MpremoteLink(board.port) as link:
-        provision.copy(link, {"sensor": "auto"}, say=lambda text: None)
+        firmware_update.copy(link, {"sensor": "auto"}, say=lambda text: None)
         yield board, link
 
 
@@ -66,7 +67,7 @@ TWICE = [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]]
 
 @pytest.mark.parametrize("world,lines,check,state,words,todo", [
     ({"faults": [{"kind": "unplugged", "at": 0}]}, None, "chips", "fault",
-     "nothing answers at 0x68, 0x69, 0x53 or 0x1d", "check the four wires"),
+     "nothing answers at 0x68 0x69 0x6a 0x6b 0x53 0x1d", "check the four wires"),
     (GONE, "no pull-ups", "lines", "fault", "no pull-up on SDA (4) and SCL (5)", "4.7 kΩ"),
     (GONE, "sda low", "lines", "fault", "SDA (4) held low", "short to ground"),
     (GONE, "scl low", "lines", "fault", "SCL (5) held low", "short to ground"),
@@ -77,8 +78,10 @@ TWICE = [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]]
     ({"sensor": "gy85", "also": "mpu6050"}, None, "chips", "fault",
      "two chips seem to answer at 0x68", "tie AD0"),
     ({"who_am_i": 0x98}, None, "chips", "warning", "a clone at 0x68: who_am_i 0x98", "judge it"),
-    ({"who_am_i": 0x47}, None, "chips", "fault", "who_am_i 0x47: ICM-42688-P",
+    ({"who_am_i": 0x12}, None, "chips", "fault", "who_am_i 0x12: ICM-20602",
      "does not drive it"),
+    ({"sensor": "qmi8658", "stranger": [0x68, 0x00, 0x24]}, None, "chips", "warning",
+     "BMI270 at 0x68", "configuration file"),
     ({"who_am_i": 0x33}, None, "chips", "fault", "who_am_i 0x33: no chip that is known",
      "does not drive it"),
     ({"sensor": "gy85", "magnetometer": "QMC5883L"}, None, "chips", "warning", "QMC5883L",
@@ -121,7 +124,7 @@ def test_the_verb_from_port_to_record(bench, capsys):
     """A board on its port: healthy, in words; then a wrong record, another setting."""
     board, link = bench
     judged(bench, {})
-    provision.copy(link, {"sensor": "auto"}, say=lambda text: None)
+    firmware_update.copy(link, {"sensor": "auto"}, say=lambda text: None)
     link.close()
     try:
         assert main(["doctor", "--port", board.port]) == 0
@@ -142,7 +145,7 @@ def test_the_verb_from_port_to_record(bench, capsys):
         assert "the settings ask for gy85, which is not there" in found["chips"]["found"]
     finally:
         link.open()
-        provision.copy(link, {"sensor": "auto"}, say=lambda text: None)
+        firmware_update.copy(link, {"sensor": "auto"}, say=lambda text: None)
 
 
 def test_provision_and_pull_as_json(bench, tmp_path, capsys):
@@ -287,7 +290,7 @@ def test_this_computer_as_the_board(tmp_path, monkeypatch, capsys):
     """A Raspberry Pi whose I2C is not switched on."""
     folder = tmp_path / "board"
     with LocalLink(folder) as link:
-        provision.copy(link, {"sensor": "auto", "i2c": 13}, say=lambda text: None)
+        firmware_update.copy(link, {"sensor": "auto", "i2c": 13}, say=lambda text: None)
         (folder / "sixflip.json").write_text('{"i2c": 13}')
     monkeypatch.setattr(LocalLink, "reset", lambda self: None)
     code, found = findings(capsys, "--port", "local:%s" % folder)

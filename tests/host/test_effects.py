@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from sixflip_host.simulating import simulator
+from sixflip_host.simulation import simulator
 from sixflip_sim import worlds
 from sixflip_sim.effects import make, typical
 from sixflip_sim.effects.effect import BadEffect
@@ -162,7 +162,7 @@ def test_vibration_is_a_line_and_folds():
 
 
 def test_drift_has_the_allan_floor_asked_for():
-    from sixflip_host.simulating import noise_arrays
+    from sixflip_host.experiment import noise_arrays
     floors = []
     for seed in range(8):
         m = Moment(np.exp, np.sin, np.floor, noise_arrays.gauss)

@@ -4,9 +4,8 @@ import pytest
 
 from sixflip_host.capture import recordings as found
 from sixflip_host.errors import BadFile
-from sixflip_host.papers import replica
-from sixflip_host.simulating import fidelity
-from sixflip_host.simulating import signal_measures as measures
+from sixflip_host.experiment import signal_measures as measures
+from sixflip_host.simulation import fidelity, replica
 
 
 @pytest.fixture(scope="module")

@@ -8,11 +8,11 @@ import pytest
 from board_session import leave_files, unlabelled
 
 from sixflip_host import cli, file_arguments
-from sixflip_host.board import pull
+from sixflip_host.board import pulled_files
 from sixflip_host.board.local_link import LocalLink
 from sixflip_host.capture import capture_file
-from sixflip_host.capture.export import FORMATS
 from sixflip_host.errors import UsageError
+from sixflip_host.verbs.export import FORMATS
 
 PICTURE = b"\x89PNG\r\n\x1a\nof a cat"
 NOTES = b"# what I did on Sunday\n"
@@ -39,12 +39,12 @@ OUTPUTS = {
     ("virtual-board", "--flash"): "virtual-board --world READ --flash WRITTEN",
 }
 # of folders, whose files a verb looks at when it knows their names: tests of their own
-FOLDERS = {("pull", "--output"), ("ui", "--output"), ("demo", "--keep")}
+FOLDERS = {("pull", "--output"), ("ui", "--output"), ("demo", "--keep"), ("reproduce", "--keep")}
 READS_NO_FILE = {("history", "--plot"), ("stream", "--output"), ("record", "--output")}
 # what looks like a name and is no file
 WORDS = {"--port", "--pins", "--axes", "--time-column", "--columns", "--map", "--delimiter",
          "--units", "--topic", "--label-column", "--label", "--add", "--without", "--fail-on",
-         "board"}
+         "board", "--range", "--spi", "--frame-id", "--domain"}
 
 
 def actions():
@@ -162,11 +162,11 @@ def test_pull_replaces_what_it_pulled_and_nothing_else(pulled, tmp_path):
     (tmp_path / "flash").mkdir()
     (tmp_path / "flash" / "capture.bin").write_bytes((pulled / "capture.bin").read_bytes())
     with LocalLink(tmp_path / "flash") as link:
-        folder = pull.fetch(link, tmp_path)
-        assert pull.fetch(link, tmp_path) == folder
+        folder = pulled_files.fetch(link, tmp_path)
+        assert pulled_files.fetch(link, tmp_path) == folder
         (folder / "capture.csv").write_bytes(NOTES)
         with pytest.raises(UsageError, match="capture.csv: is there already"):
-            pull.fetch(link, tmp_path)
+            pulled_files.fetch(link, tmp_path)
         assert (folder / "capture.csv").read_bytes() == NOTES
 
 

@@ -6,8 +6,9 @@ from board_session import unlabelled
 from hand_session import Rotation, Sensor, face_attitude, session, six_faces
 
 from sixflip.faces import pose_name
-from sixflip_host.solving.attitude import heading_change
-from sixflip_host.solving.find_poses import Rest, find_poses
+from sixflip_host.capture.attitude import heading_change
+from sixflip_host.capture.find_poses import find_poses
+from sixflip_host.capture.rests import rest
 
 LEVEL = Rotation.identity()
 
@@ -66,7 +67,7 @@ def test_nothing_still_at_all():
     capture.accel += np.random.default_rng(1).normal(0, 2000, capture.accel.shape).astype(
         np.int16)
     found = find_poses(capture)
-    assert found.rests == [] and not found.pose.any()
+    assert found.rests == () and not found.pose.any()
     assert found.remarks() == ["no rest found: nowhere a second without motion"]
 
 
@@ -74,7 +75,7 @@ def test_nothing_still_at_all():
 @pytest.mark.parametrize("turn", [-170, -60, 0, 90, 175])
 def test_heading_change(face, turn):
     capture = session_of((face, 20), ((face + 2) % 6, 0), (face, 20 + turn))
-    rests = [Rest(capture, first, first + 400) for first in (0, 650, 1300)]
+    rests = [rest(capture, first, first + 400) for first in (0, 650, 1300)]
     from sixflip.faces import AXIS, SIGN
     found = heading_change(capture, rests, capture.gyro[:400].mean(axis=0), AXIS[face],
                            SIGN[face])

@@ -9,9 +9,9 @@ import pytest
 from hand_session import G, Sensor, session, six_faces
 
 from sixflip.faces import FACES, face_of_code
+from sixflip_host.calibrate import flips_turned, solution
 from sixflip_host.capture import capture_file
 from sixflip_host.cli import main
-from sixflip_host.solving import flips_turned, solution
 
 SESSIONS = 20
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from sixflip_host.simulating.simulated_capture import capture
+from sixflip_host.simulation.simulated_capture import capture
 from sixflip_sim import worlds
 
 BENCH = Path(__file__).resolve().parents[1] / "bench" / "gyro.py"

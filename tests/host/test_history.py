@@ -11,10 +11,10 @@ from board_session import leave_files, make_record, unlabelled
 from PIL import Image
 
 from sixflip import correction_record
-from sixflip_host.board import calibrate
 from sixflip_host.capture import capture_binary, capture_file
 from sixflip_host.cli import main
 from sixflip_host.history import drift, remember, store
+from sixflip_host.verbs import calibrate
 
 BOARD = "e6614c311b4c5a2f"
 DAY = 86400.0

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from sixflip.capture_blocks import ACCEL
 from sixflip.capture_writer import BlockWriter
-from sixflip_host.board import board_events, pull
+from sixflip_host.board import board_events, pulled_files
 from sixflip_host.board.board_link import safe_name
 from sixflip_host.board.console import Console
 
@@ -42,19 +42,20 @@ class HostileLink:
 def test_nothing_of_the_boards_leaves_the_folder(tmp_path, board_id, capsys):
     output = tmp_path / "in" / "here"
     output.mkdir(parents=True)
-    link = HostileLink([*NAMES, *pull.WANTED], board_id)
-    folder = pull.fetch(link, output)
-    assert set(link.asked) == set(pull.WANTED)
+    link = HostileLink([*NAMES, *pulled_files.WANTED], board_id)
+    folder = pulled_files.fetch(link, output)
+    assert set(link.asked) == set(pulled_files.WANTED)
     written = {path for path in tmp_path.rglob("*") if path.is_file()}
-    assert written == {folder / name for name in pull.WANTED}
+    assert written == {folder / name for name in pulled_files.WANTED}
     assert Path(folder).resolve().parent == output.resolve()
     assert all(c.isprintable() or c == "\n" for c in capsys.readouterr().out)
 
 
 def test_a_capture_that_is_none_is_one_line(tmp_path):
-    folder = pull.fetch(HostileLink(pull.WANTED, "x"), tmp_path, say=lambda line: None)
-    assert [str(error).split(":")[0] for error in pull.convert(folder)] == [
-        str(folder / name) for name in pull.CAPTURES]
+    folder = pulled_files.fetch(HostileLink(pulled_files.WANTED, "x"), tmp_path,
+                                say=lambda line: None)
+    assert [str(error).split(":")[0] for error in pulled_files.convert(folder)] == [
+        str(folder / name) for name in pulled_files.CAPTURES]
 
 
 def test_a_session_that_ended_before_anything_was_captured(tmp_path, capsys):
@@ -64,7 +65,7 @@ def test_a_session_that_ended_before_anything_was_captured(tmp_path, capsys):
     (tmp_path / "refused.bin").write_bytes(data)
     for cut in (0, 3):
         (tmp_path / "refused.bin").write_bytes(data[:len(data) - cut])
-        assert pull.convert(tmp_path) == []
+        assert pulled_files.convert(tmp_path) == []
         assert "is empty" in capsys.readouterr().out
         assert [path.name for path in tmp_path.iterdir()] == ["refused.bin"]
 

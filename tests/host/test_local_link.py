@@ -2,17 +2,18 @@
 
 import pytest
 
-from sixflip_host.board import calibrate, provision
+from sixflip_host.board import firmware_update
 from sixflip_host.board.local_link import LocalLink
 from sixflip_host.errors import NoBoard, UsageError
+from sixflip_host.verbs import calibrate
 
 WORLD = {"sensor": "gy85", "seed": 5, "tilt_deg": 1.0}
 
 
 def test_calibrates_as_a_board_does(tmp_path):
     with LocalLink(tmp_path / "flash", WORLD) as link:
-        provision.copy(link, {}, lambda text: None)
-        hello, test = provision.self_test(link)
+        firmware_update.copy(link, {}, lambda text: None)
+        hello, test = firmware_update.self_test(link)
         assert test["ok"]
         assert hello["sensor"] == "gy85"
         link.reset()

@@ -6,7 +6,7 @@ import stat
 import pytest
 
 from sixflip_host.errors import NoBoard, SixflipError
-from sixflip_host.virtual import micropython_fetch
+from sixflip_host.virtual import debian_packages, micropython_fetch
 
 
 def executable(path, text):
@@ -43,12 +43,12 @@ def test_found_on_path_before_the_cache(tmp_path, monkeypatch):
 def test_mirror_is_the_machines_own(tmp_path, name, text):
     (tmp_path / "sources.list.d").mkdir()
     (tmp_path / name).write_text(text)
-    assert micropython_fetch.debian_mirror(tmp_path) == "http://here/debian"
+    assert debian_packages.debian_mirror("by hand", tmp_path) == "http://here/debian"
 
 
 def test_no_mirror_is_one_line(tmp_path):
     with pytest.raises(SixflipError, match="SIXFLIP_MICROPYTHON"):
-        micropython_fetch.debian_mirror(tmp_path)
+        debian_packages.debian_mirror("name it in SIXFLIP_MICROPYTHON", tmp_path)
 
 
 def test_no_apt_is_one_line(tmp_path, monkeypatch):

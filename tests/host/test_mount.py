@@ -12,7 +12,8 @@ from sixflip import correction_record, mounting
 from sixflip_host import cli
 from sixflip_host.capture import capture_file
 from sixflip_host.errors import CheckFailed, UsageError
-from sixflip_host.mounting import mount, robot_axes
+from sixflip_host.mounting import robot_axes
+from sixflip_host.verbs import mount
 
 PAPER = (-0.2235, 0.4937, 0.8330)
 STRAIGHT = robot_axes.parse("rep103")

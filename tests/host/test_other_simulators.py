@@ -6,9 +6,11 @@ import pytest
 import yaml
 
 from sixflip_host.capture import capture_file
+from sixflip_host.capture.capture_file import Capture
 from sixflip_host.errors import CheckFailed
-from sixflip_host.simulating import other_simulators, scenario, simulate
-from sixflip_host.simulating.noise_model import measure
+from sixflip_host.export import other_simulators
+from sixflip_host.export.noise_model import measure
+from sixflip_host.simulation import scenario, simulated_session
 
 BIAS_MG, BIAS_DPS = [20.0, -30.0, 50.0], [1.0, -0.5, 0.2]
 WORLD = {"accel_bias_mg": BIAS_MG, "gyro_bias_dps": BIAS_DPS, "accel_noise_mg": 4.0,
@@ -19,7 +21,7 @@ WORLD = {"accel_bias_mg": BIAS_MG, "gyro_bias_dps": BIAS_DPS, "accel_noise_mg": 
 @pytest.fixture(scope="module")
 def capture():
     plan = scenario.from_dict({"world": dict(WORLD, dwell_s=8.0), "seed": 3})
-    return simulate.session(plan, 0)
+    return simulated_session.session(plan, 0)
 
 
 def test_noise_density_bias_and_matrix(capture):
@@ -40,7 +42,10 @@ def test_gazebo_sdf_is_read_back(capture):
     noise = root.find("./sensor/imu/linear_acceleration/z/noise")
     assert noise.get("type") == "gaussian_quantized"
     assert float(noise.find("stddev").text) == pytest.approx(4e-3 * 9.80665, rel=0.06)
-    assert float(noise.find("bias_mean").text) == pytest.approx(0.050 * 9.80665, abs=0.006)
+    assert float(noise.find("mean").text) == pytest.approx(0.050 * 9.80665, abs=0.006)
+    y = root.find("./sensor/imu/linear_acceleration/y/noise")  # the sign is kept, never drawn
+    assert float(y.find("mean").text) == pytest.approx(-0.030 * 9.80665, abs=0.006)
+    assert float(y.find("bias_mean").text) == float(y.find("bias_stddev").text) == 0.0
     gyro = root.find("./sensor/imu/angular_velocity/x/noise")
     assert float(gyro.find("stddev").text) == pytest.approx(np.radians(0.06), rel=0.06)
 
@@ -56,7 +61,7 @@ def test_random_walk_from_a_long_rest():
     effects = [{"effect": "drift", "slope": 0.5, "seed": 4, "x": 0.03, "y": 0.03, "z": 0.03}]
     plan = scenario.from_dict({"world": dict(WORLD, dwell_s=4.0, first_rest_s=600.0), "seed": 3,
                                "effects": effects})
-    found = measure(simulate.session(plan, 0))["accel"]
+    found = measure(simulated_session.session(plan, 0))["accel"]
     # adev of a random walk K is K sqrt(tau / 3): 0.03 mg at 1 s is K = 0.03 sqrt(3) mg
     assert np.median(found.walk) == pytest.approx(3e-5 * 9.80665 * np.sqrt(3), rel=0.5)
     content = yaml.safe_load(other_simulators.kalibr({"accel": found}, {"sensor": "mpu6050",
@@ -75,8 +80,11 @@ def test_table_has_units_formulas_and_effects(capture, tmp_path):
     assert ["accel thermal_bias", "z=-1.76", "", "", "mg/degC"] == rows[-1][:5]
 
 
-def test_a_capture_that_does_not_calibrate_is_one_line():
-    plan = scenario.from_dict({"scene": "drive", "session_s": 20})
+def test_rests_in_several_attitudes_that_do_not_calibrate_are_one_line(capture):
+    pose = capture.pose.copy()
+    pose[capture.placements()[7].first:] = 0  # some faces, not six
+    some = Capture(dict(capture.meta), capture.t_us, capture.accel, capture.gyro, capture.temp,
+                   None, pose)
     with pytest.raises(CheckFailed) as caught:
-        measure(simulate.session(plan, 0))
+        measure(some)
     assert "\n" not in str(caught.value)

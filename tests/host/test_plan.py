@@ -5,11 +5,11 @@ import pytest
 
 from sixflip_host.cli import Parser
 from sixflip_host.errors import BadFile, UsageError
-from sixflip_host.planning import detectable, plan, plan_additions, plan_file
-from sixflip_host.planning.alias import Design
+from sixflip_host.experiment.session_rows import rows_of
+from sixflip_host.planning import detectable, plan_additions, plan_file, protocols
+from sixflip_host.planning.alias import PlannedModel
 from sixflip_host.planning.plan_findings import Findings
-from sixflip_host.simulating import protocols
-from sixflip_host.simulating.session_rows import rows_of
+from sixflip_host.verbs import plan
 from sixflip_sim.effects.library import NAMES
 
 
@@ -66,7 +66,7 @@ def test_smallest_sizes_agree_with_the_prototype():
     expected = {"paper": {"thermal_bias": 0.625, "quadratic": 1.226, "hysteresis": 0.373},
                 "backward": {"thermal_bias": 0.178, "quadratic": 0.871, "hysteresis": 0.254}}
     for name, sizes in expected.items():
-        design = Design(rows_of(protocols.named(name)), certified_box=True)
+        design = PlannedModel(rows_of(protocols.named(name)), certified_box=True)
         power = detectable.Power(design, "mpu6050-accel")
         for effect, size in sizes.items():
             found = detectable.middle(power.smallest(effect))
@@ -75,11 +75,11 @@ def test_smallest_sizes_agree_with_the_prototype():
 
 def test_a_simulated_drift_of_the_smallest_size_is_seen_four_times_in_five():
     import numpy as np
-    design = Design(rows_of(protocols.named("backward")), certified_box=True)
+    design = PlannedModel(rows_of(protocols.named("backward")), certified_box=True)
     power = detectable.Power(design, "mpu6050-accel")
     size = power.smallest("quadratic")["x"]
     column = design.raw("quadratic")[1][:, 0]
-    from sixflip_host.planning.alias import without
+    from sixflip_host.experiment.projection import without
     left = without(power.space, power.whitener @ column[:, None])[:, 0]
     direction = left / np.linalg.norm(left)
     draw = np.random.default_rng(1)

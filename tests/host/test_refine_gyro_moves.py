@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from sixflip_host.solving import gyro_moves
+from sixflip_host.calibrate import gyro_moves
 
 PERFECT = np.hstack([np.eye(3), np.zeros((3, 4))])
 

@@ -7,16 +7,15 @@ import xsens_recording
 from hand_session import RAD
 
 from sixflip import accelerometer
-from sixflip_host.refining import joint_refinement, refine, refinement_answer
-from sixflip_host.simulating import pose_runs
-from sixflip_host.solving import gyro_rests
-from sixflip_host.solving.rests_and_moves import RestsAndMoves
+from sixflip_host.calibrate import gyro_rests, joint_refinement, refinement, refinement_answer
+from sixflip_host.calibrate.rests_and_moves import RestsAndMoves
+from sixflip_host.capture import rests
 
 PULL = np.array([[0.1, 0.02, 0.0], [-0.15, 0.05, 0.1], [0.0, -0.1, 0.05]])  # deg/s a g
 
 
 def solved(capture, per_g=False):
-    session = RestsAndMoves(capture, pose_runs.runs(capture.pose))
+    session = RestsAndMoves(capture, rests.labelled(capture.pose))
     return session, joint_refinement.refine(session, per_g)
 
 
@@ -101,7 +100,7 @@ def test_g_sensitivity_comes_back():
 def test_g_sensitivity_is_not_invented():
     sensor = hand_session.Sensor(4)
     capture = hand_session.session(sensor, hand_session.free_poses(4, 20), 4)
-    session = RestsAndMoves(capture, pose_runs.runs(capture.pose))
+    session = RestsAndMoves(capture, rests.labelled(capture.pose))
     assert not gyro_rests.pulled_by_gravity(session)
 
 
@@ -121,7 +120,7 @@ def test_standard_errors_are_the_errors():
 
 def test_xsens_fuller_problem(recordings):
     capture = xsens_recording.read(recordings)
-    runs, _ = refine.rests_of(capture, free=True)
+    runs, _ = refinement.rests_of(capture, free=True)
     session = RestsAndMoves(capture, runs)
     assert len(runs) == 38
     assert len(session.moves) == 37

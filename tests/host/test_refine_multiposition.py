@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 import xsens_recording
 
+from sixflip_host.calibrate import multiposition
+from sixflip_host.capture import rests
 from sixflip_host.planning import observability
-from sixflip_host.refining import rest_intervals
-from sixflip_host.solving import multiposition
 
 
 @pytest.fixture(scope="module")
@@ -24,7 +24,7 @@ def test_imu_tk_own_problem_reaches_its_optimum(xsens):
     assert len(fit.rests) == 38
     assert fit.multiple == 6
     assert fit.cost <= 0.1201315
-    means = np.array([xsens[f : f + 100].mean(axis=0) for f, _ in fit.rests])
+    means = np.array([xsens[f : f + 100].mean(axis=0) for _, f, _ in fit.rests])
     off = multiposition.norm_residual(fit.parameters, means, xsens_recording.G)
     assert round(1e3 * rms(off) / xsens_recording.G, 3) == 0.153
     left = multiposition.leave_one_out(means, xsens_recording.G, fit.parameters)
@@ -39,7 +39,7 @@ def test_rests_are_found_without_being_told_of_the_first_one(xsens):
 
 def test_misalignment_is_what_the_nine_terms_are_for(xsens):
     fit = multiposition.search(xsens, xsens_recording.G, xsens_recording.INITIAL_REST)
-    means = np.array([xsens[f : f + n].mean(axis=0) for f, n in fit.rests])
+    means = np.array([xsens[f:end].mean(axis=0) for _, f, end in fit.rests])
     nine = multiposition.solve(means, xsens_recording.G)
     square = fit.parameters.copy()
     square[[1, 2, 4]] = 0.0
@@ -95,10 +95,10 @@ def test_rests_end_where_the_motion_begins():
     rng = np.random.default_rng(0)
     samples = rng.normal(0, 1.0, (2000, 3))
     samples[800:1000] += 50 * np.sin(np.arange(200) / 7)[:, None]
-    limit = 4 * rest_intervals.variance_at_rest(samples)
-    (first, n), (second, m) = rest_intervals.find(samples, limit)
-    assert first + n <= 800 < first + n + rest_intervals.WINDOW
-    assert 1000 <= second < 1000 + rest_intervals.WINDOW
+    limit = 4 * rests.variance_at_rest(samples)
+    before, after = rests.by_variance(samples, limit)
+    assert before.end <= 800 < before.end + rests.WINDOW
+    assert 1000 <= after.first < 1000 + rests.WINDOW
 
 
 def test_no_rests_in_a_recording_that_never_rests():

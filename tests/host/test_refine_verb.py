@@ -11,9 +11,10 @@ import pytest
 from hand_session import RAD, G
 
 from sixflip import correction_record, record_terms
+from sixflip_host.calibrate import refinement, refinement_record, refinement_report
 from sixflip_host.capture import capture_file
 from sixflip_host.errors import SixflipError
-from sixflip_host.refining import refine, refinement_record, refinement_report
+from sixflip_host.verbs import refine
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +63,7 @@ def test_a_flip_off_half_a_turn_is_flagged_by_name(sensor):
     poses = hand_session.six_faces(2, 2.0)
     up = hand_session.Rotation.from_rotvec([0, 0, 7 * RAD])
     poses[5] = (poses[5][0], up * poses[5][1])  # X+b
-    found = refine.refine(hand_session.session(sensor, poses, 2))
+    found = refinement.refine(hand_session.session(sensor, poses, 2))
     assert [face for face, flip in found["flips"].items() if flip["off"]] == ["X+"]
     assert abs(found["flips"]["X+"]["angle_deg"] - 187.0) < 0.3
     assert "X+" in text(found) and "deg off a half turn" in text(found)
@@ -73,9 +74,10 @@ def test_a_and_b_found_far_apart_are_no_flip(sensor):
     poses = hand_session.six_faces(6, 2.0)
     order = [0, 4, 6, 8, 10, 2, 1]
     free = hand_session.session(sensor, [poses[k] for k in order], 6)
-    assert refine.refine(free)["flips"]["Z+"]["reason"] == "no gyro over this flip, 180 assumed"
+    flip = refinement.refine(free)["flips"]["Z+"]
+    assert flip["reason"] == "no gyro over this flip, 180 assumed"
     free.pose = None
-    found = refine.refine(free)
+    found = refinement.refine(free)
     assert found["flips"] == {}
     assert found["verdict"] == "doubtful"
 
@@ -84,7 +86,7 @@ def test_a_record_is_written_and_read_back(tmp_path, capture):
     out = tmp_path / "refined.bin"
     assert command(written(tmp_path, capture), "-o", out) == 0
     record = correction_record.decode(out.read_bytes())
-    found = refine.refine(capture)
+    found = refinement.refine(capture)
     assert np.abs(np.array(record.accel["P"]) - found["accel"]["P"]).max() < 1e-12
     assert record.measured() == ["accel", "gyro", "gyro_bias"]
     assert record.accel["verdict"] == "good"
@@ -101,7 +103,7 @@ def test_six_faces_without_labels_or_gyro_are_refused(tmp_path, sensor, capsys):
 
 def test_without_gyro_the_accelerometer_is_still_refined(sensor):
     bare = hand_session.session(sensor, hand_session.six_faces(3, 2.0), 3, gyro=False)
-    found = refine.refine(bare)
+    found = refinement.refine(bare)
     P = np.array(found["accel"]["P"])
     assert sensor.vector_error_mg(P[:3, :3].T, P[3, :3] / G) < 0.3
     assert found["gyro"] is None
@@ -109,7 +111,7 @@ def test_without_gyro_the_accelerometer_is_still_refined(sensor):
 
 
 def test_faces_that_were_never_flipped_are_doubtful(sensor):
-    found = refine.refine(hand_session.session(sensor, hand_session.six_faces(4, 1.0)[::2], 4))
+    found = refinement.refine(hand_session.session(sensor, hand_session.six_faces(4, 1.0)[::2], 4))
     assert found["verdict"] == "doubtful"
     assert "the table's tilt is in the result" in found["reason"]
 
@@ -117,7 +119,7 @@ def test_faces_that_were_never_flipped_are_doubtful(sensor):
 def test_gyro_saturated_in_every_flip(sensor):
     fast = hand_session.session(sensor, hand_session.six_faces(5), 5, move_s=0.5)
     with pytest.raises(SixflipError, match="the gyro is saturated in every"):
-        refine.refine(fast)
+        refinement.refine(fast)
 
 
 def test_jumping_timestamps(capture):
@@ -127,17 +129,17 @@ def test_jumping_timestamps(capture):
     for start in moving:
         jumpy.t_us[start:] += 400000
     with pytest.raises(SixflipError, match=r"timestamps jump by 0\.4"):
-        refine.refine(jumpy)
+        refinement.refine(jumpy)
 
 
 def test_pauses_while_a_flash_is_written_are_bridged(capture):
     keep = np.ones(len(capture), bool)
     for start in np.flatnonzero(np.diff((capture.pose == 0).astype(int)) == 1):
         keep[start + 60:start + 65] = False
-    paused = refine.refine(capture_file.Capture(
+    paused = refinement.refine(capture_file.Capture(
         capture.meta, capture.t_us[keep], capture.accel[keep], capture.gyro[keep],
         pose=capture.pose[keep]))
-    found = refine.refine(capture)
+    found = refinement.refine(capture)
     assert paused["moves_left_out"] == []
     assert np.abs(np.subtract(paused["gyro"]["P"], found["gyro"]["P"])).max() < 2e-3
 
@@ -157,18 +159,18 @@ def changed(capture, accel=None, gyro=None, t_us=None, pose=None):
 ])
 def test_nonsense_is_one_sentence(capture, change, sentence):
     with pytest.raises(SixflipError, match=sentence):
-        refine.refine(changed(capture, **change(capture)))
+        refinement.refine(changed(capture, **change(capture)))
 
 
 def test_labels_too_short_to_be_rests(capture):
     pose = np.zeros_like(capture.pose)
     pose[5:12] = 1
     with pytest.raises(SixflipError, match="no rests, expected labelled poses"):
-        refine.refine(changed(capture, pose=pose))
+        refinement.refine(changed(capture, pose=pose))
 
 
 def test_two_faces_do_not_make_a_calibration(sensor):
-    found = refine.refine(hand_session.session(sensor, hand_session.six_faces(1)[:4], 1))
+    found = refinement.refine(hand_session.session(sensor, hand_session.six_faces(1)[:4], 1))
     assert found["verdict"] == "refused"
     assert "accelerometer x scale" in found["reason"]
 
@@ -177,7 +179,7 @@ def test_one_bad_move_is_left_out_and_said(capture):
     gyro = capture.gyro.copy()
     first = int(np.flatnonzero(capture.pose == 0)[50])
     gyro[first, 1] = 32767
-    found = refine.refine(capture_file.Capture(
+    found = refinement.refine(capture_file.Capture(
         capture.meta, capture.t_us, capture.accel, gyro, pose=capture.pose))
     assert found["moves_left_out"] == ["move Z+a to Z+b: the gyro is saturated"]
     assert found["flips"]["Z+"]["measured_deg"] is None
@@ -186,14 +188,14 @@ def test_one_bad_move_is_left_out_and_said(capture):
 
 def test_no_rests(capture):
     with pytest.raises(SixflipError, match="12 or more are needed|expected"):
-        refine.refine(capture_file.Capture(
+        refinement.refine(capture_file.Capture(
             capture.meta, capture.t_us[:600], capture.accel[:600], capture.gyro[:600]), free=True)
 
 
 @pytest.mark.parametrize("wrong", [
     lambda gyro: gyro[:, [1, 0, 2]], lambda gyro: gyro * np.array([1, 1, -1], dtype=np.int16)])
 def test_a_swapped_or_inverted_gyro_axis_is_refused(capture, wrong):
-    found = refine.refine(changed(capture, gyro=wrong(capture.gyro)))
+    found = refinement.refine(changed(capture, gyro=wrong(capture.gyro)))
     assert found["verdict"] == "refused"
     assert "is a gyro axis swapped or inverted?" in found["reason"]
 
@@ -201,7 +203,7 @@ def test_a_swapped_or_inverted_gyro_axis_is_refused(capture, wrong):
 @pytest.fixture(scope="module")
 def aged(capture):
     """A record, and the same sensor later: biases and one gyro scale have drifted."""
-    found = refine.refine(capture)
+    found = refinement.refine(capture)
     record = correction_record.encode(refinement_record.build(capture, found))
     later = hand_session.Sensor(1)
     later.b = later.b + [0.012, -0.020, 0.015]
@@ -214,7 +216,7 @@ def aged(capture):
 def test_a_vehicle_solves_what_its_floor_tells(aged, ramp):
     data, later = aged
     session = hand_session.session(later, hand_session.on_the_floor(ramp), 2, wobble_deg=1.0)
-    found = refine.refine(session, record=correction_record.decode(data))
+    found = refinement.refine(session, record=correction_record.decode(data))
     biases = ["%s %s bias" % (what, a) for what in ("accelerometer", "gyro") for a in "xyz"]
     assert set(biases) <= set(found["solved"])
     for name in ("accelerometer x scale", "accelerometer z scale", "accelerometer xy"):
@@ -233,7 +235,7 @@ def test_the_ramp_tells_the_gyro_about_the_vertical(aged):
     """Turning on a slope, gravity sees the turn; on a level floor only the half turn is known."""
     data, later = aged
     session = hand_session.session(later, hand_session.on_the_floor(True), 2, wobble_deg=1.0)
-    found = refine.refine(session, record=correction_record.decode(data))
+    found = refinement.refine(session, record=correction_record.decode(data))
     assert "gyro z scale" in found["solved"]
     assert found["gyro"]["scale_from_moves_sigma"][2] < 0.002
 
@@ -262,7 +264,7 @@ def test_a_pull_of_gravity_goes_into_the_record_as_its_term(tmp_path, capture):
     out = tmp_path / "refined.bin"
     assert command(written(tmp_path, capture), "-o", out, "--g-sensitivity", "on") == 0
     record = correction_record.decode(out.read_bytes())
-    gyro = refine.refine(capture, g_sensitivity="on")["gyro"]
+    gyro = refinement.refine(capture, g_sensitivity="on")["gyro"]
     term = record_terms.terms(record)["g_sensitivity"]
     assert term["k"] == gyro["per_g_dps"] and term["origin"] == "refinement"
     assert command(written(tmp_path, capture), "-o", out) == 0
@@ -273,8 +275,8 @@ def test_a_refined_bias_holds_at_the_temperature_it_was_refined_at(sensor):
     warm = hand_session.session(sensor, hand_session.six_faces(3, 2.0), 3)
     warm.temp = np.full(len(warm), 340 * 4, np.int16)
     warm.meta.update(temp_lsb_per_c=340.0, temp_offset_c=36.53)
-    kept = refinement_record.build(warm, refine.refine(warm))
+    kept = refinement_record.build(warm, refinement.refine(warm))
     assert kept.temp_c == pytest.approx(40.53)
     kept.temp_c = 20.0
-    again = refinement_record.build(warm, refine.refine(warm, record=kept), kept)
+    again = refinement_record.build(warm, refinement.refine(warm, record=kept), kept)
     assert again.temp_c == pytest.approx(40.53)

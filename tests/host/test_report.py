@@ -11,12 +11,12 @@ from board_session import leave_files, unlabelled
 from PIL import Image
 
 from sixflip.faces import pose_name
+from sixflip_host.calibrate import solution
 from sixflip_host.capture import capture_binary, capture_file
 from sixflip_host.cli import main
 from sixflip_host.history import remember, store
-from sixflip_host.reporting import calibration_pictures
-from sixflip_host.reporting.page import Page
-from sixflip_host.solving import solution
+from sixflip_host.present import calibration_pictures
+from sixflip_host.present.page import Page
 
 BOARD = "e6614c311b4c5a2f"
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from sixflip_host import cli
-from sixflip_host.papers import heading_turns, paper_tables, reproduce
+from sixflip_host.papers import heading_turns, paper_tables
+from sixflip_host.verbs import reproduce
 
 
 @pytest.fixture(scope="module")

@@ -41,7 +41,7 @@ def board(tmp_path, monkeypatch):
 
     def opened(port=None):
         return LocalLink(folder, WORLD) if port == "local:flash" else real(port)
-    for module in ("sixflip_host.board.restore", "sixflip_host.mounting.mount_board"):
+    for module in ("sixflip_host.verbs.restore", "sixflip_host.mounting.mount_board"):
         monkeypatch.setattr(module + ".open_link", opened)
     return folder
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from sixflip_device import led, settings
-from sixflip_host.simulating import scenario, scenario_checks
+from sixflip_host.simulation import scenario, scenario_checks
 from sixflip_sim import worlds
 from sixflip_sim.effects.library import EFFECTS
 

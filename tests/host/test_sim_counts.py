@@ -73,7 +73,7 @@ def test_counts_of_a_session(spec):
     if spec["sensor"] == "mpu6050":
         scale = (16384, mpu6050.RAIL, 65.5, mpu6050.RAIL)
     else:
-        scale = (adxl345.LSB_PER_G, adxl345.RAIL, itg3205.LSB_PER_DPS, itg3205.RAIL)
+        scale = (adxl345.LSB_PER_G, 4095, itg3205.LSB_PER_DPS, itg3205.RAIL)
     accel = counts(world.model.accel, force, k, scale[0] / STANDARD_G, scale[1])
     gyro = counts(world.model.gyro, rate, k, scale[2] / DEGREE, scale[3])
     out = [0] * 7

@@ -10,7 +10,9 @@ from sixflip.chips import probe
 from sixflip_host.capture import capture_file
 from sixflip_host.cli import Parser
 from sixflip_host.errors import BadFile, UsageError
-from sixflip_host.simulating import motion_scenes, scenario, signal_measures, simulate, simulator
+from sixflip_host.experiment import signal_measures
+from sixflip_host.simulation import motion_scenes, scenario, simulator
+from sixflip_host.verbs import simulate
 from sixflip_sim import worlds
 from sixflip_sim.chips.adxl345 import SimulatedADXL345
 from sixflip_sim.effects import typical
@@ -203,7 +205,7 @@ def test_worlds_of_a_scenario_are_what_the_virtual_board_runs(tmp_path):
 
 @pytest.mark.parametrize("text, expected", [
     ("scene = ", "not TOML"), ('scene = "papr"', "scene is 'papr', did you mean paper?"),
-    ('sensor = "bmi270"', "expected mpu6050, gy85 or adxl345"), ("sed = 1", "unknown key 'sed'"),
+    ('sensor = "bmi270"', "expected one of mpu6050 lsm6dsox"), ("sed = 1", "unknown key 'sed'"),
     ("rate_hz = 0", "rate_hz is 0"), ("seed = 1.5", "seed is 1.5, expected a whole number"),
     ("flicker = 3", "flicker is 3, expected true or false"),
     ('[[effects]]\neffect = "gremlins"', "unknown effect 'gremlins'"),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture import capture_file
-from sixflip_host.simulating import simulator
+from sixflip_host.simulation import simulator
 from sixflip_sim import worlds
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "device"))

@@ -9,9 +9,9 @@ from hand_session import G, Sensor, session, six_faces
 
 from sixflip import accelerometer
 from sixflip.pose_codes import pose_code
+from sixflip_host.calibrate import reference
 from sixflip_host.capture import capture_file
 from sixflip_host.cli import main
-from sixflip_host.solving import reference
 
 
 def labelled(seed=1, tilt_deg=2.0, gyro=False, **scene):

@@ -5,7 +5,7 @@ import io
 from sixflip.faces import FACES
 from sixflip_host import terminal
 from sixflip_host.board.console import Console
-from sixflip_host.gap import words
+from sixflip_host.present import gap_words
 
 GAP = {
     "verdict": "explained", "remarks": [], "held_out": "each session by the others",
@@ -13,12 +13,15 @@ GAP = {
     "causes": [{
         "sensor": "gyro_turns", "axes": ["x"], "effect": None, "plausible": False,
         "class": ["g_sensitivity", "vibration_rectification"], "score_nats": 41.27,
+        "probability": 0.97,
+        "class_probabilities": {"g_sensitivity": 0.9, "vibration_rectification": 0.07},
         "share": 0.83, "unit": "deg/s/g",
         "value": {i + j: 0.1234 for i in "xyz" for j in "xyz"},
         "interval_90": {i + j: [0.1111, 0.1357] for i in "xyz" for j in "xyz"}}],
     "gap": {}, "unseen": [], "next": []}
-ROW = ("g_sensitivity or vibration_rectification (numerically helpful, physically implausible)",
-       "gyro in motion", "41.3", "83 %", "xx 0.123 (0.111 … 0.136)", "zz 0.123 (0.111 … 0.136)")
+ROW = ("g_sensitivity 90 % or vibration_rectification 7 % (numerically helpful, physically "
+       "implausible)", "gyro in motion", "97 %", "83 %",
+       "xx 0.123 (0.111 … 0.136)", "zz 0.123 (0.111 … 0.136)")
 
 
 class Screen(io.StringIO):
@@ -41,7 +44,7 @@ def lines(text):
 
 def test_the_gap_at_80_columns_has_every_cell_whole(monkeypatch):
     screen = of_80_columns(monkeypatch)
-    words.show(GAP)
+    gap_words.show(GAP)
     shown = lines(screen.getvalue())
     assert max(map(len, shown)) <= 80
     assert all(part in " ".join(" ".join(shown).split()) for part in ROW)
@@ -49,7 +52,7 @@ def test_the_gap_at_80_columns_has_every_cell_whole(monkeypatch):
 
 def test_a_pipe_is_a_hundred_wide_and_cuts_nothing(monkeypatch, capsys):
     monkeypatch.delenv("COLUMNS", raising=False)
-    words.show(GAP)
+    gap_words.show(GAP)
     shown = lines(capsys.readouterr().out)
     assert max(len(line) for line in shown if not line.startswith("The gyro")) <= 100
     assert all(part in " ".join(" ".join(shown).split()) for part in ROW)

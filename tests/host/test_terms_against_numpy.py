@@ -8,7 +8,7 @@ from sixflip import record_terms
 from sixflip.correction_of import correction_of
 from sixflip.mounting import compensation
 from sixflip_host.capture.capture_file import Capture
-from sixflip_host.capture.corrected_rows import corrected_rows
+from sixflip_host.export.corrected_rows import corrected_rows
 
 T0, LOW, HIGH = 28.0, 15.0, 40.0
 

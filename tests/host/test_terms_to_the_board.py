@@ -81,7 +81,7 @@ def test_the_gain_is_that_of_the_record_itself(drifting, corrected):
 
 def streamed(monkeypatch, tmp_path, link, record, name):
     """Path of a corrected stream of a board with this record."""
-    for module in ("sixflip_host.board.restore", "sixflip_host.board.stream"):
+    for module in ("sixflip_host.verbs.restore", "sixflip_host.verbs.stream"):
         monkeypatch.setattr(module + ".open_link", lambda port=None: link())
     assert cli.main(["restore", "--from", record]) == 0
     output = tmp_path / (name + ".csv")

@@ -27,7 +27,7 @@ def test_the_truth_lies_within_sigma_as_often_as_it_should(sensor, scatter_deg):
 def test_a_stuck_axis_is_named():
     session = hostile.Session(3)
     hostile.stale(session, 14 + 24)
-    from sixflip_host.solving import solution
+    from sixflip_host.calibrate import solution
     found = solution.solve(session.capture())
     assert found.verdict == "refused"
     assert "identical readings of axis z" in found.reason
@@ -36,7 +36,7 @@ def test_a_stuck_axis_is_named():
 def test_faces_in_parallel_but_oblique_are_named():
     session = hostile.Session(4)
     hostile.lozenge(session, 4, 12)
-    from sixflip_host.solving import solution
+    from sixflip_host.calibrate import solution
     found = solution.solve(session.capture())
     assert found.verdict == "refused"
     assert "right angle" in found.reason

@@ -7,10 +7,10 @@ from board_session import make_record, run_board, unlabelled
 
 from sixflip import correction_record, record_terms
 from sixflip.record_sections import FIELDS
+from sixflip_host.calibrate import unverifiable
+from sixflip_host.calibrate.verification import verify
 from sixflip_host.capture import capture_binary
 from sixflip_host.cli import main
-from sixflip_host.verifying import unverifiable
-from sixflip_host.verifying.verify import verify
 
 HEADER = {"who_am_i": [0x68, 0], "accel_range_g": 2, "gyro_range_dps": 500, "float_bits": 64}
 HEAD = {"sequence": 9, "session": 1, "time": 5, "float_bits": 32, "chip": "other",

@@ -8,9 +8,9 @@ import pytest
 from board_session import leave_files, unlabelled
 
 from sixflip import correction_record
+from sixflip_host.calibrate import reference_gyro
 from sixflip_host.capture import capture_binary, capture_file
 from sixflip_host.cli import main
-from sixflip_host.solving import reference_gyro
 
 SESSION = dict(seed=4, wobble_deg=0.5)
 

@@ -10,7 +10,7 @@ import time
 import pytest
 from micropython_tier import STILL
 
-from sixflip_host.board import board_link, provision
+from sixflip_host.board import board_link, firmware_update
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.errors import SixflipError
 from sixflip_host.virtual.virtual_board import VirtualBoard
@@ -58,7 +58,7 @@ def test_ctrl_c_stops_a_tight_loop(board, link):
 
 def test_ctrl_c_before_the_board_listens_for_it_stops_the_firmware(board, link):
     """Typed at power-up it is a character that waits on stdin, on a Pico too."""
-    provision.copy(link, {"sensor": STILL["sensor"]})
+    firmware_update.copy(link, {"sensor": STILL["sensor"]})
     board.power_cycle()
     with link.guarded("stopping") as transport:
         transport.serial.write(b"\r\x03")

@@ -4,7 +4,7 @@ and what the verdict made of it."""
 import hostile_sessions as hostile
 import numpy as np
 
-from sixflip_host.solving import solution
+from sixflip_host.calibrate import solution
 
 WRONG_MG = 3.0      # a correction this far off, RMS over all directions, must not be called good
 MOST_TILT_DEG = 5.0

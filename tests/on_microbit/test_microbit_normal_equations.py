@@ -10,7 +10,7 @@ import pytest
 from on_qemu.simulated_sums import session_sums, vector_error_mg
 
 from sixflip.placement import Placement
-from sixflip_host.solving import reference
+from sixflip_host.calibrate import reference
 
 from .pieces import SHARED, of_modules
 

@@ -57,7 +57,7 @@ def only(events, name):
     return found[0]
 
 
-@pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])
+@pytest.mark.parametrize("sensor", ["mpu6050", "gy85", "lsm6dsox"])
 def test_a_whole_session_in_a_small_heap(micropython, tmp_path, sensor):
     flash(tmp_path, sensor)
     events, harness = power_up(micropython, tmp_path, 1 << 20, "live")

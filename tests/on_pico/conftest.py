@@ -10,13 +10,14 @@ import shutil
 
 import pytest
 
-from sixflip_host.board import calibrate, provision
+from sixflip_host.board import calibration_request, firmware_update
 from sixflip_host.board.board_events import wait_for
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.board.console import GUIDED_ORDER
 from sixflip_host.emulated import firmware_image
 from sixflip_host.errors import NoBoard
-from sixflip_host.virtual import demo, micropython_fetch
+from sixflip_host.verbs import calibrate, demo
+from sixflip_host.virtual import micropython_fetch
 from sixflip_host.virtual.virtual_board import VirtualBoard
 
 # an hour: make test-pico sets this
@@ -48,7 +49,7 @@ def provisioned(files, spec):
         missing(micropython_fetch.MISSING)
     with VirtualBoard(spec, files, micropython=micropython, flash_bytes=FILES_BYTES) as board, \
             MpremoteLink(board.port) as link:
-        provision.copy(link, {"sensor": spec["sensor"], "board": "pico",
+        firmware_update.copy(link, {"sensor": spec["sensor"], "board": "pico",
                               **demo.PACE["pico"].settings})
         yield link
 
@@ -104,7 +105,7 @@ def unfinished_flash(uf2, tmp_path):
             wait_for(link, ("pose",))
         link.send(json.dumps({"cmd": "stop"}))
         assert wait_for(link, ("solved",))["missing"] == LAST_FACE
-        link.put(calibrate.FLAG, json.dumps({"continue": True}).encode())
+        link.put(calibration_request.FLAG, json.dumps({"continue": True}).encode())
         path = tmp_path / "pico.bin"
         path.write_bytes(flash(uf2, files.read_bytes()))
     return path

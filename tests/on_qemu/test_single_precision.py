@@ -7,7 +7,7 @@ import pytest
 
 from sixflip import accelerometer
 from sixflip.placement import Placement
-from sixflip_host.solving import reference
+from sixflip_host.calibrate import reference
 
 from .shared_tests import SHARED_TESTS, pass_on_the_board
 from .simulated_sums import session_sums, vector_error_mg

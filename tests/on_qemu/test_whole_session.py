@@ -12,10 +12,12 @@ import pytest
 from on_micropython.test_term_memory import ALL, with_terms
 
 from sixflip import correction_record, record_terms
+from sixflip.chips import catalogue
 from sixflip_device import power_up, settings
 from sixflip_sim.tape import open_tape
+from sixflip_sim.worlds import SEEN
 
-from .firmware import POSE_SAMPLES, tape_bursts
+from .firmware import ALL_CHIPS, POSE_SAMPLES, tape_bursts
 from .simulated_sums import vector_error_mg
 
 sys.path.append(str(Path(__file__).resolve().parent / "on_board"))
@@ -73,7 +75,7 @@ def differing(one, other):
     return found
 
 
-@pytest.mark.parametrize("sensor", ["mpu6050", "gy85"])
+@pytest.mark.parametrize("sensor", ["mpu6050", "gy85"] + ["lsm6dsox"] * ALL_CHIPS)
 def test_a_whole_session_with_the_heap_locked_while_sampling(board, sensor, tmp_path,
                                                              monkeypatch):
     events, used, record, said = session(board, sensor, mode="locked_loop", **SMALL)
@@ -143,11 +145,14 @@ def test_every_term_in_force_and_kept_through_a_session(board, sensor):
 LIVE = {"tilt_deg": 2.0, "first_rest_s": 8.0, "dwell_s": 4.5, "move_s": 2.0, "seed": 3}
 
 
-def test_a_whole_session_with_the_simulated_chip_inside(board):
-    events, used, record, said = session(board, "mpu6050", world=LIVE, pose_samples=50, rate_hz=25)
+# one of them in `make test`, every chip in `make test-qemu`
+@pytest.mark.parametrize("sensor", [name for name in catalogue.SENSORS if name not in SEEN]
+                         + ["mpu6050"] if ALL_CHIPS else ["lsm6dsox"])
+def test_a_whole_session_with_the_simulated_chip_inside(board, sensor):
+    events, used, record, said = session(board, sensor, world=LIVE, pose_samples=50, rate_hz=25)
     assert len(named(events, "pose")) == 12
     solved = named(events, "solved")[0]
     assert solved["verdict"] in ("good", "doubtful"), solved["reason"]
     assert solved["tilt_deg"] == pytest.approx(2.0, abs=0.1)
     assert record.accel["level"] == "tilt solved"
-    print("\nsimulated MPU6050 inside: at most %d bytes in use of %d" % (max(used), HEAP))
+    print("\nsimulated %s inside: at most %d bytes in use of %d" % (sensor, max(used), HEAP))

@@ -12,7 +12,7 @@ import pytest
 
 from sixflip_device.boards import raspberry_pi
 from sixflip_host import cli
-from sixflip_host.board import provision
+from sixflip_host.board import firmware_update
 from sixflip_host.board.local_link import LocalLink
 
 from .device_node import DeviceNode
@@ -62,7 +62,7 @@ def flash(tmp_path):
     """A folder with the firmware on it."""
     folder = tmp_path / "flash"
     with LocalLink(folder) as link:
-        provision.copy(link, dict(QUICK, board="raspberry_pi"), lambda text: None)
+        firmware_update.copy(link, dict(QUICK, board="raspberry_pi"), lambda text: None)
     return folder
 
 
@@ -175,5 +175,5 @@ def test_a_bus_that_is_not_for_this_user_names_the_group(monkeypatch):
     monkeypatch.setattr("smbus2.SMBus", refused)
     with open(os.devnull) as nobody, pytest.raises(OSError, match=words) as caught:
         monkeypatch.setattr("sys.stdin", nobody)
-        raspberry_pi.make({"i2c": None})
+        raspberry_pi.make({"i2c": None, "spi": None})
     assert caught.value.errno == errno.EACCES

@@ -8,7 +8,7 @@ from array import array
 _HERE = __file__.rsplit("/", 1)[0] if "/" in __file__ else "."
 sys.path.append(_HERE + "/../../host")
 
-from sixflip.chips import adxl345, itg3205, mpu6050, probe  # noqa: E402
+from sixflip.chips import adxl345, catalogue, itg3205, mpu6050, probe  # noqa: E402
 from sixflip.chips.adxl345 import ADXL345  # noqa: E402
 from sixflip.chips.gy85 import GY85  # noqa: E402
 from sixflip.chips.itg3205 import ITG3205  # noqa: E402
@@ -41,12 +41,13 @@ class FullScale(unittest.TestCase):
 
     def test_mpu6050(self):
         for ranges in (mpu6050.ACCEL_RANGES, mpu6050.GYRO_RANGES):
-            for full_scale, lsb in ranges:
+            for full_scale, lsb, _ in ranges:
                 self.assertAlmostEqual(full_scale * lsb, 32768, delta=35)
 
     def test_adxl345_and_itg3205(self):
         self.assertEqual(adxl345.RANGE_G * adxl345.LSB_PER_G, 4096)
-        self.assertEqual(adxl345.RAIL, 4095)
+        self.assertEqual(ADXL345(None).accel_rail, 4095)
+        self.assertEqual(ADXL345(None, accel_range_g=2).accel_rail, 511)
         self.assertEqual(itg3205.RANGE_DPS * itg3205.LSB_PER_DPS, 28750)
 
     def test_thermometers(self):
@@ -113,7 +114,7 @@ class Columns(unittest.TestCase):
 
 class Configure(unittest.TestCase):
     def test_every_relative(self):
-        for who_am_i in mpu6050.RELATIVES:
+        for who_am_i in catalogue.ids_of("mpu6050"):
             world = still("mpu6050", who_am_i=who_am_i, temperature_c=31.0)
             imu = MPU6050(world.i2c, 0x68, who_am_i, world.clock.sleep_ms)
             imu.configure(100)
@@ -133,7 +134,7 @@ class Configure(unittest.TestCase):
             self.assertTrue(imu.awake())
 
     def test_ranges(self):
-        for g, lsb in mpu6050.ACCEL_RANGES:
+        for g, lsb, _ in mpu6050.ACCEL_RANGES:
             world = still("mpu6050")
             imu = MPU6050(world.i2c, accel_range_g=g, gyro_range_dps=2000)
             imu.configure(100)
@@ -144,7 +145,7 @@ class Configure(unittest.TestCase):
         self.assertRaises(ValueError, MPU6050, world.i2c, accel_range_g=3)
 
     def test_gyro_ranges_on_a_turning_box(self):
-        for dps, lsb in mpu6050.GYRO_RANGES:
+        for dps, lsb, _ in mpu6050.GYRO_RANGES:
             world = still("mpu6050")
             world.scene.turn(2000000, (0.0, 0.0, 1.0), 1.0)
             middle = world.scene.end_us() - 1000000

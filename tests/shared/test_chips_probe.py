@@ -7,7 +7,7 @@ import unittest
 _HERE = __file__.rsplit("/", 1)[0] if "/" in __file__ else "."
 sys.path.append(_HERE + "/../../host")
 
-from sixflip.chips import mpu6050, probe  # noqa: E402
+from sixflip.chips import catalogue, probe  # noqa: E402
 from sixflip_sim import worlds  # noqa: E402
 from sixflip_sim.bus import FLAVOURS, SimulatedI2C  # noqa: E402
 
@@ -34,10 +34,11 @@ def together(*some_worlds):
 
 class Found(unittest.TestCase):
     def test_every_relative_by_name(self):
-        for who_am_i in mpu6050.RELATIVES:
+        known = catalogue.ids_of("mpu6050")
+        for who_am_i in known:
             imu, report = probe.find(world("mpu6050", who_am_i=who_am_i).i2c)
             self.assertEqual(imu.name,
-                             "%s (0x%02x)" % (mpu6050.RELATIVES[who_am_i], who_am_i))
+                             "%s (0x%02x)" % (known[who_am_i], who_am_i))
             self.assertEqual(imu.who_am_i, (who_am_i, who_am_i))
             self.assertEqual(len(report), 1)
 
@@ -86,6 +87,47 @@ class Found(unittest.TestCase):
         self.assertEqual(probe.find(bus)[0].sensor, "mpu6050")
 
 
+class Several(unittest.TestCase):
+    def test_another_sensor_on_the_bus_is_named_with_how_to_take_it(self):
+        both = world("icm42688", also="lsm6dsox").i2c
+        imu, report = probe.find(both)
+        self.assertEqual(imu.sensor, "lsm6dsox")
+        self.assertIn("icm42688 is there, too: sensor icm42688 in the settings takes it instead",
+                      report)
+        self.assertEqual(probe.find(both, sensor="icm42688")[0].address, 0x68)
+
+    def test_two_chips_at_one_address_are_none(self):
+        for sensor, also in (("lsm6dsox", "lsm6dsv"), ("icm42688", "mpu6050"),
+                             ("icm42688", "icm45686"), ("lsm6ds3trc", "lsm6dsv")):
+            with self.assertRaises(probe.NoChip) as caught:
+                probe.find(world(sensor, also=also).i2c)
+            self.assertIn("two chips", str(caught.exception))
+
+    def test_a_bmi270_is_named_with_why_it_is_not_used(self):
+        bus = world("adxl345", stranger=[0x68, 0x00, 0x24]).i2c
+        imu, report = probe.find(bus)
+        self.assertEqual(imu.sensor, "adxl345")
+        self.assertIn("0x68: BMI270 (who_am_i 0x24)", report)
+        with self.assertRaises(probe.NoChip) as caught:
+            probe.find(without(world("adxl345", stranger=[0x68, 0x00, 0x24]), 0x53))
+        self.assertIn("maker's configuration file", str(caught.exception))
+        with self.assertRaises(ValueError) as caught:
+            probe.find(bus, sensor="bmi270")
+        self.assertIn("expected auto or one of", str(caught.exception))
+
+    def test_a_driver_that_was_not_sent_is_said(self):
+        def none(sensor):
+            raise ImportError("no module")
+
+        kept, catalogue.driver = catalogue.driver, none
+        try:
+            with self.assertRaises(probe.NoChip) as caught:
+                probe.find(world("lsm6dsv").i2c)
+        finally:
+            catalogue.driver = kept
+        self.assertIn("sixflip provision --sensor lsm6dsv", str(caught.exception))
+
+
 class NotFound(unittest.TestCase):
     def refused(self, bus, words, **more):
         with self.assertRaises(probe.NoChip) as caught:
@@ -103,11 +145,12 @@ class NotFound(unittest.TestCase):
 
     def test_unknown_identification(self):
         bus = world("mpu6050", who_am_i=0x12).i2c
-        self.refused(bus, "0x68 answers who_am_i 0x12: not an MPU6050")
+        self.refused(bus, "0x12 in register 0x75: no chip that is known here; the nearest is "
+                     "0x72 in 0x75, MPU6050 clone, 2 bits away")
 
     def test_identification_always_zero(self):
         bus = world("mpu6050", faults=[{"kind": "wrong_id", "every": 1}]).i2c
-        self.refused(bus, "0x68 answers who_am_i 0x00: not an MPU6050")
+        self.refused(bus, "0x00 in register 0x75: that is no identification")
 
     def test_gyro_without_accelerometer(self):
         self.refused(without(world("gy85"), 0x53), "a gyro without accelerometer")

@@ -37,7 +37,7 @@ class MachineBoard(Board):
         try:
             self.i2c = make_i2c()
         except ValueError as e:  # another chip of the family, which lacks these pins
-            raise ValueError("no I2C with scl %s, sda %s (%s): set them in sixflip.json"
+            raise ValueError("no bus with scl %s, sda %s (%s): set them in sixflip.json"
                              % (scl, sda, e))
         if _pin(scl) is None or _pin(sda) is None:
             self.scl_pulse = None  # an STM32 board with other names for its pins

@@ -8,6 +8,8 @@ import machine
 
 from .machine_board import MachineBoard, choose
 
+USUAL_SPI = {"bus": 1, "cs": "X5"}     # SCK X6, MISO X7, MOSI X8
+
 
 def make(settings):
     bus = choose(settings, "i2c", 1)
@@ -16,6 +18,10 @@ def make(settings):
     def make_i2c():
         return machine.I2C(bus, freq=freq)
 
-    return MachineBoard("pyboard", make_i2c, choose(settings, "scl", "X9"),
-                        choose(settings, "sda", "X10"), led=choose(settings, "led", "LED_BLUE"),
+    scl, sda = choose(settings, "scl", "X9"), choose(settings, "sda", "X10")
+    if settings["spi"] is not None:
+        from .spi_bus import machine_spi
+        make_i2c = machine_spi(settings["spi"], USUAL_SPI, True)
+        scl = sda = None
+    return MachineBoard("pyboard", make_i2c, scl, sda, led=choose(settings, "led", "LED_BLUE"),
                         button=choose(settings, "button", "SW"))

@@ -96,7 +96,29 @@ class LinuxBoard(Board):
         raise Stopped(0)
 
 
+def open_spi(spi):
+    """SPIBus over /dev/spidevBUS.CS; OSError saying what to do where there is none."""
+    from .spi_bus import SPIBus, SpidevPort, values_of
+    v = values_of(spi, {"bus": 0, "cs": 0})
+    try:
+        from spidev import SpiDev
+    except ImportError:
+        raise OSError(errno.ENODEV, "no spidev: pip install spidev") from None
+    device = SpiDev()
+    try:
+        device.open(v["bus"], v["cs"])
+    except OSError as e:
+        raise OSError(e.errno, "/dev/spidev%d.%d cannot be opened (%s): switch SPI on "
+                      "(raspi-config), or set spi in sixflip.json"
+                      % (v["bus"], v["cs"], e.strerror)) from e
+    device.mode = v["mode"]
+    device.max_speed_hz = v["freq"]
+    return SPIBus(SpidevPort(device), v["mode"])
+
+
 def make(settings):
+    if settings["spi"] is not None:
+        return LinuxBoard(lambda: open_spi(settings["spi"]), folder())
     from smbus2 import SMBus
 
     from .smbus_i2c import SMBusI2C

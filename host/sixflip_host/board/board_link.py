@@ -203,6 +203,12 @@ class MpremoteLink:
         return parse(self.port, self.run("import sys\nprint(repr(sys.platform))",
                                          "asking for its version"), ANSWERS["platform"])
 
+    def mpy(self):
+        """sys.implementation._mpy: format and architecture of the .mpy files it loads, or None."""
+        return parse(self.port, self.run(
+            "import sys\nprint(repr(getattr(sys.implementation, '_mpy', None)))",
+            "asking for its version"), ANSWERS["mpy"])
+
     def board_id(self):
         """machine.unique_id() in hex; "board" where the port has none."""
         out = self.run("import binascii\ntry:\n import machine\n print(binascii.hexlify("
@@ -262,10 +268,11 @@ class MpremoteLink:
         self.stage(name, data, progress)
         self.run(script("replace_file", name=name), "copying " + name)
 
-    def commit(self, names):
-        """Every NAME.new that was staged takes the place of NAME: all of them or none, even if
-        the power fails meanwhile, for main.py goes on with it at the next power-up."""
-        self.put(UPDATE, script("put_in_place", names=names).encode())
+    def commit(self, names, stale=()):
+        """Every NAME.new that was staged takes the place of NAME, and the stale files go: all or
+        nothing, even if the power fails meanwhile, for main.py goes on with it at the next
+        power-up."""
+        self.put(UPDATE, script("put_in_place", names=names, stale=list(stale)).encode())
         self.finish()
 
     def finish(self):

@@ -128,6 +128,7 @@ SETTINGS = MapOf(TEXT, Json(3))     # a sixflip.json: the firmware judges what i
 ANSWERS = {
     "version": Row(TEXT, TEXT),
     "platform": TEXT,
+    "mpy": Either(Number(0, 1 << 32, whole=True), Nothing()),
     "file": Row(TEXT, Number(0, 1 << 32, whole=True), Either(TEXT, Nothing())),
 }
 # Of doctor's look_at_bus.py, what follows each name.

@@ -39,7 +39,7 @@ def findings(name, protocol, sensor, rate_hz, make):
                 (sensor == "itg3205" and chip_kind == "accel"):
             continue
         size, source = typical.size(name, sensor, chip_kind)
-        sigma = max(typical.NOISE[typical.chip_of(sensor, chip_kind)][0])
+        sigma = max(typical.noise_at(typical.chip_of(sensor, chip_kind), rate_hz))
         smallest, how = rule(protocol, rate_hz, sigma, kind)
         if name in ("filter_lag", "lever_arm") and sensor in ("adxl345", "itg3205"):
             smallest, how = math.inf, "the other sensor, which is not there"

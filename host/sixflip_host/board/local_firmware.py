@@ -16,9 +16,13 @@ from .board_files import shared_dir
 def own_copy(folder):
     """The firmware has to bring its own copy of sixflip, as on a board."""
     sys.path.remove(str(shared_dir()))
+    forget_shared()
+    sys.path.insert(0, str(folder))
+
+
+def forget_shared():
     for name in [n for n in sys.modules if n.split(".")[0] == "sixflip"]:
         del sys.modules[name]
-    sys.path.insert(0, str(folder))
 
 
 def board_on(clock):
@@ -52,7 +56,9 @@ def run_on(folder, make):
 
 def run_simulated(folder, spec):
     """The firmware of the folder on a simulated bus and a virtual clock."""
-    sys.path.insert(1, str(shared_dir()))
+    # the world has every chip's tables, the folder those of the board's own sensor
+    sys.path.insert(0, str(shared_dir()))
+    forget_shared()
     from sixflip_sim import worlds
     world = worlds.make(spec)
     own_copy(folder)

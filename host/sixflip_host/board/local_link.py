@@ -50,6 +50,11 @@ class LocalLink:
     def platform(self):
         return "linux"
 
+    mpy_format = None  # CPython loads no .mpy files
+
+    def mpy(self):
+        return self.mpy_format
+
     def board_id(self):
         return hashlib.sha256(str(self.folder).encode()).hexdigest()[:16]
 
@@ -82,8 +87,8 @@ class LocalLink:
     def stage(self, name, data, progress=None):
         self.put(name + ".new", data)
 
-    def commit(self, names):
-        self.put(UPDATE, script("put_in_place", names=names).encode())
+    def commit(self, names, stale=()):
+        self.put(UPDATE, script("put_in_place", names=names, stale=list(stale)).encode())
         self.finish()
 
     def finish(self):

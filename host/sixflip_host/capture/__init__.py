@@ -1,1 +1,1 @@
-"""Captures and what is said of them: read, write, import, export, show, apply."""
+"""What a sensor recorded: labels, rows, rests and poses found in them, files read and written."""

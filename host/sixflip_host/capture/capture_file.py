@@ -13,8 +13,7 @@ from sixflip.faces import pose_name
 
 from .. import atomic_write, sample_limit
 from ..errors import BadFile
-from ..simulating import pose_runs
-from . import board_extras, capture_binary
+from . import board_extras, capture_binary, pose_sums
 from .capture_header import (
     ACCEL,
     GYRO,
@@ -39,10 +38,12 @@ class Capture:
 
     meta    dict of the JSON line (without `samples`); unknown keys are kept
     t_us    int64 (n,) microseconds, not decreasing
-    accel   int16 (n, 3) counts; gyro, mag likewise or None; temp int16 (n,) or None
+    accel   int16 (n, 3) counts; gyro, mag likewise or None; temp int16 (n,) or None; accel is
+            None only where read() was asked for captures of a gyro alone, too
     pose    int16 (n,) codes of sixflip.faces, 0 while moving; None when nobody labelled
     board_placements, notes, truncated, sums_only, taken, complete, withdrawn
             what only a board's own file knows, see capture_binary
+    assumed sentences on what a foreign file did not say, see open_recording
     """
 
     def __init__(self, meta, t_us, accel, gyro=None, temp=None, mag=None, pose=None):
@@ -55,6 +56,7 @@ class Capture:
         self.pose = pose
         self.board_placements = None
         self.notes = []
+        self.assumed = []
         self.truncated = None
         self.sums_only = False
         self.taken = len(t_us)
@@ -71,7 +73,7 @@ class Capture:
 
     def columns(self):
         """Names of the columns there are, in the order they are written."""
-        names = ["t_us", *ACCEL]
+        names = ["t_us", *(ACCEL if self.accel is not None else ())]
         names += GYRO if self.gyro is not None else ()
         names += ("temp",) if self.temp is not None else ()
         names += MAG if self.mag is not None else ()
@@ -84,16 +86,19 @@ class Capture:
         """
         if self.sums_only:
             return list(self.board_placements)
-        return pose_runs.placements(self)
+        if self.accel is None:
+            return []
+        return pose_sums.of(self)
 
     def moves(self):
         """What lies between consecutive placements, as sixflip.placement.Move."""
-        return pose_runs.moves(self, self.placements())
+        return pose_sums.moves(self, self.placements())
 
 
-def read(path):
+def read(path, gyro_alone=False):
     """Read a capture: text, gzipped text, or the binary file of a board.
 
+    gyro_alone  one without an accelerometer will do
     Raises BadFile with one line: the file, the line in it, what was found and expected.
     """
     pieces = Source(path).pieces()
@@ -107,6 +112,14 @@ def read(path):
     else:
         capture = _parse(path, head, pieces)
     check_times(path, capture.t_us, capture.meta["rate_hz"])
+    return capture if gyro_alone else with_accelerometer(path, capture)
+
+
+def with_accelerometer(path, capture):
+    """The same capture; BadFile where it is a gyro's alone."""
+    if capture.accel is None:
+        raise BadFile("%s: it holds a gyro alone, expected ax ay az as well: only sixflip show "
+                      "does without" % path)
     return capture
 
 
@@ -143,7 +156,11 @@ def _begins(pieces, more, head=b""):
 
 def read_samples(path):
     """read() for what needs every sample: BadFile where the board kept the poses' sums only."""
-    capture = read(path)
+    return with_samples(path, read(path))
+
+
+def with_samples(path, capture):
+    """The same capture; BadFile where the board kept the poses' sums only."""
     if capture.sums_only:
         raise BadFile("%s: the board's flash was full, so it kept the sums of its poses and not "
                       "the samples this needs; sixflip solve works with the sums, and sixflip "
@@ -169,7 +186,7 @@ def _parse(path, head, pieces):
         raise BadFile.at(path, 3 + rows, "%s after %d rows" % (
             "the file was cut short" if rows < samples else "the file goes on", rows),
             "the %d rows its header promises" % samples)
-    capture = Capture(meta, values["t_us"], values["ax"], values.get("gx"), values.get("temp"),
+    capture = Capture(meta, values["t_us"], values.get("ax"), values.get("gx"), values.get("temp"),
                       values.get("mx"), values.get("pose"))
     board_extras.take(capture, path)
     return capture

@@ -3,19 +3,22 @@
 import json
 import math
 
+from sixflip.chips import catalogue
+
 from ..errors import BadFile
 from . import chip_scales
 from .capture_rows import quoted
 
 MAGIC = b"# sixflip-capture"
 VERSION = 1
-SENSORS = ("mpu6050", "gy85", "adxl345", "itg3205", "other")
+SENSORS = (*catalogue.SENSORS, "itg3205", "other")
 ACCEL = ("ax", "ay", "az")
 GYRO = ("gx", "gy", "gz")
 MAG = ("mx", "my", "mz")
 COLUMNS = ("t_us",) + ACCEL + GYRO + ("temp",) + MAG + ("pose",)
 STANDARD_G = 9.80665
 G = (9.7, 9.9)          # m/s², as sixflip.plausibility
+RATES = ("stated", "measured")     # key `rate`: how rate_hz is known; measured is never judged
 LONGEST_LINE = 1 << 20      # bytes; what comes behind the header has no limit of its own
 POSITIVE = ("rate_hz", "accel_lsb_per_g", "gyro_lsb_per_dps", "temp_lsb_per_c", "mag_lsb_per_ut",
             "accel_range_g", "gyro_range_dps", "g")
@@ -108,7 +111,8 @@ def _column_names(path, line):
             raise BadFile.at(path, 3, "column %s stands there twice" % name, "every name once")
     for group in (("t_us",), ACCEL, GYRO, MAG):
         there = [name for name in group if name in names]
-        if len(there) < len(group) and (there or group in (("t_us",), ACCEL)):
+        wanted = group == ("t_us",) or (group == ACCEL and "gx" not in names)
+        if len(there) < len(group) and (there or wanted):
             absent = next(name for name in group if name not in names)
             raise BadFile.at(path, 3, "column %s is missing" % absent, "all of " + " ".join(group))
     return names
@@ -116,7 +120,8 @@ def _column_names(path, line):
 
 def check_meta(meta, columns, fault):
     """Raise fault(found, expected) when a mandatory key is missing or out of its range."""
-    needed = ["sensor", "rate_hz", "accel_lsb_per_g"]
+    needed = ["sensor", "rate_hz"]
+    needed += ["accel_lsb_per_g"] if "ax" in columns else []
     needed += ["gyro_lsb_per_dps"] if "gx" in columns else []
     needed += ["temp_lsb_per_c", "temp_offset_c"] if "temp" in columns else []
     needed += ["mag_lsb_per_ut"] if "mx" in columns else []
@@ -130,6 +135,8 @@ def check_meta(meta, columns, fault):
             raise fault("%s is %s" % (key, quoted(json.dumps(meta[key]))),
                         "a number" if key == "temp_offset_c" else "a number above 0")
     check_sensor(meta, columns, fault)
+    if meta.get("rate", RATES[0]) not in RATES:
+        raise fault("rate is %s" % quoted(json.dumps(meta["rate"])), " or ".join(RATES))
     by_hand = meta.get("held_by_hand", [])
     if not isinstance(by_hand, list) or not all(isinstance(name, str) for name in by_hand):
         raise fault("held_by_hand is %s" % quoted(json.dumps(by_hand)), "a list of pose names")
@@ -145,7 +152,7 @@ def check_sensor(meta, columns, fault):
                 raise fault("an adxl345 with a column %s, it has no %s" % (column, what),
                             "another sensor, or no such column")
     wrong = chip_scales.wrong(
-        meta["sensor"], meta.get("accel_range_g"), meta["accel_lsb_per_g"],
+        meta["sensor"], meta.get("accel_range_g"), meta.get("accel_lsb_per_g"),
         meta.get("gyro_range_dps"), meta.get("gyro_lsb_per_dps"))
     if wrong:
         raise fault(*wrong)

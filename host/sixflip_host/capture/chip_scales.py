@@ -1,16 +1,27 @@
 """Are the counts per unit of a header or a record those of its chip?"""
 
-# Full scale times counts a unit, accelerometer and gyro (MPU-6000 register map 4.2, registers 27
-# and 28; ITG-3205 data sheet rev. 1.0, section 3.1). An ADXL345 has 256 counts per g in every
-# range, or 512 over the range with FULL_RES off, give or take 10 % (data sheet rev. E, table 1).
-FULL_SCALE = {"mpu6050": (32768, 32768), "gy85": (None, 28750), "itg3205": (None, 28750)}
+from sixflip.chips import catalogue
+
 OFF = 0.02              # published drivers shipped 62.5 for 65.5
+# An ADXL345 has 256 counts per g in every range, or 512 over the range with FULL_RES off, give or
+# take 10 % (data sheet rev. E, table 1).
 ADXL345_PRODUCT, ADXL345_OFF = 512, 0.1
+
+
+def full_scale(chip):
+    """Full scale times counts per unit, accelerometer and gyro, which is the same in every range;
+    None where it is not, or where we know none."""
+    if chip not in [row[0] for row in catalogue.CHIPS if row[1]]:
+        return None, None
+    driver = catalogue.driver(chip)
+    return tuple(rows[0][0] * rows[0][1]
+                 if rows and len({row[1] for row in rows}) == len(rows) else None
+                 for rows in (driver.ACCEL_RANGES, driver.GYRO_RANGES))
 
 
 def wrong(chip, range_g, accel_lsb, range_dps, gyro_lsb):
     """None, or (what was found, what was expected); 0 or None is what is not stated."""
-    accel, gyro = FULL_SCALE.get(chip, (None, None))
+    accel, gyro = full_scale(chip)
     if chip in ("gy85", "adxl345") and accel_lsb:
         ranges = (2, range_g) if range_g else (2, 4, 8, 16)
         if all(abs(accel_lsb * full / ADXL345_PRODUCT - 1) > ADXL345_OFF for full in ranges):
@@ -19,10 +30,17 @@ def wrong(chip, range_g, accel_lsb, range_dps, gyro_lsb):
                                      (gyro, range_dps, gyro_lsb, "deg/s")):
         if product and full and lsb and abs(full * lsb / product - 1) > OFF:
             return "%s with %g counts per %s at ±%g %s" % (_a(chip), lsb, unit, full, unit), \
-                "%.5g" % (product / full)
+                "%g" % counts_at(chip, unit, full, product)
     return None
+
+
+def counts_at(chip, unit, full, product):
+    """The chip's counts per unit at a full scale, by its table where it has that."""
+    driver = catalogue.driver(chip)
+    rows = driver.ACCEL_RANGES if unit == "g" else driver.GYRO_RANGES
+    return {row[0]: row[1] for row in rows}.get(full, round(product / full, 3))
 
 
 def _a(chip):
     """The chip's name with its article, by how it is said."""
-    return ("an " if chip[0] in "ai" else "a ") + chip
+    return ("an " if chip[0] in "ail" else "a ") + chip

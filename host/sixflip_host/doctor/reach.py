@@ -5,8 +5,8 @@ import os
 import re
 from pathlib import Path
 
-from ..board import serial_ports
-from ..board.board_files import board_files
+from ..board import firmware_update, serial_ports
+from ..board.compiled_firmware import twin
 from ..errors import SixflipError
 from .finding import fault, ok, warning
 
@@ -139,12 +139,14 @@ def micropython(link):
 def firmware(link):
     """Findings of the files on the board against those of this computer."""
     import hashlib
-    ours = {name: path.read_bytes() for name, path in board_files().items()}
+    ours, _ = firmware_update.firmware_for(link)
     there = link.files(list(ours))
     if "main.py" not in there or not any(name.startswith("sixflip_device/") for name in there):
         return [fault("firmware", "sixflip's firmware is not on this board", "sixflip provision")]
     differ = [name for name, data in ours.items()
               if there.get(name, (0, ""))[1] != hashlib.sha256(data).hexdigest()]
+    # source beside the compiled file is what MicroPython imports
+    differ += [name for name in there if name not in ours and twin(name) in ours]
     if differ:
         return [warning("firmware", "%d of its %d files are not this sixflip's (%s)" % (
             len(differ), len(ours), ", ".join(sorted(differ)[:3])), "sixflip provision")]

@@ -3,17 +3,17 @@
 import errno
 import math
 
-from sixflip.chips import adxl345, itg3205, mpu6050
+from sixflip.chips import adxl345, catalogue, itg3205, mpu6050
 
-from ..verifying.verify_files import newest_of
+from ..calibrate.verify_files import newest_of
 from .finding import Finding, fault, ok, warning
 
 # WHO_AM_I (register 0x75) of InvenSense chips that are not driven by this firmware; their data
 # sheets' register maps.
 NOT_DRIVEN = {0x12: "ICM-20602", 0x19: "MPU-6886", 0x24: "ICM-20600 or a relative",
-              0x47: "ICM-42688-P", 0x67: "ICM-42670-P", 0x6F: "IAM-20380", 0xAC: "ICM-20690",
-              0xAF: "ICM-20608-G", 0x6B: "ICM-42607", 0x74: "MPU-6515", 0x75: "MPU-6555 class",
-              0xEA: "ICM-20948 (its WHO_AM_I is in register 0)"}
+              0x67: "ICM-42670-P", 0x6F: "IAM-20380", 0xAC: "ICM-20690", 0xAF: "ICM-20608-G",
+              0x6B: "ICM-42607", 0x74: "MPU-6515", 0x75: "MPU-6555 class"}
+MPU6050 = catalogue.ids_of("mpu6050")
 CLONES = (0x98, 0x72)
 NOBODY = (0x7C, 0x00)           # reserved: no chip is there
 QMC5883L, HMC5883L = (0x0D, 0x0D), (0x1E, 0x0A)
@@ -87,18 +87,22 @@ def chips(said):
     if timeouts and len(timeouts) == len(ids):
         return [fault("bus", "every transfer times out: a line is stuck, or there are no pull-ups",
                       WIRES, True)]
-    there = sorted({address for (address, _), one in ids.items() if isinstance(one, bytes)})
+    if not ids:     # on SPI nobody has an address
+        there = [0]
+    else:
+        there = sorted({address for (address, _), one in ids.items() if isinstance(one, bytes)})
     asked = {address for address, _ in ids}
     others = [one for one in said["scan"][0] if one not in asked] \
         if isinstance(said["scan"][0], list) else []
     if not there and "sensor" not in said:
         more = "; something else answers at %s" % " ".join("0x%02x" % one for one in others) \
             if others else ""
-        return [fault("chips", "nothing answers at 0x68, 0x69, 0x53 or 0x1d" + more, WIRES, True)]
-    found = shared_address(ids) or [one for address in (0x68, 0x69)
-                                    for one in gyro_address(ids, address)]
-    found += [ok("chips", "ADXL345 at 0x%02x" % address) for address in (0x53, 0x1D)
-              if byte(ids, address, adxl345.DEVID) == adxl345.DEVICE_ID]
+        return [fault("chips", "nothing answers at %s%s" % (
+            " ".join("0x%02x" % one for one in catalogued()), more), WIRES, True)]
+    found = shared_address(ids)
+    if not found:
+        for address in catalogued():
+            found += at_address(ids, address)
     found += magnetometers(ids)
     if "no sensor" in said and not any(one.state == "fault" for one in found):
         found.append(fault("chips", "; ".join(said["no sensor"][0]),
@@ -120,8 +124,11 @@ def shared_address(ids):
         if motion is None:
             continue
         is_itg = other is not None and other & itg3205.ID_MASK == itg3205.ID
-        is_mpu = motion in mpu6050.RELATIVES
+        is_mpu = motion in MPU6050
         with_adxl = byte(ids, 0x53, adxl345.DEVID) == adxl345.DEVICE_ID
+        if any(at_one.state == "ok" for at_one in at_address(ids, address)
+               if "ITG3205" not in at_one.found and not is_mpu):
+            continue
         if (is_itg and is_mpu) or (with_adxl and not is_itg and not is_mpu
                                    and motion not in NOT_DRIVEN):
             return [fault("chips", "two chips seem to answer at 0x%02x: an ID of 0x%02x at 0x75 "
@@ -134,27 +141,39 @@ def shared_address(ids):
     return []
 
 
-def gyro_address(ids, address):
-    """What is at 0x68 or 0x69: known, a clone, or a chip that is not driven."""
-    who = byte(ids, address, mpu6050.WHO_AM_I)
-    other = byte(ids, address, itg3205.WHO_AM_I)
-    if who is None:
+def catalogued():
+    """Every address at which a chip of the catalogue may answer, in its order."""
+    return list(dict.fromkeys(address for row in catalogue.CHIPS for address in row[2]))
+
+
+def at_address(ids, address):
+    """What is at an address of the catalogue: known, a clone, or a chip that is not driven."""
+    asked = {}
+    for sensor, _, addresses, register, names, _, mask in catalogue.CHIPS:
+        if address not in addresses or byte(ids, address, register) is None:
+            continue
+        who = asked[register] = byte(ids, address, register)
+        if who & mask not in names:
+            continue
+        what = "%s at 0x%02x" % (names[who & mask], address)
+        if len(names) > 1:
+            what += " (who_am_i 0x%02x)" % who
+        if sensor in catalogue.NOT_DRIVEN and sensor != "itg3205":
+            return [warning("chips", what, catalogue.NOT_DRIVEN[sensor])]
+        if sensor == "mpu6050" and who in CLONES:
+            return [warning("chips", "a clone at 0x%02x: who_am_i 0x%02x (%s)" % (
+                address, who, names[who]),
+                "it is used as the MPU6500 it mostly is (temperature, filter); judge it by the "
+                "noise and residuals of its calibration")]
+        return [ok("chips", what)]
+    if not asked or address in (0x53, 0x1D):
         return []
-    if other is not None and other & itg3205.ID_MASK == itg3205.ID:
-        return [ok("chips", "ITG3205 at 0x%02x" % address)]
-    if who in CLONES:
-        return [warning("chips", "a clone at 0x%02x: who_am_i 0x%02x (%s)" % (
-            address, who, mpu6050.RELATIVES[who]),
-            "it is used as the MPU6500 it mostly is (temperature, filter); judge it by the noise "
-            "and residuals of its calibration")]
-    if who in mpu6050.RELATIVES:
-        return [ok("chips", "%s at 0x%02x (who_am_i 0x%02x)" % (
-            mpu6050.RELATIVES[who], address, who))]
-    name = NOT_DRIVEN.get(who)
+    who = asked.get(mpu6050.WHO_AM_I, asked[max(asked)])
+    name = NOT_DRIVEN.get(who) if mpu6050.WHO_AM_I in asked else None
     return [fault("chips", "0x%02x answers who_am_i 0x%02x: %s" % (
         address, who, name or "no chip that is known here"),
-        "this firmware does not drive it; it needs an MPU6050 or relative (who_am_i %s), or a "
-        "GY-85" % " ".join("0x%02x" % one for one in sorted(mpu6050.RELATIVES)), True)]
+        "this firmware does not drive it, docs/wiring.md lists what it drives; a clone is used "
+        "where sixflip.json names its sensor: sixflip provision --sensor …", True)]
 
 
 def magnetometers(ids):

@@ -9,13 +9,14 @@ import time
 
 import numpy as np
 
-from sixflip.chips import adxl345, itg3205, mpu6050
+from sixflip.chips import catalogue
+from sixflip_sim import worlds
 from sixflip_sim.clock import VirtualClock
 
 from ..errors import BadFile, UsageError
 
 IDLE = 50               # samples that are played over and over while no session runs
-WHAT = "an MPU6050 or relative, a GY-85 or an ADXL345 as the firmware sets them up"
+WHAT = "a chip of sixflip as the firmware sets it up"
 
 
 class Replay:
@@ -131,46 +132,63 @@ def little(columns):
     return np.ascontiguousarray(np.stack(columns, axis=1).astype("<i2")).view(np.uint8)
 
 
+def scale_of(ranges, counts_per_unit, full_scale):
+    """The chip's full scale with these counts per unit, the largest of several, or None."""
+    for scale, counts, _ in sorted(ranges, reverse=True):
+        if counts_per_unit and abs(counts / counts_per_unit - 1) < 1e-6 \
+                and full_scale in (None, scale):
+            return scale
+    return None
+
+
+def counts_of(ranges):
+    return " or ".join("%g" % one for one in sorted({row[1] for row in ranges}))
+
+
 def settings_of(capture):
     """rate_hz, pose_samples, sensor, g for sixflip.json; UsageError or BadFile where the
     firmware would never have taken this capture."""
     meta = capture.meta
     sensor = meta.get("sensor")
-    fits = {"mpu6050": (mpu6050.ACCEL_RANGES[0][1], mpu6050.GYRO_RANGES[1][1]),
-            "gy85": (adxl345.LSB_PER_G, itg3205.LSB_PER_DPS), "adxl345": (adxl345.LSB_PER_G, 0)}
     if not len(capture):
         raise BadFile("the board kept only the sums of this capture: no samples to replay")
-    if sensor not in fits:
+    if sensor not in catalogue.SENSORS:
         raise UsageError("the capture is of sensor %r, expected %s" % (sensor, WHAT))
-    accel, gyro = fits[sensor]
-    if meta["accel_lsb_per_g"] != accel or gyro and (
-            capture.gyro is None or capture.temp is None or meta["gyro_lsb_per_dps"] != gyro):
+    driver = catalogue.driver(sensor)
+    ranges = [scale_of(driver.ACCEL_RANGES, meta["accel_lsb_per_g"], meta.get("accel_range_g")),
+              scale_of(driver.GYRO_RANGES, meta.get("gyro_lsb_per_dps"),
+                       meta.get("gyro_range_dps"))]
+    if ranges[0] is None or driver.has_gyro and (
+            capture.gyro is None or capture.temp is None or ranges[1] is None):
         raise UsageError("the capture has %s counts per g and %s per deg/s, expected %s and %s "
-                         "and a temperature: %s" % (meta["accel_lsb_per_g"],
-                                                    meta.get("gyro_lsb_per_dps"), accel, gyro,
-                                                    WHAT))
+                         "and a temperature: %s" % (
+                             meta["accel_lsb_per_g"], meta.get("gyro_lsb_per_dps"),
+                             counts_of(driver.ACCEL_RANGES), counts_of(driver.GYRO_RANGES), WHAT))
     rate = round(meta["rate_hz"])
     if not 10 <= rate <= 500:
         raise UsageError("the capture has %s samples a second, expected 10 to 500" % rate)
     lengths = {one.n for one in capture.board_placements or ()}
-    return {"rate_hz": rate, "sensor": sensor, "g": min(9.9, max(9.7, capture.g)),
+    return {"accel_range_g": ranges[0], "gyro_range_dps": ranges[1],
+            "rate_hz": rate, "sensor": sensor, "g": min(9.9, max(9.7, capture.g)),
             "pose_samples": min(5000, max(50, lengths.pop())) if len(lengths) == 1 else 4 * rate,
             "grace_ms": 0}
 
 
 def bus_of(capture, replay):
     """The bus with the chips that the capture is of."""
-    sensor, accel = capture.meta["sensor"], list(capture.accel.T)
-    if sensor == "mpu6050":
-        who = capture.meta.get("who_am_i")
-        who = who[0] if isinstance(who, list) and who and who[0] in mpu6050.RELATIVES else 0x68
-        return ReplayI2C([ReplayChip(
-            replay, 0x68, mpu6050.ACCEL_XOUT_H, big([*accel, capture.temp, *capture.gyro.T]),
-            {mpu6050.WHO_AM_I: who}, {mpu6050.PWR_MGMT_1: mpu6050.RESET}, True)])
-    chips = [ReplayChip(replay, 0x53, adxl345.DATAX0, little(accel),
-                        {adxl345.DEVID: adxl345.DEVICE_ID}, {}, True)]
-    if sensor == "gy85":
+    columns = [*capture.accel.T] + [np.zeros(len(capture), np.int16)] * 4
+    if capture.gyro is not None:
+        columns[3:6] = capture.gyro.T
+    if capture.temp is not None:
+        columns[6] = capture.temp
+    who = capture.meta.get("who_am_i")
+    chips = []
+    for name in worlds.parts_of(capture.meta["sensor"]):
+        chip, row = worlds.simulated(name), catalogue.row_of(name)
+        answer = who[0] if isinstance(who, list) and who and who[0] in row[4] else min(row[4])
+        words = big if chip.high_byte == 0 else little
         chips.append(ReplayChip(
-            replay, 0x68, itg3205.TEMP_OUT_H, big([capture.temp, *capture.gyro.T]),
-            {itg3205.WHO_AM_I: itg3205.ID}, {itg3205.PWR_MGM: itg3205.RESET}, False))
+            replay, row[2][0], chip.data_register, words([columns[c] for c in chip.columns]),
+            {chip.id_register: answer},
+            dict([chip.self_clearing]) if chip.self_clearing else {}, not chips))
     return ReplayI2C(chips)

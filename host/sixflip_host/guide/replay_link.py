@@ -5,7 +5,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from ..board import provision
+from ..board import firmware_update
 from ..board.local_link import LocalLink
 from ..capture import capture_file
 from .replay_chips import settings_of
@@ -31,7 +31,7 @@ class ReplayLink(LocalLink):
         self.capture, self.speed = Path(path).resolve(), speed
         self.patience = max(1.0, 1.0 / (speed or 1.0))    # its seconds last that long
         self.port = "replay of %s" % Path(path).name
-        provision.copy(self, wanted, lambda line: None)
+        firmware_update.copy(self, wanted, lambda line: None)
 
     def command(self):
         return [sys.executable, "-m", "sixflip_host.guide.replay_firmware", str(self.folder),

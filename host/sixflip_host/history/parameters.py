@@ -5,9 +5,9 @@ import math
 from sixflip.gyro_bias import gyro_bias_dps
 from sixflip.scale_form import scale_form
 
+from ..calibrate.verify_files import decode_record
 from ..capture.capture_header import STANDARD_G
 from ..errors import BadFile
-from ..verifying.verify_files import decode_record
 
 AXES = "xyz"
 

@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 
 from ..errors import SixflipError
-from ..solving.solve import finite
+from ..json_numbers import finite
 from ..terminal import plain
 from . import store
 from .store import SEEN, Happened
@@ -55,8 +55,8 @@ class Witness:
 def pulled(folder, board):
     """The records in a folder `pull` made; board: the id the link knows."""
     def rows():
+        from ..calibrate import verify_files
         from ..capture import capture_binary, capture_file
-        from ..verifying import verify_files
         found, known = [], board
         capture = Path(folder) / "capture.bin"
         if capture.exists() and not capture_binary.is_empty(capture.read_bytes()):

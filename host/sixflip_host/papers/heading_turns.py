@@ -16,7 +16,7 @@ from sixflip.correction_record import Record
 from sixflip.heading import Heading
 from sixflip_sim import noise, worlds
 
-from ..simulating.simulated_capture import capture
+from ..simulation.simulated_capture import capture
 
 TURNS = (30, 45, 60, 90)
 REPETITIONS = 10

@@ -5,7 +5,7 @@ import numpy as np
 from sixflip import accelerometer
 from sixflip_sim import worlds
 
-from ..simulating.simulated_capture import capture
+from ..simulation.simulated_capture import capture
 from . import paper_tables
 
 CALIBRATIONS = 10

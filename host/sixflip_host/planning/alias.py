@@ -10,7 +10,8 @@ import numpy as np
 from sixflip import faces
 from sixflip_sim.effects.library import EFFECTS
 
-NEGLIGIBLE = 1e-9  # of the largest singular value, or of the energy before projection
+from ..experiment.projection import NEGLIGIBLE, basis, rank, without
+
 # Which effects have a signature in rests and turns; the order is that of the printed table.
 ACCEL = ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic",
          "cross_quadratic", "cubic", "asymmetry", "vibration_rectification", "saturation",
@@ -21,22 +22,6 @@ GYRO = ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic",
 SHAPES = {"supply": {"volts": 3.4}, "vibration_rectification": {"vibration_mg": 300.0},
           "saturation": {"level": 0.95}}
 GYRO_SHAPES = {"saturation": {"level": 50.0}}
-
-
-def basis(columns):
-    """Orthonormal basis (m, r) of the span of columns (m, k)."""
-    if columns.shape[1] == 0:
-        return columns
-    u, s, _ = np.linalg.svd(columns, full_matrices=False)
-    return u[:, s > NEGLIGIBLE * max(s[0], 1e-300)] if len(s) else u
-
-
-def without(space, columns):
-    """columns (m, k) with their part in the span of the orthonormal `space` removed, twice:
-    once leaves rounding of the size that decides ranks."""
-    for _ in range(2):
-        columns = columns - space @ (space.T @ columns)
-    return columns
 
 
 def effect_columns(effect, moment, n):
@@ -56,7 +41,7 @@ def blocks_of(rows, values, mask):
     return out.reshape(3 * rows.n, 3)
 
 
-class Design:
+class PlannedModel:
     """Nominal columns of one sensor for the rows of a plan, and the signatures of the effects.
 
     sensor "accel": a 3x3 matrix common to all sessions; a bias, the table's tilt and two free
@@ -118,7 +103,7 @@ class Design:
     def without_own(self, name):
         """The same design without the nuisance that `name` is."""
         if name not in self._reduced:
-            self._reduced[name] = Design(self.rows, self.sensor, self.certified_box
+            self._reduced[name] = PlannedModel(self.rows, self.sensor, self.certified_box
                                          or name == "box_tilt", name != "table_tilt")
         return self._reduced[name]
 
@@ -144,26 +129,12 @@ class Design:
         return left if (left ** 2).sum() > NEGLIGIBLE * max(energy, 1e-300) else None
 
 
-def alias_index(a, b):
-    """A(a|b) for two signatures (m, ka), (m, kb): 0 nothing, 1 all of a is in b."""
-    space = basis(b)
-    return float(((space.T @ a) ** 2).sum() / (a ** 2).sum())
-
-
-def rank(columns, reference):
-    """How many combinations of the columns exceed 1e-8 of the reference's largest."""
-    if columns is None:
-        return 0
-    top = np.linalg.svd(reference, compute_uv=False)[0]
-    return int((np.linalg.svd(columns, compute_uv=False) > 1e-8 * top).sum())
-
-
 def even_contrasts(rows):
     """How many residual degrees of freedom say something about the sensor: of any function of
     the face alone, three channels, what the 12 parameters do not take up."""
     free = np.hstack([blocks_of(rows, np.ones(rows.n), rows.face == face)
                       for face in range(len(faces.FACES))])
-    space = Design(rows, certified_box=True, tilt=False).space
+    space = PlannedModel(rows, certified_box=True, tilt=False).space
     return rank(without(space, free), free)
 
 
@@ -175,12 +146,3 @@ def norm_only_rank(rows):
     columns += [f[:, i] for i in range(3)]
     jacobian = np.stack(columns, 1)
     return int(np.linalg.matrix_rank(jacobian, tol=1e-9)), jacobian.shape[1]
-
-
-def alias_matrix(signatures):
-    """(names, matrix): A(row | column) for {name: signature}, silent ones left out."""
-    names = [name for name in signatures if signatures[name] is not None]
-    spaces = {name: basis(signatures[name]) for name in names}
-    table = np.array([[((spaces[b].T @ signatures[a]) ** 2).sum() / (signatures[a] ** 2).sum()
-                       for b in names] for a in names])
-    return names, table.reshape(len(names), len(names))

@@ -6,8 +6,7 @@ from sixflip import faces
 
 from ..did_you_mean import instead
 from ..errors import UsageError
-from ..simulating import protocols
-from . import plan_file
+from . import plan_file, protocols
 
 SETTLING_S = 1.0        # of a dwell: until the board has seen that the box is at rest
 SHORTEST, LONGEST = 50, 60000   # samples of a pose; device/sixflip_device/asked.py

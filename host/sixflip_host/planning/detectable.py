@@ -1,7 +1,7 @@
 """The smallest size of each effect that a planned capture would show, at 80 % power.
 
 Generalised least squares with known variances: white noise over the samples of a row,
-placement (two small turns a placement, by hand), flicker (exponentials of 10 ... 1000 s).
+placement (two small turns a placement, by hand), flicker as the diagnosis has it.
 The unit of replication is the placement, never the sample (GAP finding 3).
 """
 import math
@@ -9,9 +9,9 @@ import math
 import numpy as np
 
 from sixflip_sim.effects import typical
-from sixflip_sim.effects.drift import Drift
 
-from . import alias
+from ..experiment.flicker import flicker_kernel
+from ..experiment.projection import basis, without
 
 PLACEMENT_DEG = 0.05  # scatter of placing a box by hand (METHOD section 1)
 FLIP_DEG = 0.4  # error of a half turn by hand (METHOD section 2)
@@ -28,7 +28,7 @@ class Power:
         self.design = design
         cov = covariance(design, chip, rate_hz, placement_deg)
         self.whitener = np.linalg.inv(np.linalg.cholesky(cov))
-        self.space = alias.basis(self._white(design.space))
+        self.space = basis(self._white(design.space))
 
     def _white(self, columns):
         return self.whitener @ columns
@@ -39,9 +39,9 @@ class Power:
         space = self.space
         if name in self.design.own:  # a nuisance itself: measured beside the others
             rest = self.design.without_own(name)
-            space = alias.basis(self._white(rest.space))
+            space = basis(self._white(rest.space))
         white = self._white(columns)
-        left = alias.without(space, white)
+        left = without(space, white)
         sizes = {}
         for j, key in enumerate(keys):
             norm, before = np.linalg.norm(left[:, j]), np.linalg.norm(white[:, j])
@@ -52,7 +52,7 @@ class Power:
     def smallest_flicker(self):
         """Level of flicker on top of the white noise and the placements that would be told
         from them: the variance's standard error from its Fisher information."""
-        kernel = flicker_kernel(self.design.rows)
+        kernel = flicker(self.design.rows)
         white = self.whitener @ kernel @ self.whitener.T
         left = white - self.space @ (self.space.T @ white)
         left = left - (left @ self.space) @ self.space.T
@@ -60,19 +60,18 @@ class Power:
         return math.sqrt(QUANTILE / math.sqrt(information)) if information > 0 else SILENT
 
 
-def flicker_kernel(rows):
-    """(3n, 3n) covariance of unit flicker: exponentials in time, axes and sessions apart."""
-    gap = np.abs(rows.at.t[:, None] - rows.at.t[None])
-    kernel = Drift().kernel(gap, np.exp) * (rows.session[:, None] == rows.session[None])
-    return np.kron(kernel, np.eye(3))
+def flicker(rows):
+    """(3n, 3n) covariance of unit flicker, axes and sessions apart."""
+    kernel = flicker_kernel(rows.at.t, rows.seconds)
+    return np.kron(kernel * (rows.session[:, None] == rows.session[None]), np.eye(3))
 
 
 def covariance(design, chip, rate_hz, placement_deg):
     """(3n, 3n) in mg2 or (deg/s)2."""
     rows = design.rows
-    sigma = np.array(typical.NOISE[chip][0])
+    sigma = np.array(typical.noise_at(chip, rate_hz))
     white = sigma ** 2 / np.maximum(rows.seconds * rate_hz, 1.0)[:, None]
-    total = np.diag(white.reshape(-1)) + typical.FLICKER[chip] ** 2 * flicker_kernel(rows)
+    total = np.diag(white.reshape(-1)) + typical.FLICKER[chip] ** 2 * flicker(rows)
     if design.sensor == "accel":
         level = (math.radians(placement_deg) * MG_PER_RAD) ** 2
         for placement in np.unique(rows.placement):

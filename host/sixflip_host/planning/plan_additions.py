@@ -1,7 +1,7 @@
 """What could be added to a protocol, and how much each addition resolves per minute."""
 import copy
 
-from ..simulating import protocols
+from . import protocols
 from .plan_findings import Findings
 
 FREE_MINUTES = 0.25  # an addition that takes no time still takes a thought

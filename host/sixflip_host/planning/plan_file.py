@@ -15,7 +15,7 @@ from sixflip import faces, pose_codes
 
 from ..atomic_write import write_text
 from ..errors import BadFile
-from ..simulating.protocols import DWELL_S, MOVE_S, Protocol, Rest, SessionPlan, face_rest
+from .protocols import DWELL_S, MOVE_S, Protocol, Rest, SessionPlan, face_rest
 
 VERSION = 1
 MOST_POSES = 2000

@@ -1,11 +1,12 @@
 """What a protocol can say about each effect: silent, in a class, or seen from which size on."""
 import math
 
-from sixflip_sim.effects import typical
+from sixflip_sim.effects import datasheets, typical
 from sixflip_sim.effects.library import EFFECTS, NAMES
 
 from ..board import events_seen
-from ..simulating.session_rows import rows_of
+from ..experiment import projection
+from ..experiment.session_rows import rows_of
 from . import alias, detectable
 
 SAME_CLASS = 0.9  # alias index above which two effects get one name (GAP stage 4)
@@ -50,7 +51,7 @@ class Findings:
         for kind in kinds_of(sensor):
             if kind == "gyro":
                 rows = rows_of(protocol, 1, turns=True)
-            design = alias.Design(rows, kind, certified_box)
+            design = alias.PlannedModel(rows, kind, certified_box)
             self._of_rests(design, sensor, kind, rate_hz)
         self.list += [found for name in NAMES
                       for found in events_seen.findings(name, protocol, sensor, rate_hz,
@@ -60,11 +61,12 @@ class Findings:
     def _of_rests(self, design, sensor, kind, rate_hz):
         power = detectable.Power(design, typical.chip_of(sensor, kind), rate_hz)
         names = alias.ACCEL if kind == "accel" else alias.GYRO
-        matrix = alias.alias_matrix({name: design.signature(name) for name in names})
+        matrix = projection.alias_matrix({name: design.signature(name) for name in names})
         tables = [matrix]
         if "box_tilt" in design.own:  # the box as one effect among others, too
             square = design.without_own("box_tilt")
-            tables.append(alias.alias_matrix({name: square.signature(name) for name in names}))
+            tables.append(projection.alias_matrix(
+                {name: square.signature(name) for name in names}))
         self.matrices[kind] = tables[-1]
         for name in names:
             size, source = typical.size(name, sensor, kind)
@@ -100,7 +102,8 @@ def members(name, tables):
 
 def kinds_of(sensor):
     """The kinds of sensor a chip name holds."""
-    return {"adxl345": ("accel",), "itg3205": ("gyro",)}.get(sensor, ("accel", "gyro"))
+    return tuple([kind for kind, chip in zip(("accel", "gyro"), datasheets.chips(sensor))
+                  if chip is not None])
 
 
 def taken_up(design, name):

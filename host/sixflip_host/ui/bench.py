@@ -12,7 +12,7 @@ import threading
 import time
 from pathlib import Path
 
-from ..board import calibrate, pull
+from ..board import calibration_request, pulled_files
 from ..errors import SixflipError, internal_error
 from ..guide.board_session import BoardSession
 from ..guide.session_state import CALIBRATING, OVER, State
@@ -87,7 +87,7 @@ class Bench:
         said = ""
         if self.link:
             if self.session and self.session.state.stage == CALIBRATING:
-                said = calibrate.stop(self.link)
+                said = calibration_request.stop(self.link)
             self.link.close()
         return said
 
@@ -172,11 +172,11 @@ class Bench:
         self.told()
         if self.link is None:
             self.link = self.open_link()
-        if action == "continue" and calibrate.under_way(self.link) is not None:
+        if action == "continue" and calibration_request.under_way(self.link) is not None:
             board = None
         else:
             request = {"continue": True} if action == "continue" else self.request(self.link)
-            board = calibrate.ask_for_calibration(self.link, request)
+            board = calibration_request.ask_for_calibration(self.link, request)
         self.done.clear()
         self.session = BoardSession(self.link, board, self.step, self.keep)
         self.count()
@@ -214,8 +214,8 @@ class Bench:
             self.link = self.open_link()
         self.problem, self.busy = "", "fetching"
         self.told()
-        self.pulled = pull.fetch(self.link, self.output, lambda line: None)
-        pull.convert(self.pulled, lambda line: None)
+        self.pulled = pulled_files.fetch(self.link, self.output, lambda line: None)
+        pulled_files.convert(self.pulled, lambda line: None)
         self.link.restart_firmware()
         self.busy = ""
 

@@ -2,7 +2,7 @@
 
 import json
 
-from ..board import calibrate
+from ..board import calibration_request
 from ..board.board_events import events
 
 ANSWER_S = 2.0
@@ -11,7 +11,7 @@ ANSWER_S = 2.0
 def on_board(link):
     """True for a session under way, or one whose capture lacks poses; nothing on the board is
     changed by asking."""
-    if calibrate.under_way(link) is not None:
+    if calibration_request.under_way(link) is not None:
         return True
     link.send(json.dumps({"cmd": "info"}))
     for event in events(link, ANSWER_S, ANSWER_S):

@@ -1,6 +1,6 @@
 """The demo's picture: errors of the vectors before and after the correction, face by face."""
 
-from ..reporting.figures import canvas, save
+from ..figures import canvas, save
 from .demo_truth import error_mg
 
 

@@ -13,11 +13,12 @@ import tempfile
 from pathlib import Path
 
 from ..errors import NoBoard, SixflipError
+from . import debian_packages
+from .debian_packages import cache_dir
 
 OLDEST = (1, 21)
 SUITE = "trixie"  # the oldest Debian whose MicroPython (1.25) has the vfs module
 PACKAGES = ("micropython", "libc6", "libffi8", "libmbedcrypto16", "libmbedtls21", "libmbedx509-7")
-KEYRING = "/usr/share/keyrings/debian-archive-keyring.gpg"
 WRAPPER = """#!/bin/sh
 here=$(dirname "$(readlink -f "$0")")
 lib=$(echo "$here"/usr/lib/*-linux-*)
@@ -26,16 +27,6 @@ exec "$loader" --library-path "$lib" "$here/usr/bin/micropython" "$@"
 """
 MISSING = ("no MicroPython %d.%d or newer on this machine: install it (Debian 13: apt install "
            "micropython) or run `make micropython`" % OLDEST)
-
-
-def cache_dir():
-    """SIXFLIP_CACHE, or .cache of the checkout this runs from, or the user's cache."""
-    if os.environ.get("SIXFLIP_CACHE"):
-        return Path(os.environ["SIXFLIP_CACHE"])
-    checkout = Path(__file__).resolve().parents[3]
-    if (checkout / "Makefile").exists() and (checkout / "shared" / "sixflip").is_dir():
-        return checkout / ".cache"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "sixflip"
 
 
 def version(executable):
@@ -65,55 +56,11 @@ def find():
     return None
 
 
-def debian_mirror(apt=Path("/etc/apt")):
-    """URI of the first Debian archive in this machine's own apt sources."""
-    places = [apt / "sources.list"] + sorted((apt / "sources.list.d").glob("*"))
-    uris = []
-    for place in places:
-        if place.suffix not in (".list", ".sources") or not place.is_file():
-            continue
-        text = "\n".join(line for line in place.read_text(errors="replace").splitlines()
-                         if not line.lstrip().startswith("#"))
-        uris += re.findall(r"^\s*deb\s+(?:\[.*?\]\s*)?(\S+)", text, re.M)
-        for line in re.findall(r"^URIs:\s*(.*)$", text, re.M):
-            uris += line.split()
-    uris = [uri.rstrip("/") for uri in uris if uri.rstrip("/").endswith("/debian")]
-    if not uris:
-        raise SixflipError("no Debian mirror in this machine's apt sources: install MicroPython "
-                           "%d.%d or newer by hand and name it in SIXFLIP_MICROPYTHON" % OLDEST)
-    return uris[0]
-
-
-def apt_get(work, *words):
-    """Run apt-get with lists and cache of its own below work; returns nothing or raises."""
-    options = {
-        "Dir::Etc::sourcelist": work / "sources.list", "Dir::Etc::sourceparts": "/dev/null",
-        "Dir::State::lists": work / "lists", "Dir::State::status": "/dev/null",
-        "Dir::Cache": work / "archives", "APT::Get::List-Cleanup": "0",
-        "Acquire::Languages": "none", "Acquire::Retries": "2", "Acquire::http::Timeout": "30",
-    }
-    if os.geteuid() == 0:
-        options["APT::Sandbox::User"] = "root"
-    command = ["apt-get", "-q"]
-    for key, value in options.items():
-        command += ["-o", "%s=%s" % (key, value)]
-    answer = subprocess.run(command + list(words), cwd=work, stdin=subprocess.DEVNULL,
-                            capture_output=True, text=True, timeout=600)
-    if answer.returncode:
-        last = (answer.stderr.strip() or answer.stdout.strip() or "no word").splitlines()[-1]
-        raise SixflipError("apt-get %s failed: %s" % (words[0], last))
-
-
 def unpack(work, target):
     """Download and unpack the packages below work, then move them to target in one step."""
-    for name in ("lists/partial", "archives/partial", "root"):
-        (work / name).mkdir(parents=True)
-    signed = " [signed-by=%s]" % KEYRING if os.path.exists(KEYRING) else ""
-    (work / "sources.list").write_text("deb%s %s %s main\n" % (signed, debian_mirror(), SUITE))
-    apt_get(work, "update")
-    apt_get(work, "download", *PACKAGES)
-    for package in sorted(work.glob("*.deb")):
-        subprocess.run(["dpkg", "-x", str(package), str(work / "root")], check=True, timeout=120)
+    debian_packages.prepare(work, SUITE, "install MicroPython %d.%d or newer by hand and name "
+                            "it in SIXFLIP_MICROPYTHON" % OLDEST)
+    debian_packages.unpack(work, PACKAGES)
     wrapper = work / "root" / "micropython"
     wrapper.write_text(WRAPPER)
     wrapper.chmod(0o755)
@@ -129,7 +76,7 @@ def fetch(say=print):
     found = find()
     if found:
         return found
-    if not (shutil.which("apt-get") and shutil.which("dpkg")):
+    if not debian_packages.can_unpack():
         raise SixflipError("there is no apt-get and dpkg here to unpack one with; "
                            "put MicroPython %d.%d or newer on PATH" % OLDEST)
     cache = cache_dir()

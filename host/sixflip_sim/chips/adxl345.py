@@ -13,20 +13,22 @@ _WRITABLE = 0x1D            # registers below are read-only or reserved
 class SimulatedADXL345(RegisterChip):
     """Standby after power-up; sample k at k / output rate, held until the next."""
 
+    columns = (0, 1, 2)
     id_register = chip.DEVID
     data_register = chip.DATAX0
     data_length = chip.BURST
     high_byte = 1
 
-    def __init__(self, clock, model, address=0x53):
+    def __init__(self, clock, model, address=0x53, who_am_i=chip.DEVICE_ID):
         self.model = model
+        self.who_am_i = who_am_i
         self.counts = [0] * 7
         RegisterChip.__init__(self, address, clock, 64)
 
     def power_on(self):
         RegisterChip.power_on(self)
         self._k = -1
-        self.registers[chip.DEVID] = chip.DEVICE_ID
+        self.registers[chip.DEVID] = self.who_am_i
         self.registers[chip.BW_RATE] = 0x0A
 
     def fall_asleep(self):
@@ -75,3 +77,6 @@ class SimulatedADXL345(RegisterChip):
     def after_read(self, register, n):
         if register < chip.DATAX0 + chip.BURST and register + n > chip.DATAX0:
             self.registers[chip.INT_SOURCE] &= 0x7F
+
+
+SIMULATED = {"adxl345": SimulatedADXL345}

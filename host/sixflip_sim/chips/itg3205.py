@@ -6,10 +6,11 @@ from sixflip.chips import itg3205 as chip
 from sixflip_sim.chips.invensense import InvenSense
 
 NOMINAL_BANDWIDTH_HZ = 42       # DLPF_CFG 3, what 100 Hz polling gets
-_COLUMNS = (6, 3, 4, 5)
 
 
 class SimulatedITG3205(InvenSense):
+    columns = (6, 3, 4, 5)
+    self_clearing = (chip.PWR_MGM, chip.RESET)
     id_register = chip.WHO_AM_I
     power_register = chip.PWR_MGM
     divider_register = chip.SMPLRT_DIV
@@ -18,12 +19,13 @@ class SimulatedITG3205(InvenSense):
     data_register = chip.TEMP_OUT_H
     data_length = chip.BURST
 
-    def __init__(self, clock, model, address=0x68):
+    def __init__(self, clock, model, address=0x68, who_am_i=chip.ID):
+        self.who_am_i = who_am_i
         InvenSense.__init__(self, address, clock, model)
 
     def power_on(self):
         InvenSense.power_on(self)
-        self.registers[chip.WHO_AM_I] = chip.ID
+        self.registers[chip.WHO_AM_I] = self.who_am_i
 
     def sample(self, k, t_us):
         setting = self.registers[chip.DLPF_FS]
@@ -36,4 +38,7 @@ class SimulatedITG3205(InvenSense):
         counts = self.counts
         self.model.gyro_counts(k, t_us, lsb, chip.RAIL, louder, counts)
         self.model.temp_counts(k, t_us, chip.TEMPERATURE[0], chip.TEMPERATURE[1], counts)
-        self.store(_COLUMNS)
+        self.store(self.columns)
+
+
+SIMULATED = {"itg3205": SimulatedITG3205}

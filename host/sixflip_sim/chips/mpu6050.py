@@ -8,7 +8,6 @@ from sixflip_sim.chips.invensense import SLEEP, InvenSense
 # The set-up for which a model's noise figure holds: DLPF_CFG 3, what 100 Hz polling gets.
 NOMINAL_BANDWIDTH_HZ = 44
 _AWAKE_AFTER_RESET = (0x70, 0x71, 0x73)     # their PWR_MGMT_1 is 0x01 after a reset
-_COLUMNS = (0, 1, 2, 6, 3, 4, 5)
 # What the factory left in the accelerometer's offsets, words of x y z: any part has its own.
 TRIM = (0xFC5A, 0x02B0, 0x0534)
 # Counts a g of such a word, bit 0 of which is not part of it: the MPU6050's are of ±8 g
@@ -24,6 +23,9 @@ def _signed(high, low):
 
 
 class SimulatedMPU6050(InvenSense):
+    TRAPS = ((chip.CONFIG, 0), (chip.ACCEL_CONFIG, 0x18), (chip.PWR_MGMT_1, SLEEP))
+    columns = (0, 1, 2, 6, 3, 4, 5)
+    self_clearing = (chip.PWR_MGMT_1, chip.RESET)
     id_register = chip.WHO_AM_I
     power_register = chip.PWR_MGMT_1
     divider_register = chip.SMPLRT_DIV
@@ -89,4 +91,7 @@ class SimulatedMPU6050(InvenSense):
                 count = counts[i] + int(round(self._shift[i] * lsb))
                 counts[i] = max(-chip.RAIL - 1, min(chip.RAIL, count))
         self.model.temp_counts(k, t_us, self.temperature[0], self.temperature[1], counts)
-        self.store(_COLUMNS)
+        self.store(self.columns)
+
+
+SIMULATED = {"mpu6050": SimulatedMPU6050}

@@ -5,8 +5,14 @@ class RegisterChip:
     """Base of the simulated chips; the bus calls select, write and read_into.
 
     id_register: where the identification is (faults of the bus aim at it); high_byte: 0 or 1,
-    which byte of a reading's word is the high one.
+    which byte of a reading's word is the high one. What a tape needs to stand for the chip:
+    data_register and data_length of a burst, columns of a sample in its order, self_clearing,
+    the register of the reset and its bits, which read 0 when it is over.
     """
+
+    data_register = data_length = 0
+    columns = ()
+    self_clearing = None
 
     id_register = 0
     high_byte = 0

@@ -1,9 +1,15 @@
 """Typical sizes of each effect on each chip, with their sources.
 
-SIZES[effect][chip] = (size, unit, source); one number stands for every coefficient unless a
-dict of keys says otherwise. Chips: mpu6050-accel mpu6050-gyro adxl345 itg3205.
+SIZES[effect][chip] = (size, source); one number stands for every coefficient unless a dict of
+keys says otherwise. Chips: mpu6050-accel mpu6050-gyro adxl345 itg3205, and "-accel" and "-gyro"
+of every other sensor, whose figures are those of datasheets.py; where that has none, the
+MPU6050's stands in its place, and the source says so.
 """
 import math
+
+from sixflip.chips import catalogue
+from sixflip_sim import worlds
+from sixflip_sim.effects import datasheets
 
 _MPU = "MPU-6050 PS rev 3.4, table 6."
 _ADXL = "ADXL345 rev E, table 1"
@@ -121,6 +127,12 @@ SIZES = {
 }
 
 
+def noise_at(chip, rate_hz):
+    """Standard deviations of a sample, (x, y, z), mg or deg/s: NOISE is at 100 Hz, and the filter
+    that the drivers choose is as much wider as the samples come faster."""
+    return tuple([sigma * math.sqrt(rate_hz / 100.0) for sigma in NOISE[chip][0]])
+
+
 # The widest range of sizes that the diagnosis believes is 20 times the typical one (a crooked
 # box); where only far larger ones would show, a capture says nothing about the effect at all.
 DETERMINED_TIMES = 100.0
@@ -133,10 +145,49 @@ def determined(smallest, usual):
 
 
 def chip_of(sensor, kind):
-    """The chip behind sensor "mpu6050", "gy85", "adxl345", "itg3205" for kind accel or gyro."""
+    """The chip behind a sensor for kind accel or gyro; of one that we do not know, an MPU6050."""
     if sensor in ("gy85", "adxl345", "itg3205"):
         return "adxl345" if kind == "accel" else "itg3205"
-    return "mpu6050-accel" if kind == "accel" else "mpu6050-gyro"
+    chip = "%s-%s" % (sensor, kind)
+    return chip if chip in NOISE else "mpu6050-" + kind
+
+
+def _of_the_data_sheet(sensor, kind, bandwidth_hz):
+    """{effect: size} of what a data sheet has figures for."""
+    bend = datasheets.figure(sensor, kind, "bend")
+    found = {"thermal_bias": datasheets.figure(sensor, kind, "offset_per_c"),
+             "thermal_scale": datasheets.figure(sensor, kind, "scale_per_c"),
+             "filter_lag": 1000.0 / (2.0 * math.pi * bandwidth_hz)}
+    if bend is not None:    # of full scale, at 1 g and at 100 °/s: mg and °/s
+        found["quadratic"] = found["cubic"] = 10.0 * bend if kind == "accel" else bend
+    return found
+
+
+def _add(sensor):
+    """The entries of a sensor that stands in datasheets.py."""
+    bandwidths = worlds.simulated(sensor).nominal_hz
+    noise = datasheets.noise(sensor, bandwidths)
+    for kind, hz, sigma in zip(("accel", "gyro"), bandwidths, noise):
+        chip, source = "%s-%s" % (sensor, kind), datasheets.source(sensor, kind)
+        density = datasheets.figure(sensor, kind, "density")
+        NOISE[chip] = (sigma,) * 3, source
+        DENSITY[chip] = (density,) * 3, source
+        # slow noise has no figure in these sheets: as much less than the MPU6050's as the white
+        quieter = density / DENSITY["mpu6050-" + kind][0][0]
+        FLICKER[chip] = quieter * FLICKER["mpu6050-" + kind]
+        FLOOR[chip] = quieter * FLOOR["mpu6050-" + kind]
+        sizes = _of_the_data_sheet(sensor, kind, hz)
+        for effect, known in SIZES.items():
+            if effect in sizes:
+                known[chip] = sizes[effect], source
+            elif "mpu6050-" + kind in known:
+                size_, said = known["mpu6050-" + kind]
+                known[chip] = size_, "as the MPU6050: " + said
+
+
+for _sensor in catalogue.SENSORS:
+    if _sensor not in worlds.SEEN:
+        _add(_sensor)
 
 
 def size(effect, sensor, kind, key=None):

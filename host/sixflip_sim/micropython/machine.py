@@ -12,7 +12,8 @@ cause = PWRON_RESET
 
 
 def start(a_world, board_id, wiring):
-    global world, _id, _wiring
+    global world, _id, _wiring, SimulatedSPI
+    from sixflip_sim.spi import SimulatedSPI  # later its modules are out of reach
     world = a_world
     _id = board_id
     _wiring = wiring
@@ -61,6 +62,12 @@ def I2C(*identity, **options):
 
 
 SoftI2C = I2C
+
+
+def SPI(*identity, **options):
+    """The world's chip on SPI; the pin "cs_pin" of the wiring selects it."""
+    world.spi = SimulatedSPI(world.i2c, options["polarity"] << 1 | options["phase"])
+    return world.spi
 
 
 # Pyboard v1.1 (ports/stm32/boards/PYBV11/pins.csv), as far as boards are wired to them.
@@ -132,6 +139,8 @@ class Pin:
     def _drive(self, level):
         before = _levels.get(self.identity, 1)
         _levels[self.identity] = 1 if level else 0
+        if self.identity == _wiring.get("cs_pin", 17) and hasattr(world, "spi"):
+            world.spi.select(level)
         if self.identity == _wiring.get("scl_pin", 5) and not before and level:
             world.i2c.pulse_scl()
 

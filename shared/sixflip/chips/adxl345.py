@@ -1,6 +1,6 @@
 """Analog Devices ADXL345, an accelerometer. Source: datasheet rev. E, register map table 19."""
 
-from sixflip.chips.registers import Registers
+from sixflip.chips.registers import Registers, row_of_range
 
 try:
     from micropython import const
@@ -19,13 +19,12 @@ DATAX0 = const(0x32)            # burst of 6: x y z, little-endian
 FIFO_CTL = const(0x38)
 DEVICE_ID = const(0xE5)
 MEASURE = const(0x08)
-FULL_RES_16_G = const(0x0B)
+FULL_RES = const(0x08)
 BURST = const(6)
 
-# FULL_RES: 256 counts per g in every range, 13 bits at ±16 g (table 1).
+# FULL_RES: 256 counts per g in every range, 10 bits at ±2 g to 13 at ±16 g (table 1).
 LSB_PER_G = const(256)
 RANGE_G = const(16)
-RAIL = const(4095)
 RANGES_G = (2, 4, 8, 16)
 # (output rate in Hz, code in BW_RATE); bandwidth is half the rate (table 7). 800 Hz is the
 # most that a 400 kHz bus carries.
@@ -37,13 +36,17 @@ class ADXL345(Registers):
 
     chip = "ADXL345"
     sensor = "adxl345"
+    ACCEL_RANGES = tuple([(g, LSB_PER_G, code) for code, g in enumerate(RANGES_G)])
+    GYRO_RANGES = ()
+    TEMPERATURE = None
+    MOST_HZ = 400
+    gyro_tolerance = None
+    zero_rate_dps = zero_rate_dps_per_c = 0.0
     name = "ADXL345 (0xe5)"
     who_am_i = (DEVICE_ID, 0)
     has_gyro = False
     has_temp = False
     accel_lsb_per_g = LSB_PER_G
-    accel_range_g = RANGE_G
-    accel_rail = RAIL
     gyro_lsb_per_dps = 0
     gyro_range_dps = 0
     gyro_rail = 0
@@ -52,8 +55,12 @@ class ADXL345(Registers):
     setup = ((BW_RATE, 2), (DATA_FORMAT, 1))
     offsets = ((OFSX, 3),)
 
-    def __init__(self, i2c, address=0x53, sleep_ms=None):
+    def __init__(self, i2c, address=0x53, who_am_i=DEVICE_ID, sleep_ms=None, accel_range_g=None,
+                 gyro_range_dps=None):
         Registers.__init__(self, i2c, address, sleep_ms)
+        self.accel_range_g, _, self._range = row_of_range(
+            self.ACCEL_RANGES, accel_range_g or RANGE_G, "accel_range_g")
+        self.accel_rail = LSB_PER_G * self.accel_range_g - 1
         self.rate_hz = 0
         self.output_rate_hz = self.filter_hz = 0
         self._burst = bytearray(BURST)
@@ -65,9 +72,9 @@ class ADXL345(Registers):
             raise ValueError("rate_hz is %s, expected 1 to 400" % rate_hz)
         hz, code = [x for x in OUTPUT_RATES if x[0] >= 2 * rate_hz][0]
         self._set(POWER_CTL, 0)
-        for register, value in ((BW_RATE, code), (DATA_FORMAT, FULL_RES_16_G), (FIFO_CTL, 0),
-                                (INT_ENABLE, 0), (OFSX, 0), (OFSX + 1, 0), (OFSX + 2, 0),
-                                (POWER_CTL, MEASURE)):
+        for register, value in ((BW_RATE, code), (DATA_FORMAT, FULL_RES | self._range),
+                                (FIFO_CTL, 0), (INT_ENABLE, 0), (OFSX, 0),
+                                (OFSX + 1, 0), (OFSX + 2, 0), (POWER_CTL, MEASURE)):
             self._set(register, value)
         self._hold()
         self.output_rate_hz = hz

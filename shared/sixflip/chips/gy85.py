@@ -11,11 +11,16 @@ class GY85:
 
     sensor = "gy85"
     name = "GY-85: ADXL345 (0xe5) and ITG3205 (0x68)"
+    ACCEL_RANGES = ADXL345.ACCEL_RANGES
+    GYRO_RANGES = ITG3205.GYRO_RANGES
+    TEMPERATURE = itg3205.TEMPERATURE
+    MOST_HZ = ADXL345.MOST_HZ
+    gyro_tolerance = ITG3205.gyro_tolerance
+    zero_rate_dps = ITG3205.zero_rate_dps
+    zero_rate_dps_per_c = ITG3205.zero_rate_dps_per_c
     has_gyro = True
     has_temp = True
     accel_lsb_per_g = ADXL345.accel_lsb_per_g
-    accel_range_g = ADXL345.accel_range_g
-    accel_rail = ADXL345.accel_rail
     gyro_lsb_per_dps = itg3205.LSB_PER_DPS
     gyro_range_dps = itg3205.RANGE_DPS
     gyro_rail = itg3205.RAIL
@@ -23,10 +28,12 @@ class GY85:
     metadata = Registers.metadata
 
     def __init__(self, i2c, accel_address=0x53, gyro_address=0x68, gyro_id=itg3205.ID,
-                 sleep_ms=None):
-        self.accel = ADXL345(i2c, accel_address, sleep_ms)
+                 sleep_ms=None, accel_range_g=None, gyro_range_dps=None):
+        self.accel = ADXL345(i2c, accel_address, sleep_ms=sleep_ms, accel_range_g=accel_range_g)
         self.gyro = ITG3205(i2c, gyro_address, sleep_ms)
         self.address = accel_address
+        self.accel_range_g = self.accel.accel_range_g
+        self.accel_rail = self.accel.accel_rail
         self.who_am_i = (self.accel.who_am_i[0], gyro_id)
         self.rate_hz = 0
 

@@ -14,7 +14,7 @@ def metadata(imu):
               "output_rate_hz": accel.output_rate_hz, "registers": _read_back(accel, "")}
     for name in ("accel_lsb_per_g", "accel_range_g", "gyro_lsb_per_dps", "gyro_range_dps",
                  "temp_lsb_per_c", "temp_offset_c"):
-        if getattr(imu, name):
+        if getattr(imu, name) or name == "temp_offset_c" and imu.has_temp:
             answer[name] = getattr(imu, name)
     if accel is not imu:
         answer["registers"].update(_read_back(imu.gyro, "gyro "))

@@ -34,6 +34,13 @@ class ITG3205(Registers):
     """The gyro half of a GY-85; it is no imu by itself."""
 
     chip = "ITG3205"
+    TEMPERATURE = TEMPERATURE
+    ACCEL_RANGES = ()
+    GYRO_RANGES = ((RANGE_DPS, LSB_PER_DPS, 3),)
+    # table 3.1: sensitivity at 25 °C, zero-rate output over the whole range of 125 K
+    gyro_tolerance = 0.06
+    zero_rate_dps = 40.0
+    zero_rate_dps_per_c = 0.32
     setup = ((SMPLRT_DIV, 2), (PWR_MGM, 1))     # it has no offset registers
 
     def __init__(self, i2c, address=0x68, sleep_ms=None):

@@ -5,7 +5,7 @@ accelerometer filter and offsets: MPU-6500 register map RM-MPU-6500A-00 rev. 2.1
 offsets: InvenSense application note "MPU Hardware Offset Registers" rev. 1.0.
 """
 
-from sixflip.chips.registers import Registers, filter_code, rate_divider
+from sixflip.chips.registers import Registers, filter_code, rate_divider, row_of_range
 
 try:
     from micropython import const
@@ -31,18 +31,9 @@ SLEEP = const(0x40)
 CLOCK_GYRO_X = const(0x01)
 BURST = const(14)
 
-# Answer of WHO_AM_I -> name. It does not depend on the address pin.
-RELATIVES = {
-    0x68: "MPU6050",
-    0x70: "MPU6500",
-    0x71: "MPU9250",
-    0x73: "MPU9255",
-    0x98: "ICM20689 or MPU6050 clone",
-    0x72: "MPU6050 clone",
-}
-# Index is AFS_SEL or FS_SEL (bits 4:3): (full scale, counts per unit).
-ACCEL_RANGES = ((2, 16384), (4, 8192), (8, 4096), (16, 2048))
-GYRO_RANGES = ((250, 131.0), (500, 65.5), (1000, 32.8), (2000, 16.4))
+# (full scale, counts per unit, AFS_SEL or FS_SEL), which is its index here, too.
+ACCEL_RANGES = ((2, 16384, 0), (4, 8192, 1), (8, 4096, 2), (16, 2048, 3))
+GYRO_RANGES = ((250, 131.0, 0), (500, 65.5, 1), (1000, 32.8, 2), (2000, 16.4, 3))
 # Bandwidth in Hz of DLPF_CFG 0..6; accelerometer, the gyro's differ by at most 4 Hz.
 BANDWIDTH_HZ = (260, 184, 94, 44, 21, 10, 5)
 # °C = counts / first + second.
@@ -51,19 +42,18 @@ TEMPERATURE_RELATIVES = (333.87, 21.0)
 RAIL = const(32767)
 
 
-def code_of(ranges, full_scale, what):
-    """Range code of a full scale; ValueError naming the choices."""
-    for code in range(len(ranges)):
-        if ranges[code][0] == full_scale:
-            return code
-    raise ValueError("%s is %s, expected one of %s"
-                     % (what, full_scale, ", ".join([str(r[0]) for r in ranges])))
-
-
 class MPU6050(Registers):
     """One chip at one address; who_am_i is what register 0x75 answered to the probe."""
 
     sensor = "mpu6050"
+    ACCEL_RANGES = ACCEL_RANGES
+    GYRO_RANGES = GYRO_RANGES
+    TEMPERATURE = TEMPERATURE   # of an MPU6050 itself
+    # MPU-6000/6050 product specification rev. 3.4, table 6.1: sensitivity at 25 °C, zero-rate
+    # output at 25 °C, and over the whole range of 125 K
+    gyro_tolerance = 0.03
+    zero_rate_dps = 20.0
+    zero_rate_dps_per_c = 0.16
     has_gyro = True
     has_temp = True
     accel_rail = RAIL
@@ -72,15 +62,15 @@ class MPU6050(Registers):
     offsets = ((XA_OFFS_H, 6), (XG_OFFS_USR_H, 6))
 
     def __init__(self, i2c, address=0x68, who_am_i=0x68, sleep_ms=None,
-                 accel_range_g=2, gyro_range_dps=500):
+                 accel_range_g=None, gyro_range_dps=None):
         Registers.__init__(self, i2c, address, sleep_ms)
-        self.chip = RELATIVES[who_am_i]
+        self.chip = self._chip_name(who_am_i)
         self.name = "%s (0x%02x)" % (self.chip, who_am_i)
         self.who_am_i = (who_am_i, who_am_i)
-        self._accel_code = code_of(ACCEL_RANGES, accel_range_g, "accel_range_g")
-        self._gyro_code = code_of(GYRO_RANGES, gyro_range_dps, "gyro_range_dps")
-        self.accel_range_g, self.accel_lsb_per_g = ACCEL_RANGES[self._accel_code]
-        self.gyro_range_dps, self.gyro_lsb_per_dps = GYRO_RANGES[self._gyro_code]
+        self.accel_range_g, self.accel_lsb_per_g, self._accel_code = row_of_range(
+            ACCEL_RANGES, accel_range_g or 2, "accel_range_g")
+        self.gyro_range_dps, self.gyro_lsb_per_dps, self._gyro_code = row_of_range(
+            GYRO_RANGES, gyro_range_dps or 500, "gyro_range_dps")
         self.temp_lsb_per_c, self.temp_offset_c = (
             TEMPERATURE if who_am_i == 0x68 else TEMPERATURE_RELATIVES)
         self.rate_hz = self.filter_hz = self.output_rate_hz = 0

@@ -1,12 +1,12 @@
 """Find out which sensor is on the bus, by identification registers.
 
 A scan alone proves nothing (rp2 bit-bangs it, and several chips share an address): what
-counts is the answer of the register that holds the identification.
+counts is the answer of the register that holds the identification. catalogue.py has them.
 """
 
 import errno
 
-from sixflip.chips import magnetometers
+from sixflip.chips import catalogue, magnetometers
 
 try:
     from micropython import const
@@ -14,8 +14,6 @@ except ImportError:
     def const(value):
         return value
 
-_GYRO_ADDRESSES = (0x68, 0x69)
-_ACCEL_ADDRESSES = (0x53, 0x1D)
 _ATTEMPTS = const(4)            # a glitch may spoil one answer: two have to be the same
 _NOBODY = const(0x7C)           # reserved (10-bit addressing): no chip answers there
 
@@ -43,54 +41,134 @@ def _answer(i2c, address, register, n=1):
                     "pull-up resistors" % address], errno.ETIMEDOUT)
 
 
-def _identify(i2c, address, register, known, mask=0xFF):
-    """Answer of the register; asked until one of the known came twice in a row."""
+def _identify(i2c, address, register, rows):
+    """(answer of the register, row it belongs to or None); asked until one of the known came
+    twice in a row. The answer is None when nobody answers at the address."""
     answer = None
     for _ in range(_ATTEMPTS):
         found = _answer(i2c, address, register)
-        if found is not None:
-            if found[0] & mask in known and found[0] == answer:
-                break
-            answer = found[0]
-    return answer
+        if found is None:
+            continue
+        same = found[0] == answer
+        answer = found[0]
+        if same:
+            for row in rows:
+                if answer & row[6] in row[4]:
+                    return answer, row
+    return answer, None
 
 
-def _list(ids):
-    return " ".join(["0x%02x" % i for i in sorted(ids)])
+def _rows_at(address, register=None):
+    """Rows of the chips that may be at an address; 0 is the one chip on SPI."""
+    return [row for row in catalogue.CHIPS
+            if (address in row[2] if address else row[0] in catalogue.ON_SPI)
+            and (register is None or row[3] == register)]
 
 
-def _look_at_gyro_address(i2c, address, report):
-    """("mpu6050", id), ("itg3205", id) or None for what answers at 0x68 or 0x69."""
-    from sixflip.chips import itg3205, mpu6050
-    who_am_i = _identify(i2c, address, mpu6050.WHO_AM_I, mpu6050.RELATIVES)
-    if who_am_i is None:
-        return None
-    if who_am_i in mpu6050.RELATIVES:
-        report.append("0x%02x: %s (who_am_i 0x%02x)"
-                      % (address, mpu6050.RELATIVES[who_am_i], who_am_i))
-        return "mpu6050", who_am_i
-    other = _identify(i2c, address, itg3205.WHO_AM_I, (itg3205.ID,), itg3205.ID_MASK)
-    if other is not None and other & itg3205.ID_MASK == itg3205.ID:
-        report.append("0x%02x: ITG3205 (who_am_i 0x%02x)" % (address, other))
-        return "itg3205", other
-    report.append("0x%02x answers who_am_i 0x%02x: not an MPU6050 or relative (%s), nor an "
-                  "ITG3205 (register 0x00 reads %s, expected 0x68)"
-                  % (address, who_am_i, _list(mpu6050.RELATIVES),
-                     "nothing" if other is None else "0x%02x" % other))
-    return None
+def _place(address):
+    return "0x%02x" % address if address else "SPI"
 
 
-def _look_at_accel_address(i2c, address, report):
-    """True for an ADXL345. A chip that answers otherwise at 0x1d may be anything."""
-    from sixflip.chips import adxl345
-    answer = _identify(i2c, address, adxl345.DEVID, (adxl345.DEVICE_ID,))
-    if answer is None:
-        return False
-    if answer == adxl345.DEVICE_ID:
-        report.append("0x%02x: ADXL345 (id 0xe5)" % address)
-        return True
-    report.append("0x%02x answers id 0x%02x: not an ADXL345 (0xe5)" % (address, answer))
-    return False
+def _registers_at(address):
+    """Identification registers of the chips that may be at an address, each once."""
+    found = []
+    for row in _rows_at(address):
+        if row[3] not in found:
+            found.append(row[3])
+    return found
+
+
+def _ask(i2c, address):
+    """(row or None, answer, {register: answer}) of whoever is at an address."""
+    answers = {}
+    for register in _registers_at(address):
+        answer, row = _identify(i2c, address, register, _rows_at(address, register))
+        if answer is None:
+            continue
+        answers[register] = answer
+        if row is not None:
+            return row, answer, answers
+    return None, None, answers
+
+
+def _first_bank(i2c, address):
+    """A chip that a reset of the board left in another bank shows its identification again."""
+    for bank in {row[5] for row in _rows_at(address)}:
+        if bank is not None:
+            try:
+                i2c.writeto_mem(address, bank, b"\x00")
+            except OSError:
+                return
+
+
+def _shifted(answers):
+    """The sentence on an identification that came a bit late or early: the clock's other edge."""
+    for register in answers:
+        for row in _rows_at(0, register):
+            for known in row[4]:
+                if known in (answers[register] << 1 & 0xFE, answers[register] << 1 & 0xFE | 1,
+                             answers[register] >> 1, answers[register] >> 1 | 0x80):
+                    return "that is 0x%02x, %s, shifted by a bit" % (known, row[4][known])
+    return ""
+
+
+def _nearest(i2c, address, answers):
+    """"the nearest known is 0x68 in 0x75, MPU6050, 1 bit away", by the number of bits that
+    differ; of an answer that is nobody's, such as 0x00, that it is none."""
+    best = None
+    for register in answers:
+        if answers[register] in (0x00, 0xFF):
+            continue
+        for row in _rows_at(address, register):
+            for known in row[4]:
+                away = bin((answers[register] & row[6]) ^ known).count("1")
+                if best is None or away < best[0]:
+                    best = away, known, register, row[4][known]
+    if not address:
+        said = _shifted(answers) if best is not None else ""
+        if said or i2c.mode not in (0, 3):
+            return ("%s: SPI mode %d is wrong, the chips take 0 and 3 (or the clock is too fast)"
+                    % (said or "that is no identification", i2c.mode))
+    if best is None:
+        return "that is no identification: no power, or two chips that pull at the lines"
+    return "no chip that is known here; the nearest is 0x%02x in 0x%02x, %s, %d bit%s away" % (
+        best[1], best[2], best[3], best[0], "" if best[0] == 1 else "s")
+
+
+def _look(i2c, report):
+    """({sensor: (address, id)}, {address: {register: answer}} of chips that are none of ours)."""
+    found, strangers = {}, {}
+    for address in _addresses(i2c):
+        row, answer, answers = _ask(i2c, address)
+        if row is None and answers:
+            _first_bank(i2c, address)
+            row, answer, answers = _ask(i2c, address)
+        if row is None:
+            if answers:
+                strangers[address] = answers
+                said = ["0x%02x in register 0x%02x" % (answers[r], r) for r in sorted(answers)]
+                report.append("%s answers %s: %s" % (_place(address), ", ".join(said),
+                                                     _nearest(i2c, address, answers)))
+        elif row[0] in found:
+            report.append("%s: a second one, not used" % _place(address))
+        else:
+            found[row[0]] = address, answer
+            report.append("%s: %s (who_am_i 0x%02x)" % (
+                _place(address), row[4][answer & row[6]], answer))
+    if not getattr(i2c, "spi", False):
+        _look_for_magnetometers(i2c, report)
+    return found, strangers
+
+
+def _addresses(i2c):
+    if getattr(i2c, "spi", False):
+        return [0]
+    found = []
+    for row in catalogue.CHIPS:
+        for address in row[2]:
+            if address not in found:
+                found.append(address)
+    return found
 
 
 def _look_for_magnetometers(i2c, report):
@@ -101,65 +179,100 @@ def _look_for_magnetometers(i2c, report):
         if answer == expected:
             report.append("0x%02x: %s, a magnetometer, not used" % (address, name))
         else:
-            report.append("0x%02x answers %s: not the magnetometer %s"
-                          % (address, _list(set(answer)), name))
+            report.append("0x%02x answers %s: not the magnetometer %s" % (
+                address, " ".join(["0x%02x" % i for i in answer]), name))
 
 
-def _look(i2c, report):
-    """({"mpu6050" or "itg3205": (address, id)}, address of the ADXL345 or None)."""
-    gyros = {}
-    for address in _GYRO_ADDRESSES:
-        found = _look_at_gyro_address(i2c, address, report)
-        if found and found[0] not in gyros:
-            gyros[found[0]] = (address, found[1])
-        elif found:
-            report.append("0x%02x: a second one, not used" % address)
-    accel = None
-    for address in _ACCEL_ADDRESSES:
-        if _look_at_accel_address(i2c, address, report) and accel is None:
-            accel = address
-    _look_for_magnetometers(i2c, report)
-    return gyros, accel
+def find(i2c, sleep_ms=None, sensor="auto", ranges=(None, None)):
+    """(imu, report) of the sensor on the bus, the first of the catalogue where several are.
 
-
-def find(i2c, sleep_ms=None, sensor="auto"):
-    """(imu, report) of the sensor on the bus, an MPU6050 before a GY-85 before an ADXL345.
-
-    sensor: "auto" or the one that must be there, "mpu6050", "gy85" or "adxl345".
-    Raises NoChip with .report, a list of lines (BusStuck, errno ETIMEDOUT, when the bus
-    does not work). The imu is not configured yet.
+    sensor: "auto" or the one that must be there, of catalogue.SENSORS; a chip that answers
+    with an unknown identification is used as a clone of the one that is asked for, never as
+    anything by itself. ranges: full scales in g and °/s, None: the driver's; where the chip
+    has not got it, the next larger. Raises NoChip with .report, a list of lines (BusStuck,
+    errno ETIMEDOUT, when the bus does not work). The imu is not configured yet.
     """
-    if sensor not in ("auto", "mpu6050", "gy85", "adxl345"):
-        raise ValueError("sensor is %r, expected auto, mpu6050, gy85 or adxl345" % sensor)
+    if sensor != "auto" and sensor not in catalogue.SENSORS:
+        raise ValueError("sensor is %r, expected auto or one of %s"
+                         % (sensor, " ".join(catalogue.SENSORS)))
     report = []
-    gyros, accel = _look(i2c, report)
-    if "mpu6050" in gyros and sensor in ("auto", "mpu6050"):
-        from sixflip.chips.mpu6050 import MPU6050
-        address, who_am_i = gyros["mpu6050"]
-        return MPU6050(i2c, address, who_am_i, sleep_ms), report
-    if accel is not None and "itg3205" in gyros and sensor in ("auto", "gy85"):
-        from sixflip.chips.gy85 import GY85
-        address, who_am_i = gyros["itg3205"]
-        return GY85(i2c, accel, address, who_am_i, sleep_ms), report
-    if accel is not None and sensor in ("auto", "adxl345"):
-        from sixflip.chips.adxl345 import ADXL345
-        if sensor == "auto":
-            report.append("no gyro: lift the box for a flip, which is taken as 180 degrees")
-        return ADXL345(i2c, accel, sleep_ms), report
-    if _answer(i2c, _NOBODY, 0) is not None:
+    found, strangers = _look(i2c, report)
+    for name in catalogue.SENSORS if sensor == "auto" else (sensor,):
+        where = _where(name, found, strangers if sensor != "auto" else {}, report)
+        if where:
+            try:
+                driver = catalogue.driver(name)
+            except ImportError:
+                raise NoChip(report + ["its driver is not on this board: sixflip provision "
+                                       "--sensor %s" % name])
+            imu = _make(driver, name, i2c, where, sleep_ms, ranges, report)
+            _others(found, name, report)
+            return imu, report
+    if not getattr(i2c, "spi", False) and _answer(i2c, _NOBODY, 0) is not None:
         raise BusStuck(["every address answers, the reserved 0x7c too: SDA is held low"],
                        errno.ETIMEDOUT)
-    raise NoChip(_complaint(sensor, gyros, accel, report))
+    raise NoChip(_complaint(i2c, sensor, found, strangers, report))
 
 
-def _complaint(sensor, gyros, accel, report):
+def _where(name, found, strangers, report):
+    """What the driver of a sensor is made with: address and identification of each chip."""
+    if name == "gy85":
+        both = "adxl345" in found and "itg3205" in found
+        return (found["adxl345"][0],) + found["itg3205"] if both else None
+    if name in found:
+        return found[name]
+    _, _, addresses, register, _, _, _ = catalogue.row_of(name)
+    for address in addresses + (0,):
+        answer = strangers.get(address, {}).get(register, 0)
+        if 0 < answer < 0xFF:
+            report.append("who_am_i 0x%02x is no %s's: taken for a clone of one, as the settings "
+                          "ask for it" % (answer, name))
+            return address, answer
+    return None
+
+
+def _make(driver, name, i2c, where, sleep_ms, ranges, report):
+    """The driver's object, at the full scales that hold what is wanted."""
+    got = []
+    for wanted, offered, unit in zip(ranges, (driver.ACCEL_RANGES, driver.GYRO_RANGES),
+                                     ("g", "deg/s")):
+        if wanted is not None and offered:
+            scales = sorted([row[0] for row in offered])
+            fits = ([g for g in scales if g >= wanted] or scales[-1:])[0]
+            if fits != wanted:
+                report.append("a full scale of %s %s is not one of the %s's (%s): %s is used" % (
+                    wanted, unit, name, " ".join([str(g) for g in scales]), fits))
+            got.append(fits)
+        else:
+            got.append(None)
+    return driver(i2c, *where, sleep_ms=sleep_ms, accel_range_g=got[0], gyro_range_dps=got[1])
+
+
+def _others(found, name, report):
+    """Sensors that could be used as well, and how."""
+    if name == "adxl345" and "itg3205" not in found:
+        report.append("no gyro: lift the box for a flip, which is taken as 180 degrees")
+    own = ("adxl345", "itg3205") if name in ("gy85", "adxl345") else (name,)
+    for other in found:
+        if other in catalogue.SENSORS and other not in own:
+            report.append("%s is there, too: sensor %s in the settings takes it instead"
+                          % (other, other))
+
+
+def _complaint(i2c, sensor, found, strangers, report):
     if not report:
-        report.append("nobody answers at 0x68, 0x69, 0x53 or 0x1d: check power, SDA, SCL and "
-                      "pull-ups")
+        report.append("nobody answers at %s: check power, SDA, SCL and pull-ups"
+                      % " ".join(["0x%02x" % a for a in _addresses(i2c)]))
     elif sensor != "auto":
         report.append("the settings ask for %s, which is not there" % sensor)
-    elif "itg3205" in gyros and accel is None:
-        report.append("a gyro without accelerometer: a GY-85 has an ADXL345 at 0x53")
-    else:
+    for name in found:
+        if name in catalogue.NOT_DRIVEN:
+            report.append("%s: %s" % (name, catalogue.NOT_DRIVEN[name]))
+    if strangers and getattr(i2c, "spi", False):
+        report.append("check power, SCK, MOSI, MISO and CS; MISO and MOSI may be swapped")
+    elif strangers:
+        report.append("two chips at one address answer like that, too: unplug one of them; a "
+                      "clone is used where the settings name its sensor")
+    elif not found and sensor == "auto" and len(report) and not report[0].startswith("nobody"):
         report.append("no accelerometer found")
     return report

@@ -15,6 +15,7 @@ class Registers:
     """
 
     chip = "chip"
+    MOST_HZ = 500               # the most a second that configure() takes
     setup = offsets = ()
 
     def __init__(self, i2c, address, sleep_ms=None):
@@ -29,13 +30,24 @@ class Registers:
         self._i2c = i2c
         return self._read(register) == expected
 
+    def _chip_name(self, who_am_i):
+        from sixflip.chips import catalogue  # the probe's; not kept in the heap
+        return catalogue.name_of(self.sensor, who_am_i)
+
+    def _fetch(self, register, buf):
+        """Fill buf from the register on. A chip with banks has a fetch of its own."""
+        self._i2c.readfrom_mem_into(self.address, register, buf)
+
+    def _store(self, register, buf):
+        self._i2c.writeto_mem(self.address, register, buf)
+
     def _read(self, register):
-        self._i2c.readfrom_mem_into(self.address, register, self._one)
+        self._fetch(register, self._one)
         return self._one[0]
 
     def _write(self, register, value):
         self._one[0] = value
-        self._i2c.writeto_mem(self.address, register, self._one)
+        self._store(register, self._one)
 
     def _set(self, register, value):
         """Write and read back: SoftI2C returns as if all were well when data is not
@@ -52,7 +64,9 @@ class Registers:
         """Ends configure(): what setup and offsets read has to stay."""
         held = self._held = []
         for first, n in self.setup + self.offsets:
-            held.append((first, self._i2c.readfrom_mem(self.address, first, n), bytearray(n)))
+            kept = bytearray(n)
+            self._fetch(first, kept)
+            held.append((first, kept, bytearray(n)))
         if not self.awake():
             raise OSError(errno.EIO, "%s at 0x%02x: registers read otherwise each time"
                           % (self.chip, self.address))
@@ -61,7 +75,7 @@ class Registers:
         """Whether setup and offsets are as configure() left them, which they are not after a
         brown-out. Short reads, no allocation: to be asked often, and when read_into says False."""
         for first, kept, found in self._held:
-            self._i2c.readfrom_mem_into(self.address, first, found)
+            self._fetch(first, found)
             if found != kept:
                 return False
         return True
@@ -70,7 +84,7 @@ class Registers:
         """"" or a sentence: which offset somebody has changed. A reset changes none, it brings
         back what was configured (0) or the factory's trim."""
         for first, kept, found in self._held[len(self.setup):]:
-            self._i2c.readfrom_mem_into(self.address, first, found)
+            self._fetch(first, found)
             for i in range(len(kept)):
                 if found[i] != kept[i]:
                     return ("register 0x%02x of the %s was 0x%02x when it was configured and "
@@ -102,6 +116,16 @@ class Registers:
         raise OSError(errno.EIO, "%s at 0x%02x: reset not finished, register 0x%02x reads "
                       "0x%02x, expected bits 0x%02x clear"
                       % (self.chip, self.address, register, found, mask))
+
+
+def row_of_range(ranges, full_scale, what):
+    """The row of a full scale, (full scale, counts per unit, bits); ValueError naming the
+    choices."""
+    for row in ranges:
+        if row[0] == full_scale:
+            return row
+    raise ValueError("%s is %s, expected one of %s"
+                     % (what, full_scale, ", ".join([str(r[0]) for r in ranges])))
 
 
 def filter_code(bandwidths_hz, rate_hz):

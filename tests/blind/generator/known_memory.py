@@ -24,6 +24,7 @@ def hysteresis(rng, chip, sensor, times):
     size = sized(rng, np.multiply(chip.typical["hysteresis", "accel"], times), axes)
     width = rng.uniform(0.1, 0.4)
     along_the_way = bool(rng.random() < 0.5)
+    steep = rng.choice([1.2, 30.0])     # a share of the way, or hardly more than its sign
 
     def way(signals, axis):
         smooth = lagged(signals.f[:, axis], signals.t, 0.1)
@@ -34,12 +35,12 @@ def hysteresis(rng, chip, sensor, times):
         out, before = np.zeros(len(signals.t)), None
         for inside, now in _rests(signals, axis):
             if before is not None:
-                out[inside] = np.tanh(1.2 * (before - now))
+                out[inside] = np.tanh(steep * (before - now))
             before = now
         return out
 
     return _remembered("hysteresis", axes, size, way if along_the_way else placement,
-                       width_g=width, along_the_way=along_the_way)
+                       width_g=width, along_the_way=along_the_way, steep=steep)
 
 
 def _remembered(name, axes, size, form, **parameters):

@@ -20,10 +20,11 @@ def _tone(own, t, frequency):
 
 
 def vibration(rng, chip, sensor, times):
-    """A motor's line and its weak second harmonic, below or above the Nyquist frequency."""
+    """A line and its weak second harmonic: a motor's, below or above the Nyquist frequency, or a
+    slow ripple of a table or a supply."""
     axes = some_axes(rng)
     size = sized(rng, np.multiply(chip.typical["vibration", sensor], times), axes)
-    frequency = rng.choice([rng.uniform(6, 46), rng.uniform(54, 140)])
+    frequency = rng.choice([rng.uniform(6, 46), rng.uniform(54, 140), rng.uniform(0.8, 3.0)])
 
     def act(signals, own):
         tone = _tone(own, signals.t, frequency) + 0.2 * _tone(own, signals.t, 2 * frequency)
@@ -79,14 +80,22 @@ def _behind(x, t, tau):
 
 
 def filter_lag(rng, chip, sensor, times):
-    """Two first-order lags in a row, together tau."""
+    """Two first-order lags in a row, together tau; or (gyro, every other part) a buffer that
+    hands its samples on some milliseconds later, up to five times as late."""
     tau = chip.typical["filter_lag", sensor] * times
+    buffered = sensor == "gyro" and rng.random() < 0.5
+    if buffered:
+        tau *= rng.uniform(2.0, 5.0)
 
     def act(signals, _):
         out = signals.out(sensor)
-        out[:] = _behind(_behind(out, signals.t, tau / 2), signals.t, tau / 2)
+        if buffered:
+            out[:] = np.stack([np.interp(signals.t - tau, signals.t, x) for x in out.T], axis=1)
+        else:
+            out[:] = _behind(_behind(out, signals.t, tau / 2), signals.t, tau / 2)
 
-    return Effect("filter_lag", sensor, [], "analogue", act, {"tau_s": tau})
+    return Effect("filter_lag", sensor, [], "analogue", act,
+                  {"tau_s": tau, "buffered": bool(buffered)})
 
 
 def axis_swap(rng, chip, sensor, times):

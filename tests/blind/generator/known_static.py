@@ -85,13 +85,18 @@ def cross_quadratic(rng, chip, sensor, times):
 
 
 def cubic(rng, chip, sensor, times):
+    """Odd powers up to the seventh, or what a soft limit leaves of a straight line."""
     fifth, seventh = rng.uniform(0, 0.3), rng.uniform(0, 0.15)
+    soft = bool(rng.random() < 0.4)
 
     def shape(signals, axis):
         x = signals.f[:, axis]
+        if soft:
+            return (1.5 * x - np.tanh(1.5 * x)) / (1.5 - np.tanh(1.5))
         return (1 - fifth - seventh) * x ** 3 + fifth * x ** 5 + seventh * x ** 7
 
-    return _per_axis("cubic", rng, chip, sensor, times, shape, fifth=fifth, seventh=seventh)
+    return _per_axis("cubic", rng, chip, sensor, times, shape, fifth=fifth, seventh=seventh,
+                     soft=soft)
 
 
 def asymmetry(rng, chip, sensor, times):

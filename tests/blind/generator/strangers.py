@@ -114,12 +114,59 @@ def spike_bursts(rng, chip, sensor, times):
     return stranger("spike bursts", ["noise", "time", "amplitude"], shape, rng, sensor, times)
 
 
+def speed_reading(rng, chip, sensor, times):
+    """Reads something of how fast it is turned, whichever way: a cable that is flung outward."""
+    per_dps = {"accel": 0.2e-3, "gyro": 0.004}[sensor]
+
+    def shape(signals, own, axes):
+        return np.linalg.norm(signals.w, axis=1)
+
+    return stranger("speed reading", ["motion"], shape, rng, sensor, times, size=per_dps)
+
+
+def cross_rate(rng, chip, sensor, times):
+    """The gyro's axes rectify one another: the product of two rates on the third."""
+    def shape(signals, own, axes):
+        return signals.w[:, [1, 2, 0]] * signals.w[:, [2, 0, 1]] / 50.0
+
+    return stranger("cross rate", ["motion", "amplitude"], shape, rng, "gyro", times, size=0.5)
+
+
+def page_spikes(rng, chip, sensor, times):
+    """The eighth bit is hit on the bus now and then, whatever the byte above it."""
+    share, axes = 0.003 * times, some_axes(rng)
+
+    def act(signals, own):
+        counts = signals.counts[:, :3] if sensor == "accel" else signals.counts[:, 3:]
+        for axis in axes:
+            hit = own.random(len(counts)) < share
+            counts[hit, axis] += 256 * own.choice([-1, 1], hit.sum())
+
+    return Effect("?page spikes", sensor, names_of(axes), "counts", act,
+                  {"share": share, "domains": ["noise", "amplitude"]})
+
+
+def lost_runs(rng, chip, sensor, times):
+    """Runs of samples are lost while the times go on as if none were: a buffer that overflows."""
+    def act(signals, own):
+        n, lost = len(signals.t), 0
+        while lost < 0.003 * times * n:
+            start, length = int(own.integers(1, n - 40)), int(own.integers(5, 30))
+            signals.counts[start:-length] = signals.counts[start + length:]
+            lost += length
+
+    return Effect("?lost runs", sensor, [], "counts", act,
+                  {"domains": ["timing", "motion", "noise", "amplitude", "time"]})
+
+
 STRANGERS = {"bias step": (bias_step, ("accel", "gyro")),
              "sinusoidal nonlinearity": (sinusoidal_nonlinearity, ("accel",)),
              "memory of two poses": (two_pose_memory, ("accel",)),
              "telegraph noise": (telegraph, ("accel", "gyro")),
              "slow oscillation": (slow_oscillation, ("accel", "gyro")),
              "humidity": (humidity, ("accel", "gyro")),
-             "spike bursts": (spike_bursts, ("accel", "gyro"))}
-
-
+             "spike bursts": (spike_bursts, ("accel", "gyro")),
+             "speed reading": (speed_reading, ("accel", "gyro")),
+             "cross rate": (cross_rate, ("gyro",)),
+             "page spikes": (page_spikes, ("accel", "gyro")),
+             "lost runs": (lost_runs, ("gyro",))}

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sixflip_host.gap import next_capture
+from sixflip_host.planning import next_capture
 
 from . import left_out, null_study, real_noise, resolved
 

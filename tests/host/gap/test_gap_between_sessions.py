@@ -1,8 +1,9 @@
 """What lies between sessions: biases against each other, as one more unit of contrasts."""
 import numpy as np
 
-from sixflip_host.gap import answer, diagnosis, observations, where
-from sixflip_host.simulating import scenario, simulate
+from sixflip_host.diagnosis import answer, diagnosis, localisation
+from sixflip_host.experiment import blocks
+from sixflip_host.simulation import scenario, simulated_session
 
 
 def sessions(effects=(), change=((0, 0, 0), (0, 0, 0)), seed=61):
@@ -10,10 +11,10 @@ def sessions(effects=(), change=((0, 0, 0), (0, 0, 0)), seed=61):
     plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": seed,
                                "world": {"placement_scatter_deg": 0.05},
                                "effects": list(effects)})
-    captures = [simulate.session(plan, k) for k in range(2)]
+    captures = [simulated_session.session(plan, k) for k in range(2)]
     for capture, counts in zip(captures, change):
         capture.accel = (capture.accel + np.array(counts)).astype(np.int16)
-    return [observations.Session(str(k), c) for k, c in enumerate(captures)]
+    return [blocks.of(str(k), c) for k, c in enumerate(captures)]
 
 
 def test_a_bias_that_differs_from_session_to_session_is_found_there():
@@ -22,11 +23,11 @@ def test_a_bias_that_differs_from_session_to_session_is_found_there():
     between = found.gaps["accel"].units[-1]
     assert between.between
     # 1000 counts are 61 mg; the contrast is the difference over the root of two
-    changed = between.contrasts @ between.z
+    changed = between.z
     np.testing.assert_allclose(np.abs(changed), [0, 61.0 / np.sqrt(2), 0], atol=1.5)
     assert found.verdict == "unexplained"
     assert not found.causes
-    places = where.places(found.gaps["accel"])
+    places = localisation.places(found.gaps["accel"])
     assert (places[0].domain, places[0].axis) == ("session", "y")
 
 

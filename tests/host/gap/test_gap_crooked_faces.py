@@ -1,8 +1,9 @@
 """Crooked faces are said to be the box's, by the face, and are no gap of the sensor."""
 import pytest
 
-from sixflip_host.gap import diagnosis, observations
-from sixflip_host.simulating import scenario, simulate
+from sixflip_host.diagnosis import diagnosis
+from sixflip_host.experiment import blocks
+from sixflip_host.simulation import scenario, simulated_session
 
 
 def diagnosed(faces, tilt_deg=2.0):
@@ -10,7 +11,7 @@ def diagnosed(faces, tilt_deg=2.0):
     plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 17,
                                "world": {"tilt_deg": tilt_deg, "placement_scatter_deg": 0.03},
                                "effects": effects})
-    sessions = [observations.Session(str(k), simulate.session(plan, k)) for k in range(2)]
+    sessions = [blocks.of(str(k), simulated_session.session(plan, k)) for k in range(2)]
     return diagnosis.Diagnosis(sessions, diagnosis.Settings())
 
 

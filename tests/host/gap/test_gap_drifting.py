@@ -2,8 +2,9 @@
 import numpy as np
 import pytest
 
-from sixflip_host.gap import diagnosis, observations
-from sixflip_host.simulating import scenario, simulate
+from sixflip_host.diagnosis import diagnosis
+from sixflip_host.experiment import blocks
+from sixflip_host.simulation import scenario, simulated_session
 
 SIZE_DPS = 0.15
 
@@ -11,7 +12,7 @@ SIZE_DPS = 0.15
 @pytest.fixture(scope="module")
 def captures():
     plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 21})
-    return [simulate.session(plan, k) for k in range(len(plan.worlds))]
+    return [simulated_session.session(plan, k) for k in range(len(plan.worlds))]
 
 
 def walk(generator, t, axes):
@@ -43,17 +44,17 @@ def jumps(generator, t):
 
 def diagnosed(captures, course, tmp_path, monkeypatch):
     monkeypatch.setenv("SIXFLIP_CACHE", str(tmp_path))
-    generator, sessions = np.random.default_rng(4), []
+    generator, sessions, restored = np.random.default_rng(4), [], []
     for number, capture in enumerate(captures):
         kept = capture.gyro
         t = (capture.t_us - capture.t_us[0]) * 1e-6
         added = course(generator, t) * capture.meta["gyro_lsb_per_dps"]
         capture.gyro = np.round(kept + added).astype(kept.dtype)
-        sessions.append(observations.Session(str(number), capture))
-        sessions[-1].restored = kept
+        sessions.append(blocks.of(str(number), capture))
+        restored.append(kept)
     found = diagnosis.Diagnosis(sessions, diagnosis.Settings(jobs=1))
-    for capture, session in zip(captures, sessions):
-        capture.gyro = session.restored
+    for capture, kept in zip(captures, restored):
+        capture.gyro = kept
     return found
 
 

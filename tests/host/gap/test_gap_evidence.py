@@ -1,12 +1,13 @@
 """The score of sets of hypotheses on small made-up problems whose answer is known."""
 import numpy as np
 import pytest
-from scipy import stats
+from scipy import linalg, stats
 
-from sixflip_host.gap import cutoffs, evidence, hypotheses, posterior
-from sixflip_host.gap.evidence import NONE, Columns, Levels
-from sixflip_host.gap.nominal_fit import Unit
-from sixflip_host.gap.regressors import Design
+from sixflip_host.diagnosis import cutoffs, evidence, hypotheses, posterior
+from sixflip_host.diagnosis.evidence import NONE, Columns, Levels
+from sixflip_host.experiment import covariance, linear_model
+from sixflip_host.experiment.nominal_rows import Rows
+from sixflip_host.experiment.terms import Design
 
 USUAL = Levels(1.0, 0.01, 1.0)
 
@@ -28,8 +29,15 @@ def unit(generator, theta=0.0, jump=0.0, n=40):
     designs = [Design("thermal_bias", "", ["x"], [0], slope.reshape(-1, 1), np.array([10.0])),
                Design("warm_up", "", ["y"], [1], other.reshape(-1, 1), np.array([10.0])), jumps]
     nuisance = np.kron(np.ones((n, 1)), np.eye(3))
-    return Unit(y.reshape(-1), nuisance, np.eye(3 * n), np.zeros((3 * n, 0)), np.eye(3 * n),
-                ((0.0,), (0.01, 1.0)), designs)
+    groups = covariance.alone(np.eye(3 * n), np.zeros((3 * n, 0)), np.eye(3 * n))
+    return linear_model.unit(Rows(y.reshape(-1), groups, nuisance, ((0.0,), (0.01, 1.0))), designs)
+
+
+def contrasts(unit, point):
+    """(z, S, covariance) of a unit in as many rows as it has contrasts."""
+    q = linalg.null_space(unit.space.T)
+    whole = covariance.dense(unit.groups, *unit.grid[point])
+    return q.T @ unit.z, q.T @ unit.columns, q.T @ whole @ q
 
 
 def model_of(units):
@@ -42,8 +50,8 @@ def form(units, effect):
 
 def found(units):
     forms = hypotheses.of(units)
-    return posterior.search(model_of(units), forms, cutoffs.simulated(
-        units, forms, USUAL, [0] * len(units)))
+    return posterior.search(model_of(units), forms, cutoffs.Cutoffs(
+        cutoffs.simulated(units, forms, USUAL, [0] * len(units)), 0.06))
 
 
 def test_the_score_is_the_log_density_of_the_session_held_out():
@@ -55,10 +63,11 @@ def test_the_score_is_the_log_density_of_the_session_held_out():
     expected = 0.0
     for held, train in ((0, 1), (1, 0)):
         theta, spread = evidence.coefficients([fits[train]], shared)
-        s, point = units[held].columns[:, 0], int(fits[held].index[0])
-        covariance = units[held].covariance(*units[held].grid[point])
+        point = int(fits[held].index[0])
+        z, s, noise = contrasts(units[held], point)
+        s = s[:, 0]
         expected += level[held][point] + stats.multivariate_normal.logpdf(
-            units[held].z, theta[0, 0] * s, covariance + spread[0, 0, 0] * np.outer(s, s))
+            z, theta[0, 0] * s, noise + spread[0, 0, 0] * np.outer(s, s))
         expected += 0.5 * units[held].freedom * np.log(2.0 * np.pi)
     assert evidence.score(fits, shared)[0] == pytest.approx(expected, abs=1e-6)
 
@@ -76,10 +85,10 @@ def test_private_columns_are_integrated_out_with_their_prior():
     one = unit(np.random.default_rng(6), 0.0, 3.0)
     private = Columns(np.array([2, 3]), np.array([0.7, 2.0]))
     fit = evidence.fit(one, one.statistics(), NONE, private, np.zeros(len(one.grid)))
-    s = one.columns[:, private.index]
-    covariance = one.covariance(*one.grid[int(fit.index[0])]) + s @ np.diag(
-        private.prior ** 2) @ s.T
-    expected = stats.multivariate_normal.logpdf(one.z, np.zeros(one.freedom), covariance)
+    z, s, noise = contrasts(one, int(fit.index[0]))
+    s = s[:, private.index]
+    expected = stats.multivariate_normal.logpdf(
+        z, np.zeros(one.freedom), noise + s @ np.diag(private.prior ** 2) @ s.T)
     assert fit.evidence[0] == pytest.approx(
         expected + 0.5 * one.freedom * np.log(2.0 * np.pi), abs=1e-6)
 

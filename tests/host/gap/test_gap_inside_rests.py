@@ -2,30 +2,31 @@
 import numpy as np
 import pytest
 
-from sixflip_host.gap import answer, diagnosis, observations
-from sixflip_host.simulating import scenario, simulate
+from sixflip_host.diagnosis import answer, diagnosis
+from sixflip_host.experiment import blocks
+from sixflip_host.simulation import scenario, simulated_session
 
 
 @pytest.fixture(scope="module")
 def captures():
     plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 21,
                                "world": {"placement_scatter_deg": 0.05}})
-    return [simulate.session(plan, k) for k in range(len(plan.worlds))]
+    return [simulated_session.session(plan, k) for k in range(len(plan.worlds))]
 
 
 def diagnosed(captures, change):
     """The answer on captures whose accelerometer counts change(t, counts, generator) changes."""
-    sessions = []
+    sessions, restored = [], []
     for number, capture in enumerate(captures):
         kept, t = capture.accel, (capture.t_us - capture.t_us[0]) * 1e-6
         changed = kept.astype(float)
         change(t, changed, np.random.default_rng(number))
         capture.accel = np.rint(changed).astype(np.int16)
-        sessions.append(observations.Session(str(number), capture))
-        sessions[-1].kept = kept
+        sessions.append(blocks.of(str(number), capture))
+        restored.append(kept)
     found = answer.of(diagnosis.Diagnosis(sessions, diagnosis.Settings(jobs=1)))
-    for capture, session in zip(captures, sessions):
-        capture.accel = session.kept
+    for capture, kept in zip(captures, restored):
+        capture.accel = kept
     return found
 
 
@@ -37,6 +38,7 @@ def test_a_slow_ripple_of_8_mg_is_a_line_at_its_frequency(captures):
     assert cause["effect"] == "vibration" and cause["axes"] == ["x"]
     assert cause["value"]["x"] == pytest.approx(8.0, rel=0.1)
     assert any("1.03 Hz" in remark for remark in found["remarks"])
+    assert cause["hz"]["x"] == pytest.approx(1.03, abs=0.05)
 
 
 def test_spikes_in_one_percent_of_the_samples_are_a_gap(captures):

@@ -1,14 +1,15 @@
 """The loop closed for the gyro in motion: real turns made again with and without the effect."""
 import pytest
 
-from sixflip_host.gap import closed_loop_turns, diagnosis, observations
-from sixflip_host.simulating import scenario, simulate
+from sixflip_host.diagnosis import closed_loop_turns, diagnosis
+from sixflip_host.experiment import blocks
+from sixflip_host.simulation import scenario, simulated_session
 
 
 def test_scales_that_differ_by_direction_close_the_gap_when_simulated_again():
     plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 4,
                                "effects": [{"effect": "asymmetry", "sensor": "gyro", "x": 3.0}]})
-    sessions = [observations.Session(str(k), simulate.session(plan, k)) for k in range(2)]
+    sessions = [blocks.of(str(k), simulated_session.session(plan, k)) for k in range(2)]
     found = diagnosis.Diagnosis(sessions, diagnosis.Settings())
     loop = closed_loop_turns.close(found.turns, found.settings.reference_c)
     assert [e["effect"] for e in loop.effects] == ["asymmetry"]
@@ -21,7 +22,7 @@ def test_scales_that_differ_by_direction_close_the_gap_when_simulated_again():
 def test_nothing_found_is_nothing_to_add():
     plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 5,
                                "effects": []})
-    sessions = [observations.Session(str(k), simulate.session(plan, k)) for k in range(2)]
+    sessions = [blocks.of(str(k), simulated_session.session(plan, k)) for k in range(2)]
     found = diagnosis.Diagnosis(sessions, diagnosis.Settings())
     assert found.turns is not None
     assert closed_loop_turns.close(found.turns, 25.0) is None

@@ -3,13 +3,14 @@ import numpy as np
 import pytest
 
 from sixflip import pose_codes
-from sixflip_host.gap import answer, diagnosis, observations
-from sixflip_host.simulating import scenario, simulate
+from sixflip_host.diagnosis import answer, diagnosis
+from sixflip_host.experiment import blocks
+from sixflip_host.simulation import scenario, simulated_session
 
 
 def captures():
     """Two sessions of the paper's 12 poses, with a g-sensitivity."""
-    return [simulate.session(scenario.from_dict({
+    return [simulated_session.session(scenario.from_dict({
         "sensor": "mpu6050", "scene": "paper", "seed": seed,
         "effects": [{"effect": "g_sensitivity", "sensor": "gyro", "xy": 0.2}]}), 0)
         for seed in (5, 6)]
@@ -34,7 +35,7 @@ def test_what_one_session_cannot_show_does_not_stop_the_others(
     monkeypatch.setenv("SIXFLIP_CACHE", str(tmp_path))
     found = captures()
     change(found[which])
-    sessions = [observations.Session(str(k), c) for k, c in enumerate(found)]
+    sessions = [blocks.of(str(k), c) for k, c in enumerate(found)]
     result = diagnosis.Diagnosis(sessions, diagnosis.Settings(jobs=1))
     cause, = [c for c in answer.of(result)["causes"] if c["sensor"] == "gyro"]
     assert cause["effect"] == "g_sensitivity"

@@ -5,18 +5,11 @@ import numpy as np
 import pytest
 
 from sixflip_host import cli
-from sixflip_host.capture import capture_file
+from sixflip_host.capture import capture_file, rests
 from sixflip_host.capture.capture_file import Capture
-from sixflip_host.gap import (
-    attitude_fit,
-    closed_loop_motion,
-    gyro_turns,
-    hands,
-    motion_gap,
-    observations,
-    still_runs,
-)
-from sixflip_host.simulating import scenario, simulate
+from sixflip_host.diagnosis import closed_loop_motion, handling_noise, motion_model
+from sixflip_host.experiment import attitude_fit, blocks, turns
+from sixflip_host.simulation import scenario, simulated_session
 
 ARM_CM = (3.0, -2.0, 1.0)
 ARM = dict(zip("xyz", ARM_CM), effect="lever_arm")
@@ -26,17 +19,16 @@ WORLD = {"tilt_deg": 1.0, "placement_scatter_deg": 0.05}
 def captures(effects, sensor="mpu6050", seed=4, sessions=1):
     plan = scenario.from_dict({"sensor": sensor, "scene": "recommended", "seed": seed,
                                "effects": effects, "world": WORLD})
-    return [simulate.session(plan, number) for number in range(sessions)]
+    return [simulated_session.session(plan, number) for number in range(sessions)]
 
 
 def judged(found, more=(), without=()):
     """MotionGap of captures with poses, and of more without."""
-    posed = [observations.Session(str(k), c) for k, c in enumerate(found)]
+    posed = [blocks.of(str(k), c) for k, c in enumerate(found)]
     models = [attitude_fit.fit(s) for s in posed]
-    for session, model in zip(posed, models):
-        gyro_turns.calibrated(gyro_turns.turns(session, model))
-    others = [observations.Session("driven %d" % k, c) for k, c in enumerate(more)]
-    return motion_gap.MotionGap(posed + others, models, found[0].meta["sensor"], without)
+    turned = [turns.calibrated(turns.of(s, m.up))[1] for s, m in zip(posed, models)]
+    others = [blocks.of("driven %d" % k, c) for k, c in enumerate(more)]
+    return motion_model.MotionGap(posed + others, models, turned, found[0].meta["sensor"], without)
 
 
 def inside(finding, key, true, slack=1.8):
@@ -161,9 +153,9 @@ def test_a_robot_that_turns_on_the_spot_tells_the_arm_across_the_vertical():
 
 def test_rests_of_a_capture_without_labels():
     capture = driven((0.0, 0.0, 0.0), turns=5)
-    runs = still_runs.runs(capture, capture.t_us * 1e-6)
+    runs = rests.find(capture).rests
     assert len(runs) == 6
-    for k, (_, first, end) in enumerate(runs):
+    for k, (first, end) in enumerate((run.first, run.end) for run in runs):
         start = 500 + 470 * k - 250 if k else 0
         assert start - 40 < first and end < 540 + 470 * k
         assert end - first > 180
@@ -183,7 +175,7 @@ def test_a_hands_spectrum_is_that_of_its_moves():
     kinds = [Kind(40) for _ in range(400)]
     sizes = np.where(np.arange(40) < 5, 20.0, 4.0)[:, None] * [1.0, 2.0, 0.5]
     left = [rng.standard_normal((40, 3)) * sizes for _ in kinds]
-    found = hands.spectra(kinds, left, np.ones(400))
+    found = handling_noise.spectra(kinds, left, np.ones(400))
     assert np.sqrt(found[0]) == pytest.approx(sizes, rel=0.12)
 
 
@@ -203,8 +195,8 @@ def test_the_verb_says_it_in_json_and_words_and_writes_the_scenario(tmp_path, ca
     assert answer["gap"]["accel"]["explained_share"] > 0.9
     assert answer["simulated"]["accel_motion"]["explained_share"] > 0.9
     assert [u["sensor"] for u in answer["unseen"] if u["effect"] == "filter_lag"] == ["device"]
-    from sixflip_host.gap import words
-    words.show(answer)
+    from sixflip_host.present import gap_words
+    gap_words.show(answer)
     said = capsys.readouterr().out
     assert "sits off the point it is turned about" in said.split("\n")[0]
     assert "accelerometer in motion" in said

@@ -2,18 +2,21 @@
 import numpy as np
 import pytest
 
-from sixflip_host.gap import counts, diagnosis, integrity, noise_bursts, observations
-from sixflip_host.simulating import scenario, simulate
+from sixflip_host.capture import registers as counts
+from sixflip_host.diagnosis import diagnosis
+from sixflip_host.diagnosis.detect import integrity, noise_bursts
+from sixflip_host.experiment import blocks
+from sixflip_host.simulation import scenario, simulated_session
 
 
 def captures(effects=(), seed=71, sensor="mpu6050"):
     plan = scenario.from_dict({"sensor": sensor, "scene": "recommended", "seed": seed,
                                "effects": list(effects)})
-    return [simulate.session(plan, k) for k in range(2)]
+    return [simulated_session.session(plan, k) for k in range(2)]
 
 
 def diagnosed(two):
-    sessions = [observations.Session(str(k), c) for k, c in enumerate(two)]
+    sessions = [blocks.of(str(k), c) for k, c in enumerate(two)]
     return diagnosis.Diagnosis(sessions, diagnosis.Settings())
 
 
@@ -48,14 +51,14 @@ def test_what_rounding_leaves_of_a_mean(noise):
         x = level + noise * step * generator.standard_normal(4000)
         errors.append((step * np.rint(x / step)).mean() - level)
     capture = captures()[0]
-    session = observations.Session("s", capture)
+    session = blocks.of("s", capture)
     counts = session.capture.accel
     counts[:] = step * np.rint(counts / step)
     for a, b in zip(session.first, session.end):
         level = 5000.0 + step * generator.random(3)
         x = level + noise * step * generator.standard_normal((b - a, 3))
         counts[a:b] = step * np.rint(x / step)
-    session._blocks()
+    session = blocks.of("s", session.capture)
     got = session.rounding_accel / 1000.0 * lsb
     # Sheppard's correction knows little of noise below a third of a step: rather too much.
     assert (got > 0.8 * np.std(errors) - 0.02 * step).all()
@@ -64,10 +67,10 @@ def test_what_rounding_leaves_of_a_mean(noise):
 
 def test_torn_reads_in_noise_of_a_fifth_of_a_page():
     torn = captures([{"effect": "torn_reads", "sensor": "accel", "chance": 0.5}], seed=5)
-    sessions = [observations.Session(str(k), c) for k, c in enumerate(torn)]
+    sessions = [blocks.of(str(k), c) for k, c in enumerate(torn)]
     assert [(f.effect, f.sensor) for f in integrity.findings(sessions)] == [
         ("torn_reads", "accel")]
-    sound = [observations.Session(str(k), c) for k, c in enumerate(captures(seed=5))]
+    sound = [blocks.of(str(k), c) for k, c in enumerate(captures(seed=5))]
     assert integrity.findings(sound) == []
 
 
@@ -77,7 +80,7 @@ def test_spikes_that_are_no_torn_reads():
     for capture in two:
         at = generator.choice(len(capture), 400, replace=False)
         capture.accel[at] += generator.integers(-600, 600, (400, 3)).astype(np.int16)
-    sessions = [observations.Session(str(k), c) for k, c in enumerate(two)]
+    sessions = [blocks.of(str(k), c) for k, c in enumerate(two)]
     assert integrity.findings(sessions) == []
 
 

@@ -1,8 +1,9 @@
 """One cause in another form than the library's is that cause, and nothing else."""
 import numpy as np
 
-from sixflip_host.gap import diagnosis, observations
-from sixflip_host.simulating import scenario, simulate
+from sixflip_host.diagnosis import diagnosis
+from sixflip_host.experiment import blocks
+from sixflip_host.simulation import scenario, simulated_session
 
 
 def test_a_play_along_the_whole_way_is_hysteresis_whatever_its_form():
@@ -11,7 +12,7 @@ def test_a_play_along_the_whole_way_is_hysteresis_whatever_its_form():
                                "world": {"placement_scatter_deg": 0.05}, "effects": []})
     sessions = []
     for number in range(2):
-        capture = simulate.session(plan, number)
+        capture = simulated_session.session(plan, number)
         state = np.zeros(3)
         g = capture.accel / 16384.0
         added = np.empty_like(g)
@@ -19,7 +20,7 @@ def test_a_play_along_the_whole_way_is_hysteresis_whatever_its_form():
             state = np.clip(state, now - 0.2, now + 0.2)
             added[k] = 0.02 * np.tanh((state - now) / 0.1)
         capture.accel = np.rint(capture.accel + 16384.0 * added).astype(np.int16)
-        sessions.append(observations.Session(str(number), capture))
+        sessions.append(blocks.of(str(number), capture))
     found = diagnosis.Diagnosis(sessions, diagnosis.Settings())
     assert {name for _, cause in found.causes for name in cause.names} <= {"hysteresis", "creep"}
     assert found.verdict in ("explained", "partly explained")

@@ -1,7 +1,8 @@
 """The statistics of the gap on small made-up problems whose answer is known."""
 import numpy as np
 
-from sixflip_host.gap import shrinkage, thermometer, where
+from sixflip_host.diagnosis import holdout_gain, localisation
+from sixflip_host.experiment import thermometer
 
 
 def test_fieller_covers_the_true_share_and_owns_up_to_too_small_a_gap():
@@ -12,22 +13,24 @@ def test_fieller_covers_the_true_share_and_owns_up_to_too_small_a_gap():
         predicted = 0.8 * mean + 0.1 * generator.standard_normal(200)
         z = mean + generator.standard_normal(200)
         true = (2 * predicted @ mean - predicted @ predicted) / (mean @ mean)
-        share, interval = shrinkage.fieller(z @ z - 200, 2 * predicted @ z - predicted @ predicted,
-                                            200, predicted @ predicted, predicted @ z)
+        share, interval = holdout_gain.fieller(
+            z @ z - 200, 2 * predicted @ z - predicted @ predicted, 200,
+            predicted @ predicted, predicted @ z)
         if interval:
             number += 1
             covered += interval[0] <= true <= interval[1]
     assert number > 550
     assert 0.84 <= covered / number <= 0.97
-    assert shrinkage.fieller(3.0, 2.0, 200, 1.0, 1.5) == (None, None)
+    assert holdout_gain.fieller(3.0, 2.0, 200, 1.0, 1.5) == (None, None)
 
 
 def test_false_discoveries_are_held_down():
     generator = np.random.default_rng(4)
     named = 0
     for _ in range(300):
-        tested = [where.Place("accel", "x", "time", 0.1, p) for p in generator.uniform(size=20)]
-        named += bool(where.controlled(tested))
+        tested = [localisation.Place("accel", "x", "time", 0.1, p)
+                  for p in generator.uniform(size=20)]
+        named += bool(localisation.controlled(tested))
     assert named <= 12
 
 

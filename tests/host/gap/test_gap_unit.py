@@ -1,39 +1,164 @@
 """A session's sufficient statistics against the plain algebra, point by point of the grid."""
+import tracemalloc
+
 import numpy as np
 import pytest
+from scipy import linalg
 
-from sixflip_host.gap.nominal_fit import Unit
-from sixflip_host.gap.regressors import Design
+from sixflip_host.experiment import covariance, linear_model
+from sixflip_host.experiment.flicker import flicker_kernel
+from sixflip_host.experiment.nominal_rows import Rows
+from sixflip_host.experiment.projection import lateral_basis
+from sixflip_host.experiment.terms import Design
 
-
-@pytest.fixture
-def unit():
-    generator = np.random.default_rng(12)
-    n = 30
-    design = Design("slope", "", ["x", "y"], [0, 1], generator.standard_normal((n, 2)),
-                    np.array([10.0, 10.0]))
-    root = generator.standard_normal((n, n))
-    return Unit(generator.standard_normal(n), generator.standard_normal((n, 4)),
-                np.diag(generator.uniform(0.5, 2.0, n)), generator.standard_normal((n, 7)),
-                root @ root.T, ((0.0, 0.3, 20.0), (0.01, 1.0)), [design])
+SECONDS = np.array([2.0, 2.0, 2.5, 2.5, 2.5, 4.0, 1.5, 1.5, 3.0, 3.0])
+T = np.cumsum(SECONDS) - 0.5 * SECONDS + 7.0 * np.array([0, 0, 1, 1, 1, 2, 3, 3, 4, 4])
+SHARES = np.array([0.7, 1.0, 1.8])
+PLACES = (slice(0, 2), slice(2, 5), slice(5, 6), slice(6, 8), slice(8, 10))
+FREE = (1, 3)  # placements that lean: free across gravity
 
 
-def test_statistics_are_those_of_the_covariance_at_every_point(unit):
-    z = np.random.default_rng(1).standard_normal((unit.freedom, 3))
-    quadratic, projections = unit.statistics(z)
+class Plain:
+    """A session of five placements and the same in matrices of all readings."""
+
+    def __init__(self):
+        rng = np.random.default_rng(12)
+        n = 3 * len(T)
+        self.base, self.lateral, self.free, parts = np.zeros((n, n)), [], [], []
+        for number, place in enumerate(PLACES):
+            k = place.stop - place.start
+            own = slice(3 * place.start, 3 * place.stop)
+            root = rng.standard_normal((3 * k, 3 * k))
+            base = root @ root.T + 0.5 * np.eye(3 * k)
+            self.base[own, own] = base
+            columns = np.zeros((n, 2))
+            up = rng.standard_normal(3)
+            columns[own] = np.tile(lateral_basis(up / np.linalg.norm(up)).T, (k, 1))
+            free = number in FREE
+            (self.free if free else self.lateral).append(columns)
+            parts.append((place, base, columns[own, :0 if free else 2],
+                          covariance.across(columns[own]) if free else np.eye(3 * k)))
+        self.lateral, self.free = np.hstack(self.lateral), np.hstack(self.free)
+        self.kernel = np.kron(flicker_kernel(T, SECONDS), np.diag(SHARES))
+        self.common = rng.standard_normal((n, 1))
+        self.columns = np.hstack([rng.standard_normal((n, 2)), np.zeros((n, 1))])
+        self.nuisance, self.y = rng.standard_normal((n, 4)), rng.standard_normal(n)
+        design = Design("slope", "", ["x", "y", "z"], [0, 1, 2], self.columns, np.full(3, 10.0))
+        self.unit = linear_model.unit(Rows(
+            self.y, covariance.in_time(T, SECONDS, SHARES, parts), self.nuisance,
+            ((0.0, 0.3, 20.0), (0.01, 1.0)), (), self.common), [design])
+        # Contrasts: all readings across what is a nuisance.
+        self.across = linalg.null_space(np.hstack([self.nuisance, self.free]).T)
+
+    def covariance(self, placement, flicker):
+        whole = self.base + placement ** 2 * self.lateral @ self.lateral.T \
+            + flicker ** 2 * self.kernel + self.common @ self.common.T
+        return self.across.T @ whole @ self.across
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return Plain()
+
+
+def test_statistics_are_those_of_the_covariance_at_every_point(plain):
+    unit, q = plain.unit, plain.across
+    assert unit.freedom == q.shape[1] and len(unit.grid) == 6
+    assert unit.silent.tolist() == [False, False, True]
+    others = np.random.default_rng(1).standard_normal((len(plain.y), 3))
+    quadratic, projections = unit.statistics(np.stack([unit.contrasts(y) for y in others.T], 1))
     for index, point in enumerate(unit.grid):
-        inverse = np.linalg.inv(unit.covariance(*point))
-        assert unit.gram[index] == pytest.approx(unit.columns.T @ inverse @ unit.columns)
-        assert unit.logdet[index] == pytest.approx(
-            0.5 * np.linalg.slogdet(unit.covariance(*point))[1])
-        assert quadratic[index] == pytest.approx(np.einsum("ir,ij,jr->r", z, inverse, z))
-        assert projections[index] == pytest.approx(unit.columns.T @ inverse @ z)
+        c = plain.covariance(*point)
+        inverse, s, z = np.linalg.inv(c), q.T @ plain.columns, q.T @ plain.y
+        assert unit.gram[index] == pytest.approx(s.T @ inverse @ s)
+        assert unit.logdet[index] == pytest.approx(0.5 * np.linalg.slogdet(c)[1])
+        assert unit.quadratic[index] == pytest.approx(z @ inverse @ z)
+        assert unit.inner[index] == pytest.approx(s.T @ inverse @ z)
+        other = q.T @ others
+        assert quadratic[index] == pytest.approx(np.einsum("ir,ij,jr->r", other, inverse, other))
+        assert projections[index] == pytest.approx(s.T @ inverse @ other)
+        assert unit.noise_energy(*point) == pytest.approx(np.trace(c))
+        assert unit.chi2(unit.z, index) == pytest.approx(z @ inverse @ z)
 
 
-def test_a_draw_has_the_covariance_of_its_point(unit):
+def test_contrasts_have_the_size_of_what_the_nuisance_leaves(plain):
+    left = plain.across @ (plain.across.T @ plain.y)
+    assert plain.unit.z @ plain.unit.z == pytest.approx(left @ left)
+    assert plain.unit.in_rows(plain.unit.z) == pytest.approx(left)
+    assert plain.unit.contrasts(plain.y + plain.nuisance @ [1, 2, 3, 4]
+                                + plain.free @ [5, 6, 7, 8]) == pytest.approx(plain.unit.z)
+
+
+def test_a_draw_has_the_covariance_of_its_point(plain):
+    unit = plain.unit
     index = unit.grid.index((0.3, 1.0))
-    drawn = unit.draw(index, np.random.default_rng(2), 40000)
-    inverse = np.linalg.inv(unit.covariance(0.3, 1.0))
-    chi2 = np.einsum("ir,ij,jr->r", drawn, inverse, drawn)
+    chi2 = unit.statistics(unit.draw(index, np.random.default_rng(2), 40000))[0][index]
     assert chi2.mean() == pytest.approx(unit.freedom, rel=0.01)
     assert chi2.var() == pytest.approx(2 * unit.freedom, rel=0.05)
+
+
+def test_the_factor_multiplied_out_is_the_covariance(plain):
+    groups = plain.unit.rows.groups
+    whole = covariance.dense(groups, 0.3, 1.0)
+    expected = plain.base + 0.09 * plain.lateral @ plain.lateral.T + plain.kernel
+    assert whole == pytest.approx(expected)
+    factor = covariance.Factor(groups, [0.3], 1.0)
+    root = factor.coloured(np.eye(len(plain.y)))
+    assert root == pytest.approx(np.linalg.cholesky(expected))
+    assert factor.whitened(root)[0] == pytest.approx(np.eye(len(plain.y)), abs=1e-9)
+
+
+def test_placements_that_are_loosened_say_nothing_across(plain):
+    loose = linear_model.unit(plain.unit.rows.loosened(), [])
+    q = linalg.null_space(np.hstack([plain.nuisance, plain.free, plain.lateral]).T)
+    z = q.T @ plain.y
+    c = q.T @ (plain.base + plain.kernel + plain.common @ plain.common.T) @ q
+    assert loose.freedom == len(z) and len(loose.grid) == 2
+    assert loose.quadratic[1] == pytest.approx(z @ np.linalg.solve(c, z))
+
+
+def test_innovations_are_white(plain):
+    unit, index = plain.unit, plain.unit.grid.index((0.3, 1.0))
+    z = unit.draw(index, np.random.default_rng(3), 2000)
+    rng = np.random.default_rng(4)
+    found = []
+    for k in range(200):
+        drawn = linear_model.unit(Rows(
+            unit.in_rows(z[:, k]) + plain.nuisance @ rng.standard_normal(4), unit.rows.groups,
+            unit.rows.nuisance, ((0.3,), (1.0,)), (), unit.rows.common), unit.designs)
+        left, leverage = drawn.innovations((0.3, 1.0), np.zeros(0, int), 0.0)
+        found.append(left / np.sqrt(1.0 - leverage))
+    assert found[0].shape == (8, 3)  # three whole placements, and pairs of two that lean
+    assert np.std(found) == pytest.approx(1.0, rel=0.05)
+
+
+def made_of(number):
+    """Unit of so many placements of two blocks each, each in an attitude of its own."""
+    rng = np.random.default_rng(5)
+    seconds = np.full(2 * number, 2.5)
+    t = np.cumsum(seconds) + np.repeat(10.0 * np.arange(number), 2)
+    parts = []
+    for k in range(number):
+        up = rng.standard_normal(3)
+        columns = np.tile(lateral_basis(up / np.linalg.norm(up)).T, (2, 1))
+        parts.append((slice(2 * k, 2 * k + 2), np.eye(6), columns[:, :2 * (k % 2)],
+                      np.eye(6) if k % 2 else covariance.across(columns)))
+    n = 6 * number
+    design = Design("slope", "", ["x"] * 20, [0] * 20, rng.standard_normal((n, 20)), np.ones(20))
+    return linear_model.unit(Rows(
+        rng.standard_normal(n), covariance.in_time(t, seconds, np.ones(3), parts),
+        rng.standard_normal((n, 12)), ((0.5,), (0.1,))), [design])
+
+
+def test_twice_the_placements_need_no_more_than_twice_the_memory():
+    """A matrix of all readings would need four times as much, its factor eight times as long."""
+    peaks = []
+    for number in (150, 300):
+        tracemalloc.start()
+        unit = made_of(number)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+        # chi2 of white noise that the covariance takes for more than it is
+        assert unit.freedom == 5 * number - 12 and 0.0 < unit.quadratic[0] < unit.freedom
+    assert peaks[1] < 2.4 * peaks[0]
+    assert peaks[1] < (5 * 300) ** 2 * 8

@@ -3,8 +3,9 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture import capture_file
-from sixflip_host.gap import answer, diagnosis, observations
-from sixflip_host.simulating import scenario, simulate
+from sixflip_host.diagnosis import answer, diagnosis
+from sixflip_host.experiment import blocks
+from sixflip_host.simulation import scenario, simulated_session
 
 
 @pytest.fixture
@@ -12,14 +13,14 @@ def two_sessions(tmp_path, monkeypatch):
     monkeypatch.setenv("SIXFLIP_CACHE", str(tmp_path))
     plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 77,
                                "world": {"placement_scatter_deg": 0.05, "tilt_deg": 1.0}})
-    return [simulate.session(plan, number) for number in (0, 1)]
+    return [simulated_session.session(plan, number) for number in (0, 1)]
 
 
 def test_a_step_at_another_time_in_each_session_is_unexplained(two_sessions):
     for capture, share in zip(two_sessions, (0.35, 0.6)):
         after = np.arange(len(capture)) > share * len(capture)
         capture.accel[after] += np.array([50, -40, 60], np.int16)  # 3 mg
-    sessions = [observations.Session(str(k), c) for k, c in enumerate(two_sessions)]
+    sessions = [blocks.of(str(k), c) for k, c in enumerate(two_sessions)]
     found = answer.of(diagnosis.Diagnosis(sessions, diagnosis.Settings()))
     assert found["verdict"] == "unexplained"
     assert [c["effect"] for c in found["causes"]] == []
@@ -38,6 +39,6 @@ def test_a_log_without_a_rest_cannot_tell_that_there_is_no_gap():
     meta = {"sensor": "mpu6050", "rate_hz": 100, "accel_lsb_per_g": 16384.0,
             "gyro_lsb_per_dps": 65.5, "g": 9.80665}
     capture = capture_file.Capture(meta, (t * 1e6).astype(np.int64), *counts)
-    found = diagnosis.Diagnosis([observations.Session("moving", capture)], diagnosis.Settings())
+    found = diagnosis.Diagnosis([blocks.of("moving", capture)], diagnosis.Settings())
     assert not found.sessions[0].runs
     assert found.verdict == "cannot tell"

@@ -79,7 +79,7 @@ def test_a_capture_that_ends_too_soon_is_refused_and_says_what_is_missing(tmp_pa
 
 @pytest.mark.parametrize("change, kind, words", [
     ({"sensor": "other"}, UsageError, "sensor 'other'"),
-    ({"accel_lsb_per_g": 8192}, UsageError, "8192 counts per g"),
+    ({"accel_lsb_per_g": 8000}, UsageError, "8000 counts per g"),
     ({"rate_hz": 2000}, UsageError, "2000 samples a second")])
 def test_captures_the_firmware_would_never_take(change, kind, words):
     capture = unlabelled()

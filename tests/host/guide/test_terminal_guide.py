@@ -15,7 +15,7 @@ import pytest
 from board_session import unlabelled
 from micropython_tier import SESSION
 
-from sixflip_host.board import provision
+from sixflip_host.board import firmware_update
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.capture import capture_file
 from sixflip_host.guide import keys
@@ -106,7 +106,7 @@ def flash(micropython, tmp_path_factory):
     image = tmp_path_factory.mktemp("provisioned") / "flash.img"
     with VirtualBoard(SESSION, image, micropython=micropython) as board, \
             MpremoteLink(board.port) as link:
-        provision.copy(link, {"pose_samples": 200}, lambda line: None)
+        firmware_update.copy(link, {"pose_samples": 200}, lambda line: None)
     return image
 
 

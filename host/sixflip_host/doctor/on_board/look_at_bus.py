@@ -5,10 +5,11 @@ Prints one Python literal a line, ("name", ...). Nothing is changed but the sens
 
 from array import array
 
+from sixflip.chips.catalogue import CHIPS
 from sixflip_device.this_board import board_here
 
-ASKED = ((0x68, 0x75, 1), (0x68, 0x00, 1), (0x69, 0x75, 1), (0x69, 0x00, 1), (0x53, 0x00, 1),
-         (0x1D, 0x00, 1), (0x1E, 0x0A, 3), (0x0D, 0x0D, 1), (0x7C, 0x00, 1))
+ASKED = sorted({(address, row[3], 1) for row in CHIPS for address in row[2]}) + [
+    (0x1E, 0x0A, 3), (0x0D, 0x0D, 1), (0x7C, 0x00, 1)]
 TRIES = 3
 SAMPLES = 50
 INT_ENABLE, INT_STATUS = 0x38, 0x3A     # of an MPU6050, RM-MPU-6000A-00 4.2
@@ -115,8 +116,12 @@ def look():
     board, settings, problems = board_here()
     tell("settings", board.name, settings["sensor"], settings["freq"], problems)
     levels(board)
-    scanned(board.i2c)
-    answers(board.i2c)
+    if getattr(board.i2c, "spi", False):    # one chip, no addresses to ask
+        tell("scan", [])
+        tell("ids", {})
+    else:
+        scanned(board.i2c)
+        answers(board.i2c)
     try:
         imu, report = find(board, settings)
     except OSError as e:

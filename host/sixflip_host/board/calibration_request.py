@@ -1,0 +1,81 @@
+"""Ask a board for a calibration, join one under way, end it."""
+
+import contextlib
+import json
+
+from ..errors import NoBoard, SixflipError
+from ..value_kinds import Misfit, Number
+from . import firmware_update
+from .board_events import events
+
+FLAG = "calibrate.flag"
+RATE = Number(1, 1000)
+JOIN_S = 3
+STOP_S = 10
+
+
+def ask_for_calibration(link, request=None):
+    """Leave the flag on the flash, with what is asked for in it, and start the firmware.
+
+    Returns the board's id: what the firmware says at once is lost while a USB port comes back.
+    """
+    if "main.py" not in link.files([]):
+        raise NoBoard("%s: the firmware is not on this board: sixflip provision" % link.port)
+    try:
+        link.put(FLAG, json.dumps(request).encode() if request else b"")
+        board = link.board_id()
+        link.reset()
+        return board
+    except KeyboardInterrupt:
+        with contextlib.suppress(SixflipError, OSError):
+            link.remove(FLAG)
+        raise
+
+
+def rate_of(link):
+    """rate_hz of the board's settings."""
+    try:
+        return RATE.take(firmware_update.json_settings(link.get("sixflip.json")).get("rate_hz"))
+    except (SixflipError, OSError, Misfit):
+        return 100
+
+
+def under_way(link):
+    """The names still missing in a calibration that is under way, of a plan or not known: [];
+    None when there is none: a board without a record begins one by itself."""
+    missing = None
+    for event in events(link, JOIN_S, JOIN_S):
+        if event["event"] == "state":
+            missing = missing or []
+            if event.get("missing") is not None:
+                return event["missing"]
+    return missing
+
+
+def join(link, face):
+    """Ask a calibration that is under way and has the face for it again. False when there is
+    none."""
+    missing = under_way(link)
+    if not missing or {face + "a", face + "b"} <= set(missing):
+        return False
+    link.send(json.dumps({"cmd": "redo", "face": face}))
+    return True
+
+
+def stop(link):
+    """After Ctrl-C: end the session on the board; a sentence on what is kept."""
+    kept = 0
+    with contextlib.suppress(SixflipError, OSError):
+        link.send("")  # what was being sent
+        link.send(json.dumps({"cmd": "stop"}))
+        for event in events(link, STOP_S, STOP_S):
+            if event["event"] == "capture":
+                kept = event.get("samples") or 0
+            elif event["event"] in ("saved", "ready", "stopped"):
+                break
+    if getattr(link, "thrown_away", False):
+        return "stopped; of a replay nothing is kept"
+    if kept:
+        return ("stopped; the %s samples so far stay on the board: sixflip calibrate --continue "
+                "goes on with them, sixflip pull fetches them" % kept)
+    return "stopped; nothing on the board has changed"

@@ -1,0 +1,87 @@
+"""All rests and moves of a capture in one least squares: the answer as a dictionary."""
+
+import numpy as np
+
+from sixflip.faces import LEANING
+
+from ..capture import rests
+from ..errors import BadFile, CheckFailed
+from . import gyro_rests, joint_refinement, kept_parameters, multiposition
+from . import refinement_answer as answer
+from .rests_and_moves import RestsAndMoves
+
+LABELS = "labels"
+SHORTEST = 20  # samples of a labelled rest that count
+
+
+def refine(capture, free=False, record=None, g_sensitivity="auto"):
+    """The answer (a dictionary, JSON-able) of a capture; see the verb's options.
+
+    record: a correction Record to keep the undetermined from.
+    """
+    runs, source = rests_of(capture, free)
+    session = RestsAndMoves(capture, runs, far_pairs=source == LABELS)
+    told, kept = None, None
+    if record is not None:
+        result, told, kept = kept_parameters.refine(session, record)
+    else:
+        per_g = g_sensitivity == "on" or (
+            g_sensitivity == "auto" and gyro_rests.pulled_by_gravity(session))
+        if g_sensitivity == "on" and not session.has_gyro:
+            raise BadFile("no gyro columns, expected gx gy gz for --g-sensitivity on")
+        result = joint_refinement.refine(session, per_g)
+    return assemble(capture, session, result, source, told, kept)
+
+
+def rests_of(capture, free):
+    """[(pose code, first, end)] and where they come from, in words."""
+    if capture.pose is not None and capture.pose.any():
+        runs = rests.labelled(capture.pose, SHORTEST)
+        if free:
+            return renamed([(f, e) for _, f, e in runs]), "labels, taken as free poses"
+        return runs, LABELS
+    if free:
+        lsb = float(capture.meta["accel_lsb_per_g"])
+        if len(capture) < 2 * rests.WINDOW:
+            raise BadFile("%d samples, expected a session of rests" % len(capture))
+        try:
+            fit = multiposition.search(capture.accel * (capture.g / lsb), capture.g)
+        except ValueError as error:
+            raise CheckFailed(str(error))
+        return renamed([(run.first, run.end) for run in fit.rests]), "found by |a| = g (Tedaldi)"
+    from ..capture.find_poses import find_poses
+    found = find_poses(capture)
+    return rests.labelled(np.asarray(found.pose)), "found against the sensor's own noise"
+
+
+def renamed(spans):
+    """Spans as leaning poses L1, L2, ..."""
+    return [rests.Run(LEANING + 1 + k, first, end) for k, (first, end) in enumerate(spans)]
+
+
+def assemble(capture, session, result, source, told, kept):
+    """Everything about a refinement in one dictionary."""
+    lost, weak = answer.left_open(session, result) if told is None else ([], [])
+    judged, reason = answer.verdict(session, result, lost)
+    off = answer.norm_off_mg(result)
+    out = {
+        "format": 1, "sensor": capture.meta["sensor"], "g": capture.g,
+        "rests": len(session.codes), "rests_from": source, "moves": len(session.ends),
+        "moves_left_out": session.left_out,
+        "accel": answer.accelerometer(result, capture.g),
+        "norm_off_mg": dict(zip(session.names, off.tolist())),
+        "norm_off_mg_rms": float(np.sqrt(np.mean(off**2))),
+        "gyro": answer.gyro(result) if session.has_gyro and session.ends else None,
+        "moves_off_deg_rms": answer.moves_off_deg(session, result),
+        "flips": answer.flips(session, result),
+        "flip_spread_deg": None if result.hand is None else float(np.degrees(result.hand)),
+        "equations": {name: {"number": n, "freedom": freedom,
+                             "times_expected_error": result.equations.sigma[name]}
+                      for name, (_, n, freedom) in result.groups.items()},
+        "not_determined": [name for _, shares in lost[:1] for name in shares] + weak,
+        "solved": told, "kept": kept, "verdict": judged, "reason": reason,
+    }
+    if not session.has_gyro:
+        out["gyro_missing"] = ("no gyro columns: flips are taken as 180 degrees and there is "
+                               "nothing to refine a gyro from")
+    return out

@@ -1,0 +1,253 @@
+"""A capture solved by the shared core, the code that also runs on the board."""
+
+import numpy as np
+
+from sixflip import accelerometer, flip_doubt, gyroscope, verdict
+from sixflip.chips import catalogue
+from sixflip.faces import FACES, face_of_code, pose_name
+
+from ..capture import clock
+from ..capture.capture_binary import write_pauses
+from ..capture.find_poses import HELD_BY_HAND, find_poses
+from ..capture.imports import units
+from . import flips_turned
+
+INT16_RAIL = 32767
+RATE_OFF = 0.2          # of the rate in the header
+JUMP = 10               # times the usual interval
+SESSION_WITH_FLIPS = 3  # faces turned by 180 degrees by chance are not that many
+
+
+class Solution:
+    """accel  AccelerometerResult or None when the poses do not determine it
+    verdict, reason   about the accelerometer
+    gyro   GyroscopeResult, or None and no_gyro says why
+    flips  FlipsTurned: the turns the accelerometer was solved with
+    placements, moves, capture
+    remarks   sentences about the capture itself
+    """
+
+
+def solve(capture, g=None, level=None, half_turns=False):
+    """Solve a capture; finds the poses first where nobody labelled them.
+
+    g      m/s², None: what the capture says; level: as accelerometer.solve
+    half_turns  take every flip for 180 degrees, whatever the gyro says
+    """
+    out = Solution()
+    out.capture = capture
+    out.remarks = capture_remarks(capture)
+    labelled = capture.pose is not None
+    if not labelled and not capture.sums_only:
+        found = find_poses(capture)
+        found.label(capture)
+        out.remarks += found.remarks()
+    placements = capture.placements()
+    out.flips = flips_turned.FlipsTurned("as asked for") if half_turns \
+        else flips_turned.by_moves(capture, labelled)
+    judge(capture, placements, capture.g if g is None else g, level, labelled, out,
+          out.flips.angles)
+    out.moves = capture.moves() if not capture.sums_only else []
+    out.gyro, out.no_gyro = solve_gyro(capture, placements, out.moves,
+                                       out.accel and out.accel.P, flips=out.flips)
+    doubt_flips(out, set(out.flips.angles))
+    return out
+
+
+def doubt_flips(out, known=()):
+    """What the gyro saw of the flips reaches the accelerometer's verdict.
+
+    known  faces whose turn was measured and taken into account
+    """
+    if out.verdict == "refused" or out.gyro is None:
+        return
+    sentence = flip_doubt.accelerometer_doubt(out.gyro, tolerance(out.capture),
+                                              out.accel.tilt_deg, known)
+    if sentence:
+        out.reason = sentence if out.verdict == "good" else out.reason + "; " + sentence
+        out.verdict = "doubtful"
+
+
+def tolerance(capture):
+    """Of the gyro's scale, by the data sheet; None for a chip we do not know."""
+    sensor = capture.meta["sensor"]
+    known = [row[0] for row in catalogue.CHIPS if row[1]]
+    return catalogue.driver(sensor).gyro_tolerance if sensor in known else None
+
+
+def judge(capture, placements, g, level=None, labelled=True, out=None, angles=None):
+    """Solve the accelerometer from placements and judge it; fills a Solution."""
+    out = out or Solution()
+    out.capture = capture
+    out.placements, out.g = placements, g
+    lsb = capture.meta["accel_lsb_per_g"]
+    out.accel, failure = None, ""
+    try:
+        out.accel = accelerometer.solve(out.placements, lsb, out.g, level, angles)
+    except (ValueError, ZeroDivisionError) as error:
+        failure = str(error)
+    missing = [] if level == "no flips" else unfinished(out.placements, labelled)
+    out.verdict, out.reason = verdict.judge_accelerometer(
+        out.accel, out.placements, lsb, missing, failure, rail(capture), halves(capture, out))
+    return out
+
+
+def unfinished(placements, labelled):
+    """Pose codes still missing from a session that was meant to have flips."""
+    have = {one.pose for one in placements}
+    flipped = [face for face in range(6) if {1 + 2 * face, 2 + 2 * face} <= have]
+    if len(flipped) < (1 if labelled else SESSION_WITH_FLIPS):
+        return []
+    return [code for code in range(1, 13) if code not in have]
+
+
+def rail(capture):
+    """Accelerometer count at which the chip is saturated."""
+    full_scale = capture.meta.get("accel_range_g", np.inf) * capture.meta["accel_lsb_per_g"]
+    return int(min(INT16_RAIL, full_scale - 1))
+
+
+def halves(capture, solution):
+    """Per placement: mean counts of its second half minus its first, [x, y, z].
+
+    Zero where the capture says that the box was held by hand: there nothing is still.
+    """
+    if capture.sums_only:
+        return None
+    by_hand = capture.meta.get(HELD_BY_HAND, [])
+    out = []
+    for one in solution.placements:
+        middle, end = one.first + one.n // 2, one.first + one.n
+        if one.n < 2 or pose_name(one.pose) in by_hand:
+            out.append([0.0] * 3)
+            continue
+        out.append((capture.accel[middle:end].mean(axis=0)
+                    - capture.accel[one.first:middle].mean(axis=0)).tolist())
+    return out
+
+
+def middles_mg(placements, lsb):
+    """For every axis the middle between its two faces as read, mg; None where one is missing.
+
+    Where faces are crooked or the table tilts this is wrong by the square of the angle only.
+    """
+    out = []
+    for up, down in ((2, 3), (4, 5), (0, 1)):       # X+ X-, Y+ Y-, Z+ Z-
+        axis = len(out)
+        reads = [[one.sums[axis] / one.n for one in placements if face_of_code(one.pose) == face]
+                 for face in (up, down)]
+        out.append(500 * sum(sum(r) / len(r) for r in reads) / lsb if all(reads) else None)
+    return out
+
+
+def capture_remarks(capture):
+    """What is worth knowing about the counts themselves."""
+    remarks = []
+    if capture.truncated:
+        remarks.append("the capture is not whole: %s; %d samples could be read" % (
+            capture.truncated, len(capture)))
+    if capture.sums_only:
+        remarks.append("the board kept only the sums: no samples to look into")
+    if capture.meta.get(HELD_BY_HAND):
+        remarks.append("held by hand, so not really still: %s" % " ".join(
+            map(str, capture.meta[HELD_BY_HAND])))
+    remarks += _time_remarks(capture)
+    step = units.common_step(capture.accel) if len(capture) and capture.accel is not None else 1
+    if step > 1:
+        remarks.append("every accelerometer count is a multiple of %d: its resolution is %.2f mg"
+                       % (step, 1e3 * step / capture.meta["accel_lsb_per_g"]))
+    return remarks
+
+
+def _time_remarks(capture):
+    """What is odd about the timestamps: the gyro's integrals hang on them."""
+    if len(capture) < 3:
+        return []
+    gaps = np.diff(capture.t_us)
+    usual = float(np.median(gaps))
+    remarks = []
+    rate_hz = capture.meta["rate_hz"]
+    measured = clock.of(capture)
+    if measured and abs(measured.rate_hz / rate_hz - 1) > RATE_OFF:
+        remarks.append("the timestamps say %.4g samples a second, the header %g" % (
+            measured.rate_hz, rate_hz))
+    gaps[write_pauses(capture)] = usual
+    jumps = np.flatnonzero(gaps > JUMP * max(usual, 1.0))
+    if len(jumps):
+        longest = int(gaps.argmax())
+        remarks.append("the timestamps jump in %d place%s, the farthest by %.2f s after sample %d"
+                       % (len(jumps), "" if len(jumps) == 1 else "s", gaps[longest] / 1e6,
+                          longest))
+    return remarks
+
+
+def solve_gyro(capture, placements, moves, accel_P=None, old=None, flips=None):
+    """(GyroscopeResult, "") from flips and rests, or (None, why there is none).
+
+    flips  FlipsTurned, where the moves say how far the flips turned
+    """
+    if capture.gyro is None and not capture.sums_only:
+        return None, "the capture has no gyro columns"
+    if capture.sums_only:
+        return None, "the board kept only the sums: the gyro needs the samples of the moves"
+    try:
+        found = gyroscope.solve(placements, moves, capture.meta["gyro_lsb_per_dps"], accel_P,
+                                old, capture.meta["accel_lsb_per_g"])
+    except (ValueError, ZeroDivisionError) as error:
+        return None, str(error)
+    if found.verdict == "good":
+        doubt = flips_short(flips.measured) if flips and flips.measured else \
+            flip_doubt.scale_doubt(found, tolerance(capture))
+        if doubt:
+            found.verdict, found.reason = "doubtful", doubt
+    return found, ""
+
+
+def flips_short(measured):
+    """What is wrong with a scale from half turns when the moves say they were none, or ""."""
+    for axis, faces in enumerate(((2, 3), (4, 5), (0, 1))):     # X+ X-, Y+ Y-, Z+ Z-
+        both = [measured[face] for face in faces if face in measured]
+        off = sum(degrees - 180.0 for degrees, _ in both) / max(len(both), 1)
+        if both and abs(off) > max(flips_turned.OFF_DEG, 3 * max(s for _, s in both)):
+            return ("by the face-to-face moves the flips about %s turned by %.1f degrees, not "
+                    "180: its scale is off by %.1f %%; sixflip refine gives the right one"
+                    % ("xyz"[axis], 180.0 + off, abs(off) / 1.8))
+    return ""
+
+
+def to_json(solution):
+    """The answer of `solve --json`, as the capture format's description says."""
+    r = solution.accel
+    accel = {"P": None, "T": None, "scale": None, "v": None, "sigma": None, "residual_mg": {},
+             "tilt_deg": None, "tilt_spread_deg": None, "level": None}
+    if r:
+        accel = {
+            "P": r.P, "T": r.T, "scale": r.scale, "v": r.v,
+            "sigma": {"P": r.sigma_P, "scale": r.sigma_scale, "v": r.sigma_v},
+            "residual_mg": {pose_name(pose): [1e3 * x for x in left]
+                            for pose, left in sorted(r.residual.items())},
+            "tilt_deg": r.tilt_deg, "tilt_spread_deg": r.tilt_spread_deg, "level": r.level}
+    accel.update(verdict=solution.verdict, reason=solution.reason)
+    return {"format": 1, "sensor": solution.capture.meta["sensor"], "g": solution.g,
+            "accel": accel, **_gyro_json(solution), "flips": _flips_json(solution)}
+
+
+def _flips_json(solution):
+    flips = solution.flips
+    return {"taken_as": "measured" if flips.angles else "180 degrees", "reason": flips.reason,
+            "faces": {FACES[face]: {
+                "measured_deg": degrees, "sigma_deg": sigma,
+                "used_deg": float(np.degrees(flips.angles.get(face, np.pi)))}
+                for face, (degrees, sigma) in flips.measured.items()}}
+
+
+def _gyro_json(solution):
+    gyro = solution.gyro
+    if gyro is None:
+        return {"gyro": None, "gyro_reason": solution.no_gyro}
+    # Standard errors of what was measured: an axis that was not flipped has none.
+    sigma = [[None] * 3 if k in gyro.missing else row for k, row in enumerate(gyro.sigma)]
+    return {"gyro": {
+        "P": gyro.P, "bias_dps": gyro.bias_dps,
+        "sigma": {"P": sigma, "bias_dps": gyro.sigma_bias_dps},
+        "flips": gyro.flips, "verdict": gyro.verdict, "reason": gyro.reason}}

@@ -1,0 +1,62 @@
+"""Every comparison of a board's record against the same capture solved here."""
+
+from sixflip.accelerometer import best_level
+from sixflip.faces import face_of_code
+
+from . import solution, verify_checks, verify_flips, verify_gyro
+
+
+def verify(capture, record, before=None):
+    """Every Check of a record against a capture, and remarks on what could not be checked.
+
+    before  the record before, None where there is none
+    """
+    remarks = []
+    checks = verify_checks.belong_together(capture, record)
+    if capture.truncated:
+        remarks.append("the capture is not whole: " + capture.truncated)
+        checks.append(verify_checks.Check("capture", capture.truncated, "", False, "whole"))
+    if capture.sums_only:
+        remarks.append("the board kept only the sums: this vouches for the solve alone, "
+                       "not for the sums it started from")
+    elif capture.board_placements is None:
+        remarks.append("a text capture has no sums of the board: the host's own are used")
+    else:
+        checks += verify_checks.pose_blocks(capture)
+    placements = capture.board_placements or capture.placements()
+    if record.accel is None:
+        return checks + [verify_checks.Check("accelerometer", "not in the record", "", False)], \
+            remarks
+    checks += verify_checks.accelerometer(record, placements, record.accel_lsb_per_g,
+                                          verify_flips.angles(record))
+    found, said = verify_flips.checks(capture, record, placements, before)
+    checks += found
+    remarks += said
+    old_gyro = before and before.gyro["P"]
+    checks += _verdict(capture, record, placements, old_gyro)
+    found, said = verify_gyro.checks(capture, record, placements, old_gyro)
+    checks += found
+    remarks += said
+    if record.gyro_lsb_per_dps:
+        checks += verify_checks.gyro_bias(record, placements)
+    checks += verify_checks.temperature(record, capture, placements)
+    return checks, remarks
+
+
+def _verdict(capture, record, placements, old_gyro):
+    """Level, and the verdict the shared judge gives now that the samples are at hand."""
+    again = solution.judge(capture, placements, record.g, record.accel["level"],
+                           angles=verify_flips.angles(record))
+    verify_flips.doubts(capture, record, placements, again, old_gyro)
+    check = verify_checks.same("verdict", record.accel["verdict"], again.verdict)
+    if capture.sums_only and (check.board, check.host) == ("doubtful", "good") \
+            and "flip" in record.accel["reason"]:
+        check.ok = True     # what the gyro saw of the flips was not kept
+    if not check.ok:
+        check.host = "%s: %s" % (again.verdict, again.reason)
+    checks = [check, verify_checks.same("level", record.accel["level"], best_level(
+        [one.pose for one in placements if face_of_code(one.pose) >= 0]))]
+    if check.ok and not capture.sums_only:
+        checks.append(verify_checks.same_words("reason", record.accel["reason"], again.reason,
+                                               record.float_bits))
+    return checks

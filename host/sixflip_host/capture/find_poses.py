@@ -1,0 +1,89 @@
+"""Which pose each rest of a recording is that nobody labelled: its face, a or b, or leaning."""
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sixflip.faces import AXIS, FACES, LEANING, SIGN, pose_name
+from sixflip.noise_floor import NoiseFloor
+from sixflip.pose_label import CROOKED_DEG, HALF_TURN_DEG, SAME_DEG
+
+from . import rests
+from .attitude import heading_change
+
+HELD_BY_HAND = "held_by_hand"   # key of a capture's header: names of poses that were not at rest
+
+
+@dataclass(frozen=True)
+class FoundPoses:
+    """pose: int16 (n,) codes; rests: tuple of rests.Rest; noise: NoiseFloor of the quietest
+    second, or None where there is no rest."""
+
+    pose: np.ndarray
+    rests: tuple
+    noise: NoiseFloor | None
+
+    def label(self, capture):
+        """Write the poses into the capture, and into its header which were held by hand."""
+        capture.pose = self.pose
+        by_hand = [pose_name(rest.code) for rest in self.rests if rest.by_hand]
+        if by_hand:
+            capture.meta[HELD_BY_HAND] = by_hand
+
+    def remarks(self):
+        """Lines for a person: what was found and what each rest was taken for."""
+        if self.noise is None:
+            return ["no rest found: nowhere a second without motion"]
+        lines = ["%d rests found; noise %.2f mg" % (
+            len(self.rests), np.mean(self.noise.sd[:3]) / self.noise.lsb[0])]
+        for rest in self.rests:
+            lines.append("%-4s samples %d to %d, %.1f deg off %s%s" % (
+                pose_name(rest.code), rest.first, rest.end - 1, rest.off_deg, FACES[rest.face],
+                "".join("; " + why for why in (rest.why, rest.by_hand and "held by hand") if why)))
+        return lines
+
+
+def find_poses(capture):
+    """Label every sample of a Capture; returns FoundPoses. Nothing is changed in the capture."""
+    found = rests.find(capture, rests.POSES)
+    named = _named(capture, found.rests, found.noise)
+    pose = np.zeros(len(capture), np.int16)
+    for rest in named:
+        pose[rest.first:rest.end] = rest.code
+    return FoundPoses(pose, tuple(named), found.noise)
+
+
+def _named(capture, found, noise):
+    """Every rest with its pose: face from gravity, a or b from the gyro, leaning otherwise."""
+    leaning, named = 0, []
+    for rest in found:
+        code, why = 0, "leaning"
+        if rest.off_deg <= CROOKED_DEG:
+            code, why = _letter(capture, named, rest, noise)
+        if not code:
+            leaning += 1
+            code = LEANING + leaning
+        named.append(replace(rest, code=code, why=why))
+    return named
+
+
+def _letter(capture, before, rest, noise):
+    """a or b of a rest on a face, and why; code 0 when the gyro cannot say."""
+    a = 1 + 2 * rest.face
+    seen = [one for one in before if one.code in (a, a + 1)]
+    if not seen:
+        return a, ""
+    last = seen[-1]
+    if capture.gyro is None:
+        if before[-1] is last or len({one.code for one in seen}) == 1:
+            return 2 * a + 1 - last.code, "moved since %s, no gyro to tell" % pose_name(last.code)
+        return 0, "on its face again, no gyro to tell a from b"
+    turned = heading_change(capture, before[before.index(last):] + [rest], noise.bias,
+                            AXIS[rest.face], SIGN[rest.face])
+    if turned is None:
+        return 0, "on its face again, but the gyro was saturated or samples are missing"
+    why = "turned by %.0f deg since %s" % (turned, pose_name(last.code))
+    if abs(turned) <= SAME_DEG:
+        return last.code, why
+    if abs(turned) >= HALF_TURN_DEG:
+        return 2 * a + 1 - last.code, why
+    return 0, why + ", neither a half turn nor none"

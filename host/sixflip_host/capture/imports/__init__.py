@@ -1,0 +1,1 @@
+"""Recordings that others made, read without guessing: CSV, bags, units."""

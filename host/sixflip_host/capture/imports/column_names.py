@@ -1,0 +1,234 @@
+"""What the columns of somebody's table are, by their names: sensor, axis, unit; times."""
+
+import re
+from typing import NamedTuple
+
+ACCEL, GYRO, MAG, TEMP = "a", "g", "m", "t"
+WORDS = {
+    ACCEL: {"a", "f", "acc", "accel", "accelerometer", "acceleration", "accelerations", "accels",
+            "accelerometers", "linacc"},
+    GYRO: {"g", "w", "gyr", "gyro", "gyros", "gyroscope", "gyroscopes", "omega", "angvel",
+           "rotationrate", "angrate"},
+    MAG: {"m", "mag", "magnetometer", "magnetic"},
+}
+PAIRS = {ACCEL: (("lin", "acc"), ("linear", "acceleration"), ("linear", "accel"),
+                 ("specific", "force"), ("acc", "smooth"), ("acc", "adc")),
+         GYRO: (("ang", "vel"), ("angular", "velocity"), ("angular", "rate"), ("angular", "vel"),
+                ("rotation", "rate"), ("gyro", "adc"), ("gyro", "unfilt"))}
+# What is made out of readings, or says something about them, is no reading.
+DERIVED = {"covariance", "cov", "orientation", "quaternion", "quat", "bias", "offset", "std",
+           "sigma", "var", "variance", "magnitude", "norm", "abs", "total", "user", "cmd",
+           "setpoint", "error", "reference", "world", "enu", "ned", "clipping", "debug", "motor",
+           "calibrated", "corrected", "integral", "peak", "max", "min", "mean"}
+FILLERS = {"raw", "lsb", "counts", "count", "b", "body", "imu", "field", "data", "readings",
+           "reading", "values", "value", "sensor", "measured", "meas", "x", "y", "z", "chip",
+           "mps2", "ms2", "radps", "rps", "dps", "mg",
+           "rs", "s"}       # the last two: a_RS_S_x of EuRoC and its followers
+TIMES = {"t", "ts", "time", "times", "timestamp", "timestamps", "stamp", "seconds", "millis",
+         "micros", "tick", "ticks", "clock"}
+TIME_UNITS = {"ns": 1e-3, "us": 1.0, "ms": 1e3, "s": 1e6}     # microseconds
+UNIT_OF_TIME = {"s": "s", "sec": "s", "secs": "s", "second": "s", "seconds": "s", "ms": "ms",
+                "msec": "ms", "millis": "ms", "milliseconds": "ms", "us": "us", "µs": "us",
+                "usec": "us", "micros": "us", "microseconds": "us", "ns": "ns", "nsec": "ns",
+                "nanos": "ns", "nanoseconds": "ns"}
+UNIT = {"m/s2": "m/s2", "m/s^2": "m/s2", "m/s²": "m/s2", "m/s/s": "m/s2", "ms-2": "m/s2",
+        "m/sec2": "m/s2", "m/sec^2": "m/s2", "mps2": "m/s2", "m_s2": "m/s2", "ms2": "m/s2",
+        "g": "g", "mg": "mg", "rad/s": "rad/s", "rad/sec": "rad/s", "rads": "rad/s",
+        "rad": "rad/s", "deg/s": "dps", "°/s": "dps", "deg/sec": "dps", "dps": "dps",
+        "rad s^-1": "rad/s", "m s^-2": "m/s2", "mdps": "mdps",
+        "lsb": "counts", "counts": "counts", "raw": "counts"}
+KINDS = {ACCEL: ("g", "mg", "m/s2", "counts"), GYRO: ("rad/s", "dps", "mdps", "counts")}
+
+
+class Column(NamedTuple):
+    """sensor: ACCEL, GYRO, MAG or TEMP; axis: "x", "y", "z", or a number as the name has it, or
+    "" of a temperature; unit: as it stands in the name, or ""; group: the name without its axis,
+    which the three columns of one sensor share."""
+
+    sensor: str
+    axis: str
+    unit: str
+    group: str
+
+
+def column(name):
+    """The Column that a name says, or None."""
+    bare, unit = _without_unit(name)
+    words = _words(bare)
+    if not words or set(words) & DERIVED:
+        return None
+    if _is_temperature(words):
+        return Column(TEMP, "", "c" if words[-1] in ("c", "degc", "celsius") else unit, "")
+    found = _fused(words) or _apart(words)
+    if found is None:
+        return None
+    sensor, axis, group = found
+    return Column(sensor, axis, _unit(unit, words, sensor), group)
+
+
+def _without_unit(name):
+    """A name without a unit in brackets, and the unit; an index in brackets stays."""
+    match = re.search(r"[\[(]\s*([^\])]*?)\s*[\])]\s*\Z", name)
+    if not match or match.group(1).isdigit():
+        return name, ""
+    return name[:match.start()], match.group(1).replace("\\", "")
+
+
+def _words(name):
+    """field.linear_acceleration.x -> field linear acceleration x; AccX, gyroADC[0] likewise."""
+    name = re.sub(r"([a-z0-9])([A-Z])", r"\1 \2", name.strip().lstrip("%#"))
+    return [word for word in re.split(r"[^a-z0-9°²^µ]+", name.lower()) if word]
+
+
+def _unit(unit, words, sensor):
+    """The unit of a reading, from its brackets or from the words of the name."""
+    given = UNIT.get(unit.lower() if unit != "G" else "g", "")
+    if not given:
+        said = "_".join(words)
+        given = next((meant for part, meant in (
+            ("m_s2", "m/s2"), ("mps2", "m/s2"), ("m_s_2", "m/s2"), ("rad_s", "rad/s"),
+            ("_rad_", "rad/s"), ("_rads", "rad/s"), ("_radps", "rad/s"),
+            ("deg_s", "dps"), ("_dps", "dps"),
+            ("_mg", "mg")) if part in said), "g" if words[-1] == "g" and len(words) > 2 else "")
+    return given if given in KINDS.get(sensor, ()) else ""
+
+
+def _is_temperature(words):
+    return any(word in ("temp", "temperature", "tmp") for word in words) \
+        and not set(words) & {"set", "target", "ambient", "cpu", "battery"}
+
+
+def _fused(words):
+    """(sensor, axis, group) of ax, accx, gyro_x written in one word, or None."""
+    for number, word in enumerate(words):
+        match = re.match(r"([a-z]+?)_?([xyz])\Z", word)
+        if match and word not in FILLERS:
+            for sensor, names in WORDS.items():
+                known = match.group(1) in names
+                single = len(match.group(1)) == 1
+                rest = set(words) - {word}
+                if known and (not single or rest <= FILLERS or number == len(words) - 1):
+                    return sensor, match.group(2), " ".join(
+                        words[:number] + [match.group(1)] + words[number + 1:])
+        if word in ("gfx", "gfy", "gfz"):       # g-force
+            return ACCEL, word[-1], "gf"
+    return None
+
+
+def _apart(words):
+    """(sensor, axis, group) of acc_x, linear_acceleration.x, gyro_rad[0], or None."""
+    places = [k for k, word in enumerate(words) if word in ("x", "y", "z")]
+    if not places and words[-1].isdigit():
+        places = [len(words) - 1]
+    if not places:
+        match = re.match(r"([a-z]+)([0-3])\Z", words[-1])       # acc1
+        if not match:
+            return None
+        words = [*words[:-1], match.group(1), match.group(2)]
+        places = [len(words) - 1]
+    place = places[-1]
+    rest = words[:place] + words[place + 1:]
+    stems = [re.sub(r"\d+\Z", "", word) or word for word in rest]
+    for sensor, pairs in PAIRS.items():
+        if any(pair == tuple(stems[k:k + 2]) for pair in pairs for k in range(len(stems))):
+            return sensor, words[place], " ".join(rest)
+    for sensor in (ACCEL, GYRO, MAG):
+        long = {word for word in WORDS[sensor] if len(word) > 1}
+        if set(stems) & long or (stems and stems[0] in WORDS[sensor]
+                                 and set(stems[1:]) <= FILLERS) or any(
+                stem.startswith(("accel", "gyro", "magneto")) and sensor == stem[0]
+                for stem in stems):
+            return sensor, words[place], " ".join(rest)
+    return None
+
+
+def readings(names, file_name=""):
+    """({ax … gz, mx … mz, temp: column name}, {ACCEL, GYRO: unit}, remarks) of a table's columns.
+
+    The first whole set of three of a sensor is taken; remarks name what was left out. Columns
+    that are called x, y and z and nothing else are what the file's own name says they are.
+    """
+    if not any(column(name) for name in names):
+        lower = {name.strip().lower(): name for name in names}
+        sensor = next((sensor for sensor, part in ((GYRO, "gyr"), (ACCEL, "acc"))
+                       if part in file_name.lower()), None)
+        if sensor and set("xyz") <= set(lower):
+            return {sensor + axis: lower[axis] for axis in "xyz"}, {}, []
+    found, sets = {}, {}
+    for name in names:
+        told = column(name)
+        if told is None:
+            continue
+        if told.sensor == TEMP:
+            found.setdefault("temp", name)
+        else:
+            sets.setdefault((told.sensor, told.group), {}).setdefault(told.axis, (name, told.unit))
+    units, remarks = {}, []
+    for sensor in (ACCEL, GYRO, MAG):
+        whole = [axes for (kind, _), axes in sets.items() if kind == sensor
+                 and _axes(axes) is not None]
+        if not whole:       # what there is of it shows what is missing
+            for (kind, _), axes in sets.items():
+                for axis in set("xyz") & set(axes) if kind == sensor else ():
+                    found.setdefault(sensor + axis, axes[axis][0])
+            continue
+        for axis, key in zip("xyz", _axes(whole[0])):
+            found[sensor + axis] = whole[0][key][0]
+        said = {unit for _, unit in whole[0].values()}
+        if len(said) == 1 and "" not in said:
+            units[sensor] = said.pop()
+        if len(whole) > 1:
+            remarks.append("columns %s are taken, %s are left out" % (
+                " ".join(one for one, _ in whole[0].values()),
+                " ".join(one for other in whole[1:] for one, _ in other.values())))
+    return found, units, remarks
+
+
+def _axes(axes):
+    """The keys of x, y and z in a set of columns, or None where it is not whole."""
+    for keys in (("x", "y", "z"), ("0", "1", "2"), ("1", "2", "3")):
+        if set(keys) <= set(axes):
+            return keys
+    return None
+
+
+def looks_like_header(names):
+    """True for a line of names that has all three axes of an accelerometer or a gyro."""
+    found = readings(names)[0]
+    return "ax" in found or "gx" in found
+
+
+def times(names):
+    """[(column name or (seconds, nanoseconds), unit or "")] that may be times, best first."""
+    found = []
+    for name in names:
+        bare, unit = _without_unit(name)
+        words = _words(bare)
+        unit = UNIT_OF_TIME.get(unit.lower(), "")
+        if not words or set(words) & {"covariance", "diff", "delta", "dt", "zone", "date"}:
+            continue
+        said = [UNIT_OF_TIME[word] for word in words if word in UNIT_OF_TIME]
+        if set(words) & TIMES:
+            unit = unit or (said[-1] if said and words[-1] in UNIT_OF_TIME else "")
+            found.append((0 if "stamp" in words and "header" in words else 1, name, unit))
+        elif words[0] in UNIT_OF_TIME and len(words) == 1 and len(words[0]) > 1:
+            found.append((2, name, UNIT_OF_TIME[words[0]]))
+    pairs = _second_pairs(names)
+    chosen = [(pair, "s") for pair in pairs]
+    taken = {name for pair in pairs for name in pair}
+    ranked = sorted((one for one in found if one[1] not in taken), key=lambda one: one[0])
+    return chosen + [(name, unit) for _, name, unit in ranked]
+
+
+def _second_pairs(names):
+    """[(seconds, nanoseconds)] of stamps that ROS keeps in two columns."""
+    found = []
+    for name in names:
+        words = _words(name)
+        if words and words[-1] in ("sec", "secs", "s"):
+            for other in names:
+                theirs = _words(other)
+                if theirs and theirs[:-1] == words[:-1] and theirs[-1] in (
+                        "nanosec", "nsec", "nsecs", "nanosecs"):
+                    found.append((name, other))
+    return found

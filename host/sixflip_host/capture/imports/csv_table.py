@@ -1,0 +1,282 @@
+"""Somebody else's CSV: its delimiter, its header lines, its columns of numbers and of labels.
+
+What loggers and serial monitors leave in a file and means nothing is passed over and counted:
+comments, the header once more, NUL bytes, a last line without newline. What may mean something
+is refused with its line.
+"""
+
+import csv
+import math
+import re
+from typing import NamedTuple
+
+import numpy as np
+
+from ...errors import BadFile
+from ..capture_rows import quoted
+from ..unpack import Source, whole_lines
+
+DELIMITERS = (",", ";", "\t", None)     # None: any run of blanks
+LONGEST_LINE = 1 << 16
+HEADER_SEARCH = 200                     # lines in which the column names must appear
+COMMENT = ("#", "//")
+DECIMAL_COMMA = re.compile(r"(^|[;\t ])[+-]?\d+,\d+([eE][+-]?\d+)?($|[;\t ])")
+
+
+class Block(NamedTuple):
+    """Some rows of a table: their line numbers, float (n, columns), labels or None."""
+
+    lines: list
+    values: np.ndarray
+    labels: list
+
+
+class Table:
+    """A CSV whose rows are read block by block, as often as they are asked for.
+
+    names       column names, or None when the file has none
+    width       values in every row
+    preamble    lines before the names
+    passed_over {what: lines} that means nothing, after blocks() has come to its end
+    units       {sensor: unit} that the file's format says, whatever the names
+    """
+
+    units = {}
+
+    def __init__(self, path, source, names, width, separator, first, preamble=(), comma=False):
+        self.path = path
+        self.names = names
+        self.width = width
+        self.preamble = preamble
+        self.passed_over = {}
+        self._source = source
+        self._separator = separator
+        self._first = first             # lines before the rows
+        self._comma = comma             # decimals are behind a comma
+
+    def index(self, column):
+        """Position of a column given by name or, counted from 1, by number."""
+        if self.names and column in self.names:
+            return self.names.index(column)
+        if column.isascii() and column.isdigit() and 1 <= int(column) <= self.width:
+            return int(column) - 1
+        raise BadFile("%s: there is no column %s, expected one of %s" % (
+            self.path, quoted(column), " ".join(self.names or ["1 to %d" % self.width])))
+
+    def holds_numbers(self, column):
+        """True where the first row has a number in a column, and where there is no row at all."""
+        place = self.index(column)
+        for _, text in self._texts():
+            for line in text.split("\n")[self._first:]:
+                if line.strip() and not line.startswith(COMMENT):
+                    cells = _cells(self._decimal(line), self._separator)
+                    return place < len(cells) and _all_numbers([cells[place]])
+        return True
+
+    def blocks(self, columns, label=None):
+        """Block after Block of columns of numbers, and of one with labels.
+
+        BadFile names the line that has another width, or no number where one belongs.
+        """
+        places = [self.index(column) for column in columns]
+        word = None if label is None else self.index(label)
+        self.passed_over = {}
+        line, rows = 0, 0
+        for line, text in self._texts():
+            texts = text.split("\n")
+            open_end = texts[-1] if texts[-1].strip() else None
+            skip = max(0, self._first - line + 1)
+            texts, line = texts[skip:-1], line + skip
+            block = texts and (self._fast(line, texts, places, word)
+                               or self._slow(line, texts, columns, places, word))
+            if block and len(block.lines):
+                rows += len(block.lines)
+                yield block
+            line += len(texts)
+            if open_end is not None and line > self._first:
+                block = self._last(line, open_end, columns, places, word)
+                if block:
+                    rows += 1
+                    yield block
+        if not rows:
+            raise BadFile.at(self.path, line, "no rows behind the column names",
+                             "at least one row of numbers")
+
+    def _texts(self):
+        """(number of the first line, text) of the file, without NULs, with decimal points."""
+        for line, text in _texts(self.path, self._source):
+            if "\0" in text:
+                self._pass_over("NUL bytes",
+                                sum("\0" in one for one in text.split("\n")))
+                text = text.replace("\0", "")
+            yield line, self._decimal(text)
+
+    def _decimal(self, text):
+        return text.replace(",", ".") if self._comma else text
+
+    def _pass_over(self, why, lines=1):
+        self.passed_over[why] = self.passed_over.get(why, 0) + lines
+
+    def _fast(self, line, texts, places, word):
+        """A Block of plain numbers in rows of the right width, or None for the slow way."""
+        if word is not None or not self._right_width(texts):
+            return None
+        try:
+            values = np.loadtxt(texts, delimiter=self._separator, usecols=places, ndmin=2,
+                                comments=None)
+        except ValueError:
+            return None
+        if len(values) != len(texts) or not np.isfinite(values).all():
+            return None
+        return Block(range(line, line + len(texts)), values, None)
+
+    def _right_width(self, texts):
+        """True where every line has as many cells as it should, and no quotes."""
+        if self._separator is None:
+            return {len(text.split()) for text in texts} == {self.width}
+        whole = "\n".join(texts)
+        if '"' in whole or not whole.isascii():
+            return False
+        raw = np.frombuffer(whole.encode() + b"\n", np.uint8)
+        ends = raw[(raw == ord(self._separator)) | (raw == 10)]
+        if len(ends) != self.width * len(texts):
+            return False
+        return bool((ends.reshape(-1, self.width)[:, -1] == 10).all())
+
+    def _slow(self, line, texts, columns, places, word):
+        """One row after the other; ends at the first fault."""
+        lines, rows, labels = [], [], []
+        for number, text in enumerate(texts, line):
+            if self._means_nothing(text):
+                continue
+            cells = _cells(text, self._separator)
+            if len(cells) != self.width:
+                raise BadFile.at(self.path, number, "%d values" % len(cells), str(self.width))
+            rows.append([self._number(number, column, cells[place])
+                         for column, place in zip(columns, places)])
+            lines.append(number)
+            if word is not None:
+                labels.append(cells[word].strip())
+        values = np.array(rows, float).reshape(len(rows), len(places))
+        return Block(lines, values, labels if word is not None else None)
+
+    def _means_nothing(self, text):
+        """True for a blank line, a comment, the column names once more."""
+        if not text.strip():
+            return True
+        if text.startswith(COMMENT):
+            self._pass_over("comments")
+            return True
+        if self.names and _cells(text, self._separator) == self.names:
+            self._pass_over("the column names once more")
+            return True
+        return False
+
+    def _last(self, line, text, columns, places, word):
+        """The Block of a last line without newline: None where it is no whole row."""
+        if self._means_nothing(text):
+            return None
+        if len(_cells(text, self._separator)) != self.width:
+            self._pass_over("a last row that is cut short")
+            return None
+        self._pass_over("a missing newline at the end")
+        return self._slow(line, [text], columns, places, word)
+
+    def _number(self, line, column, cell):
+        try:
+            value = float(cell if "_" not in cell else "")
+        except ValueError:
+            found = "%s is missing" % column if not cell.strip() else \
+                "%s is %s" % (column, quoted(cell))
+            raise BadFile.at(self.path, line, found, "a number") from None
+        if not math.isfinite(value):
+            raise BadFile.at(self.path, line, "%s is %s" % (column, quoted(cell)),
+                             "a finite number")
+        return value
+
+
+def _texts(path, source):
+    """(number of the first line, text of whole lines), blocks of a file in UTF-8."""
+    for line, block in whole_lines(path, source.pieces(), 1, LONGEST_LINE):
+        try:
+            yield line, block.decode("utf-8-sig" if line == 1 else "utf-8")
+        except UnicodeDecodeError as error:
+            raise BadFile.at(path, line + block.count(b"\n", 0, error.start),
+                             "bytes that are not UTF-8 text", "a CSV file") from None
+
+
+def read_table(path, delimiter="auto", skip=None, names=None, is_header=None):
+    """A Table of a CSV, plain or gzipped.
+
+    delimiter   a character, "blank", or "auto"
+    skip        lines to leave out before the names (or the numbers); None: find them
+    names       column names when the file has none, or other names than the file's
+    is_header   function(list of names) -> bool, to find the line of names by itself
+    """
+    source = Source(path)
+    lines = _first_lines(path, source, (skip or 0) + HEADER_SEARCH)
+    head, first, separator = _find_head(path, lines, delimiter, skip, is_header)
+    found = None if head is None else _cells(lines[head].lstrip("#"), separator)
+    names = names or found
+    row = next((text for text in lines[first:] if text.strip()
+                and not text.startswith(COMMENT)), "")
+    width = len(names) if names else len(_cells(row, separator))
+    comma = separator != "," and bool(DECIMAL_COMMA.search(row))
+    return Table(path, source, names, width, separator, first, lines[:head or 0], comma)
+
+
+def _first_lines(path, source, wanted):
+    """The first lines of a file, some more than are wanted where there are as many."""
+    lines = [""]
+    for _, text in _texts(path, source):
+        more = text.replace("\0", "").split("\n")
+        lines = [*lines[:-1], lines[-1] + more[0], *more[1:]]
+        if len(lines) > wanted:
+            break
+    if not any(line.strip() for line in lines):
+        raise BadFile.at(path, 1, "the file is empty", "a CSV file")
+    return lines
+
+
+def _find_head(path, lines, delimiter, skip, is_header):
+    """(index of the line of column names or None, lines before the rows, delimiter)."""
+    choices = DELIMITERS if delimiter == "auto" else \
+        (None if delimiter == "blank" else delimiter,)
+    start = skip or 0
+    if start >= len(lines):
+        raise BadFile.at(path, len(lines), "only %d lines" % len(lines),
+                         "more than the %d to skip" % start)
+    search = range(start, min(len(lines), start + HEADER_SEARCH)) if skip is None else (start,)
+    for number in search:
+        for separator in choices:
+            if is_header and is_header(_cells(lines[number].lstrip("#"), separator)):
+                return number, number + 1, separator
+    while skip is None and start + 1 < len(lines) and (
+            not lines[start].strip() or lines[start].startswith(COMMENT)):
+        start += 1
+    separator = max(choices, key=lambda one: (len(_cells(lines[start], one)), one is not None))
+    cells = _cells(lines[start] if separator == "," else lines[start].replace(",", "."), separator)
+    if any(_all_numbers([cell]) for cell in cells):     # no line of names has numbers in it
+        return None, start, separator
+    return start, start + 1, separator
+
+
+def _cells(line, separator):
+    """The cells of a line without the blanks and the quotes around them."""
+    if separator is None:
+        return [cell.strip('"') for cell in line.split()]
+    if '"' in line:
+        try:
+            cells = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+            return [cell.strip() for cell in cells]
+        except csv.Error:       # what it calls a line has an end inside
+            pass
+    return [cell.strip() for cell in line.strip().split(separator)] if separator != "\t" \
+        else [cell.strip() for cell in line.rstrip("\r").split(separator)]
+
+
+def _all_numbers(cells):
+    try:
+        return bool([float(cell) for cell in cells])
+    except ValueError:
+        return False

@@ -1,0 +1,98 @@
+"""Gravity in an accelerometer's values: how long it is, which unit that makes of them, and whether
+it turns as a gyro says."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..capture_header import STANDARD_G
+
+# Counts per g of the chips in use: ±2, 4, 8, 16 g of 16 bits (MPU-6000 register map 4.17), 1024
+# of 12 bits, 256 of an ADXL345.
+USUAL_LSB = (16384, 8192, 4096, 2048, 1024, 256)
+ZERO_G = 0.2            # offset and scale of a part at rest: MPU-6000 has ±80 mg and 3 %
+WINDOW = 20             # rows that are averaged to see gravity
+MOST_WINDOWS = 2000     # that gravity is looked for in, evenly over the file
+QUIET = 0.05            # of |a|: scatter within a window that rests
+MOST_TURNS = 20_000     # twentieths of a second in which gravity is seen to turn: the first ones
+DISAGREES = 2.0         # factor from 1 g beyond which what was said of the unit is wrong
+
+
+class Gravity(NamedTuple):
+    """size: |a| in the unit of the values; rests: whether it was seen at rest."""
+
+    size: float
+    rests: bool
+
+
+def seen(values):
+    """Gravity in accelerometer values (n, 3), or None in fewer than two windows of rows.
+
+    Where nothing rests it is the median of the means of windows, in which vibration is gone.
+    """
+    number = len(values) // WINDOW
+    if number < 2:
+        return None
+    step = -(-number // MOST_WINDOWS)
+    windows = values[:number * WINDOW].reshape(number, WINDOW, 3)[::step].astype(float)
+    size = np.linalg.norm(windows.mean(axis=1), axis=1)
+    scatter = np.sqrt(windows.var(axis=1).sum(axis=1))
+    quiet = scatter < QUIET * size
+    if quiet.mean() >= 0.02:
+        quietest = quiet & (scatter <= np.quantile(scatter[quiet], 0.5))
+        return Gravity(float(np.median(size[quietest])), True)
+    return Gravity(float(np.median(size)), False)
+
+
+def unit(size, whole):
+    """(unit, counts per g or None) that make |a| gravity, or None; whole: the values are whole
+    numbers."""
+    if abs(size - 1) < ZERO_G and not whole:
+        return "g", None
+    if abs(size / STANDARD_G - 1) < ZERO_G and not whole:
+        return "m/s2", None
+    if abs(size / 1000 - 1) < ZERO_G and (not whole or abs(size / 1000 - 1)
+                                          < abs(size / 1024 - 1)):
+        return "mg", None
+    if whole:
+        for lsb in USUAL_LSB:
+            if abs(size / lsb - 1) < ZERO_G:
+                return "counts", lsb
+    return None
+
+
+def turn_factor(accel, gyro, dps, rate_hz):
+    """How much farther gravity turns in the accelerometer than by the gyro's rates, and how alike
+    they are (-1 to 1); None where nothing turns. dps: deg/s that one of the gyro's unit is.
+
+    A direction that stands still in the world obeys du/dt = -w x u in a body that turns at w;
+    least squares of one on the other over a fifth of a second.
+    """
+    m = max(1, int(rate_hz / 20))
+    k = len(accel) // m
+    if k < 20:
+        return None
+    k = min(k, MOST_TURNS)
+    a = accel[:k * m].reshape(k, m, 3).mean(axis=1, dtype=float)
+    w = np.radians(gyro[:k * m].reshape(k, m, 3).mean(axis=1, dtype=float) * dps)
+    size = np.linalg.norm(a, axis=1)
+    usual = float(np.median(size))
+    if usual <= 0:
+        return None
+    u = a / np.maximum(size, 1e-9)[:, None]
+    lag = 4
+    number = k - lag
+    rate = np.stack([w[j:j + number] for j in range(1, lag + 1)]).mean(axis=0)
+    middle = u[lag // 2:lag // 2 + number]
+    by_gyro = -np.cross(rate, middle) * (lag * m / rate_hz)
+    turned = u[lag:] - u[:number]
+    good = (np.abs(size[lag:] / usual - 1) < 0.1) & (np.abs(size[:number] / usual - 1) < 0.1)
+    good &= np.linalg.norm(turned, axis=1) > np.radians(2.0)    # what noise does not turn
+    if good.sum() < 10:
+        return None
+    x, y = by_gyro[good].ravel(), turned[good].ravel()
+    both = math.sqrt(float(x @ x) * float(y @ y))
+    if both <= 0:
+        return None
+    return float(x @ y) / float(x @ x), float(x @ y) / both

@@ -1,0 +1,112 @@
+"""The times in somebody's table: their unit told by plausibility, put in order, made
+microseconds."""
+
+import numpy as np
+
+from ...errors import BadFile
+from .column_names import TIME_UNITS
+
+# When a stamp counts from 1970 it lies between 2001 and 2065 in one unit only.
+EPOCH_S = (1e9, 3e9)
+USUAL_HZ = (15.0, 4000.0)       # of an IMU's log; a factor below 1000, so that one unit fits
+POSSIBLE_HZ = (0.5, 8000.0)
+MOST_C_PER_S = 10.0             # no chip's temperature changes faster
+LATEST_US = 1e16                # three centuries: what times in the wrong unit pass
+FAR_ROWS = 3                    # so few rows behind a gap that is longer than all the rest
+SPAN = 20                       # rows over which intervals are averaged
+
+
+def unit_of(path, column, times, celsius=None):
+    """(unit, sentence) of a column of times; BadFile asking for it where two units would do.
+
+    times float (n,), in order or nearly so; celsius (n,) or None: temperatures beside them.
+    """
+    usual = _usual(times)
+    if not usual > 0:
+        raise BadFile("%s: %s stands still, expected times that run, or --rate HZ" % (
+            path, column))
+    rates = {unit: 1e6 / (usual * us) for unit, us in TIME_UNITS.items()}
+    first = abs(float(times[0]))
+    epochs = [unit for unit, us in TIME_UNITS.items()
+              if EPOCH_S[0] < first * us / 1e6 < EPOCH_S[1] and _within(rates[unit], 1e-3, 1e5)]
+    if len(epochs) == 1:
+        return epochs[0], "%s counts %s from 1970" % (column, epochs[0])
+    if usual == 1.0 and (np.diff(times[:1000]) == 1.0).all():
+        raise BadFile("%s: %s counts by 1, which may be samples, expected --time-unit samples "
+                      "with --rate HZ, or --time-unit ms" % (path, column))
+    units = [unit for unit in TIME_UNITS if celsius is None
+             or _warming(times, celsius, unit) < MOST_C_PER_S]
+    likely = [unit for unit in units if _within(rates[unit], *USUAL_HZ)]
+    if not likely:
+        likely = [unit for unit in units if _within(rates[unit], *POSSIBLE_HZ)]
+        if len(likely) > 1 and (times[:1000] != np.rint(times[:1000])).any():
+            likely = [unit for unit in likely if unit == "s"] or likely
+    if len(likely) != 1:
+        raise BadFile("%s: %s goes on by %.6g, expected --time-unit with one of %s" % (
+            path, column, usual, ", ".join("%s (%.4g Hz)" % (unit, rates[unit])
+                                           for unit in likely or TIME_UNITS)))
+    return likely[0], "%s taken as %s: %.4g Hz" % (column, likely[0], rates[likely[0]])
+
+
+def _within(value, low, high):
+    return low <= value <= high
+
+
+def _usual(times):
+    """The usual interval, over spans of rows where there are enough: stamps come in bursts."""
+    span = min(SPAN, len(times) - 1)
+    if span < 1:
+        return 0.0
+    return float(np.median(times[span:] - times[:-span])) / span
+
+
+def _warming(times, celsius, unit):
+    """The fastest change of the temperature between tenths of the file, °C/s."""
+    edges = np.linspace(0, len(times) - 1, 11).astype(int)
+    seconds = np.diff(times[edges]) * TIME_UNITS[unit] / 1e6
+    return float(np.max(np.abs(np.diff(celsius[edges])) / np.maximum(seconds, 1e-12)))
+
+
+def sorted_order(times):
+    """(order that puts times in order or None, rows that are moved, the farthest way in rows)."""
+    if not (np.diff(times) < 0).any():
+        return None, 0, 0
+    order = np.argsort(times, kind="stable")
+    way = np.abs(order - np.arange(len(order)))
+    late = times < np.maximum.accumulate(times)     # rows that stand behind a later one
+    return order, int(late.sum()), int(way.max())
+
+
+def check_stretch(path, column, times, scale_us, line_of):
+    """BadFile for a few stamps so far away that most of the log would be a gap.
+
+    times float (n,) in order; scale_us: microseconds of one; line_of(index): line in the file.
+    """
+    if len(times) < 10 * FAR_ROWS:
+        return
+    for some, far in ((times[::-1], -1), (times, 1)):
+        gaps = np.abs(np.diff(some[:FAR_ROWS + 1]))
+        rest = abs(float(some[-1] - some[FAR_ROWS]))
+        worst = int(np.argmax(gaps))
+        if gaps[worst] > max(rest, 1e6 / scale_us):
+            row = worst if far > 0 else len(times) - 1 - worst
+            raise BadFile.at(path, line_of(row), "%s is %.17g, which stretches %.4g s to %.4g s"
+                             % (column, times[row], rest * scale_us / 1e6,
+                                float(times[-1] - times[0]) * scale_us / 1e6),
+                             "a stamp near the others; leave that row out")
+
+
+def microseconds(path, column, times, scale_us, unit):
+    """int64 microseconds from the first time on, in the memory of the times."""
+    times -= times.min()
+    longest = float(times.max()) * scale_us
+    if not longest < LATEST_US:
+        raise BadFile("%s: %s spans %.3g s, expected less than %.0g: is --time-unit %s right?" % (
+            path, column, longest / 1e6, LATEST_US / 1e6, unit))
+    times *= scale_us
+    np.rint(times, out=times)
+    whole = times.view(np.int64)
+    for first in range(0, len(times), 1 << 16):     # the same eight bytes
+        some = slice(first, first + (1 << 16))
+        whole[some] = times[some].astype(np.int64)
+    return whole

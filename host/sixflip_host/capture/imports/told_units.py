@@ -1,0 +1,126 @@
+"""The units of accelerometer and gyro: as they were said, stand in a name, or are told from
+gravity; refused where the file contradicts by a factor."""
+
+
+from ...errors import BadFile
+from . import column_names, gravity, units
+from .options import said_units
+
+GRAVITY_FREE = 0.3              # of what gravity would be: it has been taken out
+TURNS_ALIKE = 0.6               # correlation from which gyro and accelerometer turn together
+FEW_ROWS = 40                   # too few to contradict what was said of a unit
+
+
+class ToldUnits:
+    """The units of one table; what nobody said goes into `assumed`, a list of sentences.
+
+    named   {sensor: unit} in the columns' names, or of the format; rows: of the table
+    """
+
+    def __init__(self, path, options, named, rows, assumed):
+        self.path, self.options, self.named_units = path, options, named
+        self.rows, self.assumed = rows, assumed
+        self._assumed_gyro = None       # where in `assumed` the gyro's unit stands
+
+    def of_accelerometer(self, values):
+        """(unit, counts per g or None) of the accelerometer, told or as it was said."""
+        options = self.options
+        if values is None:
+            return None, None
+        said = said_units(options.units)[0]
+        named = self.named_units.get(column_names.ACCEL)
+        unit = said or named
+        seen = gravity.seen(values)
+        whole = units.are_whole(values)
+        if unit is None and options.accel_lsb is not None and whole:
+            unit = "counts"
+        told = gravity.unit(seen.size, whole) if seen else None
+        if unit is not None:
+            self._contradicted(unit, seen, told, said)
+            if unit == "counts" and options.accel_lsb is None and told and told[0] == "counts":
+                self.assumed.append("the accelerometer has %d counts per g: |a| is %.0f" % (
+                    told[1], seen.size))
+                return unit, told[1]
+            return unit, options.accel_lsb
+        if told is None:
+            return self._without_gravity(seen, whole), options.accel_lsb
+        self.assumed.append("the accelerometer is in %s: |a| is %.4g%s" % (
+            told[0], seen.size, " at rest" if seen.rests else " in the median"))
+        if told[0] == "counts":
+            self.assumed.append("it has %d counts per g" % told[1])
+        return told[0], options.accel_lsb or told[1]
+
+    def _contradicted(self, unit, seen, told, said):
+        """BadFile where gravity is off by a factor from what was said of the unit."""
+        options = self.options
+        per_unit = 1 / options.accel_lsb if unit == "counts" and options.accel_lsb else \
+            units.ACCEL_UNITS[unit]
+        if per_unit is None or seen is None or not seen.rests or self.rows < FEW_ROWS:
+            return
+        if 1 / gravity.DISAGREES <= seen.size * per_unit <= gravity.DISAGREES:
+            return
+        what = "--accel-lsb %g" % options.accel_lsb if unit == "counts" else \
+            "--units %s" % options.units if said else "the unit that the file says, %s," % unit
+        looks = "" if told is None else ", expected --units %s%s" % (
+            told[0], " --accel-lsb %d" % told[1] if told[1] else "")
+        raise BadFile("%s: %s makes |a| at rest %.4g g%s" % (
+            self.path, what, seen.size * per_unit, looks or ", expected 1 g"))
+
+    def _without_gravity(self, seen, whole):
+        """The unit of values that gravity does not tell; BadFile where it was to be told."""
+        path = self.path
+        if not self.options.gravity and not whole:
+            self.assumed.append("the accelerometer is in m/s2: gravity does not tell")
+            return "m/s2"
+        size = "%.4g" % seen.size if seen else "not to be seen"
+        if whole and self.options.accel_lsb is None and seen and seen.size > 50:
+            raise BadFile("%s: the accelerometer is in counts, |a| is %s: expected --accel-lsb, "
+                          "counts per g" % (path, size))
+        if seen and seen.size < GRAVITY_FREE and not whole:
+            raise BadFile("%s: |a| is %s: gravity has been taken out of it, expected the "
+                          "acceleration with gravity, or --units with its unit" % (path, size))
+        raise BadFile("%s: |a| is %s, which is no gravity in g, m/s2, mg or counts: expected "
+                      "--units, such as g,dps" % (path, size))
+
+    def of_gyro(self, values, accel_unit):
+        """The unit of the gyro, said, in its name, or by the accelerometer's."""
+        if values is None:
+            return None
+        said = said_units(self.options.units)[1] or self.named_units.get(column_names.GYRO)
+        if said is None and self.options.gyro_lsb is not None and units.are_whole(values):
+            said = "counts"
+        if said is None:
+            whole = bool(len(values)) and units.are_whole(values)
+            said = {"si": "rad/s", "m/s2": "rad/s", "g": "dps", "mg": "dps",
+                    "counts": "counts"}.get(accel_unit)
+            if whole and said != "counts" and max(values.max(), -values.min()) > 100:
+                said = "counts"
+            if said is None:
+                raise BadFile("%s: the gyro's unit is not told by anything, expected --units ,dps "
+                              "or ,rad/s or ,counts" % self.path)
+            if said != "counts":
+                self._assumed_gyro = len(self.assumed)
+                self.assumed.append("the gyro is in %s, as goes with %s" % (said, accel_unit))
+        if said == "counts" and self.options.gyro_lsb is None:
+            raise BadFile("%s: the gyro is in counts, so its LSB must be given (--gyro-lsb, "
+                          "counts per deg/s)" % self.path)
+        return said
+
+    def turned(self, accel, gyro, unit, rate_hz):
+        """The gyro's unit, held against how gravity turns in the accelerometer."""
+        per_unit = 1 / self.options.gyro_lsb if unit == "counts" else units.GYRO_UNITS[unit]
+        found = gravity.turn_factor(accel, gyro, per_unit, rate_hz)
+        if found is None or abs(found[1]) < TURNS_ALIKE:
+            return unit
+        factor, _ = found
+        other = {True: "rad/s", False: "dps"}[factor > 1]
+        ratio = units.GYRO_UNITS[other] / per_unit
+        if unit == "counts" or not 0.4 < abs(factor) / ratio < 2.5 or abs(ratio - 1) < 0.1:
+            return unit
+        if self._assumed_gyro is None:
+            raise BadFile("%s: its gyro in %s turns %.3g times as far as gravity does in the "
+                          "accelerometer, expected --units ,%s" % (
+                              self.path, unit, 1 / abs(factor), other))
+        self.assumed[self._assumed_gyro] = ("the gyro is in %s: so it turns as gravity does in "
+                                            "the accelerometer" % other)
+        return other

@@ -1,0 +1,243 @@
+"""Where a recording rests: the one finder, with the settings of each use as values.
+
+A rest is an unbroken run of samples that are all still, and long enough. Three things tell what
+is still: a label (the board's, or an importer's); the board's own still windows against the
+sensor's noise (find, longest); or the variance in a sliding window against a multiple of that at
+rest, for free-hand recordings whose rests are cut where the motion begins (by_variance). What
+differs from use to use is a Stillness or an argument, and nothing else.
+"""
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from sixflip.faces import FACES, nearest_face
+from sixflip.noise_floor import WINDOWS, NoiseFloor
+from sixflip.pose_label import CROOKED_DEG
+
+from . import still_windows
+
+WINDOW = 101  # samples of a sliding window, imu_tk's default: one second at 100 Hz
+SHORTEST = 100  # samples that a rest in a free-hand recording must last
+
+
+class Run(NamedTuple):
+    """Samples first..end-1 with one pose code (0: not named)."""
+
+    code: int
+    first: int
+    end: int
+
+
+@dataclass(frozen=True)
+class Stillness:
+    """shortest_s: of a rest; hand_s: of a rest that a hand steadies, taken only where the others
+    leave a face out, None: never; hand (2,), hand_wander: how still a hand is, mg and deg/s
+    within a window and mg from one window to the next."""
+
+    shortest_s: float = 1.0
+    hand_s: float | None = None
+    hand: tuple = (30.0, 4.0)
+    hand_wander: float = 50.0
+
+
+# Held by hand the box never is as still as its sensor's noise. A turn by 90 degrees in 3 s moves
+# gravity by 130 mg a window. A rest shorter than a second is a pause in a move.
+POSES = Stillness(1.0, 2.0)
+
+
+@dataclass(frozen=True)
+class Rest:
+    """Samples first..end-1 without motion: mean accelerometer counts, the face that points up
+    and how far off it is, whether a hand held it; code and why: what it was taken for."""
+
+    first: int
+    end: int
+    mean: tuple
+    face: int
+    off_deg: float
+    by_hand: bool = False
+    code: int = 0
+    why: str = ""
+
+
+@dataclass(frozen=True)
+class Found:
+    """rests: tuple of Rest in time order; noise: NoiseFloor of the quietest second or None."""
+
+    rests: tuple
+    noise: NoiseFloor | None
+
+
+@dataclass(frozen=True)
+class LongestRest:
+    """n samples from index first on.
+
+    means   seven: counts of ax ay az gx gy gz temp; noise: six standard deviations, counts
+    reason  "" or why the recording is no rest, one sentence; then the rest is a fragment
+    """
+
+    first: int = 0
+    n: int = 0
+    means: tuple = (0.0,) * 7
+    noise: tuple = (0.0,) * 6
+    reason: str = ""
+
+    def noise_mg(self, lsb_per_g):
+        """(root mean square of the three axes' noise, that of the noisiest one), mg."""
+        noise = 1e3 / lsb_per_g * np.array(self.noise[:3])
+        return float(np.sqrt(np.mean(noise ** 2))), float(noise.max())
+
+
+MOSTLY = 0.5  # of a recording at rest: a shorter one is a pause of something that moves
+
+
+def labelled(pose, shortest=1, without=()):
+    """list of Run: unbroken runs of a label in pose (n,), moving left out; those of at least so
+    many samples and with none of these codes. None of it where pose is None."""
+    if pose is None:
+        return []
+    pose = np.asarray(pose)
+    edges = np.flatnonzero(np.diff(pose)) + 1
+    starts = np.concatenate(([0], edges)).tolist()
+    ends = np.concatenate((edges, [len(pose)])).tolist()
+    return [Run(int(pose[start]), start, end) for start, end in zip(starts, ends)
+            if end > start and pose[start] and end - start >= shortest
+            and pose[start] not in without]
+
+
+def find(capture, stillness=POSES):
+    """Found: every rest of a capture, against the noise of its quietest second. Unlike the
+    board, which must learn that from what comes first, the whole recording is there."""
+    windows = still_windows.of(capture)
+    noise = still_windows.quietest(windows)
+    if noise is None:
+        return Found((), None)
+    still, _ = still_windows.still(windows, noise)
+    rests = _rests(capture, windows, still, stillness.shortest_s)
+    faces = {rest.face for rest in rests if rest.off_deg <= CROOKED_DEG}
+    if stillness.hand_s is not None and len(faces) < len(FACES):
+        taken = np.zeros(len(capture), bool)
+        for rest in rests:
+            taken[rest.first:rest.end] = True
+        by_hand = _rests(capture, windows, _steadied(capture, windows, stillness),
+                         stillness.hand_s, True)
+        rests += [rest for rest in by_hand if not taken[rest.first:rest.end].any()]
+    return Found(tuple(sorted(rests, key=lambda rest: rest.first)), noise)
+
+
+def longest(capture):
+    """LongestRest of a capture, for what is measured at rest and no session: mounting, and
+    whether a calibration still holds. The noise is learnt as the board learns it."""
+    windows = still_windows.of(capture)
+    if len(windows) < WINDOWS:
+        rate = capture.meta["rate_hz"]
+        return LongestRest(reason="%.1f s are too short, %.1f s of rest are needed" % (
+            len(capture) / rate, WINDOWS * windows.length / rate))
+    noise, against = still_windows.learnt(windows)
+    if not noise.known:
+        return LongestRest(reason=_most_common(against)
+                           or "it moves: the windows differ too much for rest")
+    still, against = still_windows.still(windows, noise, first_twice=True)
+    start, end = max(_stretches(still), key=lambda s: s[1] - s[0], default=(0, 0))
+    reason = ""
+    if end - start < MOSTLY * len(windows):
+        reason = "still for %d %% of the recording only: %s" % (
+            100 * (end - start) // len(windows), _most_common(against))
+    first, n = start * windows.length, (end - start) * windows.length
+    return LongestRest(first, n, _means(capture, first, n), tuple(noise.sd), reason)
+
+
+def sliding_variance(samples, window=WINDOW):
+    """Norm of the three variances in the window around every sample.
+
+    samples (n, 3); returns (n - window + 1,), entry k belongs to sample k + window // 2.
+    """
+    centred = samples - samples.mean(axis=0)
+    zero = np.zeros((1, samples.shape[1]))
+    total = np.vstack([zero, np.cumsum(centred, axis=0)])
+    squares = np.vstack([zero, np.cumsum(centred * centred, axis=0)])
+    total = total[window:] - total[:-window]
+    squares = squares[window:] - squares[:-window]
+    variance = (squares - total * total / window) / (window - 1)
+    return np.linalg.norm(np.maximum(variance, 0.0), axis=1)
+
+
+def variance_at_rest(samples, first_rest=None):
+    """Norm of the variances of the sensor lying still.
+
+    first_rest: number of samples at the start that are known to be still (imu_tk asks for
+    this); None: the tenth part of all windows with the least variance, so that nobody has to
+    lie still on command.
+    """
+    if first_rest:
+        return float(np.linalg.norm(samples[:first_rest].var(axis=0, ddof=1)))
+    spread = np.sort(sliding_variance(samples))
+    return float(np.median(spread[: max(1, len(spread) // 10)]))
+
+
+def by_variance(samples, limit, window=WINDOW, shortest=SHORTEST):
+    """list of Run: the variance in the window around each sample stays below the limit.
+
+    Tedaldi et al., ICRA 2014, section IV-A. samples (n, 3), limit in squared units of them.
+    The board's windows are not used here: they wait for a pose of a wanted length, because an
+    operator is there to try again; every rest of a recording that is over should be used, and
+    be cut where the motion begins.
+    """
+    if len(samples) <= window:
+        return []
+    still = sliding_variance(samples, window) < limit
+    half = window // 2
+    return [Run(0, first + half, end + half) for first, end in _stretches(still)
+            if end - first >= shortest]
+
+
+def _stretches(still):
+    """[(first, end)] of the unbroken runs of True."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], np.asarray(still, np.int8), [0]])))
+    return list(zip(edges[::2].tolist(), edges[1::2].tolist()))
+
+
+def _rests(capture, windows, still, shortest_s, by_hand=False):
+    """A Rest for every unbroken run of still windows that lasts long enough."""
+    length = windows.length
+    shortest = max(2, int(shortest_s * capture.meta["rate_hz"] / length))
+    return [rest(capture, start * length, end * length, by_hand)
+            for start, end in _stretches(still) if end - start >= shortest]
+
+
+def rest(capture, first, end, by_hand=False):
+    """Rest of samples first..end-1 of a capture."""
+    mean = capture.accel[first:end].mean(axis=0).tolist()
+    face, off_deg = nearest_face(*mean)
+    return Rest(first, end, tuple(mean), face, off_deg, by_hand)
+
+
+def _steadied(capture, windows, stillness):
+    """For every window: does it look like a box steadied by hand?"""
+    scale = np.repeat([capture.meta["accel_lsb_per_g"] / 1e3,
+                       capture.meta.get("gyro_lsb_per_dps", 1)], 3)[:windows.mean.shape[1]]
+    means = windows.mean[:, :3]
+    wander = np.abs(np.diff(means, axis=0, prepend=means[:1])).max(axis=1) / scale[0]
+    limit = np.repeat(stillness.hand, 3)[:len(scale)]
+    return ((np.sqrt(windows.variance) / scale <= limit).all(axis=1)
+            & (wander <= stillness.hand_wander) & ~windows.unusual())
+
+
+def _means(capture, first, n):
+    """Seven means, counts: exact sums over the number of samples; 0 for what there is not."""
+    some = slice(first, first + n)
+    sums = [*capture.accel[some].sum(axis=0, dtype=np.int64).tolist()]
+    sums += capture.gyro[some].sum(axis=0, dtype=np.int64).tolist() \
+        if capture.gyro is not None else [0] * 3
+    sums.append(int(capture.temp[some].sum(dtype=np.int64)) if capture.temp is not None else 0)
+    return tuple(each / n for each in sums) if n else (0.0,) * 7
+
+
+def _most_common(sentences):
+    """The reason most windows gave, with the numbers of its first window."""
+    kinds = [one.split(" (")[0] for one in sentences]
+    if not kinds:
+        return ""
+    kind = max(kinds, key=kinds.count)
+    return sentences[kinds.index(kind)]

@@ -1,0 +1,145 @@
+"""Stage 5: is what is left no more than noise?
+
+Absolute: the contrasts after the likeliest set, against white noise, placement and flicker at
+their likeliest levels, of which the prior says what is usual: as much flicker as a reference
+capture shows, or as the chip's data sheet and published plots have.
+"""
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from sixflip_sim.effects import typical
+
+from . import evidence, session_offsets
+from .evidence import Levels
+
+PLACEMENT = {"accel": 0.87, "gyro": 0.003}  # 0.05 deg across gravity, mg; the Earth's rate
+TIMES_TYPICAL = 4.0
+ABSORBED = 0.6  # leverage above which a residual is mostly fitted away
+FEWEST = 20  # innovations of a session
+KURTOSIS_SIGMAS, UNLIKE = 4.0, 1.5
+DOUBTFUL_P, DOUBTFUL_RATIO = 1e-3, 1.3  # white noise itself is known to some 5 %
+
+
+def usual(sensor, kind):
+    """Typical flicker level of a chip, mg or deg/s."""
+    return typical.FLICKER[typical.chip_of(sensor, kind)]
+
+
+def levels(sensor, kind, reference=None):
+    """evidence.Levels of a chip; reference: flicker level of a capture of noise."""
+    if reference is not None:
+        return Levels(PLACEMENT[kind], max(reference, usual(sensor, kind) / 4.0),
+                      session_offsets.UNUSUAL[kind], True)
+    return Levels(PLACEMENT[kind], usual(sensor, kind), session_offsets.UNUSUAL[kind])
+
+
+def allowance(sensor, kind, reference=None):
+    """Largest flicker level that counts as noise in one rest, mg or deg/s."""
+    level = usual(sensor, kind)
+    return TIMES_TYPICAL * level if reference is None else max(2.0 * reference, level)
+
+
+@dataclass(frozen=True)
+class Adequacy:
+    """ok; ratio: chi2 a degree of freedom; p: the least of the tests failed, or of chi2; index:
+    of each unit's grid; excess, excess_before: chi2 beyond the degrees of freedom, with and
+    without the set; parts: (chi2, freedom) of each unit; odd: how what is left differs from
+    noise, or ""."""
+
+    ok: bool
+    ratio: float
+    p: float
+    index: tuple
+    excess: float
+    excess_before: float
+    parts: tuple
+    odd: str = ""
+
+
+def of(units, statistics, scored, shaken=()):
+    """Adequacy of a posterior.Scored; shaken: axes (0..2) that a line of the spectrum is on."""
+    shared = scored.shared
+    theta = evidence.coefficients(scored.fits, shared)[0][0]
+    index, parts, before = [], [], 0.0
+    for unit, one, fit, private in zip(units, statistics, scored.fits, scored.private):
+        point = int(fit.index[0])
+        index.append(point)
+        chi2 = float(fit.quadratic[0] - 2.0 * theta @ fit.inner[0]
+                     + theta @ fit.gram[0] @ theta)
+        freedom = unit.freedom - len(shared) / len(units) - _taken(unit, point, private)
+        parts.append((chi2, max(freedom, 1.0)))
+        before += float(one[0][point, 0]) - unit.freedom
+    chi2, freedom = (sum(part[k] for part in parts) for k in (0, 1))
+    p = float(stats.chi2.sf(chi2, freedom))
+    worst = min(float(stats.chi2.sf(*part)) for part in parts)
+    largest = max([chi2 / freedom] + [c / f for c, f in parts])
+    ok = not (min(p, 0.5 * worst) < DOUBTFUL_P and largest > DOUBTFUL_RATIO)
+    odd, chance = _odd(units, scored, theta, shaken)
+    p = min(p, 0.5 * worst if not ok else 1.0, chance if odd else 1.0)
+    return Adequacy(ok and not odd, chi2 / freedom, p, tuple(index), chi2 - freedom, before,
+                    tuple(parts), odd)
+
+
+def _odd(units, scored, theta, shaken):
+    """("" or how, p): how what is left differs from noise of the kinds in the model, which is
+    normal, of one size on all axes and independent between them: what jumps has heavy tails,
+    what is shared or on one axis alone has another cause than noise has."""
+    left = [innovations(u, u.grid[int(f.index[0])], private,
+                        u.raw(scored.shared.index) @ theta)
+            for u, f, private in zip(units, scored.fits, scored.private)
+            if not (u.between or u.turns or u.apart)]
+    left = [x for x in left if np.isfinite(x).all(axis=1).sum() >= FEWEST]
+    if not left:
+        return "", 1.0
+    x = np.concatenate([one[np.isfinite(one).all(axis=1)] for one in left])
+    number = len(x)
+    tails = float(stats.kurtosis(x, axis=None))
+    if tails > KURTOSIS_SIGMAS * np.sqrt(24.0 / x.size) + 0.5:
+        return "heavy tails", float(stats.norm.sf((tails - 0.5) / np.sqrt(24.0 / x.size)))
+    size = (x ** 2).mean(axis=0)
+    if not size.min() > 0.0:  # an axis that always reads the same has no noise to compare
+        return "", 1.0
+    size = np.delete(size, shaken) if len(shaken) < 2 else size[:1]  # a line is noise with a name
+    if size.max() / size.min() > stats.f.isf(DOUBTFUL_P / 3.0, number, number) * UNLIKE ** 2:
+        return "one axis more than the others", 3.0 * float(stats.f.sf(
+            size.max() / size.min() / UNLIKE ** 2, number, number))
+    together = np.abs(np.corrcoef(x.T)[np.triu_indices(3, 1)]).max()
+    if together > 4.0 / np.sqrt(number) + 0.1:
+        return "axes move together", 6.0 * float(stats.norm.sf(
+            np.arctanh(together - 0.1) * np.sqrt(number)))
+    return "", 1.0
+
+
+def innovations(unit, point, private, explained):
+    """(n, 3) residuals of a session's nuisance fit, whitened in the order of time to a standard
+    deviation of 1 at a point (placement, flicker) of its grid; NaN where the fit takes them up.
+    explained (3n,): what the shared columns add; private columns are fitted as the nuisance."""
+    left, leverage = unit.innovations(point, private.index, explained)
+    left = left / np.sqrt(np.maximum(1.0 - leverage, 1e-9))
+    left[leverage > ABSORBED] = np.nan
+    return left
+
+
+def _taken(unit, point, private):
+    """Degrees of freedom that private columns take off."""
+    if not len(private):
+        return 0.0
+    gram = unit.gram[point][np.ix_(private.index, private.index)]
+    return float(np.trace(np.linalg.solve(gram + np.diag(private.prior ** -2.0), gram)))
+
+
+def excess_at(units, statistics, chosen, index):
+    """chi2 beyond the degrees of freedom with these Forms, at given points of the grids, each
+    unit with sizes of its own."""
+    columns = np.concatenate([c.columns for c in chosen] + [np.zeros(0, dtype=int)])
+    prior = np.concatenate([c.prior for c in chosen] + [np.zeros(0)])
+    total = 0.0
+    for unit, (quadratic, projections), point in zip(units, statistics, index):
+        total += quadratic[point, 0] - unit.freedom
+        if len(columns):
+            gram = unit.gram[point][np.ix_(columns, columns)] + np.diag(1.0 / prior ** 2)
+            inner = projections[point][columns, 0]
+            total -= inner @ np.linalg.solve(gram, inner) - (~unit.silent[columns]).sum()
+    return float(total)

@@ -1,0 +1,192 @@
+"""Stage 4: never a name inside an unresolved class.
+
+A class is what holds 95 % of a member's place in the likeliest set (posterior.py), and every
+effect that reproduces more than 0.9 of the one that stands there (alias index, in the metric of
+the noise, nominal model and the other causes projected out; averaged over coefficients, or of the
+very sizes found), or that less than 3 standard deviations tell from it. One session that tells
+them apart by itself is enough: the others must not dilute it. What lies between sessions counts
+as much in the alias index as all that lies within them: there are few such contrasts, but no
+error in the form of an effect can turn them round.
+"""
+import math
+
+import numpy as np
+
+from . import evidence, odds
+
+SAME, NATS, SIGMAS = 0.9, 3.0, 3.0
+
+
+class Cause:
+    """One effect found: chosen (Candidates), members ({effect: why it cannot be told}),
+    score (nats), theta, sigma, covariance (over keys), keys, axes, share, plausible;
+    other_axes: those that cannot be told from the axes chosen; place: {name: probability} of
+    what stands here, "" nothing, "~..." something nameless; alike: the members that cannot be
+    told from the effect in principle."""
+
+    def __init__(self, effect, chosen, score):
+        self.effect, self.chosen, self.score = effect, chosen, score
+        self.members, self.share, self.plausible = {}, None, True
+        self.other_axes, self.alike = [], set()
+        self.domain = None
+        self.place = {effect: odds.probability(score)}
+
+    @property
+    def names(self):
+        return [self.effect] + sorted(self.members)
+
+    @property
+    def probabilities(self):
+        """{name: probability} of the names of its class, the likeliest first. Names that cannot
+        be told in principle share what they have together alike: which of them fits better is
+        a matter of their form, not of what is there."""
+        found = {name: self.place.get(name, 0.0) for name in self.names}
+        alike = [name for name in self.names if name == self.effect or name in self.alike]
+        found.update(dict.fromkeys(alike, sum(found[name] for name in alike) / len(alike)))
+        return dict(sorted(found.items(), key=lambda pair: -pair[1]))
+
+    @property
+    def nameless(self):
+        """Probability that what stands here has no name."""
+        return sum(p for name, p in self.place.items() if name.startswith("~"))
+
+
+def causes(found, units, forms):
+    """list of Cause of the named members of a Posterior's best set, largest score first."""
+    best = found.best
+    shared = best.shared
+    if not len(shared):
+        return []
+    theta, covariance = (v[0] for v in evidence.coefficients(best.fits, shared))
+    grams, each = _grams(units, best.fits)
+    out = []
+    for form in best.forms:
+        if form.generic or not len(form.shared):
+            continue
+        cause = Cause(form.effect, [form], found.gains[form.effect])
+        cause.place = found.places[form.effect]
+        place = _places(shared.index, form.columns)
+        cause.keys, cause.axes = list(form.keys), list(form.axes)
+        cause.theta, cause.covariance = theta[place], covariance[np.ix_(place, place)]
+        cause.sigma = np.sqrt(np.diag(cause.covariance))
+        cause.members = {name: "probability %.2f" % found.places[form.effect][name]
+                         for name in found.alternatives(form.effect)
+                         if name not in ("", form.effect) and not name.startswith("~")
+                         and name != "drift"}
+        _aliases(cause, forms, best.forms, grams, each)
+        out.append(cause)
+    out.sort(key=lambda c: -c.score)
+    return [c for k, c in enumerate(out) if not any(
+        c.effect in b.members and b.effect in c.members for b in out[:k])]
+
+
+def _grams(units, fits):
+    """([gram (K, K) within sessions, between them], [gram of each session])."""
+    grams, each = [0.0, 0.0], []
+    for unit, fit in zip(units, fits):
+        gram = unit.gram[fit.index[0]]
+        grams[unit.between] = grams[unit.between] + gram
+        each += [] if unit.between else [gram]
+    return grams, each
+
+
+def _places(columns, wanted):
+    return [int(np.flatnonzero(columns == w)[0]) for w in wanted]
+
+
+def _aliases(cause, forms, beside, grams, each):
+    """Add to cause.members every other effect that cannot be told from it in principle, the
+    other members of the set projected out."""
+    own = [i for i, key in enumerate(cause.keys) if not key.endswith("+")]
+    mine, theta = cause.chosen[0].columns[own], cause.theta[own]
+    even = balanced(grams, mine)
+    for name in dict.fromkeys(f.effect for f in forms if not f.generic and len(f.shared)):
+        if name == cause.effect or name in cause.members:
+            continue
+        others = [f.columns for f in beside if f.effect not in (name, cause.effect)]
+        others = np.concatenate([*others, np.zeros(0, dtype=int)])
+        others = others[~np.isin(others, mine)].astype(int)
+        spaces = [f.columns for f in forms if f.effect == name and f.axis is None
+                  and not f.variant.endswith("+")]
+        left = reproduced(even, mine, theta, spaces, others)
+        if left is None:
+            continue
+        apart = reproduced(grams[0] + grams[1], mine, theta, spaces, others)[1]
+        if left[0] > SAME and not any(_told(g, mine, theta, spaces, others)
+                                      for g in each if len(each) > 1):
+            cause.members[name] = "alias index %.2f" % left[0]
+        elif apart < SIGMAS:
+            cause.members[name] = "%.1f standard deviations apart" % apart
+        if name in cause.members:
+            cause.alike.add(name)
+
+
+KIN = ({"temperature", "time"}, {"history", "time_since_move"})
+
+
+def related(one, other):
+    """Whether two domains are one variable, or two that go together."""
+    return one == other or any({one, other} <= kin for kin in KIN)
+
+
+def balanced(grams, mine):
+    """Both grams together, the energy of `mine` between sessions as large as within them."""
+    within, between = (np.trace(np.atleast_2d(g)[np.ix_(mine, mine)]) if np.ndim(g) else 0.0
+                       for g in grams)
+    return grams[0] + grams[1] * (within / between if between > 0.0 else 1.0)
+
+
+def _told(gram, mine, theta, spaces, others):
+    """Whether one session's gram alone tells an effect from another's variants."""
+    found = reproduced(gram, mine, theta, spaces, others)
+    return found is not None and found[0] <= SAME and found[1] >= SIGMAS
+
+
+def reproduced(gram, mine, theta, alternatives, others):
+    """(largest alias index, least distance in standard deviations) over the alternatives; the
+    index is averaged over the coefficients `mine`, or of these very ones where that is more."""
+    best = None
+    for columns in alternatives:
+        space = np.concatenate([columns, others]).astype(int)
+        inner = gram[np.ix_(mine, mine)]
+        after_others = _left(gram, mine, others.astype(int), inner)
+        left = _left(gram, mine, space, inner)
+        norms = np.diag(after_others)
+        good = norms > 1e-9 * np.maximum(np.diag(inner), 1e-300)
+        if not good.any():
+            continue
+        index = 1.0 - float(np.mean(np.diag(left)[good] / norms[good]))
+        rest, whole = (max(float(theta @ g @ theta), 0.0) for g in (left, after_others))
+        if whole > 0.0:
+            index = max(index, 1.0 - rest / whole)
+        apart = math.sqrt(rest)
+        best = (max(index, best[0]), min(apart, best[1])) if best else (index, apart)
+    return best
+
+
+def _left(gram, mine, space, inner):
+    """Gram matrix of `mine` after the columns `space` have been projected out."""
+    if not len(space):
+        return inner
+    block = gram[np.ix_(space, space)]
+    scale = np.sqrt(np.maximum(np.diag(block), 1e-300))
+    block = block / scale / scale[:, None] + 1e-9 * np.eye(len(space))
+    cross = gram[np.ix_(space, mine)] / scale[:, None]
+    return inner - cross.T @ np.linalg.solve(block, cross)
+
+
+def alias_table(gram, options):
+    """(names, index): A(row | column) of the first plain variants, for the report."""
+    first = {}
+    for o in options:
+        if o.axis is None and not o.generic and not o.variant.endswith("+"):
+            first.setdefault(o.effect, o)
+    names = list(first)
+    table = np.eye(len(names))
+    for i, a in enumerate(names):
+        for j, b in enumerate(names):
+            if i != j:
+                found = reproduced(gram, first[a].columns, np.zeros(len(first[a].columns)),
+                                   [first[b].columns], np.zeros(0))
+                table[i, j] = found[0] if found else np.nan
+    return names, table

@@ -1,0 +1,129 @@
+"""The answer as JSON, in the words and with the keys of GAP.md."""
+import math
+
+from sixflip_sim.effects.drift import FLOOR_OF_UNIT
+
+from ..planning import next_capture
+from . import detectability
+from .detect import sample_clock
+from .simulator import simulator_answer
+
+UNITS = {"accel": "mg", "gyro": "deg/s", "gyro_turns": "deg/s", "accel_motion": "mg"}
+# Allan floor of the five exponentials of unit level, by numerical integration of their kernel.
+FLOOR_OF_KERNEL = 0.78 / FLOOR_OF_UNIT
+
+
+def spelled(unit):
+    """The library's units in GAP.md's spelling."""
+    return unit.replace("degC", "°C").replace("deg/s", "°/s") if unit else unit
+
+
+def of(diagnosis):
+    """dict for json.dumps, no NaN in it."""
+    causes = [_finding(f) for f in diagnosis.findings]
+    causes += [_cause(kind, c) for kind, c in diagnosis.causes]
+    causes += [_drift(kind, gap) for kind, gap in diagnosis.gaps.items() if gap.drift]
+    causes.sort(key=lambda c: -(c["share"] or 0.0) - 1e-3 * c["score_nats"])
+    answer = {
+        "format": 1, "verdict": diagnosis.verdict, "causes": causes,
+        "where": [{"sensor": p.sensor, "axis": p.axis, "domain": p.domain,
+                   "share": number(p.share), "p": float("%.2g" % p.p)}
+                  for p in diagnosis.where],
+        "gap": {kind: _gap(kind, gap) for kind, gap in gaps(diagnosis).items()},
+        "unseen": detectability.listed(diagnosis), "next": next_capture.proposed(diagnosis),
+        "clock": sample_clock.answer(diagnosis.sessions, diagnosis.clocks),
+        "held_out": held_out(diagnosis), "remarks": diagnosis.remarks}
+    if diagnosis.comparisons:
+        answer["simulator"] = simulator_answer.of(diagnosis.comparisons)
+    return answer
+
+
+def gaps(diagnosis):
+    """{sensor: SensorGap}; that of the motion where only that shows something."""
+    found = {**diagnosis.rest, **diagnosis.gaps}
+    turns = diagnosis.turns
+    if turns and turns.causes and not found["gyro"].causes:
+        found["gyro"] = turns
+    moved = any(f.domain == "motion" for f in diagnosis.findings)
+    if diagnosis.motion and moved and not found["accel"].causes:
+        found["accel"] = diagnosis.motion
+    return found
+
+
+def held_out(diagnosis):
+    """What the figures of the gap were checked on."""
+    if diagnosis.rest:
+        return "pieces of the rest, each by the others"
+    if not diagnosis.gaps:
+        return None
+    if any(g.same_session for g in diagnosis.gaps.values()):
+        return "same session"
+    return "each session by the others"
+
+
+def number(value, digits=4):
+    """A finite number with so many significant digits, or None."""
+    if value is None or not math.isfinite(value):
+        return None
+    return float("%.*g" % (digits, value))
+
+
+def _sizes(values):
+    return {k: number(v) for k, v in values.items()}
+
+
+def _intervals(intervals):
+    return {k: [number(a), number(b)] for k, (a, b) in intervals.items()}
+
+
+def _entry(sensor, axes, probabilities, score, value, unit, interval, plausible, share):
+    """probabilities: {name: probability} of the names of the class, the likeliest first."""
+    names = list(probabilities)
+    single = len(names) == 1 and plausible
+    return {"sensor": sensor, "axes": axes, "effect": names[0] if single else None,
+            "class": names, "probability": number(min(sum(probabilities.values()), 1.0)),
+            "class_probabilities": {k: number(p) for k, p in probabilities.items()},
+            "score_nats": number(score), "value": _sizes(value),
+            "unit": spelled(unit), "interval_90": _intervals(interval), "plausible": plausible,
+            "share": number(share)}
+
+
+def _cause(kind, c):
+    return _entry(kind, c.letters, c.probabilities, c.score, c.value, c.unit, c.interval,
+                  c.plausible, c.share)
+
+
+def _finding(f):
+    found = _entry(f.sensor, f.axes, f.probabilities, f.score, f.value, f.unit,
+                   f.interval or {}, f.plausible, None)
+    if f.hz:
+        found["hz"] = {key: number(hz, 7) for key, hz in f.hz.items()}
+    return found
+
+
+def _drift(kind, gap):
+    level, low, high, gain = gap.drift
+    there = {"drift": gap.found.places["drift"]["drift"]}
+    floor, low, high = (v * FLOOR_OF_KERNEL for v in (level, low, high))
+    return _entry(kind, [], there, gain, dict.fromkeys("xyz", floor), UNITS[kind],
+                  dict.fromkeys("xyz", (low, high)), True, None)
+
+
+def _gap(kind, gap):
+    found = _shrinkage(kind, gap.shrinkage)
+    if hasattr(gap, "by_axis"):
+        found["axes"] = {key: _shrinkage(kind, one) for key, one in gap.by_axis.items()}
+    return found
+
+
+def _shrinkage(kind, s):
+    return {"unit": spelled(UNITS[kind]), "before": number(s.before), "after": number(s.after),
+            "floor": number(s.floor), "explained_share": number(s.share),
+            "interval_90": None if s.interval is None else [number(v) for v in s.interval]}
+
+
+def of_loop(kind, loop):
+    """Real against simulated, before and after the effects were added."""
+    return {"unit": spelled(UNITS[kind]), "before": number(loop.before),
+            "after": number(loop.after), "floor": number(loop.floor),
+            "explained_share": number(loop.share), "effects": loop.effects}

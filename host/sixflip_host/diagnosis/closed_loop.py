@@ -1,0 +1,195 @@
+"""The loop closed: the simulator run again with the effects found, and the gap between real and
+simulated before and after, on each session held out (GAP stage 6, last sentence).
+
+The simulated sensor repeats the real session: its attitudes, timing and temperature, its noise
+and flicker, the twelve parameters fitted. What is compared are the contrasts, so that nothing
+nominal is in the difference.
+"""
+import math
+
+import numpy as np
+
+from sixflip_sim.effects import make as make_chain
+from sixflip_sim.effects.effect import BadEffect
+from sixflip_sim.effects.library import EFFECTS
+from sixflip_sim.effects.library import make as make_effect
+from sixflip_sim.sensor_model import STANDARD_G, SensorModel, Triad
+
+from ..capture.capture_file import Capture
+from ..experiment import attitude_fit, blocks, nominal_rows
+from ..experiment.session_rows import body_to_table
+from ..simulation import replica
+from . import coefficient_fits
+
+TAUS_S = (30.0, 60.0, 120.0, 200.0, 300.0, 400.0, 600.0, 1000.0, 3000.0)
+
+
+class ReplayScene:
+    """The attitudes of a session's placements at their times; a move holds the one before."""
+
+    lever_arm = None
+
+    def __init__(self, session, up, g=STANDARD_G):
+        self.g = g
+        self.starts = np.array([session.t_s[first] for _, first, _ in session.runs])
+        self.attitudes = np.array([body_to_table(u, 0.0).ravel() for u in up])
+        self.temperature_c, self.warm_c, self.warm_tau_s = cooling(session)
+
+    def fill(self, found, t_us):
+        """Fill a scene_arrays.Motion."""
+        t = np.asarray(t_us) * 1e-6
+        place = np.clip(np.searchsorted(self.starts, t, side="right") - 1, 0, None)
+        found.attitude[:] = self.attitudes[place].T
+        found.f[:] = self.g * self.attitudes[place][:, 6:9].T
+        found.before[:] = self.g * self.attitudes[np.maximum(place - 1, 0)][:, 6:9].T
+        found.resting[:] = True
+        found.since[:] = np.maximum(t - self.starts[place], 0.0)
+
+
+def cooling(session):
+    """(end, change, tau) of T(t) = end - change exp(-t / tau) nearest to the thermometer."""
+    if session.thermometer is None:
+        return 25.0, 0.0, 300.0
+    t, c = session.thermometer.t, session.thermometer.c
+    best = None
+    for tau in TAUS_S:
+        columns = np.stack([np.ones_like(t), -np.exp(-t / tau)], 1)
+        size, *_ = np.linalg.lstsq(columns, c, rcond=None)
+        left = float(((c - columns @ size) ** 2).sum())
+        if best is None or left < best[0]:
+            best = left, float(size[0]), float(size[1]), tau
+    return best[1:]
+
+
+def specs(gap, theta, reference_c):
+    """[{effect, sensor, key: size, parameter: value}] of the chosen candidates; theta (k,)."""
+    found, start = [], 0
+    for candidate in gap.chosen:
+        mine = theta[start:start + len(candidate.keys)]
+        start += len(candidate.keys)
+        cls = EFFECTS[candidate.effect]
+        spec = {"effect": candidate.effect, "sensor": gap.kind}
+        for key, value in zip(candidate.keys, mine):
+            own = key.rstrip("+")
+            if key != own and own in ("x", "y", "z") and own + "2" in cls.keys:
+                own += "2"  # a square beside a slope
+            elif key != own:
+                continue
+            spec[own] = float(np.clip(value, -cls.largest[gap.kind], cls.largest[gap.kind]))
+        spec.update(shape(candidate.effect, candidate.variant, reference_c))
+        found.append(spec)
+    return found
+
+
+def shape(effect, variant, reference_c):
+    """The parameters that a variant's name stands for."""
+    words = variant.rstrip("+").split()
+    out = {}
+    if effect in ("thermal_bias", "thermal_scale"):
+        out["reference_c"] = round(reference_c, 3)
+    if words[:1] == ["tau"]:
+        out["tau_s"] = float(words[1])
+    if words[:1] == ["lag"] and effect == "thermal_bias" and float(words[1]) < 0:
+        out["lag_s"] = -float(words[1])
+    return out
+
+
+def simulated(session, nominal, level, effects, seed):
+    """Capture of the simulated twin of a session. level: {sensor: flicker}; effects: specs."""
+    capture = session.capture
+    scene = ReplayScene(session, nominal.up)
+    inverse = np.linalg.inv(nominal.matrix)
+    rate = session.rate
+    sigma = session.noise_accel * math.sqrt(rate) * 1e-3 * STANDARD_G
+    accel = Triad(inverse.tolist(), (-inverse @ nominal.offset * STANDARD_G).tolist(),
+                  sigma.tolist(), 1, seed, 0)
+    gyro = Triad(replica.UNIT, [0.0] * 3, 0.0, 1, seed, 3)
+    slow = [dict(dict.fromkeys("xyz", float(size)), effect="drift", sensor=kind, seed=seed)
+            for kind, size in level.items()]
+    if session.gyro is not None:
+        bias = np.radians(np.median(session.gyro, axis=0))
+        noise = np.radians(session.noise_gyro * math.sqrt(rate))
+        gyro = Triad(replica.UNIT, bias.tolist(), noise.tolist(), 1, seed, 3)
+    model = SensorModel(scene, accel, gyro, seed=seed,
+                        effects=make_chain([_checked(e) for e in effects] + slow, seed))
+    n = len(capture)
+    meta = capture.meta
+    a = replica.counted(model, "accel", meta["accel_lsb_per_g"], rate, n)
+    w = None if session.gyro is None else replica.counted(
+        model, "gyro", meta["gyro_lsb_per_dps"], rate, n)
+    return Capture(dict(meta), capture.t_us, _int16(a), None if w is None else _int16(w),
+                   capture.temp, None, capture.pose)
+
+
+def _int16(counts):
+    return np.clip(counts, -32768, 32767).astype(np.int16)
+
+
+def _checked(spec):
+    """spec, or without what the library does not take."""
+    try:
+        make_effect(spec)
+    except BadEffect:
+        return {k: v for k, v in spec.items() if k in ("effect", "sensor", "reference_c")}
+    return spec
+
+
+class Loop:
+    """For one sensor: before, after, floor (RMS of real less simulated), share; effects: the
+    specs added, from all sessions; before_twin, after_twin: contrasts of the last session."""
+
+
+def close(gap, reference_c):
+    """Loop of a SensorGap, or None where there is nothing to add."""
+    if not gap.chosen:
+        return None
+    columns = np.concatenate([c.columns for c in gap.chosen])
+    prior = np.concatenate([c.prior for c in gap.chosen])
+    fits = coefficient_fits.fits(gap.data, columns, prior)
+    loop = Loop()
+    loop.effects = specs(gap, coefficient_fits.coefficients(fits, prior)[0][0], reference_c)
+    sums = np.zeros(4)
+    for held, unit in enumerate(gap.units[:len(gap.parts)]):
+        others = fits[:held] + fits[held + 1:] or fits
+        theta = coefficient_fits.coefficients(others, prior)[0][0]
+        sums += _session(gap, held, unit, specs(gap, theta, reference_c), loop)
+    loop.before, loop.after, loop.floor = (float(np.sqrt(v / sums[3])) for v in sums[:3])
+    gap_square = sums[0] - sums[2]
+    loop.share = float((sums[0] - sums[1]) / gap_square) if gap_square > 0.1 * sums[2] else None
+    return loop
+
+
+def _session(gap, held, unit, effects, loop):
+    """Sums of squares (before, after, floor) and the number of contrasts of one session."""
+    session, nominal = gap.parts[held]
+    if gap.kind == "accel":
+        nominal = uncovered(gap, session, unit, nominal)
+    point = unit.grid[gap.adequacy.index[held]]
+    level = {gap.kind: point[1]}
+    # The twin lies as the real box lay: placement is in neither.
+    floor = unit.noise_energy(unit.grid[0][0], point[1])
+    out = []
+    for number, added in enumerate(([], effects)):
+        twin = blocks.of(session.name, simulated(session, nominal, level, added,
+                                                            1000 + held))
+        y = nominal_rows.accel_rows(twin, gap.parts[held][1]) if gap.kind == "accel" else \
+            twin.gyro.reshape(-1)
+        difference = unit.z - unit.contrasts(y)
+        out.append(float(difference @ difference))
+        setattr(loop, ("before_twin", "after_twin")[number], twin)
+    return np.array([*out, 2.0 * float(floor), float(unit.freedom)])
+
+
+def uncovered(gap, session, unit, nominal):
+    """NominalSensor whose directions of gravity are free of what the causes add across it."""
+    columns = np.concatenate([c.columns for c in gap.chosen])
+    prior = np.concatenate([c.prior for c in gap.chosen])
+    theta = coefficient_fits.coefficients(
+        coefficient_fits.fits(gap.data, columns, prior), prior)[0][0]
+    raw = np.hstack([d.columns for d in unit.designs])[:, columns]
+    added = (raw @ theta).reshape(-1, 3) * 1e-3
+    up = nominal.up.copy()
+    for place in np.unique(session.placement):
+        moved = up[place] - added[session.placement == place].mean(axis=0)
+        up[place] = moved / np.linalg.norm(moved)
+    return attitude_fit.NominalSensor(nominal.matrix, nominal.offset, up)

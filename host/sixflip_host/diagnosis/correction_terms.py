@@ -1,0 +1,214 @@
+"""What was found as terms of a correction record, for the board to take out.
+
+Only a single, plausible name goes into a record (never a member of an unresolved class), only an
+effect that the board has a term for, and only with a gain on what was held out, shown by the
+board's own correction (term_gain.py). The coefficients are refitted without what the board cannot
+do: no lag of the thermometer, no bend of a scale or of a g-sensitivity.
+"""
+import copy
+from pathlib import Path
+
+import numpy as np
+
+from sixflip import record_terms
+from sixflip.record import following
+
+from ..calibrate import term_words
+from ..errors import CheckFailed
+from . import coefficient_fits
+from .term_gain import Gains
+
+TERMS = {("accel", "thermal_bias"): "accel_thermal_bias",
+         ("gyro", "thermal_bias"): "gyro_thermal_bias",
+         ("accel", "thermal_scale"): "accel_thermal_scale",
+         ("gyro", "thermal_scale"): "gyro_thermal_scale",
+         ("gyro", "g_sensitivity"): "g_sensitivity"}
+CLOSED = 0.5  # share of what a term says is there that must be there where it was held out
+OTHER_PART_G = 0.02  # |a| at rest beyond this: it is not this sensor's record
+
+
+class Term:
+    """name of the section; cause; gap (SensorGap); fields of record_terms.py, gain included."""
+
+    def __init__(self, gap, cause, name):
+        self.gap, self.cause, self.name = gap, cause, name
+
+
+class Terms:
+    """found: [Term]; left_out: [(sensor, names, reason)]; record: with the terms found in it."""
+
+    def __init__(self, diagnosis, record, left_out=()):
+        self.diagnosis, self.left_out = diagnosis, list(left_out)
+        self.base = copy.deepcopy(record)
+        candidates = self._candidates()
+        self.found = []
+        for gap in {id(t.gap): t.gap for t in candidates}.values():
+            self.found += self._shown(gap, [t for t in candidates if t.gap is gap])
+        self.record = copy.deepcopy(record)
+        for term in self.found:
+            record_terms.put(self.record, term.name, term.fields)
+        if self.found:
+            self.record.sequence = following(self.record.sequence)
+
+    def _gaps(self):
+        turns = [self.diagnosis.turns] if self.diagnosis.turns else []
+        return [*self.diagnosis.gaps.values(), *turns]
+
+    def _candidates(self):
+        """[Term] of the causes that can become one."""
+        out = []
+        self.left_out += [(f.sensor, [f.effect], "no term of a record")
+                          for f in self.diagnosis.findings]
+        for gap in self._gaps():
+            if gap.drift:
+                self.left_out.append((gap.kind, ["drift"], "no term of a record"))
+            for cause in gap.causes:
+                reason = self._reason(gap, cause)
+                if reason:
+                    self.left_out.append((gap.kind, cause.names, reason))
+                else:
+                    out.append(Term(gap, cause, TERMS[gap.kind, cause.effect]))
+        return out
+
+    def _reason(self, gap, cause):
+        """"" or why a cause cannot become a term."""
+        if not any((gap.kind, name) in TERMS for name in cause.names):
+            return "no term of a record"
+        if len(cause.names) > 1:
+            return "cannot be told apart"
+        if not cause.plausible:
+            return "physically implausible"
+        if cause.effect != "g_sensitivity" and self.base.temp_c is None:
+            return "the record does not say at which temperature it was measured"
+        return ""
+
+    def _shown(self, gap, terms):
+        """[Term] of one gap that show a gain; the others are left out with the reason."""
+        gains = Gains(gap, self.base, self.diagnosis.settings.certified)
+        if not gains.parts:
+            self.left_out += [(gap.kind, t.cause.names, "nothing to hold out: one session, too "
+                               "short to be halved") for t in terms]
+            return []
+        kept = list(terms)
+        while kept:
+            fit = Fit(gap, kept, gains.data, self.diagnosis)
+            weakest = self._weakest(gains, fit, kept)
+            if weakest is None:
+                break
+            kept.remove(weakest)
+            self.left_out.append((gap.kind, weakest.cause.names, "no gain on what was held out "
+                                  "(%.3g before, %.3g after)" % (weakest.gain[:2])))
+        for term in kept:
+            before, after, floor = term.gain
+            term.fields = dict(fit.fields(term), before=before, after=after, floor=floor)
+        return kept
+
+    def _weakest(self, gains, fit, terms):
+        """Fill gain (before, after, floor) of each Term; the one that gains nothing, or None."""
+        held = range(len(gains.parts))
+        after = gains.left([fit.sections(terms, h) for h in held])
+        worst, least = None, CLOSED
+        for term in terms:
+            rest = [t for t in terms if t is not term]
+            before = gains.left([fit.sections(rest, h) for h in held])
+            said = before - after
+            term.gain = rms(before), rms(after), gains.floor
+            share = (before @ before - after @ after) / max(said @ said, 1e-12)
+            if share < least:
+                worst, least = term, share
+        return worst
+
+
+def rms(values):
+    return float(np.sqrt(np.mean(values ** 2)))
+
+
+class Fit:
+    """Coefficients of the terms of one gap as the board can apply them: of all sessions, and
+    without each one that is held out."""
+
+    def __init__(self, gap, terms, data, diagnosis):
+        self.gap, self.diagnosis = gap, diagnosis
+        self.candidates = {term: plain(gap, term.cause) for term in terms}
+        mine = [c for term in terms for c in self.candidates[term]]
+        named = {id(c) for term in terms for c in term.cause.chosen}
+        chosen = list(mine)
+        for candidate in gap.chosen:
+            taken = np.concatenate([c.columns for c in chosen])
+            if id(candidate) not in named and not np.isin(candidate.columns, taken).any():
+                chosen.append(candidate)
+        self.columns = np.concatenate([c.columns for c in chosen])
+        prior = np.concatenate([c.prior for c in chosen])
+        fits = coefficient_fits.fits(data, self.columns, prior)
+        theta, covariance = coefficient_fits.coefficients(
+            coefficient_fits.fits(gap.data, self.columns, prior), prior)
+        self.theta, self.sigma = theta[0], np.sqrt(np.diag(covariance[0]))
+        between = [getattr(u, "between", False) for u in data.units]
+        self.held = []
+        for held in range(between.count(False)):
+            # What lies between the sessions knows of the one held out.
+            others = [f for k, f in enumerate(fits) if k != held and not between[k]]
+            self.held.append(coefficient_fits.coefficients(others, prior)[0][0])
+
+    def sections(self, terms, held):
+        """{name: fields} as the other sessions have them."""
+        return {term.name: self.fields(term, self.held[held]) for term in terms}
+
+    def fields(self, term, theta=None):
+        """Fields of record_terms.py but the gain."""
+        theta = self.theta if theta is None else theta
+        sizes, sigmas = {}, {}
+        for candidate in self.candidates[term]:
+            for key, axis, column in zip(candidate.keys, candidate.axes, candidate.columns):
+                if "xyz"[axis] in term.cause.letters:
+                    place = int(np.flatnonzero(self.columns == column)[0])
+                    sizes[key], sigmas[key] = float(theta[place]), float(self.sigma[place])
+        sessions = self.gap.sessions
+        fields = {"axes": ["xyz".index(letter) for letter in term.cause.letters],
+                  "origin": record_terms.ORIGINS[self.gap.same_session],
+                  "source": " ".join(Path(s.name).name for s in sessions),
+                  "before": None, "after": None, "floor": None}
+        if term.name == "g_sensitivity":
+            for name, values in (("k", sizes), ("sigma", sigmas)):
+                fields[name] = [[values.get(a + b, 0.0) for b in "xyz"] for a in "xyz"]
+            return fields
+        meta = sessions[0].capture.meta
+        celsius = np.concatenate([s.temperature for s in sessions])
+        fields.update(t0_c=self.diagnosis.settings.reference_c, low_c=float(celsius.min()),
+                      high_c=float(celsius.max()), temp_lsb_per_c=float(meta["temp_lsb_per_c"]),
+                      temp_offset_c=float(meta["temp_offset_c"]))
+        for name, end in (("k1", ""), ("k2", "+")):
+            fields[name] = [sizes.get(a + end, 0.0) for a in "xyz"]
+            fields["sigma_" + name] = [sigmas.get(a + end, 0.0) for a in "xyz"]
+        return fields
+
+
+def plain(gap, cause):
+    """The candidates of a cause in the form that the board can take out."""
+    out = []
+    for c in cause.chosen:
+        bend = "+" if c.variant.endswith("~") and cause.effect == "thermal_bias" else ""
+        out += [o for o in gap.options if (o.effect, o.axis, o.variant) == (c.effect, c.axis, bend)
+                and not any(np.isin(o.columns, one.columns).any() for one in out)]
+    return out
+
+
+def fitting(diagnosis, record, path):
+    """CheckFailed unless the record is of the sensor that was captured."""
+    from .term_gain import corrected
+    for session in diagnosis.sessions:
+        if not session.n:
+            continue
+        off = rms(np.linalg.norm(corrected(session, record).accel, axis=1) * 1e-3 - 1.0)
+        if not off <= OTHER_PART_G:
+            raise CheckFailed("%s: at rest |a| of %s comes out %.0f mg off, expected at most "
+                              "%.0f: it is the record of another part" % (
+                                  path, session.name, off * 1e3, OTHER_PART_G * 1e3))
+
+
+def answer(terms, output):
+    """dict of Terms for the JSON answer; output: the file they are written to."""
+    return {"written": output if terms.found else None,
+            "found": [dict(term_words.facts(t.name, t.fields), term=t.name) for t in terms.found],
+            "left_out": [{"sensor": sensor, "effects": names, "reason": reason}
+                         for sensor, names, reason in terms.left_out]}

@@ -1,0 +1,191 @@
+"""What a member of a set costs: simulated nulls and strangers of the very protocol, in a cache.
+
+Nulls: contrasts without any effect are drawn with the levels of placement and flicker that the
+data shows, and scored as the data is; the cost is a quantile of the largest gain of any
+hypothesis (so the search itself is in it). Strangers: contrasts with something nameless in them,
+of a form that no nameless hypothesis has either; what it leaves over beside the likeliest of
+those is taken up by names. A name beside a stranger must gain more than that share.
+"""
+import hashlib
+import json
+import math
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .. import atomic_write, progress
+from . import evidence
+from .evidence import NONE
+from .odds import CHANCE
+
+RUNS = 160
+UPPER = 0.1
+TIMES_USUAL = 1.6  # of the usual levels, that a null has at most
+MARGIN_NATS = 1.0  # noise is not quite what it is simulated as
+LEAST_NATS = 4.0  # GAP: 95 % of the prototype's nulls in one search with the noise known exactly
+FORMAT = 9
+STRANGERS = 3  # simulated for each nameless hypothesis
+STRANGE_CHI2 = 200.0  # of a simulated stranger: ten times what a cost amounts to
+SURE = 0.9  # share of the strangers beside which no name may be taken in
+LEAST_SHARE, MOST_SHARE = 0.02, 0.5
+
+
+@dataclass(frozen=True)
+class Cutoffs:
+    """member: nats that a member of a set must gain; beside: share of what a stranger in the set
+    gains that another member must gain as well; form: the same of what a named member gains,
+    whose form a part has not exactly: a seventh of its size, squared."""
+
+    member: float
+    beside: float
+    form: float = 0.02
+
+
+def folder():
+    """Where costs are kept."""
+    root = os.environ.get("SIXFLIP_CACHE")
+    if not root:
+        root = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "sixflip"
+    return Path(root) / "thresholds"
+
+
+def of(units, forms, levels):
+    """Cutoffs in this protocol."""
+    empty = [evidence.fit(u, u.statistics(), NONE, NONE, levels.prior(u, ())) for u in units]
+    points = [_usual(u, int(f.index[0]), levels) for u, f in zip(units, empty)]
+    name = folder() / ("%s.json" % _key(units, forms, levels, points))
+    try:
+        kept = json.loads(name.read_text())
+        return Cutoffs(float(kept["member"]), float(kept["beside"]))
+    except (OSError, ValueError, KeyError, TypeError):
+        found = Cutoffs(simulated(units, forms, levels, points),
+                        left_to_names(units, forms, levels, points))
+    try:
+        name.parent.mkdir(parents=True, exist_ok=True)
+        kept = {"member": found.member, "beside": found.beside}
+        atomic_write.write_bytes(str(name), json.dumps(kept).encode())
+    except OSError:
+        pass  # a cache that cannot be written is no error
+    return found
+
+
+def _usual(unit, point, levels):
+    """The point of a unit's grid nearest to one that the data shows, with no more flicker and
+    placement than is usual: a null is what the chip and the hand do anyhow."""
+    if unit.between:
+        return point
+    top = (TIMES_USUAL * levels.placement, TIMES_USUAL * levels.flicker)
+    low = [k for k, pair in enumerate(unit.grid) if pair[0] <= top[0] and pair[1] <= top[1]]
+    wanted = [min(a, b) for a, b in zip(unit.grid[point], top)]
+    return min(low or [point], key=lambda k: sum(
+        abs(np.log(max(a, 1e-9) / max(b, 1e-9))) for a, b in zip(unit.grid[k], wanted)))
+
+
+def _key(units, forms, levels, points):
+    """Hash of what the null distribution depends on: poses, timing (to whole seconds), the
+    hypotheses and the levels; not of the noise in the directions of gravity."""
+    h = hashlib.sha256(b"%d %d" % (FORMAT, RUNS))
+    for unit, point in zip(units, points):
+        h.update(repr((unit.signature, unit.freedom, point)).encode())
+    h.update(repr((levels, sorted(
+        (f.effect, f.variant, str(f.axis), len(f.shared)) for f in forms))).encode())
+    return h.hexdigest()[:24]
+
+
+def simulated(units, forms, levels, points):
+    """The cost from RUNS simulated data sets."""
+    generator = np.random.default_rng(20190919)
+    statistics = [u.statistics(u.draw(k, generator, RUNS)) for u, k in zip(units, points)]
+    prior = [levels.prior(u, ()) for u in units]
+    base = [evidence.fit(u, s, NONE, NONE, p) for u, s, p in zip(units, statistics, prior)]
+    nothing = evidence.score(base, NONE)
+    largest = np.full(RUNS, -np.inf)
+    for form in progress.steps(forms, "what chance alone shows"):
+        gain = _gain(form, units, statistics, prior, levels, base) - nothing
+        largest = np.maximum(largest, gain)
+    return _quantile(largest)
+
+
+def _gain(form, units, statistics, prior, levels, base):
+    """(RUNS,) score of a set of this form alone."""
+    if form.free:
+        prior = [levels.prior(u, form.free) for u in units]
+    if not form.choices:
+        return evidence.score([evidence.fit(u, s, form.shared, NONE, p) for u, s, p in zip(
+            units, statistics, prior)], form.shared, units[0].apart)
+    total = 0.0
+    for unit, one, level, plain in zip(units, statistics, prior, base):
+        if unit.between:
+            total = total + plain.evidence
+            continue
+        best = np.max([evidence.fit(unit, one, NONE, choice, level).evidence
+                       for choice in form.choices], axis=0)
+        total = total + best - math.log(len(form.choices))
+    return total
+
+
+def left_to_names(units, forms, levels, points):
+    """Share of a stranger's gain that names take up beside it, of strangers of another form."""
+    nameless = [f for f in forms if f.generic and f.axis is None and len(f.shared)]
+    named = [f for f in forms if not f.generic and f.axis is None and len(f.shared)]
+    if not nameless or not named:
+        return LEAST_SHARE
+    generator = np.random.default_rng(20190920)
+    data = _strange(units, nameless, points, generator)
+    statistics = [u.statistics(z) for u, z in zip(units, data)]
+    prior = [levels.prior(u, ()) for u in units]
+
+    def scored(shared, which):
+        fits = [evidence.fit(u, (q[:, which], p[:, :, which]), shared, NONE, one, evidence.COARSE)
+                for u, (q, p), one in zip(units, statistics, prior)]
+        return evidence.score(fits, shared)
+    every = np.arange(data[0].shape[1])
+    nothing = scored(NONE, every)
+    gains = np.array([scored(f.shared, every) for f in nameless]) - nothing
+    best, shares = gains.argmax(axis=0), []
+    names = np.max([scored(f.shared, every) for f in named], axis=0) - nothing
+    strange = names < gains.max(axis=0)  # what a name explains better is no stranger
+    for place in progress.steps(np.unique(best[strange]), "what strangers leave to names"):
+        which = np.flatnonzero((best == place) & strange)
+        alone = gains[place, which]
+        beside = np.max([scored(_together(nameless[place].shared, f.shared), which)
+                         for f in named], axis=0) - nothing[which] - alone
+        shares += (np.maximum(beside, 0.0) / np.maximum(alone, LEAST_NATS)).tolist()
+    return float(np.clip(np.quantile(shares or [0.0], SURE), LEAST_SHARE, MOST_SHARE))
+
+
+def _together(one, other):
+    """Columns of both, each once."""
+    new = ~np.isin(other.index, one.index)
+    return one + evidence.Columns(other.index[new], other.prior[new])
+
+
+def _strange(units, nameless, points, generator):
+    """[contrasts (m, R)] of each unit: noise, and in every data set a combination of the columns
+    of one nameless hypothesis on one axis, bent flat at both ends, the same in all sessions."""
+    every = [[] for _ in units]
+    for form in nameless:
+        for number in range(STRANGERS):
+            mine = form.columns[np.array(form.axes) == number % 3]
+            if not len(mine):
+                continue
+            mix = generator.standard_normal(len(mine))
+            raw = [np.zeros(0) if u.between else u.raw(mine) @ mix for u in units]
+            width = np.sqrt(np.mean(np.concatenate(raw) ** 2)) + 1e-12
+            moved = [np.zeros(len(u.z)) if u.between else u.contrasts(np.tanh(x / width))
+                     for u, x in zip(units, raw)]
+            chi2 = sum(u.chi2(m, k) for u, m, k in zip(units, moved, points))
+            size = np.sqrt(STRANGE_CHI2 / max(chi2, 1e-9))
+            for found, unit, m, k in zip(every, units, moved, points):
+                found.append(size * m + unit.draw(k, generator, 1)[:, 0])
+    return [np.stack(found, axis=1) for found in every]
+
+
+def _quantile(scores):
+    """Gain that a null data set exceeds with probability CHANCE: the tail of a largest log
+    likelihood ratio is exponential, its scale is taken from the upper tenth of the runs."""
+    start = float(np.quantile(scores, 1.0 - UPPER))
+    scale = float(np.mean(scores[scores > start] - start)) if (scores > start).any() else 0.0
+    return max(LEAST_NATS, start + scale * math.log(UPPER / CHANCE) + MARGIN_NATS)

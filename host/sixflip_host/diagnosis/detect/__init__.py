@@ -1,0 +1,1 @@
+"""What needs no statistics over poses: registers, the clock, the axes, lines, spikes."""

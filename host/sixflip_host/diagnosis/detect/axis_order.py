@@ -1,0 +1,80 @@
+"""Axes swapped or inverted against the labels, and a full scale that is off by two or four."""
+import itertools
+import math
+
+import numpy as np
+
+from sixflip import faces
+
+from .detection import Finding, present
+
+OFF_G = 0.1  # standard deviation of a reading from what an ideal part in that pose has
+ORDERS = 48  # signed permutations
+
+
+def swapped(sessions):
+    """Accelerometer axes against the labels of the faces."""
+    means, axes = [], []
+    for session in sessions:
+        if not session.labelled:
+            continue
+        for code, first, end in session.runs:
+            face = faces.face_of_code(code)
+            if face >= 0:
+                means.append(session.capture.accel[first:end].mean(axis=0)
+                             / session.capture.meta["accel_lsb_per_g"])
+                axes.append([faces.SIGN[face] * (k == faces.AXIS[face]) for k in range(3)])
+    if len(means) < 4 or np.linalg.matrix_rank(np.array(axes)) < 3:
+        return []
+    matrix = np.linalg.lstsq(np.hstack([axes, np.ones((len(axes), 1))]), np.array(means),
+                             rcond=None)[0][:3].T  # measured = matrix · true
+    best = nearest_permutation(matrix)
+    if (best == np.eye(3)).all():
+        return []
+    score = order_nats(np.array(means), np.array(axes), best)
+    if not present(score):
+        return []
+    value = {}
+    for i in range(3):
+        source = int(np.abs(best[i]).argmax())
+        signed = int(best[i, source]) * (source + 1)
+        if signed != i + 1:
+            value["xyz"[i]] = signed
+    return [Finding("axis_swap", "accel", sorted(value), value, "axis", score, "orientation",
+                    "axes are swapped or inverted against the labels",
+                    {k: (v, v) for k, v in value.items()})]
+
+
+def order_nats(means, axes, order):
+    """Log likelihood ratio (nats) of means (n, 3) g being gravity along axes (n, 3) read in
+    another order (3, 3), against the plain order, or any matrix at all, which pays for its nine
+    free numbers with half a logarithm of the readings each [Schwarz, Ann. Stat. 6 (1978) 461]."""
+    free = np.linalg.lstsq(axes, means, rcond=None)[0]
+    left = [float(((means - predicted) ** 2).sum()) for predicted in (
+        axes @ order.T, axes, axes @ free)]
+    named, plain, any_matrix = (-0.5 * one / OFF_G ** 2 for one in left)
+    nameless = max(plain, any_matrix - 4.5 * math.log(means.size))
+    return named - math.log(ORDERS) - nameless
+
+
+def nearest_permutation(matrix):
+    """The signed permutation (3, 3) nearest to a matrix."""
+    best = None
+    for order in itertools.permutations(range(3)):
+        total = sum(abs(matrix[i, order[i]]) for i in range(3))
+        if best is None or total > best[0]:
+            signed = np.zeros((3, 3))
+            for i in range(3):
+                signed[i, order[i]] = np.sign(matrix[i, order[i]]) or 1.0
+            best = total, signed
+    return best[1]
+
+
+def full_scale(sessions, nominal):
+    """A sentence when the readings are off by a factor of two or four, else ""."""
+    size = float(np.median([1.0 / np.cbrt(abs(np.linalg.det(m.matrix))) for m in nominal]))
+    for factor in (0.25, 0.5, 2.0, 4.0):
+        if abs(size / factor - 1.0) < 0.1:
+            return ("the accelerometer reads %g times gravity: its full scale is not the one the "
+                    "header states" % factor)
+    return ""

@@ -1,0 +1,43 @@
+"""An effect read off the samples themselves: registers, timing, spectrum.
+
+Its score is the log likelihood ratio of the samples with the effect against the likeliest of what
+has no name: no effect at all, or the stranger of its domain (jumps of any size, codes that are
+missing anywhere, gaps of any length, any matrix). What was tried to find it is taken off.
+"""
+from .. import odds
+
+
+class Finding:
+    """effect, sensor, axes ("xyz" letters), value {key: size}, interval {key: (low, high)} or
+    None, unit, score in nats, domain, words (a clause for people), rivals ({effect: why}),
+    plausible; place: {name: probability} of what stands here, "" nothing, "~..." nameless; hz:
+    {axis: frequency of a line}."""
+
+    def __init__(self, effect, sensor, axes, value, unit, score, domain, words, interval=None,
+                 rivals=None, plausible=True, place=None, hz=None):
+        self.effect, self.sensor, self.axes = effect, sensor, list(axes)
+        self.value, self.unit, self.score, self.domain = value, unit, float(score), domain
+        self.words, self.interval, self.rivals = words, interval, rivals or {}
+        self.plausible, self.hz = plausible, hz or {}
+        names = [effect, *sorted(self.rivals)]  # which of them, nobody can tell
+        self.place = place or dict.fromkeys(names, odds.probability(self.score) / len(names))
+
+    @property
+    def probabilities(self):
+        """{effect: probability} of each name of its class."""
+        return {name: self.place.get(name, 0.0) for name in [self.effect, *sorted(self.rivals)]}
+
+    @property
+    def named(self):
+        """Probability that one of its class is there."""
+        return sum(self.probabilities.values())
+
+    @property
+    def nameless(self):
+        """Probability that what stands here has no name."""
+        return sum(p for name, p in self.place.items() if name.startswith("~"))
+
+
+def present(score):
+    """True when an effect is more likely there than HOLDS."""
+    return score >= odds.COST + odds.PRESENT

@@ -1,0 +1,118 @@
+"""The clock of a recording held against the rate that its header states; what is missing.
+
+The clock itself is measured by sixflip_host.capture.clock, which tells losses from pauses of
+the recorder, late stamps and jitter. Only losses, and a stated rate that is wrong, are the
+device's; the rest is said and is no cause. A rate that was measured from the stamps themselves
+cannot contradict them and is not judged.
+"""
+import math
+
+import numpy as np
+from scipy import stats
+
+from ...capture import clock
+from .detection import Finding, present
+
+FEWEST = 200  # samples
+CRYSTAL = 2e-4  # standard deviation of a clock that is as it says: crystal and driver together
+OSCILLATOR = 0.02  # and of a sensor's own oscillator [ITG-3205 PS rev 1.0, table 3.1: 2 %]
+WANDERS = 0.15  # of its error, from session to session: an oscillator follows the temperature
+APART = 3.0  # nats by which sessions may differ and still have one clock, GAP stage 4
+HICCUP = 1e-5  # chance of an interval that a sound recorder leaves too long
+LONGEST = 50.0  # periods: gaps without a name may have any length up to that
+LATE = 0.02  # periods, at least: how exactly the time of a sample is known
+
+
+def clocks(sessions):
+    """[SampleClock, or None where the times do not run], one a session."""
+    return [None if session.timeless else clock.of(session.capture) for session in sessions]
+
+
+def findings(sessions):
+    """list of Finding: a rate that is not the one stated, samples that are missing."""
+    found = clocks(sessions)
+    return rate(sessions, found) + drops(found)
+
+
+def rate(sessions, found):
+    """The clock against the header's rate_hz, where every capture states one. With a name: one
+    error of the oscillator in all sessions; without: one of each session's own."""
+    if any(one is None or one.rows < FEWEST or clock.is_measured(session.capture.meta)
+           for session, one in zip(sessions, found)):
+        return []
+    errors = np.array([one.rate_hz / session.rate - 1.0 for session, one in zip(sessions, found)])
+    widths = [np.ptp(one.interval_hz) / 4.0 / session.rate  # 95 %: two standard errors each way
+              for session, one in zip(sessions, found)]
+    known = np.diag(np.square(widths) + CRYSTAL ** 2)
+    alike = OSCILLATOR ** 2 * ((1.0 - WANDERS ** 2) + WANDERS ** 2 * np.eye(len(errors)))
+    sound, own, one = (float(stats.multivariate_normal.logpdf(errors, np.zeros(len(errors)), c))
+                       for c in (known, known + OSCILLATOR ** 2 * np.eye(len(errors)),
+                                 known + alike))
+    if one < own - APART or not present(one - sound):
+        return []
+    percent = 100.0 * float(np.mean(errors))
+    half = 100.0 * max(float(np.ptp(errors)) / 2, 2.0 * max(widths), 1e-6)
+    return [Finding("sample_rate", "device", [], {"rate": round(percent, 4)}, "%",
+                    one - sound, "timing", "the samples come at %.2f Hz, not %g" % (
+                        sessions[0].rate * (1 + percent / 100.0), sessions[0].rate),
+                    {"rate": (percent - half, percent + half)})]
+
+
+def drops(found):
+    """Samples that are missing under a clock that went on: gaps as long as a whole number of
+    samples, which gaps without a name need not be."""
+    found = [one for one in found if one is not None and one.rows >= FEWEST]
+    lost = sum(one.losses - one.losses_known for one in found)
+    score = sum(gap_nats(np.array(one.loss_periods),
+                         max(one.jitter_ms * one.rate_hz / 1e3, LATE), one.rows) for one in found)
+    if not lost or not present(score):
+        return []
+    expected = sum(one.expected for one in found)
+    chance = 100.0 * lost / expected
+    half = 100.0 * 1.645 * math.sqrt(lost) / expected
+    return [Finding("dropped_samples", "device", [], {"chance": round(chance, 4)}, "%", score,
+                    "timing", "%d of %d samples are missing, the longest gap lasts %.0f ms" % (
+                        lost, expected, max(one.longest_loss_ms for one in found)),
+                    {"chance": (max(0.0, chance - half), chance + half)})]
+
+
+def gap_nats(late, sigma, rows):
+    """Log likelihood ratio of gaps, late (n,) periods, in so many rows, if they are lost samples:
+    a whole number each, known to sigma, at a rate of their own; against pauses of any length at
+    the rate of a recorder's hiccups."""
+    number = len(late)
+    if not number:
+        return 0.0
+    off = late - np.maximum(np.rint(late), 1.0)
+    exact = float(stats.norm.logpdf(off, 0.0, sigma).sum()) + number * math.log(LONGEST)
+    length = number * math.log(0.5) - float((np.maximum(np.rint(late), 1.0) - 1.0).sum()) * 0.1
+    own = number * math.log(number / (rows * HICCUP)) - (number - rows * HICCUP)
+    return exact + length + own
+
+
+def remarks(sessions, found):
+    """Sentences on what is not the sensor's: pauses, the link, bursts, jitter."""
+    said = []
+    for session, one in zip(sessions, found):
+        if one is None:
+            continue
+        lines = []
+        if one.losses_known:
+            lines.append("%d samples were lost on the way from the board; that is the link's "
+                         "doing, not the sensor's" % one.losses_known)
+        if one.pauses and clock.of_a_board(session.capture):
+            lines.append("the board wrote to its flash %d times, the longest took %.0f ms "
+                         "without a sample; that is the recorder's doing, not the sensor's" % (
+                             one.pauses, 1e3 * one.longest_pause_s))
+        elif one.pauses:
+            lines.append(clock.pause_words(one))
+        lines += [clock.burst_words(one), clock.jitter_words(one)]
+        said += ["%s: %s" % (session.name, line) for line in lines if line]
+    return said
+
+
+def answer(sessions, found):
+    """For --json: every capture's clock, and whether its header's rate is stated or measured."""
+    return [dict(clock.as_json(one), capture=session.name, header_hz=session.rate,
+                 header_rate="measured" if clock.is_measured(session.capture.meta) else "stated")
+            for session, one in zip(sessions, found) if one is not None]

@@ -1,0 +1,104 @@
+"""Samples on a rail, and peaks that are cut off below it.
+
+What counts is how much likelier the samples at one level are if everything beyond it reads that
+level than if the readings thin out towards their largest one as they do everywhere.
+"""
+import math
+
+import numpy as np
+
+from ...capture.registers import RAIL, steps
+from .detection import Finding, present
+
+RAIL_CODES = 4  # the last codes of a range: scales that are rounded end a few short of 2^15
+SPREAD_SHARE = 0.02  # of the span of the readings, just inside their largest one
+
+
+def saturation(sessions, sensor, columns):
+    """Samples on a rail, or many that share the largest value and few near it."""
+    value, words, score = {}, "", 0.0
+    for i in range(3):
+        for session, counts in zip(sessions, columns):
+            x = counts[:, i].astype(np.int64)
+            on_rail = np.abs(x) >= _range_rail(session, sensor)
+            if on_rail.any():
+                nats = level_nats(np.abs(x), on_rail, RAIL_CODES)
+                said = "%d samples sit on the rail" % on_rail.sum()
+            else:
+                nats = max(cut_off_nats(x), cut_off_nats(-x))
+                said = "peaks are cut off at %d counts" % int(np.abs(x).max())
+            if present(nats):
+                value["xyz"[i]] = 1
+                score, words = score + nats, said
+    if not value:
+        return []
+    return [Finding("saturation", sensor, sorted(value), value, "1", score, "amplitude", words,
+                    {k: (v, v) for k, v in value.items()})]
+
+
+def railed(session, sensor="accel"):
+    """(n,) True where a sample sits on a rail or on a level that peaks are cut off at."""
+    counts = getattr(session.capture, sensor)
+    rail = _range_rail(session, sensor)
+    found = np.zeros(len(counts), bool)
+    for column in counts.T.astype(np.int64):
+        found |= np.abs(column) >= rail
+        for sign in (1, -1):
+            if present(cut_off_nats(sign * column)):
+                found |= sign * column == (sign * column).max()
+    return found
+
+
+def _range_rail(session, sensor):
+    """Count of the rail of the range the header states (accel_range_g, gyro_range_dps)."""
+    meta = session.capture.meta
+    top, lsb = (("accel_range_g", "accel_lsb_per_g") if sensor == "accel"
+                else ("gyro_range_dps", "gyro_lsb_per_dps"))
+    if top not in meta:
+        return RAIL - 3
+    return min(RAIL - 3, int(meta[top] * meta[lsb]) - RAIL_CODES)
+
+
+def cut_off_nats(x):
+    """level_nats of the largest value of x; the one sample that is the largest anyhow is no
+    evidence."""
+    at = x == x.max()
+    return 0.0 if at.all() else level_nats(x, at, 1, 1)
+
+
+def level_nats(x, at, width, free=0):
+    """Log likelihood ratio (nats) of readings x being held at their largest `width` codes, where
+    `at` is True, against readings whose peaks end anywhere in the last part of their span. That
+    noise does not move the next sample at the level counts for as much as the noise is wide.
+    free: peaks that end there anyhow."""
+    step = int(steps(x[:, None])[0])
+    spread = max(4.0, 3.0 * step, SPREAD_SHARE * float(np.ptp(x)))
+    top = x[at].min()
+    visits = _runs(x >= top - spread)
+    reached = _reached(x >= top - spread, at)
+    inside, runs = visits - reached, max(reached - free, 0)
+    # A rail is known beforehand: what jumps there alone could have jumped anywhere.
+    known = not free and not inside
+    share = width / float(RAIL + 1) if known else width * step / spread
+    held = int((at[1:] & at[:-1]).sum())
+    bends = np.abs(np.diff(x[~at], n=2)) if (~at).sum() > 3 else np.zeros(1)
+    sigma = 1.4826 / math.sqrt(6.0) * float(np.median(bends)) / step  # of a sample, in steps
+    nats = held * math.log(max(math.sqrt(2.0 * math.pi) * sigma, 1.0))
+    if not runs:
+        return nats
+    found = runs / (runs + inside)
+    if found <= share:
+        return 0.0  # readings as they thin out anyhow: what repeats there does so everywhere
+    nats += runs * math.log(found / share)
+    return nats + (inside * math.log((1.0 - found) / (1.0 - share)) if inside else 0.0)
+
+
+def _reached(near, at):
+    """Number of runs of `near` that hold a sample of `at`."""
+    number = np.cumsum(np.concatenate([near[:1], near[1:] & ~near[:-1]]))
+    return len(np.unique(number[at]))
+
+
+def _runs(mask):
+    """Number of runs of True."""
+    return int(mask[0]) + int((mask[1:] & ~mask[:-1]).sum())

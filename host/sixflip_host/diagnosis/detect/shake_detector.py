@@ -1,0 +1,48 @@
+"""Captures that move on: how much faster than the hand or the wheels the sensor is shaken."""
+import numpy as np
+
+from .detection import Finding
+
+WINDOW_S = 1.0
+QUIET = 0.02  # share of the windows that counts as quiet
+SHAKEN = 3.0  # times the quiet level, root mean square, in at least half of the windows
+FEWEST_WINDOWS = 8
+
+
+def findings(sessions):
+    """list of Finding: vibration of captures without poses, from what changes from one sample
+    to the next (third differences: no motion of a hand or a vehicle is so fast)."""
+    levels = []
+    for session in sessions:
+        m = max(8, int(WINDOW_S * session.rate))
+        x = session.capture.accel.astype(float) * (1000.0 / session.capture.meta[
+            "accel_lsb_per_g"])
+        fast = np.diff(x, n=3, axis=0) / np.sqrt(20.0)  # the gain of white noise
+        k = len(fast) // m
+        if k < FEWEST_WINDOWS:
+            return []
+        levels.append(np.sqrt((fast[:k * m].reshape(k, m, 3) ** 2).mean(axis=1)))
+    level = np.concatenate(levels)
+    quiet = np.quantile(level, QUIET, axis=0)
+    usual = np.median(level, axis=0)
+    axes = [i for i in range(3) if usual[i] > SHAKEN * max(quiet[i], 1e-9)]
+    if not axes:
+        return []
+    value, interval, score = {}, {}, 0.0
+    for i in axes:
+        ranked = np.sort(level[:, i])
+        # Ranks of the 90 % interval of a median [Conover, Practical Nonparametric Statistics].
+        off = 0.5 * 1.645 * np.sqrt(len(ranked))
+        ends = ranked[[int(max(0.5 * len(ranked) - off, 0)),
+                       int(min(0.5 * len(ranked) + off, len(ranked) - 1))]]
+        value["xyz"[i]] = float("%.3g" % _amplitude(usual[i], quiet[i]))
+        interval["xyz"[i]] = tuple(float(_amplitude(end, quiet[i])) for end in ends)
+        # Half of the windows above a level that QUIET of them are below, if they were alike.
+        score += 0.5 * len(ranked) * np.log(0.25 / (QUIET * (1.0 - QUIET)))
+    return [Finding("vibration", "accel", sorted(value), value, "mg", score, "frequency",
+                    "it is shaken most of the time", interval)]
+
+
+def _amplitude(level, quiet):
+    """Amplitude of a sine that lifts the root mean square from quiet to level."""
+    return np.sqrt(2.0 * max(level ** 2 - quiet ** 2, 0.0))

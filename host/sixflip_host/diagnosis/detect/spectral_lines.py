@@ -1,0 +1,154 @@
+"""Lines in the spectrum of the rests: vibration from outside, or its alias.
+
+Each rest's periodogram over a running median of itself (so that a filter's colour is no line)
+is exponential with mean 1 where there is only noise; over R rests the weighted sum is Gamma
+distributed. The largest over all frequencies and axes must be improbable (Bonferroni).
+Source: Percival & Walden, Spectral Analysis for Physical Applications (1993), section 10.9.
+"""
+import math
+
+import numpy as np
+from scipy import ndimage, signal, stats
+
+from ...capture.registers import steps
+from .detection import Finding
+
+LENGTH_S, SHORTEST_S = 5.0, 2.0
+LOWEST_HZ, LOWEST_MOVING_HZ = 0.7, 2.0  # a hand or a vehicle moves more slowly than that
+CHANCE = 0.001
+FEWEST = 4  # stretches
+MEDIAN_SHARE, OF_MEDIAN = 0.25, math.log(2.0)
+WHOLE_PEAK = 0.85  # of a Hann window's main lobe and its neighbours
+LEAST_STEPS = 0.5
+LEAST_SHARE = 0.25  # of the standard deviation of the noise: smaller is no matter
+# A bench or a table sways at its own frequencies, by chance: from stretch to stretch the power
+# there scatters as much as its mean (noise through a resonance is exponential). Something that
+# runs is steadier. Only what is steady, or strong, is named.
+STEADY, STRONG_SHARE = 0.6, 0.4
+
+
+def findings(sessions):
+    """list of Finding: at most one vibration a sensor."""
+    out = []
+    for sensor in ("accel", "gyro"):
+        if any(getattr(s.capture, sensor) is None for s in sessions):
+            continue
+        lines = [line for line in (strongest(sessions, sensor, i) for i in range(3)) if line]
+        if not lines:
+            continue
+        top = max(lines, key=lambda line: line[2])
+        value = {"xyz"[i]: float("%.3g" % size) for i, _, _, size, _ in lines}
+        interval = {"xyz"[i]: (size * (1 - 1.6 * rel), size * (1 + 1.6 * rel))
+                    for i, _, _, size, rel in lines}
+        rate = sessions[0].rate
+        out.append(Finding(
+            "vibration", sensor, sorted(value), value, "mg" if sensor == "accel" else "deg/s",
+            top[2], "frequency", "a line at %.2f Hz (or folded from %.2f, %.2f Hz)"
+            % (top[1], rate - top[1], rate + top[1]), interval,
+            hz={"xyz"[i]: hz for i, hz, _, _, _ in lines}))
+    return out
+
+
+def rests(sessions, sensor):
+    """list of (n, 3) stretches of samples in mg or deg/s, all at rest, equally long; of the
+    whole capture where there is no rest."""
+    if not any(session.runs for session in sessions):
+        return _stretches(sessions, sensor, int(SHORTEST_S * sessions[0].rate), whole=True)
+    found = _stretches(sessions, sensor, int(LENGTH_S * sessions[0].rate))
+    if len(found) < FEWEST:
+        found = _stretches(sessions, sensor, int(SHORTEST_S * sessions[0].rate))
+    return found if len(found) >= FEWEST else []
+
+
+def _stretches(sessions, sensor, length, whole=False):
+    found = []
+    for session in sessions:
+        meta = session.capture.meta
+        scale = 1000.0 / meta["accel_lsb_per_g"] if sensor == "accel" else \
+            1.0 / meta["gyro_lsb_per_dps"]
+        counts = getattr(session.capture, sensor)
+        for _, first, end in [(0, 0, len(counts))] if whole else session.runs:
+            first, end = first + int(0.1 * session.rate), end - int(0.1 * session.rate)
+            for start in range(first, end - length + 1, length):
+                found.append(counts[start:start + length] * scale)
+    return found
+
+
+def spectrum(stretches, axis):
+    """(mean power (k,), the same with every stretch counted alike, R, window)."""
+    window = np.hanning(len(stretches[0]))
+    x = np.array([s[:, axis] for s in stretches])
+    x = signal.detrend(x, axis=1)  # what creeps or drifts is no line
+    power = np.abs(np.fft.rfft(x * window, axis=1)) ** 2 / (window ** 2).sum()
+    # Every stretch counts alike: a burst of noise in one of them is no line.
+    level = np.median(power[:, 1:], axis=1)
+    alike = power
+    if (level > 0.0).all():
+        alike = power * (np.median(level) / level)[:, None]
+    return power.mean(axis=0), alike.mean(axis=0), power.shape[0], window
+
+
+def step(sessions, sensor, axis):
+    """mg or deg/s of the steps that an axis counts in: rounding makes lines of its own."""
+    meta = sessions[0].capture.meta
+    scale = 1000.0 / meta["accel_lsb_per_g"] if sensor == "accel" else \
+        1.0 / meta["gyro_lsb_per_dps"]
+    return scale * min(int(steps(getattr(s.capture, sensor)[:, [axis]])[0]) for s in sessions)
+
+
+def scatter(stretches, axis, k):
+    """Standard deviation over mean of the power around index k, from stretch to stretch."""
+    window = np.hanning(len(stretches[0]))
+    x = np.array([s[:, axis] - s[:, axis].mean() for s in stretches])
+    power = (np.abs(np.fft.rfft(x * window, axis=1)) ** 2)[:, max(0, k - 1):k + 2].sum(axis=1)
+    return float(power.std(ddof=1) / max(power.mean(), 1e-300))
+
+
+def strongest(sessions, sensor, axis):
+    """(axis, Hz, nats, amplitude, relative error) of the strongest line, or None."""
+    stretches = rests(sessions, sensor)
+    if not stretches:
+        return None
+    plain, mean, number, window = spectrum(stretches, axis)
+    resting = any(session.runs for session in sessions)
+    if not resting:  # what shakes a sensor in use comes and goes
+        mean = plain
+    rate, n = sessions[0].rate, len(stretches[0])
+    first = int((LOWEST_HZ if resting else LOWEST_MOVING_HZ) * n / rate) + 1
+    band = mean[first:-1]
+    if len(band) < 20 or not band.any():
+        return None
+    width = max(9, int(MEDIAN_SHARE * len(band)) | 1)
+    median_of_mean = stats.gamma.ppf(0.5, number) / number
+    floor = ndimage.median_filter(band, size=width, mode="reflect") / median_of_mean
+    ratio = band / np.maximum(floor, 1e-12)
+    k = int(ratio.argmax())
+    doubt = 1.0 + 2.0 * 1.25 / math.sqrt(width * number)  # the floor is a median itself
+    log_p = float(stats.gamma.logsf(ratio[k] * number / doubt, number))
+    nats = -(log_p + math.log(3.0 * len(band)))
+    if nats < -math.log(CHANCE):
+        return None
+    near = slice(max(0, k - 2), k + 3)
+    whole = plain[first:-1]
+    below = np.median(whole[max(0, k - width // 2):k + width // 2 + 1]) / median_of_mean
+    excess = float((whole[near] - below).sum()) * (window ** 2).sum()
+    # A sine of amplitude a: sum over the lobe of |X|^2 = a^2 n sum(w^2) / 4.
+    amplitude = math.sqrt(max(4.0 * excess / (n * (window ** 2).sum()), 0.0))
+    spread = np.mean([s[:, axis].std() for s in stretches])
+    if amplitude < max(LEAST_SHARE * spread, LEAST_STEPS * step(sessions, sensor, axis)):
+        return None
+    if resting and amplitude < STRONG_SHARE * spread and scatter(
+            stretches, axis, first + k) > STEADY:
+        return None
+    error = 1.0 / math.sqrt(max(2.0 * number * ratio[k], 1.0))
+    hz = _refined(mean, first + k) * rate / n
+    return axis, hz, min(nats, 999.0), amplitude, error
+
+
+def _refined(power, k):
+    """Index of a peak between the bins: parabola through the logarithms."""
+    if not 0 < k < len(power) - 1:
+        return float(k)
+    a, b, c = np.log(np.maximum(power[k - 1:k + 2], 1e-300))
+    below = a - 2.0 * b + c
+    return k + (0.5 * (a - c) / below if below < 0 else 0.0)

@@ -1,0 +1,164 @@
+"""Samples that mix the bytes of two readings.
+
+Each sample is judged by those around it. Sound, it lies as far from what they predict as the
+noise of the axis allows. Torn, it has the page (high byte) of the sample before, or after, and
+would lie so near with a page more or less. What has no name jumps by any amount, or by whole
+pages whatever the pages around. Torn reads are found where a share of the samples being torn
+makes all samples likelier than the same jumps do without a name.
+"""
+import math
+
+import numpy as np
+
+from .. import odds
+from .detection import Finding, present
+
+PAGE = 256
+WIDE = 4096.0  # counts: jumps of any size are spread evenly that far to both sides
+FEWEST = 50  # samples before the noise of a column is known
+SHARES = tuple(10.0 ** np.arange(-5.0, -0.49, 0.25))  # tried, of torn samples and of jumps
+FREEDOM = (5.0, 15.0, 200.0)  # of Student's t: how heavy the tails of the noise are
+CALM = 8.0  # standard deviations that the neighbours of a sample at rest may span
+LOUD = (2.0, 3.0, 5.0)  # times the noise, of samples that are louder without a name
+NEAR = 2.0  # standard deviations within which a sample's chance of a jump is small
+BLURRED = 100.0  # counts: with wider noise a page more or less tells nothing
+
+
+def finding(sessions, sensor, columns, banded=()):
+    """[Finding] of torn reads in a sensor, or []; banded: axes on which readings near 0 read 0,
+    which are jumps with a name."""
+    tables = [tabled(counts[:, axis].astype(np.int64), axis in banded)
+              for counts in columns if len(counts) >= FEWEST for axis in range(3)]
+    tables = [t for t in tables if t is not None]
+    if not tables:
+        return []
+    table = np.concatenate(tables, axis=1)
+    nats, number = max(competed(table, which) for which in (0, 1))
+    if not present(nats):
+        return []
+    chances = sum(int((np.diff(column // PAGE) != 0).sum()) for counts in columns
+                  for column in counts.T.astype(np.int64))
+    percent = 100.0 * number / max(chances, number, 1.0)
+    half = 1.645 * percent / np.sqrt(max(number, 1.0))
+    return [Finding("torn_reads", sensor, [], {"chance": round(percent, 3)}, "%", nats, "noise",
+                    "about %.0f samples mix the bytes of two readings" % number,
+                    {"chance": (max(percent - half, 0.0), percent + half)})]
+
+
+def jumps(sessions, without=()):
+    """[(sensor, sentence, p)] of jumps by whole pages that nothing torn explains."""
+    found = []
+    for sensor, words in (("accel", "accelerometer"), ("gyro", "gyro")):
+        columns = [getattr(s.capture, sensor) for s in sessions]
+        if sensor in without or any(c is None for c in columns):
+            continue
+        # A hand trembles as far as a page is wide: only rests are quiet enough.
+        rests = [np.concatenate([counts[run.first:run.end] for run in s.runs])
+                 for s, counts in zip(sessions, columns) if s.runs]
+        tables = [tabled(counts[:, axis].astype(np.int64), False)
+                  for counts in rests if len(counts) >= FEWEST for axis in range(3)]
+        tables = [t for t in tables if t is not None]
+        table = np.concatenate(tables, axis=1) if tables else np.zeros((8, 0))
+        nats, number = paged(table) if table[3].sum() >= FEWEST else (0.0, 0.0)
+        if present(nats):
+            found.append((sensor, "about %.0f samples of the %s are off by 256 counts: a bit that "
+                          "is read wrongly" % (number, words), odds.chance(nats)))
+    return found
+
+
+def paged(table):
+    """(nats of jumps by whole pages over none, over jumps of any size and over samples that are
+    louder, as where the box is put down; their number) of a table (8, n) of tabled(), among
+    calm samples."""
+    off, moved, sigma = table[:3, table[3] > 0.0]
+    far, whole, other = np.abs(off) > NEAR, [], []
+    for freedom in FREEDOM:
+        sound, jumped = (_student(z, freedom) / sigma for z in (off, moved))
+        alone = float(np.log(sound).sum())
+        gain, share = _best(sound, jumped, far, len(off))
+        whole.append((alone + gain, float(_held(sound, share * jumped))))
+        other += [alone, alone + _best(sound, np.full(len(off), 0.5 / WIDE), far, len(off))[0]]
+        other += [alone + _best(sound, _student(off / times, freedom) / (sigma * times), far,
+                                len(off))[0] for times in LOUD]
+    score, number = max(whole)
+    return score - max(other) - math.log(len(SHARES)), number
+
+
+def competed(table, which):
+    """(nats over what has no name, samples torn) of a table (8, n) of tabled(); which: 0 with the
+    page of the sample before, 1 after. Shares of jumps and tails of the noise are the likeliest
+    of those tried, in each hypothesis by itself; what was tried for the name's sake is paid."""
+    off, moved, sigma = table[:3]
+    same, chance = table[4 + 2 * which], table[5 + 2 * which].sum()
+    far = np.abs(off) > NEAR
+    named, nameless = [], []
+    for freedom in FREEDOM:
+        sound, jumped = (_student(z, freedom) / sigma for z in (off, moved))
+        anywhere = np.full(len(off), 0.5 / WIDE)
+        alone = float(np.log(sound).sum())
+        wide, share = _best(sound, anywhere, far, len(off))
+        nameless += [alone, alone + wide, alone + _best(sound, jumped, far, len(off))[0]]
+        torn, own = _best(sound, jumped * same, far, chance)
+        named.append((alone + torn, float(_held(sound, own * jumped * same))))
+        beside = sound + share * anywhere  # beside the torn ones there may be others
+        torn, own = _best(beside, jumped * same, far, chance)
+        rest = alone + len(off) * math.log1p(-share) + float(np.log(beside / sound).sum())
+        named.append((rest + torn, float(_held(beside, own * jumped * same))))
+        nameless.append(rest + _best(beside, jumped, far, len(off))[0])
+    score, number = max(named)
+    return score - max(nameless) - math.log(2.0 * len(SHARES)), number
+
+
+def _best(sound, jump, far, among):
+    """(gain in nats, share) of the likeliest share of SHARES of samples that jump; `among` of
+    them could. To samples that are not far off a jump adds to first order only."""
+    near = float((jump[~far] / sound[~far]).sum())
+    ratio = jump[far] / sound[far]
+    ratio = ratio[ratio > 0.0]
+    gains = [float(np.log1p(s * ratio).sum()) + s * near + among * math.log1p(-s)
+             for s in SHARES]
+    place = int(np.argmax(gains))
+    return gains[place], SHARES[place]
+
+
+def _held(sound, jump):
+    """Expected number of samples that jump."""
+    return (jump / (sound + jump)).sum()
+
+
+def tabled(column, banded):
+    """(8, n) of the samples of a column that are not at its ends: off what those around predict
+    and off that by whole pages but 0, in standard deviations; these in counts; whether those
+    around agree; whether the page is that of the sample before, whether a torn one would show;
+    the same of the one after. None where noise hides a page."""
+    around = np.lib.stride_tricks.sliding_window_view(column, 7)
+    beside = around[:, [0, 1, 2, 4, 5, 6]]
+    noise = 1.4826 / np.sqrt(2.0) * float(np.median(np.abs(np.diff(column))))
+    calm = np.ptp(beside, axis=1) < CALM * max(noise, 1.0)
+    level = np.where(calm, np.median(beside, axis=1),
+                     (4.0 * (around[:, 2] + around[:, 4]) - around[:, 1] - around[:, 5]) / 6.0)
+    off = around[:, 3] - level
+    sigma = np.ones(len(off))
+    for mask in (calm, ~calm):
+        if mask.any():
+            sigma[mask] = max(1.4826 * float(np.median(np.abs(off[mask]))), 1.0)
+    keep = sigma < BLURRED
+    if banded:
+        keep &= (around != 0).all(axis=1)
+    if keep.sum() < FEWEST:
+        return None
+    around, off, sigma, calm = around[keep], off[keep], sigma[keep], calm[keep]
+    pages = np.rint(off / PAGE)
+    pages = np.where(pages == 0.0, np.where(off < 0.0, -1.0, 1.0), pages)
+    out = [off / sigma, (off - PAGE * pages) / sigma, sigma, calm]
+    for neighbour in (2, 4):
+        same = around[:, neighbour] // PAGE == around[:, 3] // PAGE
+        out += [same, ~same]
+    return np.array(out, float)
+
+
+def _student(z, freedom):
+    """Density of Student's t."""
+    peak = math.exp(math.lgamma(0.5 * (freedom + 1.0)) - math.lgamma(0.5 * freedom)
+                    ) / math.sqrt(math.pi * freedom)
+    return peak * (1.0 + z * z / freedom) ** (-0.5 * (freedom + 1.0))

@@ -1,0 +1,33 @@
+"""Captures in, a Diagnosis out: the one way in for the verb, the report and Python programs."""
+
+from .. import progress
+from ..experiment import blocks
+from . import diagnosis, noise_reference
+from .simulator import against_simulator, comparison
+
+
+def diagnose(captures, simulator=(), reference=(), certified_box=False, without=(), jobs=0):
+    """The diagnosis.Diagnosis of captures.
+
+    captures, simulator   [(name, Capture)], one a session
+    reference  [(name, Capture)] of one capture at rest, to know the noise by, or empty
+    certified_box  the box is known to be square; without: effects left out of the library
+    jobs       threads, 0: one a core
+    """
+    sessions = [blocks.of(name, capture) for name, capture in captures]
+    noise = None
+    for name, capture in reference:
+        noise = noise_reference.levels(capture, name)
+    settings = diagnosis.Settings(certified_box, without, noise, jobs)
+    own, comparisons = None, []
+    if simulator:
+        progress.doing("conventions and parameters of the simulator")
+        comparisons = [comparison.compare(captures, *log) for log in simulator]
+        # What a log with another convention reads is no effect of a sensor.
+        sound = [log for log, found in zip(simulator, comparisons) if not found.conventions]
+        if sound:
+            names, simulated = zip(*sound)
+            progress.doing("the simulator's own captures")
+            own = against_simulator.read(list(simulated), list(names), settings)
+            settings.simulated = own.known
+    return diagnosis.Diagnosis(sessions, settings, own, comparisons)

@@ -1,0 +1,230 @@
+"""How likely a set of hypotheses makes what was captured: one score for all of them.
+
+A hypothesis is one of three kinds. *Shared*: columns whose coefficients are the same in every
+session, as an effect of the sensor is. *Private*: columns with coefficients of each session's
+own, integrated out there with their prior (a jump at some time, a sine, something smooth in
+time). *Free level*: a variance component (flicker, placement) larger than the chip and the hand
+usually have.
+
+The score is the log predictive likelihood, in nats: the coefficients that are shared are learned
+from the other sessions, with their covariance V, and each session is judged by what that makes
+of it, C + S V S' instead of C [Geisser & Eddy, JASA 74 (1979) 153]. Where there is one session
+only, V is the prior. The levels of placement and flicker are the likeliest ones of the session
+itself, times their prior. How far the sizes found are from those that the data sheets give is in
+the score as well: physical plausibility is a prior here, not a gate afterwards.
+
+All functions take R data sets at once (null simulation), R = 1 for the real one.
+"""
+from dataclasses import dataclass
+
+import numpy as np
+
+# A standard deviation of each level's logarithm. Placement may be anything: a box that is put
+# down in any heading on a tilted table scatters by degrees.
+USUAL_FACTOR = {"placement": 8.0, "flicker": 2.0, "switch_on": 1.2}
+KNOWN_FACTOR = 1.4  # and where a capture of noise alone was given
+
+
+@dataclass(frozen=True)
+class Levels:
+    """What is usual: placement, flicker and the change of a bias from one switch-on to the next
+    (mg or deg/s); known: the flicker was measured."""
+
+    placement: float
+    flicker: float
+    switch_on: float
+    known: bool = False
+
+    def prior(self, unit, free):
+        """(G,) log prior of each point of a unit's grid; free: names of levels that may be
+        anything. Less than usual is as good as usual."""
+        grid = np.array(unit.grid)
+        if unit.between:
+            usual = {"switch_on": (grid[:, 0], self.switch_on)}
+        else:
+            usual = {"placement": (grid[:, 0], self.placement),
+                     "flicker": (grid[:, 1], self.flicker)}
+        total = np.zeros(len(grid))
+        for name, (values, level) in usual.items():
+            if name not in free:
+                factor = KNOWN_FACTOR if self.known and name == "flicker" else USUAL_FACTOR[name]
+                above = np.maximum(np.log(np.maximum(values, 1e-9) / level), 0.0)
+                total -= 0.5 * (above / np.log(factor)) ** 2
+        return total
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Columns of a unit's table with the standard deviations of their coefficients."""
+
+    index: np.ndarray
+    prior: np.ndarray
+
+    def __add__(self, other):
+        return Columns(np.concatenate([self.index, other.index]),
+                       np.concatenate([self.prior, other.prior]))
+
+    def __len__(self):
+        return len(self.index)
+
+
+NONE = Columns(np.zeros(0, dtype=int), np.zeros(0))
+
+
+@dataclass(frozen=True)
+class Fit:
+    """One unit at the likeliest levels, private columns integrated out, for R data sets: index
+    of the grid (R,), quadratic (R,), inner (R, k), gram (R, k, k) of the shared columns, logdet
+    and level (R,), evidence (R,) with the shared columns' coefficients by their prior."""
+
+    index: np.ndarray
+    quadratic: np.ndarray
+    inner: np.ndarray
+    gram: np.ndarray
+    logdet: np.ndarray
+    level: np.ndarray
+    evidence: np.ndarray
+
+
+EVERY, COARSE = "every", "coarse"
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """A unit's statistics with private columns integrated out: gram (G, k, k), inner (G, k, R)
+    of the columns asked for, quadratic (G, R), logdet (G,)."""
+
+    gram: np.ndarray
+    inner: np.ndarray
+    quadratic: np.ndarray
+    logdet: np.ndarray
+
+
+class Elimination:
+    """What integrating private columns out of a unit takes, for all of its columns at once: made
+    once, then any shared columns are an indexing. R = 1."""
+
+    def __init__(self, unit, statistics, private):
+        self.unit, self.private = unit, private
+        quadratic, projections = statistics
+        index = private.index
+        block = unit.gram[:, index[:, None], index[None]] + np.diag(private.prior ** -2.0)
+        self.solved = np.linalg.solve(block, unit.gram[:, index])
+        inner = np.linalg.solve(block, projections[:, index])
+        self.quadratic = quadratic - (projections[:, index] * inner).sum(axis=1)
+        self.inner = projections - unit.gram[:, :, index] @ inner
+        self.logdet = (unit.logdet + 0.5 * np.linalg.slogdet(block)[1]
+                       + np.log(private.prior).sum())
+
+    def reduced(self, columns, points):
+        """Reduced of these shared columns at these points of the grid."""
+        cross = self.unit.gram[np.ix_(points, columns, self.private.index)]
+        solved = self.solved[np.ix_(points, np.arange(len(self.private)), columns)]
+        return Reduced(self.unit.gram[np.ix_(points, columns, columns)] - cross @ solved,
+                       self.inner[np.ix_(points, columns)], self.quadratic[points],
+                       self.logdet[points])
+
+
+def reduced(unit, statistics, shared, private, points):
+    """Reduced of one unit without anything made before, for R data sets."""
+    k, p = len(shared), len(private)
+    both = (private + shared).index
+    gram = unit.gram[np.ix_(points, both, both)]
+    inner = statistics[1][np.ix_(points, both)]
+    if not p:
+        return Reduced(gram, inner, statistics[0][points], unit.logdet[points])
+    block = gram[:, :p, :p] + np.diag(private.prior ** -2.0)
+    solved = np.linalg.solve(block, np.concatenate([gram[:, :p, p:], inner[:, :p]], 2))
+    cross = gram[:, p:, :p]
+    return Reduced(gram[:, p:, p:] - cross @ solved[:, :, :k],
+                   inner[:, p:] - cross @ solved[:, :, k:],
+                   statistics[0][points] - (inner[:, :p] * solved[:, :, k:]).sum(axis=1),
+                   unit.logdet[points] + 0.5 * np.linalg.slogdet(block)[1]
+                   + np.log(private.prior).sum())
+
+
+def fit(unit, statistics, shared, private, level, points=EVERY, elimination=None):
+    """Fit of one unit; level (G,) log prior of its grid; points: EVERY one of the grid, a COARSE
+    selection of them, or which; elimination: the Elimination of the private columns, if made."""
+    chosen = points
+    if isinstance(points, str):
+        chosen = np.arange(len(level)) if points == EVERY else unit.coarse
+    if elimination is None or not len(private):
+        r = reduced(unit, statistics, shared, private, chosen)
+    else:
+        r = elimination.reduced(shared.index, chosen)
+    level = level[chosen]
+    likelihood = -0.5 * r.quadratic - (r.logdet - level)[:, None]
+    if len(shared):
+        full = r.gram + np.diag(shared.prior ** -2.0)
+        solved = np.linalg.solve(full, r.inner)
+        likelihood = likelihood + 0.5 * (r.inner * solved).sum(axis=1)
+        likelihood = likelihood - (0.5 * np.linalg.slogdet(full)[1]
+                                   + np.log(shared.prior).sum())[:, None]
+    index = likelihood.argmax(axis=0)
+    every = np.arange(r.quadratic.shape[1])
+    return Fit(chosen[index], r.quadratic[index, every], r.inner[index, :, every], r.gram[index],
+               r.logdet[index], level[index], likelihood[index, every])
+
+
+def coefficients(fits, shared):
+    """(theta (R, k), V (R, k, k)) of several Fits together."""
+    covariance = np.linalg.inv(sum(f.gram for f in fits) + np.diag(shared.prior ** -2.0))
+    return np.einsum("rij,rj->ri", covariance, sum(f.inner for f in fits)), covariance
+
+
+def predictive(fit, theta, covariance):
+    """(R,) log density of a unit's contrasts, coefficients known to theta and covariance."""
+    k = theta.shape[1]
+    if not k:
+        return -0.5 * fit.quadratic - fit.logdet + fit.level
+    left = fit.inner - np.einsum("rij,rj->ri", fit.gram, theta)
+    squares = fit.quadratic - (theta * (fit.inner + left)).sum(axis=1)
+    widened = np.eye(k) + np.einsum("rij,rjk->rik", covariance, fit.gram)
+    gain = np.linalg.solve(widened, np.einsum("rij,rj->ri", covariance, left)[:, :, None])[..., 0]
+    return (-0.5 * (squares - (left * gain).sum(axis=1)) - fit.logdet + fit.level
+            - 0.5 * np.linalg.slogdet(widened)[1])
+
+
+def score(fits, shared, apart=False):
+    """(R,) log predictive likelihood of all units, and how plausible the sizes are; apart: the
+    units have no coefficient in common, nothing is learned from one for the other."""
+    number, k = len(fits[0].quadratic), len(shared)
+    if not k:
+        return sum(predictive(f, np.zeros((number, 0)), np.zeros((number, 0, 0))) for f in fits)
+    if apart or len(fits) == 1:
+        wide = np.broadcast_to(np.diag(shared.prior ** 2), (number, k, k))
+        return sum(predictive(f, np.zeros((number, k)), wide) for f in fits)
+    total = np.zeros(number)
+    for held, one in enumerate(fits):
+        total += predictive(one, *coefficients(fits[:held] + fits[held + 1:], shared))
+    theta, covariance = coefficients(fits, shared)
+    sigma = np.sqrt(np.einsum("rii->ri", covariance))
+    beyond = np.maximum(np.abs(theta) - 2.0 * sigma, 0.0) / shared.prior
+    return total - np.log1p(beyond ** 2).sum(axis=1)  # Cauchy: typical sizes are rough
+
+
+HALF_OF_90 = 1.353  # nats below the maximum at the ends of a 90 % interval: half of chi2(0.9, 1)
+
+
+def by_flicker(unit, statistics, shared, level):
+    """(F,) largest log likelihood of a unit at each of its flicker levels, smallest first."""
+    flickers = np.array([pair[1] for pair in unit.grid])
+    found = []
+    for value in np.unique(flickers):
+        points = np.flatnonzero(flickers == value)
+        found.append(fit(unit, statistics, shared, NONE, level, points).evidence[0])
+    return np.array(found)
+
+
+def profile(levels, course):
+    """(likeliest level, low, high) of a 90 % interval from the log likelihoods at increasing
+    levels, a parabola in the logarithm of the level through the three highest neighbours."""
+    x = np.log(np.asarray(levels))
+    k = int(np.clip(course.argmax(), 1, len(x) - 2))
+    bend, slope, _ = np.polyfit(x[k - 1:k + 2] - x[k], course[k - 1:k + 2] - course[k], 2)
+    if bend >= 0.0:
+        return float(levels[k]), float(levels[0]), float(levels[-1])
+    middle = float(np.clip(-0.5 * slope / bend, x[k - 1] - x[k], x[k + 1] - x[k])) + x[k]
+    half = float(np.sqrt(HALF_OF_90 / -bend))
+    return tuple(float(np.exp(v)) for v in (middle, middle - half, middle + half))

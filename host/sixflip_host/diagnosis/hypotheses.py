@@ -1,0 +1,167 @@
+"""The hypotheses that compete: the library's effects, strangers, levels of noise.
+
+Each has forms (a lag, a time constant, one axis or all) of which the best speaks for it.
+"""
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..experiment import terms
+from . import evidence, strangers
+from .evidence import NONE, Columns
+
+TYPICAL = 0.2  # of a design's prior, which is ten times the typical size: twice typical
+WIDTHS = (0.2, 1.0)  # of the strangers' scale, tried for what is a session's own
+WALKS = (0.1, 0.3, 1.0, 3.0)
+FREE = {"drift": ("flicker", "time"), "~session": ("switch_on", "session")}
+
+
+@dataclass(frozen=True)
+class Form:
+    """One way in which a hypothesis can be: shared Columns; choices, a tuple of Columns of which
+    each session takes one for its own (index: all columns that are in them); free, names of
+    levels that may be anything. effect, variant, axis, keys, axes, columns and prior are those
+    of the design behind it."""
+
+    effect: str
+    variant: str = ""
+    axis: object = None
+    keys: tuple = ()
+    axes: tuple = ()
+    shared: Columns = NONE
+    choices: tuple = ()
+    free: frozenset = frozenset()
+    index: tuple = ()
+
+    @property
+    def generic(self):
+        return self.effect.startswith("~")
+
+    @property
+    def family(self):
+        """What no two members of a set may have in common: a walk of one axis is one of all."""
+        return "drift" if self.effect == "~walk" else self.effect
+
+    @property
+    def columns(self):
+        return self.shared.index
+
+    @property
+    def prior(self):
+        return self.shared.prior
+
+    def __hash__(self):
+        return hash((self.effect, self.variant, self.axis))
+
+    def __eq__(self, other):
+        return (self.effect, self.variant, self.axis) == (other.effect, other.variant, other.axis)
+
+
+def domain(effect):
+    """Where a hypothesis shows itself."""
+    if effect in FREE:
+        return FREE[effect][1]
+    return strangers.domain(effect) if effect.startswith("~") else terms.DOMAIN[effect]
+
+
+def of(units, without=(), drift=True):
+    """list of Form; those silent in all units are left out."""
+    found, start = [], 0
+    for design in units[0].designs:
+        columns = np.arange(start, start + len(design.keys))
+        start += len(design.keys)
+        if design.effect in without:
+            continue
+        if design.choices:
+            found.append(_private(design, columns))
+            if design.effect == "drift":
+                found.append(_one_axis(design, columns))
+            continue
+        for axis in (None, 0, 1, 2):
+            mine = [i for i, a in enumerate(design.axes) if axis is None or a == axis]
+            if not mine or axis is not None and len(mine) == len(columns):
+                continue
+            index = columns[mine]
+            if all(u.silent[index].all() for u in units):
+                continue
+            found.append(Form(design.effect, design.variant, axis,
+                              tuple(design.keys[i] for i in mine),
+                              tuple(design.axes[i] for i in mine),
+                              Columns(index, (1.0 if design.generic else TYPICAL)
+                                      * design.prior[mine])))
+    for name, (level, _) in FREE.items():
+        if drift and name not in without:
+            found.append(Form(name, free=frozenset([level])))
+    return found
+
+
+def _one_axis(design, columns):
+    """A walk on one axis alone, a session's own: no noise of a sensor with three alike axes."""
+    choices = tuple(Columns(columns[mine], width * design.prior[mine])
+                    for axis in range(3) for width in WALKS
+                    for mine in [np.flatnonzero(np.array(design.axes) == axis)])
+    return Form("~walk", "one axis", None, design.keys, design.axes, NONE, choices,
+                index=tuple(columns.tolist()))
+
+
+def on_axis(form, axis):
+    """The part of a form that is on one axis, or None."""
+    index = dict(zip(form.index, form.axes)) if form.choices else None
+    if index is None:
+        keep = [i for i, a in enumerate(form.axes) if a == axis]
+        if not keep:
+            return None
+        return Form(form.effect, form.variant, "only " + "xyz"[axis],
+                    tuple(form.keys[i] for i in keep), (axis,) * len(keep),
+                    Columns(form.shared.index[keep], form.shared.prior[keep]))
+    choices = tuple(Columns(one.index[mine], one.prior[mine]) for one in form.choices
+                    for mine in [np.array([index[i] == axis for i in one.index])])
+    return Form(form.effect, form.variant, "only " + "xyz"[axis], choices=choices)
+
+
+def _private(design, columns):
+    widths = WIDTHS if design.generic else WALKS
+    choices = tuple(Columns(columns[list(one)], width * design.prior[list(one)])
+                    for one in design.choices for width in widths)
+    return Form(design.effect, design.variant, None, design.keys, design.axes, NONE, choices,
+                index=tuple(columns.tolist()))
+
+
+RELATIVE = 0.5  # of an effect: how far a part's own form may be from the library's
+VARIABLE = {"temperature": ("~temperature",), "time": ("~time",),
+            "history": ("~history", "~time_since_move"),
+            "time_since_move": ("~history", "~time_since_move"),
+            # of the gyro in its turns a bend's own variable is the rate
+            "orientation": ("~orientation", "~amplitude"), "motion": ("~motion",),
+            "amplitude": ("~amplitude",)}
+
+
+def with_discrepancy(model, forms, scored, form):
+    """The form with a discrepancy in its own variable beside it, whose standard deviation is
+    RELATIVE of the size that the form has in a Scored set; None where there is none."""
+    if form.generic or not len(form.shared) or form.variant.endswith("~"):
+        return None
+    wanted = VARIABLE.get(domain(form.effect), ())
+    free = list({f.effect: f for f in forms if f.effect in wanted and f.axis is None}.values())
+    if not free:
+        return None
+    shared = scored.shared
+    theta = evidence.coefficients(scored.fits, shared)[0][0]
+    rms = np.sqrt(np.mean([u.energy for u in model.units if not u.between], axis=0))
+    size = np.zeros(3)
+    for column, axis in zip(form.shared.index, form.axes):
+        place = np.flatnonzero(shared.index == column)[0]
+        size[axis] = np.hypot(size[axis], theta[place] * rms[column])
+    columns, prior, axes = [], [], []
+    for one in free:
+        for column, axis in zip(one.shared.index, one.axes):
+            if size[axis] > 0.0 and rms[column] > 0.0 and column not in form.shared.index:
+                columns.append(column)
+                axes.append(axis)
+                prior.append(RELATIVE * size[axis] / rms[column])
+    if not columns:
+        return None
+    prior = np.array(prior) / np.sqrt(np.bincount(axes, minlength=3)[axes])
+    return Form(form.effect, form.variant + "~", form.axis,
+                form.keys + tuple("xyz"[a] + "~+" for a in axes), form.axes + tuple(axes),
+                form.shared + Columns(np.array(columns), prior))

@@ -1,0 +1,159 @@
+"""Stage 2: where the gap lies. A share of the excess and a test per domain and axis, false
+discoveries controlled [Benjamini & Hochberg, JRSS B 57 (1995) 289]."""
+import numpy as np
+from scipy import stats
+
+from ..experiment import covariance, linear_model
+from . import face_squareness, hypotheses, odds, session_offsets
+
+FALSE_DISCOVERIES = 0.01
+LEAST_SHARE = 0.01  # of the excess: less is no place to look at
+BROAD = ("along_gravity", "across_gravity")
+
+
+class Place:
+    """sensor, axis ("x" ... or None), domain, share, p; named: of a cause found."""
+
+    named = False
+
+    def __init__(self, sensor, axis, domain, share, p):
+        self.sensor, self.axis, self.domain = sensor, axis, domain
+        self.share, self.p = float(np.clip(share, 0.0, 1.0)), float(p)
+
+
+def places(gap):
+    """list of Place of a SensorGap, the largest share first; those of its causes lead."""
+    tested = [_tested(gap, option) for option in gap.options if option.generic
+              and option.axis is not None]
+    tested += across(gap) + along(gap) + session(gap)
+    tested = controlled([t for t in tested if t is not None])
+    named = []
+    for cause in gap.causes:
+        for letter in cause.letters or [None]:
+            named.append(Place(gap.kind, letter, cause.domain, cause.share or 0.0,
+                               odds.chance(cause.score)))
+    for form in gap.strangers:
+        named += _strange(gap, form, tested)
+    if "drift" in gap.found.best.names:
+        gain = gap.found.gains["drift"]
+        named.append(Place(gap.kind, None, "time", 1.0, odds.chance(gain)))
+    for place in named:
+        place.named = True
+    known = {(p.axis, p.domain) for p in named}
+    return sorted(named + [t for t in tested if (t.axis, t.domain) not in known
+                           and t.share >= LEAST_SHARE], key=order)
+
+
+def _strange(gap, form, tested):
+    """Places of a nameless member of the likeliest set: its axes where it has any, else those
+    that the tests of its domain show."""
+    gain, domain = gap.found.gains[form.effect], hypotheses.domain(form.effect)
+    share = gain / max(gain, 0.5 * gap.adequacy.excess_before, 1e-9)
+    p = odds.chance(gain)
+    letters = ["xyz"[axis] for axis, _ in gap.strange_axes[form.effect]] or [
+        t.axis for t in tested if t.domain == domain] or [None]
+    return [Place(gap.kind, letter, domain, share, p) for letter in letters]
+
+
+def order(place):
+    """Sort key: named causes, then domains, then what only says along or across gravity."""
+    return not place.named, place.domain in BROAD, -place.share
+
+
+def _tested(gap, option):
+    """What a generic discrepancy on one axis takes off the excess, sessions together for
+    what belongs to the sensor, apart for time."""
+    apart = option.effect == "~time"
+    taken = freedom = 0.0
+    sums = None
+    for statistics, unit, index in zip(gap.data.statistics, gap.units, gap.levels()):
+        projections = statistics[1]
+        gram = unit.gram[index][np.ix_(option.columns, option.columns)]
+        inner = projections[index][option.columns, 0]
+        if apart:
+            gain, rank = _explained(gram, inner)
+            taken, freedom = taken + gain, freedom + rank
+        else:
+            sums = (gram, inner) if sums is None else (sums[0] + gram, sums[1] + inner)
+    if not apart:
+        taken, freedom = _explained(*sums)
+    if freedom < 1:
+        return None
+    excess = max(gap.adequacy.excess_before, taken - freedom, 1e-9)
+    return Place(gap.kind, "xyz"[option.axis], option.effect[1:], (taken - freedom) / excess,
+                 stats.chi2.sf(taken, freedom))
+
+
+def _explained(gram, inner):
+    """(reduction of chi2, rank)."""
+    scale = np.sqrt(np.maximum(np.diag(gram), 1e-300))
+    values, vectors = np.linalg.eigh(gram / scale / scale[:, None])
+    keep = values > 1e-6 * max(values.max(), 1e-300)
+    turned = vectors[:, keep].T @ (inner / scale)
+    return float((turned ** 2 / values[keep]).sum()), int(keep.sum())
+
+
+ORDINARY_PLACEMENT_MG = 2.0  # 0.11 deg: a box set down by hand
+
+
+def across(gap):
+    """The attitude of the placements, where they scatter more than by hand, or of the faces."""
+    if gap.kind != "accel":
+        return []
+    levels = [u.grid[i][0] for u, i in zip(gap.units, gap.adequacy.index) if not u.between]
+    off = [c.worst * face_squareness.MG_A_DEG for c in gap.crooked if c and c.remark()]
+    worst = max(levels + off)
+    if worst <= ORDINARY_PLACEMENT_MG:
+        return []
+    share = 1.0 - (ORDINARY_PLACEMENT_MG / worst) ** 2
+    # As many placements as there are, two directions each, against what a hand does.
+    number = 2 * sum(s.placements() for s in gap.sessions)
+    p = stats.chi2.sf(number * (worst / ORDINARY_PLACEMENT_MG) ** 2, number)
+    return [Place("accel", None, "across_gravity", share, p)]
+
+
+def along(gap):
+    """What no position of a placement can touch: the sensor itself, not its attitude."""
+    if gap.kind != "accel":
+        return []
+    chi2 = freedom = 0.0
+    for unit, index in zip(gap.units, gap.adequacy.index):
+        if unit.between:
+            continue
+        free = linear_model.unit(unit.rows.loosened(), [])
+        if not free.freedom:
+            continue
+        chi2 += float(free.quadratic[index % unit.shape[1]])
+        freedom += free.freedom
+    if not freedom:
+        return []
+    excess = max(gap.adequacy.excess_before, chi2 - freedom, 1e-9)
+    return [Place(gap.kind, None, "along_gravity", (chi2 - freedom) / excess,
+                  stats.chi2.sf(chi2, freedom))]
+
+
+def session(gap):
+    """The biases of the sessions against each other, beyond what switching on changes."""
+    unit = gap.units[-1]
+    if not unit.between:
+        return []
+    found = []
+    z = unit.z.reshape(-1, 3)
+    variance = np.diag(covariance.dense(
+        unit.groups, session_offsets.ORDINARY_CHANGE[gap.kind], 0.0)).reshape(-1, 3)
+    excess = max(gap.adequacy.excess_before, 1e-9)
+    for axis in range(3):
+        chi2 = float((z[:, axis] ** 2 / variance[:, axis]).sum())
+        found.append(Place(gap.kind, "xyz"[axis], "session", max(chi2 - len(z), 0.0) / max(
+            excess, chi2), stats.chi2.sf(chi2, len(z))))
+    return found
+
+
+def controlled(tested):
+    """Those that pass the false discovery rate."""
+    by_p = sorted(tested, key=lambda t: t.p)
+    last = -1
+    for rank, one in enumerate(by_p):
+        if one.p <= FALSE_DISCOVERIES * (rank + 1) / max(len(by_p), 1):
+            last = rank
+    return by_p[:last + 1]

@@ -1,0 +1,33 @@
+"""From log likelihoods to probabilities: the same few lines for every hypothesis, whether it is
+made of columns, of a level of noise or of a likelihood over samples.
+
+Hypotheses for one place stand beside "", that nothing is there. Each but that one costs its prior
+odds: how rare it is that chance alone gains so much in a search (cutoffs.py).
+"""
+import math
+
+HOLDS = 0.95  # probability that a class of names must hold
+PRESENT = math.log(HOLDS / (1.0 - HOLDS))  # nats beyond its cost: more likely there than not
+CHANCE = 0.005  # two sensors, turns, moves, box, registers and spectra share 5 %, with room
+COST = -math.log(CHANCE)  # nats of a hypothesis over samples, whose chance is in its likelihood
+SMALLEST = 1e-300  # of a probability: what a float holds
+
+
+def shares(scores):
+    """{name: probability} of {name: log likelihood less cost}, names below 1e-6 left out."""
+    top = max(scores.values())
+    weights = {name: math.exp(value - top) for name, value in scores.items()}
+    total = sum(weights.values())
+    return {name: w / total for name, w in weights.items() if w / total > 1e-6}
+
+
+def probability(score, cost=COST):
+    """That something is there which gains so many nats over nothing and over what is nameless."""
+    return 1.0 / (1.0 + math.exp(min(cost - score, 700.0)))
+
+
+def chance(nats):
+    """Largest probability with which chance alone gains so many nats: a likelihood ratio has a
+    mean of one without an effect, so it exceeds exp(nats) with probability exp(-nats) at most
+    [Markov's inequality; Royall, Statistical Evidence (1997), section 1.4]."""
+    return max(math.exp(-max(nats, 0.0)), SMALLEST)

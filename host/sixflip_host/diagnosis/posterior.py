@@ -1,0 +1,311 @@
+"""The posterior over sets of hypotheses, and what can be said of each one in the likeliest set.
+
+Sets of at most four are searched from the empty one, the best few of each size going on (a beam),
+then every member of the best set is held against every other hypothesis in its place. A set's
+log probability is its score (evidence.py) less a cost for each member, set once for each protocol
+by simulation (cutoffs.py). A class is the smallest set of names that holds 95 % in one place.
+"""
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import evidence, hypotheses, odds
+from .evidence import NONE
+from .odds import HOLDS, PRESENT
+
+MOST, BEAM = 4, 3
+FORM_COST = 1.0  # nats
+AS_WELL = 3.0  # nats, GAP stage 4
+NOISE_FORM = 0.2  # of a name's gain, that its true form may leave to noise that wanders
+KEPT = 8  # eliminations of each unit that are kept
+NEAR = 14  # forms that are looked at with all levels of noise
+LEAST_GAIN = 2.0  # nats that one more member must gain for the search to go on
+
+
+@dataclass(frozen=True)
+class Scored:
+    """A tuple of Forms with its score (nats), Fit of each unit, private Columns of each unit;
+    chances: what choosing those cost, nats (in the score already)."""
+
+    forms: tuple
+    score: float
+    fits: tuple
+    private: tuple
+    chances: float
+
+    @property
+    def shared(self):
+        return _distinct(self.forms)
+
+    @property
+    def names(self):
+        return frozenset(f.effect for f in self.forms)
+
+
+class Model:
+    """Units of one sensor with the statistics of one data set; scores sets of Forms."""
+
+    def __init__(self, units, statistics, levels):
+        self.units, self.statistics, self.levels = units, statistics, levels
+        self._known = {}
+        self._eliminations = {}
+
+    def scored(self, forms):
+        """Scored of a tuple of Forms."""
+        found = self._extended(None, None, evidence.EVERY)
+        for form in forms:
+            found = self.extended(found, form)
+        return found
+
+    def extended(self, base, form, points=evidence.EVERY):
+        """Scored of a Scored set with one more Form; what is private in it stays as it is.
+        points: evidence.EVERY or COARSE, how finely the levels of noise are looked through."""
+        key = (frozenset((*base.forms, form)), points)
+        if key not in self._known:
+            self._known[key] = self._extended(base, form, points)
+        return self._known[key]
+
+    def best(self, base, forms):
+        """[(Form, Scored of a base with it)] of the Forms that come near to the best one, which
+        is first. Found with few levels of noise, then looked at with all of them."""
+        rough = sorted(((self.extended(base, form, evidence.COARSE).score, place)
+                        for place, form in enumerate(forms)), reverse=True)
+        near = [forms[place] for _, place in rough[:NEAR]]
+        return sorted(((form, self.extended(base, form)) for form in near),
+                      key=lambda pair: -pair[1].score)
+
+    def _extended(self, base, form, points):
+        forms = () if base is None else (*base.forms, form)
+        shared = _distinct(forms)
+        free = frozenset().union(*(f.free for f in forms)) if forms else frozenset()
+        fits, privates = [], []
+        chances = 0.0 if base is None else base.chances
+        for place, (unit, statistics) in enumerate(zip(self.units, self.statistics)):
+            level = self.levels.prior(unit, free)
+            private = NONE if base is None else base.private[place]
+            if form is not None and form.choices and not unit.between:
+                private, nats = self._chosen(place, shared, private, form, level)
+                chances += float(np.log(len(form.choices))) - nats
+            made = self._elimination(place, private)
+            fit = evidence.fit(unit, statistics, shared, private, level, evidence.COARSE, made)
+            if points == evidence.EVERY:
+                near = unit.around(int(fit.index[0]))
+                fit = evidence.fit(unit, statistics, shared, private, level, near, made)
+            fits.append(fit)
+            privates.append(private)
+        score = float(evidence.score(fits, shared, self.units[0].apart)[0])
+        return Scored(forms, score - chances, tuple(fits), tuple(privates), chances)
+
+
+    def _elimination(self, place, private):
+        """evidence.Elimination of private columns from one unit, made once."""
+        if not len(private):
+            return None
+        key = (place, private.index.tobytes(), private.prior.tobytes())
+        if key not in self._eliminations:
+            while len(self._eliminations) >= KEPT * len(self.units):
+                del self._eliminations[next(iter(self._eliminations))]
+            self._eliminations[key] = evidence.Elimination(
+                self.units[place], self.statistics[place], private)
+        return self._eliminations[key]
+
+    def _chosen(self, place, shared, private, form, level):
+        """(private Columns with the likeliest choice of a form, nats that what the rests show
+        within themselves says for it)."""
+        unit, found = self.units[place], []
+        elimination = self._elimination(place, private)
+        for number, one in enumerate(form.choices):
+            within = unit.within.get((form.effect, number), 0.0)
+            # Integrated out by its prior a column is the same, shared or private.
+            likelihood = evidence.fit(unit, self.statistics[place], shared + one, private, level,
+                                      evidence.COARSE, elimination).evidence[0]
+            found.append((float(likelihood) + within, number, within))
+        _, number, within = max(found)
+        return private + form.choices[number], within
+
+
+def _distinct(forms):
+    """Shared Columns of all forms, each column once."""
+    shared = NONE
+    for form in forms:
+        new = ~np.isin(form.shared.index, shared.index)
+        shared = shared + evidence.Columns(form.shared.index[new], form.shared.prior[new])
+    return shared
+
+
+@dataclass(frozen=True)
+class Posterior:
+    """best: Scored of the likeliest set; empty: Scored of no hypothesis; cost: cutoffs.Cutoffs;
+    places: {effect: {effect or "": probability}} of each member's place in the best set, the
+    others being as they are ("" nothing there); gains: {effect: nats lost without it}."""
+
+    best: Scored
+    empty: Scored
+    cost: object
+    places: dict
+    gains: dict
+
+    def alternatives(self, effect):
+        """Names that hold 95 % of a member's place, the likeliest first."""
+        place, taken, total = self.places[effect], [], 0.0
+        for name in sorted(place, key=lambda n: -place[n]):
+            if total >= HOLDS:
+                break
+            taken.append(name)
+            total += place[name]
+        return taken
+
+    def stranger_share(self, effect):
+        """Probability that what stands in a member's place has no name."""
+        return sum(p for name, p in self.places[effect].items() if name.startswith("~"))
+
+
+def search(model, forms, cost, most=MOST):
+    """Posterior over sets of Forms; cost: cutoffs.Cutoffs."""
+    empty = model.scored(())
+    beam, reached = [empty], [empty]
+    for _ in range(most):
+        found = {}
+        for base in beam:
+            for _, one in model.best(base, _free(forms, base)):
+                if one.names not in found or one.score > found[one.names].score:
+                    found[one.names] = one
+        ordered = sorted(found.values(), key=lambda s: -s.score)
+        grown = sorted((_with_discrepancy(model, forms, one) for one in ordered[:BEAM]),
+                       key=lambda s: -s.score)
+        if not grown or grown[0].score < beam[0].score + LEAST_GAIN:
+            break
+        beam = grown
+        reached += grown
+    best = max((_pruned(model, one, cost) for one in reached), key=lambda s: _worth(s, cost))
+    best = _refined(model, forms, best, cost)
+    places, gains = {}, {}
+    for form in best.forms:
+        places[form.effect], gains[form.effect] = _place(model, forms, best, form, cost)
+    return Posterior(best, empty, cost, places, gains)
+
+
+def _free(forms, scored):
+    """The Forms that a set has no member of the family of."""
+    taken = {f.family for f in scored.forms}
+    return [f for f in forms if f.family not in taken]
+
+
+def _worth(scored, cost):
+    """Score less what the members cost, nats."""
+    return scored.score - (cost.member + PRESENT) * len(scored.forms)
+
+
+def _refined(model, forms, best, cost):
+    """The best set with members exchanged, one at a time, as long as that gains; without those
+    that the others have made superfluous."""
+    changed = True
+    while changed and best.forms:
+        best, changed = _pruned(model, best, cost), False
+        for form in best.forms:
+            fewer = model.scored(tuple(f for f in best.forms if f is not form))
+            _, better = model.best(fewer, _free(forms, fewer))[0]
+            if better.score > best.score + 1e-3:
+                best, changed = _with_discrepancy(model, forms, better), True
+                break
+    return best
+
+
+def _pruned(model, best, cost):
+    """The set without members that cost more than they gain. No part has the very form of the
+    library, and what has no name has no known form at all: beside the others a member has to
+    gain more than a share of what they gain."""
+    while best.forms:
+        gains = _gains(model, best)
+        alone = {f: max(gains[f], _alone(model, f)) for f in best.forms}
+        needed = {form: cost.member + PRESENT + max(
+            [_unknown(form, f, cost)
+             * (alone[f] if f.generic or form.effect == "drift" else gains[f])
+             for f in best.forms if f is not form], default=0.0) for form in best.forms}
+        weakest = min(best.forms, key=lambda f: gains[f] - needed[f])
+        if gains[weakest] >= needed[weakest]:
+            break
+        best = model.scored(tuple(f for f in best.forms if f is not weakest))
+    return best
+
+
+def _unknown(form, other, cost):
+    """Share of what another member gains that a member must gain itself: noise has no form that
+    could be another one, and takes up whatever form a stranger has beyond what is described."""
+    if other.effect == "drift":
+        return 0.0
+    if form.effect == "drift":
+        return 1.0 if other.generic else NOISE_FORM
+    return cost.beside if other.generic else cost.form
+
+
+def _alone(model, form):
+    """Nats that a form gains by itself."""
+    return model.scored((form,)).score - model.scored(()).score
+
+
+def _gains(model, best):
+    """{Form: nats lost without it}."""
+    return {form: best.score - model.scored(tuple(f for f in best.forms if f is not form)).score
+            for form in best.forms}
+
+
+def _place(model, forms, best, form, cost):
+    """({effect or "": probability}, gain in nats) of one member's place."""
+    others = tuple(f for f in best.forms if f is not form)
+    empty = model.scored(others)
+    scores = {"": empty.score + cost.member}
+    scores[form.effect] = best.score
+    for rival, one in model.best(empty, _free(forms, empty)):
+        scores[rival.effect] = max(one.score, scores.get(rival.effect, -np.inf))
+    return odds.shares(scores), best.score - empty.score
+
+
+def _with_discrepancy(model, forms, scored):
+    """The set with a discrepancy beside those named members that are likelier with one: another
+    functional form of the same cause is neither a second name nor a stranger."""
+    for place, form in enumerate(scored.forms):
+        others = scored.forms[:place] + scored.forms[place + 1:]
+        for one in forms:
+            if form.generic or (one.effect, one.axis) != (form.effect, form.axis):
+                continue
+            plain = model.scored((*others, one))
+            wider = hypotheses.with_discrepancy(model, forms, plain, one)
+            if wider is None:
+                break
+            found = model.scored((*others, wider))
+            if found.score > scored.score + FORM_COST:
+                scored = found
+    return scored
+
+
+def rival_axes(model, forms, found, form):
+    """Axes (0..2) on which the same effect would do as well as on the one it was found on: where
+    a pose's attitude is free, x: f_y f_z and y: f_x f_z add the same along gravity."""
+    if form.axis is None:
+        return []
+    others = model.scored(tuple(f for f in found.best.forms if f is not form))
+    return [one.axis for one in forms if one.effect == form.effect
+            and one.variant == form.variant.rstrip("~") and one.axis not in (None, form.axis)
+            and model.extended(others, one).score > found.best.score - AS_WELL]
+
+
+def axes_of(model, found, form):
+    """[(axis 0..2, nats)] of a member of the best set: the axes that it does its work on, each
+    by what it gains there alone; [] of a level of noise."""
+    others = model.scored(tuple(f for f in found.best.forms if f is not form))
+    gains = {}
+    for axis in range(3):
+        part = hypotheses.on_axis(form, axis) if form.axes else None
+        if part is not None:
+            gains[axis] = model.extended(others, part).score - others.score
+    most = max(gains.values(), default=0.0)
+    share = found.cost.beside if form.generic else found.cost.form
+    return [(axis, gain) for axis, gain in gains.items()
+            if gain == most or gain > found.cost.member + share * most]
+
+
+def domains_left(posterior):
+    """{domain: nats} of the nameless members of the best set."""
+    return {hypotheses.domain(name): gain for name, gain in posterior.gains.items()
+            if name.startswith("~")}

@@ -1,0 +1,115 @@
+"""The hypotheses of a rest that goes on: what its readings may follow while nothing moves.
+
+The library's effects of temperature and of the time since switching on, and nameless functions
+of temperature and time, jumps and waves, as columns over the means of a long rest; the same
+function on each axis with a coefficient of its own. Where a thermometer moved by
+tens of degrees a straight slope is not all there is: a form with its square and cube beside it
+competes, made perpendicular to the slope so that the slope keeps its meaning.
+"""
+import numpy as np
+
+from ..experiment import terms
+from ..experiment.terms import Design
+from ..experiment.thermometer import MOVES_C
+from . import strangers
+
+DECAYS = (0.25, 0.5, 1.0, 2.0)  # of the rest's length: decays beside those of the library
+CORNERS, JUMPS, WALK = 8, 24, 16
+WAVES = 24  # half periods in a rest, at most; what is faster is looked for in the spectrum
+BEND = 0.5  # of the slope's own effect: standard deviation of its square and of its cube
+LASTS = 4.0  # times a lag: a shorter rest cannot show it
+ALONG = 0.5  # share of gravity that an axis feels at least when a scale can change its reading
+
+
+def designs(rest, sensor, chip, settings):
+    """list of Design, columns (n, k): a function of each axis is in one column."""
+    found = []
+    if rest.moved_c >= MOVES_C:
+        found += _thermal(rest, sensor, chip)
+    for tau in sorted({*terms.WARM_UP_S, *(share * rest.span_s for share in DECAYS)}):
+        found.append(_library("warm_up", rest, sensor, chip, rest.moment(), "tau %.3g s" % tau,
+                              {"tau_s": float(np.clip(tau, 1.0, 7200.0))}))
+    found += _nameless(rest, sensor)
+    return [d for d in found if d.effect not in settings.without]
+
+
+def _library(name, rest, sensor, chip, moment, variant, shape, axes=(0, 1, 2)):
+    """Design of an effect of the library on these axes."""
+    whole = terms.of_terms(name, sensor, moment, rest.n, variant, only=("x", "y", "z"),
+                           shape=shape, chip=chip)
+    own = [i for i, a in enumerate(whole.axes) if a in axes]
+    columns = np.stack([whole.columns[whole.axes[i]::3, i] for i in own], 1)
+    return Design(name, variant, [whole.keys[i] for i in own], [whole.axes[i] for i in own],
+                  columns, whole.prior[own])
+
+
+def _thermal(rest, sensor, chip):
+    """Slopes over the temperature with and without a lag, straight and bent; its rate; a scale
+    that follows it, where an axis feels gravity."""
+    found, shape = [], {"reference_c": float(rest.temperature.mean())}
+    along = tuple(i for i in range(3) if abs(rest.up[i]) >= ALONG and sensor == "accel")
+    for lag in (one for one in terms.LAGS_S if rest.span_s >= LASTS * abs(one)):
+        felt, label = rest.moment(lag), "lag %g s" % lag if lag else ""
+        slope = _library("thermal_bias", rest, sensor, chip, felt, label, shape)
+        found += [slope, _bent(slope)]
+        found.append(_library("thermal_rate", rest, sensor, chip, felt, label, {}))
+        if along:
+            found.append(_library("thermal_scale", rest, sensor, chip, felt, label, shape,
+                                  along))
+    return found
+
+
+def _bent(slope):
+    """The slope with its square and cube, as large as itself by unit, beside it."""
+    t = slope.columns[:, 0]
+    basis, size = [np.ones(len(t)), t - t.mean()], np.std(t)
+    for power in (2, 3):
+        one = (t / max(size, 1e-12)) ** power
+        done = np.stack(basis, 1)
+        one = one - done @ np.linalg.lstsq(done, one, rcond=None)[0]
+        basis.append(one * size / max(float(np.std(one)), 1e-12))
+    keys = slope.keys + tuple(k + bend for bend in ("+", "++") for k in slope.keys)
+    return Design(slope.effect, (slope.variant + " cube").strip(), keys, slope.axes * 3,
+                  np.hstack([slope.columns, *(np.repeat(one[:, None], 3, axis=1)
+                                              for one in basis[2:])]),
+                  np.concatenate([slope.prior, np.tile(BEND * slope.prior, 2)]))
+
+
+def _nameless(rest, sensor):
+    """What is smooth in time or temperature, jumps, waves and a walk."""
+    found = []
+
+    def add(name, functions, choices=(), variant=""):
+        """Three columns a function; choices: of which functions one is taken."""
+        keys = ["%s%d" % (letter, k) for k in range(len(functions)) for letter in "xyz"]
+        columns = np.repeat(np.stack(functions, 1), 3, axis=1)
+        found.append(Design(name, variant, keys, [0, 1, 2] * len(functions), columns,
+                            np.full(len(keys), strangers.SCALE[sensor]),
+                            [tuple(3 * k + axis for k in one for axis in range(3))
+                             for one in choices]))
+    u = (rest.t - rest.t.min()) / max(float(np.ptp(rest.t)), 1e-9)
+    add("~time", strangers.hats(rest.t, CORNERS))
+    if rest.moved_c >= MOVES_C:
+        add("~temperature", strangers.hats(rest.temperature, CORNERS))
+    places = np.unique(np.linspace(1, rest.n - 1, JUMPS + 2)[1:-1].round().astype(int))
+    add("~jump", [np.where(np.arange(rest.n) < k, -0.5, 0.5) for k in places],
+        [(k,) for k in range(len(places))])
+    halves = range(3, min(WAVES, rest.n // 3) + 1)
+    if len(halves) > 1:
+        waves = [wave(np.pi * k * u) for k in halves for wave in (np.cos, np.sin)]
+        add("~periodic", waves, [(2 * k, 2 * k + 1) for k in range(len(halves))])
+    turns = (np.arange(WALK) + 0.5) * np.pi
+    add("drift", [np.sqrt(2.0) * np.sin(k * u) / k for k in turns], [tuple(range(WALK))], "walk")
+    return found
+
+
+def limits(rest, sensor, name):
+    """Why an effect could not be looked for in a rest, or ""."""
+    if name in ("thermal_bias", "thermal_rate", "thermal_scale"):
+        if rest.temperature is None:
+            return "no temperature column"
+        if rest.moved_c < MOVES_C:
+            return "the temperature moved by %.2g degC only" % rest.moved_c
+    if name == "thermal_scale" and sensor == "gyro":
+        return "needs turns between the poses: the gyro was judged at rest"
+    return ""

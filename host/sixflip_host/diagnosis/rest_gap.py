@@ -1,0 +1,312 @@
+"""What one long rest, or several in one attitude, say, on the one model.
+
+The hypotheses of rest_forms.py compete in the posterior that the poses are judged by; flicker
+and the change from one rest to the next are its levels. The figures are held out in time: the
+rest is cut into pieces, every fourth one is foretold from the others.
+"""
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sixflip_sim.effects.library import EFFECTS
+
+from .. import progress
+from ..experiment import covariance, linear_model, long_rest, nominal_rows, terms
+from ..experiment.flicker import flicker_kernel
+from ..experiment.terms import Design
+from . import (
+    adequacy,
+    aliases,
+    coefficient_fits,
+    cutoffs,
+    effect_estimates,
+    evidence,
+    holdout_gain,
+    hypotheses,
+    posterior,
+    rest_forms,
+    session_offsets,
+)
+from .localisation import Place
+
+# From one rest to the next where nothing was moved, beyond flicker: the Allan floor of the parts
+# (typical.FLOOR); a gyro's is the Earth's rate, should the box have been put down again.
+OFFSET = {"accel": 0.1, "gyro": 0.003}
+OFFSETS = {"accel": (0.1, 0.3, 1.0, 3.0, 12.0), "gyro": (0.003, 0.01, 0.05, 0.3, 1.0)}
+FLICKERS = {"accel": (0.005, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 4.0, 12.0, 40.0),
+            "gyro": (0.0002, 0.001, 0.002, 0.004, 0.008, 0.016, 0.03, 0.1, 0.3, 1.0)}
+PIECES, FOLDS = 12, 4
+MEANS = 12  # fewer say nothing of how a reading goes on
+SETTLED = "~session"  # the level by which one rest differs from the next
+
+
+@dataclass(frozen=True)
+class RestLevels:
+    """What is usual: placement (from one rest to the next) and flicker, mg or deg/s."""
+
+    placement: float
+    flicker: float
+    known: bool
+
+    def prior(self, unit, free):
+        """(G,) log prior of each point of a unit's grid; free: levels that may be anything. Less
+        than usual is as good as usual."""
+        grid = np.array(unit.grid)
+        factor = np.log(evidence.KNOWN_FACTOR if self.known else evidence.USUAL_FACTOR["flicker"])
+        total = np.zeros(len(grid))
+        for column, level, name in ((0, self.placement, "switch_on"), (1, self.flicker,
+                                                                       "flicker")):
+            if name not in free:
+                above = np.maximum(np.log(grid[:, column] / level), 0.0)
+                total -= 0.5 * (above / factor) ** 2
+        return total
+
+
+@dataclass(frozen=True)
+class RestCause:
+    """One effect, or one class of effects, on the axes that show it: names (the likeliest
+    first), place ({name: probability} of what stands here), score (nats), value and interval by
+    axis, unit, plausible, share of the excess, domain."""
+
+    names: tuple
+    place: dict
+    score: float
+    value: dict
+    interval: dict
+    unit: str
+    plausible: bool
+    share: object
+    domain: str
+
+    @property
+    def effect(self):
+        return self.names[0]
+
+    @property
+    def probabilities(self):
+        """{name: probability} of the names of its class."""
+        return {name: self.place.get(name, 0.0) for name in self.names}
+
+    @property
+    def nameless(self):
+        """Probability that what stands here has no name."""
+        return sum(p for name, p in self.place.items()
+                   if name.startswith("~") and name != SETTLED)
+
+    @property
+    def letters(self):
+        return sorted({key[0] for key in self.value})
+
+
+@dataclass(frozen=True)
+class Sums:
+    """Of the means held out: squares before, after and of the noise, their number; and what a
+    share's interval is made of, in units of the noise (holdout_gain.py)."""
+
+    before: float
+    after: float
+    floor: float
+    number: float
+    gap: float
+    closed: float
+    strength: float
+    along: float
+
+    def __add__(self, other):
+        return Sums(*(getattr(self, k) + getattr(other, k) for k in self.__dataclass_fields__))
+
+    def shrinkage(self, found):
+        """holdout_gain.Shrinkage; found: something was named."""
+        rms = [float(np.sqrt(max(v, 0.0) / max(self.number, 1.0)))
+               for v in (self.before, self.after, self.floor)]
+        if not found:
+            return holdout_gain.Shrinkage(*rms, None, None)
+        return holdout_gain.Shrinkage(*rms, *holdout_gain.fieller(
+            self.gap, self.closed, self.number, self.strength, self.along))
+
+
+@dataclass(frozen=True)
+class RestGap:
+    """One sensor: kind, rest (LongRest), causes (tuple of RestCause), places (tuple of Place),
+    nameless (probabilities that something without a name is there), sums (one Sums an axis),
+    looked_at (names of effects)."""
+
+    kind: str
+    rest: long_rest.LongRest
+    causes: tuple
+    places: tuple
+    nameless: tuple
+    sums: tuple
+    looked_at: frozenset
+
+    @property
+    def shrinkage(self):
+        """holdout_gain.Shrinkage of the three axes together."""
+        return sum(self.sums[1:], self.sums[0]).shrinkage(self._named)
+
+    @property
+    def by_axis(self):
+        """{"x": holdout_gain.Shrinkage, ...}"""
+        return {k: one.shrinkage(self._named) for k, one in zip("xyz", self.sums)}
+
+    @property
+    def _named(self):
+        return any(c.share is not None for c in self.causes)
+
+    def reason(self, name):
+        """Why an effect could not be seen in this rest; "" where it could."""
+        if name in self.looked_at:
+            return ""
+        return rest_forms.limits(self.rest, self.kind, name) or "needs rests in several poses"
+
+
+def of(sessions, settings, lines=()):
+    """{sensor: RestGap} of blocks.Sessions, {} where nothing rests for long enough."""
+    rest = long_rest.of(sessions, lines)
+    if rest is None or rest.n < MEANS:
+        return {}
+    chip = sessions[0].capture.meta["sensor"]
+    return {kind: _sensor(rest, kind, chip, settings) for kind in rest.values}
+
+
+def _units(rest, kind, chip, settings):
+    """[Unit] of the three axes, which share no coefficient: each has the columns of all, the
+    others' being zero."""
+    designs = rest_forms.designs(rest, kind, chip, settings)
+    number = int(rest.rest.max()) + 1
+    lateral = (rest.rest[:, None] == np.arange(number)[None]).astype(float)
+    if number == 1:
+        lateral = lateral[:, :0]
+    kernel = flicker_kernel(rest.t, rest.seconds) * (rest.session[:, None] == rest.session)
+    warming = 0 if rest.temperature is None else int(round(
+        float(rest.temperature[-1] - rest.temperature[0]) / 3.0))
+    found = []
+    for axis in range(3):
+        own = [Design(d.effect, d.variant, d.keys, d.axes, d.columns * (
+            np.array(d.axes) == axis), d.prior, d.choices) for d in designs]
+        group = covariance.alone(np.diag(rest.noise[kind][:, axis] ** 2), lateral, kernel)
+        rows = nominal_rows.Rows(rest.values[kind][:, axis], group, np.ones((rest.n, 1)),
+                                 (OFFSETS[kind], FLICKERS[kind]), (0,))
+        signature = ("rest", axis, tuple(rest.rest.tolist()),
+                     tuple((rest.t - rest.t[0]).round().astype(int).tolist()), warming)
+        unit = linear_model.unit(rows, own, signature=signature, apart=True)
+        found.append(replace(unit, energy=unit.energy / 3.0))  # the rows are those of one axis
+    return found
+
+
+def _sensor(rest, kind, chip, settings):
+    """RestGap: posterior, classes, adequacy, held-out figures."""
+    progress.doing("the %s at rest" % ("gyro" if kind == "gyro" else "accelerometer"))
+    units = _units(rest, kind, chip, settings)
+    data = coefficient_fits.Data(units)
+    flicker, reference = adequacy.usual(chip, kind), settings.reference.get(kind)
+    levels = RestLevels(OFFSET[kind], flicker if reference is None
+                        else max(reference, flicker / 4.0), reference is not None)
+    several = int(rest.rest.max()) > 0
+    forms = [f for f in hypotheses.of(units, settings.without)
+             if several or f.effect != SETTLED]
+    model = posterior.Model(units, data.statistics, levels)
+    found = posterior.search(model, forms, cutoffs.of(units, forms, levels))
+    fits = adequacy.of(units, data.statistics, found.best)
+    chosen = [f for f in found.best.forms if not f.generic and len(f.shared)]
+    causes = aliases.causes(found, units, forms)
+    told = [_told(c, data, fits, chip, kind, chosen, found) for c in causes]
+    told += _drift(found, units, data, levels, kind)
+    strange = [f for f in found.best.forms if f.generic and not _settled(f, units, fits, kind)]
+    places = [Place(kind, letter, c.domain, 1.0 if c.share is None else c.share,
+                    np.exp(-min(c.score, 600.0))) for c in told for letter in c.letters]
+    for form in strange:
+        gain = np.exp(-min(found.gains[form.effect], 600.0))
+        letters = ["xyz"[axis] for axis, _ in posterior.axes_of(model, found, form)] or [None]
+        places += [Place(kind, k, hypotheses.domain(form.effect), 1.0, gain) for k in letters]
+    if not fits.ok and not places:
+        places = [Place(kind, None, "time", 1.0, fits.p)]
+    return RestGap(kind, rest, tuple(told), tuple(places),
+                   (*(1.0 - found.places[f.effect].get("", 0.0) for f in strange),
+                    *([] if fits.ok else [1.0 - fits.p])),
+                   tuple(_held_out(rest, unit, chosen, point, levels)
+                         for unit, point in zip(units, fits.index)),
+                   frozenset(f.effect for f in forms))
+
+
+def _settled(form, units, fits, kind):
+    """Whether a member of the set is no more than what switching on again, or putting down
+    again, does to a reading."""
+    return form.effect == SETTLED and max(u.grid[k][0] for u, k in zip(
+        units, fits.index)) <= session_offsets.UNUSUAL[kind]
+
+
+def _told(cause, data, fits, chip, kind, chosen, found):
+    """RestCause of an aliases.Cause; where the change from one rest to the next may be no more
+    than that, what does it is among the names. Its share: what is lost without it."""
+    cause.unit = EFFECTS[cause.effect].units[kind]
+    effect_estimates.fill(cause, data, list(fits.index), chip, kind)
+    names = cause.names
+    if found.places[cause.effect].get(SETTLED, 0.0) > 1.0 - posterior.HOLDS:
+        names = [*names, "drift", *(["table_tilt"] if kind == "accel" else [])]
+    known = data.units, data.statistics
+    total = adequacy.excess_at(*known, [], fits.index)
+    now = adequacy.excess_at(*known, chosen, fits.index)
+    lost = adequacy.excess_at(*known, [f for f in chosen if f not in cause.chosen],
+                              fits.index) - now
+    share = float(np.clip(lost / max(total, lost, 1e-9), 0.0, 1.0))
+    place = dict(found.places[cause.effect])
+    return RestCause(tuple(names), place, cause.score, cause.value, cause.interval, cause.unit,
+                     cause.plausible, share, terms.DOMAIN[cause.effect])
+
+
+def _drift(found, units, data, levels, kind):
+    """[RestCause] of a drift in the likeliest set: its Allan floor on the axes that wander more
+    than is usual, with a 90 % interval by the profile of the likelihood."""
+    from .answer import FLOOR_OF_KERNEL
+    if "drift" not in found.best.names:
+        return []
+    value, interval, free = {}, {}, frozenset(["flicker"])
+    for key, unit, statistics in zip("xyz", units, data.statistics):
+        course = evidence.by_flicker(unit, statistics, found.best.shared,
+                                     levels.prior(unit, free))
+        level, low, high = evidence.profile(sorted({b for _, b in unit.grid}), course)
+        if low > levels.flicker:
+            value[key] = level * FLOOR_OF_KERNEL
+            interval[key] = (low * FLOOR_OF_KERNEL, high * FLOOR_OF_KERNEL)
+    if not value:
+        return []
+    return [RestCause(("drift",), dict(found.places["drift"]), found.gains["drift"], value,
+                      interval, "mg" if kind == "accel" else "deg/s", True, None, "time")]
+
+
+def _held_out(rest, unit, chosen, index, levels):
+    """Sums of one axis over the folds: pieces of the rest, every FOLDS-th of them foretold by
+    the others."""
+    y, group, (placement, flicker) = unit.rows.y, unit.rows.groups[0], unit.grid[index]
+    noise = covariance.dense([group], placement, flicker)
+    quiet = covariance.dense([group], 0.0, min(flicker, adequacy.TIMES_TYPICAL * levels.flicker))
+    centred = np.eye(rest.n) - 1.0 / rest.n
+    quiet = np.diag(centred @ quiet @ centred)
+    columns = np.concatenate([f.columns for f in chosen] + [np.zeros(0, dtype=int)]).astype(int)
+    prior = np.concatenate([f.prior for f in chosen] + [np.zeros(0)])
+    x = unit.raw(columns)
+    pieces = np.minimum(np.arange(rest.n) * PIECES // rest.n, PIECES - 1)
+    total = Sums(*np.zeros(8))
+    for fold in range(FOLDS):
+        held = pieces % FOLDS == fold
+        plain = _foretold(y, x[:, :0], prior[:0], noise, held)
+        full = _foretold(y, x, prior, noise, held)
+        z, d = y[held] - plain, full - plain
+        white = np.linalg.solve(np.linalg.cholesky(noise[np.ix_(held, held)]),
+                                np.stack([z, d], 1))
+        z_w, d_w = white.T
+        total = total + Sums(z @ z, (z - d) @ (z - d), float(quiet[held].sum()), float(held.sum()),
+                             z_w @ z_w - len(z), 2.0 * d_w @ z_w - d_w @ d_w, d_w @ d_w,
+                             d_w @ z_w)
+    return total
+
+
+def _foretold(y, x, prior, noise, held):
+    """What the means not held out foretell of those that are: a constant and the columns x."""
+    train = ~held
+    design = np.hstack([np.ones((len(y), 1)), x])
+    solved = np.linalg.solve(noise[np.ix_(train, train)],
+                             np.column_stack([design[train], y[train]]))
+    gram = design[train].T @ solved[:, :-1] + np.diag(np.concatenate([[0.0], prior ** -2.0]))
+    return design[held] @ np.linalg.solve(gram, design[train].T @ solved[:, -1])

@@ -1,0 +1,279 @@
+"""Stages 1 and 3 to 6 for one sensor: accelerometer or gyro, over the rests of all sessions."""
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sixflip_sim.effects.library import EFFECTS
+
+from .. import progress
+from ..experiment import linear_model, nominal_rows, terms
+from . import (
+    adequacy,
+    aliases,
+    box_tilt_test,
+    coefficient_fits,
+    cutoffs,
+    effect_estimates,
+    evidence,
+    face_squareness,
+    holdout_gain,
+    hypotheses,
+    posterior,
+    session_offsets,
+    strangers,
+    wandering,
+)
+
+ALONG_FREEDOM = 10  # contrasts along gravity that a half of a session must have
+DOUBT = 0.5  # probability of a stranger in a cause's place, above which it is not explained
+
+
+@dataclass(frozen=True, eq=False)
+class SensorGap:
+    """What RestModel.fit found. parts: [(Session, NominalSensor)]; units, data; options (all
+    Forms), forms (those that compete), noise (evidence.Levels), cost (cutoffs.Cutoffs); found
+    (Posterior), chosen (its named Forms), strangers (its nameless ones), causes, adequacy,
+    shrinkage; unexplained: bool; added: {domain: nats} of the strangers, strange_axes: {effect:
+    axes}; drift: (level, low, high, nats) or None; crooked: face_squareness.Crooked or None of
+    each session, none of it where something bends the reading."""
+
+    model: object
+    parts: list
+    units: list
+    data: object
+    options: list
+    forms: list
+    noise: evidence.Levels
+    cost: object
+    found: posterior.Posterior
+    chosen: list
+    strangers: list
+    causes: list
+    adequacy: adequacy.Adequacy
+    added: dict
+    strange_axes: dict
+    drift: tuple | None
+    unexplained: bool
+    crooked: list
+    shrinkage: object = None
+
+    @property
+    def kind(self):
+        return self.model.kind
+
+    @property
+    def settings(self):
+        return self.model.settings
+
+    @property
+    def chip(self):
+        return self.model.chip
+
+    @property
+    def sessions(self):
+        return [session for session, _ in self.parts]
+
+    @property
+    def same_session(self):
+        return len(self.parts) == 1
+
+    def unit(self, part, nominal, certified, wanted=None):
+        """linear_model.Unit of a session, or of a part of one, as the model makes it."""
+        return self.model.unit(part, nominal, certified, wanted)
+
+    def levels(self, data=None):
+        """Index into each unit's grid: levels that the data shows with all that was found."""
+        if data is None or data is self.data:
+            return list(self.adequacy.index)
+        fits = coefficient_fits.fits(data, np.zeros(0, dtype=int), np.zeros(0))
+        return [int(f.index[0]) for f in fits]
+
+    def halved_levels(self, data):
+        """Index into the grid of each half's unit: the whole session's levels."""
+        level = self.units[0].grid[self.adequacy.index[0]]
+        return [u.grid.index(level) if level in u.grid else 0 for u in data.units]
+
+    def with_effect(self, name):
+        """The same with an effect among the chosen ones, whether it passes the threshold or
+        not; itself where it is there already, or no form of it competes."""
+        mine = [o for o in self.options if o.effect == name]
+        if name in {c.effect for c in self.chosen} or not mine:
+            return self
+        model = posterior.Model(self.units, self.data.statistics, self.noise)
+        best = max(mine, key=lambda form: model.scored((*self.found.best.forms, form)).score)
+        chosen = [*self.chosen, best]
+        return replace(self, chosen=chosen, shrinkage=holdout_gain.of(self.data, chosen,
+                                                                      self.adequacy.index))
+
+
+@dataclass(frozen=True)
+class RestModel:
+    """The model of one sensor at rest: kind "accel" or "gyro", chip, diagnosis.Settings."""
+
+    kind: str
+    chip: str
+    settings: object
+    drifts = True  # whether noise may wander
+    form = 0.02  # cutoffs.Cutoffs.form
+
+    def fit(self, sessions, nominal):
+        """SensorGap of sessions with their NominalSensors."""
+        progress.doing("effects of the %s" % ("gyro" if self.kind == "gyro" else "accelerometer"))
+        parts = list(zip(terms.agreed(sessions), nominal))
+        units = [self.unit(*part, self.settings.certified) for part in parts]
+        units += self.between(units, nominal)
+        data = coefficient_fits.Data(units)
+        options = hypotheses.of(units, self.settings.without, self.drifts)
+        noise = self.usual()
+        # A square beside a slope is for the board's record; here a discrepancy stands for it.
+        forms = [f for f in options if not f.variant.endswith("+")]
+        cost = replace(cutoffs.of(units, forms, noise), form=self.form)
+        model = posterior.Model(units, data.statistics, noise)
+        progress.doing("what explains it best")
+        found = posterior.search(model, forms, cost)
+        best = found.best
+        causes = aliases.causes(found, units, forms)
+        for cause in causes:
+            cause.other_axes = posterior.rival_axes(model, forms, found, cause.chosen[0])
+        fitted = adequacy.of(units, data.statistics, best,
+                             self.settings.shaken.get(self.kind, ()))
+        added = posterior.domains_left(found)
+        if fitted.odd and "drift" in best.names:
+            added["time"] = found.gains["drift"]
+        nameless = [f for f in best.forms if f.generic]
+        doubted = any(found.stranger_share(c.effect) > DOUBT for c in causes)
+        crooked = [face_squareness.of(*part) for part in parts] if self.kind == "accel" else []
+        gap = SensorGap(
+            self, parts, units, data, options, forms, noise, cost, found,
+            [f for f in best.forms if not f.generic and len(f.shared)], nameless, causes, fitted,
+            added, {f.effect: posterior.axes_of(model, found, f) for f in nameless},
+            _drift(units, data, noise, found, fitted),
+            not fitted.ok or bool(nameless) or doubted, crooked)
+        _shares(gap)
+        _fill(gap, causes, data)
+        return self.shrunk(self._tilted(gap))
+
+    def _tilted(self, gap):
+        """The gap with a crooked box among its causes where there is one."""
+        if self.kind == "accel" and not self.settings.certified \
+                and "box_tilt" not in self.settings.without and box_tilt_test.possible(gap):
+            progress.doing("whether the box is square")
+            box, data = box_tilt_test.found(gap)
+            _fill(gap, box, data)
+            gap = replace(gap, causes=gap.causes + [
+                c for c in box if max(map(abs, c.value.values()), default=0.0)
+                >= box_tilt_test.LEAST_DEG])
+        if box_tilt_test.bent(gap.causes):
+            gap = replace(gap, crooked=[])  # a nonlinearity leans the faces as well
+        return gap
+
+    def shrunk(self, gap):
+        """With the shrinkage on the sessions held out; with one session on its halves, where
+        they can be had."""
+        progress.doing("how far the gap shrinks on what is held out")
+        data, index = gap.data, gap.adequacy.index
+        if gap.same_session and gap.chosen:
+            certified = self.settings.certified
+            parts = halves(self.kind, *gap.parts[0], certified)
+            if parts:
+                wanted = np.concatenate([form.columns for form in gap.chosen])
+                data = coefficient_fits.Data([self.unit(*part, certified, wanted)
+                                              for part in parts])
+                index = gap.halved_levels(data)
+        return replace(gap, shrinkage=holdout_gain.of(data, gap.chosen, index))
+
+    def usual(self):
+        """evidence.Levels of this sensor."""
+        return adequacy.levels(self.chip, self.kind, self.settings.reference.get(self.kind))
+
+    def unit(self, part, model, certified, wanted=None):
+        """Unit of one session; certified: the box is no nuisance; wanted: see
+        linear_model.unit."""
+        reference = self.settings.reference_c
+        designs = terms.library(part, model.up, self.kind, reference, self.chip)
+        if self.kind == "accel":
+            designs.append(terms.of_terms("box_tilt", "accel", part.moment(model.up), part.n,
+                                               chip=self.chip))
+        designs += strangers.designs(part, model.up, self.kind)
+        if self.settings.certified:
+            designs = [d for d in designs if d.effect != "box_tilt"]
+        rows = nominal_rows.rows(self.kind, part, model, certified)
+        return linear_model.unit(self._less_known(rows, designs), designs, wanted,
+                                 signature=nominal_rows.signature(part),
+                                 within=self._within(part))
+
+    def _within(self, part):
+        """{(effect, number of its choice): nats}: what the rests say of walks of each width."""
+        nats = np.array([wandering.within_rests(
+            part, self.kind, width * strangers.SCALE[self.kind],
+            adequacy.usual(self.chip, self.kind)) for width in hypotheses.WALKS])
+        found = {("drift", k): float(row.sum()) for k, row in enumerate(nats)}
+        found.update({("~walk", k): float(v) for k, v in enumerate(nats.T.ravel())})
+        return found
+
+    def between(self, units, nominal):
+        """[Unit of what lies between the sessions], [] where there is nothing between."""
+        found = session_offsets.unit(self.kind, [u.rows for u in units], nominal,
+                                     [u.designs for u in units])
+        return [] if found is None else [found]
+
+    def _less_known(self, rows, designs):
+        """The rows without what the simulator compared with predicts already."""
+        known = self.settings.simulated.get(self.kind, ())
+        every = [(d.effect, d.variant, key) for d in designs for key in d.keys]
+        sizes = np.zeros(len(every))
+        for effect, variant, key, size in known:
+            if (effect, variant, key) in every:
+                sizes[every.index((effect, variant, key))] += size
+        if not sizes.any():
+            return rows
+        return replace(rows, y=rows.y - np.hstack([d.columns for d in designs]) @ sizes)
+
+
+def _drift(units, data, noise, found, fitted):
+    """(flicker level, low, high, nats) where a drift is in the likeliest set, 90 % interval by
+    the profile of the likelihood, or None; what jumps or is on one axis alone is no noise, and
+    has no name."""
+    if "drift" not in found.best.names or fitted.odd:
+        return None
+    free = frozenset(["flicker"])
+    course = sum(evidence.by_flicker(unit, statistics, found.best.shared, noise.prior(unit, free))
+                 for unit, statistics in zip(units, data.statistics) if not unit.between)
+    levels = sorted({b for _, b in units[0].grid})
+    return (*evidence.profile(levels, course), found.gains["drift"])
+
+
+def _shares(gap):
+    """Fill each cause's share of the excess: what is lost without it."""
+    index, data = gap.adequacy.index, (gap.units, gap.data.statistics)
+    total = max(adequacy.excess_at(*data, [], index), 1e-9)
+    now = adequacy.excess_at(*data, gap.chosen, index)
+    for cause in gap.causes:
+        rest = [c for c in gap.chosen if c not in cause.chosen]
+        lost = adequacy.excess_at(*data, rest, index) - now
+        cause.share = float(np.clip(lost / max(total, lost, 1e-9), 0.0, 1.0))
+
+
+def _fill(gap, causes, data):
+    """Fill domain, unit, sizes and axes of causes that were found in this data."""
+    for cause in causes:
+        cause.domain = terms.DOMAIN[cause.effect]
+        cause.unit = EFFECTS[cause.effect].units[gap.kind]
+        effect_estimates.fill(cause, data, gap.levels(data), gap.chip, gap.kind)
+
+
+def halves(kind, session, model, certified):
+    """The two halves of a session as [(part, model)], [] where they are too small."""
+    half = session.placements() // 2
+    parts = [session.part(range(half)), session.part(range(half, session.placements()))]
+    if min(len(np.unique(p.placement)) for p in parts) < 6:
+        return []
+    if kind == "accel" and min(along(p, model, certified) for p in parts) < ALONG_FREEDOM:
+        return []
+    return [(p, model) for p in parts]
+
+
+def along(part, model, certified):
+    """Contrasts that no lateral position of a placement can touch."""
+    rows = nominal_rows.rows("accel", part, model, certified)
+    return linear_model.unit(rows.loosened(), []).freedom

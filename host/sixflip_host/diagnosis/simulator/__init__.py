@@ -1,0 +1,1 @@
+"""The user's own simulator against the real sensor."""

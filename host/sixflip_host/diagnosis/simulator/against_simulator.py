@@ -1,0 +1,77 @@
+"""The user's own simulator: the gap is what the real sensor has and that simulator lacks.
+
+SIM.csv is diagnosed like a real capture. What it models is taken off the real sessions at their
+own poses, times and temperatures, so scenes need not be the same; what both have in their
+registers, timing or spectrum is no gap. What it has and the real sensor lacks is a gap as well.
+"""
+import numpy as np
+
+from ...experiment import blocks
+from .. import coefficient_fits, detectability
+from .. import diagnosis as stages
+
+Z90 = 1.645
+APART = 3.0  # standard errors between two sizes from which on they are two effects
+RAW = 0.1  # of a size without an interval: how well two logs repeat a line, a step or a clock
+
+
+class Simulator:
+    """known: {sensor: [(effect, variant, key, coefficient)]}; findings of the simulator;
+    noise: {sensor: (3,) of a second}; remarks."""
+
+    def __init__(self, sessions, settings):
+        same = stages.Settings(settings.certified, settings.without, settings.reference,
+                               settings.jobs)
+        self.found = stages.Diagnosis(sessions, same)
+        self.known, self.remarks = {}, []
+        self.reference_c = same.reference_c
+        for kind, gap in self.found.gaps.items():
+            if not gap.chosen:
+                continue
+            columns = np.concatenate([c.columns for c in gap.chosen])
+            prior = np.concatenate([c.prior for c in gap.chosen])
+            theta = coefficient_fits.coefficients(
+                coefficient_fits.fits(gap.data, columns, prior), prior)[0][0]
+            every = [(d.effect, d.variant, key) for d in gap.units[0].designs for key in d.keys]
+            self.known[kind] = [(*every[column], float(t)) for column, t in zip(columns, theta)]
+        if not self.found.gaps:
+            self.remarks.append("the simulator's capture holds too few poses: of the effects, "
+                                "only steps, lines and timing are compared")
+        names = sorted({c.effect for _, c in self.found.causes})
+        if names:
+            self.remarks.append("the simulator already has: " + ", ".join(names))
+        self.remarks += ["the simulator's log: " + said for said in self.found.remarks]
+        silent = sorted({u["effect"] for u in detectability.listed(self.found)})
+        if silent and self.found.gaps:
+            self.remarks.append("effects that the simulator's log cannot show: "
+                                + ", ".join(silent))
+
+    def new(self, finding):
+        """True when the simulator lacks a Finding of the real sensor, or has another size."""
+        for other in self.found.findings:
+            if (other.effect, other.sensor) != (finding.effect, finding.sensor):
+                continue
+            keys = set(other.value) | set(finding.value)
+            apart = [(_size(finding, k), _size(other, k)) for k in keys]
+            if all(abs(a - b) <= APART * np.hypot(sa, sb) for (a, sa), (b, sb) in apart):
+                return False
+        return True
+
+    def only_simulated(self, findings):
+        """Findings of the simulator that the real sensor does not show."""
+        real = {(f.effect, f.sensor) for f in findings}
+        return [f for f in self.found.findings if (f.effect, f.sensor) not in real]
+
+
+def _size(finding, key):
+    """(value, standard error) of a Finding's size; nothing is as uncertain as the others."""
+    value = finding.value.get(key, 0.0)
+    interval = (finding.interval or {}).get(key)
+    if interval is not None and interval[1] > interval[0]:
+        return value, (interval[1] - interval[0]) / 2.0 / Z90
+    return value, RAW * max(abs(v) for v in finding.value.values())
+
+
+def read(captures, paths, settings):
+    """Simulator from captures."""
+    return Simulator([blocks.of(p, c) for p, c in zip(paths, captures)], settings)

@@ -1,0 +1,137 @@
+"""Whether two logs are of one motion, and how their clocks lie: by the size of the turn rate,
+which is the same in every frame, with axes swapped and in any unit."""
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import butter, sosfiltfilt
+
+GRID_HZ = 100.0
+BAND_HZ = 6.0  # of what is compared: beyond it a simulator's contacts are not repeatable
+ALIKE = 0.85  # correlation from which on two logs are of one motion
+DRIFTS = np.linspace(-0.03, 0.03, 61)
+LEAST_S = 8.0
+
+
+@dataclass(frozen=True)
+class Alignment:
+    """same: one motion; correlation of the turn rates; time of the real log = offset_s + (1 +
+    drift) · time of the simulator's; offset_sigma_s, drift_sigma: standard errors; overlap_s."""
+
+    same: bool
+    correlation: float
+    offset_s: float
+    offset_sigma_s: float
+    drift: float
+    drift_sigma: float
+    overlap_s: float
+
+    def of_simulator(self, t):
+        """Times of the real log at times of the simulator's."""
+        return self.offset_s + (1.0 + self.drift) * np.asarray(t)
+
+
+def align(real, sim):
+    """The Alignment of two Traces."""
+    none = Alignment(False, 0.0, 0.0, np.inf, 0.0, np.inf, 0.0)
+    if min(real.seconds, sim.seconds) < LEAST_S:
+        return none
+    # A channel that says nothing makes the size of the turn another one.
+    turns = all(x.rate is not None and np.ptp(x.rate, axis=0).all() for x in (real, sim))
+    a, b = (turn_rate(x) if turns else force_off(x) for x in (real, sim))
+    if a[1].std() <= 0 or b[1].std() <= 0:
+        return none
+    best = max((coarse(a, b, drift) + (drift,) for drift in (0.0,)), key=lambda x: x[0])
+    if best[0] < ALIKE:
+        best = max((coarse(a, b, drift) + (drift,) for drift in DRIFTS), key=lambda x: x[0])
+    return refined(a, b, *best[1:])
+
+
+def turn_rate(trace):
+    """(times of a grid, turn rate in rad/s, smooth)."""
+    size = np.linalg.norm(trace.rate - np.median(trace.rate, axis=0)
+                          if not trace.rests else trace.rate - trace.rest_means(
+                              trace.rate).mean(axis=0), axis=1)
+    t = np.arange(0.0, trace.seconds, 1.0 / GRID_HZ)
+    return t, smooth(np.interp(t, trace.t, size), GRID_HZ)
+
+
+def force_off(trace):
+    """(times of a grid, how far the specific force is from its median, smooth): where there is
+    no turn rate to go by."""
+    t = np.arange(0.0, trace.seconds, 1.0 / GRID_HZ)
+    size = np.linalg.norm(trace.force - np.median(trace.force, axis=0), axis=1)
+    return t, smooth(np.interp(t, trace.t, size), GRID_HZ)
+
+
+def smooth(x, rate_hz, band_hz=BAND_HZ):
+    """x (n,) or (n, k) without what is faster than the band; no delay."""
+    band = min(band_hz, 0.4 * rate_hz)
+    if len(x) < 40:
+        return x
+    return sosfiltfilt(butter(2, band, fs=rate_hz, output="sos"), x, axis=0,
+                       padlen=min(len(x) - 1, int(rate_hz)))
+
+
+def coarse(a, b, drift):
+    """(correlation, offset in s) of the best whole step."""
+    t = np.arange(0.0, b[0][-1] * (1.0 + drift), 1.0 / GRID_HZ)
+    y = np.interp(t / (1.0 + drift), *b)
+    x = a[1] - a[1].mean()
+    y = y - y.mean()
+    n = len(x) + len(y)
+    size = 1 << (n - 1).bit_length()
+    cross = np.fft.irfft(np.fft.rfft(x, size) * np.conj(np.fft.rfft(y, size)), size)
+    lags = np.concatenate([np.arange(0, len(x)), np.arange(-len(y) + 1, 0)])
+    values = np.concatenate([cross[:len(x)], cross[size - len(y) + 1:]])
+    # Only what overlaps counts, and at least half of the shorter log has to.
+    sums = [np.concatenate([[0.0], np.cumsum(z ** 2)]) for z in (x, y)]
+    first, end = np.maximum(lags, 0), np.minimum(len(y) + lags, len(x))
+    enough = end - first >= 0.5 * min(len(x), len(y))
+    power = np.maximum(sums[0][np.maximum(end, first)] - sums[0][first], 0) * np.maximum(
+        sums[1][np.maximum(end, first) - lags] - sums[1][first - lags], 0)
+    value = np.where(enough, values / np.sqrt(np.maximum(power, 1e-12 * power.max() + 1e-300)),
+                     -1.0)
+    best = int(value.argmax())
+    return float(value[best]), lags[best] / GRID_HZ
+
+
+def refined(a, b, offset, drift):
+    """Gauss-Newton on offset and drift, the simulator's rate scaled freely."""
+    sigma = np.full(2, np.inf)
+    for _ in range(6):
+        t = offset + (1.0 + drift) * b[0]
+        inside = (t >= 0.0) & (t <= a[0][-1])
+        if inside.sum() < LEAST_S * GRID_HZ:
+            return Alignment(False, 0.0, offset, np.inf, drift, np.inf, inside.sum() / GRID_HZ)
+        x = np.interp(t[inside], *a)
+        slope = np.interp(t[inside], a[0], np.gradient(a[1], a[0]))
+        y = b[1][inside]
+        gain = np.polyfit(y, x, 1)
+        left = np.polyval(gain, y) - x
+        columns = np.stack([slope, slope * b[0][inside]], 1)
+        gram = columns.T @ columns
+        step = np.linalg.lstsq(gram, columns.T @ left, rcond=None)[0]
+        offset, drift = offset + step[0], drift + step[1]
+        left = left - columns @ step
+        inflation = independent(left)
+        sigma = np.sqrt(np.diag(np.linalg.pinv(gram)) * left.var() * inflation)
+    correlation = float(np.corrcoef(x, y)[0, 1])
+    return Alignment(correlation >= ALIKE, correlation, float(offset), float(sigma[0]),
+                     float(drift), float(sigma[1]), inside.sum() / GRID_HZ)
+
+
+def independent(x):
+    """By how much neighbouring values of x (n,) or (n, k) say the same: the sum of its
+    autocorrelation up to the first zero [Geyer, Practical Markov Chain Monte Carlo,
+    Statistical Science 7 (1992), 473]."""
+    x = np.asarray(x, float)
+    if x.ndim == 2:
+        return max(independent(x[:, i]) for i in range(x.shape[1]))
+    x = x - x.mean()
+    power = np.abs(np.fft.rfft(x, 2 * len(x))) ** 2
+    auto = np.fft.irfft(power)[:len(x)]
+    if auto[0] <= 0:
+        return 1.0
+    auto = auto / auto[0]
+    below = np.flatnonzero(auto <= 0.0)
+    return float(1.0 + 2.0 * auto[1:below[0] if len(below) else len(auto)].sum())

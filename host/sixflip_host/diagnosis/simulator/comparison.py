@@ -1,0 +1,259 @@
+"""A simulator's log against the real one, in four layers that never borrow each other's names:
+conventions, parameters, effects (of diagnosis.Diagnosis), task."""
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from . import (
+    alignment,
+    conventions,
+    own_calibration,
+    own_consistency,
+    own_motion,
+    pairing,
+    parameters,
+    single_log,
+    task,
+    traces,
+)
+
+# After these a simulator's numbers are not those of a sensor any more.
+SPOILED = ("no_gravity", "gravity_sign", "force_sign", "gravity_after_rotation",
+           "constant_channel", "world_frame_forces", "world_frame_rates", "unknown")
+FOLD_S = 5.0
+RAILED = 0.5  # of a log: what is left of it is no motion any more
+MG, DEG = 1000.0 / 9.80665, 180.0 / np.pi
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """log, against: names of the simulator's and the real log; alignment; conventions
+    (conventions.Convention, ...); parameters (parameters.Parameter, ...); task (task.Task or
+    None); gap {sensor: (before, after, noise alone)} held out, of one motion; fits {sensor:
+    conventions.SensorFit}; real and simulated own_calibration.OwnSensor; noise {sensor:
+    single_log.Noise of the real log}; remarks; unseen; motion_judged: lever arm and delay of the
+    two logs were compared; reference_c: mean temperature of the real log or None."""
+
+    log: str
+    against: str
+    alignment: alignment.Alignment
+    conventions: tuple
+    parameters: tuple
+    task: task.Task
+    gap: dict
+    fits: dict
+    real: own_calibration.OwnSensor
+    simulated: own_calibration.OwnSensor
+    noise: dict
+    remarks: tuple
+    unseen: tuple
+    motion_judged: bool
+    reference_c: float
+
+    @property
+    def differs(self):
+        return [p for p in self.parameters if p.differs]
+
+    @property
+    def unexplained(self):
+        return any(c.name == "unknown" and not c.one_of for c in self.conventions)
+
+
+def compare(real_logs, name, capture):
+    """Comparison of one log of the simulator with the real log that is nearest to its motion.
+
+    real_logs  [(name, Capture)]
+    """
+    sim = traces.of(name, capture)
+    candidates = [traces.of(n, c) for n, c in real_logs]
+    aligned = [alignment.align(real, sim) for real in candidates]
+    best = max(range(len(candidates)), key=lambda k: aligned[k].correlation)
+    return of_traces(candidates[best], sim, aligned[best])
+
+
+def of_traces(real, sim, aligned):
+    """Comparison of two Traces."""
+    remarks, unseen, found = [], [], []
+    held = {x: {"accel": single_log.held_rows(log.force, log.quantum[0]),
+                "gyro": single_log.held_rows(log.rate, log.quantum[1])}
+            for x, log in (("real", real), ("sim", sim))}
+    found += held_findings(held, real, sim)
+    sim_free = single_log.unheld(sim, held["sim"])
+    real_free = single_log.unheld(real, held["real"])
+    live, dead = single_log.live(sim), single_log.dead(real, sim)
+    for kind, mask in dead.items():
+        still = mask | ~live[kind] & (kind == "accel" or sim.rate is not None)
+        if still.any():
+            axes = [a for a, x in zip("xyz", still) if x]
+            found.append(conventions.finding(
+                "constant_channel", kind, 1.0, 100.0, "its %s says nothing of the motion" %
+                " and ".join(axes), value=dict.fromkeys(axes, 0.0), unit="1"))
+            live[kind] = live[kind] & ~still
+    own_real = own_calibration.fitted(real_free)
+    fits, late, late_sigma, judged = {}, None, None, False
+    row_s = 1.0 / min(real.rate_hz, sim.rate_hz)
+    constant = any(c.name == "constant_channel" for c in found)
+    motion = None
+    if aligned.same and own_real is not None:
+        motion = traces.motion(own_real.applied(real_free))
+        aligned = replace(aligned, same=pairing.one_motion(real_free, sim_free, aligned, motion,
+                                                           live))
+    railed = [log.name for log in (real, sim) if log.railed.mean() > RAILED]
+    if railed:
+        unseen.append("conventions: %s stands at the end of its range most of the time"
+                      % " and ".join(railed))
+    elif aligned.same and motion is not None:
+        fresh = {k: sim.rate_hz / v for k, v in held["sim"].items()}
+        fits = conventions.same_motion(real_free, sim_free, aligned, motion, live, fresh)
+        late, late_sigma, delays = conventions.delay(fits, row_s)
+        judged = len(fits) == 2
+        found += [c for f in fits.values() for c in f.found if not (
+            constant and c.name == "constant_channel")] + delays
+    elif constant:
+        unseen.append("other conventions of %s: a channel of it says nothing" % sim.name)
+    else:
+        more, unseen, judged = different_motion(real_free, sim_free, own_real, row_s)
+        found += more
+    if real.rate is not None and sim.rate is None:
+        unseen = [*unseen, "the gyro: there is none in %s" % sim.name]
+    found = conventions.merged(found)
+    mended = put_right(sim_free, found)
+    own_sim = own_calibration.fitted(mended)
+    usable = {k: not any(c.name in SPOILED and c.sensor in (k, "device") for c in found)
+              for k in ("accel", "gyro")}
+    numbers = parameters.shapes(own_real, own_sim, fits, usable)
+    noise_numbers, noise_found = parameters.noises(real, mended)
+    numbers += noise_numbers + parameters.registers(real, sim)
+    numbers += parameters.timing(late, late_sigma, fits, aligned)
+    found += noise_found + parameters.bias_sign(numbers)
+    if any(c.name == "noise_per_sample" for c in found):
+        numbers = [p for p in numbers if p.name != "noise_density"]
+    remarks += said_of(real, sim, aligned)
+    return Comparison(sim.name, real.name, aligned, tuple(found), tuple(numbers),
+                      tasked(real_free, mended, own_real, own_sim, fits, remarks),
+                      held_out(fits, real, sim), fits, own_real, own_sim,
+                      {k: single_log.noise(real, getattr(real, v)) for k, v in (
+                          ("accel", "force"), ("gyro", "rate")) if getattr(real, v) is not None},
+                      tuple(remarks), tuple(unseen), judged,
+                      None if real.celsius is None else float(real.celsius.mean()))
+
+
+def held_findings(held, real, sim):
+    """Conventions of readings that repeat in the simulator and not in the real log."""
+    out = []
+    for kind, rows in held["sim"].items():
+        hz = [log.rate_hz / held[x][kind] for x, log in (("real", real), ("sim", sim))]
+        if rows < 1.5 or hz[1] > 0.8 * hz[0]:
+            continue
+        out.append(conventions.finding(
+            kind + "_rate_held", kind, 1.0, 100.0, "update it %.4g times a second: it says "
+            "something new every %.3g rows" % (hz[0], rows), value={"rate": hz[1]}, unit="Hz"))
+    return out
+
+
+def different_motion(real, sim, own_real, row_s):
+    """(Conventions, sentences on what cannot be seen, whether what shows in motion was compared)
+    of logs of two motions."""
+    if sim.rate is None or real.rate is None:
+        return [], ["conventions of %s: they need a gyro in both logs" % sim.name], False
+    found, unseen = own_consistency.conventions_of(real, sim)
+    if found or own_real is None or not sim.rests:
+        return found, unseen, False
+    moved = own_motion.fitted(real, own_real), own_motion.fitted(
+        sim, own_calibration.fitted(sim))
+    if None in moved:
+        return found, unseen + ["delay of %s: fewer than %d moves between rests" % (
+            sim.name, own_motion.FEWEST_MOVES)], False
+    return own_motion.compared(*moved, row_s), unseen[1:], True
+
+
+def put_right(trace, found):
+    """The Trace with axes and units as the Conventions say they should be."""
+    force, rate = trace.force, trace.rate
+    for c in found:
+        if c.name in ("accel_axes", "both_axes"):
+            force = force @ matrix_of(c.value)
+        if c.name in ("gyro_axes", "both_axes") and rate is not None:
+            rate = rate @ matrix_of(c.value)
+        if c.name == "force_sign":
+            force = -force
+        if c.name == "accel_unit":
+            force = force / c.value["factor"]
+        if c.name == "gyro_unit" and rate is not None:
+            rate = rate / c.value["factor"]
+    return replace(trace, force=force, rate=rate)
+
+
+def matrix_of(value):
+    """(3, 3) of {"x": "-y", ...}"""
+    out = np.zeros((3, 3))
+    for i, axis in enumerate("xyz"):
+        if value[axis] != "0":
+            out[i, "xyz".index(value[axis][-1])] = -1.0 if value[axis][0] == "-" else 1.0
+    return out
+
+
+def held_out(fits, real, sim):
+    """{sensor: (before, after, noise alone)}: root mean square of simulator less real, mg and
+    deg/s, in the band compared; conventions and parameters fitted on the other half's blocks."""
+    out = {}
+    for kind, found in fits.items():
+        pair, scale = found.pair, MG if kind == "accel" else DEG
+        theirs = pair.sim_force if kind == "accel" else pair.sim_rate
+        ours = pair.force if kind == "accel" else pair.rate
+        fold = ((pair.t - pair.t[0]) / FOLD_S).astype(int) % 2
+        left = np.empty_like(theirs)
+        for k in (0, 1):
+            rows = np.where(fold == k, UNSEEN, 1.0)
+            fit = found.again(rows)
+            left[fold == k] = fit.left[fold == k] / fit.unit
+        noise = 0.0
+        for trace in (real, sim):
+            level = single_log.noise(trace, trace.force if kind == "accel" else trace.rate)
+            if level is not None:
+                noise += (level.density ** 2).mean() * 2.0 * min(pair.band_hz, trace.rate_hz / 2)
+        out[kind] = tuple(float(scale * x) for x in (
+            np.sqrt(((theirs - ours) ** 2).mean()), np.sqrt((left ** 2).mean()),
+            np.sqrt(noise)))
+    return out
+
+
+UNSEEN = 1e6  # noise of a sample that a fit must not see, in units of the average
+
+
+def tasked(real, sim, own_real, own_sim, fits, remarks):
+    """Task of the logs, None with a remark where it cannot be asked."""
+    if own_real is None or own_sim is None:
+        remarks.append("the task was not tried: it needs a gyro and a rest in both logs")
+        return None
+    if not task.available():
+        remarks.append("the task was not tried: imufusion is not installed (pip install "
+                       "imufusion)")
+        return None
+    if len(fits) == 2:
+        return task.of_pair(fits["accel"], fits["gyro"], real.g)
+    return task.of_own(real, sim, own_real, own_sim)
+
+
+def said_of(real, sim, aligned):
+    """Sentences on the two logs."""
+    out = []
+    if aligned.same:
+        out.append("%s and %s are of one motion (correlation of the turn rates %.3f): offset "
+                   "%.3f ± %.3f s, %.0f s together" % (
+                       sim.name, real.name, aligned.correlation, aligned.offset_s,
+                       1.645 * aligned.offset_sigma_s, aligned.overlap_s))
+    else:
+        out.append("%s and %s are of different motions (correlation of the turn rates %.2f): each "
+                   "was held against its own rests and moves" % (
+                       sim.name, real.name, aligned.correlation))
+    for trace in (real, sim):
+        if not trace.rests:
+            out.append("no rest in %s: gravity and the gyro's bias are not known in it"
+                       % trace.name)
+        if trace.rate is None:
+            out.append("no gyro in %s" % trace.name)
+    if abs(real.rate_hz / sim.rate_hz - 1.0) > 0.02:
+        out.append("%s has %.4g rows a second, %s %.4g: compared on one grid" % (
+            sim.name, sim.rate_hz, real.name, real.rate_hz))
+    return out

@@ -1,0 +1,194 @@
+"""How well a hypothesis on the simulator's output predicts it: marginal likelihood with every
+coefficient integrated over its prior, on the same samples for all hypotheses.
+
+Linear in the coefficients, noise of each channel by maximum likelihood; neighbouring samples are
+not independent, so the likelihood counts as many samples as its residual has independent ones.
+Source: Bishop, Pattern Recognition and Machine Learning (2006), section 3.5.
+"""
+from dataclasses import dataclass
+
+import numpy as np
+
+from .hypotheses import BIAS, DEAD, DEG, DELAY_S, FREE, SHAPE, SIGNED, SMOOTH_S2
+
+ROUNDS = 4
+LEAST_LEFT = 1e-9
+MOST_ROWS = 4000  # of a log that a fit looks at; each stands for those around it
+
+
+@dataclass(frozen=True)
+class Fit:
+    """log: marginal log likelihood; matrix (3, 3) = S (1 + E) and bias (3,): simulator = matrix ·
+    signal + bias + …; axes (3, 3) and unit: S; extra (k,) with its sigma; delay_s of the
+    simulator against the signal, and its sigma; smooth_s2: half the square of the time
+    constant by which the simulator is smoother than the signal (negative: less smooth); shape
+    (3, 3): E, with its sigma; left (n, 3): what is not predicted."""
+
+    hypothesis: object
+    name: str
+    log: float
+    matrix: np.ndarray
+    bias: np.ndarray
+    axes: np.ndarray
+    unit: float
+    extra: np.ndarray
+    extra_sigma: np.ndarray
+    delay_s: float
+    delay_sigma_s: float
+    smooth_s2: float
+    smooth_sigma_s2: float
+    shape: np.ndarray
+    shape_sigma: np.ndarray
+    bias_sigma: np.ndarray
+    left: np.ndarray
+
+
+def fits(hypothesis, measured, kind, grid_hz, inflation=1.0, own=None, live=None,
+         rows=None):
+    """Fits of a Hypothesis, one for each S that may be: none, and the nearest signed permutation
+    and unit; measured (n, 3); own (columns (n, q), sizes (q,)): what the real sensor adds of
+    itself to each channel; live (3,): channels that are not constant;
+    rows (n,): the noise of each sample, in units of the average."""
+    live = np.ones(3, bool) if live is None else live
+    found = []
+    for axes, unit in candidates(hypothesis, measured, kind, live):
+        found.append(fit_one(hypothesis, measured, axes, unit, grid_hz, kind, inflation, own,
+                             live, rows))
+    return found
+
+
+def candidates(hypothesis, measured, kind, live):
+    """[(S (3, 3), unit)]"""
+    y = hypothesis.signal
+    design = np.column_stack([y, np.ones(len(y))])
+    free = np.linalg.lstsq(design, measured, rcond=None)[0][:3].T
+    if hypothesis.heading:
+        psi = np.arctan2(free[1, 0] - free[0, 1], free[0, 0] + free[1, 1])
+        c, s = np.cos(psi), np.sin(psi)
+        return [(np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]), 1.0)]
+    units = (1.0, DEG, 1.0 / DEG) if kind == "gyro" else (1.0, 9.80665, 1.0 / 9.80665)
+    free[~live] = 0.0
+    out = [(np.eye(3), unit) for unit in (units if hypothesis.name else units[:1])]
+    if hypothesis.name:
+        size = np.linalg.norm(free, axis=1)
+        near = max(SIGNED, key=lambda s: (s * free / np.maximum(size, 1e-9)[:, None]).sum())
+        dead = live & (size < DEAD * np.median(size[live]))
+        if dead.any():
+            near = np.where(dead[:, None], 0.0, near)
+        if not np.array_equal(near[live], np.eye(3)[live]):
+            out += [(near, unit) for unit in units]
+    return out
+
+
+def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, rows):
+    """The Fit of a Hypothesis with one S."""
+    n = len(measured)
+    delay, k = 0.0, h.columns.shape[2]
+    target = measured / unit
+    for _ in range(3):
+        shift = shifted(h.signal, delay * grid_hz)
+        signal = shift @ axes.T
+        slope = -np.gradient(signal, axis=0) * grid_hz
+        bend = -np.gradient(slope, axis=0) * grid_hz
+        columns = np.concatenate([shifted(h.columns, delay * grid_hz), slope[:, :, None],
+                                  bend[:, :, None]], 2)
+        mean = np.concatenate([h.mean, [-delay, 0.0]])
+        sd = np.concatenate([h.sd, [DELAY_S, SMOOTH_S2]])
+        own = [signal, np.ones((n, 1))]
+        own_sd = [np.full(3, SHAPE), [h.bias_sd or BIAS[kind]]]
+        if h.free is not None:
+            scale = np.maximum(h.free.std(axis=0), 1e-9)
+            own.append(h.free)
+            own_sd.append(FREE * max(signal.std(), 1e-9) / scale)
+        if real_own is not None:
+            own.append(real_own[0])
+            own_sd.append(real_own[1])
+        result = regression(target - signal, np.concatenate(own, 1), np.concatenate(own_sd),
+                            columns, mean, sd, inflation, live, rows)
+        delay += float(np.clip(result[2][k], -0.05, 0.05))
+    log, beta, shared, sigma, left, beta_sigma = result
+    log += 0.5 * n / inflation * np.minimum(0.0, np.log(gains(h, beta, shared)))[live].sum()
+    matrix = (np.eye(3) + beta[:, :3]) @ axes * unit
+    log -= live.sum() * n / inflation * np.log(unit)
+    return Fit(h, h.name, log, matrix, beta[:, 3] * unit, axes, unit,
+               shared[:k], sigma[:k], delay, float(sigma[k]), float(shared[k + 1]),
+               float(sigma[k + 1]), beta[:, :3], beta_sigma[:, :3], beta_sigma[:, 3] * unit,
+               left * unit)
+
+
+def gains(h, beta, shared):
+    """(3,): by how much the real log's own noise would be in the prediction, as power. Where that
+    is less than in the reading itself, the fit may only have weakened a signal that is noisy in
+    the real log; whether it has cannot be told from two logs [Fuller, Measurement Error Models
+    (1987), section 1.1], so the better fit is not believed."""
+    whole = np.eye(3) + beta[:, :3]
+    if h.scaled:
+        whole = whole + shared[0] * np.eye(3)
+    if h.copies and h.name == "":
+        whole = whole + beta[:, 4:7]
+    turned = beta[:, 7:10] if h.copies > 1 else np.zeros((3, 3))
+    return np.maximum((whole ** 2).sum(axis=1) + (turned ** 2).sum(axis=1), 1e-12)
+
+
+def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,
+               covariance=False):
+    """Linear regression of y (n, 3) = own (n, p) · beta of each channel + columns (n, 3, k) ·
+    shared, with priors own_sd (p,) about 0 and sd (k,) about mean (k,).
+
+    Returns (log evidence, own coefficients (3, p), shared (k,), its sigma (k,), residuals (n, 3),
+    sigma of the own coefficients (3, p)); with covariance also that of the shared ones (k, k).
+    """
+    n, p = own.shape
+    k = columns.shape[2]
+    y = y - columns @ mean
+    weight = np.ones(n) if rows is None else 1.0 / rows
+    raw, k_rows = (y, own, columns), max(1, n // MOST_ROWS)
+    weight, y, own, columns = (x[::k_rows] for x in (weight, y, own, columns))
+    y, own, columns = y * weight[:, None], own * weight[:, None], columns * weight[:, None, None]
+    size = 3 * p + k
+    prior = np.concatenate([np.tile(own_sd, 3), sd])
+    variance = np.maximum((y - y.mean(axis=0)).var(axis=0), LEAST_LEFT)
+    gram_own = own.T @ own * k_rows
+    cross = [own.T @ columns[:, c] * k_rows for c in range(3)]
+    gram_shared = [columns[:, c].T @ columns[:, c] * k_rows for c in range(3)]
+    right_own = [own.T @ y[:, c] * k_rows for c in range(3)]
+    right_shared = [columns[:, c].T @ y[:, c] * k_rows for c in range(3)]
+    for _ in range(ROUNDS):
+        gram, right = np.diag(1.0 / prior ** 2), np.zeros(size)
+        for c in range(3):
+            if not live[c]:
+                continue
+            w = 1.0 / (variance[c] * inflation)
+            a = slice(c * p, (c + 1) * p)
+            gram[a, a] += w * gram_own
+            gram[a, 3 * p:] += w * cross[c]
+            gram[3 * p:, a] += w * cross[c].T
+            gram[3 * p:, 3 * p:] += w * gram_shared[c]
+            right[a] += w * right_own[c]
+            right[3 * p:] += w * right_shared[c]
+        scale = np.sqrt(np.diag(gram))
+        solved = np.linalg.solve(gram / np.outer(scale, scale), right / scale) / scale
+        beta, shared = solved[:3 * p].reshape(3, p), solved[3 * p:]
+        left = y - own @ beta.T - columns @ shared
+        variance = np.maximum((left ** 2).mean(axis=0), LEAST_LEFT)
+    effective = n / inflation
+    log = -0.5 * effective * np.log(variance[live]).sum()
+    log -= 0.5 * ((solved / prior) ** 2).sum()
+    log -= 0.5 * np.linalg.slogdet(gram * np.outer(prior, prior))[1]
+    inverse = np.linalg.inv(gram)
+    sigma = np.sqrt(np.maximum(np.diag(inverse), 0.0))
+    y, own, columns = raw
+    out = (log, beta, shared + mean, sigma[3 * p:], y - own @ beta.T - columns @ shared,
+           sigma[:3 * p].reshape(3, p))
+    return out + (inverse[3 * p:, 3 * p:],) if covariance else out
+
+
+def shifted(x, rows):
+    """x (n, …) later by so many rows, its ends held."""
+    if abs(rows) < 1e-6 or not x.size:
+        return x
+    n = len(x)
+    at = np.clip(np.arange(n) - rows, 0, n - 1)
+    low = np.minimum(at.astype(int), n - 2)
+    part = (at - low).reshape((-1,) + (1,) * (x.ndim - 1))
+    return x[low] * (1 - part) + x[low + 1] * part

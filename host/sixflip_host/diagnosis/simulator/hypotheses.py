@@ -1,0 +1,138 @@
+"""What a simulator may output instead of what a sensor reads, as signals made of the real log.
+
+A hypothesis says: simulator = S (1 + E) signal + bias + columns · c, where the signal is made of
+what the real sensor went through. S is a signed permutation times a unit, or a turn about the
+vertical; E, the bias and c have priors of their physical size. The nameless one is the sensor's
+own reading with every signal beside it, each with free coefficients.
+"""
+from dataclasses import dataclass
+from itertools import permutations, product
+
+import numpy as np
+
+# Prior standard deviations. Scale and misalignment: MPU-6050 PS rev 3.4, tables 6.1 and 6.2 (3 %
+# scale, 2 % cross-axis) and ITG-3205 PS (6 % scale). Zero level: 80 mg and 20 deg/s, the same.
+SHAPE = 0.04
+BIAS = {"accel": 0.8, "gyro": 0.35}
+FREE = 0.3  # of the nameless one's coefficients: a third of a signal where it should not be
+LEVER_M = 0.1
+DELAY_S = 0.05
+SMOOTH_S2 = 2e-4  # half the square of a pole of 8 Hz
+DEAD = 0.1  # of the other channels' gain: below it a channel does not answer
+# Steps of physics in one of the sensor, or the reverse, and how far a factor may be off.
+TIMES = (0.05, 0.1, 0.2, 0.25, 0.33, 0.5, 2.0, 3.0, 4.0, 5.0, 10.0, 20.0)
+TIMES_SPREAD = 0.1
+# What a real part does of itself, at three times the size that datasheets give: MPU-6050 PS rev
+# 3.4, tables 6.1 and 6.2 (35 mg and 20 deg/s over 60 degC, 0.5 % and 0.2 % nonlinearity, 0.1
+# deg/s/g). m/s2 and rad/s for each unit of the column.
+OWN = {"accel": {"celsius": 0.03, "fading": 0.3, "line": 0.15, "pairs": 0.15, "force": 0.0},
+       "gyro": {"celsius": 0.017, "fading": 0.017, "line": 0.017, "pairs": 0.006,
+                "force": 0.006}}
+FADES_S = (30.0, 120.0)
+SIGNED = [np.eye(3)[list(p)] * np.array(s)[:, None]
+          for p in permutations(range(3)) for s in product((1.0, -1.0), repeat=3)]
+DEG = 180.0 / np.pi
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """name; signal (n, 3); columns (n, 3, k) with prior
+    sizes mean (k,) and sd (k,); heading: S is a turn about the vertical; units: factors that are
+    tried; free (n, f): further columns of each channel with prior FREE; bias_sd; copies: the
+    first so many triples of free, and (scaled) the first of columns, carry the signal's noise."""
+
+    name: str
+    signal: np.ndarray
+    columns: np.ndarray
+    mean: np.ndarray
+    sd: np.ndarray
+    heading: bool = False
+    free: np.ndarray = None
+    bias_sd: float = None
+    copies: int = 0
+    scaled: bool = False
+
+
+def none(n):
+    return np.zeros((n, 3, 0)), np.zeros(0), np.zeros(0)
+
+
+def accelerometer(force, motion, g):
+    """Hypotheses of the accelerometer; force (n, 3) and the fields of Motion on one grid."""
+    n = len(force)
+    up, moved = g * motion.up, motion.moved
+    spin, lever = spinning(motion.rate), lever_columns(motion)
+    arm = np.zeros(3), np.full(3, LEVER_M)
+    transport = -np.cross(motion.rate, motion.speed)[:, :, None]
+    world = np.einsum("nij,nj->ni", motion.turn, force)
+    out = [
+        Hypothesis("healthy", force, *none(n)),
+        Hypothesis("no_gravity", moved, *none(n)),
+        Hypothesis("gravity_sign", moved - up, *none(n)),
+        Hypothesis("gravity_after_rotation", moved, *none(n), bias_sd=g),
+        Hypothesis("world_frame_forces", world, *none(n),
+                   heading=True),
+        Hypothesis("no_centripetal_term", force, transport, np.ones(1), np.full(1, 0.1)),
+        Hypothesis("no_centripetal_term", force, -spin, *arm),
+        Hypothesis("lever_arm_missing", force, -lever, *arm),
+    ]
+    out += [Hypothesis("time_step", force, moved[:, :, None], np.array([k - 1.0]),
+                       np.array([TIMES_SPREAD * k]), scaled=True) for k in TIMES]
+    everything = np.concatenate([moved, world, up, transport[:, :, 0], motion.rate_dot,
+                                 pairs(motion.rate)], axis=1)
+    return out + [nameless(force, everything, 2)]
+
+
+def gyro(rate, motion, force, g):
+    """Hypotheses of the gyro."""
+    n = len(rate)
+    world = np.einsum("nij,nj->ni", motion.turn, rate)
+    out = [Hypothesis("healthy", rate, *none(n)),
+           Hypothesis("world_frame_rates", world, *none(n), heading=True)]
+    everything = np.concatenate([world, motion.rate_dot * 0.1, pairs(rate), motion.up,
+                                 motion.moved / g], axis=1)
+    return out + [nameless(rate, everything, 1)]
+
+
+def nameless(signal, everything, copies):
+    return Hypothesis("", signal, *none(len(signal)), free=everything, copies=copies)
+
+
+def own_effects(kind, t, celsius, force, rate, g):
+    """(columns (n, q), prior sizes (q,)): what the real sensor of a kind adds of itself to each
+    channel; the simulator lacks it, so it is in the difference whatever its conventions are."""
+    size = OWN[kind]
+    fades = [np.exp(-(t - t[0]) / tau) for tau in FADES_S]
+    columns = [x - x.mean() for x in fades] + [(t - t.mean()) / np.ptp(t)]
+    sizes = [size["fading"]] * len(FADES_S) + [size["line"]]
+    if celsius is not None and np.ptp(celsius) > 0.3:
+        columns.append(celsius - celsius.mean())
+        sizes.append(size["celsius"])
+    f = force / g
+    for column in pairs(f if kind == "accel" else rate).T:
+        columns.append(column - column.mean())
+        sizes.append(size["pairs"])
+    if size["force"]:
+        columns += list((f - f.mean(axis=0)).T)
+        sizes += [size["force"]] * 3
+    return np.stack(columns, 1), np.array(sizes)
+
+
+def spinning(rate):
+    """(n, 3, 3): what multiplies r in w x (w x r)."""
+    return rate[:, :, None] * rate[:, None, :] - (rate ** 2).sum(axis=1)[:, None, None] * np.eye(3)
+
+
+def lever_columns(motion):
+    """(n, 3, 3): what multiplies r in dw/dt x r + w x (w x r)."""
+    out = spinning(motion.rate)
+    x, y, z = motion.rate_dot.T
+    for (i, j), value in {(0, 1): -z, (0, 2): y, (1, 0): z, (1, 2): -x, (2, 0): -y,
+                          (2, 1): x}.items():
+        out[:, i, j] += value
+    return out
+
+
+def pairs(x):
+    """(n, 6): the products of two axes."""
+    return np.stack([x[:, i] * x[:, j] for i in range(3) for j in range(i, 3)], 1)

@@ -1,0 +1,138 @@
+"""A log's own sensor by its own rests and moves: |force| is gravity at every rest, and the turn
+between two rests takes gravity before to gravity after [Tedaldi et al., ICRA 2014].
+
+Maximum a posteriori with priors of datasheet size, so that a log with two rests is answered as
+honestly as one with twenty: what it cannot see keeps its prior's interval.
+"""
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...capture.attitude import _rotation
+from . import traces
+from .hypotheses import BIAS, SHAPE
+
+ROUNDS = 8
+CARRY_RAD = np.radians(0.3)  # of a placement's tilt by handling, and of the attitude carried
+NORM = 0.005  # m/s2: how well |force| repeats between rests, flicker included
+
+
+@dataclass(frozen=True)
+class OwnSensor:
+    """true force = accel (force - bias), accel (3, 3) symmetric (its turn cannot be seen); true
+    rate = gyro (rate - bias at rest); sigmas of accel (3, 3), bias (3,), gyro (3, 3); gyro_bias
+    (3,) rad/s with its sigma; rests; seen: whether rests lie all round."""
+
+    accel: np.ndarray
+    bias: np.ndarray
+    gyro: np.ndarray
+    accel_sigma: np.ndarray
+    bias_sigma: np.ndarray
+    gyro_sigma: np.ndarray
+    gyro_bias: np.ndarray
+    gyro_bias_sigma: np.ndarray
+    rests: int
+
+    def applied(self, trace):
+        """The Trace as this sensor's true force and rate."""
+        from dataclasses import replace
+        line = traces.rest_line(trace, trace.rate)
+        return replace(trace, force=(trace.force - self.bias) @ self.accel.T,
+                       rate=(trace.rate - line) @ self.gyro.T)
+
+
+def fitted(trace):
+    """OwnSensor of a Trace with rests and a gyro, else None."""
+    if trace.rate is None or not trace.rests:
+        return None
+    means = trace.rest_means(trace.force)
+    norms = np.linalg.norm(means, axis=1)
+    accel, bias = np.eye(3), np.zeros(3)
+    accel_sigma, bias_sigma = np.full((3, 3), SHAPE), np.full(3, BIAS["accel"])
+    if np.all((norms > 0.7 * trace.g) & (norms < 1.3 * trace.g)):
+        accel, bias, accel_sigma, bias_sigma = by_norm(means, trace.g)
+    rate = trace.rate - traces.rest_line(trace, trace.rate)
+    ups = (means - bias) @ accel.T
+    ups /= np.maximum(np.linalg.norm(ups, axis=1), 1e-9)[:, None]
+    gyro, gyro_sigma = np.eye(3), np.full((3, 3), SHAPE)
+    if np.all(norms > 0.3 * trace.g):
+        gyro, gyro_sigma = by_carry(trace, rate, ups)
+    biases = trace.rest_means(trace.rate)
+    spread = biases.std(axis=0, ddof=1) / np.sqrt(len(biases)) if len(biases) > 2 else \
+        np.full(3, 0.001)
+    return OwnSensor(accel, bias, gyro, accel_sigma, bias_sigma, gyro_sigma, biases.mean(axis=0),
+                     np.maximum(spread, trace.quantum[1] / np.sqrt(12.0)), len(trace.rests))
+
+
+SYMMETRIC = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
+
+
+def by_norm(means, g):
+    """(matrix, bias, their sigmas) that make |matrix (mean - bias)| = g, rests weighed alike."""
+    p = np.zeros(9)
+    prior = np.concatenate([np.full(6, SHAPE), np.full(3, BIAS["accel"])])
+    for _ in range(ROUNDS):
+        matrix, bias = matrix_of(p)
+        true = (means - bias) @ matrix.T
+        size = np.linalg.norm(true, axis=1)
+        unit = true / size[:, None]
+        jacobian = np.empty((len(means), 9))
+        for k, (i, j) in enumerate(SYMMETRIC):
+            change = np.zeros((3, 3))
+            change[i, j] = change[j, i] = 1.0
+            jacobian[:, k] = (unit * ((means - bias) @ change.T)).sum(axis=1)
+        jacobian[:, 6:] = -unit @ matrix
+        left = g - size
+        sigma = max(NORM, np.sqrt((left ** 2).sum() / max(len(means) - 9, 1))
+                    if len(means) > 12 else NORM)
+        gram = jacobian.T @ jacobian / sigma ** 2 + np.diag(prior ** -2.0)
+        p = p + np.linalg.solve(gram, jacobian.T @ left / sigma ** 2 - p / prior ** 2)
+    spread = np.sqrt(np.diag(np.linalg.inv(gram)))
+    matrix, bias = matrix_of(p)
+    sigma = np.zeros((3, 3))
+    for k, (i, j) in enumerate(SYMMETRIC):
+        sigma[i, j] = sigma[j, i] = spread[k]
+    return matrix, bias, sigma, spread[6:]
+
+
+def matrix_of(p):
+    out = np.eye(3)
+    for value, (i, j) in zip(p, SYMMETRIC):
+        out[i, j] += value
+        if i != j:
+            out[j, i] += value
+    return out, p[6:]
+
+
+def by_carry(trace, rate, ups):
+    """(matrix (3, 3), sigma (3, 3)) of the gyro by gravity before and after each move."""
+    matrix = np.eye(3)
+    gram = np.eye(9) / SHAPE ** 2
+    squares, number = 0.0, 0
+    for _ in range(3):
+        squares, number = 0.0, 0
+        gram, right = np.eye(9) / SHAPE ** 2, -(matrix - np.eye(3)).ravel() / SHAPE ** 2
+        for k in range(len(trace.rests) - 1):
+            first, last = trace.rests[k][1] - 1, trace.rests[k + 1][0]
+            true = rate[first:last + 1] @ matrix.T
+            dt = np.diff(trace.t[first:last + 1])[:, None]
+            middle = 0.5 * (true[1:] + true[:-1])
+            turns = traces.chained(np.concatenate([np.eye(3)[None], _rotation(middle * dt)]))
+            raw = 0.5 * (rate[first + 1:last + 1] + rate[first:last]) * dt
+            # d(turn) = sum over samples of R(t) dM w dt, in the frame of the start
+            spread = np.einsum("nij,nk->ijk", turns[:-1], raw).reshape(3, 9)
+            before = ups[k]
+            x, y, z = before
+            cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+            jacobian = cross @ spread
+            left = turns[-1] @ ups[k + 1] - before
+            if np.linalg.norm(left) > 0.5:
+                continue  # a convention, not a parameter
+            squares, number = squares + (left ** 2).sum() / 2.0, number + 1
+            gram += jacobian.T @ jacobian / CARRY_RAD ** 2
+            right += jacobian.T @ left / CARRY_RAD ** 2
+        matrix = matrix + np.linalg.solve(gram, right).reshape(3, 3)
+    # Where gravity is carried worse than by hand, the intervals are as much wider.
+    wider = max(1.0, np.sqrt(squares / max(number, 1)) / CARRY_RAD)
+    gram = (gram - np.eye(9) / SHAPE ** 2) / wider ** 2 + np.eye(9) / SHAPE ** 2
+    return matrix, np.sqrt(np.diag(np.linalg.inv(gram))).reshape(3, 3)

@@ -1,0 +1,290 @@
+"""Layer one where the motions differ: a simulator's log against its own rests and moves.
+
+At rest a sensor reads gravity, in the direction that a label (or the real robot's own rests) say;
+and the gyro carries gravity from each rest to the next. Every hypothesis on both sensors together
+predicts these directions; a move that follows nothing at all is always possible.
+"""
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...capture.attitude import _rotation
+from . import conventions, traces
+from .hypotheses import DEG, SIGNED
+
+SIGMA = np.radians(4.0)  # of a direction: bias of 60 mg, scale of the gyro 3 % of a half turn
+ASTRAY = 0.02  # of moves and rests that follow nothing
+POSE = np.radians(15.0)  # how alike the rests of two runs of one robot are
+POSES_COUNT = 4  # runs of one robot stand alike: that many of its rests say something new
+NORM_SIGMA = 0.12  # of |force| / g at rest: bias and scale
+RATIO_SIGMA = 1.0  # how alike two runs are in the size of their turn rates, natural logarithm
+STEPS_HZ = 25.0
+TURNED = 0.3  # rad: less than that says nothing on where gravity should have gone
+MOVES = 10.0  # times its noise at rest: a gyro that turns at all
+HEADINGS = 48
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A hypothesis on both sensors: accel (3, 3) signed permutation, gyro (3, 3), units, constant
+    (gravity always along one axis of the sensor), world (rates along the world's axes)."""
+
+    accel: np.ndarray
+    gyro: np.ndarray
+    accel_unit: float = 1.0
+    gyro_unit: float = 1.0
+    none: bool = False
+    constant: bool = False
+    world: bool = False
+
+
+def conventions_of(real, sim):
+    """(Conventions, sentences on what could not be seen) of the simulator's Trace."""
+    unseen = ["time step, centripetal term and lever arm of the simulator: they need a log of the "
+              "same motion"]
+    if not sim.rests:
+        return [], ["no rest in %s: gravity, axes and frame of its readings cannot be checked "
+                    "against another motion" % sim.name] + unseen
+    norms = np.linalg.norm(sim.rest_means(sim.force), axis=1) / sim.g
+    unit, none = by_norm(norms)
+    eye = np.eye(3)
+    if none > conventions.CERTAIN:
+        found = [conventions.finding("no_gravity", "accel", none, -np.log(max(1 - none, 1e-300)))]
+        return found + unit_by_size(real, sim), unseen + [
+            "axes and frame of %s: without gravity a log of another motion does not show them"
+            % sim.name]
+    found = []
+    if unit != 1.0:
+        found.append(conventions.finding(
+            "accel_unit", "accel", 1.0, 100.0, "multiply by %.5g: %s" % (
+                1.0 / unit, conventions.unit_words("accel", unit)), value={"factor": unit},
+            unit="1"))
+    ups = sim.rest_means(sim.force)
+    ups = ups / np.maximum(np.linalg.norm(ups, axis=1), 1e-12)[:, None]
+    ways = moves(sim)
+    choices = []
+    for accel in SIGNED:
+        seen = direction_log(ups @ accel, real, sim)  # body = Sᵀ measured
+        choices.append((Reading(accel, eye), seen))
+    best = max(v for _, v in choices)
+    accels = [(r.accel, v) for r, v in choices if v > best - 12.0 or np.array_equal(r.accel, eye)]
+    tried = []
+    rate_units = units_of(real, sim)
+    for accel, seen in accels:
+        body = ups @ accel
+        for unit_log, rate_unit in rate_units:
+            for gyro in SIGNED:
+                tried.append((Reading(accel, gyro, gyro_unit=rate_unit),
+                              seen + unit_log + carried_log(body, ways, gyro * rate_unit)))
+        if np.array_equal(accel, eye):
+            tried.append((Reading(accel, eye, world=True), seen + world_log(body, ways)))
+    if max((np.linalg.norm(steps.sum(axis=0)) for _, _, steps in ways), default=0.0) > TURNED:
+        tried.append((Reading(eye, eye, constant=True), constant_log(ups, ways, sim)))
+    more = judged(tried)
+    if len(sim.rests) < 2 or not ways:
+        unseen.append("axes and frame of the gyro of %s: no move between two rests" % sim.name)
+    elif max(turned(ups, ways)) < np.radians(20.0):
+        unseen.append("axes and frame of the gyro of %s: gravity stays where it is in the sensor"
+                      % sim.name)
+    return found + more, unseen
+
+
+def by_norm(norms):
+    """(unit of the accelerometer, probability that gravity is missing)."""
+    def log(mean):
+        return np.log((1 - ASTRAY) * np.exp(-0.5 * ((norms - mean) / (NORM_SIGMA * max(
+            mean, 0.5))) ** 2) + ASTRAY * 1e-2).sum()
+
+    logs = {"healthy": log(1.0) + np.log(conventions.PRIOR_HEALTHY),
+            "none": log(0.0) + np.log(conventions.PRIOR_EACH),
+            1.0 / 9.80665: log(1.0 / 9.80665) + np.log(conventions.PRIOR_EACH),
+            9.80665: log(9.80665) + np.log(conventions.PRIOR_EACH)}
+    # A tenth of g at rest is both nothing and one in m/s2: then what moves it says which.
+    spread = norms.std() if len(norms) > 1 else 0.0
+    if norms.mean() > 0.07 and norms.mean() < 0.13 and spread < 0.02:
+        logs["none"] -= 20.0
+    top = max(logs, key=logs.get)
+    total = sum(np.exp(v - logs[top]) for v in logs.values())
+    none = float(np.exp(logs["none"] - logs[top]) / total)
+    return (top if isinstance(top, float) else 1.0), none
+
+
+def units_of(real, sim):
+    """[(log, unit of the gyro)] by how fast the two logs turn."""
+    sizes = [np.sqrt((x.rate - traces.rest_line(x, x.rate)).var(axis=0).sum())
+             for x in (real, sim) if x.rate is not None]
+    if len(sizes) < 2 or min(sizes) <= 0:
+        return [(0.0, 1.0)]
+    quiet = [np.sqrt(sum(x.rate[a:b].var(axis=0) for a, b in x.rests).sum() / len(x.rests))
+             for x in (real, sim) if x.rests]
+    if len(quiet) < 2 or any(s < MOVES * q for s, q in zip(sizes, quiet)):
+        return [(0.0, 1.0)]
+    ratio = np.log(sizes[1] / sizes[0])
+    return [(float(-0.5 * ((ratio - np.log(u)) / RATIO_SIGMA) ** 2), u)
+            for u in (1.0, DEG, 1.0 / DEG)]
+
+
+def unit_by_size(real, sim):
+    """The gyro's unit where nothing else says it."""
+    logs = units_of(real, sim)
+    scored = [(v + np.log(conventions.PRIOR_HEALTHY if u == 1.0 else conventions.PRIOR_EACH), u)
+              for v, u in logs]
+    top = max(scored)
+    total = sum(np.exp(v - top[0]) for v, _ in scored)
+    if top[1] == 1.0 or 1.0 / total < conventions.CERTAIN:
+        return []
+    return [gyro_unit(top[1], 1.0 / total, top[0] - scored[0][0])]
+
+
+def gyro_unit(unit, probability, nats):
+    return conventions.finding("gyro_unit", "gyro", probability, nats, "multiply by %.5g: %s" % (
+        1.0 / unit, conventions.unit_words("gyro", unit)), value={"factor": unit}, unit="1")
+
+
+def moves(trace):
+    """[(rest before, rest after, increments (k, 3) rad)] of the gyro, in short steps."""
+    if trace.rate is None:
+        return []
+    rate = trace.rate - traces.rest_line(trace, trace.rate)
+    out = []
+    for k in range(len(trace.rests) - 1):
+        first, last = trace.rests[k][1] - 1, trace.rests[k + 1][0]
+        dt = np.diff(trace.t[first:last + 1])[:, None]
+        steps = 0.5 * (rate[first:last] + rate[first + 1:last + 1]) * dt
+        group = max(1, int(trace.rate_hz / STEPS_HZ))
+        edges = np.arange(0, len(steps), group)
+        out.append((k, k + 1, np.add.reduceat(steps, edges, axis=0)))
+    return out
+
+
+def closeness(a, b):
+    """log density of direction a given b, each (…, 3), up to a constant; nothing at all is
+    always possible [Fisher, Proc. R. Soc. A 217 (1953), 295]."""
+    kappa = 1.0 / SIGMA ** 2
+    near = kappa / (2.0 * np.pi) * np.exp(kappa * ((a * b).sum(axis=-1) - 1.0))
+    return np.log((1 - ASTRAY) * near + ASTRAY / (4.0 * np.pi))
+
+
+def carried_log(body, ways, gyro):
+    """Sum over moves: gravity after, carried by the gyro's readings (read = gyro · true rate)."""
+    total = 0.0
+    matrix = np.linalg.inv(gyro)
+    for before, after, steps in ways:
+        turn = traces.chained(_rotation(steps @ matrix.T))[-1]
+        total += closeness(body[after], turn.T @ body[before])
+    return float(total)
+
+
+def world_log(body, ways):
+    """The same with rates along the world's axes, the heading at the start unknown."""
+    if not ways:
+        return -1e9
+    z = np.array([0.0, 0.0, 1.0])
+    best = []
+    for psi in np.linspace(0.0, 2.0 * np.pi, HEADINGS, endpoint=False):
+        c, s = np.cos(psi), np.sin(psi)
+        attitude = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]) @ traces._between(body[0], z)
+        total = 0.0
+        for _, after, steps in ways:
+            turns = _rotation(steps)
+            whole = np.eye(3)
+            for one in turns:
+                whole = one @ whole
+            attitude = whole @ attitude
+            total += closeness(body[after], attitude[2])
+            attitude = traces._between(attitude @ body[after], z) @ attitude
+        best.append(total)
+    top = max(best)
+    return float(top + np.log(np.mean(np.exp(np.array(best) - top))))
+
+
+def constant_log(ups, ways, sim):
+    """Gravity along one axis of the sensor, whichever way it was turned."""
+    axis = ups.mean(axis=0)
+    near = np.zeros(3)
+    near[np.abs(axis).argmax()] = np.sign(axis[np.abs(axis).argmax()])
+    total = sum(closeness(ups[b], near) for _, b, _ in ways)
+    for up, face in zip(ups, sim.faces):
+        if face is not None:
+            total += closeness(up, near)
+    return float(total) - np.log(6.0)
+
+
+def direction_log(body, real, sim):
+    """How well the directions at rest fit the labels, or the rests of the real robot."""
+    if any(f is not None for f in sim.faces):
+        return float(sum(closeness(b, f) for b, f in zip(body, sim.faces) if f is not None))
+    theirs = real.rest_means(real.force)
+    if not len(theirs):
+        return 0.0
+    theirs = theirs / np.linalg.norm(theirs, axis=1)[:, None]
+    kappa = 1.0 / POSE ** 2
+    near = kappa / (2 * np.pi) * np.exp(kappa * (body @ theirs.T - 1.0))
+    density = np.log(0.9 * near.mean(axis=1) + 0.1 / (4 * np.pi))
+    return float(density.mean() * min(len(body), POSES_COUNT))
+
+
+def turned(ups, ways):
+    """Angles by which gravity moved in the sensor."""
+    return [float(np.arccos(np.clip(ups[a] @ ups[b], -1, 1))) for a, b, _ in ways] or [0.0]
+
+
+def judged(tried):
+    """Conventions of the most probable Reading."""
+    def labels(r):
+        out = []
+        eye = np.eye(3)
+        if r.constant:
+            return ["gravity_after_rotation"]
+        if r.world:
+            out.append("world_frame_rates")
+        same = np.array_equal(r.accel, r.gyro) and not np.array_equal(r.accel, eye)
+        if same:
+            out.append("both_axes")
+        else:
+            if np.array_equal(r.accel, -eye):
+                out.append("gravity_sign")
+            elif not np.array_equal(r.accel, eye):
+                out.append("accel_axes")
+            if not np.array_equal(r.gyro, eye):
+                out.append("gyro_axes")
+        if r.gyro_unit != 1.0:
+            out.append("gyro_unit")
+        return out
+
+    logs = []
+    for reading, log in tried:
+        names = labels(reading)
+        prior = sum(np.log(conventions.PRIOR_EACH / (47.0 if n.endswith("_axes") else 1.0))
+                    for n in names) if names else np.log(conventions.PRIOR_HEALTHY)
+        logs.append(log + prior)
+    logs = np.array(logs)
+    weights = np.exp(logs - logs.max())
+    weights /= weights.sum()
+    best = tried[int(logs.argmax())][0]
+    healthy = max(v for (r, _), v in zip(tried, logs) if not labels(r))
+    nats = float(logs.max() - healthy)
+    out, sure = [], []
+    for name in labels(best):
+        probability = float(sum(w for (r, _), w in zip(tried, weights) if name in labels(r)))
+        if probability < conventions.CERTAIN:
+            continue
+        sure.append(name)
+        sensor = "gyro" if name in ("world_frame_rates", "gyro_axes") else \
+            "device" if name == "both_axes" else "accel"
+        if name == "gyro_unit":
+            out.append(gyro_unit(best.gyro_unit, probability, nats))
+        elif name.endswith("_axes"):
+            axes = best.gyro if name == "gyro_axes" else best.accel
+            value = {a: conventions.signed(row) for a, row in zip("xyz", axes)}
+            out.append(conventions.finding(
+                name, sensor, probability, nats, "its axes are the sensor's so: " + ", ".join(
+                    "%s = %s" % pair for pair in value.items()), value=value, unit="axis"))
+        else:
+            out.append(conventions.finding(name, sensor, probability, nats))
+    quiet = float(sum(w for (r, _), w in zip(tried, weights) if not labels(r)))
+    if labels(best) and not sure and quiet < 1.0 - conventions.CERTAIN:
+        candidates = sorted({n for (r, _), w in zip(tried, weights) if w > 0.002
+                             for n in labels(r)})
+        out.append(conventions.one_of("device", candidates, 1.0 - quiet, nats))
+    return out

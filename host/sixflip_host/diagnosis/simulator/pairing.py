@@ -1,0 +1,114 @@
+"""Both logs of one motion on one grid, in the band in which they agree on anything at all.
+
+Contacts, wheels and a hand's tremor are not repeated by a simulator; and what one log has alone
+is noise in the other's prediction. The band ends where the simulator's output is no longer
+coherent with anything that the real log says.
+"""
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.signal import coherence
+
+from . import alignment as align_by
+from .traces import Motion
+
+GRID_HZ = 50.0
+EDGE_S = 0.4
+COHERENT = 0.9  # of a frequency that is used
+BANDS = (6.0, 4.0, 2.5, 1.6, 1.0, 0.7)  # Hz
+SEGMENT_S = 6.0
+ONE_MOTION = 0.8  # of the variance that follows from the other log
+
+
+@dataclass(frozen=True)
+class Pair:
+    """On a grid of times t (n,) s of the simulator's clock: of the real log force, rate (n, 3),
+    celsius (n,) or None and Motion; of the simulator sim_force, sim_rate (n, 3)."""
+
+    t: np.ndarray
+    force: np.ndarray
+    rate: np.ndarray
+    celsius: np.ndarray
+    motion: Motion
+    sim_force: np.ndarray
+    sim_rate: np.ndarray
+    band_hz: float
+
+
+def paired(real, sim, alignment, motion, band_hz=BANDS[0]):
+    """Pair of two Traces and the real one's Motion; samples on a rail are left out."""
+    t = np.arange(0.0, sim.seconds, 1.0 / GRID_HZ)
+    there = alignment.of_simulator(t)
+    inside = (there > EDGE_S) & (there < real.seconds - EDGE_S) & (t > EDGE_S) & (
+        t < sim.seconds - EDGE_S)
+    t, there = t[inside], there[inside]
+
+    def onto(trace, values, at):
+        flat = align_by.smooth(values.reshape(len(values), -1), trace.rate_hz, band_hz)
+        out = CubicSpline(*increasing(trace.t, flat))(at)
+        return out.reshape((len(at),) + values.shape[1:])
+
+    # A simulator without a gyro is compared by its forces alone.
+    sim_rate = np.zeros_like(sim.force) if sim.rate is None else sim.rate
+    fields = {name: onto(real, getattr(motion, name), there)
+              for name in ("turn", "up", "rate", "rate_dot", "moved", "speed")}
+    bad = (np.interp(there, real.t, real.railed.astype(float)) > 0) | (
+        np.interp(t, sim.t, sim.railed.astype(float)) > 0)
+    wide = max(1, int(0.5 * GRID_HZ / band_hz))
+    bad = np.convolve(bad, np.ones(2 * wide + 1), "same") > 0
+    if bad.mean() > 0.5:
+        bad = np.zeros_like(bad)
+    keep = ~bad
+    return Pair(t[keep], onto(real, real.force, there)[keep], onto(real, real.rate, there)[keep],
+                None if real.celsius is None else np.interp(there, real.t, real.celsius)[keep],
+                Motion(carried=motion.carried, **{k: v[keep] for k, v in fields.items()}),
+                onto(sim, sim.force, t)[keep], onto(sim, sim_rate, t)[keep], band_hz)
+
+
+def one_motion(real, sim, alignment, motion, live):
+    """Whether the logs turn about the same axes as well: two runs of one schedule turn equally
+    fast at the same times. Some linear map has to give the simulator's rates out of the real
+    ones, in the body or in the world (forces, where a gyro says nothing)."""
+    pair = paired(real, sim, alignment, motion, BANDS[2])
+    kinds = [(pair.sim_rate, (pair.rate, np.einsum("nij,nj->ni", pair.motion.turn, pair.rate)),
+              live["gyro"]), (pair.sim_force, (pair.force, pair.motion.moved), live["accel"])]
+    measured, signals, channels = kinds[0] if live["gyro"].any() else kinds[1]
+    if len(measured) < 4 * GRID_HZ or not channels.any():
+        return False
+    y = measured[:, channels] - measured[:, channels].mean(axis=0)
+    shares = []
+    for signal in signals:
+        design = signal - signal.mean(axis=0)
+        left = y - design @ np.linalg.lstsq(design, y, rcond=None)[0]
+        shares.append(1.0 - (left ** 2).sum() / max((y ** 2).sum(), 1e-30))
+    return bool(max(shares) >= ONE_MOTION)
+
+
+def increasing(t, values):
+    """(t, values) without rows whose time does not grow."""
+    keep = np.concatenate([[True], np.diff(np.maximum.accumulate(t)) > 0])
+    return t[keep], values[keep]
+
+
+def coherent_band(measured, signals):
+    """Hz: the widest of BANDS up to which measured (n, 3) follows from signals (n, k)."""
+    design = np.column_stack([signals, np.ones(len(signals))])
+    said = design @ np.linalg.lstsq(design, measured, rcond=None)[0]
+    power, shared = 0.0, 0.0
+    for i in range(3):
+        if measured[:, i].std() <= 0:
+            continue
+        f, c = coherence(measured[:, i], said[:, i], GRID_HZ, nperseg=min(
+            len(measured), int(SEGMENT_S * GRID_HZ)))
+        weight = measured[:, i].var()
+        power, shared = power + weight, shared + weight * c
+    if not np.ndim(shared):
+        return BANDS[0]
+    c = shared / power
+    for band in BANDS:
+        inside = (f > 0) & (f <= band) & (f > band / 2)
+        if inside.any() and np.median(c[inside]) >= COHERENT:
+            return band
+    return BANDS[-1]
+

@@ -1,0 +1,257 @@
+"""Layer two: the numbers to set. Bias, scale, misalignment, noise, step, range, rate, delay and
+smoothness of the simulator and of the real sensor side by side, each with its interval.
+
+Two logs of one motion give the difference directly; logs of different motions give each sensor by
+its own rests and moves, and the difference with the sum of both covariances.
+"""
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import conventions, single_log, traces
+
+Z90 = 1.645
+# Some thirty numbers are compared: at this many standard errors one log pair in 500 shows a
+# difference that is none (Bonferroni, normal).
+DIFFERS = 4.0
+MG, DEG = 1000.0 / 9.80665, 180.0 / np.pi
+SETTING = 0.2  # how far a noise that was set by hand may be off, natural logarithm
+ANY = 2.0
+LIKELY = 0.95  # probability from which on a noise is said to be the density's number
+COARSE = 1.5  # times its noise: a step in which noise is not seen any more
+DROWNED = 0.3  # of a step: noise below it does not show
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """name; sensor accel, gyro or device; axis "x", "xy" (row, column) or ""; unit; real and
+    simulated: values with intervals (low, high) at 90 %, None where a log cannot say; difference
+    real less simulated with its interval; differs; set_to: the simulator's value to set."""
+
+    name: str
+    sensor: str
+    axis: str
+    unit: str
+    real: float
+    real_interval: tuple
+    simulated: float
+    simulated_interval: tuple
+    difference: float
+    difference_interval: tuple
+    differs: bool
+    set_to: float
+
+
+def compared(name, sensor, axis, unit, real, real_sigma, sim, sim_sigma, difference=None,
+             sigma=None, least=0.0):
+    """Parameter from values and standard errors; difference: where it is known better than by
+    the two values; least: what no log of whole counts can tell from 0."""
+    if difference is None:
+        difference = real - sim
+        sigma = float(np.hypot(real_sigma, sim_sigma))
+    sigma = float(np.hypot(sigma, least))
+    differs = bool(abs(difference) > DIFFERS * sigma)
+    return Parameter(name, sensor, axis, unit, _number(real), _span(real, real_sigma),
+                     _number(sim), _span(sim, sim_sigma), float(difference),
+                     _span(difference, sigma), differs,
+                     to_set(sim, sim_sigma, difference) if differs and sim is not None else None)
+
+
+def to_set(sim, sim_sigma, difference):
+    """The simulator's own value and the difference; a value that its log does not show to be
+    other than nothing is taken for the nothing that simulators have by default."""
+    own = sim if sim_sigma <= 0 or abs(sim) > DIFFERS * sim_sigma else 0.0
+    return _number(own + difference)
+
+
+def _number(x):
+    return None if x is None or not np.isfinite(x) else float(x)
+
+
+def _span(x, sigma):
+    if x is None or not np.isfinite(x) or not np.isfinite(sigma):
+        return None
+    return float(x - Z90 * sigma), float(x + Z90 * sigma)
+
+
+def shapes(real, sim, fits, usable):
+    """Bias, scale, misalignment; real, sim: OwnSensor or None; fits {sensor: SensorFit} of one
+    motion or {}; usable {sensor: bool}: its conventions leave its numbers what they are."""
+    out = []
+    for kind in ("accel", "gyro"):
+        if not usable.get(kind) or real is None or sim is None:
+            continue
+        scale = MG if kind == "accel" else DEG
+        unit = "mg" if kind == "accel" else "°/s"
+        values = [own(x, kind) for x in (real, sim)]
+        fit = fits[kind].fit if kind in fits else None
+        # simulator = (1 + E) real + b, so real = (1 + more) simulator - (1 + more) b
+        more = None if fit is None else np.linalg.inv(
+            np.eye(3) + fit.axes.T @ fit.shape @ fit.axes) - np.eye(3)
+        shift = None if fit is None else -(np.eye(3) + more) @ fit.axes.T @ fit.bias / fit.unit
+        for i, axis in enumerate("xyz"):
+            pair = (None, None) if fit is None else (shift[i] * scale,
+                                                     fit.bias_sigma[i] * scale / fit.unit)
+            (a, sa), (b, sb) = [(v[0][i] * scale, v[1][i] * scale) for v in values]
+            if kind == "gyro":
+                pair = (None, None)  # at rest it is read directly
+            out.append(compared("bias", kind, axis, unit, a, sa, b, sb, *pair))
+        for i in range(3):
+            for j in range(3):
+                size = 100.0 if i == j else DEG
+                pair = (None, None) if fit is None else (more[i, j] * size,
+                                                         fit.shape_sigma[i, j] * size)
+                (a, sa), (b, sb) = [(v[2][i, j] * size, v[3][i, j] * size) for v in values]
+                if fit is None and kind == "accel" and i > j:
+                    continue  # a turn of the whole accelerometer cannot be seen by rests alone
+                out.append(compared("scale" if i == j else "misalignment", kind,
+                                    "xyz"[i] + ("" if i == j else "xyz"[j]),
+                                    "%" if i == j else "°", a, sa, b, sb, *pair))
+    return out
+
+
+def own(sensor, kind):
+    """(bias, sigma, measured/true - 1, sigma) of an OwnSensor: what a simulator adds."""
+    if kind == "accel":
+        return (sensor.bias, sensor.bias_sigma, np.linalg.inv(sensor.accel) - np.eye(3),
+                sensor.accel_sigma)
+    return (sensor.gyro_bias, sensor.gyro_bias_sigma, np.linalg.inv(sensor.gyro) - np.eye(3),
+            sensor.gyro_sigma)
+
+
+def noises(real, sim):
+    """(Parameters of the noise densities, Conventions on the noise)."""
+    out, found = [], []
+    for kind in ("accel", "gyro"):
+        name = "force" if kind == "accel" else "rate"
+        values = [getattr(x, name) for x in (real, sim)]
+        if any(v is None for v in values):
+            continue
+        a, b = (single_log.noise(x, v) for x, v in zip((real, sim), values))
+        if a is None or b is None:
+            continue
+        scale = MG if kind == "accel" else DEG
+        unit = "mg/√Hz" if kind == "accel" else "°/s/√Hz"
+        floor = [x.quantum[0 if kind == "accel" else 1] for x in (real, sim)]
+        silent = bool((b.per_sample < DROWNED * floor[1]).all())
+        for i, axis in enumerate("xyz"):
+            if not np.ptp(values[1][:, i]):
+                continue  # a channel that says nothing is a convention
+            if single_log.step(values[0], floor[0])[i] > COARSE * b.per_sample[i] > 0:
+                continue  # in steps that coarse the real one's noise does not show
+            da, db = a.density[i] * scale, 0.0 if silent else b.density[i] * scale
+            out.append(compared("noise_density", kind, axis, unit, da, da * a.relative_sigma, db,
+                                db * b.relative_sigma))
+        if not silent and (a.per_sample > DROWNED * floor[0]).all() and (b.density > 0).all():
+            found += density_convention(kind, a, b, sim.rate_hz)
+    return out, merged_noise(found)
+
+
+def density_convention(kind, real, sim, rate_hz):
+    """Whether the ratio of the densities is that of a sample's noise to a density, hypothesis
+    against hypothesis, the nameless one wide."""
+    ratio = float(np.mean(np.log(sim.density / np.maximum(real.density, 1e-300))))
+    sigma = float(np.hypot(np.hypot(real.relative_sigma, sim.relative_sigma) / np.sqrt(3.0),
+                           SETTING))
+    half = 0.5 * np.log(rate_hz)
+    means = {"healthy": (0.0, sigma, conventions.PRIOR_HEALTHY),
+             "too small": (-half, sigma, conventions.PRIOR_EACH),
+             "too large": (half, sigma, conventions.PRIOR_EACH),
+             "another": (0.0, ANY, conventions.PRIOR_NAMELESS)}
+    logs = {n: np.log(p) - np.log(s) - 0.5 * ((ratio - m) / s) ** 2
+            for n, (m, s, p) in means.items()}
+    top = max(logs.values())
+    total = sum(np.exp(v - top) for v in logs.values())
+    odds = {n: float(np.exp(v - top) / total) for n, v in logs.items()}
+    probability = odds["too small"] + odds["too large"]
+    if probability < LIKELY:
+        return []
+    factor = float(np.exp(ratio))
+    return [conventions.finding(
+        "noise_per_sample", kind, probability, logs["too small" if ratio < 0 else "too large"]
+        - logs["healthy"], value={"factor": factor}, unit="1",
+        interval_90={"factor": (factor * np.exp(-Z90 * sigma), factor * np.exp(Z90 * sigma))})]
+
+
+def merged_noise(found):
+    """Both sensors at once are one finding, of the device."""
+    if len(found) < 2:
+        return found
+    one = found[0]
+    return [conventions.finding("noise_per_sample", "device",
+                                min(c.probability for c in found), sum(c.nats for c in found),
+                                value=one.value, unit="1", interval_90=one.interval_90)]
+
+
+def registers(real, sim):
+    """Step, range and rate."""
+    out = []
+    for kind, name, index in (("accel", "force", 0), ("gyro", "rate", 1)):
+        a, b = (getattr(x, name) for x in (real, sim))
+        if a is None or b is None:
+            continue
+        scale = MG if kind == "accel" else DEG
+        unit = "mg" if kind == "accel" else "°/s"
+        for i, axis in enumerate("xyz"):
+            steps = [float(single_log.step(v, x.quantum[index])[i]) * scale
+                     for v, x in ((a, real), (b, sim))]
+            if steps[0] > 0 and steps[1] > 0:
+                coarse = steps[0] > 1.5 * max(steps[1], real.quantum[index] * scale)
+                out.append(Parameter("step", kind, axis, unit, steps[0], None, steps[1], None,
+                                     steps[0] - steps[1], None, bool(coarse),
+                                     steps[0] if coarse else None))
+            ends = [float(np.abs(v[:, i]).max()) * scale for v in (a, b)]
+            rail, theirs = traces.limit(a[:, i]), traces.limit(b[:, i])
+            if rail is not None and theirs is None and ends[1] > rail * scale * 1.01:
+                out.append(Parameter("range", kind, axis, unit, rail * scale, None, None, None,
+                                     rail * scale - ends[1], None, True, rail * scale))
+    out.append(Parameter("rate", "device", "", "Hz", real.rate_hz, None, sim.rate_hz, None,
+                         real.rate_hz - sim.rate_hz, None, False, None))
+    return out
+
+
+def timing(late, late_sigma, fits, alignment):
+    """Delay between the sensors, smoothness of each, clock."""
+    out = []
+    if late is not None:
+        out.append(compared("delay", "gyro", "", "ms", None, np.inf, None, np.inf, -1e3 * late,
+                            1e3 * late_sigma, least=LEAST_DELAY_MS))
+    for kind, found in fits.items():
+        fit = found.fit
+        if any(c.name == "unknown" for c in found.found):
+            continue
+        out.append(compared("smoothness", kind, "", "ms²", None, np.inf, None, np.inf,
+                            -1e6 * fit.smooth_s2, 1e6 * fit.smooth_sigma_s2,
+                            least=LEAST_SMOOTH_MS2))
+    if alignment.same:
+        out.append(compared("clock", "device", "", "%", None, np.inf, None, np.inf,
+                            -100.0 * alignment.drift, 100.0 * alignment.drift_sigma))
+    return out
+
+
+# An engine whose rates are half a physics step older than its forces (MuJoCo, Featherstone's
+# semi-implicit step) differs from itself by as much at two step sizes of 1 and 2 ms.
+LEAST_DELAY_MS = 0.5
+LEAST_SMOOTH_MS2 = 3.0
+
+
+def bias_sign(parameters):
+    """Convention: the biases have the right size and the wrong sign (gz-sensors draws it)."""
+    found = []
+    for kind in ("accel", "gyro"):
+        own = [p for p in parameters if p.name == "bias" and p.sensor == kind]
+        if len(own) < 3 or not any(p.differs for p in own):
+            continue
+        sigma = [np.hypot(*[(s[1] - s[0]) / 2.0 / Z90 for s in (
+            p.real_interval, p.simulated_interval)]) for p in own]
+        large = [p for p, s in zip(own, sigma) if abs(p.real) > DIFFERS * s]
+        turned = [p for p in large if p.differs and p.real * p.simulated < 0]
+        equal = all(abs(abs(p.real) - abs(p.simulated)) < DIFFERS * s
+                    for p, s in zip(own, sigma))
+        if turned and equal and len(turned) == sum(p.differs for p in own):
+            nats = 0.5 * sum((p.difference / s) ** 2 for p, s in zip(own, sigma))
+            found.append(conventions.finding(
+                "bias_sign", kind, conventions.CERTAIN, nats, "turn its sign on " +
+                " and ".join(p.axis for p in turned), value={p.axis: p.real for p in turned},
+                unit=own[0].unit, interval_90={p.axis: p.real_interval for p in turned}))
+    return found

@@ -1,0 +1,93 @@
+"""The comparison with a simulator as JSON, and what it makes of the verdict."""
+
+
+def of(comparisons):
+    """{"conventions": [...], "parameters": {...}, "task": {...}, ...} of a list of Comparison;
+    the log of the same motion, or else the first, gives parameters, task and gap."""
+    best = main(comparisons)
+    return {
+        "conventions": [convention(c, x.log) for x in comparisons for c in x.conventions],
+        "parameters": numbers(best.parameters),
+        "task": None if best.task is None else {
+            "estimator": best.task.estimator, "against": best.task.against, "unit": "°",
+            "attitude": rounded(best.task.attitude), "heading": rounded(best.task.heading)},
+        "gap": {kind: {"unit": "mg" if kind == "accel" else "deg/s", "before": digits(before),
+                       "after": digits(after), "floor": digits(floor)}
+                for kind, (before, after, floor) in best.gap.items()},
+        "reference_c": digits(best.reference_c),
+        "logs": [log(x) for x in comparisons],
+        "unseen": list(dict.fromkeys(s for x in comparisons for s in x.unseen)),
+    }
+
+
+def main(comparisons):
+    """The Comparison that says most."""
+    return max(comparisons, key=lambda x: (x.alignment.same, x.alignment.correlation))
+
+
+def log(x):
+    a = x.alignment
+    return {"log": x.log, "against": x.against, "same_motion": a.same,
+            "correlation": digits(a.correlation),
+            "offset_s": digits(a.offset_s, 6) if a.same else None,
+            "offset_interval_90": [digits(a.offset_s - 1.645 * a.offset_sigma_s, 6),
+                                   digits(a.offset_s + 1.645 * a.offset_sigma_s, 6)]
+            if a.same else None, "remarks": list(x.remarks)}
+
+
+def convention(c, name):
+    return {"name": c.name, "sensor": c.sensor, "class": list(c.one_of or (c.name,)),
+            "probability": digits(c.probability), "score_nats": digits(min(c.nats, 1e6)),
+            "value": {k: v if isinstance(v, str) else digits(v) for k, v in c.value.items()},
+            "unit": c.unit, "interval_90": {k: [digits(v) for v in span]
+                                            for k, span in c.interval_90.items()},
+            "words": c.words, "set": c.set_to, "log": name}
+
+
+def numbers(found):
+    """{sensor: {name: {axis or "all": {...}}}}"""
+    out = {}
+    for p in found:
+        place = out.setdefault(p.sensor, {}).setdefault(p.name, {})
+        place[p.axis or "all"] = {
+            "unit": p.unit, "real": digits(p.real), "real_interval_90": span(p.real_interval),
+            "simulator": digits(p.simulated),
+            "simulator_interval_90": span(p.simulated_interval),
+            "difference": digits(p.difference),
+            "difference_interval_90": span(p.difference_interval), "differs": p.differs,
+            "set": digits(p.set_to)}
+    return out
+
+
+def span(interval):
+    return None if interval is None else [digits(x) for x in interval]
+
+
+def rounded(values):
+    return {k: digits(v) for k, v in values.items()}
+
+
+def digits(x, number=4):
+    """A finite number with so many significant digits, or None."""
+    if x is None or x != x or x in (float("inf"), float("-inf")):
+        return None
+    return float("%.*g" % (number, x))
+
+
+def verdict(effects, comparisons):
+    """The verdict over all layers; effects: that of the effects' layer alone."""
+    unexplained = any(x.unexplained for x in comparisons)
+    undecided = any(c.one_of for x in comparisons for c in x.conventions)
+    named = any(c.name != "unknown" for x in comparisons for c in x.conventions)
+    found = named or any(x.differs for x in comparisons)
+    left = effects in ("unexplained", "partly explained")
+    if unexplained or left:
+        return "partly explained" if found or effects == "partly explained" else "unexplained"
+    if found:
+        return "explained"
+    if undecided:
+        return "cannot tell"
+    if effects == "cannot tell" and all(x.alignment.same and x.motion_judged
+                                           for x in comparisons):
+        return "no gap"
+    return effects

@@ -1,0 +1,102 @@
+"""What one log shows of itself without the other's motion: rows that repeat, channels that never
+change, noise, steps and range."""
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+SUBMEAN_S = 0.25  # noise density is taken from means this long: a filter's colour is in it
+MOVING = 8.0  # steps by which a reading has to change over a window to be seen to repeat
+HELD_ROWS = 40
+SETTLING = 4.0  # times the usual power: five means of one noise differ by as much in 0.3 %
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Of each axis (3,): density per root Hz, its relative standard error; per_sample."""
+
+    density: np.ndarray
+    relative_sigma: float
+    per_sample: np.ndarray
+
+
+def live(trace):
+    """{sensor: (3,) bool}: channels that change at all."""
+    out = {"accel": np.ptp(trace.force, axis=0) > 0}
+    out["gyro"] = np.zeros(3, bool) if trace.rate is None else np.ptp(trace.rate, axis=0) > 0
+    return out
+
+
+DEAD, ALIVE = 0.03, 0.15  # of the liveliest channel: what a channel that says nothing varies by
+
+
+def dead(real, sim):
+    """{sensor: (3,) bool}: channels of the simulator that hardly change where the real ones do."""
+    out = {}
+    for kind, name in (("accel", "force"), ("gyro", "rate")):
+        if getattr(real, name) is None or getattr(sim, name) is None:
+            out[kind] = np.zeros(3, bool)
+            continue
+        shares = [getattr(x, name).std(axis=0) / max(getattr(x, name).std(axis=0).max(), 1e-12)
+                  for x in (real, sim)]
+        out[kind] = (shares[1] < DEAD) & (shares[0] > ALIVE)
+    return out
+
+
+def held_rows(values, quantum):
+    """Rows over which a sensor's reading (n, 3) is held while it moves: 1.0 where it is not."""
+    if values is None or len(values) < 4 * HELD_ROWS:
+        return 1.0
+    change = np.abs(np.diff(values, axis=0)).max(axis=1)
+    fresh = change > 0.25 * quantum
+    wide = np.convolve(change, np.ones(HELD_ROWS), "same")
+    moving = wide > max(MOVING * quantum * HELD_ROWS / 8.0, np.quantile(wide, 0.6))
+    if moving.sum() < 2 * HELD_ROWS:
+        return 1.0
+    share = fresh[moving].mean()
+    return float(1.0 / max(share, 1e-3))
+
+
+def unheld(trace, rows):
+    """The Trace with a held sensor's readings in a straight line from one new reading to the
+    next: what it would say without the hold. rows {sensor: held_rows}."""
+    out = trace
+    for name, kind in (("force", "accel"), ("rate", "gyro")):
+        values = getattr(trace, name)
+        if values is None or rows[kind] < 1.5:
+            continue
+        fresh = np.concatenate([[True], np.abs(np.diff(values, axis=0)).max(axis=1) > 0])
+        straight = np.stack([np.interp(trace.t, trace.t[fresh], values[fresh, i])
+                             for i in range(3)], 1)
+        out = replace(out, **{name: straight})
+    return out
+
+
+def noise(trace, values, held=1.0):
+    """Noise of values (n, 3) at the Trace's rests, or None where there is none."""
+    m = max(2, int(SUBMEAN_S * trace.rate_hz))
+    rests = []
+    for a, b in trace.rests:
+        x = values[a:b]
+        k = len(x) // m
+        if k >= 2:
+            means = x[:k * m].reshape(k, m, 3).mean(axis=1)
+            rests.append(((np.diff(means, axis=0) ** 2).sum(axis=0), k - 1,
+                          (np.diff(x, axis=0) ** 2).sum(axis=0) / 2.0, len(x) - 1))
+    if len(rests) > 2:
+        # A rest in which the robot still settles says nothing of the sensor's noise.
+        level = [(r[0] / r[1]).sum() for r in rests]
+        rests = [r for r, own in zip(rests, level) if own <= SETTLING * np.median(level)]
+    squares, pairs, sample, number = (sum(column) for column in zip(*rests)) if rests else (
+        0, 0, 0, 0)
+    if pairs < 4:
+        return None
+    per_mean = squares / pairs / 2.0
+    return Noise(np.sqrt(per_mean * m / trace.rate_hz), float(1.0 / np.sqrt(2.0 * pairs / 1.5)),
+                 np.sqrt(sample / max(number, 1)))
+
+
+def step(values, quantum):
+    """(3,): the step of what was read, in the unit of values: the common divisor of its counts."""
+    counts = np.round(values / quantum).astype(np.int64)
+    counts = counts - counts[0]
+    return np.gcd.reduce(np.abs(counts), axis=0) * quantum

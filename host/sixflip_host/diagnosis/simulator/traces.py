@@ -1,0 +1,237 @@
+"""A capture as a log in SI units, and what the sensor went through by its own account.
+
+Simulator and sensor are compared as two such logs. Gravity and the motion come from the gyro,
+levelled at every rest by the accelerometer, so that nothing but the log itself is needed.
+"""
+from dataclasses import dataclass
+
+import numpy as np
+
+from sixflip import faces
+
+from ...capture import rests as rest_finder
+from ...capture.attitude import _between, _rotation
+
+SHORTEST_REST_S = 0.5
+WINDOW_S = 0.3
+LOUDER, SLOW_DPS = 2.5, 1.5  # of the quietest tenth; a turn slower than any robot's
+COUNT_VARIANCE = 0.25  # counts: a channel that toggles between two of them
+EDGE_S = 0.1  # of a rest that is left out at both ends: a label is never exact
+DPS = np.pi / 180.0
+
+
+@dataclass(frozen=True)
+class Trace:
+    """One log. t (n,) s from its first row; force (n, 3) m/s2; rate (n, 3) rad/s or None;
+    celsius (n,) or None; rate_hz by count over time; rests ((first, end), ...) in samples;
+    faces: the axis of each rest that a label says is up, (3,) or None; quantum: m/s2 and rad/s
+    of one count; railed (n,): a channel stands at the end of what it can say."""
+
+    name: str
+    t: np.ndarray
+    force: np.ndarray
+    rate: np.ndarray
+    celsius: np.ndarray
+    rate_hz: float
+    g: float
+    rests: tuple
+    faces: tuple
+    quantum: tuple
+    railed: np.ndarray
+
+    @property
+    def seconds(self):
+        return float(self.t[-1]) if len(self.t) else 0.0
+
+    def rest_means(self, values):
+        """(rests, 3): the mean of values (n, 3) over each rest."""
+        return np.array([values[a:b].mean(axis=0) for a, b in self.rests]).reshape(-1, 3)
+
+
+def of(name, capture):
+    """The Trace of a Capture; a chip without a gyro has no rate."""
+    meta = capture.meta
+    t = (capture.t_us - capture.t_us[0]) * 1e-6
+    if len(t) > 1 and t[-1] <= 0.0:
+        t = np.arange(len(t)) / float(meta["rate_hz"])
+    rate_hz = (len(t) - 1) / t[-1] if len(t) > 1 else float(meta["rate_hz"])
+    quantum = (capture.g / meta["accel_lsb_per_g"],
+               DPS / meta["gyro_lsb_per_dps"] if capture.gyro is not None else None)
+    celsius = None
+    if capture.temp is not None:
+        celsius = capture.temp / meta["temp_lsb_per_c"] + meta["temp_offset_c"]
+    rests, ups = _rests(capture, rate_hz)
+    railed = _railed(capture.accel)
+    if capture.gyro is not None:
+        railed = railed | _railed(capture.gyro)
+    return Trace(name, t, capture.accel * quantum[0],
+                 None if capture.gyro is None else capture.gyro * quantum[1], celsius,
+                 float(rate_hz), capture.g, rests, ups, quantum, railed)
+
+
+def _rests(capture, rate_hz):
+    """Rests by their labels where there are any, else by what stands still."""
+    edge, least = int(EDGE_S * rate_hz), max(8, int(SHORTEST_REST_S * rate_hz))
+    if capture.pose is not None and (capture.pose > 0).any():
+        found = rest_finder.labelled(capture.pose)
+    else:
+        found = still(capture, rate_hz)
+    rests, ups = [], []
+    for code, first, end in found:
+        if end - first - 2 * edge < least:
+            continue
+        rests.append((int(first + edge), int(end - edge)))
+        face = faces.face_of_code(int(code)) if code else -1
+        up = None
+        if face >= 0:
+            up = np.zeros(3)
+            up[faces.AXIS[face]] = faces.SIGN[face]
+        ups.append(up)
+    return tuple(rests), tuple(ups)
+
+
+def still(capture, rate_hz):
+    """[(0, first, end)] of the rests of a robot: both sensors no louder than a few times their
+    quietest tenth (a count where they make no noise), and the gyro where it stands most often."""
+    window = 2 * int(WINDOW_S / 2 * rate_hz) + 1
+    mask = np.ones(len(capture), bool)
+    for counts in (capture.accel, capture.gyro):
+        if counts is None or len(counts) <= 2 * window:
+            continue
+        counts = counts.astype(float)
+        level = max(rest_finder.variance_at_rest(counts), COUNT_VARIANCE)
+        here = np.zeros(len(capture), bool)
+        for run in rest_finder.by_variance(counts, LOUDER ** 2 * level, window, 1):
+            here[run.first:run.end] = True
+        mask &= here
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
+    found = [(0, int(a), int(b)) for a, b in edges.reshape(-1, 2)]
+    if capture.gyro is None or not found:
+        return found
+    usual = np.median(capture.gyro[mask], axis=0)
+    slow = SLOW_DPS * capture.meta["gyro_lsb_per_dps"]
+    return [run for run in found
+            if np.linalg.norm(capture.gyro[run[1]:run[2]].mean(axis=0) - usual) < slow]
+
+
+def _railed(counts):
+    """(n,): samples at which a channel stands at the end of what it can say."""
+    out = np.zeros(len(counts), bool)
+    for i in range(3):
+        end = limit(counts[:, i].astype(float))
+        if end is not None:
+            out |= np.abs(counts[:, i].astype(float)) >= end
+    return out
+
+
+def limit(x):
+    """The value that a channel (n,) stops at, or None: the largest size, read so often that a
+    peak of a smooth motion cannot be it."""
+    size = np.abs(x)
+    top = size.max()
+    at = (size == top)
+    runs = at[1:] & at[:-1] & (np.sign(x[1:]) == np.sign(x[:-1]))
+    if runs.sum() < 5 or top <= 0:
+        return None
+    # A log at rest repeats its largest reading by chance; then those next to it are as frequent.
+    near = ((size < top) & (size > 0.99 * top)).sum()
+    return float(top) if at.sum() > 3 * max(near, 1) else None
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What a Trace says its sensor went through, arrays over its samples: turn (n, 3, 3) body to
+    world (heading 0 at the start); up (n, 3) unit vector against gravity in the body; rate
+    (n, 3) rad/s less its bias at rest; rate_dot (n, 3); moved (n, 3) m/s2: specific force less
+    gravity; speed (n, 3) m/s in the body, zero at each rest; carried: degrees by which gravity
+    after each move was missed before it was levelled."""
+
+    turn: np.ndarray
+    up: np.ndarray
+    rate: np.ndarray
+    rate_dot: np.ndarray
+    moved: np.ndarray
+    speed: np.ndarray
+    carried: tuple
+
+
+def motion(trace):
+    """The Motion of a Trace with a gyro and a rest, else None."""
+    if trace.rate is None or not trace.rests:
+        return None
+    rate = trace.rate - rest_line(trace, trace.rate)
+    ups = [_unit(v) for v in trace.rest_means(trace.force)]
+    n = len(trace.t)
+    middle = 0.5 * (rate[1:] + rate[:-1]) * np.diff(trace.t)[:, None]
+    steps = np.concatenate([np.eye(3)[None], _rotation(middle)])
+    turn = np.empty((n, 3, 3))
+    carried = []
+    first, end = trace.rests[0]
+    # The first rest says where the world's vertical is; before it time runs backwards.
+    start = _between(ups[0], np.array([0.0, 0.0, 1.0]))
+    turn[first:end] = start
+    if first:
+        back = chained(np.concatenate([np.eye(3)[None], np.swapaxes(
+            steps[1:first + 1], 1, 2)[::-1]]))
+        turn[:first + 1] = (start @ back)[::-1]
+    for k in range(len(trace.rests)):
+        first, end = trace.rests[k]
+        last = trace.rests[k + 1][0] if k + 1 < len(trace.rests) else n - 1
+        turn[first:end] = turn[first]
+        way = turn[end - 1] @ chained(np.concatenate([np.eye(3)[None], steps[end:last + 1]]))
+        if k + 1 < len(trace.rests):
+            way, missed = levelled(way, ups[k + 1], middle[end - 1:last])
+            carried.append(missed)
+        turn[end - 1:last + 1] = way
+    up = turn[:, 2, :]
+    moved = trace.force - trace.g * up
+    speed = _speed(trace, turn, moved)
+    rate_dot = np.gradient(rate, trace.t, axis=0) if n > 2 else np.zeros_like(rate)
+    return Motion(turn, up, rate, rate_dot, moved, speed, tuple(carried))
+
+
+def levelled(way, up, steps):
+    """(way with gravity right at its end, degrees it was off): the correction grows with the
+    angle turned, as a wrong scale or bias of the gyro makes it."""
+    z = np.array([0.0, 0.0, 1.0])
+    there = way[-1] @ up
+    off = np.cross(there, z)
+    size = np.linalg.norm(off)
+    if size < 1e-12:
+        return way, 0.0
+    angle = np.arctan2(size, there[2])
+    path = np.concatenate([[0.0], np.cumsum(np.linalg.norm(steps, axis=1))])
+    share = path / path[-1] if path[-1] > 0 else np.linspace(0, 1, len(way))
+    return _rotation(np.outer(share, off / size * angle)) @ way, float(np.degrees(angle))
+
+
+def chained(steps):
+    """(n, 3, 3): the running product of rotations, by doubling."""
+    out, d = np.array(steps), 1
+    while d < len(out):
+        out[d:] = out[:-d] @ out[d:]
+        d *= 2
+    return out
+
+
+def rest_line(trace, values):
+    """(n, 3): values at rest, in a straight line from rest to rest."""
+    if not trace.rests:
+        return np.zeros((len(trace.t), 3))
+    at = np.array([0.5 * (trace.t[a] + trace.t[b - 1]) for a, b in trace.rests])
+    means = trace.rest_means(values)
+    return np.stack([np.interp(trace.t, at, means[:, i]) for i in range(3)], 1)
+
+
+def _speed(trace, turn, moved):
+    """(n, 3): the integral of what moves it, zero at each rest."""
+    world = np.einsum("nij,nj->ni", turn, moved)
+    dt = np.diff(trace.t)[:, None]
+    total = np.concatenate([np.zeros((1, 3)), np.cumsum(0.5 * (world[1:] + world[:-1]) * dt, 0)])
+    at = np.concatenate([[a, b - 1] for a, b in trace.rests])
+    drift = np.stack([np.interp(trace.t, trace.t[at], total[at, i]) for i in range(3)], 1)
+    return np.einsum("nji,nj->ni", turn, total - drift)
+
+
+def _unit(v):
+    return v / max(np.linalg.norm(v), 1e-12)

@@ -1,0 +1,122 @@
+"""Nameless hypotheses, one a domain, that compete with the library's effects on equal terms.
+
+Shared ones have the same coefficients in every session: what is smooth in temperature, even and
+odd in orientation, follows the pose before or the time since the move, changes sign with the
+flip, repeats with the time since switching on. Private ones have coefficients of each session's
+own: a jump at some time, something periodic, something smooth in time. The widths of their priors
+are tried over a decade: of a stranger no size is known.
+"""
+import numpy as np
+
+from sixflip import faces
+
+from ..experiment.terms import Design, harmonics
+
+SCALE = {"accel": 5.0, "gyro": 0.05}  # mg, deg/s: as large as the library's effects are
+HATS = 6  # corners of what is smooth in time and repeats in every session
+OWN_HATS = 8  # and of what is a session's own
+FADES_S = (5.0, 20.0, 80.0)  # of what follows a move
+JUMPS = 24  # times tried
+PERIODS = 16
+WALK = 16  # terms of a random walk
+# Of the others: their own.
+DOMAIN = {"jump": "time", "walk": "time", "periodic": "frequency", "own_time": "time"}
+
+
+def domain(effect):
+    """GAP's domain of a nameless effect."""
+    return DOMAIN.get(effect[1:], effect[1:])
+
+
+def designs(session, up, sensor):
+    """list of Design whose effect begins with "~", in the same order for every session."""
+    return shared(session, up, sensor) + private(session, sensor)
+
+
+def shared(session, up, sensor):
+    """Nameless functions whose coefficients are those of the sensor."""
+    n, m = session.n, session.moment(up)
+    f = np.stack(m.f, 1)
+    scale = SCALE[sensor]
+    found = [_smooth("time", hats(session.t, HATS), n, scale)]
+    if session.thermal:
+        t = (session.temperature - session.temperature.mean()) / 5.0
+        found.append(_smooth("temperature", [t, t ** 2, t ** 3], n, scale))
+    before = np.stack(m.before, 1)
+    history = [before[:, i] for i in range(3)] + [before[:, i] * before[:, j] for i in range(3)
+                                                  for j in range(i)]
+    found.append(_smooth("history", history, n, scale))
+    for tau in FADES_S:
+        fade = np.exp(-session.since / tau)
+        since = [fade] + [(before[:, i] - f[:, i]) * fade for i in range(3)]
+        found.append(_smooth("time_since_move", since, n, scale, "tau %g s" % tau))
+    found.append(_smooth("orientation", harmonics(f, sensor), n, scale))
+    return [*found, _flip(session, scale)]
+
+
+def private(session, sensor):
+    """Nameless functions of time; choices: which of their columns go together, one choice a
+    session."""
+    n, scale = session.n, SCALE[sensor]
+    own = _smooth("own_time", hats(session.t, OWN_HATS), n, scale)
+    own.choices = [tuple(range(3 * OWN_HATS))]
+    starts = np.unique(session.placement, return_index=True)[1][1:]
+    chosen = starts[np.linspace(0, len(starts) - 1, JUMPS).round().astype(int)] if len(
+        starts) else np.zeros(JUMPS, dtype=int)
+    jump = _smooth("jump", [np.where(np.arange(n) < k, -0.5, 0.5) for k in chosen], n, scale)
+    jump.choices = [tuple(range(3 * k, 3 * k + 3)) for k in range(JUMPS)]
+    span = max(float(np.ptp(session.t)), 1.0)
+    periods = np.geomspace(min(16.0, span), span, PERIODS)
+    waves = [wave(2.0 * np.pi * session.t / period) for period in periods
+             for wave in (np.cos, np.sin)]
+    periodic = _smooth("periodic", waves, n, scale)
+    periodic.choices = [tuple(range(6 * k, 6 * k + 6)) for k in range(PERIODS)]
+    return [own, jump, periodic, walk(session, scale)]
+
+
+def walk(session, scale):
+    """Design of the library's drift as a random walk of each axis: the first terms of its
+    expansion in sines over the session [Karhunen-Loeve; Loeve, Probability Theory II, section
+    37], which end `scale` off on average. A session of its own choice."""
+    u = (session.t - session.t.min()) / max(float(np.ptp(session.t)), 1.0)
+    terms = (np.arange(WALK) + 0.5) * np.pi
+    found = _smooth("walk", [np.sqrt(2.0) * np.sin(k * u) / k for k in terms], session.n, scale)
+    found.effect, found.variant = "drift", "walk"
+    found.choices = [tuple(range(3 * WALK))]
+    return found
+
+
+def _flip(session, scale):
+    """Along the axis of each face, what changes sign with the flip; zero where no flip was.
+    Across it that is the table's tilt and the box's."""
+    sign = np.where(session.code % 2 == 1, 1.0, -1.0)  # codes 1, 3, ... are a, the others b
+    keys, axes, columns = [], [], []
+    for face in range(len(faces.AXIS)):
+        on = session.face == face
+        column = np.zeros((session.n, 3))
+        if len(np.unique(sign[on])) == 2:
+            column[on, faces.AXIS[face]] = sign[on]
+        keys.append("%s%d" % ("xyz"[faces.AXIS[face]], face))
+        axes.append(faces.AXIS[face])
+        columns.append(column.reshape(-1))
+    return Design("~flip", "", keys, axes, np.stack(columns, 1), np.full(len(keys), scale))
+
+
+def _smooth(name, functions, n, scale, variant=""):
+    """Design of these functions (n,) on each axis."""
+    keys, axes, columns = [], [], []
+    for number, values in enumerate(functions):
+        for axis in range(3):
+            column = np.zeros((n, 3))
+            column[:, axis] = values
+            keys.append("%s%d" % ("xyz"[axis], number))
+            axes.append(axis)
+            columns.append(column.reshape(-1))
+    return Design("~" + name, variant, keys, axes, np.stack(columns, 1),
+                  np.full(len(keys), scale))
+
+
+def hats(x, number):
+    """Piecewise straight functions between equally spaced corners."""
+    u = (x - x.min()) / max(float(np.ptp(x)), 1e-9) * (number - 1)
+    return [np.clip(1.0 - np.abs(u - k), 0.0, None) for k in range(number)]

@@ -1,0 +1,216 @@
+"""The gyro in motion: what the turns between the rests (experiment/turns.py) leave unexplained."""
+import itertools
+
+import numpy as np
+
+from sixflip_sim.effects import typical
+from sixflip_sim.effects.moment import Moment
+
+from ..experiment import covariance, linear_model, noise_arrays, nominal_rows, terms, turns
+from .detect.detection import Finding, present
+from .evidence import Levels
+from .rest_model import RestModel
+
+EFFECTS = ("asymmetry", "quadratic", "cubic", "thermal_scale")
+LEVELS_DEG = tuple(0.03 * 1.35 ** k for k in range(18))
+ATTITUDE_DEG = 0.03  # of gravity's direction at rest
+FLIP_DEG = 0.6  # of half a turn by hand; 0.4 is usual (METHOD section 2)
+FEWEST_MOVES = 6
+WRONG_DEG = 25.0
+OFF_DEG = 6.0  # of a turn's end by a gyro not yet calibrated: a few percent of a half turn
+ORDERS = 48  # signed permutations
+LATE_S = 0.1  # the longest delay of the library's filter_lag
+BANDS_DPS = (1.0, 4.0)  # widths over which a dead band bends the rates beyond it
+TIMES = (1.0, 10.0)  # the usual width of a dead band: no data sheet gives one
+ROUNDS = 6  # of weighting turns by how far they are off
+FAR_DEG, FAR_TIMES = (5.0, 15.0, 45.0), 5.0  # a tenth of a second that is lost, and more
+SHARES = (0.01, 0.03, 0.1, 0.3)  # tried, of turns that are far off
+USUAL_DEG = 0.25  # of a move from rest to rest, beside white noise
+
+
+def design(name, chosen, reference_c, chip):
+    """Design of an effect of the gyro in motion over the rows of all turns."""
+    parts = []
+    for turn in chosen:
+        m = Moment(np.exp, np.sin, np.floor, noise_arrays.gauss)
+        m.w = tuple(turn.middle.T)
+        m.temperature = turn.temperature if turn.temperature is not None else m.temperature
+        shape = {"reference_c": reference_c} if name == "thermal_scale" else None
+        one = terms.of_terms(name, "gyro", m, len(turn.dt), chip=chip, shape=shape)
+        added = one.columns.reshape(len(turn.dt), 3, -1)
+        parts.append(turns.projected(turn, added))
+    return terms.Design(name, "", one.keys, one.axes, np.vstack(parts), one.prior)
+
+
+class TurnModel(RestModel):
+    """The gyro in motion: no flicker, and no bias between the sessions."""
+
+    drifts = False
+    form = 0.06  # turns are linear in an effect only while it is small: a quarter of its size
+
+    def unit(self, part, model, certified, wanted=None):
+        y, chosen = turns.calibrated(turns.of(part, model.up))
+        names = [n for n in EFFECTS if n != "thermal_scale" or part.thermal]
+        designs = [design(n, chosen, self.settings.reference_c, self.chip) for n in names]
+        if "dead_band" not in self.settings.without:
+            lsb = part.capture.meta["gyro_lsb_per_dps"]
+            designs += [banded(chosen, width, times, lsb, self.chip) for width in BANDS_DPS
+                        for times in TIMES]
+        designs += [nameless(chosen, name, of_rate) for name, of_rate in STRANGERS.items()]
+        bases = [np.diag(([ATTITUDE_DEG] * 2 + [FLIP_DEG] * t.flip) / np.array(t.seconds)) ** 2
+                 + wandering for t, wandering in zip(chosen, turns.wandering(chosen))]
+        groups = covariance.apart(bases, [np.eye(len(b)) / t.seconds
+                                          for b, t in zip(bases, chosen)])
+        rows = nominal_rows.Rows(y, groups, turns.nuisance(chosen), (LEVELS_DEG, (0.0,)))
+        return linear_model.unit(
+            rows, designs, wanted, turns=chosen,
+            signature=("turns", tuple((t.flip, round(t.turned, -1)) for t in chosen)))
+
+    def usual(self):
+        return Levels(USUAL_DEG, 1.0, 1.0)
+
+    def between(self, units, nominal):
+        return []
+
+
+def astray(gap):
+    """(nats, turns) of some turns being off by far more than the others, as where samples
+    were lost in them, against all being alike: what is left across gravity of each turn in
+    degrees, beside what its bias may be off normal of one size, or of one and of a far
+    larger one for a share of the turns."""
+    left, known = (np.concatenate(v) for v in zip(*(_left(gap, part, unit) for part, unit in
+                                                    zip(gap.parts, gap.units))))
+    levels = np.array(LEVELS_DEG + FAR_DEG)
+    variances = known[None] + levels[:, None, None] ** 2
+    each = -0.5 * (left ** 2 / variances + np.log(variances)).sum(axis=2)  # (levels, turns)
+    alike, tried = float(each.sum(axis=1).max()), []
+    for k, level in enumerate(levels):
+        for far in np.flatnonzero(levels >= max(FAR_TIMES * level, FAR_DEG[0])):
+            for share in SHARES:
+                near, off = np.log1p(-share) + each[k], np.log(share) + each[far]
+                both = np.logaddexp(near, off)
+                tried.append((float(both.sum()), float(np.exp(off - both).sum())))
+    best, number = max(tried)
+    return best - alike - np.log(len(SHARES) * len(FAR_DEG)), number
+
+
+def _left(gap, part, unit):
+    """(turns, 2) degrees that scale, misalignment, bias and the effects found leave of each
+    turn across gravity, turns far off counting little in the fit; (turns, 2) deg^2 that the
+    bias and gravity's direction may make of it."""
+    y, chosen = turns.calibrated(turns.of(part[0], part[1].up))
+    columns = turns.nuisance(chosen)
+    for form in gap.chosen:
+        columns = np.hstack([columns, unit.raw(form.columns)])
+    seconds = np.array([t.seconds for t in chosen])
+    first = np.cumsum([0] + [3 if t.flip else 2 for t in chosen])[:-1]
+    rows = np.stack([first, first + 1], 1)
+    wander = np.array([np.diag(block)[:2] for block in turns.wandering(chosen)])
+    known = wander * seconds[:, None] ** 2 + ATTITUDE_DEG ** 2
+    y, columns, weights = y[rows.ravel()], columns[rows.ravel()], np.ones(len(chosen))
+    for _ in range(ROUNDS):
+        w = np.repeat(np.sqrt(weights) * seconds, 2)
+        theta = np.linalg.lstsq(columns * w[:, None], y * w, rcond=1e-9)[0]
+        left = ((y - columns @ theta) * np.repeat(seconds, 2)).reshape(-1, 2)
+        squares = (left ** 2 / known).sum(axis=1)
+        weights = 1.0 / (1.0 + squares / max(2.0 * np.median(squares), 1e-12))
+    return left, known
+
+
+def _bends(w, dt):
+    """Of each axis' own rate: what no power names."""
+    return [np.clip(w, -20.0, 20.0) / 20.0, np.clip(w, -60.0, 60.0) / 60.0,
+            np.clip(np.abs(w), 0.0, 30.0) / 30.0]
+
+
+def _of_motion(w, dt):
+    """Of the rate of the others, and of how fast the rates change."""
+    change = np.gradient(w, axis=0) / dt[:, None]
+    size = np.linalg.norm(w, axis=1)[:, None] / 100.0
+    product = np.stack([w[:, 1] * w[:, 2], w[:, 2] * w[:, 0], w[:, 0] * w[:, 1]], 1) / 1e4
+    return [change / 100.0, np.broadcast_to(size, w.shape), size * w / 100.0, product]
+
+
+STRANGERS = {"amplitude": _bends, "motion": _of_motion}
+
+
+def nameless(chosen, name, of_rate):
+    """Design of functions of the rate that no effect of the library has."""
+    return _of_rates("~" + name, "", chosen, of_rate, 10.0)
+
+
+def banded(chosen, width, times, lsb, chip):
+    """Design of a dead band that what is beyond it reads less by, counts, of so many times the
+    usual width: a rate that is read was larger by the band, on its own side of 0, to which it
+    comes over `width` deg/s."""
+    def less(w, dt):
+        return [-w / np.sqrt(w ** 2 + width ** 2) / lsb]
+    prior = 10.0 * times * typical.size("dead_band", chip, "gyro")[0]
+    return _of_rates("dead_band", "%g times, over %g deg/s" % (times, width), chosen, less, prior)
+
+
+def _of_rates(effect, variant, chosen, functions, prior):
+    """Design of functions (n, 3) of rates (n, 3) and steps (n,), a coefficient an axis each."""
+    parts, number = [], 0
+    for turn in chosen:
+        values = functions(turn.middle, turn.dt)
+        number = len(values)
+        added = np.zeros((len(turn.dt), 3, 3 * number))
+        for k, value in enumerate(values):
+            for axis in range(3):
+                added[:, axis, 3 * k + axis] = value[:, axis]
+        parts.append(turns.projected(turn, added))
+    keys = ["%s%s" % ("xyz"[a], "" if not k and effect[0] != "~" else k)
+            for k in range(number) for a in range(3)]
+    return terms.Design(effect, variant, keys, [0, 1, 2] * number, np.vstack(parts),
+                             np.full(3 * number, prior))
+
+
+def usable(session, nominal):
+    """True when there are enough turns to judge."""
+    return session.gyro is not None and len(turns.of(session, nominal.up)) >= FEWEST_MOVES
+
+
+def swapped(sessions, nominal):
+    """Finding of gyro axes that are swapped or inverted, or None; its read (3, 3) takes what is
+    true to what is read."""
+    # A turn about the vertical looks the same to gravity whichever way the axes point.
+    found = [t for s, m in zip(sessions, nominal) for t in turns.of(s, m.up)
+             if t.before @ t.after < 0.8][:10]
+    plain = np.array([t.off() for t in found])
+    if len(found) < 3 or plain.mean() < WRONG_DEG:  # the plain order does: no other is tried
+        return None
+    best = None
+    for order in itertools.permutations(range(3)):
+        for signs in itertools.product((1.0, -1.0), repeat=3):
+            matrix = np.zeros((3, 3))
+            matrix[range(3), order] = signs
+            off = np.array([t.integrated(matrix).off() for t in found])
+            if best is None or off.mean() < best[0].mean():
+                best = off, matrix
+    score = order_nats(best[0], plain)
+    if not present(score):
+        return None
+    read = best[1].T  # what register i carries: true = matrix · read
+    value = {}
+    for i in range(3):
+        source = int(np.abs(read[i]).argmax())
+        signed = int(read[i, source]) * (source + 1)
+        if signed != i + 1:
+            value["xyz"[i]] = signed
+    found = Finding("axis_swap", "gyro", sorted(value), value, "axis", score, "orientation",
+                    "the gyro's axes are swapped or inverted against the accelerometer's",
+                    {k: (v, v) for k, v in value.items()})
+    found.read = read
+    return found
+
+
+def order_nats(off, plain):
+    """Log likelihood ratio (nats) of turns whose ends are off (n,) degrees in an order of the
+    axes, as a direction normal about the right one, against the plain order's (n,), and against
+    ends that lie anywhere on the sphere."""
+    def likelihood(degrees):
+        return float((-0.5 * (degrees / OFF_DEG) ** 2
+                      - np.log(2.0 * np.pi * np.radians(OFF_DEG) ** 2)).sum())
+    anywhere = -len(off) * np.log(4.0 * np.pi)
+    return likelihood(off) - max(likelihood(plain), anywhere) - np.log(ORDERS)

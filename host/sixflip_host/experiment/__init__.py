@@ -1,0 +1,1 @@
+"""A capture as an experiment: its blocks, their linear model, terms and covariance."""

@@ -1,0 +1,53 @@
+"""How noisy the blocks of a session are: white noise, what rounding leaves, vibration.
+
+counts (N, 3) of all samples; first, end (n,): which of them each block holds.
+"""
+import numpy as np
+
+from ..capture.registers import steps
+
+SUBMEAN_S = 0.25  # white noise is judged on means this long, so that a filter's colour is in it
+
+
+def rounding(counts, first, end):
+    """Counts (3,): standard deviation of what rounding to steps leaves in the mean of a
+    rest. Noise much wider than a step averages it out: the k-th harmonic of the rounding
+    error, step / (pi k), is damped by exp(-2 pi^2 k^2 (noise / step)^2) [Widrow & Kollar,
+    Quantization Noise (2008), chapter 5]."""
+    step = steps(counts)
+    changes = np.concatenate([np.diff(counts[a:b].astype(float), axis=0)
+                              for a, b in zip(first, end)])
+    noise = np.sqrt(np.maximum(changes.var(axis=0) / 2.0 - step ** 2 / 12.0, 0.0))
+    k = np.arange(1, 9)[:, None]
+    harmonics = step / (np.pi * k) * np.exp(-2.0 * (np.pi * k * noise / step) ** 2)
+    return np.sqrt((harmonics ** 2).sum(axis=0) / 2.0)
+
+
+def white(counts, first, end, rate):
+    """Counts (3,): standard deviation of a mean over one second, from the differences of
+    neighbouring short means (slow changes are not in it)."""
+    m = max(1, int(SUBMEAN_S * rate))
+    squares, number = np.zeros(3), 0
+    for a, b in zip(first, end):
+        k = (b - a) // m
+        if k < 2:
+            continue
+        short = counts[a:a + k * m].astype(float).reshape(k, m, 3).mean(axis=1)
+        squares += (np.diff(short, axis=0) ** 2).sum(axis=0)
+        number += k - 1
+    if not number:
+        return counts[first[0]:end[0]].std(axis=0) / np.sqrt(rate)
+    floor = 1.0 / np.sqrt(12.0 * rate)  # of counting: rounding is noise, too
+    return np.maximum(np.sqrt(squares / number / 2.0 * m / rate), floor)
+
+
+def vibration(capture, first, end):
+    """mg rms above the quietest tenth of the blocks; zero where nothing stands out."""
+    if not len(first):
+        return np.zeros(0)
+    scale = 1000.0 / capture.meta["accel_lsb_per_g"]
+    power = np.array([np.diff(capture.accel[a:b].astype(float), axis=0).var(axis=0).sum()
+                      / 2.0 for a, b in zip(first, end)])
+    quiet = np.quantile(power, 0.1)
+    excess = np.where(power > 2.0 * quiet, power - quiet, 0.0)
+    return np.sqrt(excess) * scale

@@ -1,0 +1,290 @@
+"""A capture reduced to what the gap is looked for in: means over parts of each rest.
+
+The unit of replication is the placement, never the sample. A placement is cut into a few
+blocks so that what fades within it (creep) or wanders (flicker) shows between them. Everything
+here is a value: a part of a session, or one without some of its rests, is another Session.
+"""
+import copy
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sixflip import faces, pose_codes
+from sixflip_sim.effects.moment import Moment
+
+from .. import progress
+from ..capture import rests
+from ..capture.capture_file import Capture
+from ..capture.find_poses import HELD_BY_HAND, find_poses
+from . import block_noise, noise_arrays, thermometer
+
+EDGE_S = 0.1  # left out at both ends of a rest: a label is never exact
+BLOCK_S, MOST_BLOCKS = 2.5, 6
+SHORT_REST_BLOCKS = 2
+LONG_REST_S = 12.0
+SHORTEST_S, FEWEST_SAMPLES = 0.8, 8
+PLAY_S = 0.1  # step at which hysteresis follows the way
+MOST_BAD = 0.005  # share of a rest's samples
+FAR_OFF_DEG = 25.0  # a label that gravity contradicts
+OF_BLOCKS = ("placement", "code", "first", "end", "face", "t", "since", "seconds", "accel", "gyro",
+             "temperature", "temperature_rate", "vibration")
+
+
+@dataclass(frozen=True, eq=False)
+class Session:
+    """One capture as n blocks; arrays are read only.
+
+    name; capture, labelled; rate (Hz); t_s (N,) s of every sample; timeless: the timestamps
+    stand still; labelled: by whoever captured it; runs: tuple of rests.Run, the placements;
+    thermometer or None. Of the blocks (n,): placement (number of its run), code, face (-1:
+    leaning), first, end (samples), t and since (s, since the capture's and the rest's begin),
+    seconds; accel (n, 3) mg and gyro (n, 3) deg/s or None as the chip gave them; temperature
+    and temperature_rate or None; vibration mg rms above the quietest. Of the sensor (3,):
+    noise_accel, noise_gyro of a mean over one second, mg and deg/s; rounding_accel,
+    rounding_gyro of the mean of a rest, by steps of the counts; None without a gyro.
+    thermal, shaken: what sessions that are judged together agreed to look for, see terms.
+    """
+
+    name: str
+    capture: Capture
+    rate: float
+    t_s: np.ndarray
+    timeless: bool
+    labelled: bool
+    runs: tuple
+    thermometer: thermometer.Thermometer | None
+    placement: np.ndarray
+    code: np.ndarray
+    first: np.ndarray
+    end: np.ndarray
+    face: np.ndarray
+    t: np.ndarray
+    since: np.ndarray
+    seconds: np.ndarray
+    accel: np.ndarray
+    gyro: np.ndarray | None
+    temperature: np.ndarray | None
+    temperature_rate: np.ndarray | None
+    vibration: np.ndarray
+    noise_accel: np.ndarray | None
+    noise_gyro: np.ndarray | None
+    rounding_accel: np.ndarray | None
+    rounding_gyro: np.ndarray | None
+    thermal: bool = False
+    shaken: bool = False
+
+    def __post_init__(self):
+        for value in self.__dict__.values():
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+
+    @property
+    def n(self):
+        return len(self.placement)
+
+    @property
+    def leaning(self):
+        return self.face < 0
+
+    def placements(self):
+        return len(self.runs)
+
+    def part(self, placements):
+        """The same session with the blocks of some of its placements only."""
+        keep = np.isin(self.placement, list(placements))
+        values = {name: getattr(self, name) for name in OF_BLOCKS}
+        return replace(self, **{name: value if value is None else value[keep]
+                                for name, value in values.items()})
+
+    def without_poses(self, labels):
+        """The same session without the placements with these labels."""
+        codes = {pose_codes.pose_code(label) for label in labels}
+        return self._of_runs([run for run in self.runs if run.code not in codes])
+
+    def without_samples(self, bad):
+        """The same session without the placements with more than a few bad samples; bad (N,)."""
+        return self._of_runs([run for run in self.runs
+                              if bad[run.first:run.end].mean() <= MOST_BAD])
+
+    def _of_runs(self, runs):
+        return replace(self, runs=tuple(runs), **_blocks(
+            self.capture, tuple(runs), self.rate, self.t_s, self.labelled, self.thermometer))
+
+    def reading(self, capture):
+        """The same blocks and noise with the means of another capture of the same samples."""
+        accel, gyro = _readings(capture, self.first, self.end)
+        return replace(self, capture=capture, accel=accel, gyro=gyro)
+
+    def with_gyro_axes(self, read):
+        """The same session with its gyro's means turned by a signed permutation (3, 3)."""
+        return replace(self, gyro=self.gyro @ read, noise_gyro=self.noise_gyro @ np.abs(read),
+                       rounding_gyro=self.rounding_gyro @ np.abs(read))
+
+    def before(self, up):
+        """(n, 3): up of the placement before each block's, its own at the first."""
+        index = np.maximum(self.placement - 1, 0)
+        return up[index]
+
+    def remembered(self, up, tau_s):
+        """(n, 3): where something that follows the attitude with a time constant stands when
+        each block's placement begins; settled at the first."""
+        starts = np.array([self.t_s[run[1]] for run in self.runs])
+        state = np.array(up[:len(starts)], float)
+        for k in range(1, len(starts)):
+            fade = np.exp(-(starts[k] - starts[k - 1]) / tau_s)
+            state[k] = up[k - 1] + (state[k - 1] - up[k - 1]) * fade
+        return state[self.placement]
+
+    def played(self, widths_g):
+        """[(n, 3)] a width: how far a play operator of that width (g) lags behind the specific
+        force of each axis, over the whole way that the box was taken, -1 to 1 [Krejci,
+        Hysteresis, Convexity and Dissipation in Hyperbolic Equations (1996), chapter II]."""
+        step = max(1, int(PLAY_S * self.rate))
+        counts = self.capture.accel[:len(self.capture.accel) // step * step]
+        f = counts.reshape(-1, step, 3).mean(axis=1) / self.capture.meta["accel_lsb_per_g"]
+        width = np.array(widths_g)[:, None]
+        state, behind = np.repeat(f[:1], len(widths_g), axis=0), np.empty(
+            (len(f), len(widths_g), 3))
+        for k, now in enumerate(f):
+            state = np.minimum(np.maximum(state, now - width), now + width)
+            behind[k] = (state - now) / width
+        middle = np.minimum((self.first + self.end) // 2 // step, len(f) - 1)
+        return [behind[middle, k] for k in range(len(widths_g))]
+
+    def moment(self, up, number=0):
+        """moment.Moment of all blocks; up (placements, 3): unit vectors against gravity."""
+        m = Moment(np.exp, np.sin, np.floor, noise_arrays.gauss)
+        m.t, m.since_move, m.face = self.t, self.since, self.face
+        m.temperature = np.full(self.n, 25.0) if self.temperature is None else self.temperature
+        m.temperature_rate = np.zeros(self.n) if self.temperature is None \
+            else self.temperature_rate
+        m.f = m.up = tuple(up[self.placement].T)
+        m.before = tuple(self.before(up).T)
+        still = np.zeros(self.n)
+        m.w = m.w_rate = (still, still, still)
+        m.session = np.full(self.n, number)
+        m.vibration_mg = self.vibration
+        return m
+
+    def contradicted(self):
+        """Names of labels that gravity contradicts: [(label, degrees off), ...]."""
+        found = {}
+        for code, first, end in self.runs:
+            face = faces.face_of_code(code)
+            if face < 0:
+                continue
+            mean = self.capture.accel[first:end].mean(axis=0)
+            cosine = faces.SIGN[face] * mean[faces.AXIS[face]] / max(np.linalg.norm(mean), 1e-9)
+            off = float(np.degrees(np.arccos(np.clip(cosine, -1, 1))))
+            if off > FAR_OFF_DEG:
+                found[faces.pose_name(code)] = off
+        return sorted(found.items())
+
+
+def of(name, capture):
+    """Session of a capture; poses are found where nobody labelled any. The capture itself is
+    not changed."""
+    progress.doing("the rests of %s" % name)
+    rate = float(capture.meta["rate_hz"])
+    t_s = (capture.t_us - capture.t_us[0]) * 1e-6
+    timeless = len(capture) > 1 and t_s[-1] <= 0.0
+    if timeless:
+        t_s = np.arange(len(capture)) / rate
+    labelled = capture.pose is not None and bool((capture.pose > 0).any())
+    if not labelled:
+        capture = _labelled(capture)
+    unsteady = {pose_codes.pose_code(name) for name in capture.meta.get(HELD_BY_HAND, ())}
+    runs = tuple(rests.labelled(capture.pose, max(FEWEST_SAMPLES, SHORTEST_S * rate), unsteady))
+    smooth = thermometer.of(capture, t_s)
+    return Session(name, capture, rate, t_s, timeless, labelled, runs, smooth,
+                   **_blocks(capture, runs, rate, t_s, labelled, smooth))
+
+
+def _labelled(capture):
+    """The capture with the poses that are found in it."""
+    found = copy.copy(capture)
+    found.meta = dict(capture.meta)
+    try:
+        find_poses(capture).label(found)
+    except (ValueError, IndexError, ZeroDivisionError):
+        found.pose = np.zeros(len(capture), np.int16)
+    return found
+
+
+def _blocks(capture, runs, rate, t_s, labelled, smooth):
+    """{field: array} of the blocks of these runs."""
+    edge = int(EDGE_S * rate)
+    cut = [(placement, code, a, b) for placement, (code, first, end) in enumerate(runs)
+           for a, b in blocks(first + edge, end - edge, rate)]
+    placement, code, first, end = np.array(cut, dtype=np.int64).reshape(len(cut), 4).T.copy()
+    t = t_s[(first + end) // 2]
+    starts = np.array([t_s[run.first] for run in runs])
+    # Where nobody labelled, a face is a guess, and only the length of gravity is used.
+    face = np.array([faces.face_of_code(int(c)) if labelled else -1 for c in code], dtype=int)
+    accel, gyro = _readings(capture, first, end)
+    found = {"placement": placement, "code": code, "first": first, "end": end, "face": face,
+             "t": t, "since": t - starts[placement] if len(cut) else t,
+             "seconds": (end - first) / rate, "accel": accel, "gyro": gyro,
+             "temperature": smooth.at(t) if smooth else None,
+             "temperature_rate": smooth.rate_at(t) if smooth else None,
+             "vibration": block_noise.vibration(capture, first, end), "noise_accel": None,
+             "noise_gyro": None, "rounding_accel": None, "rounding_gyro": None}
+    for sensor, counts, scale in _sensors(capture) if len(cut) else ():
+        found["noise_" + sensor] = block_noise.white(counts, first, end, rate) * scale
+        found["rounding_" + sensor] = block_noise.rounding(counts, first, end) * scale
+    return found
+
+
+def _sensors(capture):
+    """[(name, counts, mg or deg/s a count)] of the sensors that there are."""
+    meta = capture.meta
+    found = [("accel", capture.accel, 1000.0 / meta["accel_lsb_per_g"])]
+    if capture.gyro is not None:
+        found.append(("gyro", capture.gyro, 1.0 / meta["gyro_lsb_per_dps"]))
+    return found
+
+
+def _readings(capture, first, end):
+    """((n, 3) mg, (n, 3) deg/s or None): means of the blocks."""
+    meta = capture.meta
+    accel = _means(capture.accel, first, end) * (1000.0 / meta["accel_lsb_per_g"])
+    if capture.gyro is None:
+        return accel, None
+    return accel, _means(capture.gyro, first, end) / meta["gyro_lsb_per_dps"]
+
+
+def _means(counts, first, end):
+    return np.array([counts[a:b].mean(axis=0) for a, b in zip(first, end)]).reshape(-1, 3)
+
+
+def blocks(first, end, rate):
+    """[(first, end)] of the blocks of a rest."""
+    seconds = (end - first) / rate
+    if seconds < 1.6:
+        number = 1
+    elif seconds <= LONG_REST_S:
+        number = SHORT_REST_BLOCKS
+    else:
+        number = int(min(MOST_BLOCKS, max(SHORT_REST_BLOCKS, seconds // BLOCK_S)))
+    edges = np.linspace(first, end, number + 1).astype(int)
+    return list(zip(edges[:-1].tolist(), edges[1:].tolist()))
+
+
+def distinct(sessions):
+    """(sessions without those that repeat one before them, the repeated ones)."""
+    kept, again = [], []
+    for session in sessions:
+        same = any(len(session.capture) == len(other.capture)
+                   and np.array_equal(session.capture.accel, other.capture.accel)
+                   and np.array_equal(session.capture.t_us, other.capture.t_us)
+                   for other in kept)
+        (again if same else kept).append(session)
+    return kept, again
+
+
+def same_chip(sessions):
+    """(those of the first one's sensor, the others): different chips have different causes.
+    Different ranges of one chip do not matter: everything is in mg and deg/s."""
+    chip = sessions[0].capture.meta["sensor"]
+    return ([s for s in sessions if s.capture.meta["sensor"] == chip],
+            [s for s in sessions if s.capture.meta["sensor"] != chip])

@@ -1,0 +1,204 @@
+"""The covariance of a session's readings, factored in time that grows as the session does.
+
+Readings come in groups, one a placement (or a turn), in the order of time. Within a group the
+covariance may be anything: white noise and what is fixed, the group's lateral directions times
+the square of a placement level, flicker. Between groups there is flicker only, a sum of
+exponentials, so that one state for each carries all that a group says of those after it: the
+Cholesky factor of such a (semiseparable) matrix needs a few small matrices a group, and no
+matrix of all readings [Foreman-Mackey et al., Astron. J. 154 (2017) 220, extended from single
+readings to groups].
+"""
+from dataclasses import dataclass
+
+import numpy as np
+
+from .flicker import ALL_TIMES_S, flicker_kernel
+
+AT_A_TIME = 512  # whitened rows that are there at once
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Readings rows (slice) of all, r of them: base (r, r) white and fixed; lateral (r, q) of
+    unit level; kernel (r, r) of unit flicker within; from_before (r, J) how the states that
+    groups before have left are felt, to_later (r, J) what it leaves to those after it, decay
+    (J,) of the states over it; basis (r, r - l): across l directions that are a nuisance in
+    this group only, see across().
+    """
+
+    rows: slice
+    base: np.ndarray
+    lateral: np.ndarray
+    kernel: np.ndarray
+    from_before: np.ndarray
+    to_later: np.ndarray
+    decay: np.ndarray
+    basis: np.ndarray
+
+
+def alone(base, lateral, kernel):
+    """[Group] of readings that are one group: base (n, n), lateral (n, q), kernel (n, n)."""
+    n, none = len(base), np.zeros((len(base), 0))
+    return [Group(slice(0, n), base, lateral, kernel, none, none, np.zeros(0), np.eye(n))]
+
+
+def apart(bases, laterals):
+    """[Group] of groups that have no flicker: base (r, r) and lateral (r, q) of each."""
+    found, start = [], 0
+    for base, lateral in zip(bases, laterals):
+        n, none = len(base), np.zeros((len(base), 0))
+        found.append(Group(slice(start, start + n), base, lateral, np.zeros((n, n)), none, none,
+                           np.zeros(0), np.eye(n)))
+        start += n
+    return found
+
+
+def in_time(t, seconds, shares, parts):
+    """[Group] of blocks of three readings each (x y z): t, seconds (n,) of the blocks; shares
+    (3,): variance of each axis' flicker; parts: [(slice of blocks, base, lateral, basis)]."""
+    times = np.array(ALL_TIMES_S)
+    axes = np.diag(np.sqrt(shares))
+    ends, found, before = t + 0.5 * seconds, [], None
+    for blocks, base, lateral, basis in parts:
+        own_t, own_s = t[blocks], seconds[blocks]
+        last = ends[blocks].max()
+        before = own_t[0] - 0.5 * own_s[0] if before is None else before
+        x = own_s[:, None] / times
+        mean = (1.0 - np.exp(-x)) / x
+        felt = mean * np.exp(-np.maximum(own_t - 0.5 * own_s - before, 0.0)[:, None] / times)
+        left = mean * np.exp(-(last - ends[blocks])[:, None] / times)
+        found.append(Group(
+            slice(3 * blocks.start, 3 * blocks.stop), base, lateral,
+            np.kron(flicker_kernel(own_t, own_s), np.diag(shares)), np.kron(felt, axes),
+            np.kron(left, axes), np.repeat(np.exp(-max(last - before, 0.0) / times), 3), basis))
+        before = max(last, before)
+    return found
+
+
+def across(columns):
+    """(3k, 3k - 2): orthonormal, across two columns (3k, 2) that are the same two directions in
+    each of k blocks: first the differences between the blocks, axis by axis, then the mean
+    across both directions."""
+    k = len(columns) // 3
+    first, second = columns[:3].T
+    helmert = np.zeros((k, k - 1))
+    for i in range(1, k):
+        helmert[:i, i - 1], helmert[i, i - 1] = -1.0 / i, 1.0
+    helmert /= np.linalg.norm(helmert, axis=0)
+    mean = np.tile(np.cross(first, second), k) / np.sqrt(k)
+    return np.hstack([np.kron(helmert, np.eye(3)), mean[:, None] / np.linalg.norm(mean)])
+
+
+def reduced(groups):
+    """The groups without the directions that are a nuisance of their own: readings in the basis
+    across them."""
+    out, start = [], 0
+    for g in groups:
+        turned, n = g.basis.T, g.basis.shape[1]
+        out.append(Group(slice(start, start + n), turned @ g.base @ g.basis, turned @ g.lateral,
+                         turned @ g.kernel @ g.basis, turned @ g.from_before,
+                         turned @ g.to_later, g.decay, np.eye(n)))
+        start += n
+    return out
+
+
+def turned(groups, x):
+    """(n', R) readings x (n, R) in the bases of their groups."""
+    return np.concatenate([g.basis.T @ x[g.rows] for g in groups])
+
+
+def turned_back(groups, x):
+    """(n, R) from (n', R): readings that have nothing in the directions left out."""
+    out, start = [], 0
+    for g in groups:
+        n = g.basis.shape[1]
+        out.append(g.basis @ x[start:start + n])
+        start += n
+    return np.concatenate(out)
+
+
+class Factor:
+    """Cholesky factor of base + placement^2 lateral lateral' + flicker^2 kernel for L placement
+    levels at once. logdet (L,): half of the logarithm of the determinant."""
+
+    def __init__(self, groups, placements, flicker):
+        levels = np.asarray(placements, float)
+        self.groups, self.n = groups, groups[-1].rows.stop
+        self.inverses, self.gains = [], []
+        self.logdet = np.zeros(len(levels))
+        known = np.zeros((len(levels), len(groups[0].decay), len(groups[0].decay)))
+        for g in groups:
+            own = g.base + flicker ** 2 * g.kernel + levels[:, None, None] ** 2 * (
+                g.lateral @ g.lateral.T)
+            felt = g.from_before @ known
+            lower = np.linalg.cholesky(own - felt @ g.from_before.T)
+            inverse = np.linalg.inv(lower)
+            gain = (flicker ** 2 * g.to_later.T - g.decay[:, None] * felt.transpose(0, 2, 1)
+                    ) @ inverse.transpose(0, 2, 1)
+            known = known * (g.decay[:, None] * g.decay) + gain @ gain.transpose(0, 2, 1)
+            self.logdet += np.log(np.diagonal(lower, axis1=1, axis2=2)).sum(axis=1)
+            self.inverses.append(inverse)
+            self.gains.append(gain)
+
+    def whitened(self, x):
+        """(L, n, R): the inverse of the factor times x (n, R)."""
+        return np.concatenate(list(self.whitened_parts(x)), axis=1)
+
+    def whitened_parts(self, x):
+        """whitened() piece by piece, some rows at a time."""
+        levels = len(self.logdet)
+        state = np.zeros((levels, len(self.groups[0].decay), x.shape[1]))
+        coupled = state.shape[1] > 0
+        found, rows = [], 0
+        for g, inverse, gain in zip(self.groups, self.inverses, self.gains):
+            left = x[g.rows] - g.from_before @ state if coupled else x[g.rows]
+            white = inverse @ left
+            if coupled:
+                state *= g.decay[:, None]
+                state += gain @ white
+            found.append(white)
+            rows += white.shape[1]
+            if rows >= AT_A_TIME:
+                yield np.concatenate(found, axis=1)
+                found, rows = [], 0
+        if found:
+            yield np.concatenate(found, axis=1)
+
+    def coloured(self, white):
+        """(n, R): the factor of the first level times white (n, R)."""
+        out = np.empty_like(white)
+        state = np.zeros((len(self.groups[0].decay), white.shape[1]))
+        for g, inverse, gain in zip(self.groups, self.inverses, self.gains):
+            own = white[g.rows]
+            out[g.rows] = np.linalg.solve(inverse[0], own) + g.from_before @ state
+            state = g.decay[:, None] * state + gain[0] @ own
+        return out
+
+
+def energies(groups, basis):
+    """(3,): traces of what is left of base, lateral lateral' and kernel when the orthonormal
+    columns basis (n, p) are projected out."""
+    total = np.zeros(3)
+    state = np.zeros((len(groups[0].decay), basis.shape[1]))
+    for g in groups:
+        own = basis[g.rows]
+        for k, part in enumerate((g.base, g.lateral @ g.lateral.T, g.kernel)):
+            total[k] += np.trace(part) - (own * (part @ own)).sum()
+        total[2] -= 2.0 * (own * (g.from_before @ state)).sum()
+        state = g.decay[:, None] * state + g.to_later.T @ own
+    return total
+
+
+def dense(groups, placement, flicker):
+    """(n, n) the covariance itself, for what is small."""
+    n = groups[-1].rows.stop
+    out = np.zeros((n, n))
+    for k, g in enumerate(groups):
+        out[g.rows, g.rows] = g.base + placement ** 2 * g.lateral @ g.lateral.T \
+            + flicker ** 2 * g.kernel
+        reach = flicker ** 2 * g.to_later
+        for later in groups[k + 1:]:
+            out[later.rows, g.rows] = later.from_before @ reach.T
+            out[g.rows, later.rows] = out[later.rows, g.rows].T
+            reach = reach * later.decay
+    return out

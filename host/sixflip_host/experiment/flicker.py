@@ -1,0 +1,35 @@
+"""Flicker, the slow noise of a sensor, as the covariance of means over stretches of time."""
+import numpy as np
+
+from sixflip_sim.effects.drift import TIMES_S
+
+# Flicker has neither a shortest nor a longest time: beside the library's 10 to 1000 s.
+ALL_TIMES_S = (0.3, 1.0, 3.0, *TIMES_S, 3000.0, 10000.0)
+
+
+def flicker_kernel(t, seconds):
+    """(n, n) covariance of unit flicker: of the means over stretches of `seconds` (n,) around
+    t (n,) s of a sum of exponentials (Ornstein-Uhlenbeck processes), equally spaced in the
+    logarithm of time."""
+    gap = np.abs(t[:, None] - t[None])
+    kernel = np.zeros_like(gap)
+    for tau in ALL_TIMES_S:
+        half = seconds / (2.0 * tau)
+        shrunk = np.sinh(np.minimum(half, 30.0)) / np.maximum(half, 1e-9)
+        apart = np.maximum(gap - (seconds[:, None] + seconds[None]) / 2.0, 0.0)
+        inside = np.exp(-np.minimum(half[:, None] + half[None], 60.0)) * np.outer(shrunk, shrunk)
+        mean = np.exp(-apart / tau) * inside
+        x = 2.0 * half
+        np.fill_diagonal(mean, 2.0 / x * (1.0 - (1.0 - np.exp(-x)) / x))
+        kernel += mean
+    return kernel
+
+
+def differences(gap, block):
+    """(n,) variance of the difference of two means over `block` seconds, their middles `gap` >=
+    block apart, of unit flicker: per exponential 2 var - 2 cov, averaged over the blocks."""
+    times = np.array(ALL_TIMES_S)[:, None]
+    x = block[None] / times
+    own = 2.0 / x * (1.0 - (1.0 - np.exp(-x)) / x)
+    both = ((1.0 - np.exp(-x)) / x) ** 2 * np.exp(-(gap - block)[None] / times)
+    return 2.0 * (own - both).sum(axis=0)

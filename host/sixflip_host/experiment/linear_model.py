@@ -1,0 +1,213 @@
+"""Stage 1: the nominal model of one session by generalised least squares.
+
+What is left of the rows (nominal_rows.py) after projection is the contrasts z. Their covariance
+is white / n + placement + flicker, the two last levels by restricted maximum likelihood
+[Patterson & Thompson, Biometrika 58 (1971) 545] on a grid.
+
+Everything later needs only z' C^-1 z, S' C^-1 z and S' C^-1 S for each point of the grid (S: the
+columns of all effects), so that is all that is kept: any subset of effects is an indexing. What
+is a nuisance of one placement only is projected out there, and the covariance is factored in
+time (covariance.py), so that all of it grows as the session does.
+"""
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..progress import steps
+from . import covariance
+from .nominal_rows import Rows
+
+NOTHING = 1e-7  # share of its energy below which a column is silent
+
+
+@dataclass(frozen=True, eq=False)
+class Unit:
+    """One session (or a part of one) of one sensor, reduced to sufficient statistics.
+
+    rows; designs: list of terms.Design, their K columns side by side; grid: list of (placement
+    level, flicker level), G of them, in a table of this shape; z (m,) contrasts and columns (m,
+    K), in the basis of the rows' groups without what space (m, p), orthonormal, holds; freedom;
+    energy (K,), silent (K,) bool; gram (G, K, K), logdet (G,), quadratic (G,), inner (G, K).
+    signature: what the protocol is known by, see cutoffs.py. within: {(effect, number of its
+    choice): nats that the blocks of the rests say for it}. between: it lies between the
+    sessions, see session_offsets.py. turns: the turns that it was made of. apart: the units
+    are axes, which have no coefficient in common.
+    """
+
+    rows: Rows
+    designs: list
+    grid: list
+    shape: tuple
+    groups: list
+    space: np.ndarray
+    z: np.ndarray
+    columns: np.ndarray
+    freedom: int
+    energy: np.ndarray
+    silent: np.ndarray
+    gram: np.ndarray
+    logdet: np.ndarray
+    quadratic: np.ndarray
+    inner: np.ndarray
+    signature: tuple = ()
+    within: dict = field(default_factory=dict)
+    between: bool = False
+    turns: tuple = ()
+    apart: bool = False
+    _factors: dict = field(default_factory=dict, repr=False)
+
+    @property
+    def coarse(self):
+        return np.arange(len(self.grid)).reshape(self.shape)[::2, ::2].ravel()
+
+    def around(self, point):
+        """Indices of a point of the grid and its neighbours."""
+        a, b = divmod(point, self.shape[1])
+        every = np.arange(len(self.grid)).reshape(self.shape)
+        return every[max(a - 1, 0):a + 2, max(b - 1, 0):b + 2].ravel()
+
+    def raw(self, columns):
+        """(rows, k) columns before projection."""
+        return np.hstack([d.columns for d in self.designs])[:, columns]
+
+    def contrasts(self, y):
+        """(m,) contrasts of other readings y (n,) of the same rows."""
+        z = covariance.turned(self.rows.groups, y[:, None])[:, 0]
+        return z - self.space @ (self.space.T @ z)
+
+    def in_rows(self, z):
+        """(n,) the contrasts as readings: what the nuisance leaves."""
+        return covariance.turned_back(self.rows.groups, z[:, None])[:, 0]
+
+    def noise_energy(self, placement, level):
+        """Expected sum of squares of the contrasts where there is nothing but noise."""
+        base, lateral, kernel = covariance.energies(self.groups, self.space)
+        common = self._common()
+        common = common - self.space @ (self.space.T @ common)
+        return base + placement ** 2 * lateral + level ** 2 * kernel + (common ** 2).sum()
+
+    def _common(self):
+        return _common(self.rows)
+
+    def statistics(self, z=None):
+        """(quadratic (G, R), projections (G, K, R)) of contrasts z (m, R), default the data's."""
+        if z is None:
+            return self.quadratic[:, None], self.inner[:, :, None]
+        quadratic, inner, _, _ = _reduce(self.groups, self.grid, self.space, self._common(),
+                                         self.columns, z, False)
+        return quadratic, inner
+
+    def chi2(self, z, index):
+        """Of contrasts z (m,) against noise with the levels of one point of the grid."""
+        white = self._factor(index).whitened(np.hstack(
+            [self.space, self._common(), z[:, None]]))
+        fixed, data = white[0, :, :-1], white[0, :, -1]
+        metric = fixed.T @ fixed
+        known = np.arange(self.space.shape[1], len(metric))
+        metric[known, known] += 1.0
+        taken = fixed.T @ data
+        return float(data @ data - taken @ np.linalg.solve(metric, taken))
+
+    def _factor(self, index):
+        """covariance.Factor at one point of the grid; the last one is kept."""
+        if index not in self._factors:
+            self._factors.clear()
+            placement, level = self.grid[index]
+            self._factors[index] = covariance.Factor(self.groups, [placement], level)
+        return self._factors[index]
+
+    def draw(self, index, generator, number):
+        """Contrasts (m, R) without any effect, with the levels of one point of the grid."""
+        factor = self._factor(index)
+        z = factor.coloured(generator.standard_normal((factor.n, number)))
+        common = self._common()
+        z = z + common @ generator.standard_normal((common.shape[1], number))
+        return z - self.space @ (self.space.T @ z)
+
+    def innovations(self, point, private, explained):
+        """(m, 3) what is left of the readings at a point (placement, flicker), whitened in the
+        order of time to a standard deviation of 1, and (m, 3) the share of each that the fit
+        takes up. private: columns that are fitted as the nuisance is; explained (n,): what the
+        others add. Of a placement that is free across gravity, the differences of its blocks."""
+        factor = covariance.Factor(self.groups, [point[0]], point[1])
+        fitted = np.hstack([self.rows.nuisance, self.raw(private)])
+        x = covariance.turned(self.rows.groups, np.column_stack(
+            [fitted, self.rows.y - explained]))
+        white = factor.whitened(np.hstack([self._common(), x]))[0]
+        basis, s, _ = np.linalg.svd(white[:, :-1], full_matrices=False)
+        basis = basis[:, s > 1e-9 * s[0]]
+        left = white[:, -1] - basis @ (basis.T @ white[:, -1])
+        leverage = (basis ** 2).sum(axis=1)
+        keep = np.concatenate([np.arange(g.rows.start, g.rows.start
+                                         + (g.rows.stop - g.rows.start) // 3 * 3)
+                               for g in self.groups])
+        return left[keep].reshape(-1, 3), leverage[keep].reshape(-1, 3)
+
+
+def unit(rows, designs, wanted=None, **about):
+    """Unit of Rows and a list of Design; about: the fields that say what it is of. wanted:
+    indices of the columns that are asked for, the others count as silent (None: all)."""
+    groups = covariance.reduced(rows.groups)
+    nuisance = covariance.turned(rows.groups, rows.nuisance)
+    space, s, _ = np.linalg.svd(nuisance, full_matrices=False)
+    space = space[:, s > 1e-9 * max(s[0], 1e-300)] if s[0] > 0.0 else space[:, :0]
+
+    def left(x):
+        x = covariance.turned(rows.groups, x)
+        return x - space @ (space.T @ x)
+    raw = np.hstack([np.zeros((len(rows.y), 0)), *(d.columns for d in designs)])
+    columns, z = left(raw), left(rows.y[:, None])
+    energy = (raw ** 2).sum(axis=0)
+    silent = (columns ** 2).sum(axis=0) <= NOTHING * np.maximum(energy, 1e-300)
+    if wanted is not None:
+        silent |= ~np.isin(np.arange(len(silent)), wanted)
+    columns[:, silent] = 0.0
+    placements, flickers = rows.levels
+    if not any(g.lateral.shape[1] for g in groups):
+        placements = placements[:1]
+    grid = [(a, b) for a in placements for b in flickers]
+    quadratic, inner, gram, logdet = _reduce(groups, grid, space, _common(rows), columns, z, True)
+    return Unit(rows, designs, grid, (len(placements), len(flickers)), groups, space, z[:, 0],
+                columns, len(z) - space.shape[1], 3.0 * (raw ** 2).mean(axis=0), silent, gram,
+                logdet, quadratic[:, 0], inner[:, :, 0], **about)
+
+
+def _common(rows):
+    if rows.common is None:
+        return np.zeros((sum(g.basis.shape[1] for g in rows.groups), 0))
+    return covariance.turned(rows.groups, rows.common)
+
+
+def _reduce(groups, grid, space, common, columns, z, with_gram):
+    """(quadratic (G, R), inner (G, K, R), gram (G, K, K) or None, logdet (G,)) with the space
+    projected out in the metric of each point of the grid."""
+    placements = list(dict.fromkeys(a for a, _ in grid))
+    flickers = list(dict.fromkeys(b for _, b in grid))
+    loud = np.flatnonzero((columns != 0.0).any(axis=0))  # the others stay zero
+    fixed, k, number = space.shape[1] + common.shape[1], len(loud), z.shape[1]
+    every = np.hstack([space, common, columns[:, loud], z])
+    known = np.diag(np.repeat([0.0, 1.0], [space.shape[1], common.shape[1]]))
+    with_all = np.arange(every.shape[1]) if with_gram else np.r_[:fixed, fixed + k:every.shape[1]]
+    size = columns.shape[1]
+    quadratic, logdet = np.empty((len(grid), number)), np.empty(len(grid))
+    inner = np.zeros((len(grid), size, number))
+    gram = np.zeros((len(grid), size, size)) if with_gram else None
+    for b, level in enumerate(steps(flickers, "levels of noise")):
+        factor = covariance.Factor(groups, placements, level)
+        products = np.zeros((len(placements), fixed + k, len(with_all)))
+        squares = np.zeros((len(placements), number))
+        for white in factor.whitened_parts(every):
+            squares += (white[:, :, fixed + k:] ** 2).sum(axis=1)
+            for a, one in enumerate(white):
+                products[a] += one[:, :fixed + k].T @ (one if with_gram else one[:, with_all])
+        for a, product in enumerate(products):
+            index = a * len(flickers) + b
+            metric = np.linalg.cholesky(product[:fixed, :fixed] + known)
+            own = np.linalg.solve(metric, product[fixed:, :fixed].T)
+            its = np.linalg.solve(metric, product[:fixed, -number:])
+            quadratic[index] = squares[a] - (its ** 2).sum(axis=0)
+            inner[index, loud] = product[fixed:, -number:] - own.T @ its
+            if with_gram:
+                gram[index][np.ix_(loud, loud)] = product[fixed:, fixed:fixed + k] - own.T @ own
+            logdet[index] = factor.logdet[a] + np.log(np.diag(metric)).sum()
+    return quadratic, inner, gram, logdet

@@ -1,0 +1,193 @@
+"""One long rest, or several in one attitude, as short means over time.
+
+Where a capture has no poses to speak of, what is left is how its readings go on while nothing
+moves: with temperature, with time, by jumps. The means are short against what wanders and long
+against the noise; their white noise is known from what differs within them.
+"""
+from dataclasses import dataclass
+
+import numpy as np
+
+from sixflip_sim.effects.moment import Moment
+
+from . import block_noise, noise_arrays
+
+SAME_DEG = 3.0  # rests that lie apart by no more are in one attitude
+MEANS = 96  # of all rests together
+SHORTEST_S, FEWEST_SAMPLES = 0.5, 4  # of a mean
+SHORTEST_REST_S = 2.0
+EDGE_S = 0.1  # left out at both ends of a rest: where it begins is never exact
+
+
+def longest(session):
+    """(first, end) of the longest rest of a blocks.Session, or None."""
+    if not session.runs:
+        return None
+    _, first, end = max(session.runs, key=lambda r: r[2] - r[1])
+    return first, end
+
+
+def scaled(session, sensor):
+    """Samples (n, 3) in mg or deg/s."""
+    meta = session.capture.meta
+    counts = getattr(session.capture, sensor).astype(float)
+    return counts * (1000.0 / meta["accel_lsb_per_g"]) if sensor == "accel" \
+        else counts / meta["gyro_lsb_per_dps"]
+
+
+@dataclass(frozen=True)
+class LongRest:
+    """Arrays over n means: t (s since the capture began), seconds (s that each lasts), rest and
+    session (their numbers), temperature or None (degC, with temperature_rate). values, noise:
+    {sensor: (n, 3) mg or deg/s}, {sensor: (n, 3) standard deviation of a mean}. up (3,): the
+    attitude; thermometers: one a session, or None."""
+
+    t: np.ndarray
+    seconds: np.ndarray
+    rest: np.ndarray
+    session: np.ndarray
+    temperature: object
+    temperature_rate: object
+    values: dict
+    noise: dict
+    up: np.ndarray
+    thermometers: tuple
+
+    @property
+    def n(self):
+        return len(self.t)
+
+    @property
+    def span_s(self):
+        """Seconds at rest of the longest session."""
+        return max(float(self.seconds[self.session == k].sum()) for k in np.unique(self.session))
+
+    @property
+    def moved_c(self):
+        """degC between the coldest and the warmest mean; 0 without a thermometer."""
+        return 0.0 if self.temperature is None else float(np.ptp(self.temperature))
+
+    def lagged(self, lag_s):
+        """(temperature, its rate) (n,) that a part sees which follows the thermometer, or with a
+        negative lag goes before it."""
+        c, rate = np.empty(self.n), np.empty(self.n)
+        for k, one in enumerate(self.thermometers):
+            mine = self.session == k
+            c[mine] = one.lagged(self.t[mine], lag_s)
+            rate[mine] = one.lagged_rate(self.t[mine], lag_s)
+        return c, rate
+
+    def moment(self, lag_s=0.0):
+        """moment.Moment of all means, the thermometer lagging behind or not."""
+        m = Moment(np.exp, np.sin, np.floor, noise_arrays.gauss)
+        m.t = m.since_move = self.t
+        if self.temperature is not None:
+            m.temperature, m.temperature_rate = self.lagged(lag_s)
+        m.f = m.up = m.before = tuple(np.full(self.n, v) for v in self.up)
+        m.session = self.session
+        return m
+
+    def part(self, keep):
+        """The means where keep (n,) is True."""
+        def cut(values):
+            return None if values is None else values[keep]
+        return LongRest(self.t[keep], self.seconds[keep], self.rest[keep], self.session[keep],
+                        cut(self.temperature), cut(self.temperature_rate),
+                        {k: v[keep] for k, v in self.values.items()},
+                        {k: v[keep] for k, v in self.noise.items()}, self.up, self.thermometers)
+
+
+def of(sessions, lines=()):
+    """LongRest of blocks.Sessions, or None where nothing rests; lines: (sensor, axis, Hz) of
+    sines that are taken off first."""
+    runs = _one_attitude([(k, first, end) for k, s in enumerate(sessions)
+                          for first, end in _inner(s)], sessions)
+    if not runs:
+        return None
+    sensors = [name for name in ("accel", "gyro")
+               if all(getattr(s.capture, name) is not None for s in sessions)]
+    total = sum((end - first) / sessions[k].rate for k, first, end in runs)
+    length = max(total / MEANS, SHORTEST_S)
+    table = _means(runs, sessions, length)
+    if len(table) < 2:
+        return None
+    values, noise = {}, {}
+    for sensor in sensors:
+        values[sensor], noise[sensor] = _measured(sensor, sessions, runs, table, lines)
+    t = np.array([sessions[k].t_s[(a + b) // 2] for k, _, a, b in table])
+    number = np.array([k for k, _, _, _ in table])
+    seconds = np.array([(b - a) / sessions[k].rate for k, _, a, b in table])
+    thermometers = tuple(s.thermometer for s in sessions)
+    temperature = rate = None
+    if all(one is not None for one in thermometers):
+        temperature, rate = np.empty(len(t)), np.empty(len(t))
+        for k, one in enumerate(thermometers):
+            temperature[number == k] = one.at(t[number == k])
+            rate[number == k] = one.rate_at(t[number == k])
+    mean = values["accel"].mean(axis=0)
+    return LongRest(t, seconds, np.array([r for _, r, _, _ in table]), number, temperature, rate,
+                    values, noise, mean / max(np.linalg.norm(mean), 1e-9), thermometers)
+
+
+def _inner(session):
+    """(first, end) of a session's rests without their edges."""
+    edge = int(EDGE_S * session.rate)
+    return [(first + edge, end - edge) for _, first, end in session.runs
+            if end - first - 2 * edge >= SHORTEST_REST_S * session.rate]
+
+
+def _one_attitude(runs, sessions):
+    """The (session, first, end) of runs that lie as the longest one does."""
+    if not runs:
+        return []
+    means = np.array([sessions[k].capture.accel[a:b].mean(axis=0) for k, a, b in runs])
+    up = means / np.maximum(np.linalg.norm(means, axis=1), 1e-9)[:, None]
+    top = max(range(len(runs)), key=lambda i: runs[i][2] - runs[i][1])
+    near = np.degrees(np.arccos(np.clip(up @ up[top], -1.0, 1.0))) <= SAME_DEG
+    return [run for run, keep in zip(runs, near) if keep]
+
+
+def _means(runs, sessions, length_s):
+    """[(session, rest, first, end)] of every mean."""
+    table = []
+    for number, (k, first, end) in enumerate(runs):
+        m = max(FEWEST_SAMPLES, int(round(length_s * sessions[k].rate)))
+        parts = max(1, (end - first) // m)
+        edges = np.linspace(first, end, parts + 1).astype(int)
+        table += [(k, number, int(a), int(b)) for a, b in zip(edges, edges[1:])]
+    return table
+
+
+def _measured(sensor, sessions, runs, table, lines):
+    """((n, 3) means, (n, 3) standard deviations of their noise: white, and what rounding leaves
+    in them), session by session."""
+    values, noise = np.empty((len(table), 3)), np.empty((len(table), 3))
+    for k in {k for k, _, _, _ in table}:
+        session, where = sessions[k], [i for i, one in enumerate(table) if one[0] == k]
+        first, end = (np.array([table[i][j] for i in where]) for j in (2, 3))
+        counts = getattr(session.capture, sensor)
+        scale = 1000.0 / session.capture.meta["accel_lsb_per_g"] if sensor == "accel" \
+            else 1.0 / session.capture.meta["gyro_lsb_per_dps"]
+        read = counts.astype(float)
+        for axis, hertz in [(axis, hz) for name, axis, hz in lines if name == sensor]:
+            for a, b in [(a, b) for number, a, b in runs if number == k]:
+                read[a:b, axis] = without_line(read[a:b, axis], session.t_s[a:b], hertz)
+        values[where] = scale * np.array([read[a:b].mean(axis=0) for a, b in zip(first, end)])
+        white = block_noise.white(read, first, end, session.rate)
+        seconds = (end - first)[:, None] / session.rate
+        noise[where] = scale * np.sqrt(white ** 2 / seconds
+                                       + block_noise.rounding(counts, first, end) ** 2)
+    return values, noise
+
+
+def without_line(x, t, hertz):
+    """x (n,) without the sine of a frequency that is known to a fraction of 1 / T: refined to
+    the one that takes most off."""
+    def left(f):
+        angle = 2.0 * np.pi * f * t
+        columns = np.stack([np.sin(angle), np.cos(angle), np.ones(len(t)), t], 1)
+        found = np.linalg.lstsq(columns, x, rcond=None)[0]
+        return x - columns[:, :2] @ found[:2]
+    width = 0.5 / max(float(np.ptp(t)), 1e-9)
+    tried = [left(hertz + share * width) for share in np.linspace(-1.0, 1.0, 9)]
+    return min(tried, key=lambda one: float(one.var()))

@@ -1,0 +1,173 @@
+"""Readings at rest as rows of the nominal model: what they say, what is unknown, how they err.
+
+Nuisance of the accelerometer: twelve parameters; the lateral position of every pose (table and
+box; with a certified box only what changes sign with the flip); two free angles of each leaning
+placement. Of the gyro: a bias and the Earth's vertical rate. Their covariance is white / n +
+placement + flicker.
+"""
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import covariance
+from .attitude_fit import face_axes
+from .projection import lateral_basis
+
+PLACEMENT_MG = (0.1, 0.45, 0.8, 1.4, 3.0, 8.0, 40.0)  # per direction; 0.05 deg: 0.87
+FLICKER_MG = (0.005, 0.02, 0.033, 0.05, 0.075, 0.11, 0.15, 0.22, 0.4, 0.8, 1.6, 4.0)
+EARTH_DPS = (0.0005, 0.003)  # the Earth's horizontal rate, the box at an unknown azimuth
+FLICKER_DPS = (0.0002, 0.0007, 0.0014, 0.002, 0.003, 0.0045, 0.008, 0.016, 0.03, 0.1)
+EARTH_UP_DPS = 0.003
+FEWEST_PAIRS, MOST_UNLIKE = 12, 2.0  # of blocks; an axis' flicker against all, at most
+COARSE_MG = 0.5  # of what rounding leaves in the mean of a rest
+
+
+
+
+def _columns(n):
+    return np.zeros((n, 3))
+
+
+def accel_rows(session, nominal):
+    """y (3n,) mg: corrected reading less gravity. Along the face's axis stands what |f| says
+    (to all orders in the tilt), across it how far the placement lies off its face."""
+    up = nominal.up[session.placement]
+    on_face = (session.face >= 0)[:, None]
+    axes = np.where(on_face, face_axes(session.face), up)
+    change = (nominal.corrected(session.accel) - up) * 1000.0
+    along = (change * up).sum(axis=1)[:, None]
+    across = change - along * up + on_face * (up - axes) * 1000.0
+    across -= axes * (across * axes).sum(axis=1)[:, None]
+    return (along * axes + across).reshape(-1)
+
+
+def accel_nuisance(session, nominal, certified):
+    """Columns (3n, k) of what is unknown in every session, but the angles of leaning poses."""
+    n, up = session.n, nominal.up[session.placement]
+    columns = []
+    for i in range(3):
+        for value in (np.ones(n), up[:, 0], up[:, 1], up[:, 2]):
+            one = _columns(n)
+            one[:, i] = value
+            columns.append(one)
+    for face in np.unique(session.face[session.face >= 0]):
+        on = session.face == face
+        axis = face_axes([face])[0]
+        sign = np.where(session.code % 2 == 1, 1.0, -1.0)  # codes 1, 3, ... are a, the others b
+        columns += _lateral(session, on, axis, sign)
+        if not certified:
+            columns += _lateral(session, on, axis)
+        if session.rounding_accel @ np.abs(axis) > COARSE_MG:
+            # The same face rounds alike in every session: it says nothing along gravity.
+            one = _columns(n)
+            one[on] = axis
+            columns.append(one)
+    return np.stack([c.reshape(-1) for c in columns], 1)
+
+
+def _lateral(session, mask, axis, weight=None):
+    """Two columns: the placements in the mask turned about the two directions across axis."""
+    found = []
+    for direction in lateral_basis(axis):
+        one = _columns(session.n)
+        one[mask] = direction
+        if weight is not None:
+            one *= weight[:, None]
+        found.append(one)
+    return found
+
+
+def axis_shares(session, values, noise):
+    """(3,) flicker variance of each axis over that of all: Z often has more. From neighbouring
+    blocks of one rest, beyond white noise; towards 1 where that is too noisy to tell.
+
+    values (n, 3) block means; noise (3,) of a mean over one second."""
+    same = np.flatnonzero(np.diff(session.placement) == 0)
+    if len(same) < FEWEST_PAIRS:
+        return np.ones(3)
+    squares = (np.diff(values, axis=0)[same] ** 2).mean(axis=0)
+    over = (1.0 / session.seconds[same] + 1.0 / session.seconds[same + 1]).mean()
+    excess = np.maximum(squares - over * noise ** 2, 0.0)
+    doubt = 2.0 * over * (noise ** 2).mean() * np.sqrt(2.0 / len(same))
+    return np.clip((excess + doubt) / (excess.mean() + doubt), 1.0 / MOST_UNLIKE, MOST_UNLIKE)
+
+
+def _placements(session):
+    """[(slice of blocks, placement)]: the blocks of each are neighbours."""
+    edges = np.flatnonzero(np.diff(session.placement)) + 1
+    starts = np.concatenate([[0], edges]).tolist()
+    ends = np.concatenate([edges, [session.n]]).tolist()
+    return [(slice(a, b), int(session.placement[a])) for a, b in zip(starts, ends)]
+
+
+def _groups(session, values, noise, rounding, directions):
+    """list of covariance.Group, one a placement. values (n, 3), noise, rounding (3,);
+    directions(place, placement) -> (lateral (2, 3) or None, free (2, 3) or None): across which a
+    placement scatters, or is free."""
+    parts = []
+    for place, placement in _placements(session):
+        k = place.stop - place.start
+        white = (noise ** 2 / session.seconds[place][:, None]).reshape(-1)
+        base = np.diag(white) + np.kron(np.ones((k, k)), np.diag(rounding ** 2))
+        lateral, free = (np.zeros((3 * k, 0)) if d is None else np.tile(d.T, (k, 1))
+                         for d in directions(place, placement))
+        basis = covariance.across(free) if free.shape[1] else np.eye(3 * k)
+        parts.append((place, base, lateral, basis))
+    return covariance.in_time(session.t, session.seconds,
+                              axis_shares(session, values, noise), parts)
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Readings of one session before projection: y (n,), groups (list of covariance.Group),
+    nuisance (n, p), bias: which of its columns are the sensor's, levels (of placement, of
+    flicker), common (n, c): columns whose coefficients have a standard deviation of 1."""
+
+    y: np.ndarray
+    groups: list
+    nuisance: np.ndarray
+    levels: tuple
+    bias: tuple = ()
+    common: np.ndarray | None = None
+
+    def loosened(self):
+        """The same rows where every placement is free across its lateral directions."""
+        groups = [covariance.Group(
+            g.rows, g.base, np.zeros((len(g.base), 0)), g.kernel, g.from_before, g.to_later,
+            g.decay, covariance.across(g.lateral) if g.lateral.shape[1] else g.basis)
+            for g in self.groups]
+        return Rows(self.y, groups, self.nuisance, (self.levels[0][:1], self.levels[1]),
+                    self.bias, self.common)
+
+
+def rows(kind, session, nominal, certified=False):
+    """Rows of the accelerometer or the gyro of a session at rest."""
+    if kind == "gyro":
+        return _gyro_rows(session, nominal)
+
+    def directions(place, placement):
+        if session.face[place.start] < 0:
+            return None, lateral_basis(nominal.up[placement])
+        return lateral_basis(face_axes(session.face[place.start:place.start + 1])[0]), None
+    groups = _groups(session, session.accel, session.noise_accel, session.rounding_accel,
+                     directions)
+    return Rows(accel_rows(session, nominal), groups, accel_nuisance(session, nominal, certified),
+                (PLACEMENT_MG, FLICKER_MG), (0, 4, 8))
+
+
+def _gyro_rows(session, nominal):
+    """Bias, and the Earth's rate known to a standard deviation."""
+    up = nominal.up[session.placement]
+    groups = _groups(session, session.gyro, session.noise_gyro, session.rounding_gyro,
+                     lambda place, placement: (lateral_basis(nominal.up[placement]), None))
+    return Rows(session.gyro.reshape(-1), groups, np.kron(np.ones((session.n, 1)), np.eye(3)),
+                (EARTH_DPS, FLICKER_DPS), (0, 1, 2), EARTH_UP_DPS * up.reshape(-1, 1))
+
+
+def signature(session):
+    """What a session's protocol is known by: poses, whole seconds, warming or cooling."""
+    change = 0
+    if session.temperature is not None:
+        change = int(round(float(session.temperature[-1] - session.temperature[0]) / 3.0))
+    return (tuple(session.code.tolist()),
+            tuple((session.t - session.t[0]).round().astype(int).tolist()), change)

@@ -1,0 +1,169 @@
+"""The library's effects, and generic discrepancies, as columns over the blocks of a session.
+
+Effects come from sixflip_sim's one definition: an effect's terms at the moments measured. Where
+an effect has a shape (a time constant, a lag) or a bend (a square beside the slope) it has
+several variants; they compete, and all go by the effect's one name.
+"""
+
+import copy
+from dataclasses import replace
+
+import numpy as np
+
+from sixflip_sim.effects import typical
+from sixflip_sim.effects.library import EFFECTS
+
+from .thermometer import MOVES_C
+
+LAGS_S = (0.0, 15.0, 30.0, 60.0, -30.0)
+WARM_UP_S = (30.0, 60.0, 120.0, 240.0, 480.0)
+CREEP_S = (5.0, 15.0, 30.0, 60.0, 120.0)
+LONG_MEMORY_S = 30.0
+PLAY_G = (0.1, 0.2, 0.4)  # widths of a play operator
+LEAST_VIBRATION_MG = 5.0
+DOMAIN = {  # where an effect shows itself
+    "thermal_bias": "temperature", "thermal_scale": "temperature", "thermal_rate": "temperature",
+    "warm_up": "time", "drift": "time", "supply": "time", "quadratic": "orientation",
+    "cross_quadratic": "orientation", "cubic": "orientation", "asymmetry": "orientation",
+    "g_sensitivity": "orientation", "earth_rate": "orientation", "hysteresis": "history",
+    "creep": "time_since_move", "box_tilt": "across_gravity", "table_tilt": "across_gravity",
+    "local_gravity": "along_gravity", "vibration": "frequency",
+    "vibration_rectification": "amplitude", "quantisation": "amplitude",
+    "dead_band": "amplitude", "saturation": "amplitude", "sample_rate": "timing",
+    "dropped_samples": "timing", "filter_lag": "motion", "lever_arm": "motion",
+    "torn_reads": "noise", "axis_swap": "orientation"}
+
+
+class Design:
+    """Columns (3n, k) of one variant of one effect in one session.
+
+    keys (k,): the effect's own; those of a bend beside it end in "+". axes (k,): 0..2, the
+    axis whose coefficient it is. prior (k,): a size ten times the typical one. choices: tuples
+    of columns of which a session has one for its own.
+    """
+
+    def __init__(self, effect, variant, keys, axes, columns, prior, choices=()):
+        self.effect, self.variant, self.keys = effect, variant, tuple(keys)
+        self.axes, self.columns, self.prior = tuple(axes), columns, prior
+        self.choices = choices
+
+    @property
+    def generic(self):
+        return self.effect.startswith("~")
+
+
+def of_terms(name, sensor, moment, n, variant="", only=None, shape=None, chip="mpu6050"):
+    """Design of an effect's terms; only: the keys wanted."""
+    effect = EFFECTS[name](sensor, {}, shape)
+    keys, axes, columns = [], [], []
+    for key, axis, value in effect.terms(moment):
+        if only is not None and key not in only:
+            continue
+        column = np.zeros((n, 3))
+        column[:, axis] = value
+        keys.append(key)
+        axes.append(axis)
+        columns.append(column.reshape(-1))
+    size = typical.size(name, chip, sensor)[0]
+    prior = 10.0 * (abs(size) if size else 1.0)
+    return Design(name, variant, keys, axes, np.stack(columns, 1), np.full(len(keys), prior))
+
+
+def bent(design, other, prior):
+    """design with the columns of another function of the same thing beside it."""
+    keys = design.keys + tuple(k + "+" for k in other.keys)
+    return Design(design.effect, design.variant + "+", keys, design.axes + other.axes,
+                  np.hstack([design.columns, other.columns]),
+                  np.concatenate([design.prior, np.full(len(other.keys), prior)]))
+
+
+def powered(design, columns, prior):
+    """design with further columns, one for each of its own."""
+    twin = Design(design.effect, design.variant, design.keys, design.axes, columns, design.prior)
+    return bent(design, twin, prior)
+
+
+def agreed(sessions):
+    """The sessions with what is looked for settled for all of them at once, so that the columns
+    of one are those of the others: thermal (every one has a thermometer, and one of them
+    moved), shaken."""
+    thermal = all(s.thermometer is not None for s in sessions) and max(
+        s.thermometer.moved for s in sessions) >= MOVES_C
+    shaken = max(s.vibration.max() for s in sessions) > LEAST_VIBRATION_MG
+    return [replace(session, thermal=thermal, shaken=shaken) for session in sessions]
+
+
+def library(session, up, sensor, reference_c, chip):
+    """list of Design: every variant of every effect that the rests of the sessions agreed on
+    can show; columns of zeros where this one shows nothing of it."""
+    m, n = session.moment(up), session.n
+    found = []
+
+    def terms(name, variant="", moment=m, **options):
+        found.append(of_terms(name, sensor, moment, n, variant, chip=chip, **options))
+        return found[-1]
+
+    if session.thermal:
+        _thermal(session, m, terms, found, sensor, reference_c)
+    for tau in WARM_UP_S:
+        terms("warm_up", "tau %g s" % tau, shape={"tau_s": tau})
+    terms("hysteresis")
+    if sensor == "accel":
+        found += remembered(session, m, found[-1])
+    if sensor == "gyro":
+        terms("g_sensitivity")
+        return found
+    terms("quadratic")
+    terms("cubic")
+    cross = terms("cross_quadratic")
+    terms("cross_quadratic", "squares", only=[k for k in cross.keys if k[1] == k[2]])
+    terms("cross_quadratic", "products", only=[k for k in cross.keys if k[1] != k[2]])
+    terms("asymmetry")
+    for tau in CREEP_S:
+        terms("creep", "tau %g s" % tau, shape={"tau_s": tau})
+        if tau >= LONG_MEMORY_S:  # what came before the placement before is not forgotten yet
+            felt = copy.copy(m)
+            felt.before = tuple(session.remembered(up, tau).T)
+            terms("creep", "tau %g s, all placements" % tau, felt, shape={"tau_s": tau})
+    if session.shaken:
+        terms("vibration_rectification", "vertical", shape={"vertical": 1})
+        terms("vibration_rectification", "all round", shape={"vertical": 0})
+    return found
+
+
+def remembered(session, m, plain):
+    """Designs of hysteresis in other forms than a share of the pose before: only from which
+    side the pose was reached, and a play operator along the whole way."""
+    side = np.tanh(3.0 * (np.stack(m.before, 1) - np.stack(m.f, 1)))
+    forms = [("side", side)] + [("play %g g" % width, behind) for width, behind in zip(
+        PLAY_G, session.played(PLAY_G))]
+    found = []
+    for variant, values in forms:
+        columns = np.einsum("ni,ij->nij", values, np.eye(3)).reshape(-1, 3)
+        found.append(Design("hysteresis", variant, plain.keys, plain.axes, columns, plain.prior))
+    return found
+
+
+def _thermal(session, m, terms, found, sensor, reference_c):
+    """Slopes over the temperature with and without a lag."""
+    for lag in LAGS_S:
+        felt = copy.copy(m)
+        felt.temperature = session.thermometer.lagged(session.t, lag)
+        felt.temperature_rate = session.thermometer.lagged_rate(session.t, lag)
+        label = "lag %g s" % lag if lag else ""
+        shape = {"reference_c": reference_c}
+        bias = terms("thermal_bias", label, felt, only=("x", "y", "z"), shape=shape)
+        if not lag:  # a record of the board holds a square, too
+            dt = np.repeat(felt.temperature - reference_c, 3)[:, None]
+            found.append(powered(bias, bias.columns * dt, 0.1 * bias.prior[0]))
+        if sensor == "accel":
+            terms("thermal_scale", label, felt, shape=shape)
+        terms("thermal_rate", label, felt)
+
+
+def harmonics(f, sensor):
+    """Functions of the direction of gravity: degrees 2 and 3 (gyro: 1, too)."""
+    x, y, z = f.T
+    second = [x * x, y * y, x * y, x * z, y * z]
+    third = [x ** 3, y ** 3, z ** 3, x * y * z, x * y * y, y * z * z, z * x * x]
+    return ([x, y, z] if sensor == "gyro" else []) + second + third

@@ -1,0 +1,227 @@
+"""The box's turns between two rests: gravity before and after against the rotation integrated.
+
+With R(t) the attitude since the start of a move, an error e(t) of the rate turns the end by
+phi = int R(t) e(t) dt, and gravity carried back to the start is off by phi x up [Tedaldi et al.,
+ICRA 2014, eq. 13-18, linearised]. Flips of one face also say that the turn was half a circle.
+Everything is divided by the length of the move: deg/s, as the causes are. Turns are values:
+what takes something out of their rates answers others.
+"""
+import weakref
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..capture.attitude import _rotation
+from .projection import cross, lateral_basis
+
+ROUNDS = 2  # of fits that begin with what the one before left
+PULL_DPS = 0.1  # deg/s per g, typical (effects/typical.py: g_sensitivity)
+SHORTEST_S, LONGEST_S, LEAST_DEG = 0.3, 60.0, 20.0
+LATE_S = 0.1  # the longest delay of the library's filter_lag
+RAIL = 32767
+_known = weakref.WeakKeyDictionary()  # {Session: {up: turns}}: what was integrated is not again
+
+
+@dataclass(frozen=True, eq=False)
+class Turn:
+    """One move from rest to rest over n samples, arrays read only.
+
+    first, last: which samples (last exclusive); t (n,) s; rate (n, 3) deg/s about the bias;
+    middle (n - 1, 3): between two samples, as corrected so far: middle = matrix rate - shift
+    (3, 3), deg/s (3,); before, after (3,): up of the rests; flip: of one face, by its label;
+    temperature (n - 1,) degC or None; wander (3,) deg/s: how far the bias may be off;
+    railed: a sample was cut off; attitude (n - 1, 3, 3): at each sample since the start, and
+    end (3, 3).
+    """
+
+    first: int
+    last: int
+    t: np.ndarray
+    rate: np.ndarray
+    middle: np.ndarray
+    before: np.ndarray
+    after: np.ndarray
+    flip: bool
+    temperature: np.ndarray | None
+    wander: np.ndarray
+    railed: bool
+    matrix: np.ndarray
+    shift: np.ndarray
+    attitude: np.ndarray | None = None
+    end: np.ndarray | None = None
+
+    def __post_init__(self):
+        for value in self.__dict__.values():
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+
+    @property
+    def dt(self):
+        return np.diff(self.t)
+
+    @property
+    def seconds(self):
+        return float(self.t[-1] - self.t[0])
+
+    @property
+    def turned(self):
+        """Degrees of path."""
+        return float((np.linalg.norm(self.middle, axis=1) * self.dt).sum())
+
+    def integrated(self, matrix=None):
+        """The turn with its attitude, of the rates as they are or turned by a matrix (3, 3)."""
+        rate = self.middle if matrix is None else self.middle @ matrix.T
+        turns = _rotation(np.radians(rate) * self.dt[:, None])
+        now, out = np.eye(3), np.empty((len(turns), 3, 3))
+        for k, turn in enumerate(turns):
+            out[k] = now
+            now = now @ turn
+        return replace(self, attitude=out, end=now)
+
+    def corrected(self, matrix, shift):
+        """The turn with matrix (3, 3) and shift (3,) deg/s taken out of its rates."""
+        return replace(self, middle=self.middle @ matrix.T - shift, matrix=matrix @ self.matrix,
+                       shift=matrix @ self.shift + shift).integrated()
+
+    def read_as(self, middle):
+        """The turn with other rates (n - 1, 3) deg/s."""
+        return replace(self, middle=middle).integrated()
+
+    def off(self):
+        """Degrees between gravity before and gravity after, carried back."""
+        cosine = np.clip(self.before @ self.end @ self.after, -1.0, 1.0)
+        return float(np.degrees(np.arccos(cosine)))
+
+    def usable(self, rate_hz):
+        """True when it is neither cut off nor has gaps, and is long and far enough."""
+        gaps = self.dt.max() if len(self.t) > 1 else 1.0
+        return (not self.railed and gaps <= 5.0 / rate_hz and self.turned >= LEAST_DEG
+                and SHORTEST_S <= self.seconds <= LONGEST_S)
+
+
+def between(session, up, bias, place, wander=None):
+    """Turn from a placement of a Session to the next, not integrated. up (placements, 3): unit
+    vectors against gravity; bias (3,) deg/s; wander as Turn has it."""
+    run, following = session.runs[place], session.runs[place + 1]
+    # What is read late is still read when the box lies still again.
+    longer = int(LATE_S * session.rate)
+    first = run.end - 1 - min(longer, (run.end - run.first) // 4)
+    last = following.first + 1 + min(longer, (following.end - following.first) // 4)
+    counts = session.capture.gyro[first:last]
+    t = session.t_s[first:last]
+    rate = counts / session.capture.meta["gyro_lsb_per_dps"] - bias
+    a, b = run.code, following.code
+    flip = session.labelled and a != b and a <= 12 and b <= 12 and (a - 1) // 2 == (b - 1) // 2
+    temperature = None if session.thermometer is None else session.thermometer.at(t[1:])
+    return Turn(first, last, t, rate, 0.5 * (rate[1:] + rate[:-1]), up[place], up[place + 1],
+                flip, temperature, np.zeros(3) if wander is None else wander,
+                bool((np.abs(counts.astype(int)) >= RAIL - 1).any()), np.eye(3), np.zeros(3))
+
+
+def of(session, up):
+    """tuple of Turn, integrated: every usable one between neighbouring placements of a Session
+    (of a part: of its own). up (placements, 3)."""
+    known = _known.setdefault(session, {})
+    key = up.tobytes()
+    if key not in known:
+        known[key] = _of(session, up)
+    return known[key]
+
+
+def _of(session, up):
+    kept = np.unique(session.placement).tolist()
+    rest = {p: session.gyro[session.placement == p].mean(axis=0) for p in kept}
+    pairs = [p for p in kept if p + 1 in rest]
+    if not pairs:
+        return ()
+    # A bias that changes from rest to rest is known to about half of that in between.
+    wander = np.sqrt(np.mean([(rest[p + 1] - rest[p]) ** 2 for p in pairs], axis=0)) / 2.0
+    # What drifts is halfway between the rests before and after.
+    found = (between(session, up, 0.5 * (rest[p] + rest[p + 1]), p, wander) for p in pairs)
+    pull = _pull(np.array([rest[p] for p in kept]), up[kept])
+    return tuple(_without_pull(turn.integrated(), pull) for turn in found
+                 if turn.usable(session.rate))
+
+
+def _pull(bias, up):
+    """(3, 3) deg/s per g of the gyro by gravity, from its bias (placements, 3) at rests in the
+    directions up (placements, 3): least squares with a prior of PULL_DPS a coefficient, against
+    what is left as noise."""
+    x = up - up.mean(axis=0)
+    y = bias - bias.mean(axis=0)
+    found = np.zeros((3, 3))
+    for _ in range(ROUNDS):
+        noise = np.mean((y - x @ found) ** 2, axis=0)
+        found = np.stack([np.linalg.solve(x.T @ x + np.eye(3) * (n / PULL_DPS ** 2 + 1e-12),
+                                          x.T @ y[:, k]) for k, n in enumerate(noise)], axis=1)
+    return found.T
+
+
+def _without_pull(turn, pull):
+    """The turn without what gravity does to the gyro on the way, beyond the mean of both ends."""
+    felt = np.einsum("nji,j->ni", turn.attitude, turn.before)
+    ends = 0.5 * (turn.before + turn.after)
+    return turn.read_as(turn.middle - (felt - ends) @ pull.T)
+
+
+def rows(turn, axis_vectors):
+    """(2 or 3, 3): what a small rotation (start frame, deg) does to what is observed."""
+    first, second = axis_vectors
+    # phi x up along two directions across up; a flip's turn about up itself
+    out = [cross(turn.before, first), cross(turn.before, second)]
+    if turn.flip:
+        out.append(turn.before)
+    return np.array(out) / turn.seconds
+
+
+def observed(turn):
+    """(2 or 3,) deg/s: gravity carried back less gravity before; the flip's turn less 180."""
+    axis_vectors = lateral_basis(turn.before)
+    back = turn.end @ turn.after - turn.before
+    out = [np.degrees(back @ v) for v in axis_vectors]
+    if turn.flip:
+        first, second = axis_vectors
+        carried = turn.end @ first
+        angle = np.degrees(np.arctan2(carried @ second, carried @ first))
+        out.append((angle % 360.0) - 180.0)
+    return np.array(out) / turn.seconds
+
+
+def projected(turn, added):
+    """(2 or 3, k): rates added (n, 3, k), deg/s, as what is observed."""
+    phi = np.einsum("nij,njk,n->ik", turn.attitude, added, turn.dt)
+    return rows(turn, lateral_basis(turn.before)) @ phi
+
+
+def wandering(chosen):
+    """list of (2 or 3, 2 or 3): covariance of what is observed of each turn, by a bias that is
+    not known between two rests."""
+    parts = []
+    for turn in chosen:
+        constant = projected(turn, np.broadcast_to(np.eye(3), (len(turn.dt), 3, 3)))
+        parts.append(constant @ np.diag(turn.wander ** 2) @ constant.T)
+    return parts
+
+
+def nuisance(chosen):
+    """Columns: scale and misalignment (9), bias (3)."""
+    parts = []
+    for turn in chosen:
+        n = len(turn.dt)
+        added = np.zeros((n, 3, 12))
+        for i in range(3):
+            added[:, i, 3 * i:3 * i + 3] = turn.middle
+            added[:, i, 9 + i] = 1.0
+        parts.append(projected(turn, added))
+    return np.vstack(parts)
+
+
+def calibrated(chosen):
+    """(what is observed (m,), the turns) with the nominal scale, misalignment and bias taken
+    out of the rates of all of them."""
+    for _ in range(ROUNDS):
+        y = np.concatenate([observed(turn) for turn in chosen])
+        found = np.linalg.lstsq(nuisance(chosen), y, rcond=1e-9)[0]
+        matrix = np.eye(3) - found[:9].reshape(3, 3)
+        chosen = tuple(turn.corrected(matrix, found[9:]) for turn in chosen)
+    return np.concatenate([observed(turn) for turn in chosen]), chosen

@@ -1,0 +1,1 @@
+"""What others read: tables, C, bags, and the noise of a sensor for other simulators."""

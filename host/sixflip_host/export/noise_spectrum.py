@@ -1,0 +1,134 @@
+"""White noise, flicker and random walk of a sensor at rest, with intervals, from its spectrum.
+
+The two-sided density of a reading at rest is S(f) = N^2 + B^2 / (2 pi f) + K^2 / (2 pi f)^2
+[IEEE Std 952-1997, annex C]: N the noise density (unit/sqrt(Hz)), B the bias instability, whose
+Allan deviation is flat at 0.664 B, K the rate random walk. Every rest's spectrum is the mean over
+a few sine tapers [Riedel & Sidorenko, IEEE Trans. Signal Processing 43 (1995) 188], which do not
+leak from the walk into the white noise. The three squares are the likeliest ones that are not
+negative [Whittle, J. Royal Stat. Soc. B 15 (1953) 125]; their intervals are those of the profile
+of the likelihood. A line of the curve of the Allan deviation read off at one time, as is usual,
+takes what the other two add there for its own.
+"""
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import optimize, signal
+
+TAPERS = 4
+HIGHEST = 0.1  # of the sample rate: above that a chip's own filter takes noise away
+GROUPS = 80  # of frequencies, equally spaced in their logarithm
+LINE = 6.0  # times its neighbourhood: no noise, but a line, for a mean of four tapers
+HALF_OF_90 = 1.353  # nats below the maximum at the ends of a 90 % interval: half of chi2(0.9, 1)
+ROUNDS = 200
+
+
+@dataclass(frozen=True)
+class Level:
+    """value with its 90 % interval; low is 0 where the data do not show that it is there."""
+
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Groups:
+    """Mean power over groups of frequencies: f (n,) Hz, power (n,), shape (n,) of its gamma
+    distribution (how many independent values are in it)."""
+
+    f: np.ndarray
+    power: np.ndarray
+    shape: np.ndarray
+
+
+def levels(rests, rate, walks):
+    """(density, flicker, walk) as Levels of the rests, a list of (n,) readings of one axis;
+    walks: whether a random walk is looked for, else its Level is None."""
+    groups = [_grouped(*_power(x, rate), len(x), rate) for x in rests]
+    f, power, shape = (np.concatenate([getattr(g, k) for g in groups])
+                       for k in ("f", "power", "shape"))
+    columns = np.stack([np.ones(len(f)), 1.0 / (2.0 * np.pi * f), 1.0 / (2.0 * np.pi * f) ** 2],
+                       1)[:, :3 if walks else 2]
+    found, top = _likeliest(columns, power, shape)
+    out = [_level(columns, power, shape, found, top, k) for k in range(columns.shape[1])]
+    return (*out, None) if not walks else tuple(out)
+
+
+def _power(x, rate):
+    """(f, two-sided power density) of one rest."""
+    x, n = signal.detrend(np.asarray(x, float)), len(x)
+    total = np.zeros(n // 2 + 1)
+    place = np.pi * np.arange(1, n + 1) / (n + 1)
+    for k in range(1, TAPERS + 1):
+        taper = np.sqrt(2.0 / (n + 1)) * np.sin(k * place)
+        total += np.abs(np.fft.rfft(x * taper)) ** 2
+    return np.fft.rfftfreq(n, 1.0 / rate), total / TAPERS / rate
+
+
+def _grouped(f, power, n, rate):
+    """Groups of the frequencies that say something of noise: above what taking off a straight
+    line touches, below the chip's filter, and no lines."""
+    use = (f > (TAPERS + 1) / 2.0 * rate / n) & (f < HIGHEST * rate)
+    f, power = f[use], power[use]
+    if len(f) > 30:
+        usual = signal.medfilt(power, min(2 * (len(f) // 20) + 11, 201))
+        lines = np.flatnonzero(power > LINE * usual)
+        near = (lines[:, None] + np.arange(-TAPERS, TAPERS + 1)).ravel()
+        keep = np.ones(len(f), bool)
+        keep[near[(near >= 0) & (near < len(f))]] = False
+        f, power = f[keep], power[keep]
+    edges = np.unique(np.searchsorted(f, np.geomspace(f[0], f[-1], GROUPS + 1)[1:-1]))
+    parts = [part for part in np.split(np.arange(len(f)), edges) if len(part)]
+    # Neighbouring frequencies share their tapers: 2 K degrees of freedom in each K + 1 of them.
+    return Groups(np.array([np.exp(np.log(f[p]).mean()) for p in parts]),
+                  np.array([power[p].mean() for p in parts]),
+                  np.array([len(p) * TAPERS / (TAPERS + 1.0) for p in parts]))
+
+
+def _likelihood(columns, power, shape, squares):
+    density = columns @ squares
+    return float((shape * (-np.log(density) - power / density)).sum())
+
+
+def _likeliest(columns, power, shape, held=None):
+    """(squares, log likelihood); held: (index, value) of a square that is given. Fisher scoring:
+    weighted least squares whose weights are those of the density found [McCullagh & Nelder,
+    Generalized Linear Models (1989), section 8.3]."""
+    scale = np.median(power) / columns.mean(axis=0)
+    free = [k for k in range(columns.shape[1]) if held is None or k != held[0]]
+    fixed = np.zeros(len(power)) if held is None else held[1] * columns[:, held[0]]
+    squares = np.array(scale) / columns.shape[1]
+    if held is not None:
+        squares[held[0]] = held[1]
+    best = squares, _likelihood(columns, power, shape, squares)
+    for _ in range(ROUNDS):
+        weight = np.sqrt(shape) / (columns @ squares)
+        scaled = weight[:, None] * columns[:, free] * scale[free]
+        step = optimize.nnls(scaled, weight * (power - fixed))[0] * scale[free]
+        new = squares.copy()
+        new[free] = 0.5 * (squares[free] + step)  # half steps: full ones swing about
+        if not (columns @ new > 0.0).all():
+            break
+        value = _likelihood(columns, power, shape, new)
+        if value > best[1]:
+            best = new, value
+        if np.allclose(new, squares, rtol=1e-9, atol=1e-9 * scale.min()):
+            break
+        squares = new
+    return best
+
+
+def _level(columns, power, shape, found, top, k):
+    """Level of one of the squares by the profile of the likelihood."""
+    def below(value):
+        return top - _likeliest(columns, power, shape, (k, value))[1] - HALF_OF_90
+    square = float(found[k])
+    unit = max(square, 1e-6 * np.median(power) / columns[:, k].mean())
+    high = unit
+    while below(high) < 0.0 and high < 1e12 * unit:
+        high *= 2.0
+    high = optimize.brentq(below, max(square, 0.0), high, rtol=1e-3)
+    low = 0.0
+    if square > 0.0 and below(0.0) > 0.0:
+        low = optimize.brentq(below, 0.0, square, rtol=1e-3)
+    return Level(np.sqrt(square), np.sqrt(low), np.sqrt(high))

@@ -1,0 +1,176 @@
+"""What a diagnosis found against a simulator, as one sensor to put behind that simulator.
+
+Everything is what the real sensor has beyond the simulator: it is applied to the simulator's own
+forces and rates, once their conventions are right.
+"""
+import json
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..errors import BadFile, UsageError
+
+G = 9.80665
+DEG = np.pi / 180.0
+MARK = "put back by sixflip export"  # in every file that is made from a diagnosis
+AXES = "xyz"
+# effects that the generated class can express, with the unit their values are in
+EFFECTS = {"thermal_bias": "/°C", "thermal_scale": "%/°C", "quadratic": "mg/g", "cubic": "mg/g",
+           "asymmetry": "mg/g", "g_sensitivity": "/g"}
+
+
+@dataclass(frozen=True)
+class Triad:
+    """One sensor in SI units: read = matrix · true + bias; noise density (3,) per root Hz; step
+    (3,) and limit (3,), 0 and inf for none; lag_s: the time constant of its low-pass; delay_s;
+    effects {name: (3,)} in SI units per °C, g, g2 or g3."""
+
+    matrix: np.ndarray = field(default_factory=lambda: np.eye(3))
+    bias: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    noise: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    step: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    limit: np.ndarray = field(default_factory=lambda: np.full(3, np.inf))
+    lag_s: float = 0.0
+    delay_s: float = 0.0
+    effects: dict = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class PutBack:
+    """accel and gyro (Triad); lever (3,) m from the simulator's point to the sensor; coupling
+    (3, 3) rad/s per g of the gyro; rate_hz; reference_c; first: sentences on conventions that
+    have to be put right before; left: what was found and is not in here."""
+
+    accel: Triad
+    gyro: Triad
+    lever: np.ndarray
+    coupling: np.ndarray
+    rate_hz: float
+    reference_c: float
+    first: tuple
+    left: tuple
+
+    @property
+    def holds(self):
+        """Names of what is in here beyond the matrices and biases."""
+        out = []
+        for kind, triad in (("accelerometer", self.accel), ("gyro", self.gyro)):
+            out += ["%s of the %s" % (name, kind) for name, there in (
+                ("scale and misalignment", (triad.matrix != np.eye(3)).any()),
+                ("bias", triad.bias.any()), ("noise", triad.noise.any()),
+                ("step", triad.step.any()), ("range", np.isfinite(triad.limit).any()),
+                ("low-pass", triad.lag_s > 0), ("delay", triad.delay_s > 0)) if there]
+            out += ["%s of the %s" % (name, kind) for name in triad.effects]
+        out += ["lever arm"] if self.lever.any() else []
+        return out + (["g-sensitivity of the gyro"] if self.coupling.any() else [])
+
+
+def read(path):
+    """PutBack of the answer that `diagnose --json` printed; BadFile for anything else."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            answer = json.load(file)
+    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
+        raise BadFile("%s: %s, expected the JSON of sixflip diagnose --json" % (
+            path, getattr(error, "strerror", None) or error)) from None
+    if not isinstance(answer, dict) or "verdict" not in answer:
+        raise BadFile("%s: no diagnosis, expected the JSON of sixflip diagnose --json" % path)
+    if "simulator" not in answer:
+        raise UsageError("%s: a diagnosis without a simulator, expected one made with --sim"
+                         % path)
+    try:
+        return of(answer)
+    except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
+        raise BadFile("%s: damaged (%s), expected the JSON of sixflip diagnose --json" % (
+            path, error)) from None
+
+
+def of(answer):
+    """PutBack of an answer."""
+    simulator = answer["simulator"]
+    numbers = simulator["parameters"]
+    rate = ((numbers.get("device") or {}).get("rate") or {}).get("all") or {}
+    lags = {k: lag(numbers.get(k, {})) for k in ("accel", "gyro")}
+    delays, lever, left, first = relative_delay(numbers, lags), np.zeros(3), [], []
+    for c in simulator["conventions"]:
+        if c["name"] == "lever_arm_missing":
+            lever = np.array([c["value"][a] for a in AXES]) / 100.0
+        elif c["name"] in ("gyro_delay", "accel_delay"):
+            first.append("%s: %s" % (c["words"], c["set"]))
+        else:
+            first.append("%s%s" % (c["words"], ": " + c["set"] if c["set"] else ""))
+    triads, coupling = {}, np.zeros((3, 3))
+    effects = {"accel": {}, "gyro": {}}
+    for cause in answer["causes"]:
+        name, kind = cause["effect"], cause["sensor"]
+        if name == "g_sensitivity":
+            for key, value in cause["value"].items():
+                coupling[AXES.index(key[0]), AXES.index(key[1])] = value * DEG
+        elif name in EFFECTS and kind in effects and (kind == "accel" or name in (
+                "thermal_bias", "thermal_scale")):
+            effects[kind][name] = vector(cause["value"]) * size_of(name, kind)
+        else:
+            left.append("%s (%s)" % (name or " or ".join(cause["class"]), kind))
+    for kind in ("accel", "gyro"):
+        triads[kind] = triad(kind, numbers.get(kind, {}), effects[kind], lags[kind], delays[kind],
+                             float(rate.get("real") or 100.0))
+    return PutBack(triads["accel"], triads["gyro"], lever, coupling,
+                   float(rate.get("real") or 100.0), float(simulator.get("reference_c") or 25.0),
+                   tuple(first), tuple(left))
+
+
+def vector(values):
+    return np.array([float(values.get(a) or 0.0) for a in AXES])
+
+
+def size_of(name, kind):
+    """From the library's units to SI."""
+    if name == "thermal_scale":
+        return 0.01
+    return G / 1000.0 if kind == "accel" else DEG
+
+
+def triad(kind, named, effects, lag_s, delay_s, rate_hz):
+    """Triad of the parameters that differ."""
+    unit = G / 1000.0 if kind == "accel" else DEG
+    matrix = np.eye(3)
+    for name, size in (("scale", 0.01), ("misalignment", DEG)):
+        for axis, p in named.get(name, {}).items():
+            if p["differs"]:
+                matrix[AXES.index(axis[0]), AXES.index(axis[-1])] += p["difference"] * size
+    bias, noise, step, limit = np.zeros(3), np.zeros(3), np.zeros(3), np.full(3, np.inf)
+    for i, axis in enumerate(AXES):
+        for name, values in (("bias", bias), ("step", step), ("range", limit)):
+            p = named.get(name, {}).get(axis)
+            if p and p["differs"]:
+                values[i] = unit * (p["difference"] if name == "bias" else p["real"])
+        p = named.get("noise_density", {}).get(axis)
+        if p and p["differs"]:
+            noise[i] = unit * np.sqrt(max(p["real"] ** 2 - p["simulator"] ** 2, 0.0))
+    return Triad(matrix, bias, noise, step, limit, lag_s, delay_s, effects)
+
+
+def lag(named):
+    """s: the pole by which the real sensor is smoother than the simulator; 0 for none. A pole of
+    time constant tau differs from a delay by half its square, with the opposite sign."""
+    p = named.get("smoothness", {}).get("all")
+    return float(np.sqrt(2.0 * p["difference"])) * 1e-3 if p and p["differs"] and (
+        p["difference"] > 0) else 0.0
+
+
+def relative_delay(numbers, lags):
+    """{sensor: s}: the sensor to delay so that gyro and accelerometer lie as in the real one."""
+    p = numbers.get("gyro", {}).get("delay", {}).get("all")
+    wanted = 1e-3 * p["difference"] if p and p["differs"] else 0.0
+    wanted -= lags["gyro"] - lags["accel"]
+    return {"gyro": max(wanted, 0.0), "accel": max(-wanted, 0.0)}
+
+
+def header(found, comment, cannot):
+    """Lines that say where it comes from, what must be right first, what is not in it."""
+    lines = ["%s: what the real sensor has beyond the simulator, at %g Hz" % (MARK, found.rate_hz)]
+    lines += ["first: " + words for words in found.first]
+    lines += ["holds: " + (", ".join(found.holds) or "nothing: the two did not differ")]
+    lines += ["this target cannot express: " + ", ".join(cannot)] if cannot else []
+    lines += ["found, and not in here: " + ", ".join(found.left)] if found.left else []
+    return "".join("%s %s\n" % (comment, line.replace("--", "-")) for line in lines)

@@ -1,0 +1,141 @@
+"""The effect put back as settings of simulators, as far as their own settings reach."""
+import json
+
+import numpy as np
+
+from . import put_back
+
+AXES = "xyz"
+
+
+def lacking(found, expressed):
+    """Names of what is found and not among the kinds of things that a target expresses."""
+    return [name for name in found.holds
+            if not any(name.startswith(kind) for kind in expressed)]
+
+
+def per_sample(found, triad):
+    """(3,) standard deviation of a sample."""
+    return triad.noise * np.sqrt(found.rate_hz)
+
+
+def row(values, form="%.6g", between=" "):
+    return between.join(form % x for x in values)
+
+
+def gz(found):
+    """<sensor type="imu"> of SDF; the signed bias stands in <mean>, since <bias_mean> has its
+    sign drawn. https://sdformat.org/spec, imu.sdf and noise.sdf."""
+    cannot = lacking(found, ("bias", "noise", "step", "lever arm"))
+    lines = ['<?xml version="1.0"?>', "<!--\n%s-->" % put_back.header(found, " ", cannot),
+             '<sdf version="1.7">', ' <model name="imu">', '  <link name="imu_link">',
+             '   <sensor name="imu" type="imu">',
+             "    <pose>%s 0 0 0</pose>" % row(found.lever),
+             "    <update_rate>%.6g</update_rate>" % found.rate_hz, "    <imu>"]
+    for name, triad in (("angular_velocity", found.gyro), ("linear_acceleration", found.accel)):
+        lines.append("     <%s>" % name)
+        for i, axis in enumerate(AXES):
+            kind = "gaussian_quantized" if triad.step[i] > 0 else "gaussian"
+            lines += ["      <%s>" % axis, '       <noise type="%s">' % kind,
+                      "        <mean>%.6g</mean>" % triad.bias[i],
+                      "        <stddev>%.6g</stddev>" % per_sample(found, triad)[i]]
+            if triad.step[i] > 0:
+                lines.append("        <precision>%.6g</precision>" % triad.step[i])
+            lines += ["       </noise>", "      </%s>" % axis]
+        lines.append("     </%s>" % name)
+    return "\n".join(lines + ["    </imu>", "   </sensor>", "  </link>", " </model>", "</sdf>",
+                              ""])
+
+
+def mujoco(found):
+    """MJCF: a site at the lever arm and its two sensors; cutoff is the range. Since 3.1.4 the
+    engine adds no noise: the attribute is for whoever reads the model."""
+    cannot = lacking(found, ("lever arm", "range"))
+    lines = ["<mujoco>", "<!--\n%s  the rest: sixflip export with the target numpy, applied to "
+             "data.sensordata\n-->" % put_back.header(found, " ", cannot),
+             " <worldbody>", "  <!-- the site goes into the body that carries the sensor -->",
+             '  <body name="imu_body">', '   <site name="imu" pos="%s"/>' % row(found.lever),
+             "  </body>", " </worldbody>", " <sensor>"]
+    for name, triad in (("accelerometer", found.accel), ("gyro", found.gyro)):
+        limit = triad.limit.min()
+        lines.append('  <%s name="imu_%s" site="imu"%s noise="%.6g"/>' % (
+            name, name, ' cutoff="%.6g"' % limit if np.isfinite(limit) else "",
+            per_sample(found, triad).max()))
+    return "\n".join(lines + [" </sensor>", "</mujoco>", ""])
+
+
+def genesis(found):
+    """Options of gs.sensors.IMU; noise a sample, skew as rows of the matrix."""
+    cannot = lacking(found, ("bias", "noise", "step", "lever arm", "scale", "delay"))
+    lines = ["import genesis as gs", "", "", "def imu(entity_idx):",
+             '    """The sensor for scene.add_sensor()."""', "    return gs.sensors.IMU(",
+             "        entity_idx=entity_idx,",
+             "        pos_offset=(%s)," % row(found.lever, between=", ")]
+    for short, triad in (("acc", found.accel), ("gyro", found.gyro)):
+        lines += ["        %s_bias=(%s)," % (short, row(triad.bias, between=", ")),
+                  "        %s_noise=(%s)," % (short, row(per_sample(found, triad), between=", ")),
+                  "        %s_resolution=(%s)," % (short, row(triad.step, between=", ")),
+                  "        %s_cross_axis_coupling=(%s)," % (short, ", ".join(
+                      "(%s)" % row(r, between=", ") for r in triad.matrix))]
+    delay = max(found.accel.delay_s, found.gyro.delay_s)
+    both = found.accel.delay_s == found.gyro.delay_s
+    if delay and not both:
+        cannot = cannot + ["a delay of one sensor alone"]
+    lines += ["        delay=%.6g," % (delay if both else 0.0), "    )", ""]
+    return put_back.header(found, "#", cannot) + "\n".join(lines)
+
+
+def isaaclab(found):
+    """ImuCfg and the noise of the observation terms that read it."""
+    cannot = lacking(found, ("bias", "noise", "lever arm"))
+    lines = ["from isaaclab.sensors import ImuCfg", "from isaaclab.utils.noise import (",
+             "    GaussianNoiseCfg,", ")", "import torch", "",
+             "IMU = ImuCfg(", '    prim_path="{ENV_REGEX_NS}/Robot/imu_link",',
+             "    update_period=%.6g," % (1.0 / found.rate_hz),
+             "    offset=ImuCfg.OffsetCfg(pos=(%s))," % row(found.lever, between=", "), ")", ""]
+    for name, triad in (("LIN_ACC_NOISE", found.accel), ("ANG_VEL_NOISE", found.gyro)):
+        lines += ["# noise= of the ObsTerm of imu_%s" % ("lin_acc" if "LIN" in name else
+                                                        "ang_vel"),
+                  "%s = GaussianNoiseCfg(" % name,
+                  "    mean=torch.tensor([%s])," % row(triad.bias, between=", "),
+                  "    std=torch.tensor([%s])," % row(per_sample(found, triad), between=", "),
+                  '    operation="add",', ")", ""]
+    return put_back.header(found, "#", cannot) + "\n".join(lines)
+
+
+def matlab(found):
+    """JSON for loadparams(imuSensor, file, "sixflip"): fields of accelparams and gyroparams."""
+    cannot = lacking(found, ("bias", "noise", "step", "range", "scale", "thermal_bias",
+                             "thermal_scale", "g-sensitivity"))
+    parts = {}
+    for name, triad in (("Accelerometer", found.accel), ("Gyroscope", found.gyro)):
+        limit = triad.limit.min()
+        part = {"ConstantBias": triad.bias.tolist(),
+                "AxesMisalignment": (100.0 * triad.matrix).tolist(),
+                "NoiseDensity": triad.noise.tolist(), "NoiseType": "single-sided",
+                "Resolution": float(triad.step.max()),
+                "TemperatureBias": list(triad.effects.get("thermal_bias", np.zeros(3))),
+                "TemperatureScaleFactor": [100.0 * x for x in triad.effects.get(
+                    "thermal_scale", np.zeros(3))]}
+        if np.isfinite(limit):
+            part["MeasurementRange"] = float(limit)
+        parts[name] = part
+    coupling = found.coupling
+    parts["Gyroscope"]["AccelerationBias"] = (np.diag(coupling) / put_back.G).tolist()
+    if (coupling != np.diag(np.diag(coupling))).any():
+        cannot = cannot + ["g-sensitivity across the axes"]
+    about = put_back.header(found, "", cannot).strip().split("\n")
+    return json.dumps({"about": [line.strip() for line in about], "sixflip": parts},
+                      indent=1) + "\n"
+
+
+def kalibr(found):
+    """imu.yaml: two densities of the noise to add, one number for three axes."""
+    cannot = lacking(found, ("noise",))
+    return put_back.header(found, "#", cannot) + (
+        "rostopic: /imu0\nupdate_rate: %.6g  # Hz\n"
+        "accelerometer_noise_density: %.6g  # m/s^2/sqrt(Hz)\n"
+        "accelerometer_random_walk: 0.0  # not measured\n"
+        "gyroscope_noise_density: %.6g  # rad/s/sqrt(Hz)\n"
+        "gyroscope_random_walk: 0.0  # not measured\n") % (
+            found.rate_hz, found.accel.noise.max(), found.gyro.noise.max())

@@ -1,0 +1,127 @@
+"""Stage 7: the capture, by hand and within ten minutes, that tells the most apart."""
+import copy
+
+import numpy as np
+
+from ..experiment import projection
+from ..experiment.session_rows import rows_of
+from . import alias, protocols
+
+MOST_MINUTES = 10.0
+APART = 0.9
+WORDS = {
+    "cooling": "one cooling session, 12 poses", "warm": "one session started warm, 12 poses",
+    "backward": "12 poses, then the same backward", "random": "12 poses in random order",
+    "leaning": "12 poses and 12 leaning ones",
+    "long": "7 poses with a minute of rest on each", "shaken": "12 poses with the vibration on"}
+
+
+def candidates():
+    """{name: SessionPlan}"""
+    fixed = protocols.order_of("fixed")
+    random = protocols.order_of("random", 11)
+    long = protocols.faces_session([1, 3, 5, 7, 9, 11, 2], dwell_s=60.0, state="warm")
+    shaken = protocols.faces_session(fixed, state="warm")
+    shaken.vibration_mg = 300.0
+    return {"cooling": protocols.faces_session(random, state="cooling"),
+            "warm": protocols.faces_session(random, state="warm"),
+            "backward": protocols.faces_session(fixed, backward=True, state="warm"),
+            "random": protocols.faces_session(random, state="warm"),
+            "leaning": protocols.faces_session(random, 12, state="warm"),
+            "long": long, "shaken": shaken}
+
+
+def present(diagnosis):
+    """The protocol that the captures look like, as a plan's sessions."""
+    sessions = []
+    for session in next(iter(diagnosis.gaps.values())).sessions:
+        codes = [run[0] for run in session.runs]
+        leaning = sum(f < 0 for f in _faces(codes))
+        on_face = [c for c in codes if 1 <= c <= 12]
+        state = "warming"
+        if session.temperature is not None:
+            change = float(session.temperature[-1] - session.temperature[0])
+            state = "cooling" if change < -0.5 else ("warming" if change > 4.0 else "warm")
+        dwell = float(np.median([e - f for _, f, e in session.runs])) / session.rate
+        plan = protocols.faces_session(on_face, leaning, state=state,
+                                       dwell_s=float(np.clip(dwell, 1.0, 120.0)))
+        sessions.append(plan)
+    return protocols.Protocol("present", sessions)
+
+
+def _faces(codes):
+    from sixflip import faces
+    return [faces.face_of_code(c) for c in codes]
+
+
+def pairs(diagnosis):
+    """[(sensor, a, b)] that the captures leave unresolved."""
+    found = []
+    for kind, cause in diagnosis.causes:
+        names = cause.names
+        found += [(kind, a, b) for i, a in enumerate(names) for b in names[i + 1:]]
+    return found
+
+
+def proposed(diagnosis):
+    """list of {capture, minutes, resolves}, the best per minute first; at most three."""
+    if not diagnosis.gaps:
+        unresolved = [[c.effect, other] for gap in diagnosis.rest.values() for c in gap.causes
+                      for other in c.names[1:]]
+        return [{"capture": WORDS["cooling"], "minutes": 4.0, "resolves": unresolved}] \
+            if unresolved else []
+    wanted = pairs(diagnosis)
+    if not wanted:
+        return _unseen_help(diagnosis)
+    out = [(len(found) / minutes, words, minutes, found) for words, minutes, found in
+           _by_design(diagnosis, wanted) + _by_hand(wanted) if found]
+    out.sort(key=lambda entry: -entry[0])
+    return [{"capture": words, "minutes": round(minutes, 1),
+             "resolves": [[a, b] for _, a, b in found]} for _, words, minutes, found in out[:3]]
+
+
+def _by_design(diagnosis, wanted):
+    """[(capture, minutes, pairs it resolves)] of the candidates, by their alias index."""
+    out = []
+    for name, plan in candidates().items():
+        if plan.minutes > MOST_MINUTES:
+            continue
+        protocol = present(diagnosis)
+        protocol.sessions = [*protocol.sessions, copy.deepcopy(plan)]
+        rows = rows_of(protocol, 2)
+        found = []
+        for kind in sorted({kind for kind, _, _ in wanted}):
+            design = alias.PlannedModel(rows, kind, diagnosis.settings.certified)
+            found += resolved(design, kind, [p for p in wanted if p[0] == kind])
+        out.append((WORDS[name], plan.minutes, found))
+    return out
+
+
+def _by_hand(wanted):
+    """What no plan's single exponential of temperature can hold."""
+    found = [p for p in wanted if {p[1], p[2]} == {"thermal_bias", "thermal_rate"}]
+    return [("12 poses twice, the box warmed (hair dryer) and left to cool halfway", 7.0, found)]
+
+
+def resolved(design, kind, wanted):
+    """The pairs that are no longer aliased in a design."""
+    known = alias.ACCEL if kind == "accel" else alias.GYRO
+    names = {n for _, a, b in wanted for n in (a, b)} & set(known)
+    signature = {n: design.signature(n) for n in names}
+    found = []
+    for pair in wanted:
+        one, two = signature.get(pair[1]), signature.get(pair[2])
+        if one is None or two is None:
+            continue
+        if max(projection.alias_index(one, two), projection.alias_index(two, one)) < APART:
+            found.append(pair)
+    return found
+
+
+def _unseen_help(diagnosis):
+    """Where nothing is ambiguous: what would let the silent effects speak."""
+    gap = next(iter(diagnosis.gaps.values()))
+    if any((s.face < 0).any() for s in gap.sessions):
+        return []
+    return [{"capture": WORDS["leaning"], "minutes": round(candidates()["leaning"].minutes, 1),
+             "resolves": [["cubic", "thermal_scale"], ["quadratic", "box_tilt"]]}]

@@ -1,0 +1,110 @@
+"""The report: one page that needs nothing else, and its pictures."""
+from pathlib import Path
+
+from .. import atomic_write
+from ..errors import UsageError
+from . import gap_pictures, gap_words, simulator_pictures, simulator_words
+from .page import Page
+
+PAGE = "index.html"
+PICTURES = ("where", "residuals_accel", "residuals_gyro", "poses_accel", "poses_gyro", "noise",
+            "alias", "simulator_traces", "simulator_spectra")
+
+
+def write(folder, diagnosis, answer, loops):
+    """Write index.html and the PNGs into a folder, made if it is not there."""
+    folder = Path(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UsageError("--report %s: %s" % (folder, error.strerror)) from None
+    drawn = draw(folder, diagnosis, loops)
+    atomic_write.write_text(str(folder / PAGE), page(answer, drawn))
+
+
+def draw(folder, diagnosis, loops):
+    """[(caption, path of the PNG)]"""
+    found = []
+
+    def picture(name, caption, function, *args):
+        path = folder / (name + ".png")
+        if function(*args, str(path)) is not False:
+            found.append((caption, path))
+
+    compared = next((x for x in diagnosis.comparisons if x.fits), None)
+    if compared is not None:
+        picture("simulator_traces", "Real, simulated, and simulated with what was found",
+                simulator_pictures.traces, compared)
+        picture("simulator_spectra", "What is left, by frequency", simulator_pictures.spectra,
+                compared)
+    picture("where", "Where the gap lies", gap_pictures.heat_map, diagnosis)
+    for kind, gap in diagnosis.gaps.items():
+        title = gap_pictures.NAME[kind]
+        picture("residuals_" + kind, "Residuals of the %s before and after" % title,
+                gap_pictures.residuals, gap)
+        picture("poses_" + kind, "Residuals of the %s by placement" % title,
+                gap_pictures.poses, gap)
+    if diagnosis.sessions[0].n:
+        picture("noise", "Spectrum and Allan deviation", gap_pictures.noise, diagnosis, loops)
+    if diagnosis.gaps:
+        picture("alias", "What could be taken for what", gap_pictures.alias_matrix, diagnosis)
+    return found
+
+
+def page(answer, drawn):
+    """The HTML, pictures included."""
+    out = Page("Gap", gap_words.sentence(answer))
+    sections(out, answer, [(caption, path.read_bytes()) for caption, path in drawn])
+    return out.html()
+
+
+def sections(page, answer, drawn):
+    """What the answer holds, behind its sentence; drawn: [(caption, bytes of a PNG)]"""
+    for remark in answer["remarks"]:
+        page.paragraph(remark, note=True)
+    if "simulator" in answer:
+        simulator_sections(page, answer["simulator"])
+    if answer["causes"]:
+        page.heading("Which effect")
+        page.table(gap_words.WHICH, [gap_words.row(c) for c in answer["causes"]])
+    lines = [gap_words.shrinkage_line(k, g, answer["held_out"]) for k, g in answer["gap"].items()]
+    lines += [gap_words.loop_line(k, g) for k, g in answer.get("simulated", {}).items()]
+    if lines:
+        page.heading("How far")
+        for line in lines:
+            page.paragraph(line)
+    for caption, png in drawn:
+        page.picture(caption, png)
+    if answer["next"]:
+        page.heading("To capture next")
+        page.table(("capture", "minutes", "tells apart"),
+                   [(n["capture"], "%.0f" % n["minutes"],
+                     ", ".join(" / ".join(p) for p in n["resolves"])) for n in answer["next"]])
+    if answer["unseen"]:
+        page.heading("What could not be seen")
+        page.table(("effect", "sensor", "why"), [
+            (u["effect"], gap_words.SENSOR[u["sensor"]], u["reason"]) for u in answer["unseen"]])
+
+
+def simulator_sections(page, simulator):
+    """The layers of the comparison with a simulator, for its author."""
+    for log in simulator["logs"]:
+        for remark in log["remarks"]:
+            page.paragraph(remark, note=True)
+    page.heading("The simulator's conventions")
+    if simulator["conventions"]:
+        page.table(simulator_words.CONVENTIONS, simulator_words.convention_rows(simulator))
+    else:
+        page.paragraph("None is other than a sensor's, as far as these logs can show.")
+    page.heading("Parameters side by side")
+    page.table(simulator_words.PARAMETERS, simulator_words.parameter_rows(simulator, True))
+    page.heading("What it does to a robot")
+    for line in simulator_words.lines(simulator):
+        page.paragraph(line)
+    settings = simulator_words.settings(simulator)
+    if settings:
+        page.heading("Settings to paste")
+        page.table(("setting", "value"), settings)
+        page.paragraph("As code or in a simulator's own format: sixflip diagnose with --json into "
+                       "a file, then sixflip export FILE --to numpy, gz, mujoco, genesis, "
+                       "isaaclab, matlab or kalibr.", note=True)

@@ -1,0 +1,213 @@
+"""The answer for people: the verdict in one sentence, then tables."""
+from ..calibrate import term_words
+from ..experiment.terms import DOMAIN
+from ..terminal import console, plain, styled, table
+from . import simulator_words
+
+SENSOR = {"accel": "accelerometer", "gyro": "gyro", "device": "device",
+          "gyro_turns": "gyro in motion", "accel_motion": "accelerometer in motion"}
+STYLE = {"no gap": "bold green", "explained": "bold green", "partly explained": "bold yellow",
+         "unexplained": "bold red", "cannot tell": "bold yellow"}
+WHICH = ("effect", "sensor", "probability", "share", "size (90 % interval)")
+SUREST = 0.99
+DOES = {  # what a part with this effect does
+    "thermal_bias": "drifts with temperature", "thermal_scale": "changes its scale with "
+    "temperature", "warm_up": "drifts after it is switched on", "thermal_rate": "follows how fast "
+    "the temperature changes", "quadratic": "is bent (quadratic)", "cross_quadratic":
+    "feels products of the other axes", "cubic": "is bent (cubic)", "asymmetry":
+    "has different scales up and down", "g_sensitivity": "feels gravity", "drift":
+    "wanders by itself", "quantisation": "counts in steps", "dead_band": "reads 0 near 0",
+    "saturation": "hits its limit", "vibration": "is shaken at a steady frequency",
+    "vibration_rectification": "shifts when it is shaken", "hysteresis":
+    "remembers the pose before", "creep": "creeps after each move", "box_tilt":
+    "sits in a box whose faces are not square", "torn_reads": "mixes bytes of two readings",
+    "axis_swap": "has its axes swapped or inverted", "sample_rate": "runs at another rate than "
+    "it says", "dropped_samples": "loses samples", "supply": "follows the supply",
+    "lever_arm": "sits off the point it is turned about", "filter_lag": "is behind the other "
+    "sensor"}
+
+
+def sentence(answer):
+    """The first line."""
+    if "simulator" in answer:
+        return simulator_words.sentence(answer, _effects_sentence)
+    return _effects_sentence(answer)
+
+
+def _effects_sentence(answer):
+    """The first line of the effects alone."""
+    causes = [c for c in answer["causes"] if c["plausible"]]
+    verdict = answer["verdict"]
+    if verdict == "no gap":
+        return "No gap: the real sensor does what the nominal simulator does%s." % (
+            ", as far as this capture can show" if answer["unseen"] else "")
+    if verdict == "unexplained":
+        return "There is a gap, but nothing in the library explains it%s." % _place(answer)
+    if verdict == "cannot tell" and not causes:
+        return ("This capture cannot tell: it shows no gap, but most effects would not show in "
+                "it either.")
+    first = " ".join(_clause(c) for c in causes[:2])
+    closed = _closed(answer)
+    if verdict == "cannot tell":
+        return first + " This capture cannot tell which. " + closed
+    if verdict == "partly explained":
+        return first + " " + closed + " Something else is left that the library does not explain."
+    return (first + " " + closed).strip()
+
+
+def _place(answer):
+    if not answer["where"]:
+        return ""
+    w = answer["where"][0]
+    return ": look at %s%s of the %s" % (
+        w["domain"].replace("_", " "), ", axis " + w["axis"] if w["axis"] else "",
+        SENSOR[w["sensor"]])
+
+
+def _clause(cause):
+    axes = " and ".join(a.upper() for a in cause["axes"])
+    who = "The %s%s" % (axes + " " if axes else "", SENSOR[cause["sensor"]])
+    if cause["effect"]:
+        return "%s %s%s." % (who, _does(cause), _size(cause))
+    names = [n.replace("_", " ") for n in cause["class"]]
+    if len({DOMAIN[n] for n in cause["class"]}) == 1:
+        return "%s %s%s (%s)." % (who, DOES.get(cause["class"][0]), _size(cause),
+                                  " or ".join(names))
+    return "%s shows one of: %s." % (who, ", ".join(names))
+
+
+def _does(cause):
+    """What a part with this effect does; what shakes it has a frequency or has none."""
+    if cause["effect"] != "vibration":
+        return DOES.get(cause["effect"], cause["effect"])
+    if not cause.get("hz"):
+        return "is shaken, at no steady frequency"
+    lines = {}
+    for axis, hz in cause["hz"].items():
+        lines.setdefault("%.6g Hz" % hz, []).append(axis.upper())
+    return "is shaken at a steady frequency, " + ", ".join(
+        hz + (" on " + " and ".join(axes) if len(lines) > 1 else "") for hz, axes in lines.items())
+
+
+def _size(cause):
+    values = [v for v in cause["value"].values() if v is not None]
+    if not values or cause["unit"] in ("1", "axis"):
+        return ""
+    if len(values) == 1:
+        return ", %.3g %s" % (values[0], cause["unit"])
+    return ", up to %.3g %s" % (max(values, key=abs), cause["unit"])
+
+
+def _closed(answer):
+    parts = []
+    for kind, gap in answer["gap"].items():
+        if gap["explained_share"] is not None:
+            parts.append("%.0f %% of the %s's gap" % (100 * max(0.0, gap["explained_share"]),
+                                                      SENSOR[kind]))
+    return "Adding that closes %s." % " and ".join(parts) if parts else ""
+
+
+def show(answer):
+    """Print everything."""
+    out = console()
+    out.print(styled(plain(sentence(answer)), STYLE[answer["verdict"]]))
+    for remark in answer["remarks"]:
+        out.print(plain("  " + remark))
+    if "simulator" in answer:
+        simulator_words.show(out, answer["simulator"])
+    if answer["where"]:
+        out.print(table("Where", ("sensor", "axis", "domain", "share", "p"), [
+            (SENSOR[w["sensor"]], w["axis"] or "-", w["domain"].replace("_", " "),
+             "%.0f %%" % (100 * w["share"]), chance(w["p"])) for w in answer["where"][:12]]))
+    if answer["causes"]:
+        out.print(table("Which", WHICH, [row(c) for c in answer["causes"]], prose=True))
+    for kind, gap in answer["gap"].items():
+        out.print(plain(shrinkage_line(kind, gap, answer["held_out"])))
+        if "axes" in gap:
+            out.print(plain("  " + axes_line(gap)))
+    for kind, loop in answer.get("simulated", {}).items():
+        out.print(plain(loop_line(kind, loop)))
+    _rest(out, answer)
+    if "terms" in answer:
+        show_terms(out, answer["terms"])
+
+
+def chance(p):
+    """A probability; far below what any of its assumptions holds to, only that it is small."""
+    return "%.1g" % p if p >= 1e-6 else "< 1e-6"
+
+
+def percent(p):
+    """A probability in words: never more sure than the model is of itself."""
+    if p > SUREST:
+        return "> %.0f %%" % (100.0 * SUREST)
+    return "%.0f %%" % (100.0 * p) if p >= 0.005 else "< 1 %"
+
+
+def row(c):
+    """Effect, sensor, probability, share and every size with its interval, as text."""
+    name = c["effect"] or " or ".join("%s %s" % (effect, percent(p)) for effect, p in
+                                      c["class_probabilities"].items())
+    if not c["plausible"]:
+        name += " (numerically helpful, physically implausible)"
+    sizes = []
+    for key, value in c["value"].items():
+        low, high = c["interval_90"].get(key, [None, None])
+        span = "" if low is None or low == high else " (%.3g … %.3g)" % (low, high)
+        sizes.append("%s %s%s" % (key, "not determined" if value is None else "%.3g" % value,
+                                  span))
+    return (name, SENSOR[c["sensor"]], percent(c["probability"]),
+            "-" if c["share"] is None else "%.0f %%" % (100 * c["share"]),
+            ", ".join(sizes) + " " + c["unit"])
+
+
+def shrinkage_line(kind, gap, held):
+    text = "How far, %s (%s): %.3g %s before" % (SENSOR[kind], held, gap["before"], gap["unit"])
+    if gap["explained_share"] is None:
+        return text + ", noise alone %.3g." % gap["floor"]
+    text += ", %.3g after, noise alone %.3g" % (gap["after"], gap["floor"])
+    low, high = gap["interval_90"] or (None, None)
+    if low is None:
+        return text + "; gap too small to measure."
+    return text + "; %.0f %% of what can be explained (90 %%: %.0f to %.0f)." % (
+        100 * gap["explained_share"], 100 * low, 100 * high)
+
+
+def axes_line(gap):
+    """Before, after and noise of each axis."""
+    return "; ".join("%s %.3g -> %.3g, noise %.3g" % (
+        key.upper(), one["before"], one["after"], one["floor"])
+        for key, one in gap["axes"].items()) + " " + gap["unit"]
+
+
+def loop_line(kind, loop):
+    """The simulator run again, in a sentence."""
+    return ("Simulated again with %s: real less simulated %.3g %s before, %.3g after, noise in "
+            "it %.3g (%s)." % (", ".join(sorted({e["effect"] for e in loop["effects"]})),
+                                 loop["before"], loop["unit"], loop["after"], loop["floor"],
+                                 SENSOR[kind]))
+
+
+def _rest(out, answer):
+    if answer["unseen"]:
+        out.print("Could not be seen:")
+        for u in answer["unseen"]:
+            out.print(plain("  %s (%s): %s" % (u["effect"], SENSOR[u["sensor"]], u["reason"])))
+    if answer["next"]:
+        out.print("To capture next:")
+        for n in answer["next"]:
+            out.print(plain("  %s (%.0f minutes): tells %s" % (
+                n["capture"], n["minutes"], ", ".join(" from ".join(p) for p in n["resolves"]))))
+
+
+def show_terms(out, result):
+    """Print what correction_terms.answer() holds."""
+    for term in result["found"]:
+        for line in term_words.lines(term):
+            out.print(plain("Into the record: " + line))
+    for one in result["left_out"]:
+        out.print(plain("Not into the record: %s (%s): %s" % (
+            " or ".join(one["effects"]), one["sensor"], one["reason"])))
+    if result["written"]:
+        out.print(plain("%s: sixflip restore --from it puts it onto the board"
+                        % result["written"]))

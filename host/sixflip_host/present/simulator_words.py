@@ -1,0 +1,112 @@
+"""The comparison with a user's own simulator for people: conventions, parameters, task."""
+from ..terminal import plain, table
+
+CONVENTIONS = ("convention", "sensor", "sure", "what to set")
+PARAMETERS = ("parameter", "real", "simulator", "real less simulator (90 %)", "set to")
+SENSOR = {"accel": "accelerometer", "gyro": "gyro", "device": "device"}
+
+
+def sentence(answer, effects):
+    """The first line; effects: function of the answer to the sentence of its effects' layer."""
+    found = answer["simulator"]["conventions"]
+    numbers = differing(answer["simulator"])
+    if not found and not numbers:
+        if answer["verdict"] == "no gap":
+            return ("No gap: the simulator says what the real sensor says, as far as these logs "
+                    "can show.")
+        return effects(answer)
+    parts = []
+    if found:
+        parts.append(" ".join(capital(c["words"]) + "." for c in found[:2]))
+        if len(found) > 2:
+            parts.append("%d conventions more are in the table." % (len(found) - 2))
+    if numbers:
+        names = list(dict.fromkeys("%s of the %s" % (name.replace("_", " "), SENSOR[sensor])
+                                   for sensor, name, _, _ in numbers))
+        parts.append("It has other numbers than the real sensor: %s%s." % (
+            ", ".join(names[:4]), " and %d more" % (len(names) - 4) if len(names) > 4 else ""))
+    if answer["verdict"] in ("unexplained", "partly explained"):
+        parts.append("Something else is left that nothing here explains.")
+    return " ".join(parts)
+
+
+def capital(text):
+    return text[:1].upper() + text[1:]
+
+
+def differing(simulator):
+    """[(sensor, name, axis, parameter)] of those that differ."""
+    return [(sensor, name, axis, p) for sensor, named in simulator["parameters"].items()
+            for name, axes in named.items() for axis, p in axes.items() if p["differs"]]
+
+
+def show(out, simulator):
+    """Print the layers."""
+    for log in simulator["logs"]:
+        for remark in log["remarks"]:
+            out.print(plain("  " + remark))
+    if simulator["conventions"]:
+        out.print(table("Conventions", CONVENTIONS, convention_rows(simulator), prose=True))
+    rows = parameter_rows(simulator)
+    if rows:
+        out.print(table("Parameters that differ", PARAMETERS, rows, prose=True))
+    for line in lines(simulator):
+        out.print(plain(line))
+
+
+def lines(simulator):
+    """The task, the gap and what was not seen, a sentence each."""
+    out = []
+    for kind, gap in simulator["gap"].items():
+        out.append("Simulator less real, %s: %.3g %s before, %.3g with conventions and parameters "
+                   "put right (held out), noise alone %.3g." % (
+                       SENSOR[kind], gap["before"], gap["unit"], gap["after"], gap["floor"]))
+    task = simulator["task"]
+    if task:
+        out.append("Task (%s against %s): roll and pitch %.2f° before, %.2f° after; heading %.2f° "
+                   "before, %.2f° after." % (
+                       task["estimator"], task["against"], task["attitude"]["before"],
+                       task["attitude"]["after"], task["heading"]["before"],
+                       task["heading"]["after"]))
+    out += ["Not seen: %s." % said for said in simulator["unseen"]]
+    return out
+
+
+def convention_rows(simulator):
+    several = len(simulator["logs"]) > 1
+    return [(c["words"].replace("the simulator's ", "").replace("the simulator ", "")
+             + (" (%s)" % c["log"] if several else ""), SENSOR[c["sensor"]],
+             "%.1f %%" % (100.0 * min(c["probability"], 0.999)), c["set"])
+            for c in simulator["conventions"]]
+
+
+def parameter_rows(simulator, all_of_them=False):
+    """Rows of PARAMETERS; those that differ, or all."""
+    out = []
+    for sensor, named in simulator["parameters"].items():
+        for name, axes in named.items():
+            for axis, p in axes.items():
+                if not (p["differs"] or all_of_them):
+                    continue
+                label = "%s%s, %s" % (name.replace("_", " "), "" if axis == "all" else " " + axis,
+                                      SENSOR[sensor])
+                out.append((label, valued(p["real"], p["real_interval_90"], ""),
+                            valued(p["simulator"], p["simulator_interval_90"], ""),
+                            valued(p["difference"], p["difference_interval_90"], p["unit"]),
+                            "" if p["set"] is None else "%.4g %s" % (p["set"], p["unit"])))
+    return out
+
+
+def settings(simulator):
+    """[(setting, value)] of all that is to be set."""
+    out = [(c["words"], c["set"]) for c in simulator["conventions"] if c["set"]]
+    return out + [(row[0], row[4]) for row in parameter_rows(simulator) if row[4]]
+
+
+def valued(value, interval, unit):
+    if value is None:
+        return "-"
+    text = "%.3g" % value
+    if interval is not None:
+        text += " (%.3g … %.3g)" % tuple(interval)
+    return (text + " " + unit).strip()

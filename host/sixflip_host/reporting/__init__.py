@@ -1,1 +1,0 @@
-"""Pages and pictures to look at: one file each, nothing to fetch, nothing to run."""

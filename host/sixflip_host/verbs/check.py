@@ -1,0 +1,157 @@
+"""sixflip check: does the calibration still hold? One rest of some seconds against the record."""
+
+import json
+import math
+
+from sixflip.correction_of import correction_of
+
+from ..board import check_words
+from ..board.board_events import wait_for
+from ..board.ports import add_port, open_link
+from ..calibrate import verify_files
+from ..capture import capture_file, rests
+from ..errors import CheckFailed, UsageError
+from ..file_arguments import add_input
+from ..history import remember
+from ..terminal import say
+from .solve import local_gravity
+
+HELP = "is the calibration still valid? some seconds of rest against the record"
+EXAMPLE = ("sixflip check\n"
+           "         sixflip check rest.csv --record record_a.bin")
+# The board's own limits (still_valid.py of the firmware; a test compares them): what ageing, a
+# knock or warming by 15 K may well do to a calibrated sensor, and what they do not.
+GOOD_MG = 5.0
+NOISE_TIMES = 3.0
+WARMER_C = 15.0
+# A bias that wandered is no fault, it is taken anew at every power-up; so much is another gyro.
+BIAS_DPS = 5.0
+
+
+def add_arguments(parser):
+    """The options of the verb."""
+    add_input(parser, "capture", nargs="?",
+              help="capture of some seconds of rest (default: a board measures now)")
+    add_input(parser, "--record", help="the correction record; with a capture")
+    parser.add_argument("--g", type=float, help="gravity of this place, m/s² (default: what the "
+                        "capture says, else the record)")
+    parser.add_argument("--lat", type=float, metavar="DEG", help="latitude, for gravity")
+    parser.add_argument("--height", type=float, metavar="M", help="height above the ellipsoid")
+    add_port(parser)
+    parser.add_argument("--json", action="store_true", help="the answer as one JSON object")
+
+
+def run(args):
+    """Answer in words; 1 when the calibration no longer holds."""
+    if args.capture and not args.record:
+        raise UsageError("a capture needs --record, the record to hold it against")
+    if args.record and not args.capture:
+        raise UsageError("--record needs a capture; a board checks its own record")
+    if args.capture and args.port:
+        raise UsageError("a capture and --port: expected one of the two")
+    g = local_gravity(args)
+    if g is not None and not args.capture:
+        raise UsageError("--g and --lat need a capture; a board knows its g from its settings")
+    if args.capture:
+        capture = capture_file.read_samples(args.capture)
+        board = capture.meta.get("device_id")
+        found = compare(capture, verify_files.accelerometer_record(args.record), g)
+    else:
+        board, found = ask_board(args.port)
+    remember.checked(board, found)
+    if args.json:
+        print(json.dumps(found))
+    else:
+        say(check_words.lines(found))
+    return 0 if found["valid"] else CheckFailed.exit_code
+
+
+def compare(capture, record, g=None):
+    """The answer for a capture at rest; CheckFailed when it is no rest. g in m/s² of the place."""
+    verify_files.fits(record, capture)
+    rest = rests.longest(capture)
+    if rest.reason:
+        raise CheckFailed("not checked, there is no rest: %s" % rest.reason)
+    correction = correction_of(record)
+    a = correction.apply(rest.means, [0.0] * 6)[:3]
+    g = g or capture.meta.get("g", record.g)
+    temp_c = _celsius(capture, rest)
+    found = {
+        "a_error_mg": 1e3 * (math.sqrt(sum(x * x for x in a)) / g - 1.0),
+        "noise_mg": rest.noise_mg(record.accel_lsb_per_g)[0],
+        "noise_then_mg": 1e3 * record.accel["noise_g"] if record.accel["noise_g"] else None,
+        "temp_c": temp_c, "temp_then_c": record.temp_c,
+        "drift_known": _drift_known(correction, temp_c),
+        "bias_dps": None, "bias_then_dps": None, "seconds": rest.n / capture.meta["rate_hz"],
+        "record_verdict": record.accel["verdict"], "record_reason": record.accel["reason"]}
+    if capture.gyro is not None:
+        found["bias_dps"] = [x / capture.meta["gyro_lsb_per_dps"] for x in rest.means[3:6]]
+        if record.gyro_bias:
+            found["bias_then_dps"] = list(record.gyro_bias["bias_dps"])
+    return judged(found)
+
+
+def _drift_known(correction, temp_c):
+    """Whether a term takes the accelerometer's drift out at this temperature."""
+    between = getattr(correction, "range_c", None)
+    return temp_c is not None and between is not None and between[0] <= temp_c <= between[1]
+
+
+def _celsius(capture, rest):
+    if capture.temp is None:
+        return None
+    return rest.means[6] / capture.meta["temp_lsb_per_c"] + capture.meta["temp_offset_c"]
+
+
+def judged(found):
+    """The answer with `against`, a list of sentences, and `valid`."""
+    against = []
+    if found["record_verdict"] == "refused":
+        against.append("the record itself was refused")
+    if not abs(found["a_error_mg"]) <= GOOD_MG:
+        against.append("|a| is %+.1f mg off, %.0f is the limit: calibrate again"
+                       % (found["a_error_mg"], GOOD_MG))
+    if found["noise_then_mg"] and not found["noise_mg"] <= NOISE_TIMES * found["noise_then_mg"]:
+        against.append("the noise is %.1f mg, at the calibration it was %.1f: the sensor is "
+                       "shaken or damaged" % (found["noise_mg"], found["noise_then_mg"]))
+    now, then = found["temp_c"], found["temp_then_c"]
+    if now is not None and then is not None and not abs(now - then) <= WARMER_C \
+            and not found["drift_known"]:
+        against.append("it is %.1f °C, at the calibration it was %.1f: biases move with "
+                       "temperature" % (now, then))
+    if found["bias_dps"] and found["bias_then_dps"]:
+        moved = max(abs(x - y) for x, y in zip(found["bias_dps"], found["bias_then_dps"]))
+        if not moved <= BIAS_DPS:
+            against.append("the gyro's bias moved by %.1f deg/s, %.0f is the limit: it turns, or "
+                           "it is another gyro" % (moved, BIAS_DPS))
+    return dict(found, format=1, kind="sixflip check", valid=not against, against=against)
+
+
+def ask_board(port):
+    """(id, answer) of a board's own check; CheckFailed when it has none."""
+    seen = {}
+    with open_link(port) as link:
+        board = link.board_id()
+        link.reset()
+        started = wait_for(link, ("ready", "calibrating"),
+                           seen=lambda event: seen.update({event["event"]: event}))
+        if started["event"] == "calibrating":
+            raise CheckFailed("%s: no correction is in force, so the board is calibrating; there "
+                              "is nothing to check" % link.port)
+        link.send(json.dumps({"cmd": "check"}))
+        event = wait_for(link, ("check", "error"))
+    if event["event"] == "error":
+        raise CheckFailed("not checked: %s; expected %s" % (event["what"], event.get("expected")))
+    if not event["still"]:
+        raise CheckFailed("not checked, there is no rest: %s" % event.get("reason"))
+    record = seen.get("record") or {}
+    valid = event["verdict"] == "good"
+    board = seen.get("hello", {}).get("id") or board
+    return board, {
+        "format": 1, "kind": "sixflip check", "valid": valid,
+        "against": [] if valid else event.get("words") or [],
+        "a_error_mg": event.get("a_error_mg"), "noise_mg": event.get("noise_mg"),
+        "noise_then_mg": None, "temp_c": event.get("temp_c"),
+        "temp_then_c": record.get("temp_c"), "record_verdict": record.get("verdict"),
+        "record_reason": record.get("reason"),
+        "bias_dps": event.get("bias_dps"), "bias_then_dps": None, "seconds": None}

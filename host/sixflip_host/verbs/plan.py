@@ -1,0 +1,78 @@
+"""sixflip plan: what a capture would be able to tell apart, before anything is captured."""
+import json
+
+from sixflip.chips import catalogue
+
+from .. import file_kinds, progress
+from ..did_you_mean import instead
+from ..errors import UsageError
+from ..file_arguments import add_input, add_output
+from ..planning import plan_answer, plan_file, protocols
+
+HELP = "say what a capture can tell apart, what it cannot, and what to add; no capture needed"
+EXAMPLE = "sixflip plan --protocol recommended --sensor mpu6050 --save session.json"
+SENSORS = (*catalogue.SENSORS, "itg3205")
+MOST_PLACEMENTS = 120  # dense algebra: the time grows with the cube
+
+
+def add_arguments(parser):
+    add_input(parser, "--protocol", default="recommended", metavar="NAME|FILE",
+              help="%s, or a plan file (default: recommended)" % ", ".join(protocols.STILL))
+    parser.add_argument("--sensor", default="mpu6050", choices=SENSORS,
+                        help="whose typical sizes and noise to judge by (default: mpu6050)")
+    parser.add_argument("--certified-box", action="store_true",
+                        help="the box is known to be square (its faces are no unknowns)")
+    parser.add_argument("--rate", type=float, default=100.0, metavar="HZ",
+                        help="samples a second (default: 100)")
+    parser.add_argument("--minutes", type=float, metavar="N",
+                        help="propose only what keeps the whole capture within N minutes")
+    parser.add_argument("--json", action="store_true", help="the answer as JSON")
+    add_output(parser, "--plot", metavar="PNG", kinds=(file_kinds.PNG,),
+               help="draw the alias matrix")
+    add_output(parser, "--save", metavar="FILE", kinds=(file_kinds.PLAN,),
+               help="write the protocol as a plan file")
+
+
+def run(args):
+    if not 1.0 <= args.rate <= 10000.0:
+        raise UsageError("--rate is %g, expected 1 to 10000 Hz" % args.rate)
+    if args.minutes is not None and not 0.0 < args.minutes <= 10000.0:
+        raise UsageError("--minutes is %g, expected more than 0" % args.minutes)
+    protocol = protocol_of(args.protocol)
+    placements = sum(len(s.rests) for s in protocol.sessions)
+    if placements > MOST_PLACEMENTS:
+        raise UsageError("the protocol has %d placements, expected at most %d"
+                         % (placements, MOST_PLACEMENTS))
+    with progress.during("plan"):
+        answer, findings = plan_answer.planned(protocol, args.sensor, args.certified_box,
+                                               args.rate, args.minutes)
+    if args.plot:
+        from ..present.alias_picture import draw
+        draw(findings.matrices, args.plot, protocol.name)
+    if args.save:
+        plan_file.write(args.save, protocol)
+    if args.json:
+        print(json.dumps(answer, indent=1, allow_nan=False))
+    else:
+        from ..present.plan_words import show
+        show(answer)
+    return 0
+
+
+def protocol_of(name):
+    """A named protocol, or the one in a plan file; UsageError when it is neither."""
+    if name in protocols.STILL:
+        return protocols.named(name)
+    if name in protocols.NAMES:
+        raise UsageError("%s is a scene to simulate, not a capture of still poses; expected "
+                         "one of %s, or a plan file" % (name, ", ".join(protocols.STILL)))
+    if not any(c in name for c in "./\\"):
+        raise UsageError("no protocol named %r, %s, or a plan file"
+                         % (name, instead(name, protocols.STILL)))
+    return plan_file.read(name)
+
+
+
+
+
+

@@ -1,0 +1,91 @@
+"""sixflip virtual-board: a board to try the other commands on, without hardware."""
+
+import json
+import time
+from pathlib import Path
+
+from sixflip.chips.catalogue import SENSORS
+
+from ..atomic_write import read_bytes
+from ..errors import BadFile, UsageError
+from ..file_arguments import add_input, add_output
+from ..file_kinds import FLASH
+from ..virtual.micropython_fetch import cache_dir
+
+HELP = "run a virtual board and print its serial port"
+EXAMPLE = "sixflip virtual-board --sensor gy85"
+
+
+def add_arguments(parser):
+    parser.add_argument("--sensor", choices=SENSORS, default="mpu6050")
+    parser.add_argument("--tilt", metavar="DEG", type=float, default=2.0,
+                        help="tilt of the table that the simulated operator works on")
+    parser.add_argument("--seed", type=int, default=1, help="of sensor errors and noise")
+    add_output(parser, "--flash", metavar="FILE", type=Path, kinds=(FLASH,),
+               help="image of the flash, kept (default: in the cache)")
+    parser.add_argument("--speed", metavar="N", type=float, default=1.0,
+                        help="simulated seconds a second (default: 1, as with a real board; 20 "
+                             "for tests)")
+    add_input(parser, "--world", metavar="FILE|JSON",
+              help="more of the simulated world: JSON, or a file of it, such as `sixflip simulate "
+                   "--worlds` writes")
+    parser.add_argument("--session", metavar="N", type=int, default=1,
+                        help="which of the worlds in that file (default: the first)")
+    parser.add_argument("--json", action="store_true", help="the port and the flash, as JSON")
+
+
+def world_spec(args):
+    """The spec for sixflip_sim.worlds of a command line."""
+    spec = {"sensor": args.sensor, "tilt_deg": args.tilt, "seed": args.seed,
+            "order": [],       # the operator does what the board asks for
+            "flip_error_deg": 0.4}
+    if args.world:
+        spec.update(more_of_it(args.world, args.session))
+    from sixflip_sim import worlds
+    try:
+        worlds.make(spec)
+    except (ValueError, TypeError, KeyError, AttributeError, IndexError) as error:
+        raise UsageError("--world %s: %s" % (args.world, error)) from None
+    return spec
+
+
+def more_of_it(given, session):
+    """The dict meant by --world: JSON itself or a file with a world or a list of worlds."""
+    inline = given.lstrip()[:1] in ("{", "[")
+    text = given if inline else read_bytes(given)
+    try:
+        content = json.loads(text)
+    except (ValueError, RecursionError):
+        raise (UsageError if inline else BadFile)(
+            "--world %s: expected a JSON object, or a file of it" % given) from None
+    found = content if isinstance(content, list) else [content]
+    if not 1 <= session <= len(found):
+        raise UsageError("--session %d: %s holds %d" % (session, given, len(found)))
+    if not isinstance(found[session - 1], dict):
+        raise UsageError("--world %s: expected a JSON object" % given)
+    return found[session - 1]
+
+
+def run(args):
+    from ..virtual.asked_hand import AskedHand
+    from ..virtual.virtual_board import VirtualBoard
+    if not args.speed > 0:
+        raise UsageError("--speed %s: expected a number above 0" % args.speed)
+    image = args.flash or cache_dir() / "virtual-board.flash"
+    image.parent.mkdir(parents=True, exist_ok=True)
+    spec = world_spec(args)
+    hand = None if spec["order"] else AskedHand()
+    with VirtualBoard(spec, image, speed=args.speed, hand=hand) as board:
+        if args.json:
+            print(json.dumps({"format": 1, "kind": "sixflip virtual-board", "port": board.port,
+                              "board": board.unique_id, "flash": str(image)}), flush=True)
+        else:
+            print("virtual board at %s, flash in %s" % (board.port, image))
+            print("in another terminal: sixflip provision --port %s   (Ctrl-C here ends it)"
+                  % board.port, flush=True)
+        try:
+            while board.relay.is_alive():
+                time.sleep(0.2)
+        except KeyboardInterrupt:
+            pass
+    return 0

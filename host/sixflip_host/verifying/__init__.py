@@ -1,1 +1,0 @@
-"""What a board says it computed, held against the same capture solved here."""

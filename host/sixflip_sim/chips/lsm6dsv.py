@@ -1,0 +1,43 @@
+"""Simulated LSM6DSV, by the driver's own tables: an LSM6DSOX with other control registers."""
+
+from sixflip.chips import lsm6dsv as chip
+from sixflip_sim.chips.lsm6ds import SimulatedLSM6
+from sixflip_sim.chips.six_axis import range_of
+
+
+class SimulatedLSM6DSV(SimulatedLSM6):
+    driver = chip.LSM6DSV
+    id_register, data_register = driver.ID_REGISTER, driver.DATA
+    columns, high_byte = driver.COLUMNS, driver.HIGH
+    self_clearing = (chip.CTRL3, chip.SW_RESET)
+    TRAPS = ((chip.CTRL3, 0), (chip.FUNC_CFG_ACCESS, 0x80), (chip.CTRL8, 0x03))
+    nominal_hz = (48, 28.4)
+    defaults = {chip.CTRL3: chip.IF_INC | chip.BDU}
+    OFFSETS_BIT = (chip.CTRL9, 0x01)
+
+    def fall_asleep(self):
+        self.registers[chip.CTRL1] = 0
+        self.registers[chip.CTRL2] = 0
+
+    def output_hz(self):
+        code = self.registers[chip.CTRL2]
+        if code != self.registers[chip.CTRL1]:
+            return 0
+        return {row[1]: row[0] for row in chip.OUTPUT_RATES}.get(code, 0)
+
+    def accel(self):
+        hz = self.output_hz()
+        wide = 2 if not self.registers[chip.CTRL9] & chip.LPF2_XL_EN else (
+            4, 10, 20, 45, 100, 200, 400, 800)[self.registers[chip.CTRL8] >> 5]
+        return range_of(chip.ACCEL_RANGES, self.registers[chip.CTRL8] & 3), hz / wide
+
+    def gyro(self):
+        column = [row[0] for row in chip.OUTPUT_RATES].index(self.output_hz())
+        widths = dict(chip.GYRO_LPF1)
+        bw = self.registers[chip.CTRL6] >> 4 & 7
+        on = self.registers[chip.CTRL7] & chip.LPF1_G_EN
+        return (range_of(chip.GYRO_RANGES, self.registers[chip.CTRL6] & 15),
+                widths.get(bw if on else 0, widths[0])[column])
+
+
+SIMULATED = {"lsm6dsv": SimulatedLSM6DSV}

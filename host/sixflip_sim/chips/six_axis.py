@@ -1,0 +1,109 @@
+"""What the simulated chips of sixflip.chips.six_axis have in common."""
+
+import math
+
+from sixflip.chips.six_axis import BURST, RAIL
+from sixflip_sim.chips.register_chip import RegisterChip
+
+
+class SimulatedSixAxis(RegisterChip):
+    """Sample k is taken at k output periods of the world's clock and held until the next.
+
+    Subclasses name the driver whose tables they go by, and say what their registers mean:
+    output_hz() (0: asleep), accel() and gyro() -> (counts per unit, bandwidth in Hz), high().
+    nominal_hz are the bandwidths for which the model's noise holds, those of 100 Hz polling;
+    RESET_US is how long a reset takes; ready is the register and the bits of a new sample.
+    """
+
+    driver = None
+    data_length = BURST
+    nominal_hz = (50, 50)
+    RESET_US = 1000
+    ready = (0, 0)
+    TRAPS = ()                  # (register, value), ...: what another program may have left there
+    cleared_by_data = True      # of the bits of ready: by reading the sample, or by reading them
+    clock_off = 0.0             # %, of the oscillator: a sample takes so much less time
+
+    def __init__(self, clock, model, address, who_am_i, size=128):
+        self.model = model
+        self.who_am_i = who_am_i
+        self.counts = [0] * 7
+        self._reset_until_us = -1
+        RegisterChip.__init__(self, address, clock, size)
+
+    def power_on(self):
+        RegisterChip.power_on(self)
+        self._k = -1
+        self.registers[self.id_register] = self.who_am_i
+        for register in self.defaults:
+            self.registers[register] = self.defaults[register]
+
+    defaults = {}               # registers that are not 0 after a reset
+
+    def reset(self):
+        """By a register: everything to its default; it takes RESET_US."""
+        self.power_on()
+        self._reset_until_us = self.clock.now_us() + self.RESET_US
+
+    def resetting(self):
+        return self.clock.now_us() < self._reset_until_us
+
+    def read_only(self, register):
+        data = self.data_register
+        return register == self.id_register or data <= register < data + self.data_length
+
+    def write_register(self, register, value):
+        if not self.resetting() and not self.read_only(register):
+            self.registers[register] = value
+
+    def high(self):
+        """Which byte of a word is the high one, as the registers are set."""
+        return self.driver.HIGH
+
+    def refresh(self, register, n):
+        hz = self.output_hz()
+        status, bits = self.ready
+        if (self.frozen or not hz or self.resetting()
+                or not (register <= status < register + n
+                        or self.data_register - n < register
+                        < self.data_register + self.data_length)):
+            return
+        period_ns = round(1e9 / hz / (1 + 0.01 * self.clock_off))
+        k = self.clock.now_us() * 1000 // period_ns
+        if k == self._k:
+            return
+        self._k = k
+        self._take(k, k * period_ns // 1000)
+        self.registers[status] |= bits
+
+    def _take(self, k, t_us):
+        counts, model = self.counts, self.model
+        lsb, hz = self.accel()
+        model.accel_counts(k, t_us, lsb, RAIL, math.sqrt(hz / self.nominal_hz[0]), counts)
+        self.shift(counts, lsb)
+        lsb, hz = self.gyro()
+        model.gyro_counts(k, t_us, lsb, RAIL, math.sqrt(hz / self.nominal_hz[1]), counts)
+        model.temp_counts(k, t_us, self.driver.TEMPERATURE[0], self.driver.TEMPERATURE[1], counts)
+        registers, high = self.registers, self.high()
+        i = self.data_register
+        for column in self.columns:
+            registers[i + high] = counts[column] >> 8 & 0xFF
+            registers[i + 1 - high] = counts[column] & 0xFF
+            i += 2
+
+    def shift(self, counts, lsb_per_g):
+        """What offset registers add to the accelerometer's counts."""
+
+    def after_read(self, register, n):
+        status, bits = self.ready
+        seen = self.data_register if self.cleared_by_data else status
+        if register <= seen < register + n:
+            self.registers[status] &= ~bits & 0xFF
+
+
+def range_of(ranges, bits):
+    """Counts per unit of the range with these bits; of the widest where there is none."""
+    for row in ranges:
+        if row[2] == bits:
+            return row[1]
+    return ranges[-1][1]

@@ -1,0 +1,88 @@
+"""The class of a cause: likelier the larger it is, the same for every form that the cause can
+have, and found beside a second cause, one in the registers too."""
+import numpy as np
+import pytest
+
+from sixflip_host.diagnosis import answer, diagnosis
+from sixflip_host.experiment import blocks
+from sixflip_host.simulation import scenario, simulated_session
+
+LSB_G = 16384.0
+
+
+@pytest.fixture(scope="module")
+def captures():
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 33,
+                               "world": {"placement_scatter_deg": 0.05, "tilt_deg": 1.0}})
+    found = [simulated_session.session(plan, k) for k in range(2)]
+    for capture in found:  # the accelerometer alone: half the work
+        capture.gyro = None
+    return found
+
+
+@pytest.fixture(autouse=True, scope="module")
+def cache(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SIXFLIP_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+def causes(captures, change):
+    """[cause] of the answer on captures with change(t, warm, g) mg added, (n, 3): t s, warm degC
+    above the first session's start, g (n, 3) what is read."""
+    kept = [c.accel for c in captures]
+    start = captures[0].temp[0] / captures[0].meta["temp_lsb_per_c"]
+    try:
+        for capture in captures:
+            t = (capture.t_us - capture.t_us[0]) * 1e-6
+            warm = capture.temp / capture.meta["temp_lsb_per_c"] - start
+            mg = change(t, warm, capture.accel / LSB_G)
+            capture.accel = np.rint(capture.accel + mg * LSB_G / 1000.0).astype(np.int16)
+        sessions = [blocks.of(str(k), c) for k, c in enumerate(captures)]
+        return answer.of(diagnosis.Diagnosis(sessions, diagnosis.Settings(jobs=1)))["causes"]
+    finally:
+        for capture, accel in zip(captures, kept):
+            capture.accel = accel
+
+
+def on_z(values):
+    return values[:, None] * np.array([0.0, 0.0, 1.0])
+
+
+def test_the_right_class_gains_with_the_size(captures):
+    scores = []
+    for times in (0.3, 1.0, 3.0):
+        cause, = causes(captures, lambda t, warm, g, k=times: on_z(0.9 * k * warm))
+        assert "thermal_bias" in cause["class"] and cause["axes"] == ["z"]
+        assert cause["probability"] > 0.95
+        assert set(cause["class_probabilities"]) == set(cause["class"])
+        scores.append(cause["score_nats"])
+    assert scores == sorted(scores) and scores[2] > 3.0 * scores[0]
+
+
+FORMS = {
+    "thermal_bias": [lambda t, warm, g: on_z(0.9 * warm * (1.0 + 0.03 * warm)),
+                     lambda t, warm, g: on_z(8.0 * np.tanh(0.15 * warm))],
+    "cubic": [lambda t, warm, g: on_z(5.0 * (0.7 * g[:, 2] ** 3 + 0.3 * g[:, 2] ** 7)),
+              lambda t, warm, g: on_z(9.0 * (1.5 * g[:, 2] - np.tanh(1.5 * g[:, 2])))],
+    "quadratic": [lambda t, warm, g: on_z(5.0 * g[:, 2] ** 2),
+                  lambda t, warm, g: on_z(5.0 * (0.6 * g[:, 2] ** 2 + 0.4 * g[:, 2] ** 4))]}
+
+
+@pytest.mark.parametrize("effect", FORMS)
+def test_two_forms_of_one_cause_end_in_its_class(captures, effect):
+    for form in FORMS[effect]:
+        cause, = causes(captures, form)
+        assert effect in cause["class"] and cause["axes"] == ["z"]
+
+
+def test_a_pair_of_which_one_is_in_the_registers(captures):
+    coarse = 16
+
+    def both(t, warm, g):
+        mg = on_z(1.8 * warm)
+        counts = coarse * np.rint((g * LSB_G + mg * LSB_G / 1000.0) / coarse)
+        return (counts - g * LSB_G) * 1000.0 / LSB_G
+    found = causes(captures, both)
+    assert {c["effect"] for c in found if c["effect"]} >= {"quantisation"}
+    assert any("thermal_bias" in c["class"] for c in found) and len(found) == 2

@@ -1,0 +1,146 @@
+"""Registers and clock: every score is a likelihood ratio that grows with what there is to see, and
+what jumps, is missing or runs otherwise than an effect does has no name."""
+import numpy as np
+import pytest
+
+from sixflip_host.diagnosis import aliases, odds, verdict
+from sixflip_host.diagnosis.detect import axis_order, codes, integrity, sample_clock, torn_reads
+from sixflip_host.diagnosis.detect.detection import present
+from sixflip_host.experiment import blocks
+from sixflip_host.simulation import scenario, simulated_session
+
+
+def found(effects=(), change=None, seed=5):
+    """{(effect, sensor): Finding} of two recommended sessions of an MPU6050."""
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": seed,
+                               "effects": list(effects)})
+    sessions = []
+    for number in range(2):
+        capture = simulated_session.session(plan, number)
+        if change:
+            change(capture, np.random.default_rng(number))
+        sessions.append(blocks.of(str(number), capture))
+    return {(f.effect, f.sensor): f for f in integrity.findings(sessions)}
+
+
+def torn(column, share, generator):
+    """column with the page of the sample before in a share of its samples."""
+    hit = generator.random(len(column)) < share
+    hit[0] = False
+    mixed = np.roll(column, 1) // 256 * 256 + column % 256
+    return np.where(hit, mixed, column)
+
+
+def nats(column):
+    return max(torn_reads.competed(torn_reads.tabled(column, False), k)[0] for k in (0, 1))
+
+
+def test_torn_reads_are_the_likelier_the_more_there_are():
+    generator = np.random.default_rng(2)
+    sound = np.rint(16380.0 + 50.0 * generator.standard_normal(60000)).astype(np.int64)
+    scores = [nats(torn(sound, share, generator)) for share in (0.0, 5e-3, 2e-2, 8e-2)]
+    assert not present(scores[0])
+    assert present(scores[1]) and scores == sorted(scores)
+    assert scores[3] > 3.0 * scores[2]
+
+
+def test_few_torn_reads_are_found_with_how_many():
+    said = found([{"effect": "torn_reads", "sensor": "accel", "chance": 0.1}])
+    assert list(said) == [("torn_reads", "accel")]
+    low, high = said["torn_reads", "accel"].interval["chance"]
+    assert low < 0.1 < high and said["torn_reads", "accel"].named > 0.95
+
+
+@pytest.mark.parametrize("size", [256, 600])
+def test_spikes_are_no_torn_reads_even_where_they_are_a_page_high(size):
+    def spiked(capture, generator):
+        hit = generator.random(len(capture)) < 0.01
+        counts = capture.accel.astype(int)
+        counts[hit, 1] += size * generator.choice([-1, 1], hit.sum())
+        capture.accel = counts.astype(np.int16)
+    assert found(change=spiked) == {}
+
+
+def test_a_clock_is_the_likelier_off_the_more_it_is_and_sessions_must_agree():
+    scores = [found([{"effect": "sample_rate", "rate": rate}])["sample_rate", "device"].score
+              for rate in (0.1, 0.3, 0.7)]
+    assert scores == sorted(scores) and scores[2] > 20.0 * scores[0] > 20.0 * odds.PRESENT
+
+    def apart(capture, generator):
+        capture.t_us = np.rint(capture.t_us * (1.02 if apart.first else 0.99)).astype(np.int64)
+        apart.first = False
+    apart.first = True
+    assert found(change=apart) == {}
+
+
+def test_gaps_that_are_no_whole_number_of_samples_are_less_likely_lost_samples():
+    whole, half = (sample_clock.gap_nats(np.full(4, late), 0.03, 30000) for late in (3.0, 3.4))
+    assert present(whole) and not present(half)
+
+
+def test_samples_lost_in_runs_are_counted():
+    def lossy(capture, generator):
+        keep = np.ones(len(capture), bool)
+        for start in generator.integers(100, len(capture) - 100, 12):
+            keep[start:start + 20] = False
+        for name in ("t_us", "accel", "gyro", "temp", "pose"):
+            setattr(capture, name, getattr(capture, name)[keep])
+        lossy.share.append(100.0 * (1.0 - keep.mean()))
+    lossy.share = []
+    said = found(change=lossy)["dropped_samples", "device"]
+    assert said.value["chance"] == pytest.approx(np.mean(lossy.share), rel=0.05)
+
+
+def test_codes_on_a_grid_count_code_by_code():
+    column = np.arange(-30, 30, dtype=np.int64) * 4
+    few, many = (codes.step_nats(np.stack([x] * 3, 1))[0] for x in (column[:13], column))
+    assert many - few == pytest.approx((len(column) - 13) * np.log(4.0))
+    assert codes.bit_nats([column]) == pytest.approx(60 * np.log(2.0))
+
+
+def test_an_order_of_axes_is_held_against_the_plain_one_and_against_any_matrix():
+    generator = np.random.default_rng(4)
+    poses = np.concatenate([np.eye(3), -np.eye(3)] * 2)
+    order = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
+    noise = 0.02 * generator.standard_normal((12, 3))
+    assert present(axis_order.order_nats(poses @ order.T + noise, poses, order))
+    sheared = poses @ (order + 0.45).T + noise
+    assert not present(axis_order.order_nats(sheared, poses, order))
+
+
+@pytest.mark.parametrize("named, nameless, told, seen, said", [
+    (0.02, 0.1, False, True, "no gap"), (0.02, 0.1, False, False, "cannot tell"),
+    (0.99, 0.1, True, True, "explained"), (0.99, 0.1, False, True, "cannot tell"),
+    (0.99, 0.9, True, True, "partly explained"), (0.3, 0.9, False, True, "unexplained")])
+def test_the_verdict_is_a_table(named, nameless, told, seen, said):
+    assert verdict.of([verdict.Claim(named, told)], [nameless], seen) == said
+
+
+def test_what_stands_in_a_names_place_without_one_makes_it_doubtful():
+    assert verdict.of([verdict.Claim(0.4, True, 0.6)], [], True) == "unexplained"
+    assert verdict.of([], [], False) == "cannot tell"
+
+
+def test_probabilities_of_a_place_add_up_and_chance_bounds_them():
+    shares = odds.shares({"": 2.0, "creep": 9.0, "hysteresis": 8.0, "~history": 1.0})
+    assert sum(shares.values()) == pytest.approx(1.0)
+    assert shares["creep"] / shares["hysteresis"] == pytest.approx(np.e)
+    assert odds.probability(odds.COST) == 0.5 and odds.chance(-3.0) == 1.0
+
+
+def test_names_that_cannot_be_told_in_principle_share_their_probability():
+    cause = aliases.Cause("warm_up", [], 30.0)
+    cause.members = {"thermal_bias": "alias index 0.98", "creep": "probability 0.04"}
+    cause.alike = {"thermal_bias"}
+    cause.place = {"warm_up": 0.9, "thermal_bias": 0.02, "creep": 0.04, "": 0.03, "~time": 0.01}
+    assert cause.probabilities == pytest.approx(
+        {"warm_up": 0.46, "thermal_bias": 0.46, "creep": 0.04})
+    assert list(cause.probabilities)[0] == "warm_up" and cause.nameless == pytest.approx(0.01)
+
+
+def test_spikes_of_a_page_in_a_quiet_gyro_are_no_torn_reads():
+    generator = np.random.default_rng(7)
+    column = np.rint(-1.0 + 3.0 * generator.standard_normal(50000)).astype(np.int64)
+    hit = generator.random(len(column)) < 0.003
+    column[hit] += 256 * generator.choice([-1, 1], hit.sum())
+    assert nats(column) < 0.0

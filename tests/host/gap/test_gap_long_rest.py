@@ -1,0 +1,94 @@
+"""One long rest, or several in one attitude: what its readings follow, held out in time."""
+import numpy as np
+import pytest
+
+from sixflip_host.capture.capture_file import Capture
+from sixflip_host.diagnosis import rest_gap
+from sixflip_host.diagnosis.diagnosis import Settings
+from sixflip_host.experiment import blocks, long_rest
+
+RATE, SECONDS = 20.0, 400.0
+T = np.arange(int(RATE * SECONDS)) / RATE
+SWEEP = 25.0 + 6.0 * np.sin(2.0 * np.pi * T / 170.0)  # degC, uncorrelated with a decay
+
+
+def rest(added=(0.0, 0.0, 0.0), celsius=None, seed=5, start_mg=(20.0, -15.0, 1000.0)):
+    """Session of a rest with white noise of 0.4 mg/√Hz; added: mg a sample, axis by axis."""
+    rng = np.random.default_rng(seed)
+    mg = np.stack([np.full(len(T), start_mg[i]) + added[i] for i in range(3)], 1)
+    accel = np.rint((mg + rng.normal(0.0, 0.4 * np.sqrt(RATE), mg.shape)) * 16.384)
+    gyro = np.rint((0.3 + rng.normal(0.0, 0.02, mg.shape)) * 131.0)
+    temp = None if celsius is None else np.rint((celsius - 36.53) * 340.0).astype(np.int16)
+    meta = {"sensor": "mpu6050", "rate_hz": RATE, "accel_lsb_per_g": 16384,
+            "gyro_lsb_per_dps": 131, "temp_lsb_per_c": 340, "temp_offset_c": 36.53}
+    return blocks.of("rest", Capture(meta, np.rint(T * 1e6).astype(np.int64),
+                                     accel.astype(np.int16), gyro.astype(np.int16), temp, None,
+                                     np.ones(len(T), np.int16)))
+
+
+def accel(*sessions):
+    return rest_gap.of(list(sessions), Settings())["accel"]
+
+
+def test_a_drift_with_temperature_has_its_slope_and_its_figures():
+    found = accel(rest((0.0, 0.0, 1.5 * (SWEEP - 25.0)), SWEEP))
+    cause = found.causes[0]
+    assert cause.effect == "thermal_bias" and "warm_up" not in cause.names
+    low, high = cause.interval["z"]
+    assert low < 1.5 < high and high - low < 0.5
+    one = found.by_axis["z"]
+    assert one.before == pytest.approx(1.5 * 6.0 / np.sqrt(2.0), rel=0.1)
+    assert one.after < 1.3 * one.floor and one.share > 0.95 and one.interval[0] > 0.9
+    assert not found.nameless
+
+
+def test_a_bent_drift_with_temperature_keeps_its_name():
+    t = (SWEEP - 25.0) / 6.0
+    found = accel(rest((0.0, 8.0 * t + 6.0 * t ** 2 - 5.0 * t ** 3, 0.0), SWEEP))
+    assert [c.effect for c in found.causes] == ["thermal_bias"]
+    assert found.causes[0].letters == ["y"]
+    assert found.by_axis["y"].after < 1.5 * found.by_axis["y"].floor
+
+
+def test_a_decay_is_a_warm_up_and_no_temperature():
+    found = accel(rest((5.0 * np.exp(-T / 90.0), 0.0, 0.0), SWEEP))
+    cause = found.causes[0]
+    assert cause.effect == "warm_up" and "thermal_bias" not in cause.names
+    assert cause.letters == ["x"] and found.by_axis["x"].share > 0.9
+
+
+def test_a_jump_has_no_name_but_a_place():
+    found = accel(rest((0.0, 0.0, np.where(T < 230.0, 0.0, 4.0)), SWEEP))
+    assert found.nameless and not found.causes
+    assert {(p.axis, p.domain) for p in found.places} == {("z", "time")}
+
+
+def test_a_quiet_rest_shows_nothing_and_its_floor_is_its_noise():
+    found = accel(rest(celsius=SWEEP))
+    assert not found.causes and not found.places and not found.nameless
+    assert found.shrinkage.before == pytest.approx(found.shrinkage.floor, rel=0.15)
+    assert found.reason("thermal_bias") == "" and "poses" in found.reason("quadratic")
+
+
+def test_without_a_thermometer_it_is_said_that_none_was_there():
+    assert accel(rest()).reason("thermal_bias") == "no temperature column"
+
+
+def test_rests_that_differ_as_switching_on_makes_them_are_no_gap():
+    found = accel(*(rest((offset, 0.0, -offset), seed=seed) for seed, offset in enumerate(
+        (0.0, 1.2, -0.8))))
+    assert not found.causes and not found.nameless
+
+
+def test_rests_in_another_attitude_are_left_out():
+    leaning = rest(start_mg=(700.0, 0.0, 714.0), seed=2)
+    found = long_rest.of([rest(), rest(seed=1), leaning])
+    assert set(found.session) == {0, 1}
+
+
+def test_a_line_is_taken_off_before_the_means_are_made():
+    wave = 8.0 * np.sin(2.0 * np.pi * 0.311 * T)
+    plain, without = (long_rest.of([rest((0.0, 0.0, wave))], lines)
+                      for lines in ((), [("accel", 2, 0.31)]))
+    assert plain.values["accel"][:, 2].std() > 1.0
+    assert without.values["accel"][:, 2].std() < 0.4

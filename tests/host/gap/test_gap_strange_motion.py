@@ -1,0 +1,77 @@
+"""What a sensor does while it moves: late, deaf near zero, or in a way that has no name."""
+import numpy as np
+import pytest
+
+from sixflip_host.diagnosis import answer, diagnosis
+from sixflip_host.experiment import blocks
+from sixflip_host.simulation import scenario, simulated_session
+
+LSB_G, LSB_DPS = 16384.0, 65.5
+
+
+@pytest.fixture(scope="module")
+def captures():
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 21,
+                               "world": {"placement_scatter_deg": 0.05, "tilt_deg": 1.0}})
+    return [simulated_session.session(plan, k) for k in range(len(plan.worlds))]
+
+
+@pytest.fixture(autouse=True, scope="module")
+def cache(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SIXFLIP_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+def diagnosed(captures, change):
+    """The answer on captures whose counts (accel, gyro), as floats, change(t, ...) returns."""
+    kept = [(c.accel, c.gyro) for c in captures]
+    try:
+        for capture in captures:
+            t = (capture.t_us - capture.t_us[0]) * 1e-6
+            changed = change(t, capture.accel.astype(float), capture.gyro.astype(float))
+            capture.accel, capture.gyro = (np.rint(x).astype(np.int16) for x in changed)
+        sessions = [blocks.of(str(k), c) for k, c in enumerate(captures)]
+        return answer.of(diagnosis.Diagnosis(sessions, diagnosis.Settings(jobs=1)))
+    finally:
+        for capture, (accel, gyro) in zip(captures, kept):
+            capture.accel, capture.gyro = accel, gyro
+
+
+@pytest.mark.parametrize("delay_ms", [10.0, 40.0, 80.0])
+def test_a_late_gyro_is_late_and_nothing_else(captures, delay_ms):
+    def late(t, accel, gyro):
+        return accel, np.stack([np.interp(t - 1e-3 * delay_ms, t, x) for x in gyro.T], 1)
+    found = diagnosed(captures, late)
+    assert [(c["sensor"], c["effect"]) for c in found["causes"]] == [("gyro", "filter_lag")]
+    assert found["causes"][0]["value"]["tau"] == pytest.approx(delay_ms, rel=0.05)
+    assert found["causes"][0]["probability"] > 0.95
+    assert found["verdict"] == "explained"
+
+
+@pytest.mark.parametrize("band_dps", [1.0, 3.0])
+def test_a_band_that_the_gyro_reads_less_by_is_a_dead_band(captures, band_dps):
+    def deaf(t, accel, gyro):
+        band = np.rint(band_dps * LSB_DPS)
+        centred = gyro - np.rint(np.median(gyro, axis=0))
+        return accel, np.sign(centred) * np.maximum(np.abs(centred) - band, 0.0)
+    found = diagnosed(captures, deaf)
+    assert [(c["sensor"], c["effect"]) for c in found["causes"]] == [("gyro", "dead_band")]
+    for counts in found["causes"][0]["value"].values():
+        assert 0.8 < counts / (band_dps * LSB_DPS) < 2.2  # what was turned within it is lost, too
+
+
+@pytest.mark.parametrize("sensor", ["accel", "gyro"])
+def test_a_reading_that_follows_the_size_of_the_rate_has_no_name(captures, sensor):
+    def follows(t, accel, gyro):
+        speed = np.linalg.norm(gyro / LSB_DPS, axis=1)
+        if sensor == "accel":
+            accel[:, 0] += 0.2e-3 * LSB_G * speed
+        else:
+            gyro[:, 1] += 0.005 * LSB_DPS * speed
+        return accel, gyro
+    found = diagnosed(captures, follows)
+    assert found["causes"] == [] and found["verdict"] == "unexplained"
+    first = found["where"][0]
+    assert (first["sensor"], first["domain"]) == (sensor, "motion")
+    assert first["axis"] == {"accel": "x", "gyro": "y"}[sensor]

@@ -1,0 +1,100 @@
+"""`sixflip diagnose --sim` with logs that are not as they should be: what can be said is said."""
+import json
+
+import numpy as np
+import pytest
+
+from sixflip_host import cli
+
+G = 9.80665
+
+
+def turning(seed, seconds=30.0, rate_hz=100.0, rests=True):
+    """(t, force, rate) of a box that is turned about two axes, with rests."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(0.0, seconds, 1.0 / rate_hz)
+    rate = np.zeros((len(t), 3))
+    for k in range(int(seconds // 5)):
+        inside = (t > 5 * k + (2.0 if rests else 0.0)) & (t < 5 * k + 5)
+        phase = np.pi * (t[inside] - t[inside][0]) / 3.0
+        rate[inside] += np.sin(phase)[:, None] ** 2 * rng.uniform(-1.5, 1.5, 3)
+    up, force = np.array([0.0, 0.0, 1.0]), np.empty_like(rate)
+    for i, w in enumerate(rate):
+        up = up - np.cross(w, up) / rate_hz
+        up /= np.linalg.norm(up)
+        force[i] = G * up
+    return t, force, rate
+
+
+def capture(path, t, force, rate, noise=1.0, seed=0, constant=None):
+    rng = np.random.default_rng(seed)
+    accel = np.round((force + noise * 0.03 * rng.normal(size=force.shape)) * 8192 / G)
+    gyro = np.round(np.degrees(rate + noise * 0.001 * rng.normal(size=rate.shape)) * 65.5)
+    if constant is not None:
+        gyro[:, constant] = 0
+    head = {"sensor": "mpu6050", "rate_hz": 1.0 / (t[1] - t[0]), "accel_lsb_per_g": 8192,
+            "gyro_lsb_per_dps": 65.5}
+    rows = np.column_stack([np.round(1e6 * t), accel, gyro]).astype(int)
+    path.write_text("# sixflip-capture 1\n# %s\nt_us,ax,ay,az,gx,gy,gz\n%s\n" % (
+        json.dumps(head), "\n".join(",".join(map(str, row)) for row in rows.tolist())))
+    return str(path)
+
+
+def diagnosed(capsys, real, *sims):
+    asked = [word for sim in sims for word in ("--sim", sim)]
+    assert cli.main(["diagnose", real, *asked, "--json"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+@pytest.fixture
+def real(tmp_path):
+    return capture(tmp_path / "real.csv", *turning(1))
+
+
+def test_another_motion_is_not_taken_for_the_same(real, tmp_path, capsys):
+    answer = diagnosed(capsys, real, capture(tmp_path / "sim.csv", *turning(2), seed=5))
+    assert not answer["simulator"]["logs"][0]["same_motion"]
+    assert answer["simulator"]["conventions"] == []
+    assert answer["simulator"]["unseen"]
+
+
+def test_logs_of_different_rates_are_compared_on_one_grid(real, tmp_path, capsys):
+    answer = diagnosed(capsys, real, capture(tmp_path / "sim.csv", *turning(1, rate_hz=250.0),
+                                             seed=5))
+    log = answer["simulator"]["logs"][0]
+    assert log["same_motion"] and "250" in " ".join(log["remarks"])
+    assert answer["simulator"]["conventions"] == []
+
+
+def test_a_constant_channel_is_named(real, tmp_path, capsys):
+    answer = diagnosed(capsys, real, capture(tmp_path / "sim.csv", *turning(1), seed=5,
+                                             constant=1))
+    found = answer["simulator"]["conventions"]
+    assert [(c["name"], c["sensor"]) for c in found] == [("constant_channel", "gyro")]
+
+
+def test_a_simulator_without_noise_has_another_noise(real, tmp_path, capsys):
+    answer = diagnosed(capsys, real, capture(tmp_path / "sim.csv", *turning(1), noise=0.0))
+    noise = answer["simulator"]["parameters"]["accel"]["noise_density"]["x"]
+    assert noise["differs"] and noise["simulator"] == 0.0
+    assert noise["set"] == pytest.approx(noise["real"], rel=1e-3)
+
+
+def test_without_a_rest_and_without_an_overlap_that_is_said(real, tmp_path, capsys):
+    restless = capture(tmp_path / "sim.csv", *turning(3, rests=False), seed=5)
+    short = [x[:600] for x in turning(4)]
+    answer = diagnosed(capsys, real, restless, capture(tmp_path / "short.csv", *short, seed=6))
+    assert len(answer["simulator"]["logs"]) == 2
+    assert not any(log["same_motion"] for log in answer["simulator"]["logs"])
+
+
+def test_the_words_fit_a_terminal_and_the_report_has_its_page(real, tmp_path, capsys):
+    t, force, rate = turning(1)
+    sim = capture(tmp_path / "sim.csv", t, -force, rate, seed=5)
+    report = tmp_path / "report"
+    assert cli.main(["diagnose", real, "--sim", sim, "--report", str(report)]) == 0
+    assert "sign turned" in capsys.readouterr().out.splitlines()[0]
+    page = (report / "index.html").read_text()
+    for heading in ("conventions", "Parameters side by side", "What it does to a robot",
+                    "Settings to paste", "Real, simulated, and simulated with what was found"):
+        assert heading in page

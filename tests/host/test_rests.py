@@ -1,0 +1,88 @@
+"""The one finder of rests: the board's windows bit by bit, labels, what hangs and what shakes."""
+import numpy as np
+import pytest
+
+from sixflip.still_window import StillWindow
+from sixflip_host.capture import rests, still_windows
+from sixflip_host.capture.capture_file import Capture
+
+META = {"sensor": "mpu6050", "rate_hz": 100.0, "accel_lsb_per_g": 16384.0,
+        "gyro_lsb_per_dps": 131.0, "accel_range_g": 2.0}
+
+
+def recording(n=1500, seed=3, gyro=True):
+    """Noise at rest with a jump, a rail, readings that hang over a window's border, and steps
+    of four in the gyro until its middle."""
+    rng = np.random.default_rng(seed)
+    accel = np.rint(rng.normal([100, -200, 16384], 40, (n, 3))).astype(np.int16)
+    rates = np.rint(rng.normal(0, 12, (n, 3))).astype(np.int16)
+    rates[:n // 2] = rates[:n // 2] // 4 * 4
+    accel[210, 1] = 9000
+    accel[333] = 32767, 0, -32768
+    accel[440:480] = accel[440]
+    rates[700, 2] = -32768
+    rates[910:955] = rates[910]
+    return Capture(dict(META), 10000 * np.arange(n), accel, rates if gyro else None)
+
+
+def boards(capture, length, rails):
+    """The StillWindow of the board after each full window: (mean, variance, ...) of each."""
+    window, out = StillWindow(length, *rails, 10000), []
+    gyro = capture.gyro if capture.gyro is not None else np.zeros((len(capture), 3), int)
+    samples = np.column_stack([capture.accel, gyro, np.zeros(len(capture), int)]).tolist()
+    axes = 6 if capture.gyro is not None else 3
+    for sample in samples[:len(samples) // length * length]:
+        if window.add(10000, sample):
+            out.append(([window.mean(i) for i in range(axes)],
+                        [window.variance(i) for i in range(axes)],
+                        [window.step(k) for k in range(2)],
+                        [window.accel_saturated, window.gyro_saturated],
+                        bool(window.stale), window.jumped))
+    return out
+
+
+@pytest.mark.parametrize("gyro", [True, False])
+@pytest.mark.parametrize("at_a_time", [3, 400])
+def test_the_windows_are_the_boards_bit_by_bit(gyro, at_a_time, monkeypatch):
+    monkeypatch.setattr(still_windows, "AT_A_TIME", at_a_time)
+    capture = recording(gyro=gyro)
+    found = still_windows.of(capture)
+    expected = boards(capture, found.length, found.rails)
+    assert len(found) == len(expected) == 60
+    for k, fields in enumerate(zip(*expected)):
+        name = ("mean", "variance", "step", "saturated", "stale", "jumped")[k]
+        assert np.array_equal(getattr(found, name), np.array(fields)), name
+    assert found.jumped.sum() >= 1 and found.stale.sum() >= 1 and found.saturated.any()
+
+
+def test_a_table_of_windows_is_not_changed():
+    with pytest.raises(ValueError, match="read-only"):
+        still_windows.of(recording()).mean[0] = 0.0
+
+
+def test_labelled_runs_that_are_long_enough_and_not_left_out():
+    pose = np.array([0, 1, 1, 1, 2, 0, 0, 3, 3, 3, 3])
+    assert rests.labelled(pose) == [(1, 1, 4), (2, 4, 5), (3, 7, 11)]
+    assert rests.labelled(pose, shortest=3, without=(3,)) == [(1, 1, 4)]
+    assert rests.labelled(None) == [] == rests.labelled(np.zeros(0, int))
+
+
+def test_the_longest_rest_has_exact_means():
+    capture = recording()
+    capture.accel[300:] = np.rint(np.random.default_rng(4).normal(
+        [100, -200, 16384], 40, (1200, 3)))
+    capture.gyro[300:] = np.rint(np.random.default_rng(5).normal(0, 12, (1200, 3)))
+    found = rests.longest(capture)
+    assert found.reason == "" and found.n >= 1100
+    inside = capture.accel[found.first:found.first + found.n].astype(object)
+    assert found.means[:3] == tuple(sum(column) / found.n for column in inside.T)
+    assert found.noise_mg(16384.0)[0] == pytest.approx(40 / 16.384, rel=0.1)
+
+
+def test_why_there_is_no_rest_is_said():
+    shaken = recording()
+    shaken.accel += np.random.default_rng(1).normal(0, 700, shaken.accel.shape).astype(np.int16)
+    assert rests.longest(shaken).reason.startswith("it shakes")
+    short = recording()
+    short = Capture(short.meta, short.t_us[:60], short.accel[:60], short.gyro[:60])
+    assert rests.longest(short).reason == "0.6 s are too short, 1.0 s of rest are needed"

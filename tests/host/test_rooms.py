@@ -1,0 +1,65 @@
+"""The host's rooms import each other one way: what a file needs lies in a lower room."""
+
+import ast
+from pathlib import Path
+
+HOST = Path(__file__).resolve().parents[2] / "host" / "sixflip_host"
+
+
+def imports():
+    """{(room, room imported): [files]} of every module below host/sixflip_host, verbs included."""
+    found = {}
+    for path in sorted(HOST.rglob("*.py")):
+        package = path.relative_to(HOST).parts[:-1]
+        if not package or "on_board" in package:
+            continue
+        for node in ast.walk(ast.parse(path.read_text())):
+            if not isinstance(node, ast.ImportFrom) or not node.level:
+                continue
+            above = package[:len(package) - node.level + 1]
+            names = [*above, *(node.module.split(".") if node.module else ())]
+            reached = [names] if names else [[one.name] for one in node.names]
+            for one in reached:
+                if (HOST / one[0]).is_dir() and one[0] != package[0]:
+                    found.setdefault((package[0], one[0]), []).append(path.name)
+    return found
+
+
+def order(pairs):
+    """Rooms from the lowest up; AssertionError with the rooms of a circle."""
+    needs = {}
+    for room, lower in pairs:
+        needs.setdefault(room, set()).add(lower)
+        needs.setdefault(lower, set())
+    found = []
+    while needs:
+        ready = sorted(room for room, lower in needs.items() if not lower - set(found))
+        assert ready, "a circle among %s" % sorted(needs)
+        found += ready
+        for room in ready:
+            del needs[room]
+    return found
+
+
+def test_no_circles_and_the_order_of_the_design():
+    found = imports()
+    assert len(found) > 20                      # the reader of imports sees them at all
+    rooms = order(found)
+    levels = [rooms.index(room) for room in ("capture", "experiment", "calibrate")]
+    assert levels == sorted(levels)
+    for room in ("planning", "diagnosis", "simulation"):
+        assert rooms.index("experiment") < rooms.index(room) < rooms.index("verbs"), rooms
+    assert rooms.index("diagnosis") < rooms.index("present")
+
+
+def test_nothing_imports_a_verb_but_another_verb():
+    assert not [(room, files) for (room, lower), files in imports().items() if lower == "verbs"]
+
+
+def test_a_circle_is_seen():
+    try:
+        order([("a", "b"), ("b", "c"), ("c", "a"), ("d", "a")])
+    except AssertionError as error:
+        assert "'a', 'b', 'c'" in str(error)
+    else:
+        raise AssertionError("no circle was seen")

@@ -1,0 +1,174 @@
+"""The clock of a recording: its rate, and losses, pauses, bursts and jitter told apart; rows and
+losses are always what was expected."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from sixflip_host.capture import capture_file, clock
+from sixflip_host.diagnosis.detect import sample_clock
+
+ROWS, PERIOD = 6000, 10050.0    # µs: 99.5025 Hz
+EVEN = np.arange(ROWS) * PERIOD
+
+
+def measured(t_us):
+    found = clock.measure(np.rint(t_us).astype(np.int64))
+    assert found.rows + found.losses == found.expected
+    running = (t_us[-1] - t_us[0]) / 1e6 - found.pause_s
+    assert (found.expected - 1) / running == pytest.approx(found.rate_hz, rel=1e-6)
+    return found
+
+
+def near(found, rate=1e6 / PERIOD):
+    low, high = found.interval_hz
+    slack = 2e-6 * rate      # of stamps in whole µs
+    assert low - slack <= rate <= high + slack and high - low < 0.02 * rate
+
+
+def test_an_even_clock_has_a_rate_and_nothing_else():
+    found = measured(EVEN)
+    near(found)
+    assert (found.losses, found.pauses, found.late) == (0, 0, 0) and found.jitter_ms < 0.01
+
+
+def test_stamps_of_whole_milliseconds_do_not_bend_the_rate():
+    found = measured(np.floor(np.arange(ROWS) * 2.5) * 1000)
+    near(found, 400.0)
+    assert found.losses == found.late == 0
+
+
+def test_pauses_are_no_losses():
+    t = EVEN.copy()
+    t[1000:] += 3_003_217
+    t[4000:] += 1_700_499
+    found = measured(t)
+    near(found)
+    assert (found.pauses, found.losses) == (2, 0)
+    assert found.pause_s == pytest.approx(4.7037, abs=0.01)
+
+
+def test_short_pauses_after_which_the_clock_begins_anew_are_no_losses():
+    t, generator = EVEN.copy(), np.random.default_rng(1)
+    for row in range(200, ROWS, 200):
+        t[row:] += generator.uniform(20e3, 45e3)
+    found = measured(t)
+    near(found)
+    assert (found.pauses, found.losses) == (29, 0)
+
+
+@pytest.mark.parametrize("lost", [
+    np.random.default_rng(2).random(ROWS) < 0.05, np.random.default_rng(2).random(ROWS) < 0.2,
+    np.isin(np.arange(ROWS) // 20, np.arange(20, 300, 25))])
+def test_losses_are_counted_and_do_not_bend_the_rate(lost):
+    lost[[0, -1]] = False
+    found = measured(EVEN[~lost])
+    near(found)
+    assert (found.losses, found.pauses, found.expected) == (lost.sum(), 0, ROWS)
+
+
+def test_rows_that_come_in_bursts_are_late_and_not_lost():
+    row = np.arange(ROWS)
+    t = EVEN[np.minimum(row // 8 * 8 + 7, ROWS - 1)] + row % 8 * 50
+    found = measured(t)
+    near(found)
+    assert (found.losses, found.pauses, found.bursts) == (0, 0, ROWS // 8)
+    assert found.longest_late_ms == pytest.approx(70, abs=1)
+    for first in range(500, ROWS, 700):
+        t[first:] += 24 * PERIOD
+    found = measured(t)
+    assert found.losses == pytest.approx(24 * 8, abs=8)
+
+
+def test_jitter_is_none_of_the_three():
+    generator = np.random.default_rng(3)
+    found = measured(EVEN + generator.normal(0, 1000, ROWS).clip(-4000, 4000))
+    near(found)
+    assert (found.losses, found.pauses, found.late) == (0, 0, 0)
+    assert found.jitter_ms == pytest.approx(1.0, abs=0.2)
+
+
+def test_times_that_do_not_run_have_no_clock():
+    assert clock.measure(np.zeros(50, np.int64)) is None
+    assert clock.measure(np.array([5])) is None
+
+
+def capture(t_us, **meta):
+    counts = np.random.default_rng(4).normal((0, 0, 16384), 40, (len(t_us), 3))
+    return capture_file.Capture(
+        {"sensor": "mpu6050", "rate_hz": 100, "accel_lsb_per_g": 16384, **meta},
+        np.rint(t_us).astype(np.int64), np.rint(counts).astype(np.int16))
+
+
+def test_the_writes_that_a_boards_own_file_names_are_pauses_of_its_recorder():
+    t = EVEN.copy()
+    t[3000:] += 3 * PERIOD
+    assert clock.of(capture(t)).losses == 3
+    found = clock.of(capture(t, board_capture={"write_pauses_us": [int(np.rint(t[2999]))]}))
+    assert (found.losses, found.pauses) == (0, 1)
+    found = clock.of(capture(t, board_capture={"write_pauses_us": []}))
+    assert (found.losses, found.pauses) == (3, 0)
+
+
+def test_whether_the_rate_was_measured_stands_in_the_header(tmp_path):
+    assert clock.is_measured({"rate": "measured"}) and not clock.is_measured({"rate": "stated"})
+    assert not clock.is_measured({}) and clock.is_measured({"imported_from": "old.csv"})
+    path = tmp_path / "a.csv"
+    capture_file.write(path, capture(EVEN, rate="measured", rate_interval_hz=[99.4, 99.6]))
+    assert capture_file.read(path).meta["rate"] == "measured"
+    path.write_text(path.read_text().replace('"measured"', '"guessed"'))
+    with pytest.raises(capture_file.BadFile, match='rate is ""guessed"", expected stated or'):
+        capture_file.read(path)
+
+
+def judged(*captures):
+    """{effect: Finding} of a diagnosis' look at the clocks, and its remarks."""
+    sessions = [SimpleNamespace(name="c%d.csv" % k, capture=one, rate=one.meta["rate_hz"],
+                                timeless=False) for k, one in enumerate(captures)]
+    clocks = sample_clock.clocks(sessions)
+    assert all(one["expected"] == one["rows"] + one["losses"]["samples"]
+               for one in sample_clock.answer(sessions, clocks))
+    return ({one.effect: one for one in sample_clock.findings(sessions)},
+            " ".join(sample_clock.remarks(sessions, clocks)))
+
+
+def test_a_rate_that_is_stated_is_judged_and_a_measured_one_is_not():
+    found, _ = judged(capture(EVEN, rate_hz=98))
+    assert set(found) == {"sample_rate"} and "99.50 Hz, not 98" in found["sample_rate"].words
+    assert judged(capture(EVEN, rate_hz=98, rate="measured"))[0] == {}
+    assert judged(capture(EVEN, rate_hz=99.5, rate="stated"))[0] == {}
+
+
+def test_a_healthy_pull_with_writes_to_the_flash_loses_nothing():
+    t, generator = EVEN.copy(), np.random.default_rng(6)
+    for row in range(128, ROWS, 128):
+        t[row:] += generator.uniform(20e3, 45e3)
+    found, said = judged(capture(t, board_capture={"write_pauses_us": []}, rate_hz=99.5))
+    assert found == {} and "wrote to its flash 46 times" in said
+
+
+def test_pauses_and_bursts_of_a_foreign_log_are_said_and_are_no_cause():
+    t = EVEN[np.minimum(np.arange(ROWS) // 8 * 8 + 7, ROWS - 1)] + np.arange(ROWS) % 8 * 50
+    t[3000:] += 2_504_000
+    found, said = judged(capture(t, rate="measured"))
+    assert found == {} and "pauses: the recorder stood still 1 time" in said and "bursts:" in said
+
+
+def test_samples_lost_under_a_steady_clock_are_the_devices():
+    lost = np.isin(np.arange(ROWS) // 20, np.arange(20, 300, 25))
+    found, _ = judged(capture(EVEN[~lost], rate="measured"))
+    assert found["dropped_samples"].value["chance"] == pytest.approx(4.0, abs=0.01)
+
+
+def test_a_recorder_that_hurries_after_a_late_row_loses_nothing():
+    """A loop of 3 ms that a write holds up for 10 ms every 70 rows, and that then reads every
+    2.4 ms until it is back in its pace; stamps in whole milliseconds."""
+    t, now = np.zeros(ROWS), 0.0
+    for row in range(ROWS):
+        due = row * 3000.0
+        now = max(due, now + 2400.0) + (9500.0 if row % 70 == 69 else 0.0)
+        t[row] = now
+    found = measured(np.floor(t / 1000) * 1000)
+    near(found, 1e6 / 3000)
+    assert (found.losses, found.pauses) == (0, 0) and found.bursts >= ROWS // 70
