@@ -2,6 +2,7 @@
 
 import os
 import re
+import signal
 import subprocess
 import sys
 import time
@@ -53,9 +54,15 @@ class QemuBoard:
         The board is reset first; several pieces run one after the other, each compiled alone.
         """
         words = [word for code in pieces for word in ("exec", code)]
-        answer = subprocess.run(
-            [sys.executable, "-m", "mpremote", "connect", self.port, *words],
-            capture_output=True, text=True, timeout=timeout, stdin=subprocess.DEVNULL)
+        self.process.send_signal(signal.SIGCONT)
+        try:
+            answer = subprocess.run(
+                [sys.executable, "-m", "mpremote", "connect", self.port, *words],
+                capture_output=True, text=True, timeout=timeout, stdin=subprocess.DEVNULL)
+        finally:
+            # The port of MicroPython polls its UART without a pause: a board that waits for its
+            # next line would keep a core of the host busy until the last test has ended.
+            self.process.send_signal(signal.SIGSTOP)
         if answer.returncode:
             raise RuntimeError("on the board: " + (answer.stdout + answer.stderr).strip())
         return answer.stdout.replace("\r", "")
