@@ -4,7 +4,9 @@ import json
 import numpy as np
 import pytest
 
+import sixflip_host
 from sixflip_host import cli
+from sixflip_host.capture import capture_file
 
 G = 9.80665
 
@@ -98,3 +100,17 @@ def test_the_words_fit_a_terminal_and_the_report_has_its_page(real, tmp_path, ca
     for heading in ("conventions", "Parameters side by side", "What it does to a robot",
                     "Settings to paste", "Real, simulated, and simulated with what was found"):
         assert heading in page
+
+
+def test_what_both_have_is_no_gap_though_the_simulators_axes_are_swapped(tmp_path, capsys):
+    paths = []
+    for name, seed in (("real", 3), ("sim", 4)):
+        log = sixflip_host.simulate({"seed": seed, "scene": "paper", "effects": [
+            {"effect": "quantisation", "sensor": "accel", "x": 16, "y": 16, "z": 16}]})[0]
+        if name == "sim":
+            log.gyro = log.gyro[:, [1, 0, 2]]
+        paths.append(str(tmp_path / (name + ".csv")))
+        capture_file.write(paths[-1], log)
+    answer = diagnosed(capsys, *paths)
+    assert [c["name"] for c in answer["simulator"]["conventions"]] == ["gyro_axes"]
+    assert "quantisation" not in [c["effect"] for c in answer["causes"]]

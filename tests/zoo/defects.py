@@ -16,7 +16,8 @@ ARM = np.array([0.04, -0.015, 0.02])
 class Parts:
     """How true force (m/s2) and rate (rad/s) become counts: matrices, biases, noise densities
     (m/s2 and rad/s per root Hz), steps in counts, ranges (g, deg/s), low-pass (Hz or None),
-    delays (s), rows over which each is held, drift of the real part with what (name of an
+    delays (s), rows over which each is held, whether noise is new in each of them; what the real
+    part drifts with (name of an
     effect, or "")."""
 
     accel: np.ndarray = field(default_factory=lambda: np.eye(3))
@@ -33,6 +34,7 @@ class Parts:
     gyro_delay_s: float = 0.0
     accel_held: int = 1
     gyro_held: int = 1
+    fresh_noise: bool = False
     effect: str = ""
 
 
@@ -86,7 +88,9 @@ def counts(parts, motion, force, rate, rng, rate_hz, start_s=0.0):
         at = t[(np.arange(len(t)) // held) * held] - delay
         x = np.stack([np.interp(at, motion.t, values[:, i]) for i in range(3)], 1)
         sigma = noise if parts.per_sample else noise * np.sqrt(rate_hz / held)
-        drawn = rng.normal(size=x.shape)[(np.arange(len(t)) // held) * held]
+        drawn = rng.normal(size=x.shape)
+        if not parts.fresh_noise:
+            drawn = drawn[(np.arange(len(t)) // held) * held]
         x = x + sigma * drawn
         c = np.round(np.clip(x * lsb, -limit, limit) / step) * step
         rows.append(np.clip(c, -32768, 32767).astype(int))
@@ -165,6 +169,8 @@ DEFECTS = {
                    "conventions", True),
     "held": (lambda m: (m.force, m.rate), {"gyro_held": 5}, ("gyro_rate_held",), "conventions",
              True),
+    "held_under_noise": (lambda m: (m.force, m.rate), {"gyro_held": 5, "fresh_noise": True},
+                         ("gyro_rate_held",), "conventions", True),
     "per_sample": (lambda m: (m.force, m.rate), {"per_sample": True}, ("noise_per_sample",),
                    "conventions", True),
     "no_noise": (lambda m: (m.force, m.rate), {"accel_noise": 0.0, "gyro_noise": 0.0},

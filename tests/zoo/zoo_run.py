@@ -6,15 +6,14 @@ import time
 from collections import Counter
 from pathlib import Path
 
-import numpy as np
-
 sys.path.insert(0, str(Path(__file__).parent))
 
+import baselines  # noqa: E402
 import defects  # noqa: E402
 import engine  # noqa: E402
 
 from sixflip_host.capture import capture_file  # noqa: E402
-from sixflip_host.diagnosis.simulator import comparison, simulator_answer  # noqa: E402
+from sixflip_host.diagnosis.simulator import comparison, simulator_answer, traces  # noqa: E402
 
 IN_PARAMETERS = {"bandwidth": "smoothness", "noise": "noise_density"}
 NOTHING, ONE_OF, WRONG = "(nothing)", "(one of)", "wrong"
@@ -58,13 +57,25 @@ def outcome(name, found):
     return NOTHING if names == [NOTHING] else WRONG
 
 
-def simple(logs):
-    """What is done without a model: the largest correlation between channels, and the channel
-    with the largest root mean square of what is left after subtraction."""
-    n = min(len(logs[0].t_us), len(logs[1].t_us))
-    a, b = (np.column_stack([x.accel, x.gyro])[:n].astype(float) for x in logs)
-    left = (a - b).std(axis=0) / np.maximum(a.std(axis=0), 1e-9)
-    return "channel %d" % int(left.argmax())
+def judged_simply(name, said_one):
+    """right, nothing or wrong: what a simple method says of a defect; of a healthy simulator
+    silence is right; a channel is no name."""
+    right = defects.DEFECTS[name][2]
+    said_one = "" if said_one.startswith("channel") else said_one
+    if said_one in right or not said_one and not right:
+        return "right"
+    return WRONG if said_one else NOTHING
+
+
+def simple(name, logs, found, tally):
+    """Put the methods of baselines to a pair of one motion; tally {method: Counter}."""
+    if not found.alignment.same:
+        return
+    pair = baselines.paired(*(traces.of("log", log) for log in logs), found.alignment)
+    for method, ask in baselines.METHODS.items():
+        answer = ask(pair)
+        if answer is not None:
+            tally.setdefault(method, Counter())[judged_simply(name, answer)] += 1
 
 
 def main():
@@ -76,7 +87,7 @@ def main():
     args = parser.parse_args()
     table, counts, healthy, started = {}, Counter(), Counter(), time.process_time()
     names = args.defects.split(",") if args.defects else list(defects.DEFECTS)
-    channels = Counter()
+    simply = {}
     for kind in args.kinds.split(","):
         made = motions(kind, args.seeds, args.quick)
         for seed in range(args.seeds):
@@ -94,13 +105,13 @@ def main():
                         healthy["no gap" if quiet else "a gap"] += 1
                     else:
                         counts["visible" if visible else "hidden", result] += 1
-                    if same:
-                        channels[simple(logs)] += 1
-    show(table, counts, healthy, channels, time.process_time() - started)
+                    if same and seed == 0:
+                        simple(name, logs, found, simply)
+    show(table, counts, healthy, simply, time.process_time() - started)
     return 1 if counts["visible", WRONG] + counts["hidden", WRONG] else 0
 
 
-def show(table, counts, healthy, channels, seconds):
+def show(table, counts, healthy, simply, seconds):
     print("%-24s %-6s %-6s %s" % ("defect", "motion", "", "said"))
     for (name, kind, same), row in table.items():
         print("%-24s %-6s %-6s %s" % (name, kind, same, ", ".join(
@@ -117,8 +128,13 @@ def show(table, counts, healthy, channels, seconds):
     if healthy:
         total = sum(healthy.values())
         print("healthy simulators: no gap %d of %d" % (healthy["no gap"], total))
-    print("residual RMS alone points at: %s; it names no defect" % ", ".join(
-        "%s %d" % pair for pair in channels.most_common()))
+    print("simpler methods on the pairs of one motion of the first seed, aligned for them "
+          "(silence is right of a healthy simulator only):")
+    for method in baselines.METHODS:
+        row = simply.get(method)
+        print("  %-22s %s" % (method, "not installed" if row is None else
+                              "right %d, nothing %d, wrong %d" % (
+                                  row["right"], row[NOTHING], row[WRONG])))
     print("%.0f s of processor time" % seconds)
 
 

@@ -3,7 +3,7 @@
 from .. import progress
 from ..experiment import blocks
 from . import diagnosis, noise_reference
-from .simulator import against_simulator, comparison
+from .simulator import against_simulator, comparison, put_right
 
 
 def diagnose(captures, simulator=(), reference=(), certified_box=False, without=(), jobs=0):
@@ -24,7 +24,9 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
         progress.doing("conventions and parameters of the simulator")
         comparisons = [comparison.compare(captures, *log) for log in simulator]
         # What a log with another convention reads is no effect of a sensor.
-        sound = [log for log, found in zip(simulator, comparisons) if not found.conventions]
+        mended = [(name, put_right.capture(log, found.conventions))
+                  for (name, log), found in zip(simulator, comparisons)]
+        sound = [log for log in mended if log[1] is not None]
         if sound:
             names, simulated = zip(*sound)
             progress.doing("the simulator's own captures")

@@ -7,19 +7,18 @@ import numpy as np
 from . import (
     alignment,
     conventions,
+    held_readings,
     own_calibration,
     own_consistency,
     own_motion,
     pairing,
     parameters,
+    put_right,
     single_log,
     task,
     traces,
 )
 
-# After these a simulator's numbers are not those of a sensor any more.
-SPOILED = ("no_gravity", "gravity_sign", "force_sign", "gravity_after_rotation",
-           "constant_channel", "world_frame_forces", "world_frame_rates", "unknown")
 FOLD_S = 5.0
 RAILED = 0.5  # of a log: what is left of it is no motion any more
 MG, DEG = 1000.0 / 9.80665, 180.0 / np.pi
@@ -32,7 +31,8 @@ class Comparison:
     None); gap {sensor: (before, after, noise alone)} held out, of one motion; fits {sensor:
     conventions.SensorFit}; real and simulated own_calibration.OwnSensor; noise {sensor:
     single_log.Noise of the real log}; remarks; unseen; motion_judged: lever arm and delay of the
-    two logs were compared; reference_c: mean temperature of the real log or None."""
+    two logs were compared, or what is wrong with the simulator's hides them; reference_c: mean
+    temperature of the real log or None."""
 
     log: str
     against: str
@@ -74,12 +74,10 @@ def compare(real_logs, name, capture):
 def of_traces(real, sim, aligned):
     """Comparison of two Traces."""
     remarks, unseen, found = [], [], []
-    held = {x: {"accel": single_log.held_rows(log.force, log.quantum[0]),
-                "gyro": single_log.held_rows(log.rate, log.quantum[1])}
-            for x, log in (("real", real), ("sim", sim))}
-    found += held_findings(held, real, sim)
-    sim_free = single_log.unheld(sim, held["sim"])
-    real_free = single_log.unheld(real, held["real"])
+    holds = {"real": held_readings.of(real), "sim": held_readings.of(sim)}
+    found += held_readings.findings(real, sim, holds["real"], holds["sim"])
+    sim_free = held_readings.free(sim, holds["sim"])
+    real_free = held_readings.free(real, holds["real"])
     live, dead = single_log.live(sim), single_log.dead(real, sim)
     for kind, mask in dead.items():
         still = mask | ~live[kind] & (kind == "accel" or sim.rate is not None)
@@ -103,7 +101,7 @@ def of_traces(real, sim, aligned):
         unseen.append("conventions: %s stands at the end of its range most of the time"
                       % " and ".join(railed))
     elif aligned.same and motion is not None:
-        fresh = {k: sim.rate_hz / v for k, v in held["sim"].items()}
+        fresh = {k: sim.rate_hz / v.rows for k, v in holds["sim"].items()}
         fits = conventions.same_motion(real_free, sim_free, aligned, motion, live, fresh)
         late, late_sigma, delays = conventions.delay(fits, row_s)
         judged = len(fits) == 2
@@ -117,9 +115,9 @@ def of_traces(real, sim, aligned):
     if real.rate is not None and sim.rate is None:
         unseen = [*unseen, "the gyro: there is none in %s" % sim.name]
     found = conventions.merged(found)
-    mended = put_right(sim_free, found)
+    mended = put_right.trace(sim_free, found)
     own_sim = own_calibration.fitted(mended)
-    usable = {k: not any(c.name in SPOILED and c.sensor in (k, "device") for c in found)
+    usable = {k: not any(c.name in put_right.SPOILED and c.sensor in (k, "device") for c in found)
               for k in ("accel", "gyro")}
     numbers = parameters.shapes(own_real, own_sim, fits, usable)
     noise_numbers, noise_found = parameters.noises(real, mended)
@@ -134,21 +132,8 @@ def of_traces(real, sim, aligned):
                       held_out(fits, real, sim), fits, own_real, own_sim,
                       {k: single_log.noise(real, getattr(real, v)) for k, v in (
                           ("accel", "force"), ("gyro", "rate")) if getattr(real, v) is not None},
-                      tuple(remarks), tuple(unseen), judged,
+                      tuple(remarks), tuple(unseen), judged or put_right.only_in_motion(found),
                       None if real.celsius is None else float(real.celsius.mean()))
-
-
-def held_findings(held, real, sim):
-    """Conventions of readings that repeat in the simulator and not in the real log."""
-    out = []
-    for kind, rows in held["sim"].items():
-        hz = [log.rate_hz / held[x][kind] for x, log in (("real", real), ("sim", sim))]
-        if rows < 1.5 or hz[1] > 0.8 * hz[0]:
-            continue
-        out.append(conventions.finding(
-            kind + "_rate_held", kind, 1.0, 100.0, "update it %.4g times a second: it says "
-            "something new every %.3g rows" % (hz[0], rows), value={"rate": hz[1]}, unit="Hz"))
-    return out
 
 
 def different_motion(real, sim, own_real, row_s):
@@ -165,32 +150,6 @@ def different_motion(real, sim, own_real, row_s):
         return found, unseen + ["delay of %s: fewer than %d moves between rests" % (
             sim.name, own_motion.FEWEST_MOVES)], False
     return own_motion.compared(*moved, row_s), unseen[1:], True
-
-
-def put_right(trace, found):
-    """The Trace with axes and units as the Conventions say they should be."""
-    force, rate = trace.force, trace.rate
-    for c in found:
-        if c.name in ("accel_axes", "both_axes"):
-            force = force @ matrix_of(c.value)
-        if c.name in ("gyro_axes", "both_axes") and rate is not None:
-            rate = rate @ matrix_of(c.value)
-        if c.name == "force_sign":
-            force = -force
-        if c.name == "accel_unit":
-            force = force / c.value["factor"]
-        if c.name == "gyro_unit" and rate is not None:
-            rate = rate / c.value["factor"]
-    return replace(trace, force=force, rate=rate)
-
-
-def matrix_of(value):
-    """(3, 3) of {"x": "-y", ...}"""
-    out = np.zeros((3, 3))
-    for i, axis in enumerate("xyz"):
-        if value[axis] != "0":
-            out[i, "xyz".index(value[axis][-1])] = -1.0 if value[axis][0] == "-" else 1.0
-    return out
 
 
 def held_out(fits, real, sim):

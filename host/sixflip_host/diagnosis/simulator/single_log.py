@@ -1,12 +1,10 @@
-"""What one log shows of itself without the other's motion: rows that repeat, channels that never
-change, noise, steps and range."""
-from dataclasses import dataclass, replace
+"""What one log shows of itself without the other's motion: channels that never change, noise,
+steps and range."""
+from dataclasses import dataclass
 
 import numpy as np
 
 SUBMEAN_S = 0.25  # noise density is taken from means this long: a filter's colour is in it
-MOVING = 8.0  # steps by which a reading has to change over a window to be seen to repeat
-HELD_ROWS = 40
 SETTLING = 4.0  # times the usual power: five means of one noise differ by as much in 0.3 %
 
 
@@ -39,35 +37,6 @@ def dead(real, sim):
         shares = [getattr(x, name).std(axis=0) / max(getattr(x, name).std(axis=0).max(), 1e-12)
                   for x in (real, sim)]
         out[kind] = (shares[1] < DEAD) & (shares[0] > ALIVE)
-    return out
-
-
-def held_rows(values, quantum):
-    """Rows over which a sensor's reading (n, 3) is held while it moves: 1.0 where it is not."""
-    if values is None or len(values) < 4 * HELD_ROWS:
-        return 1.0
-    change = np.abs(np.diff(values, axis=0)).max(axis=1)
-    fresh = change > 0.25 * quantum
-    wide = np.convolve(change, np.ones(HELD_ROWS), "same")
-    moving = wide > max(MOVING * quantum * HELD_ROWS / 8.0, np.quantile(wide, 0.6))
-    if moving.sum() < 2 * HELD_ROWS:
-        return 1.0
-    share = fresh[moving].mean()
-    return float(1.0 / max(share, 1e-3))
-
-
-def unheld(trace, rows):
-    """The Trace with a held sensor's readings in a straight line from one new reading to the
-    next: what it would say without the hold. rows {sensor: held_rows}."""
-    out = trace
-    for name, kind in (("force", "accel"), ("rate", "gyro")):
-        values = getattr(trace, name)
-        if values is None or rows[kind] < 1.5:
-            continue
-        fresh = np.concatenate([[True], np.abs(np.diff(values, axis=0)).max(axis=1) > 0])
-        straight = np.stack([np.interp(trace.t, trace.t[fresh], values[fresh, i])
-                             for i in range(3)], 1)
-        out = replace(out, **{name: straight})
     return out
 
 

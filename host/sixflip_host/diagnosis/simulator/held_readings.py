@@ -1,0 +1,122 @@
+"""Readings that a log holds over several rows: the sensor is slower than the rows are.
+
+Either the same counts stand there again (a board that reads faster than the chip measures, a
+simulator that publishes faster than it steps), or the value is held and noise is drawn anew for
+every row (a noise model behind the slow source), so that no two rows are alike.
+"""
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from . import conventions
+
+WINDOW_ROWS = 40
+MOVING = 8.0  # steps by which a reading has to change over a window to be seen to repeat
+LONGEST = 25  # rows that a reading is looked for to be held under noise
+LEAST = 1.5  # rows from which on a reading is held at all
+PRIOR = 0.02  # that a log holds a sensor at all, over all numbers of rows and beginnings
+CERTAIN = 0.99
+SLOWER = 0.8  # of the real log's own rate of new readings
+
+
+@dataclass(frozen=True)
+class Hold:
+    """rows that a reading stands for, 1.0 where every row is new; starts (n,) bool: rows with
+    which a new reading begins."""
+
+    rows: float
+    starts: np.ndarray
+
+    @property
+    def held(self):
+        return self.rows >= LEAST
+
+
+def of(trace):
+    """{sensor: Hold} of a Trace."""
+    return {"accel": of_values(trace.force, trace.quantum[0], trace.rests),
+            "gyro": of_values(trace.rate, trace.quantum[1], trace.rests)}
+
+
+def of_values(values, quantum, rests=()):
+    """The Hold of a sensor's values (n, 3) or None, read in steps of quantum; rests: where
+    it stands still."""
+    if values is None or len(values) < 4 * WINDOW_ROWS:
+        return Hold(1.0, np.ones(0 if values is None else len(values), bool))
+    change = np.abs(np.diff(values, axis=0)).max(axis=1)
+    fresh = change > 0.25 * quantum
+    wide = np.convolve(change, np.ones(WINDOW_ROWS), "same")
+    moving = wide > max(MOVING * quantum * WINDOW_ROWS / 8.0, np.quantile(wide, 0.6))
+    if moving.sum() < 2 * WINDOW_ROWS:
+        return Hold(1.0, np.ones(len(values), bool))
+    share = fresh[moving].mean()
+    rows = float(1.0 / max(share, 1e-3))
+    if rows >= LEAST:
+        return Hold(rows, np.concatenate([[True], change > 0]))
+    return under_noise(values, moving, rests)
+
+
+def under_noise(values, moving, rests):
+    """The Hold of values (n, 3) that are never alike: stairs against a ramp.
+
+    Where a sensor moves, a row differs from the row before by the slope and whatever shakes the
+    robot, of any size. On stairs of k rows it differs by no more than at rest, but at each k-th,
+    where the whole step comes. Half of the differences count, since neighbours share a row; every
+    k and first row is as likely. rests: ((first, end), ...), where that noise is known from.
+    """
+    n = len(values)
+    everywhere = Hold(1.0, np.ones(n, bool))
+    still = [np.diff(values[a:b], axis=0) for a, b in rests if b - a > 2]
+    if not still:
+        return everywhere
+    noise = np.concatenate(still).var(axis=0) + 1e-30
+    change, row = np.diff(values, axis=0), np.arange(1, n)
+    mask = np.concatenate([moving[1:], [False]]) & moving
+    best = (0.0, 1, 0)
+    for k in range(2, LONGEST + 1):
+        # The change over k rows does not depend on where the stairs begin; smooth over k again.
+        kernel = np.convolve(np.ones(k), np.ones(k)) / k ** 2
+        slope = np.column_stack([np.convolve(c, kernel, "same") for c in change.T])
+        ramp = (change - slope) ** 2
+        level = ramp[mask].mean(axis=0) + 1e-30
+        for first in range(k):
+            flat = mask & (row % k != first)
+            nats = 0.25 * (ramp[flat] / level + np.log(level)
+                           - change[flat] ** 2 / noise - np.log(noise)).sum()
+            if nats > best[0]:
+                best = nats, k, first
+    nats, k, first = best
+    ways = sum(range(2, LONGEST + 1))
+    if nats < np.log(ways * (1.0 - PRIOR) / PRIOR * CERTAIN / (1.0 - CERTAIN)):
+        return everywhere
+    starts = np.arange(n) % k == first
+    starts[0] = True
+    return Hold(float(k), starts)
+
+
+def free(trace, holds):
+    """The Trace with what is held in a straight line from one new reading to the next: what it
+    would say without the hold. A reading is the mean of the rows it stands in."""
+    out = trace
+    for name, kind in (("force", "accel"), ("rate", "gyro")):
+        values = getattr(trace, name)
+        if values is None or not holds[kind].held:
+            continue
+        at = np.flatnonzero(holds[kind].starts)
+        means = np.add.reduceat(values, at, axis=0) / np.diff(np.append(at, len(values)))[:, None]
+        out = replace(out, **{name: np.stack([
+            np.interp(trace.t, trace.t[at], means[:, i]) for i in range(3)], 1)})
+    return out
+
+
+def findings(real, sim, holds_real, holds_sim):
+    """Conventions of sensors that the simulator holds and the real log does not."""
+    out = []
+    for kind, hold in holds_sim.items():
+        hz = real.rate_hz / holds_real[kind].rows, sim.rate_hz / hold.rows
+        if hold.held and hz[1] <= SLOWER * hz[0]:
+            out.append(conventions.finding(
+                kind + "_rate_held", kind, 1.0, 100.0, "update it %.4g times a second: it says "
+                "something new every %.3g rows" % (hz[0], hold.rows), value={"rate": hz[1]},
+                unit="Hz"))
+    return out
