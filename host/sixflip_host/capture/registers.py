@@ -32,6 +32,12 @@ def dead_band(counts):
     return np.array(out)
 
 
+def of_counts(sessions, sensor):
+    """The sessions whose numbers are the chip's own counts: those of a file of decimals that has
+    no spacing are the import's, and have no bytes and bits that could be read wrongly."""
+    return [s for s in sessions if s.capture.meta.get(sensor + "_values") != "float"]
+
+
 def stuck_bits(sessions):
     """[(sensor, axis, bit, value)] of single low bits that never change while those around
     them do (bits stuck from the lowest on are steps, see quantisation)."""
@@ -39,8 +45,9 @@ def stuck_bits(sessions):
     for sensor in ("accel", "gyro"):
         if any(getattr(s.capture, sensor) is None for s in sessions):
             continue
-        for i in range(3):
-            x = np.concatenate([getattr(s.capture, sensor)[:, i] for s in sessions]).astype(
+        counted = of_counts(sessions, sensor)
+        for i in range(3 if counted else 0):
+            x = np.concatenate([getattr(s.capture, sensor)[:, i] for s in counted]).astype(
                 np.int64)
             if len(x) < FEWEST_SAMPLES:
                 continue

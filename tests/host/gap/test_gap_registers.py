@@ -2,9 +2,10 @@
 import numpy as np
 import pytest
 
+from sixflip_host.capture import capture_file
 from sixflip_host.capture import registers as counts
 from sixflip_host.diagnosis import diagnosis
-from sixflip_host.diagnosis.detect import integrity, noise_bursts
+from sixflip_host.diagnosis.detect import integrity, noise_bursts, torn_reads
 from sixflip_host.experiment import blocks
 from sixflip_host.simulation import scenario, simulated_session
 
@@ -38,6 +39,30 @@ def test_coarse_steps_are_no_bend():
     assert [f.effect for f in found.findings] == ["quantisation"]
     assert found.findings[0].value == {"x": 8, "y": 8, "z": 8}
     assert found.causes == []
+
+
+def resting(noise, seed=5, **meta):
+    """A session of six rests with noise of so many counts."""
+    rng = np.random.default_rng(seed)
+    n = 200
+    accel = np.round(np.repeat(8192.0 * np.vstack([np.eye(3), -np.eye(3)]), n, axis=0)
+                     + noise * rng.normal(size=(6 * n, 3))).astype(np.int16)
+    head = {"sensor": "other", "rate_hz": 100.0, "accel_lsb_per_g": 8192.0, **meta}
+    return blocks.of("resting", capture_file.Capture(
+        head, 10_000 * np.arange(6 * n), accel, pose=np.repeat(np.arange(1, 7), n)))
+
+
+@pytest.mark.parametrize("noise", [20.0, 70.0, 100.0])
+def test_wide_noise_is_no_bit_that_is_read_wrongly(noise):
+    assert all(torn_reads.jumps([resting(noise, seed)]) == [] for seed in range(5))
+
+
+def test_a_bit_of_256_is_seen_where_the_numbers_are_the_chips_own():
+    session, decimals = resting(12.0), resting(12.0, accel_values="float")
+    for s in (session, decimals):
+        s.capture.accel[50::40, 1] += 256
+    assert [sensor for sensor, _, _ in torn_reads.jumps([session])] == ["accel"]
+    assert torn_reads.jumps([decimals]) == []
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.15, 0.3, 1.0])

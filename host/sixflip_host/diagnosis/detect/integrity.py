@@ -22,7 +22,7 @@ def findings(sessions):
         band = _per_axis("dead_band", sensor, [registers.dead_band(c) for c in columns],
                          [codes.band_nats(c) for c in columns], "counts near 0 read 0")
         found += band + saturation.saturation(sessions, sensor, columns)
-        found += torn_reads.finding(sessions, sensor, columns,
+        found += torn_reads.finding(sessions, sensor,
                                     ["xyz".index(a) for f in band for a in f.axes])
     return found + sample_clock.findings(sessions) + axis_order.swapped(sessions)
 

@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from ...capture import registers
 from .. import odds
 from .detection import Finding, present
 
@@ -24,9 +25,10 @@ NEAR = 2.0  # standard deviations within which a sample's chance of a jump is sm
 BLURRED = 100.0  # counts: with wider noise a page more or less tells nothing
 
 
-def finding(sessions, sensor, columns, banded=()):
+def finding(sessions, sensor, banded=()):
     """[Finding] of torn reads in a sensor, or []; banded: axes on which readings near 0 read 0,
     which are jumps with a name."""
+    columns = [getattr(s.capture, sensor) for s in registers.of_counts(sessions, sensor)]
     tables = [tabled(counts[:, axis].astype(np.int64), axis in banded)
               for counts in columns if len(counts) >= FEWEST for axis in range(3)]
     tables = [t for t in tables if t is not None]
@@ -49,17 +51,18 @@ def jumps(sessions, without=()):
     """[(sensor, sentence, p)] of jumps by whole pages that nothing torn explains."""
     found = []
     for sensor, words in (("accel", "accelerometer"), ("gyro", "gyro")):
-        columns = [getattr(s.capture, sensor) for s in sessions]
-        if sensor in without or any(c is None for c in columns):
+        if sensor in without or any(getattr(s.capture, sensor) is None for s in sessions):
             continue
+        counted = registers.of_counts(sessions, sensor)
+        columns = [getattr(s.capture, sensor) for s in counted]
         # A hand trembles as far as a page is wide: only rests are quiet enough.
         rests = [np.concatenate([counts[run.first:run.end] for run in s.runs])
-                 for s, counts in zip(sessions, columns) if s.runs]
+                 for s, counts in zip(counted, columns) if s.runs]
         tables = [tabled(counts[:, axis].astype(np.int64), False)
                   for counts in rests if len(counts) >= FEWEST for axis in range(3)]
         tables = [t for t in tables if t is not None]
         table = np.concatenate(tables, axis=1) if tables else np.zeros((8, 0))
-        nats, number = paged(table) if table[3].sum() >= FEWEST else (0.0, 0.0)
+        nats, number = paged(table)
         if present(nats):
             found.append((sensor, "about %.0f samples of the %s are off by 256 counts: a bit that "
                           "is read wrongly" % (number, words), odds.chance(nats)))
@@ -70,7 +73,10 @@ def paged(table):
     """(nats of jumps by whole pages over none, over jumps of any size and over samples that are
     louder, as where the box is put down; their number) of a table (8, n) of tabled(), among
     calm samples."""
-    off, moved, sigma = table[:3, table[3] > 0.0]
+    # Without the pages around, one more is seen only beyond what neighbours may span.
+    off, moved, sigma = table[:3, (table[3] > 0.0) & (table[2] < PAGE / CALM)]
+    if len(off) < FEWEST:
+        return 0.0, 0.0
     far, whole, other = np.abs(off) > NEAR, [], []
     for freedom in FREEDOM:
         sound, jumped = (_student(z, freedom) / sigma for z in (off, moved))

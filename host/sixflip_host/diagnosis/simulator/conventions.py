@@ -12,6 +12,7 @@ from . import evidence_of_logs, hypotheses, pairing
 PRIOR_HEALTHY, PRIOR_EACH, PRIOR_NAMELESS = 0.9, 0.02, 0.005
 CERTAIN = 0.99  # probability from which on a convention is named
 HELD_BAND = 12.0  # readings in a period, below which a straight line between them is no curve
+OWN_SHARES = (1.0, 0.3, 0.1, 0.03, 0.01)  # of what datasheets allow
 LATE_SIGMA = 4.0  # of a delay's standard error, from which on it is one
 WHO = {"accel": "accelerometer", "gyro": "gyro"}
 WORDS = {
@@ -145,8 +146,17 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
     first = max(judged(1.0), key=lambda f: f.log)
     rows = local_noise(first.left[:, live])
     inflation = align_by.independent(first.left[:, live] / rows[:, None])
+    own = sized(own, lambda sizes: evidence_of_logs.fit_one(
+        first.hypothesis, measured, first.axes, first.unit, pairing.GRID_HZ, kind, inflation,
+        (own[0], sizes), live, rows).log)
     found, fit = posterior(kind, judged(inflation, rows), live)
     return SensorFit(kind, found, fit, inflation, pair, fit.hypothesis, own, live)
+
+
+def sized(own, log):
+    """own (columns, sizes) with the sizes that make the logs likeliest: most real sensors do far
+    less of themselves than datasheets allow, and room that is not needed is room for noise."""
+    return own[0], max((own[1] * share for share in OWN_SHARES), key=log)
 
 
 def local_noise(left):
