@@ -67,7 +67,9 @@ class ArrayTable:
 def read_npz(path):
     """ArrayTable of an .npz with arrays (n,) and (n, 3)."""
     try:
-        with sample_limit.little_memory(), np.load(path, allow_pickle=False) as file:
+        # a file that NumPy cannot make sense of it leaves open; one that is handed in is closed
+        with sample_limit.little_memory(), open(path, "rb") as data, \
+                np.load(data, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
     except MemoryError:
         raise _too_large(path) from None

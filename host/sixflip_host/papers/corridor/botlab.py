@@ -50,7 +50,7 @@ class Recording:
 def load(path):
     """The Recording in a .npz; BadFile where it is none or has no scans."""
     try:
-        with np.load(path) as file:
+        with open(path, "rb") as whole, np.load(whole) as file:
             data = {name: file[name] for name in file.files}
         return _recording(data, path)
     except (OSError, ValueError, KeyError, IndexError) as error:
