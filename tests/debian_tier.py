@@ -48,9 +48,7 @@ def install(packages, missing):
 
 
 def without(tier, error):
-    """Skip for a user, fail in CI."""
-    if os.environ.get("CI") == "true":
-        pytest.fail("%s is missing in CI: %s" % (tier, error))
+    """Skip the test, which conftest.py makes a failure in CI."""
     pytest.skip("no %s: %s" % (tier, error))
 
 

@@ -18,13 +18,21 @@ def test_a_user_is_told_what_to_install(monkeypatch):
     assert str(told.value) == "no the-tool: apt-get install one two"
 
 
-def test_a_skip_for_a_user_is_a_failure_in_ci(monkeypatch):
-    monkeypatch.delenv("CI", raising=False)
-    with pytest.raises(pytest.skip.Exception, match="no such board: no such tool"):
-        debian_tier.without("such board", "no such tool")
-    monkeypatch.setenv("CI", "true")
-    with pytest.raises(pytest.fail.Exception, match="missing in CI: no such tool"):
-        debian_tier.without("such board", "no such tool")
+@pytest.mark.parametrize("ci, reason, outcome", [
+    ("", "no such board: no such tool", "skipped"),
+    ("true", "no such board: no such tool", "failed"),
+    ("true", "no firmware image for the emulated Pico: set", "skipped")])
+def test_a_skip_for_a_user_is_a_failure_in_ci(ci, reason, outcome, monkeypatch, request):
+    monkeypatch.setenv("CI", ci)
+    with pytest.raises(pytest.skip.Exception, match=reason) as skipped:
+        debian_tier.without(*reason.removeprefix("no ").split(": "))
+    said = ("file.py", 1, "Skipped: %s" % skipped.value)
+    report = pytest.CollectReport("a test", "skipped", said, [])
+    (tests,) = [one for one in request.config.pluginmanager.get_plugins()
+                if hasattr(one, "MAY_BE_ABSENT")]
+    tests.fail_in_ci(report)
+    assert report.outcome == outcome
+    assert reason in str(report.longrepr)
 
 
 def test_a_benchmark_says_so_in_one_line(monkeypatch, capsys):

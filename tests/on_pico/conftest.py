@@ -24,13 +24,6 @@ from sixflip_host.virtual.virtual_board import VirtualBoard
 collect_ignore = [] if os.environ.get("SIXFLIP_PICO") == "whole" else ["test_pico_session.py"]
 
 
-def missing(what):
-    """What every other tier needs as well: its absence is a failure in CI."""
-    if os.environ.get("CI") == "true":
-        pytest.fail(what)
-    pytest.skip(what)
-
-
 @pytest.fixture(scope="session")
 def uf2():
     """Path of the firmware image, or a skip with one line, in CI too."""
@@ -46,7 +39,7 @@ def provisioned(files, spec):
     from pico_flash import FILES_BYTES
     micropython = micropython_fetch.find()
     if micropython is None:
-        missing(micropython_fetch.MISSING)
+        pytest.skip(micropython_fetch.MISSING)
     with VirtualBoard(spec, files, micropython=micropython, flash_bytes=FILES_BYTES) as board, \
             MpremoteLink(board.port) as link:
         firmware_update.copy(link, {"sensor": spec["sensor"], "board": "pico",
