@@ -41,7 +41,7 @@ demo: micropython
 	@$(BIN)/sixflip demo --keep demo-output
 
 test: micropython check
-	$(BIN)/python -m pytest -n auto --dist loadfile
+	$(BIN)/python -m pytest -n auto --dist worksteal --durations 10
 
 test-qemu: setup
 	SIXFLIP_QEMU_CHIPS=all $(BIN)/python -m pytest -s tests/on_qemu tests/on_microbit
