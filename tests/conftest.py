@@ -44,6 +44,19 @@ def pytest_make_collect_report():
     fail_in_ci((yield).get_result())
 
 
+@pytest.fixture(scope="session", autouse=True)
+def cutoffs_of_this_run(tmp_path_factory):
+    """What a diagnosis simulates of a protocol before it judges is simulated by today's code, and
+    by one test for all others: its cache is one folder of this run, for every worker."""
+    from sixflip_host.diagnosis import cutoffs
+    folder = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        folder = folder.parent
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cutoffs, "folder", lambda: folder / "cutoffs")
+        yield
+
+
 @pytest.fixture(scope="session")
 def recordings():
     """Folder of the real recordings: SIXFLIP_DATA, or ../shared/data beside the project."""

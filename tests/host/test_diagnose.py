@@ -31,15 +31,7 @@ def captures(folder, scene, effects, seed=9):
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory):
-    """Thresholds are simulated once for all tests of this file."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SIXFLIP_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield
-
-
-@pytest.fixture(scope="module")
-def two_sessions(tmp_path_factory, cache):
+def two_sessions(tmp_path_factory):
     return captures(tmp_path_factory.mktemp("gap"), "recommended", EFFECTS)
 
 
@@ -108,7 +100,7 @@ def test_the_first_line_is_the_verdict_and_ci_can_fail_on_it(two_sessions, tmp_p
     assert "src=\"http" not in page
 
 
-def test_twelve_poses_name_nothing_that_they_cannot_tell(tmp_path, capsys, cache):
+def test_twelve_poses_name_nothing_that_they_cannot_tell(tmp_path, capsys):
     for effects in ([], [{"effect": "cubic", "sensor": "accel", "x": 5.0, "z": -5.0}]):
         paths = captures(tmp_path, "paper", effects, seed=5)
         answer = diagnosed(capsys, *paths)

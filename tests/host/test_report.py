@@ -135,8 +135,7 @@ def test_a_browser_is_told_to_run_and_fetch_nothing():
     assert "default-src 'none'; img-src data:; style-src 'unsafe-inline'" in page
 
 
-def test_a_rest_and_its_gap(tmp_path, monkeypatch):
-    monkeypatch.setenv("SIXFLIP_CACHE", str(tmp_path))
+def test_a_rest_and_its_gap(tmp_path):
     rng = np.random.default_rng(1)
     counts = np.rint(rng.normal(0, 40, (2000, 3)) + [0, 0, 16384]).astype(np.int16)
     counts[:, 0] += np.rint(100 * np.sin(2 * np.pi * 17.0 * np.arange(2000) / 100)).astype(int)

@@ -17,14 +17,7 @@ NAMES = ["accel_thermal_bias", "gyro_thermal_bias", "g_sensitivity"]
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SIXFLIP_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield
-
-
-@pytest.fixture(scope="module")
-def drifting(tmp_path_factory, cache):
+def drifting(tmp_path_factory):
     """(captures, record without terms) of the part."""
     folder = tmp_path_factory.mktemp("part")
     return (drifting_part.captures(folder, drifting_part.TERMS),
@@ -140,7 +133,7 @@ def diagnosed(drifting, folder, effects, capsys):
     return code, json.loads(said.out)["terms"], said.err, output
 
 
-def test_one_effect_makes_one_term(cache, drifting, tmp_path, capsys):
+def test_one_effect_makes_one_term(drifting, tmp_path, capsys):
     code, terms, _, output = diagnosed(
         drifting, tmp_path, [{"effect": "thermal_scale", "sensor": "accel", "x": 0.06}], capsys)
     assert code == 0 and terms["written"] == str(output)
@@ -150,7 +143,7 @@ def test_one_effect_makes_one_term(cache, drifting, tmp_path, capsys):
     assert record_terms.names_of(record) == ["accel_thermal_scale"] and record.sequence == 2
 
 
-def test_nothing_makes_no_record(cache, drifting, tmp_path, capsys):
+def test_nothing_makes_no_record(drifting, tmp_path, capsys):
     code, terms, err, output = diagnosed(drifting, tmp_path, [], capsys)
     assert code == 1 and not output.exists()
     assert terms["found"] == [] and terms["written"] is None

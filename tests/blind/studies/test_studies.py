@@ -8,13 +8,6 @@ from sixflip_host.planning import next_capture
 from . import left_out, null_study, real_noise, resolved
 
 
-@pytest.fixture(scope="module", autouse=True)
-def cache(tmp_path_factory):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SIXFLIP_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield
-
-
 def cause(effect, *rivals, sensor="accel"):
     return {"sensor": sensor, "effect": None if rivals else effect, "class": [effect, *rivals],
             "axes": [], "value": {}, "score_nats": 9.0, "unit": ""}

@@ -5,13 +5,6 @@ import pytest
 from .unattended import ROWS, Heard
 
 
-@pytest.fixture(scope="module", autouse=True)
-def cache(tmp_path_factory):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SIXFLIP_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield
-
-
 @pytest.mark.parametrize("name", ROWS)
 def test_what_is_known_of_a_recording_is_said(name, recordings):
     captures, known = ROWS[name]

@@ -20,13 +20,6 @@ def captures():
     return found
 
 
-@pytest.fixture(autouse=True, scope="module")
-def cache(tmp_path_factory):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SIXFLIP_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield
-
-
 def causes(captures, change):
     """[cause] of the answer on captures with change(t, warm, g) mg added, (n, 3): t s, warm degC
     above the first session's start, g (n, 3) what is read."""

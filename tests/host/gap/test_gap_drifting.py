@@ -42,8 +42,7 @@ def jumps(generator, t):
     return SIZE_DPS * (t > 0.4 * t[-1])[:, None] * np.array([[1.0, -0.7, 0.9]])
 
 
-def diagnosed(captures, course, tmp_path, monkeypatch):
-    monkeypatch.setenv("SIXFLIP_CACHE", str(tmp_path))
+def diagnosed(captures, course):
     generator, sessions, restored = np.random.default_rng(4), [], []
     for number, capture in enumerate(captures):
         kept = capture.gyro
@@ -58,14 +57,14 @@ def diagnosed(captures, course, tmp_path, monkeypatch):
     return found
 
 
-def test_a_random_walk_of_each_axis_drifts(captures, tmp_path, monkeypatch):
-    found = diagnosed(captures, walks, tmp_path, monkeypatch)
+def test_a_random_walk_of_each_axis_drifts(captures):
+    found = diagnosed(captures, walks)
     assert found.gaps["gyro"].drift and found.verdict == "explained"
     assert not found.gaps["accel"].drift
     assert not found.causes  # nothing slow that a walk follows by chance for a while
 
 
-def test_a_slope_beside_a_walk_keeps_its_name(captures, tmp_path, monkeypatch):
+def test_a_slope_beside_a_walk_keeps_its_name(captures):
     warmest = max(c.temp.max() for c in captures)
 
     remaining = list(captures)
@@ -75,7 +74,7 @@ def test_a_slope_beside_a_walk_keeps_its_name(captures, tmp_path, monkeypatch):
         degrees = (capture.temp - warmest) / capture.meta["temp_lsb_per_c"]
         return 0.3 * walks(generator, t) + 0.4 * degrees[:, None] * np.array([[0.0, 1.0, 0.0]])
 
-    found = diagnosed(captures, slope_too, tmp_path, monkeypatch)
+    found = diagnosed(captures, slope_too)
     (sensor, cause), = found.causes
     assert (sensor, cause.effect) == ("gyro", "thermal_bias") and "y" in cause.letters
     low, high = cause.interval["y"]
@@ -84,8 +83,8 @@ def test_a_slope_beside_a_walk_keeps_its_name(captures, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("course", [together, one_axis, sways, jumps])
 def test_what_is_no_random_walk_of_every_axis_is_not_called_drift(
-        course, captures, tmp_path, monkeypatch):
-    found = diagnosed(captures, course, tmp_path, monkeypatch)
+        course, captures):
+    found = diagnosed(captures, course)
     assert not found.gaps["gyro"].drift
     assert found.verdict in ("unexplained", "partly explained")
     assert any(p.sensor == "gyro" and p.domain == "time" for p in found.where)

@@ -30,9 +30,7 @@ def no_flips(capture):
 
 
 @pytest.mark.parametrize("change, which", [(no_thermometer, 1), (steady, 0), (no_flips, 1)])
-def test_what_one_session_cannot_show_does_not_stop_the_others(
-        change, which, tmp_path, monkeypatch):
-    monkeypatch.setenv("SIXFLIP_CACHE", str(tmp_path))
+def test_what_one_session_cannot_show_does_not_stop_the_others(change, which):
     found = captures()
     change(found[which])
     sessions = [blocks.of(str(k), c) for k, c in enumerate(found)]

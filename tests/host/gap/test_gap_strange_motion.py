@@ -16,13 +16,6 @@ def captures():
     return [simulated_session.session(plan, k) for k in range(len(plan.worlds))]
 
 
-@pytest.fixture(autouse=True, scope="module")
-def cache(tmp_path_factory):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SIXFLIP_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield
-
-
 def diagnosed(captures, change):
     """The answer on captures whose counts (accel, gyro), as floats, change(t, ...) returns."""
     kept = [(c.accel, c.gyro) for c in captures]

@@ -9,8 +9,7 @@ from sixflip_host.simulation import scenario, simulated_session
 
 
 @pytest.fixture
-def two_sessions(tmp_path, monkeypatch):
-    monkeypatch.setenv("SIXFLIP_CACHE", str(tmp_path))
+def two_sessions():
     plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 77,
                                "world": {"placement_scatter_deg": 0.05, "tilt_deg": 1.0}})
     return [simulated_session.session(plan, number) for number in (0, 1)]
