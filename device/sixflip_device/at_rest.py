@@ -10,7 +10,7 @@ from array import array
 
 from sixflip.still_window import StillWindow, window_length
 
-from .pacer import Pacer
+from .pacer import pacer
 from .quiet_run import QuietRun
 
 
@@ -43,14 +43,14 @@ def watch(board, sensor, rate_hz, longest_s, stored=None, poll=None):
     window = StillWindow(window_length(rate_hz, rate_hz), imu.accel_rail, imu.gyro_rail,
                          1000000 // rate_hz)
     quiet = QuietRun(imu.accel_lsb_per_g, imu.gyro_lsb_per_dps, rate_hz)
-    pacer = Pacer(board, sensor, rate_hz)
+    paced = pacer(board, sensor, rate_hz)
     sample = array("h", [0] * 7)
     longest = int(longest_s * rate_hz / window.length)
     seen = 0
     while seen < longest or 1 < len(quiet.totals) and seen < longest + quiet.most:
         full = False
         while not full:
-            dt = pacer.next(sample)
+            dt = paced.next(sample)
             if dt >= 0:
                 full = window.add(dt, sample)
         seen += 1

@@ -67,6 +67,45 @@ class Sensor:
             return RECOVERED
         return self._retry(error, sample)
 
+    def waiting(self):
+        """Samples in the chip's FIFO, or -1: some were lost, or the chip was set up anew."""
+        for _ in range(RETRIES):
+            try:
+                found = self.imu.fifo.look()
+                if found < 0:
+                    self._lost("its FIFO was full")
+                return found
+            except OSError as e:
+                error = e
+                self.errors += 1
+                self._board.sleep_us(RETRY_US)
+        self._recover(error)
+        return -1
+
+    def take(self, sample):
+        """The next sample of those that waiting() found; False: some were lost, and it is said."""
+        try:
+            if self.imu.fifo.read_into(sample):
+                self._vain = 0
+                return True
+            self._lost("an empty frame")
+        except OSError as e:
+            self._lost(e.args[1] if len(e.args) > 1 else "a transfer failed", e)
+        return False
+
+    def _lost(self, why, error=None):
+        """Tells that samples of the FIFO are lost; when that goes on, sets up the chip anew."""
+        self.errors += 1
+        self._vain += 1
+        self._report(error, "samples are lost: %s" % why)
+        if self._vain % EMPTY == 0:
+            self._recover(error or why)
+
+    def silent(self):
+        """Sets up anew a chip whose FIFO stays empty; RECOVERED."""
+        self._vain += EMPTY
+        return self._recover("no new samples")
+
     def check(self):
         """READ when the chip is as it was configured, else RECOVERED or BusLost."""
         error = None
@@ -140,7 +179,8 @@ class Sensor:
                 self.errors += 1
                 continue
             if self._vain > 6 * EMPTY:
-                error = "no bit of its samples differs"
+                error = ("no bit of its samples differs" if imu.fifo is None
+                         else "nothing comes out of its FIFO")
                 break
             self.recoveries += 1
             self._report(error, "recovered")

@@ -1,5 +1,18 @@
 """The sensor on a bus that may be stuck: probed, and configured."""
 
+POLLED_HZ = 125  # the longest turn of a session's loop takes a Pico 7 ms: tests/bench/instructions
+
+
+def by_fifo(imu, rate_hz, wanted, report):
+    """Samples come through the chip's FIFO where a board that polls would miss some, and where
+    the settings want it; they may not."""
+    if wanted is False or wanted is None and rate_hz <= POLLED_HZ:
+        return
+    if getattr(imu, "FIFO", ""):
+        imu.use_fifo()
+    elif wanted:
+        report.append("the %s has no FIFO that is used: it is polled" % imu.name)
+
 
 def find(board, settings, tries=3):
     """Probes and configures -> (imu, report). Raises the last OSError (NoChip: .report).
@@ -18,7 +31,12 @@ def find(board, settings, tries=3):
                 report.append("%d samples a second are more than the %s is polled: %d are used"
                               % (settings["rate_hz"], imu.name, imu.MOST_HZ))
                 settings["rate_hz"] = imu.MOST_HZ
+            by_fifo(imu, settings["rate_hz"], settings["fifo"], report)
             imu.configure(settings["rate_hz"])
+            if imu.rate_hz != settings["rate_hz"]:
+                report.append("%d samples a second are not a rate of the %s: %d are taken"
+                              % (settings["rate_hz"], imu.name, imu.rate_hz))
+                settings["rate_hz"] = imu.rate_hz
             return imu, report
         except OSError as e:
             error = e

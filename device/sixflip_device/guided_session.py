@@ -8,7 +8,7 @@ from array import array
 from sixflip import session as machine
 
 from .bus_recovery import BusLost
-from .pacer import Pacer
+from .pacer import pacer
 from .session_teller import Teller, names
 
 
@@ -56,7 +56,7 @@ class GuidedSession:
     def _sample_until_done(self):
         unit = self._unit
         sample = array("h", [0] * 7)
-        next_sample = Pacer(unit.board, unit.sensor, unit.settings["rate_hz"]).next
+        next_sample = pacer(unit.board, unit.sensor, unit.settings["rate_hz"]).next
         feed = self.session.feed
         keep = self._store.add
         step = self._teller.step

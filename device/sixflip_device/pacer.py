@@ -5,6 +5,14 @@ from .bus_recovery import READ
 CHECK_EVERY = 8  # samples between two questions to the chip
 
 
+def pacer(board, sensor, rate_hz):
+    """What gives one sample after the other: by polling, or out of the chip's FIFO."""
+    if sensor.imu.fifo is None:
+        return Pacer(board, sensor, rate_hz)
+    from .fifo_pacer import FifoPacer
+    return FifoPacer(board, sensor)
+
+
 class Pacer:
     """next(sample) waits until the next sample is due and reads it; nothing is allocated.
 

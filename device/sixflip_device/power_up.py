@@ -83,7 +83,7 @@ LASTING = ("sixflip_device.power_up", "sixflip_device.events", "sixflip_device.h
            "sixflip.faces", "sixflip.placement", "sixflip.record")
 # As long as there is a sensor; of the drivers only what the sensor is made of.
 SAMPLING = ("sixflip_device.led", "sixflip_device.bus_recovery", "sixflip_device.pacer",
-            "sixflip.still_window")
+            "sixflip_device.fifo_pacer", "sixflip.still_window")
 
 
 THRESHOLD = 4096   # bytes

@@ -4,7 +4,7 @@ from array import array
 
 from sixflip.still_window import StillWindow
 
-from .pacer import Pacer
+from .pacer import pacer
 
 SAMPLES = 50
 STILL_G = 0.03  # standard deviation per axis above which nobody calls it at rest
@@ -16,10 +16,10 @@ def run(board, sensor, rate_hz):
     imu = sensor.imu
     sample = array("h", [0] * 7)
     window = StillWindow(SAMPLES, imu.accel_rail, imu.gyro_rail, 1000000 // rate_hz)
-    pacer = Pacer(board, sensor, rate_hz)
+    paced = pacer(board, sensor, rate_hz)
     full = False
     while not full:
-        dt = pacer.next(sample)
+        dt = paced.next(sample)
         if dt >= 0:
             full = window.add(dt, sample)
     reached = SAMPLES * 1e6 / max(1, window.us)

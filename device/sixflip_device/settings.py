@@ -20,6 +20,7 @@ KNOWN = {
     "accel_range_g": (None, "float", 1, 64),
     "gyro_range_dps": (None, "float", 10, 5000),
     "rate_hz": (100, "int", 10, 500),
+    "fifo": (None, "bool", 0, 0),
     "grace_ms": (2000, "int", 0, 60000),
     "stream_hz": (10, "float", 0, 500),
     "g": (9.80665, "float", 9.7, 9.9),
@@ -44,6 +45,9 @@ def _wrong(value, kind, low, high):
     elif kind == "dict":
         if not isinstance(value, dict):
             return "an object"
+    elif kind == "bool":
+        if not isinstance(value, bool):
+            return "true or false"
     elif kind == "pin":
         # pins have numbers on most boards and names such as "X1" or "LED" on others
         if isinstance(value, str):

@@ -4,7 +4,7 @@ from array import array
 
 from . import led
 from .bus_recovery import BusLost
-from .pacer import Pacer
+from .pacer import pacer
 from .repeats import Repeats
 
 LISTEN_US = 100000
@@ -74,7 +74,7 @@ def run(unit):
 def _stream(unit):
     board = unit.board
     rate_hz = unit.settings["rate_hz"]
-    pacer = Pacer(board, unit.sensor, rate_hz)
+    paced = pacer(board, unit.sensor, rate_hz)
     repeats = Repeats(unit.sensor, unit.events)
     lamp = led.Lamp(board, rate_hz)
     lamp.show(led.RAW if unit.record is None else led.CALIBRATED)
@@ -84,7 +84,7 @@ def _stream(unit):
     due = 500000  # parts of a sample that are due, in millionths; half a one allows for jitter
     pressed = True  # a button still held from before asks for nothing
     while True:
-        dt = pacer.next(sample)
+        dt = paced.next(sample)
         if dt < 0:
             continue
         t_us += dt

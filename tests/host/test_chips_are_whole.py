@@ -11,8 +11,8 @@ from sixflip_sim.effects import datasheets, typical
 
 ROOT = Path(__file__).resolve().parents[2]
 DRIVERS, SIMULATED = ROOT / "shared/sixflip/chips", ROOT / "host/sixflip_sim/chips"
-NO_DRIVERS = {"__init__", "banked", "catalogue", "header", "magnetometers", "probe", "registers",
-              "six_axis"}
+NO_DRIVERS = {"__init__", "banked", "catalogue", "fifo", "header", "lsm6", "magnetometers",
+              "probe", "registers", "six_axis"}
 CHIPS = [name for name in catalogue.SENSORS if name not in worlds.SEEN]
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sixflip.chips import adxl345, itg3205, mpu6050
+from sixflip.chips import adxl345, itg3205, six_axis
 from sixflip_sim import noise, worlds
 from sixflip_sim.scene import REST, TURN
 from sixflip_sim.sensor_model import STANDARD_G
@@ -71,7 +71,7 @@ def test_counts_of_a_session(spec):
     k = np.arange(0, world.end_us // 5000, 13, dtype=np.int64)      # 200 Hz
     force, rate = motion(world.scene, k * 5000)
     if spec["sensor"] == "mpu6050":
-        scale = (16384, mpu6050.RAIL, 65.5, mpu6050.RAIL)
+        scale = (16384, six_axis.RAIL, 65.5, six_axis.RAIL)
     else:
         scale = (adxl345.LSB_PER_G, 4095, itg3205.LSB_PER_DPS, itg3205.RAIL)
     accel = counts(world.model.accel, force, k, scale[0] / STANDARD_G, scale[1])

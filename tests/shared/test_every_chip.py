@@ -355,7 +355,7 @@ class Registers(unittest.TestCase):
         for sensor in SIX_AXIS:
             for register, value in worlds.simulated(sensor).TRAPS:
                 a_world = world(sensor)
-                a_world.i2c.writeto_mem(a_world.chips[0].address, register, bytes([value]))
+                a_world.i2c.writeto_mem(a_world.chips[0].address, register, values_of(value))
                 imu = probe.find(a_world.i2c, a_world.clock.sleep_ms)[0]
                 self.assertEqual(imu.sensor, sensor)
                 imu.configure(100)
@@ -366,11 +366,15 @@ class Registers(unittest.TestCase):
             for register, value in worlds.simulated(sensor).TRAPS:
                 a_world, imu = running(sensor)
                 sample_of(a_world, imu)
-                a_world.i2c.writeto_mem(imu.address, register, bytes([value]))
+                a_world.i2c.writeto_mem(imu.address, register, values_of(value))
                 noticed = not imu.awake()
                 if noticed:
                     imu.configure(100)
                 self.assertEqual(sample_of(a_world, imu)[2], round(imu.accel_lsb_per_g))
+
+
+def values_of(trap):
+    return bytes(trap if isinstance(trap, tuple) else (trap,))
 
 
 def read(a_world, imu, register):

@@ -20,6 +20,8 @@ class SimulatedICM20948(SimulatedBanked):
     ready = (chip.INT_STATUS_1, 0x01)
     cleared_by_data = False
     defaults = {chip.PWR_MGMT_1: 0x41}
+    FIFO_BYTES, FIFO_FRAME = 512, 14
+    no_i2c = (chip.USER_CTRL, chip.I2C_IF_DIS)
 
     def power_on(self):
         SimulatedBanked.power_on(self)
@@ -37,8 +39,27 @@ class SimulatedICM20948(SimulatedBanked):
     def write_first(self, register, value):
         if register == chip.PWR_MGMT_1 and value & chip.RESET:
             self.reset()
-        elif register != chip.INT_STATUS_1:
+        elif register not in (chip.INT_STATUS_1, chip.INT_STATUS_2):
             SimulatedBanked.write_first(self, register, value)
+            if register == chip.FIFO_RST and value:
+                self.memory.clear()
+
+    def refresh(self, register, n):
+        SimulatedBanked.refresh(self, register, n)
+        self.memory.fill()
+        level = len(self.memory.bytes)
+        self.registers[chip.INT_STATUS_2] = chip.ALL_IN_FIFO if self.memory.lost else 0
+        self.registers[chip.FIFO_COUNTH] = level >> 8
+        self.registers[chip.FIFO_COUNTH + 1] = level & 0xFF
+
+    def after_read(self, register, n):
+        SimulatedBanked.after_read(self, register, n)
+        if register <= chip.INT_STATUS_2 < register + n:
+            self.memory.lost = False
+
+    def fifo_on(self):
+        return (self.registers[chip.USER_CTRL] & chip.FIFO_ON and not self.registers[chip.FIFO_RST]
+                and self.registers[chip.FIFO_EN_2] == chip.ALL_IN_FIFO)
 
     def read_into(self, buf):
         start = self.pointer

@@ -2,6 +2,7 @@
 
 from sixflip.chips import icm42688 as chip
 from sixflip_sim.chips.banked import SimulatedBanked, signed
+from sixflip_sim.chips.fifo import packet
 from sixflip_sim.chips.six_axis import range_of
 
 _SAMPLES_BIG = 0x10
@@ -18,6 +19,8 @@ class SimulatedICM42688(SimulatedBanked):
     TRAPS = ((chip.REG_BANK_SEL, 4), (chip.INTF_CONFIG0, 0x20), (chip.PWR_MGMT0, 0))
     ready = (chip.INT_STATUS, 0x08)
     cleared_by_data = False
+    FIFO_BYTES, FIFO_FRAME = chip.FIFO_BYTES, 16
+    no_i2c = (chip.INTF_CONFIG0, chip.NO_I2C)
     defaults = {chip.INTF_CONFIG0: 0x30, chip.GYRO_CONFIG0: 0x06, chip.ACCEL_CONFIG0: 0x06,
                 chip.GYRO_CONFIG1: 0x16, chip.GYRO_ACCEL_CONFIG0: 0x11, 0x53: 0x0D}
 
@@ -27,8 +30,32 @@ class SimulatedICM42688(SimulatedBanked):
     def write_first(self, register, value):
         if register == chip.DEVICE_CONFIG and value & chip.RESET:
             self.reset()
+        elif register == chip.SIGNAL_PATH_RESET:
+            if value & chip.FLUSH:
+                self.memory.clear()
         elif register != chip.INT_STATUS:
             SimulatedBanked.write_first(self, register, value)
+
+    def refresh(self, register, n):
+        SimulatedBanked.refresh(self, register, n)
+        self.memory.fill()
+        if self.memory.lost:
+            self.registers[chip.INT_STATUS] |= chip.FULL
+        level = len(self.memory.bytes)
+        self.registers[chip.FIFO_COUNTH] = level >> 8
+        self.registers[chip.FIFO_COUNTH + 1] = level & 0xFF
+
+    def after_read(self, register, n):
+        if register <= chip.INT_STATUS < register + n:
+            self.memory.lost = False
+            self.registers[chip.INT_STATUS] = 0
+
+    def fifo_on(self):
+        return (self.registers[chip.FIFO_CONFIG] == chip.STREAM
+                and self.registers[chip.FIFO_CONFIG1] == chip.ALL_IN_FIFO)
+
+    def fifo_frame(self, k):
+        return packet(self.counts, self.high(), k)
 
     def read_into(self, buf):
         start = self.pointer

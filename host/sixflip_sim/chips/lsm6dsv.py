@@ -1,7 +1,8 @@
 """Simulated LSM6DSV, by the driver's own tables: an LSM6DSOX with other control registers."""
 
 from sixflip.chips import lsm6dsv as chip
-from sixflip_sim.chips.lsm6ds import SimulatedLSM6
+from sixflip.chips.lsm6 import BDU, CTRL3, FUNC_CFG_ACCESS, IF_INC
+from sixflip_sim.chips.lsm6 import HIDDEN, SimulatedLSM6
 from sixflip_sim.chips.six_axis import range_of
 
 
@@ -9,18 +10,21 @@ class SimulatedLSM6DSV(SimulatedLSM6):
     driver = chip.LSM6DSV
     id_register, data_register = driver.ID_REGISTER, driver.DATA
     columns, high_byte = driver.COLUMNS, driver.HIGH
-    self_clearing = (chip.CTRL3, chip.SW_RESET)
-    TRAPS = ((chip.CTRL3, 0), (chip.FUNC_CFG_ACCESS, 0x80), (chip.CTRL8, 0x03))
+    TRAPS = ((CTRL3, 0), (FUNC_CFG_ACCESS, HIDDEN), (chip.CTRL8, 0x03))
     nominal_hz = (48, 28.4)
-    defaults = {chip.CTRL3: chip.IF_INC | chip.BDU}
+    defaults = {CTRL3: IF_INC | BDU}
     OFFSETS_BIT = (chip.CTRL9, 0x01)
+    FIFO_BYTES = 256 * 7        # "1.5 KB" of data, DS13476 section 5
 
     def fall_asleep(self):
         self.registers[chip.CTRL1] = 0
         self.registers[chip.CTRL2] = 0
 
+    def output_code(self):
+        return self.registers[chip.CTRL2]
+
     def output_hz(self):
-        code = self.registers[chip.CTRL2]
+        code = self.output_code()
         if code != self.registers[chip.CTRL1]:
             return 0
         return {row[1]: row[0] for row in chip.OUTPUT_RATES}.get(code, 0)

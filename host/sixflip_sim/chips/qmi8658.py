@@ -40,23 +40,12 @@ class SimulatedQMI8658(SimulatedSixAxis):
         else:
             SimulatedSixAxis.write_register(self, register, value)
 
-    def write(self, data):
-        start = self.pointer
-        for value in data:
-            self.write_register(self.pointer, value)
-            if self.registers[chip.CTRL1] & chip.COUNT_UP:
-                self.pointer = (self.pointer + 1) % len(self.registers)
-        if not self.registers[chip.CTRL1] & chip.COUNT_UP:
-            self.pointer = start
+    def counts_up(self):
+        return self.registers[chip.CTRL1] & chip.COUNT_UP
 
     def read_into(self, buf):
         start = self.pointer
-        if self.registers[chip.CTRL1] & chip.COUNT_UP or len(buf) == 1:
-            SimulatedSixAxis.read_into(self, buf)
-        else:
-            self.refresh(start, 1)
-            for i in range(len(buf)):
-                buf[i] = self.registers[start]
+        SimulatedSixAxis.read_into(self, buf)
         if start == chip.RESULT and self.resetting():
             buf[0] = 0
 

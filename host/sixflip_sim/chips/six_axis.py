@@ -3,6 +3,7 @@
 import math
 
 from sixflip.chips.six_axis import BURST, RAIL
+from sixflip_sim.chips.fifo import Memory, words
 from sixflip_sim.chips.register_chip import RegisterChip
 
 
@@ -20,20 +21,27 @@ class SimulatedSixAxis(RegisterChip):
     nominal_hz = (50, 50)
     RESET_US = 1000
     ready = (0, 0)
-    TRAPS = ()                  # (register, value), ...: what another program may have left there
+    TRAPS = ()                  # (register, value or values), ...: what others may have written
     cleared_by_data = True      # of the bits of ready: by reading the sample, or by reading them
     clock_off = 0.0             # %, of the oscillator: a sample takes so much less time
+    FIFO_BYTES = FIFO_FRAME = 0  # of the memory and of a sample in it; 0: it is not simulated
+    no_i2c = (0, 0)             # the register and the bits that shut I2C off, for SPI
+    spi = False                 # whether this one is wired so
 
     def __init__(self, clock, model, address, who_am_i, size=128):
         self.model = model
         self.who_am_i = who_am_i
         self.counts = [0] * 7
+        self.temperature = self.driver.TEMPERATURE
         self._reset_until_us = -1
+        self.memory = Memory(self, self.FIFO_BYTES, self.FIFO_FRAME) if self.FIFO_BYTES else None
         RegisterChip.__init__(self, address, clock, size)
 
     def power_on(self):
         RegisterChip.power_on(self)
         self._k = -1
+        if self.memory:
+            self.memory.clear()
         self.registers[self.id_register] = self.who_am_i
         for register in self.defaults:
             self.registers[register] = self.defaults[register]
@@ -56,19 +64,41 @@ class SimulatedSixAxis(RegisterChip):
         if not self.resetting() and not self.read_only(register):
             self.registers[register] = value
 
+    def counts_up(self):
+        """Whether a transfer goes on to the next register, as the registers are set."""
+        return True
+
+    def write(self, data):
+        start = self.pointer
+        RegisterChip.write(self, data if self.counts_up() else data[:1])
+        if not self.counts_up():
+            for value in data[1:]:
+                self.write_register(start, value)
+            self.pointer = start
+
+    def read_into(self, buf):
+        if self.read_memory(buf):
+            return
+        start = self.pointer
+        if self.counts_up() or len(buf) == 1:
+            RegisterChip.read_into(self, buf)
+            return
+        self.refresh(start, 1)
+        for i in range(len(buf)):
+            buf[i] = self.registers[start]
+
     def high(self):
         """Which byte of a word is the high one, as the registers are set."""
         return self.driver.HIGH
 
     def refresh(self, register, n):
-        hz = self.output_hz()
+        period_ns = self.period_ns()
         status, bits = self.ready
-        if (self.frozen or not hz or self.resetting()
+        if (self.frozen or not period_ns or self.resetting()
                 or not (register <= status < register + n
                         or self.data_register - n < register
                         < self.data_register + self.data_length)):
             return
-        period_ns = round(1e9 / hz / (1 + 0.01 * self.clock_off))
         k = self.clock.now_us() * 1000 // period_ns
         if k == self._k:
             return
@@ -76,23 +106,48 @@ class SimulatedSixAxis(RegisterChip):
         self._take(k, k * period_ns // 1000)
         self.registers[status] |= bits
 
-    def _take(self, k, t_us):
+    def period_ns(self):
+        """From one sample to the next; 0: asleep."""
+        hz = self.output_hz()
+        return round(1e9 / hz / (1 + 0.01 * self.clock_off)) if hz else 0
+
+    def measure(self, k, t_us):
+        """Sample k into self.counts."""
         counts, model = self.counts, self.model
         lsb, hz = self.accel()
         model.accel_counts(k, t_us, lsb, RAIL, math.sqrt(hz / self.nominal_hz[0]), counts)
         self.shift(counts, lsb)
         lsb, hz = self.gyro()
         model.gyro_counts(k, t_us, lsb, RAIL, math.sqrt(hz / self.nominal_hz[1]), counts)
-        model.temp_counts(k, t_us, self.driver.TEMPERATURE[0], self.driver.TEMPERATURE[1], counts)
-        registers, high = self.registers, self.high()
-        i = self.data_register
-        for column in self.columns:
-            registers[i + high] = counts[column] >> 8 & 0xFF
-            registers[i + 1 - high] = counts[column] & 0xFF
-            i += 2
+        self.shift_gyro(counts, lsb)
+        model.temp_counts(k, t_us, self.temperature[0], self.temperature[1], counts)
+
+    def _take(self, k, t_us):
+        self.measure(k, t_us)
+        data = words(self.counts, self.columns, self.high())
+        self.registers[self.data_register:self.data_register + len(data)] = data
+
+    def fifo_on(self):
+        """Whether samples go into the memory, as the registers are set."""
+        return False
+
+    def fifo_frame(self, k):
+        """Bytes of sample k, which is in self.counts."""
+        return words(self.counts, self.columns, self.high())
+
+    def read_memory(self, buf):
+        """Whether the pointer stands at the memory; then buf is filled from it."""
+        if not self.memory or self.pointer != self.driver.FIFO_DATA or not self.fifo_on():
+            return False
+        self.memory.fill()
+        self.memory.take(buf)
+        return True
 
     def shift(self, counts, lsb_per_g):
         """What offset registers add to the accelerometer's counts."""
+
+    def shift_gyro(self, counts, lsb_per_dps):
+        """What offset registers add to the gyro's counts."""
 
     def after_read(self, register, n):
         status, bits = self.ready

@@ -1,6 +1,6 @@
 """Analog Devices ADXL345, an accelerometer. Source: datasheet rev. E, register map table 19."""
 
-from sixflip.chips.registers import Registers, row_of_range
+from sixflip.chips.registers import Registers, in_range, row_of_range
 
 try:
     from micropython import const
@@ -68,8 +68,7 @@ class ADXL345(Registers):
     def configure(self, rate_hz):
         """Set up for polling at rate_hz at 256 counts per g; OSError when a register does
         not take its value. The chip has no reset bit: everything that matters is written."""
-        if not 1 <= rate_hz <= 400:
-            raise ValueError("rate_hz is %s, expected 1 to 400" % rate_hz)
+        in_range(rate_hz, self.MOST_HZ)
         hz, code = [x for x in OUTPUT_RATES if x[0] >= 2 * rate_hz][0]
         self._set(POWER_CTL, 0)
         for register, value in ((BW_RATE, code), (DATA_FORMAT, FULL_RES | self._range),

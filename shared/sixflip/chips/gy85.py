@@ -18,6 +18,7 @@ class GY85:
     gyro_tolerance = ITG3205.gyro_tolerance
     zero_rate_dps = ITG3205.zero_rate_dps
     zero_rate_dps_per_c = ITG3205.zero_rate_dps_per_c
+    fifo = None                     # the ITG3205 has none
     has_gyro = True
     has_temp = True
     accel_lsb_per_g = ADXL345.accel_lsb_per_g

@@ -5,7 +5,7 @@ register numbers and bandwidths read beside SparkFun's ICM-20948 library.
 """
 
 from sixflip.chips.banked import Banked
-from sixflip.chips.six_axis import narrow_enough
+from sixflip.chips.six_axis import BURST, in_range, narrow_enough
 
 try:
     from micropython import const
@@ -14,10 +14,16 @@ except ImportError:
         return value
 
 WHO_AM_I = const(0x00)
+USER_CTRL = const(0x03)         # bit 6 FIFO on, 4 I2C off (SPI)
 PWR_MGMT_1 = const(0x06)        # bit 7 reset, bit 6 sleep, bits 2:0 clock
 PWR_MGMT_2 = const(0x07)
 INT_STATUS_1 = const(0x1A)      # bit 0: a new sample, cleared by reading
+INT_STATUS_2 = const(0x1B)      # bits 4:0: FIFO overflow, cleared by reading
 ACCEL_XOUT_H = const(0x2D)      # burst of 14: accel x y z, gyro x y z, temperature, big-endian
+FIFO_EN_2 = const(0x67)         # bit 4 accelerometer, 3:1 gyro, 0 temperature
+FIFO_RST = const(0x68)          # bits 4:0: set and cleared, it is empty
+FIFO_COUNTH = const(0x70)       # bits 12:8 of the bytes in it, 7:0 in the next
+FIFO_R_W = const(0x72)
 REG_BANK_SEL = const(0x7F)      # bits 5:4, in every bank
 XA_OFFS_H = const(0x114)        # accelerometer x y z, a byte between; the factory trimmed them
 GYRO_SMPLRT_DIV = const(0x200)
@@ -29,6 +35,9 @@ RESET = const(0x80)
 SLEEP = const(0x40)
 CLOCK_AUTO = const(0x01)
 FILTER_ON = const(0x01)
+I2C_IF_DIS = const(0x10)
+FIFO_ON = const(0x40)
+ALL_IN_FIFO = const(0x1F)
 
 ACCEL_RANGES = ((2, 16384, 0), (4, 8192, 1), (8, 4096, 2), (16, 2048, 3))
 GYRO_RANGES = ((250, 131.0, 0), (500, 65.5, 1), (1000, 32.8, 2), (2000, 16.4, 3))
@@ -51,6 +60,9 @@ class ICM20948(Banked):
     TEMPERATURE = TEMPERATURE
     BANK = REG_BANK_SEL
     SHIFT = 4
+    FIFO = "Fifo"
+    FIFO_DATA = FIFO_R_W
+    FIFO_SETUP = ((USER_CTRL, 1), (FIFO_EN_2, 1))
     gyro_tolerance = 0.045          # table 1: 1.5 % at 25 °C, and 3 % with temperature
     zero_rate_dps = 5.0
     zero_rate_dps_per_c = 0.05
@@ -60,24 +72,39 @@ class ICM20948(Banked):
     def configure(self, rate_hz):
         """Reset, wake and set up for polling at rate_hz; OSError when a register does not take
         its value, ValueError for a rate that is no chip's."""
-        if not 1 <= rate_hz <= 500:
-            raise ValueError("rate_hz is %s, expected 1 to 500" % rate_hz)
-        divider = max(0, min(int(BASE_HZ // (4 * rate_hz)) - 1, 255))
-        accel, accel_hz = narrow_enough(ACCEL_FILTERS, WIDER * rate_hz)
-        gyro, _ = narrow_enough(GYRO_FILTERS, WIDER * rate_hz)
+        in_range(rate_hz, self.MOST_HZ)
+        every = BASE_HZ // (4 * rate_hz) if self.fifo is None else BASE_HZ / rate_hz + 0.5
+        divider = max(0, min(int(every) - 1, 255))
+        hz = BASE_HZ / (1 + divider)
+        suits = WIDER * self._filter_hz(hz, rate_hz)
+        accel, accel_hz = narrow_enough(ACCEL_FILTERS, suits)
+        gyro, _ = narrow_enough(GYRO_FILTERS, suits)
         self._bank = -1
         self._write(PWR_MGMT_1, RESET)
         self._wait_clear(PWR_MGMT_1, RESET)
         self._bank = -1             # the reset selects bank 0
+        self._no_i2c(USER_CTRL, I2C_IF_DIS)
         for register, value in (
                 (PWR_MGMT_1, CLOCK_AUTO), (PWR_MGMT_2, 0), (GYRO_SMPLRT_DIV, divider),
                 (GYRO_CONFIG_1, gyro << 3 | self._gyro_bits << 1 | FILTER_ON),
                 (ACCEL_SMPLRT_DIV_1, 0), (ACCEL_SMPLRT_DIV_1 + 1, divider),
                 (ACCEL_CONFIG, accel << 3 | self._accel_bits << 1 | FILTER_ON)):
             self._set(register, value)
-        self._hold()
+        self._started(rate_hz, hz, accel_hz)
         if self._sleep_ms is not None:
             self._sleep_ms(100)     # gyro start-up 35 ms (table 1), filters settling
-        self.rate_hz = rate_hz
-        self.output_rate_hz = BASE_HZ / (1 + divider)
-        self.filter_hz = accel_hz
+
+    def fifo_start(self):
+        """512 bytes; full, they lose the oldest ones."""
+        on = self._interface
+        self._set(USER_CTRL, on)
+        self._set(FIFO_RST, ALL_IN_FIFO)
+        self._set(FIFO_RST, 0)
+        self._set(FIFO_EN_2, ALL_IN_FIFO)
+        self._set(USER_CTRL, on | FIFO_ON)
+
+    def fifo_level(self):
+        self._fetch(FIFO_COUNTH, self._two)
+        if self._read(INT_STATUS_2) & ALL_IN_FIFO:
+            return -1
+        return ((self._two[0] & 0x1F) << 8 | self._two[1]) // BURST

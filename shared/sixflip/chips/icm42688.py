@@ -1,11 +1,11 @@
 """TDK InvenSense ICM-42688-P: accelerometer, gyro and thermometer.
 
 Source: datasheet DS-000347 rev. 1.5: sections 14 (bank 0) and 17 (bank 4), 5 (bandwidth of the UI
-filter), tables 1 and 2; register numbers read beside finani's ICM42688 library.
+filter), 6 (FIFO), tables 1 and 2; register numbers read beside finani's ICM42688 library.
 """
 
 from sixflip.chips.banked import Banked
-from sixflip.chips.six_axis import narrow_enough, output_rate
+from sixflip.chips.six_axis import narrow_enough
 
 try:
     from micropython import const
@@ -14,19 +14,30 @@ except ImportError:
         return value
 
 DEVICE_CONFIG = const(0x11)     # bit 0: reset, over within 1 ms
+FIFO_CONFIG = const(0x16)       # bits 7:6: 0 off, 1 on, the oldest is overwritten
 TEMP_DATA1 = const(0x1D)        # burst of 14: temperature, accel x y z, gyro x y z
-INT_STATUS = const(0x2D)        # bit 3: data ready, cleared by reading
-INTF_CONFIG0 = const(0x4C)      # bits 5 and 4: FIFO count and samples big-endian
+INT_STATUS = const(0x2D)        # bit 3: data ready, 1: FIFO full, cleared by reading
+FIFO_COUNTH = const(0x2E)       # bytes in it, big-endian, as FIFO_OUT behind it
+FIFO_OUT = const(0x30)
+SIGNAL_PATH_RESET = const(0x4B)  # bit 1: the FIFO is emptied
+INTF_CONFIG0 = const(0x4C)      # bits 5 and 4: FIFO count and samples big-endian; 1:0: 11, no I2C
 PWR_MGMT0 = const(0x4E)         # bits 3:2 gyro, 1:0 accelerometer: 11 is low noise
 GYRO_CONFIG0 = const(0x4F)      # bits 7:5 range, 3:0 output rate
 ACCEL_CONFIG0 = const(0x50)
 GYRO_CONFIG1 = const(0x51)      # bits 3:2: order of the filter, 01 is the second, the default
 GYRO_ACCEL_CONFIG0 = const(0x52)  # bits 7:4 filter of the accelerometer, 3:0 of the gyro
+FIFO_CONFIG1 = const(0x5F)      # bits 2 temperature, 1 gyro, 0 accelerometer
 WHO_AM_I = const(0x75)
 REG_BANK_SEL = const(0x76)      # in every bank
 OFFSET_USER0 = const(0x477)     # nine bytes: gyro in 1/32 °/s, accelerometer in 0.5 mg
 RESET = const(0x01)
 BIG_ENDIAN = const(0x30)
+NO_I2C = const(0x03)
+FULL = const(0x02)
+FLUSH = const(0x02)
+STREAM = const(0x40)
+ALL_IN_FIFO = const(0x07)
+FIFO_BYTES = const(2048)
 LOW_NOISE = const(0x0F)
 ORDER_2 = const(0x16)
 
@@ -49,6 +60,9 @@ class ICM42688(Banked):
     COLUMNS = (6, 0, 1, 2, 3, 4, 5)
     TEMPERATURE = TEMPERATURE
     BANK = REG_BANK_SEL
+    FIFO = "PacketFifo"
+    FIFO_DATA = FIFO_OUT
+    FIFO_SETUP = ((FIFO_CONFIG, 1), (FIFO_CONFIG1, 1))
     # tables 1: tolerances by characterisation, typical figures; thrice each
     gyro_tolerance = 0.015
     zero_rate_dps = 1.5
@@ -59,21 +73,32 @@ class ICM42688(Banked):
     def configure(self, rate_hz):
         """Reset and set up for polling at rate_hz; OSError when a register does not take its
         value, ValueError for a rate that is no chip's."""
-        hz, code = output_rate(OUTPUT_RATES, rate_hz)
+        hz, code = self._output_rate(OUTPUT_RATES, rate_hz)
         column = [row[0] for row in OUTPUT_RATES].index(hz)
-        bits, self_hz = narrow_enough([(bits, row[column]) for bits, row in FILTERS], rate_hz)
+        bits, filter_hz = narrow_enough([(bits, row[column]) for bits, row in FILTERS],
+                                        self._filter_hz(hz, rate_hz))
         self._bank = -1
         self._write(DEVICE_CONFIG, RESET)
         self._wait_clear(DEVICE_CONFIG, RESET)
+        self._no_i2c(INTF_CONFIG0, BIG_ENDIAN | NO_I2C)
         for register, value in (
-                (INTF_CONFIG0, BIG_ENDIAN), (GYRO_CONFIG0, self._gyro_bits << 5 | code),
+                (INTF_CONFIG0, self._interface or BIG_ENDIAN),
+                (GYRO_CONFIG0, self._gyro_bits << 5 | code),
                 (ACCEL_CONFIG0, self._accel_bits << 5 | code), (GYRO_CONFIG1, ORDER_2),
                 (GYRO_ACCEL_CONFIG0, bits << 4 | bits),
                 (PWR_MGMT0, LOW_NOISE)):     # the last: no other write for 200 µs behind it
             self._set(register, value)
         if self._sleep_ms is not None:
             self._sleep_ms(100)     # gyro start-up 30 ms (table 1), filters settling
-        self._hold()
-        self.rate_hz = rate_hz
-        self.output_rate_hz = hz
-        self.filter_hz = self_hz
+        self._started(rate_hz, hz, filter_hz)
+
+    def fifo_start(self):
+        self._set(FIFO_CONFIG, 0)
+        self._write(SIGNAL_PATH_RESET, FLUSH)
+        self._set(FIFO_CONFIG1, ALL_IN_FIFO)
+        self._set(FIFO_CONFIG, STREAM)
+
+    def fifo_level(self):
+        self._fetch(FIFO_COUNTH, self._two)
+        level = self._two[0] << 8 | self._two[1]
+        return -1 if self._read(INT_STATUS) & FULL or level >= FIFO_BYTES else level // 16

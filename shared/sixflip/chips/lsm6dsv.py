@@ -5,7 +5,8 @@ table 3, sensitivities), each register read beside STMicroelectronics' lsm6dsv-p
 LSM6DSOX has range and rate in one register, this one has a register each.
 """
 
-from sixflip.chips.six_axis import SixAxis, narrow_enough, output_rate
+from sixflip.chips.lsm6 import LSM6
+from sixflip.chips.six_axis import narrow_enough
 
 try:
     from micropython import const
@@ -13,30 +14,21 @@ except ImportError:
     def const(value):
         return value
 
-FUNC_CFG_ACCESS = const(0x01)   # bit 7: other registers are shown at the same numbers
-WHO_AM_I = const(0x0F)
 CTRL1 = const(0x10)             # bits 6:4 mode of the accelerometer, 3:0 output rate
 CTRL2 = const(0x11)             # the gyro's
-CTRL3 = const(0x12)             # bit 6 BDU, 2 IF_INC, 0 SW_RESET
 CTRL6 = const(0x15)             # bits 6:4 LPF1_G_BW, 3:0 range of the gyro
 CTRL7 = const(0x16)             # bit 0 LPF1_G_EN
 CTRL8 = const(0x17)             # bits 7:5 HP_LPF2_XL_BW, 1:0 range of the accelerometer
 CTRL9 = const(0x18)             # bit 3 LPF2_XL_EN
-STATUS_REG = const(0x1E)        # bit 0 XLDA, 1 GDA: a new sample, cleared by reading it
-OUT_TEMP_L = const(0x20)        # burst of 14: temperature, gyro x y z, accel x y z
-X_OFS_USR = const(0x73)         # accelerometer x y z, 8 bits each
-SW_RESET = const(0x01)
-IF_INC = const(0x04)
-BDU = const(0x40)
+FIFO_STATUS1 = const(0x1B)      # words in it, 7:0; the next has bit 8, 6 and 3 overrun
 LPF1_G_EN = const(0x01)
 LPF2_XL_EN = const(0x08)
-ODR_BY_10 = const(0x20)         # HP_LPF2_XL_BW 001
+ODR_BY_10 = const(0x20)         # HP_LPF2_XL_BW 001; 000 is ODR/4
 
 # (full scale, counts per unit, bits), rounded as in lsm6ds.py.
 ACCEL_RANGES = ((2, 16393, 0), (4, 8197, 1), (8, 4098, 2), (16, 2049, 3))
 GYRO_RANGES = ((125, 228.571, 0), (250, 114.286, 1), (500, 57.143, 2), (1000, 28.571, 3),
                (2000, 14.286, 4))
-TEMPERATURE = (256.0, 25.0)
 OUTPUT_RATES = ((60, 5), (120, 6), (240, 7), (480, 8), (960, 9), (1920, 10), (3840, 11))
 # (LPF1_G_BW, bandwidth in Hz at an output rate of 60, 120, ... 3840 Hz), table 64.
 GYRO_LPF1 = ((0, (24.6, 49.4, 96, 175, 241, 273, 280)), (2, (24.6, 49.4, 96, 131, 149, 155, 156)),
@@ -46,38 +38,31 @@ GYRO_LPF1 = ((0, (24.6, 49.4, 96, 175, 241, 273, 280)), (2, (24.6, 49.4, 96, 131
              (7, (12.1, 13.6, 14.2, 14.3, 14.4, 14.4, 14.4)))
 
 
-class LSM6DSV(SixAxis):
+class LSM6DSV(LSM6):
     sensor = "lsm6dsv"
     ACCEL_RANGES = ACCEL_RANGES
     GYRO_RANGES = GYRO_RANGES
-    DATA = OUT_TEMP_L
-    ID_REGISTER = WHO_AM_I
-    COLUMNS = (6, 3, 4, 5, 0, 1, 2)
-    HIGH = 1
-    TEMPERATURE = TEMPERATURE
+    FIFO_STATUS = FIFO_STATUS1
+    LEVEL_HIGH = 0x01
     # table 3: G_So%, G_TyOff, G_OffDr are typical figures; thrice each
     gyro_tolerance = 0.009
     zero_rate_dps = 3.0
     zero_rate_dps_per_c = 0.018
-    setup = ((CTRL1, 10),)
-    offsets = ((X_OFS_USR, 3),)
 
     def configure(self, rate_hz):
         """Reset and set up for polling at rate_hz; OSError when a register does not take its
         value, ValueError for a rate that is no chip's."""
-        hz, code = output_rate(OUTPUT_RATES, rate_hz)
+        hz, code = self._output_rate(OUTPUT_RATES, rate_hz)
+        self._output_code = code
         column = [row[0] for row in OUTPUT_RATES].index(hz)
-        bw, _ = narrow_enough([(bits, row[column]) for bits, row in GYRO_LPF1], rate_hz)
-        self._write(FUNC_CFG_ACCESS, 0)
-        self._write(CTRL3, SW_RESET)
-        self._wait_clear(CTRL3, SW_RESET)
-        for register, value in ((CTRL3, BDU | IF_INC), (CTRL6, bw << 4 | self._gyro_bits),
-                                (CTRL7, LPF1_G_EN), (CTRL8, ODR_BY_10 | self._accel_bits),
-                                (CTRL9, LPF2_XL_EN), (CTRL1, code), (CTRL2, code)):
+        bw, _ = narrow_enough([(bits, row[column]) for bits, row in GYRO_LPF1],
+                              self._filter_hz(hz, rate_hz))
+        by = ODR_BY_10 if self.fifo is None else 0
+        self._reset()
+        for register, value in ((CTRL6, bw << 4 | self._gyro_bits), (CTRL7, LPF1_G_EN),
+                                (CTRL8, by | self._accel_bits), (CTRL9, LPF2_XL_EN),
+                                (CTRL1, code), (CTRL2, code)):
             self._set(register, value)
-        self._hold()
+        self._started(rate_hz, hz, hz / (10 if by else 4))
         if self._sleep_ms is not None:
             self._sleep_ms(100)     # turn-on 30 ms (table 4), filters settling
-        self.rate_hz = rate_hz
-        self.output_rate_hz = hz
-        self.filter_hz = hz / 10

@@ -5,7 +5,8 @@ accelerometer filter and offsets: MPU-6500 register map RM-MPU-6500A-00 rev. 2.1
 offsets: InvenSense application note "MPU Hardware Offset Registers" rev. 1.0.
 """
 
-from sixflip.chips.registers import Registers, filter_code, rate_divider, row_of_range
+from sixflip.chips.registers import filter_code, rate_divider
+from sixflip.chips.six_axis import BURST, SixAxis
 
 try:
     from micropython import const
@@ -20,102 +21,95 @@ CONFIG = const(0x1A)
 GYRO_CONFIG = const(0x1B)
 ACCEL_CONFIG = const(0x1C)
 ACCEL_CONFIG_2 = const(0x1D)    # relatives only: filter of the accelerometer
-INT_STATUS = const(0x3A)        # bit 0: data ready, cleared by reading
+FIFO_EN = const(0x23)           # bit 7 temperature, 6:4 gyro, 3 accelerometer
+INT_STATUS = const(0x3A)        # bit 0: data ready, 4: FIFO overflow, cleared by reading
 ACCEL_XOUT_H = const(0x3B)      # burst of 14: accel x y z, temperature, gyro x y z, big-endian
+USER_CTRL = const(0x6A)         # bit 6 FIFO on, 4 I2C off (SPI), 2 FIFO reset, clears itself
 PWR_MGMT_1 = const(0x6B)        # bit 7 reset, bit 6 sleep, bits 2:0 clock
 PWR_MGMT_2 = const(0x6C)
+FIFO_COUNT_H = const(0x72)      # bytes in it, the low byte in the next
+FIFO_R_W = const(0x74)
 WHO_AM_I = const(0x75)
 XA_OFFSET_H = const(0x77)       # relatives: as XA_OFFS_H, a byte between the axes
 RESET = const(0x80)
 SLEEP = const(0x40)
 CLOCK_GYRO_X = const(0x01)
-BURST = const(14)
+ALL_IN_FIFO = const(0xF8)
+FIFO_ON = const(0x40)
+FIFO_RESET = const(0x04)
+I2C_IF_DIS = const(0x10)
+OVERFLOW = const(0x10)
 
 # (full scale, counts per unit, AFS_SEL or FS_SEL), which is its index here, too.
 ACCEL_RANGES = ((2, 16384, 0), (4, 8192, 1), (8, 4096, 2), (16, 2048, 3))
 GYRO_RANGES = ((250, 131.0, 0), (500, 65.5, 1), (1000, 32.8, 2), (2000, 16.4, 3))
 # Bandwidth in Hz of DLPF_CFG 0..6; accelerometer, the gyro's differ by at most 4 Hz.
 BANDWIDTH_HZ = (260, 184, 94, 44, 21, 10, 5)
+BASE_HZ = const(1000)           # of the samples behind the filter
 # °C = counts / first + second.
 TEMPERATURE = (340.0, 36.53)
 TEMPERATURE_RELATIVES = (333.87, 21.0)
-RAIL = const(32767)
 
 
-class MPU6050(Registers):
+class MPU6050(SixAxis):
     """One chip at one address; who_am_i is what register 0x75 answered to the probe."""
 
     sensor = "mpu6050"
     ACCEL_RANGES = ACCEL_RANGES
     GYRO_RANGES = GYRO_RANGES
+    DATA = ACCEL_XOUT_H
+    ID_REGISTER = WHO_AM_I
+    COLUMNS = (0, 1, 2, 6, 3, 4, 5)
     TEMPERATURE = TEMPERATURE   # of an MPU6050 itself
+    FIFO = "Fifo"
+    FIFO_DATA = FIFO_R_W
+    FIFO_SETUP = ((FIFO_EN, 1), (USER_CTRL, 1))
     # MPU-6000/6050 product specification rev. 3.4, table 6.1: sensitivity at 25 °C, zero-rate
     # output at 25 °C, and over the whole range of 125 K
     gyro_tolerance = 0.03
     zero_rate_dps = 20.0
     zero_rate_dps_per_c = 0.16
-    has_gyro = True
-    has_temp = True
-    accel_rail = RAIL
-    gyro_rail = RAIL
     setup = ((SMPLRT_DIV, 4), (PWR_MGMT_1, 2))
     offsets = ((XA_OFFS_H, 6), (XG_OFFS_USR_H, 6))
 
-    def __init__(self, i2c, address=0x68, who_am_i=0x68, sleep_ms=None,
-                 accel_range_g=None, gyro_range_dps=None):
-        Registers.__init__(self, i2c, address, sleep_ms)
-        self.chip = self._chip_name(who_am_i)
-        self.name = "%s (0x%02x)" % (self.chip, who_am_i)
-        self.who_am_i = (who_am_i, who_am_i)
-        self.accel_range_g, self.accel_lsb_per_g, self._accel_code = row_of_range(
-            ACCEL_RANGES, accel_range_g or 2, "accel_range_g")
-        self.gyro_range_dps, self.gyro_lsb_per_dps, self._gyro_code = row_of_range(
-            GYRO_RANGES, gyro_range_dps or 500, "gyro_range_dps")
-        self.temp_lsb_per_c, self.temp_offset_c = (
-            TEMPERATURE if who_am_i == 0x68 else TEMPERATURE_RELATIVES)
-        self.rate_hz = self.filter_hz = self.output_rate_hz = 0
-        self._burst = bytearray(BURST)
+    def __init__(self, i2c, address=0x68, who_am_i=0x68, sleep_ms=None, accel_range_g=None,
+                 gyro_range_dps=None):
+        SixAxis.__init__(self, i2c, address, who_am_i, sleep_ms, accel_range_g, gyro_range_dps)
         if who_am_i != 0x68:
+            self.temp_lsb_per_c, self.temp_offset_c = TEMPERATURE_RELATIVES
             self.setup = ((SMPLRT_DIV, 5), (PWR_MGMT_1, 2))
             self.offsets = ((XA_OFFSET_H, 8), (XG_OFFS_USR_H, 6))
 
     def configure(self, rate_hz):
         """Reset, wake and set up for polling at rate_hz; OSError when a register does not
         take its value, ValueError for a rate the chip cannot keep twice of."""
-        divider = rate_divider(rate_hz)
-        dlpf = filter_code(BANDWIDTH_HZ, rate_hz)
+        divider = rate_divider(rate_hz) if self.fifo is None else int(BASE_HZ / rate_hz + 0.5) - 1
+        hz = BASE_HZ / (1 + divider)
+        dlpf = filter_code(BANDWIDTH_HZ, self._filter_hz(hz, rate_hz))
         self._write(PWR_MGMT_1, RESET)
         self._wait_clear(PWR_MGMT_1, RESET)
+        self._no_i2c(USER_CTRL, I2C_IF_DIS)
         self._set(PWR_MGMT_1, CLOCK_GYRO_X)
         self._set(PWR_MGMT_2, 0)
         for register, value in ((SMPLRT_DIV, divider), (CONFIG, dlpf),
-                                (GYRO_CONFIG, self._gyro_code << 3),
-                                (ACCEL_CONFIG, self._accel_code << 3)):
+                                (GYRO_CONFIG, self._gyro_bits << 3),
+                                (ACCEL_CONFIG, self._accel_bits << 3)):
             self._set(register, value)
         if self.who_am_i[0] != 0x68:
             self._set(ACCEL_CONFIG_2, dlpf)
-        self._hold()
+        self._started(rate_hz, hz, BANDWIDTH_HZ[dlpf])
         if self._sleep_ms is not None:
             self._sleep_ms(50)      # gyro start-up 30 ms (datasheet 6.1), filter settling
-        self.rate_hz = rate_hz
-        self.filter_hz = BANDWIDTH_HZ[dlpf]
-        self.output_rate_hz = 1000 / (1 + divider)
 
-    def answers(self, i2c):
-        """Whether the chip answers on this bus, to be used from now on, as to the probe."""
-        return self._answers(i2c, WHO_AM_I, self.who_am_i[0])
+    def fifo_start(self):
+        """1024 bytes of the MPU6050, 512 of its relatives; full, they lose the oldest bytes."""
+        on = self._interface
+        self._write(USER_CTRL, on | FIFO_RESET)
+        self._set(FIFO_EN, ALL_IN_FIFO)
+        self._set(USER_CTRL, on | FIFO_ON)
 
-    def read_into(self, sample):
-        """One burst into sample, array('h', 7): ax ay az gx gy gz temp, counts. False when
-        every bit is 0 or every bit is 1: no sensor reads like that, a sleeping one does."""
-        burst = self._burst
-        self._i2c.readfrom_mem_into(self.address, ACCEL_XOUT_H, burst)
-        ones = 0
-        zeros = 0xFFFF
-        for i in range(7):
-            word = burst[2 * i] << 8 | burst[2 * i + 1]
-            ones |= word
-            zeros &= word
-            column = i if i < 3 else (6 if i == 3 else i - 1)
-            sample[column] = (word ^ 0x8000) - 0x8000
-        return ones != 0 and zeros != 0xFFFF
+    def fifo_level(self):
+        self._fetch(FIFO_COUNT_H, self._two)
+        if self._read(INT_STATUS) & OVERFLOW:
+            return -1
+        return (self._two[0] << 8 | self._two[1]) // BURST

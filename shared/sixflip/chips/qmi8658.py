@@ -7,7 +7,7 @@ does not count up: CTRL1 says otherwise here.
 
 from errno import EIO
 
-from sixflip.chips.six_axis import SixAxis, output_rate
+from sixflip.chips.six_axis import SixAxis, in_range
 
 try:
     from micropython import const
@@ -41,6 +41,8 @@ OUTPUT_RATES = ((56.05, 7), (112.1, 6), (224.2, 5), (448.4, 4), (896.8, 3))
 
 
 class QMI8658(SixAxis):
+    """Its FIFO is not used: while it is read, nothing new goes in (CTRL_CMD_REQ_FIFO, 8.4)."""
+
     sensor = "qmi8658"
     ACCEL_RANGES = ACCEL_RANGES
     GYRO_RANGES = GYRO_RANGES
@@ -73,18 +75,14 @@ class QMI8658(SixAxis):
     def configure(self, rate_hz):
         """Reset and set up for polling at rate_hz; OSError when a register does not take its
         value, ValueError for a rate that is no chip's."""
-        hz, code = output_rate(OUTPUT_RATES, rate_hz)
-        if rate_hz > self.MOST_HZ:
-            raise ValueError("rate_hz is %s, expected 1 to %d" % (rate_hz, self.MOST_HZ))
+        in_range(rate_hz, self.MOST_HZ)
+        hz, code = self._output_rate(OUTPUT_RATES, rate_hz)
         self._write(RESET_REGISTER, RESET)
         self._wait_done()
         for register, value in ((CTRL1, COUNT_UP), (CTRL2, self._accel_bits << 4 | code),
                                 (CTRL3, self._gyro_bits << 4 | code), (CTRL5, FILTERS_ON),
                                 (CTRL7, BOTH_ON)):
             self._set(register, value)
-        self._hold()
+        self._started(rate_hz, hz, FILTER_PART * hz)
         if self._sleep_ms is not None:
             self._sleep_ms(200)     # gyro turn-on 150 ms and three samples (table 8)
-        self.rate_hz = rate_hz
-        self.output_rate_hz = hz
-        self.filter_hz = FILTER_PART * hz

@@ -16,6 +16,7 @@ class Registers:
 
     chip = "chip"
     MOST_HZ = 500               # the most a second that configure() takes
+    fifo = None                 # a Fifo where samples come through the chip's memory
     setup = offsets = ()
 
     def __init__(self, i2c, address, sleep_ms=None):
@@ -23,6 +24,8 @@ class Registers:
         self._i2c = i2c
         self._sleep_ms = sleep_ms
         self._one = bytearray(1)
+        self._two = bytearray(2)
+        self._interface = 0  # the bit that a chip on SPI has set in a register of its own
         self._held = []  # (first register, values as configured, room for what it reads)
 
     def _answers(self, i2c, register, expected):
@@ -59,6 +62,13 @@ class Registers:
                 return
         raise OSError(errno.EIO, "%s at 0x%02x: register 0x%02x reads 0x%02x, expected 0x%02x"
                       % (self.chip, self.address, register, found, value))
+
+    def _no_i2c(self, register, bit):
+        """On SPI: no more I2C, which would take the lines' edges for its own. The makers ask for
+        it in their data sheets' sections on SPI. On I2C the bit would shut the chip off."""
+        self._interface = bit if getattr(self._i2c, "spi", False) else 0
+        if self._interface:
+            self._set(register, bit)
 
     def _hold(self):
         """Ends configure(): what setup and offsets read has to stay."""
@@ -128,6 +138,12 @@ def row_of_range(ranges, full_scale, what):
                      % (what, full_scale, ", ".join([str(r[0]) for r in ranges])))
 
 
+def in_range(rate_hz, most):
+    """ValueError for a rate that is no chip's."""
+    if not 1 <= rate_hz <= most:
+        raise ValueError("rate_hz is %s, expected 1 to %d" % (rate_hz, most))
+
+
 def filter_code(bandwidths_hz, rate_hz):
     """Index of the widest filter not wider than half the polling rate (the narrowest one
     if none is). bandwidths_hz falls with the index; index 0, the unfiltered one, is out."""
@@ -142,6 +158,5 @@ def rate_divider(rate_hz):
     1000 / (1 + divider), four times the polling rate where there is so much, else twice: what a
     poll finds is then a quarter of an interval old at most, and a turn is not seen too early or
     too late by more than that when a poll is late or the two clocks drift apart."""
-    if not 1 <= rate_hz <= 500:
-        raise ValueError("rate_hz is %s, expected 1 to 500" % rate_hz)
+    in_range(rate_hz, 500)
     return max(0, min(int(250 // rate_hz) - 1, 255))

@@ -1,6 +1,6 @@
 """Accelerometer, gyro and thermometer behind one burst of 14 bytes: what such chips share."""
 
-from sixflip.chips.registers import Registers, row_of_range
+from sixflip.chips.registers import Registers, in_range, row_of_range
 
 RAIL = 32767
 BURST = 14
@@ -14,6 +14,7 @@ class SixAxis(Registers):
     DATA, COLUMNS   first register of the burst; the columns of a sample in its order
     HIGH            which byte of a word is the high one, 0 or 1
     TEMPERATURE     °C = counts / first + second
+    FIFO            the class of fifo.py that reads the chip's memory, "": it has none that is used
     who_am_i        what the chip's identification register answered to the probe
     """
 
@@ -21,6 +22,9 @@ class SixAxis(Registers):
     RANGES = (2, 500)
     DATA = ID_REGISTER = 0
     HIGH = 0
+    FIFO = ""
+    FIFO_SETUP = ()
+    fifo_temperature = 0
     TEMPERATURE = (1, 0)
     has_gyro = True
     has_temp = True
@@ -39,6 +43,34 @@ class SixAxis(Registers):
         self.temp_lsb_per_c, self.temp_offset_c = self.TEMPERATURE
         self.rate_hz = self.filter_hz = self.output_rate_hz = 0
         self._burst = bytearray(BURST)
+
+    def use_fifo(self):
+        """From the next configure() on every sample comes through the chip's memory."""
+        from sixflip.chips import fifo
+        self.fifo = getattr(fifo, self.FIFO)(self)
+        self.setup = self.setup + self.FIFO_SETUP
+        self.read_into = self.fifo.read_into
+
+    def _output_rate(self, rates, rate_hz):
+        """(Hz, code) of the output rate for so many samples a second: see output_rate(); through
+        a FIFO every sample counts, and it is the nearest. rates: (Hz, code), rising."""
+        if self.fifo is None:
+            return output_rate(rates, rate_hz)
+        in_range(rate_hz, self.MOST_HZ)
+        return min(rates, key=lambda row: abs(row[0] - rate_hz))
+
+    def _filter_hz(self, hz, rate_hz):
+        """Samples a second that the filters have to suit."""
+        return rate_hz if self.fifo is None else hz
+
+    def _started(self, rate_hz, hz, filter_hz):
+        """Ends configure(): the rates as they are, and a FIFO that begins to fill."""
+        self.output_rate_hz = hz
+        self.filter_hz = filter_hz
+        self.rate_hz = rate_hz if self.fifo is None else int(hz + 0.5)
+        if self.fifo is not None:
+            self.fifo.start()
+        self._hold()
 
     def answers(self, i2c):
         """Whether the chip answers on this bus, to be used from now on, as to the probe."""
@@ -65,8 +97,7 @@ class SixAxis(Registers):
 def output_rate(rates, rate_hz):
     """(Hz, code) of the slowest output rate that is four times the polling rate, as
     rate_divider() says why; the fastest where none is. rates: (Hz, code), rising."""
-    if not 1 <= rate_hz <= 500:
-        raise ValueError("rate_hz is %s, expected 1 to 500" % rate_hz)
+    in_range(rate_hz, 500)
     for row in rates:
         if row[0] >= 4 * rate_hz:
             return row
