@@ -47,14 +47,10 @@ def outputs_of(chips):
     for chip in chips:
         if not hasattr(chip, "model"):
             continue
-        listener = _Listener(chip.period_ns() if hasattr(chip, "period_ns")
-                             else chip.period_us() * 1000)
+        listener = _Listener(chip.period_ns())
         model, chip.model = chip.model, listener
         try:
-            if hasattr(chip, "sample"):
-                chip.sample(0, 0)
-            else:
-                chip._sample(0, 0, 1e9 / listener.period_ns)
+            chip.measure(0, 0)
         finally:
             chip.model = model
         found += listener.outputs

@@ -53,10 +53,11 @@ class SimulatedADXL345(RegisterChip):
         if k == self._k:
             return
         self._k = k
-        self._sample(k, k * period // 1000, 1e9 / period)
+        self.measure(k, k * period // 1000)
         self.registers[chip.INT_SOURCE] |= 0x80
 
-    def _sample(self, k, t_us, rate_hz):
+    def measure(self, k, t_us):
+        """Sample k into the data registers."""
         registers = self.registers
         setting = registers[chip.DATA_FORMAT]
         full_scale = chip.RANGES_G[setting & 3]
@@ -64,7 +65,7 @@ class SimulatedADXL345(RegisterChip):
         lsb = chip.LSB_PER_G if setting & 8 else 512 // full_scale
         rail = lsb * full_scale - 1
         counts = self.counts
-        louder = math.sqrt(rate_hz / NOMINAL_RATE_HZ)
+        louder = math.sqrt(1e9 / self.period_ns() / NOMINAL_RATE_HZ)
         self.model.accel_counts(k, t_us, lsb, rail, louder, counts)
         i = chip.DATAX0
         for axis in range(3):

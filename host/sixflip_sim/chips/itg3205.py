@@ -37,11 +37,10 @@ class SimulatedITG3205(RegisterChip):
     def fall_asleep(self):
         self.registers[chip.PWR_MGM] |= chip.SLEEP
 
-    def period_us(self):
+    def period_ns(self):
         """Sample period: 1 kHz behind a filter, 8 kHz without, divided."""
-        base = 125 if self.registers[chip.DLPF_FS] & 7 in (0, 7) else 1000
-        period = base * (1 + self.registers[chip.SMPLRT_DIV])
-        return round(period / (1 + 0.01 * self.clock_off)) if self.clock_off else period
+        base = 125000 if self.registers[chip.DLPF_FS] & 7 in (0, 7) else 1000000
+        return round(base * (1 + self.registers[chip.SMPLRT_DIV]) / (1 + 0.01 * self.clock_off))
 
     def _resetting(self):
         return self.clock.now_us() < self._reset_until_us
@@ -68,19 +67,20 @@ class SimulatedITG3205(RegisterChip):
                 or register + n <= chip.INT_STATUS
                 or register >= chip.TEMP_OUT_H + chip.BURST):
             return
-        period = self.period_us()
-        k = self.clock.now_us() // period
+        period = self.period_ns()
+        k = self.clock.now_us() * 1000 // period
         if k == self._k:
             return
         self._k = k
-        self._take(k, k * period)
+        self.measure(k, k * period // 1000)
         self.registers[chip.INT_STATUS] |= 1
 
     def after_read(self, register, n):
         if register <= chip.INT_STATUS < register + n:
             self.registers[chip.INT_STATUS] &= 0xFE
 
-    def _take(self, k, t_us):
+    def measure(self, k, t_us):
+        """Sample k into the data registers."""
         setting = self.registers[chip.DLPF_FS]
         # FS_SEL 0..2 are reserved; read as ±250, 500, 1000 °/s, which a driver that
         # forgets to set it would see at once.
