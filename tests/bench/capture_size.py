@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "shared"), str(ROOT / "host"), str(ROOT / "tests" / "host")]
+sys.path[:0] = [str(ROOT / "shared"), str(ROOT / "host"), str(ROOT / "tests" / "worlds")]
 
 from sixflip.capture_blocks import ACCEL, GYRO, TEMP, places
 from sixflip.capture_pieces import PieceWriter

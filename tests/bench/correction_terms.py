@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / part) for part in ("shared", "host", "tests/host")]
+sys.path[:0] = [str(ROOT / part) for part in ("shared", "host", "tests/worlds")]
 
 import drifting_part  # noqa: E402
 

@@ -17,7 +17,7 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tests" / name) for name in ("faults", "device", "host")]
+sys.path[:0] = [str(ROOT / "tests" / name) for name in ("faults", "worlds")]
 sys.path[:0] = [str(ROOT / name) for name in ("shared", "host", "device")]
 
 import hostile_board

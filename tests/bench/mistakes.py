@@ -2,7 +2,7 @@
 
     python tests/bench/mistakes.py [--seeds 40] [--first 0] [--kind TEXT]
 
-Sessions of tests/host/mistaken_sessions.py, sample by sample through the session and the phases
+Sessions of tests/worlds/mistaken_sessions.py, sample by sample through the session and the phases
 of the board. Every kind of mistake has a line:
 
     good        within 1 mg of the truth, RMS over all directions
@@ -21,7 +21,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / part) for part in ("shared", "device", "host", "tests/host")]
+sys.path[:0] = [str(ROOT / part) for part in ("shared", "device", "host", "tests/worlds")]
 
 import mistaken_sessions as mistaken
 

@@ -2,7 +2,7 @@
 
     python tests/bench/verdict.py [--runs 132] [--sessions 300]
 
-Sessions of tests/host/hostile_sessions.py: tables tilted by 0 to 5 degrees, every box placed
+Sessions of tests/worlds/hostile_sessions.py: tables tilted by 0 to 5 degrees, every box placed
 to 0.05 degrees and flipped to 0.4, raw bias up to 120 mg. "worst" is the largest RMS error over
 all directions of a correction that was called good. Exits with 1 when a claim does not hold.
 """
@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "shared"), str(ROOT / "host"), str(ROOT / "tests" / "host")]
+sys.path[:0] = [str(ROOT / "shared"), str(ROOT / "host"), str(ROOT / "tests" / "worlds")]
 
 import hostile_sessions as hostile
 import sigma_coverage

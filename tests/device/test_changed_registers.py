@@ -1,16 +1,12 @@
 """A register that shifts the readings is changed by somebody else: no calibration from them."""
 
-import sys
 import tempfile
 import unittest
 
-_HERE = __file__.rsplit("/", 1)[0] if "/" in __file__ else "."
-sys.path[:0] = [_HERE, _HERE + "/../../host", _HERE + "/../../shared", _HERE + "/../../device"]
+from simulated_board import QUICK, SHORT_WORLD, STOP_WHEN_READY, SimulatedBoard
 
-from simulated_board import QUICK, SHORT_WORLD, STOP_WHEN_READY, SimulatedBoard  # noqa: E402
-
-from sixflip_device import power_up, settings  # noqa: E402
-from sixflip_sim import worlds  # noqa: E402
+from sixflip_device import power_up, settings
+from sixflip_sim import worlds
 
 # sensor, who_am_i, register, and what it reads as configured
 SHIFTING = (("adxl345", None, 0x1E, 0x00), ("gy85", None, 0x20, 0x00),

@@ -1,15 +1,11 @@
 """A corrected |a| at rest that is no longer g is said while samples are streamed, once."""
 
-import sys
 import tempfile
 import unittest
 
-_HERE = __file__.rsplit("/", 1)[0] if "/" in __file__ else "."
-sys.path[:0] = [_HERE, _HERE + "/../../host", _HERE + "/../../shared", _HERE + "/../../device"]
+from simulated_board import SHORT_WORLD, SimulatedBoard, power_on
 
-from simulated_board import SHORT_WORLD, SimulatedBoard, power_on  # noqa: E402
-
-from sixflip_sim import worlds  # noqa: E402
+from sixflip_sim import worlds
 
 
 class Streaming(SimulatedBoard):

@@ -1,18 +1,14 @@
 """A whole session of every chip by the real firmware: calibrated, corrected after a power cycle,
 through a reset of the chip, a bus that fails and a supply that is cut while it saves."""
 
-import sys
 import tempfile
 import unittest
 
-_HERE = __file__.rsplit("/", 1)[0] if "/" in __file__ else "."
-sys.path[:0] = [_HERE, _HERE + "/../../host", _HERE + "/../../shared", _HERE + "/../../device"]
+from simulated_board import SHORT_WORLD, power_on
 
-from simulated_board import SHORT_WORLD, power_on  # noqa: E402
-
-from sixflip import correction_record  # noqa: E402
-from sixflip.chips import catalogue  # noqa: E402
-from sixflip_sim import worlds  # noqa: E402
+from sixflip import correction_record
+from sixflip.chips import catalogue
+from sixflip_sim import worlds
 
 CHIPS = [name for name in catalogue.SENSORS if name not in worlds.SEEN]
 # A few of everything, at random times: read again, freed, identified, set up anew.

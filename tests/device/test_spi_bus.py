@@ -5,16 +5,13 @@ import tempfile
 import unittest
 from array import array
 
-_HERE = __file__.rsplit("/", 1)[0] if "/" in __file__ else "."
-sys.path[:0] = [_HERE, _HERE + "/../../host", _HERE + "/../../shared", _HERE + "/../../device"]
+from simulated_board import QUICK, SHORT_WORLD, STOP_WHEN_READY, SimulatedBoard
 
-from simulated_board import QUICK, SHORT_WORLD, STOP_WHEN_READY, SimulatedBoard  # noqa: E402
-
-from sixflip.chips import catalogue, probe  # noqa: E402
-from sixflip_device import power_up, settings  # noqa: E402
-from sixflip_device.boards.spi_bus import SPIBus, SpidevPort, values_of  # noqa: E402
-from sixflip_sim import worlds  # noqa: E402
-from sixflip_sim.spi import SimulatedSPI  # noqa: E402
+from sixflip.chips import catalogue, probe
+from sixflip_device import power_up, settings
+from sixflip_device.boards.spi_bus import SPIBus, SpidevPort, values_of
+from sixflip_sim import worlds
+from sixflip_sim.spi import SimulatedSPI
 
 
 def world(sensor, **more):

@@ -15,7 +15,7 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "shared"), str(ROOT / "host"), str(ROOT / "device"),
-                str(ROOT / "tests" / "device")]
+                str(ROOT / "tests" / "worlds")]
 
 from reacting_hand import ReactingHand  # noqa: E402
 from simulated_board import SimulatedBoard, TooLong  # noqa: E402
@@ -39,7 +39,7 @@ STREAMED = 40           # samples, then the board is stopped
 WAIT_S = 30.0           # for a sensor that is not there
 
 # A correction called good is wrong beyond these.
-ACCEL_MG = 3.0          # RMS over all directions, as in tests/host/verdict_table.py,
+ACCEL_MG = 3.0          # RMS over all directions, as in tests/worlds/verdict_table.py,
 UNSURE_MG = 1.0         # and where it is more than this,
 SIGMAS = 5.0            # any of the twelve numbers in its own standard errors
 GYRO = 0.03             # largest element of C A - 1

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import targets  # noqa: F401  sets sys.path
 
-sys.path[:0] = [str(Path(__file__).resolve().parents[1] / name) for name in ("host", "shared")]
+TESTS = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(TESTS / name) for name in ("host/capture", "worlds", "shared")]
 
 import hostile_sessions
 import numpy as np

@@ -1,13 +1,8 @@
 """A damaged history is exit code 4 and one line: tests/fuzz/damaged_history.py runs thousands."""
 
-import sys
-from pathlib import Path
-
-import pytest
-
-sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import damaged_history
+import pytest
 
 from sixflip_host.history import store
 

@@ -8,8 +8,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from dds_loopback import LOOPBACK
 from micropython_tier import SESSION
-from test_stream_for_robots import LOOPBACK, record
+from written_records import of_a_gy85
 
 from sixflip import correction_record
 from sixflip_host import cli
@@ -51,7 +52,7 @@ def test_the_commands_of_a_page(page, micropython, tmp_path, monkeypatch):
                           micropython=micropython) as board:
             with MpremoteLink(board.port) as link:
                 firmware_update.copy(link, {"sensor": "gy85", "rest_s": 1}, lambda text: None)
-                link.put("record_a.bin", correction_record.encode(record()))
+                link.put("record_a.bin", correction_record.encode(of_a_gy85()))
             board.power_cycle()
             for line in commands(page):
                 run(line, tmp_path, board.port)

@@ -1,16 +1,12 @@
 """device/README.md says how much flash each module of the firmware takes; does it still?"""
 
 import re
-import sys
 from pathlib import Path
 
 import pytest
+from bench import size
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tests" / "bench")]
-
-import size  # noqa: E402  tests/bench/size.py
-
 ROW = re.compile(r"\| `([^`]+)` \| (\d+) \| (\d+) \| (\d+|-) \|")
 WRITE = "python tests/bench/size.py --write"
 

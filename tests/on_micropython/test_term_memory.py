@@ -1,16 +1,13 @@
 """A record with every term in it, in the heap of a small board: loaded, streamed by and kept
 through a new session. Without terms none of their code is in the heap."""
 
-import sys
 
 import pytest
+from test_term_correction import ALL, fields_of
 
 from sixflip import correction_record, record_terms
 
-from .test_firmware_memory import HEAP, ROOT, bare, flash, only, power_up
-
-sys.path.insert(0, str(ROOT / "tests" / "shared"))
-from test_term_correction import ALL, fields_of  # noqa: E402
+from .test_firmware_memory import HEAP, bare, flash, only, power_up
 
 
 def with_terms(record):

@@ -3,22 +3,18 @@
 Its firmware image is in no package registry, so of all tiers this one alone may be absent in CI.
 """
 
-import contextlib
 import json
 import os
 import shutil
 
 import pytest
 
-from sixflip_host.board import calibration_request, firmware_update
+from sixflip_host.board import calibration_request
 from sixflip_host.board.board_events import wait_for
-from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.board.console import GUIDED_ORDER
 from sixflip_host.emulated import firmware_image
 from sixflip_host.errors import NoBoard
-from sixflip_host.verbs import calibrate, demo
-from sixflip_host.virtual import micropython_fetch
-from sixflip_host.virtual.virtual_board import VirtualBoard
+from sixflip_host.verbs import calibrate
 
 # an hour: make test-pico sets this
 collect_ignore = [] if os.environ.get("SIXFLIP_PICO") == "whole" else ["test_pico_session.py"]
@@ -33,24 +29,11 @@ def uf2():
         pytest.skip(str(error))
 
 
-@contextlib.contextmanager
-def provisioned(files, spec):
-    """Link to a virtual board with the Pico's settings, not started; its littlefs is in files."""
-    from pico_flash import FILES_BYTES
-    micropython = micropython_fetch.find()
-    if micropython is None:
-        pytest.skip(micropython_fetch.MISSING)
-    with VirtualBoard(spec, files, micropython=micropython, flash_bytes=FILES_BYTES) as board, \
-            MpremoteLink(board.port) as link:
-        firmware_update.copy(link, {"sensor": spec["sensor"], "board": "pico",
-                              **demo.PACE["pico"].settings})
-        yield link
-
-
 @pytest.fixture(scope="session")
 def flashes(uf2, tmp_path_factory):
     """Paths of two flashes: of a calibrated board, and of the same without its main.py."""
     from pico_flash import SPEC, flash
+    from provisioned_board import provisioned
     folder = tmp_path_factory.mktemp("flash")
     files = folder / "files.img"
     with provisioned(files, SPEC) as link:
@@ -79,6 +62,7 @@ def still_flash(flashes, tmp_path):
 def gy85_flash(uf2, tmp_path):
     """Of a board that has its firmware and was never started."""
     from pico_flash import SPEC, flash
+    from provisioned_board import provisioned
     files = tmp_path / "files.img"
     path = tmp_path / "pico.bin"
     with provisioned(files, dict(SPEC, sensor="gy85")):
@@ -90,6 +74,7 @@ def gy85_flash(uf2, tmp_path):
 def unfinished_flash(uf2, tmp_path):
     """Of a board whose session was stopped before its last face, and is to go on."""
     from pico_flash import LAST_FACE, SPEC, flash
+    from provisioned_board import provisioned
     files = tmp_path / "files.img"
     first = [pose for pose in GUIDED_ORDER if pose not in LAST_FACE]
     with provisioned(files, dict(SPEC, order=first)) as link:

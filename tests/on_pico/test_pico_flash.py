@@ -5,8 +5,8 @@ import posixpath
 import pytest
 
 pytest.importorskip("rp2040py")
-from conftest import provisioned  # noqa: E402
 from pico_flash import FILES_BYTES, LAYOUT, OLDEST_DISK, SPEC, flash, littlefs  # noqa: E402
+from provisioned_board import provisioned  # noqa: E402
 
 
 def content(files):

@@ -4,12 +4,11 @@ than the port's heap, nothing allocated while sampling, and the outcome of doubl
 import io
 import json
 import os
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 from on_micropython.test_term_memory import ALL, with_terms
+from taped_board import TapedBoard
 
 from sixflip import correction_record, record_terms
 from sixflip.chips import catalogue
@@ -19,10 +18,6 @@ from sixflip_sim.worlds import SEEN
 
 from .firmware import ALL_CHIPS, POSE_SAMPLES, tape_bursts
 from .simulated_sums import vector_error_mg
-
-sys.path.append(str(Path(__file__).resolve().parent / "on_board"))
-
-from taped_board import TapedBoard  # noqa: E402  also runs on the board
 
 HEAP = 140032  # what the port leaves of its 140 KB
 SMALL_HEAP = 80 * 1024  # of which the test itself holds some 5; the limit is 100 KB

@@ -1,19 +1,15 @@
 """Drivers against simulated chips and against a bus that plays bursts made beforehand."""
 
 import io
-import sys
 import unittest
 from array import array
 
-_HERE = __file__.rsplit("/", 1)[0] if "/" in __file__ else "."
-sys.path.append(_HERE + "/../../host")
-
-from sixflip.chips import adxl345, catalogue, itg3205, mpu6050, probe  # noqa: E402
-from sixflip.chips.adxl345 import ADXL345  # noqa: E402
-from sixflip.chips.gy85 import GY85  # noqa: E402
-from sixflip.chips.itg3205 import ITG3205  # noqa: E402
-from sixflip.chips.mpu6050 import MPU6050  # noqa: E402
-from sixflip_sim import tape, worlds  # noqa: E402
+from sixflip.chips import adxl345, catalogue, itg3205, mpu6050, probe
+from sixflip.chips.adxl345 import ADXL345
+from sixflip.chips.gy85 import GY85
+from sixflip.chips.itg3205 import ITG3205
+from sixflip.chips.mpu6050 import MPU6050
+from sixflip_sim import tape, worlds
 
 try:
     from micropython import heap_lock, heap_unlock

@@ -1,16 +1,12 @@
 """The simulated bus and chips fail and behave as the real ones (BUS: machine.I2C's errors)."""
 
 import errno
-import sys
 import unittest
 from array import array
 
-_HERE = __file__.rsplit("/", 1)[0] if "/" in __file__ else "."
-sys.path.append(_HERE + "/../../host")
-
-from sixflip.chips import adxl345, itg3205, mpu6050, probe  # noqa: E402
-from sixflip_sim import worlds  # noqa: E402
-from sixflip_sim.bus import EREMOTEIO, FLAVOURS, SimulatedI2C  # noqa: E402
+from sixflip.chips import adxl345, itg3205, mpu6050, probe
+from sixflip_sim import worlds
+from sixflip_sim.bus import EREMOTEIO, FLAVOURS, SimulatedI2C
 
 NOBODY = {"rp2": errno.EIO, "esp32": errno.ENODEV, "stm32": errno.ENODEV, "soft": errno.ENODEV,
           "linux": EREMOTEIO}

@@ -1,15 +1,11 @@
 """Who is on the bus? Every answer of an identification register that was met in the wild."""
 
 import errno
-import sys
 import unittest
 
-_HERE = __file__.rsplit("/", 1)[0] if "/" in __file__ else "."
-sys.path.append(_HERE + "/../../host")
-
-from sixflip.chips import catalogue, probe  # noqa: E402
-from sixflip_sim import worlds  # noqa: E402
-from sixflip_sim.bus import FLAVOURS, SimulatedI2C  # noqa: E402
+from sixflip.chips import catalogue, probe
+from sixflip_sim import worlds
+from sixflip_sim.bus import FLAVOURS, SimulatedI2C
 
 
 def world(sensor, **more):

@@ -1,16 +1,12 @@
 """What every driver must do, against its simulated twin; a chip of the catalogue is in it at
 once, without a line here."""
 
-import sys
 import unittest
 from array import array
 
-_HERE = __file__.rsplit("/", 1)[0] if "/" in __file__ else "."
-sys.path.append(_HERE + "/../../host")
-
-from sixflip.chips import catalogue, probe  # noqa: E402
-from sixflip.still_window import StillWindow  # noqa: E402
-from sixflip_sim import worlds  # noqa: E402
+from sixflip.chips import catalogue, probe
+from sixflip.still_window import StillWindow
+from sixflip_sim import worlds
 
 try:
     from micropython import heap_lock, heap_unlock

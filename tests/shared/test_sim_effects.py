@@ -1,14 +1,10 @@
 """Effects of the library in a live chip: each shows up where it belongs, by its size."""
 
-import sys
 import unittest
 from array import array
 
-_HERE = __file__.rsplit("/", 1)[0] if "/" in __file__ else "."
-sys.path.append(_HERE + "/../../host")
-
-from sixflip.chips import probe  # noqa: E402
-from sixflip_sim import worlds  # noqa: E402
+from sixflip.chips import probe
+from sixflip_sim import worlds
 
 
 def reading(seconds, *effects, **more):

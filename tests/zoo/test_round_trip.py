@@ -1,14 +1,11 @@
 """The effect put back: a diagnosis is exported, the simulator runs through it, and is diagnosed
 again against the same real log."""
 import json
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 mujoco = pytest.importorskip("mujoco", reason="the zoo needs MuJoCo: pip install 'sixflip[test]'")
-sys.path.insert(0, str(Path(__file__).parent))
 
 import defects  # noqa: E402
 import engine  # noqa: E402

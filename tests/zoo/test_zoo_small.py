@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 pytest.importorskip("mujoco", reason="the zoo needs MuJoCo: pip install 'sixflip[test]'")
-sys.path.insert(0, str(Path(__file__).parent))
 
 import defects  # noqa: E402
 import engine  # noqa: E402

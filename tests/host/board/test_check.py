@@ -16,7 +16,7 @@ from sixflip_host.capture import capture_file
 from sixflip_host.verbs import check
 from sixflip_host.virtual.virtual_board import VirtualBoard
 
-DEVICE = Path(__file__).resolve().parents[2] / "device" / "sixflip_device"
+DEVICE = Path(__file__).resolve().parents[3] / "device" / "sixflip_device"
 
 
 @pytest.fixture(scope="module")

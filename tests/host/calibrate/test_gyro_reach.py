@@ -9,7 +9,7 @@ import pytest
 from sixflip_host.simulation.simulated_capture import capture
 from sixflip_sim import worlds
 
-BENCH = Path(__file__).resolve().parents[1] / "bench" / "gyro.py"
+BENCH = Path(__file__).resolve().parents[2] / "bench" / "gyro.py"
 
 
 @pytest.fixture(scope="module")

@@ -1,9 +1,8 @@
 """The solvers against numpy and scipy, which get there another way: SVD, joint least squares."""
 
 import math
-import sys
-from pathlib import Path
 
+import flipped_box as box
 import numpy as np
 import pytest
 from scipy.optimize import least_squares
@@ -12,9 +11,6 @@ from sixflip import accelerometer, gyroscope
 from sixflip.elimination import SingularSystem, eliminate
 from sixflip.normal_equations import NormalEquations
 from sixflip.scale_form import scale_form
-
-sys.path.append(str(Path(__file__).resolve().parent.parent / "shared"))
-import flipped_box as box  # noqa: E402  lives beside the tests of the shared code
 
 UP = np.array(box.UP, float)
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from test_export_formats import TERMS, with_terms
+from written_records import TERMS, with_terms
 
 from sixflip import record_terms
 from sixflip.correction_of import correction_of

@@ -6,7 +6,7 @@ import pty
 from types import SimpleNamespace
 
 import pytest
-from test_export_formats import make_record
+from written_records import make_record
 
 from sixflip import correction_record
 from sixflip_host.board import firmware_update

@@ -6,7 +6,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from test_export_formats import make_record
+from written_records import make_record
 
 from sixflip import correction_record, record_terms
 from sixflip.correction import Correction

@@ -9,7 +9,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+import dds_loopback
 import pytest
+from written_records import of_a_gy85
 
 from sixflip import correction_record
 from sixflip_host import cli
@@ -21,33 +23,13 @@ from sixflip_host.verbs import stream as verb
 
 SAMPLES = 300
 G = 9.80665
-# DDS on the loopback alone, so that no test hears another computer.
-LOOPBACK = ("<CycloneDDS><Domain><General><Interfaces><NetworkInterface name='lo'/></Interfaces>"
-            "<AllowMulticast>false</AllowMulticast></General><Discovery>"
-            "<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>60"
-            "</MaxAutoParticipantIndex><Peers><Peer address='127.0.0.1'/></Peers></Discovery>"
-            "</Domain></CycloneDDS>")
-
-
-def record():
-    """A Record of a GY-85 with uncertainties of its own."""
-    r = correction_record.Record()
-    r.chip, r.who_am_i, r.sequence, r.session, r.g = "gy85", (0xE5, 0x68), 1, 7, G
-    r.accel_range_g, r.accel_lsb_per_g = 16, 256
-    r.gyro_range_dps, r.gyro_lsb_per_dps = 2000, 14.375
-    P = [[float(i == j) for j in range(3)] + [0.0] for i in range(3)] + [[0.0, 0.0, 0.0, 1.0]]
-    sigma = [[1e-3] * 3 + [0.0] for _ in range(3)] + [[2e-2, 3e-2, 4e-2, 0.0]]
-    r.accel = {"P": P, "sigma_P": sigma, "tilt_deg": 0.0, "tilt_spread_deg": 0.0,
-               "residual_rms_g": 1e-4, "noise_g": 3e-3, "level": "tilt solved",
-               "verdict": "good", "reason": ""}
-    r.gyro = {"P": P, "sigma_P": sigma, "missing": [], "verdict": "good", "reason": ""}
-    return r
+SECOND = Path(dds_loopback.__file__).with_name("second_participant.py")
 
 
 @pytest.fixture
 def loopback(monkeypatch, worker_id):
     """The domain of this worker of the test run."""
-    monkeypatch.setenv("CYCLONEDDS_URI", LOOPBACK)
+    monkeypatch.setenv("CYCLONEDDS_URI", dds_loopback.LOOPBACK)
     return 100 + (int(worker_id[2:]) if worker_id.startswith("gw") else 0)
 
 
@@ -56,16 +38,15 @@ def board(tmp_path, monkeypatch):
     """A simulated board at rest with a record, as the verb finds it."""
     link = LocalLink(tmp_path / "flash", {"sensor": "gy85", "order": [], "ideal": True})
     firmware_update.copy(link, {"sensor": "gy85", "rest_s": 1, "grace_ms": 100}, lambda text: None)
-    link.put("record_a.bin", correction_record.encode(record()))
+    link.put("record_a.bin", correction_record.encode(of_a_gy85()))
     monkeypatch.setattr(verb, "open_link", lambda port: link)
     return link
 
 
 def other(*words):
     """The other program, listening."""
-    process = subprocess.Popen(
-        [sys.executable, str(Path(__file__).with_name("second_participant.py")), *words],
-        stdout=subprocess.PIPE, text=True, env=dict(os.environ))
+    process = subprocess.Popen([sys.executable, str(SECOND), *words], stdout=subprocess.PIPE,
+                               text=True, env=dict(os.environ))
     assert process.stdout.readline() == "ready\n"
     return process
 
@@ -89,7 +70,7 @@ def check(rows, path, frame):
                                             rel=1e-6, abs=1e-6)
         assert row["stamp_ns"] - rows[0]["stamp_ns"] == 1000 * (own["t_us"] - sent[0]["t_us"])
         assert row["frame_id"] == frame
-    rate, force = imu_message.covariances(record())
+    rate, force = imu_message.covariances(of_a_gy85())
     assert rows[0]["rate_covariance"] == pytest.approx(rate)
     assert rows[0]["force_covariance"] == pytest.approx(force)
     assert rows[0]["orientation_covariance"] == list(imu_message.ABSENT)
@@ -136,7 +117,7 @@ def test_a_domain_that_cannot_be_opened():
     code = ("from sixflip_host.streaming import ros2_publisher as r\n"
             "try: r.Ros2Publisher('/imu', 7)\n"
             "except Exception as e: print(type(e).__name__, e.exit_code, e)")
-    uri = LOOPBACK.replace("'lo'", "'none0'")
+    uri = dds_loopback.LOOPBACK.replace("'lo'", "'none0'")
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60,
                          env=dict(os.environ, CYCLONEDDS_URI=uri)).stdout
     assert out.startswith("NoBoard 3 DDS domain 7 cannot be opened: ")
@@ -176,13 +157,13 @@ def test_without_the_library(board, monkeypatch, capsys):
 
 
 def test_covariances_from_the_record():
-    rate, force = imu_message.covariances(record())
+    rate, force = imu_message.covariances(of_a_gy85())
     noise = (3e-3 * G) ** 2 + G ** 2 * 1e-6
     assert force[::4] == pytest.approx([noise + x ** 2 for x in (2e-2, 3e-2, 4e-2)])
     assert rate[::4] == pytest.approx([math.radians(0.38) ** 2 + x ** 2
                                        for x in (2e-2, 3e-2, 4e-2)])
     assert imu_message.covariances(None) == (imu_message.UNKNOWN,) * 2
-    unknown = record()
+    unknown = of_a_gy85()
     unknown.accel["sigma_P"][3][1] = math.nan
     unknown.gyro = None
     assert imu_message.covariances(unknown) == (imu_message.UNKNOWN,) * 2
@@ -199,7 +180,7 @@ def test_stamps_are_the_devices_and_jumps_are_said():
 
 
 def test_a_sensor_without_a_gyro_has_no_rate():
-    messages = imu_message.ImuMessages(record(), "imu", print, lambda: 0)
+    messages = imu_message.ImuMessages(of_a_gy85(), "imu", print, lambda: 0)
     message = messages.of(0, (0.0, 0.0, G, math.nan, math.nan, math.nan))
     assert message.rate is None and message.rate_covariance == imu_message.ABSENT
     assert message.force_covariance != imu_message.UNKNOWN
