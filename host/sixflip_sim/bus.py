@@ -137,7 +137,7 @@ class SimulatedI2C:
                 return None
             self._time_out()
         for chip in self.chips:
-            if chip.address == address and chip.plugged:
+            if chip.address == address and chip.plugged and chip.reachable():
                 return chip
         raise OSError(self._nobody)
 

@@ -15,6 +15,8 @@ class SimulatedSPI:
         self.mode = mode
         self._register = None       # of the transfer that runs
         self._last = 0
+        for chip in bus.chips:
+            chip.spi = True
 
     def select(self, level):
         """The select line is low while a transfer runs."""

@@ -60,6 +60,31 @@ class OnSpi(unittest.TestCase):
                 self.assertEqual(sample[4], round(-2 * imu.gyro_lsb_per_dps))
                 self.assertTrue(imu.awake())
 
+    def test_invensense_chips_have_i2c_shut_off_there_and_nowhere_else(self):
+        """Else edges on the lines of SPI may be taken for I2C (MPU-6500 register map, register
+        106; ICM-20948, 8.1; ICM-42688-P, 14.38). On I2C the bit makes a chip deaf for good."""
+        shut = 0
+        for sensor in catalogue.ON_SPI:
+            register, bits = worlds.simulated(sensor).no_i2c
+            a_world = world(sensor)
+            imu = probe.find(a_world.i2c, a_world.clock.sleep_ms)[0]
+            imu.configure(100)
+            if bits:
+                self.assertEqual(a_world.chips[0].registers[register] & bits, 0)
+                a_world.i2c.writeto_mem(imu.address, register, bytes([bits]))
+                with self.assertRaises(OSError):
+                    imu.awake()
+            for by_fifo in (False, True)[:1 + bool(imu.FIFO)]:
+                a_world = world(sensor)
+                imu = probe.find(bus_of(a_world), a_world.clock.sleep_ms)[0]
+                if by_fifo:
+                    imu.use_fifo()
+                imu.configure(200)
+                self.assertEqual(a_world.chips[0].registers[register] & bits, bits)
+                self.assertTrue(imu.awake())
+                shut += bool(bits)
+        self.assertEqual(shut, 6)
+
     def test_linux_sends_and_reads_in_one_transfer(self):
         a_world = world("icm20948")
         bus = SPIBus(SpidevPort(Spidev(SimulatedSPI(a_world.i2c, 3))))

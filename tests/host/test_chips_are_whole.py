@@ -31,8 +31,8 @@ def missing(sensor):
         said.append("%s.py: the data sheet's number and revision at its top" % module)
     if driver.sensor != sensor:
         said.append("%s.%s: sensor = %r" % (module, name, sensor))
-    for what in ("ACCEL_RANGES", "GYRO_RANGES", "COLUMNS", "setup"):
-        if not getattr(driver, what, None):
+    for what in ("ACCEL_RANGES", "GYRO_RANGES", "COLUMNS", "setup", "READY"):
+        if not any(getattr(driver, what, None) or ()):
             said.append("%s.%s: %s" % (module, name, what))
     for what in ("gyro_tolerance", "zero_rate_dps", "zero_rate_dps_per_c"):
         if not 0 < (getattr(driver, what, None) or 0) < 100:
@@ -50,8 +50,6 @@ def missing(sensor):
                        % (module, sensor)]
     if not chip.TRAPS:
         said.append("%s: TRAPS, what another program may have left" % chip.__name__)
-    if not chip.ready[1]:
-        said.append("%s: ready, the register of a new sample" % chip.__name__)
     if not chip.self_clearing:
         said.append("%s: self_clearing, the register of its reset" % chip.__name__)
     for kind, table in (("accel", datasheets.ACCEL), ("gyro", datasheets.GYRO)):

@@ -302,8 +302,7 @@ class Registers(unittest.TestCase):
     def test_data_ready(self):
         for sensor in SIX_AXIS:
             a_world, imu = running(sensor)
-            register, bits = a_world.chips[0].ready if hasattr(a_world.chips[0], "ready") else (
-                a_world.chips[0].status_register, 1)
+            register, bits = imu.READY
             a_world.clock.sleep_ms(50)
             self.assertEqual(read(a_world, imu, register) & bits, bits)
             sample_of(a_world, imu, 0)

@@ -133,13 +133,13 @@ ANSWERS = {
 }
 # Of doctor's look_at_bus.py, what follows each name.
 OF_THE_BUS = {
-    "settings": Row(TEXT, TEXT, Number(1, 1e9), TEXTS),
+    "settings": Row(TEXT, TEXT, TEXT, TEXTS),
     "lines": Row(TEXT, TEXT, LEVEL, LEVEL, LEVEL, LEVEL),
     "scan": Row(Either(ListOf(ADDRESS), TEXT)),
     "ids": Row(MapOf(Row(ADDRESS, BYTE), Either(Octets(), ERRNO))),
     "no sensor": Row(TEXTS),
     "sensor": Row(TEXT, TEXT, IDS, POSITIVE, POSITIVE, Number(0), TEXTS),
-    "ready": Row(COUNT, Number(0), POSITIVE, COUNT),
+    "ready": Row(TEXT, COUNT, Number(0), POSITIVE, COUNT),
     "selftest": Row(FLAG, TEXTS, NUMBER, NUMBER, FLAG, Either(NUMBER, Nothing()), COUNT),
     "means": Row(COUNT, Row(*[NUMBER] * 7)),
     "lost": Row(TEXT),

@@ -26,7 +26,7 @@ def samples_of(protocol, rate_hz):
     return still * rate_hz, moving * rate_hz, still + moving
 
 
-def findings(name, protocol, sensor, rate_hz, make):
+def findings(name, protocol, sensor, rate_hz, make, ranges=(None, None)):
     """Findings of one effect (a list, empty for those with a signature at rest)."""
     rule = RULES.get(name)
     if rule is None:
@@ -39,7 +39,7 @@ def findings(name, protocol, sensor, rate_hz, make):
                 (sensor == "itg3205" and chip_kind == "accel"):
             continue
         size, source = typical.size(name, sensor, chip_kind)
-        sigma = max(typical.noise_at(typical.chip_of(sensor, chip_kind), rate_hz))
+        sigma = max(typical.noise_of(sensor, chip_kind, rate_hz, ranges[chip_kind == "gyro"]))
         smallest, how = rule(protocol, rate_hz, sigma, kind)
         if name in ("filter_lag", "lever_arm") and sensor in ("adxl345", "itg3205"):
             smallest, how = math.inf, "the other sensor, which is not there"

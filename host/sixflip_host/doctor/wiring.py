@@ -3,7 +3,7 @@
 import errno
 import math
 
-from sixflip.chips import adxl345, catalogue, itg3205, mpu6050
+from sixflip.chips import adxl345, catalogue, itg3205, mpu6050, probe
 
 from ..calibrate.verify_files import newest_of
 from .finding import Finding, fault, ok, warning
@@ -39,10 +39,10 @@ def judge(said):
 
 
 def settings(said):
-    name, wanted, freq, problems = said["settings"]
+    name, wanted, bus, problems = said["settings"]
     if problems:
         return [warning("settings", "; ".join(problems), "sixflip provision with what you mean")]
-    return [ok("settings", "%s, sensor %s, I2C at %d kHz" % (name, wanted, freq // 1000))]
+    return [ok("settings", "%s, sensor %s, %s" % (name, wanted, bus))]
 
 
 def lines(said):
@@ -171,7 +171,7 @@ def at_address(ids, address):
     who = asked.get(mpu6050.WHO_AM_I, asked[max(asked)])
     name = NOT_DRIVEN.get(who) if mpu6050.WHO_AM_I in asked else None
     return [fault("chips", "0x%02x answers who_am_i 0x%02x: %s" % (
-        address, who, name or "no chip that is known here"),
+        address, who, name or probe.nearest(address, asked)),
         "this firmware does not drive it, docs/wiring.md lists what it drives; a clone is used "
         "where sixflip.json names its sensor: sixflip provision --sensor …", True)]
 
@@ -204,16 +204,16 @@ def sensor(said):
 def clock(said):
     """Samples the chip makes by the board's clock, and samples the bus carries."""
     found = []
-    if "ready" in said:
-        made, us, nominal, asked = said["ready"]
+    for chip, made, us, nominal, asked in said.get("ready", ()):
+        whose = "the %s" % chip
         if not made or not us:
-            found.append(fault("clock", "the chip makes no new samples: its readings are frozen",
+            found.append(fault("clock", "%s makes no new samples: its readings are frozen" % whose,
                                "take its power away for some seconds; if that does not help, it "
                                "is broken"))
         elif asked > ASKED_OFTEN * made:    # else a slow bus missed some
             off = made * 1e6 / us / nominal - 1
-            words = "the chip makes %.1f samples a second, %g are meant (%+.1f %%)" % (
-                made * 1e6 / us, nominal, 100 * off)
+            words = "%s makes %.1f samples a second, %.4g are meant (%+.1f %%)" % (
+                whose, made * 1e6 / us, nominal, 100 * off)
             found.append(ok("clock", words) if abs(off) <= CLOCK_OFF else warning(
                 "clock", words, "its clock is off, as clones' are: timestamps come from the "
                 "board, so rates are right, but its filter and noise are not those of the data "

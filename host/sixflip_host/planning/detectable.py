@@ -24,9 +24,10 @@ MG_PER_RAD = 1000.0
 class Power:
     """Whitened design of one sensor; smallest(name) -> {key: size} at 80 % power."""
 
-    def __init__(self, design, chip, rate_hz=100.0, placement_deg=PLACEMENT_DEG):
+    def __init__(self, design, chip, rate_hz=100.0, placement_deg=PLACEMENT_DEG,
+                 step=0.0):
         self.design = design
-        cov = covariance(design, chip, rate_hz, placement_deg)
+        cov = covariance(design, chip, rate_hz, placement_deg, step)
         self.whitener = np.linalg.inv(np.linalg.cholesky(cov))
         self.space = basis(self._white(design.space))
 
@@ -66,10 +67,10 @@ def flicker(rows):
     return np.kron(kernel * (rows.session[:, None] == rows.session[None]), np.eye(3))
 
 
-def covariance(design, chip, rate_hz, placement_deg):
-    """(3n, 3n) in mg2 or (deg/s)2."""
+def covariance(design, chip, rate_hz, placement_deg, step=0.0):
+    """(3n, 3n) in mg2 or (deg/s)2; step: of a count."""
     rows = design.rows
-    sigma = np.array(typical.noise_at(chip, rate_hz))
+    sigma = np.array(typical.noise_at(chip, rate_hz, step))
     white = sigma ** 2 / np.maximum(rows.seconds * rate_hz, 1.0)[:, None]
     total = np.diag(white.reshape(-1)) + typical.FLICKER[chip] ** 2 * flicker(rows)
     if design.sensor == "accel":

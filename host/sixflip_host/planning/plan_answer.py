@@ -2,10 +2,12 @@
 
 import math
 
+from sixflip_sim.effects import typical
+
 from .. import progress
 from ..experiment.session_rows import rows_of
 from . import alias, plan_additions
-from .plan_findings import Findings
+from .plan_findings import Findings, kinds_of
 
 
 def counts(protocol):
@@ -17,16 +19,23 @@ def counts(protocol):
             "even_contrasts": alias.even_contrasts(rows)}
 
 
-def planned(protocol, sensor="mpu6050", certified_box=False, rate_hz=100.0, minutes=None):
+def planned(protocol, sensor="mpu6050", certified_box=False, rate_hz=100.0, minutes=None,
+            ranges=(None, None)):
     """The answer as a dictionary: what this Protocol tells apart, and what could be added.
 
-    minutes: how much longer it may become, None: whatever helps; rate_hz: of the samples.
+    minutes: how much longer it may become, None: whatever helps; rate_hz: of the samples;
+    ranges: full scales in g and deg/s, None: the chip's usual ones.
     """
     progress.doing("what the capture shows")
-    findings = Findings(protocol, sensor, certified_box, rate_hz)
+    findings = Findings(protocol, sensor, certified_box, rate_hz, ranges)
     progress.doing("what could be added")
-    additions = plan_additions.ranked(protocol, findings, sensor, certified_box, rate_hz, minutes)
-    return as_dict(protocol, sensor, certified_box, findings, additions), findings
+    additions = plan_additions.ranked(protocol, findings, sensor, certified_box, rate_hz, minutes,
+                                      ranges)
+    answer = as_dict(protocol, sensor, certified_box, findings, additions)
+    answer.update(rate_hz=rate_hz, noise={
+        kind: [rounded(sigma) for sigma in typical.noise_of(sensor, kind, rate_hz, full_scale)]
+        for kind, full_scale in zip(("accel", "gyro"), ranges) if kind in kinds_of(sensor)})
+    return answer, findings
 
 
 def as_dict(protocol, sensor, certified_box, findings, additions):

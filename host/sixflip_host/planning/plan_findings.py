@@ -44,7 +44,8 @@ class Finding:
 class Findings:
     """All of a protocol: .list of Finding, .matrices {sensor: (names, A)} for a square box."""
 
-    def __init__(self, protocol, sensor="mpu6050", certified_box=False, rate_hz=100.0):
+    def __init__(self, protocol, sensor="mpu6050", certified_box=False, rate_hz=100.0,
+                 ranges=(None, None)):
         self.list, self.matrices = [], {}
         blocks = 3 if sum(len(s.rests) for s in protocol.sessions) <= 40 else 2
         rows = rows_of(protocol, blocks)
@@ -52,14 +53,15 @@ class Findings:
             if kind == "gyro":
                 rows = rows_of(protocol, 1, turns=True)
             design = alias.PlannedModel(rows, kind, certified_box)
-            self._of_rests(design, sensor, kind, rate_hz)
+            self._of_rests(design, sensor, kind, rate_hz, ranges[kind == "gyro"])
         self.list += [found for name in NAMES
                       for found in events_seen.findings(name, protocol, sensor, rate_hz,
-                                                        Finding)]
+                                                        Finding, ranges)]
         self.list.sort(key=lambda f: (NAMES.index(f.effect), f.sensor))
 
-    def _of_rests(self, design, sensor, kind, rate_hz):
-        power = detectable.Power(design, typical.chip_of(sensor, kind), rate_hz)
+    def _of_rests(self, design, sensor, kind, rate_hz, full_scale):
+        power = detectable.Power(design, typical.chip_of(sensor, kind), rate_hz,
+                                 step=typical.step_of(sensor, kind, full_scale))
         names = alias.ACCEL if kind == "accel" else alias.GYRO
         matrix = projection.alias_matrix({name: design.signature(name) for name in names})
         tables = [matrix]

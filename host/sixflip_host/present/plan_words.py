@@ -2,6 +2,7 @@
 from ..terminal import console, plain, styled, table
 
 TITLES = (("accel", "Accelerometer"), ("gyro", "Gyro"), ("device", "Device"))
+UNIT = {"accel": "mg", "gyro": "°/s"}
 NAME = {"accel": "accelerometer", "gyro": "gyro", "device": "device"}
 
 
@@ -82,12 +83,15 @@ def overview(answer):
     sessions = len(answer["sessions"])
     return ("%s: %d placements in %d session%s (%s), %.1f minutes, %s, box %s. %d accelerometer "
             "equations leave %d residual degrees of freedom; %d contrasts between faces say "
-            "something about the sensor. Alike: does more than 0.9 of the same (alias index)." % (
+            "something about the sensor. Noise of a sample: %s, %g a second. Alike: does more "
+            "than 0.9 of the same (alias index)." % (
                 plain(answer["protocol"]), answer["placements"], sessions,
                 "" if sessions == 1 else "s", plain(", ".join(answer["sessions"])),
                 answer["minutes"], answer["sensor"],
                 "certified" if answer["certified_box"] else "not certified",
-                accel["equations"], accel["residual"], accel["even_contrasts"]))
+                accel["equations"], accel["residual"], accel["even_contrasts"],
+                " and ".join("%.2g %s" % (max(sigma), UNIT[kind])
+                             for kind, sigma in answer["noise"].items()), answer["rate_hz"]))
 
 
 def effect_row(effect):

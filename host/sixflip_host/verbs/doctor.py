@@ -114,12 +114,15 @@ def here(folder, code):
 
 
 def parse(port, out):
-    """{name: values} of lines that are Python literals, ("name", ...) each."""
+    """{name: values} of lines that are Python literals, ("name", ...) each; "ready" a list."""
     said = {}
     for line in out.splitlines():
         if line.strip():
             name, *values = board_answers.parse(port, line, BusAnswer())
-            said[name] = tuple(values)
+            if name == "ready":     # of each chip
+                said.setdefault(name, []).append(tuple(values))
+            else:
+                said[name] = tuple(values)
     if "stopped" in said:
         return said
     for name in ("settings", "scan", "ids"):

@@ -1,13 +1,16 @@
 """sixflip plan: what a capture would be able to tell apart, before anything is captured."""
 import json
+import sys
 
 from sixflip.chips import catalogue
 
 from .. import file_kinds, progress
+from ..board import chip_options
 from ..did_you_mean import instead
 from ..errors import UsageError
 from ..file_arguments import add_input, add_output
 from ..planning import plan_answer, plan_file, protocols
+from ..terminal import plain
 
 HELP = "say what a capture can tell apart, what it cannot, and what to add; no capture needed"
 EXAMPLE = "sixflip plan --protocol recommended --sensor mpu6050 --save session.json"
@@ -24,6 +27,9 @@ def add_arguments(parser):
                         help="the box is known to be square (its faces are no unknowns)")
     parser.add_argument("--rate", type=float, default=100.0, metavar="HZ",
                         help="samples a second (default: 100)")
+    parser.add_argument("--range", metavar="8g,2000dps",
+                        help="full scales of accelerometer and gyro, one or both (default: the "
+                             "chip's usual ones, 2 g and 500 deg/s where it has them)")
     parser.add_argument("--minutes", type=float, metavar="N",
                         help="propose only what keeps the whole capture within N minutes")
     parser.add_argument("--json", action="store_true", help="the answer as JSON")
@@ -38,6 +44,10 @@ def run(args):
         raise UsageError("--rate is %g, expected 1 to 10000 Hz" % args.rate)
     if args.minutes is not None and not 0.0 < args.minutes <= 10000.0:
         raise UsageError("--minutes is %g, expected more than 0" % args.minutes)
+    wanted = chip_options.ranges(args.range) if args.range else {}
+    wanted, notes = chip_options.what_the_chip_offers(args.sensor, wanted)
+    for note in notes:
+        print("sixflip plan: " + plain(note), file=sys.stderr)
     protocol = protocol_of(args.protocol)
     placements = sum(len(s.rests) for s in protocol.sessions)
     if placements > MOST_PLACEMENTS:
@@ -45,7 +55,9 @@ def run(args):
                          % (placements, MOST_PLACEMENTS))
     with progress.during("plan"):
         answer, findings = plan_answer.planned(protocol, args.sensor, args.certified_box,
-                                               args.rate, args.minutes)
+                                               args.rate, args.minutes,
+                                               (wanted.get("accel_range_g"),
+                                                wanted.get("gyro_range_dps")))
     if args.plot:
         from ..present.alias_picture import draw
         draw(findings.matrices, args.plot, protocol.name)

@@ -1,12 +1,11 @@
 """sixflip provision: the firmware onto a board, only what changed, then its self-test."""
 import json
-import re
 
 from sixflip.chips import catalogue
 from sixflip_device import settings
 from sixflip_device.boards.spi_bus import KEYS
 
-from ..board import firmware_update
+from ..board import chip_options, firmware_update
 from ..board.ports import add_port, open_link
 from ..errors import UsageError
 from ..terminal import plain
@@ -15,7 +14,6 @@ HELP = "copy the firmware onto a board and test its sensor"
 EXAMPLE = ("sixflip provision --sensor gy85 --pins sda=4,scl=5\n"
            "         sixflip provision --sensor lsm6dsox --range 8g,2000dps --rate 200")
 BOARDS = ("pico", "esp32", "pyboard", "raspberry_pi")
-UNITS = {"g": "accel_range_g", "dps": "gyro_range_dps"}
 
 
 def add_arguments(parser):
@@ -70,49 +68,10 @@ def spi_pins(text):
     return found
 
 
-def ranges(text):
-    """{"accel_range_g": 8, "gyro_range_dps": 2000} of "8g,2000dps"."""
-    found = {}
-    for part in text.split(","):
-        match = re.fullmatch(r"(\d+(?:\.\d+)?)(g|dps)", part.strip())
-        if not match or UNITS[match[2]] in found:
-            raise UsageError("--range %s: expected a full scale in g, one in dps or both, such as "
-                             "8g,2000dps" % text)
-        key, value = UNITS[match[2]], float(match[1])
-        _, _, low, high = settings.KNOWN[key]
-        if not low <= value <= high:
-            raise UsageError("--range %s: %s is %g, expected %g to %g" % (text, key, value, low,
-                                                                          high))
-        found[key] = int(value) if value == int(value) else value
-    return found
-
-
-def what_the_chip_offers(sensor, wanted):
-    """(the settings as the chip has them, sentences where that is not what was asked for)."""
-    driver, said, had = catalogue.driver(sensor), [], dict(wanted)
-    for key, rows, unit in (("accel_range_g", driver.ACCEL_RANGES, "g"),
-                            ("gyro_range_dps", driver.GYRO_RANGES, "deg/s")):
-        scales = sorted(row[0] for row in rows)
-        if key not in wanted or wanted[key] in scales:
-            continue
-        if not scales:
-            del had[key]
-            said.append("the %s has no gyro: no range of one" % sensor)
-            continue
-        had[key] = next((one for one in scales if one >= wanted[key]), scales[-1])
-        said.append("the %s has no ±%g %s but %s: ±%g is taken" % (
-            sensor, wanted[key], unit, " ".join("%g" % one for one in scales), had[key]))
-    if wanted.get("rate_hz", 0) > driver.MOST_HZ:
-        had["rate_hz"] = driver.MOST_HZ
-        said.append("the %s is polled %d times a second at most: %d are taken"
-                    % (sensor, driver.MOST_HZ, driver.MOST_HZ))
-    return had, said
-
-
 def wanted_settings(args):
     """What the command line says for sixflip.json."""
     wanted = pins(args.pins) if args.pins else {}
-    wanted.update(ranges(args.range) if args.range else {})
+    wanted.update(chip_options.ranges(args.range) if args.range else {})
     if args.spi:
         wanted["spi"] = spi_pins(args.spi)
     if args.rate is not None:
@@ -130,7 +89,7 @@ def run(args):
     wanted = wanted_settings(args)
     notes = []
     if wanted.get("sensor", "auto") != "auto":
-        wanted, notes = what_the_chip_offers(wanted["sensor"], wanted)
+        wanted, notes = chip_options.what_the_chip_offers(wanted["sensor"], wanted)
     say = (lambda text: None) if args.json else print
     for note in notes:
         say(note)

@@ -17,7 +17,6 @@ class SimulatedICM20948(SimulatedBanked):
     nominal_hz = (50.4, 51.2)
     TRAPS = ((chip.REG_BANK_SEL, 0x20), (chip.PWR_MGMT_1, chip.SLEEP))
     RESET_US = 5000
-    ready = (chip.INT_STATUS_1, 0x01)
     cleared_by_data = False
     defaults = {chip.PWR_MGMT_1: 0x41}
     FIFO_BYTES, FIFO_FRAME = 512, 14

@@ -17,7 +17,6 @@ class SimulatedICM42688(SimulatedBanked):
     self_clearing = (chip.DEVICE_CONFIG, chip.RESET)
     nominal_hz = (48.5, 48.5)
     TRAPS = ((chip.REG_BANK_SEL, 4), (chip.INTF_CONFIG0, 0x20), (chip.PWR_MGMT0, 0))
-    ready = (chip.INT_STATUS, 0x08)
     cleared_by_data = False
     FIFO_BYTES, FIFO_FRAME = chip.FIFO_BYTES, 16
     no_i2c = (chip.INTF_CONFIG0, chip.NO_I2C)

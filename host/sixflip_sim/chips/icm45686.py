@@ -15,7 +15,6 @@ class SimulatedICM45686(SimulatedSixAxis):
     nominal_hz = (50, 50)
     TRAPS = ((chip.PWR_MGMT0, 0), (chip.ACCEL_CONFIG0, 0x07),
              (chip.IREG_ADDR, (chip.SREG_CTRL >> 8, chip.SREG_CTRL & 0xFF, chip.BIG_ENDIAN)))
-    ready = (chip.INT1_STATUS0, 0x04)
     cleared_by_data = False
     FIFO_BYTES, FIFO_FRAME = 2048, 16
     defaults = {chip.ACCEL_CONFIG0: 0x06, chip.GYRO_CONFIG0: 0x06}

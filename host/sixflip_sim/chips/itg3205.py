@@ -19,7 +19,6 @@ class SimulatedITG3205(RegisterChip):
     id_register = chip.WHO_AM_I
     data_register = chip.TEMP_OUT_H
     data_length = chip.BURST
-    ready = (chip.INT_STATUS, 0x01)
     clock_off = 0.0             # %, of the oscillator: a sample takes so much less time
 
     def __init__(self, clock, model, address=0x68, who_am_i=chip.ID):

@@ -12,7 +12,6 @@ class SimulatedLSM6(SimulatedSixAxis):
     register over and over, with BLE on the bytes are the other way round, and behind
     FUNC_CFG_ACCESS stand other registers, the identification not among them."""
 
-    ready = (chip.STATUS_REG, 0x03)
     self_clearing = (chip.CTRL3, chip.SW_RESET)
     FIFO_FRAME = 14
     OFFSETS_BIT = None          # register and bit that let X_OFS_USR count; None: always

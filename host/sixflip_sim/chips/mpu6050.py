@@ -30,7 +30,6 @@ class SimulatedMPU6050(SimulatedSixAxis):
     # what the model's noise figure holds for: DLPF_CFG 3, what 100 Hz polling gets
     nominal_hz = (44, 44)
     RESET_US = 5000
-    ready = (chip.INT_STATUS, 0x01)
     cleared_by_data = False
     FIFO_BYTES, FIFO_FRAME = 1024, 14
     no_i2c = (chip.USER_CTRL, chip.I2C_IF_DIS)

@@ -18,7 +18,6 @@ class SimulatedQMI8658(SimulatedSixAxis):
     TRAPS = ((chip.CTRL1, chip.BIG_ENDIAN), (chip.CTRL1, chip.BIG_ENDIAN | chip.COUNT_UP),
              (chip.CTRL7, 0))
     RESET_US = 15000
-    ready = (chip.STATUS0, 0x03)
     cleared_by_data = False
     defaults = {chip.CTRL1: chip.BIG_ENDIAN, chip.RESULT: chip.DONE}
 

@@ -31,6 +31,10 @@ class RegisterChip:
         for i in range(len(self.registers)):
             self.registers[i] = 0
 
+    def reachable(self):
+        """Whether it listens on this bus, as its registers are set."""
+        return True
+
     def fall_asleep(self):
         """What a glitch on the supply can do without a full reset."""
 

@@ -13,6 +13,9 @@ class SharedAddress:
         self.address = first.address
         self.id_register = first.id_register
 
+    def reachable(self):
+        return True
+
     def power_on(self):
         for chip in self.chips:
             chip.power_on()

@@ -13,14 +13,13 @@ class SimulatedSixAxis(RegisterChip):
     Subclasses name the driver whose tables they go by, and say what their registers mean:
     output_hz() (0: asleep), accel() and gyro() -> (counts per unit, bandwidth in Hz), high().
     nominal_hz are the bandwidths for which the model's noise holds, those of 100 Hz polling;
-    RESET_US is how long a reset takes; ready is the register and the bits of a new sample.
+    RESET_US is how long a reset takes.
     """
 
     driver = None
     data_length = BURST
     nominal_hz = (50, 50)
     RESET_US = 1000
-    ready = (0, 0)
     TRAPS = ()                  # (register, value or values), ...: what others may have written
     cleared_by_data = True      # of the bits of ready: by reading the sample, or by reading them
     clock_off = 0.0             # %, of the oscillator: a sample takes so much less time
@@ -93,7 +92,7 @@ class SimulatedSixAxis(RegisterChip):
 
     def refresh(self, register, n):
         period_ns = self.period_ns()
-        status, bits = self.ready
+        status, bits = self.driver.READY
         if (self.frozen or not period_ns or self.resetting()
                 or not (register <= status < register + n
                         or self.data_register - n < register
@@ -127,6 +126,10 @@ class SimulatedSixAxis(RegisterChip):
         data = words(self.counts, self.columns, self.high())
         self.registers[self.data_register:self.data_register + len(data)] = data
 
+    def reachable(self):
+        register, bits = self.no_i2c
+        return self.spi or not bits or self.registers[register] & bits != bits
+
     def fifo_on(self):
         """Whether samples go into the memory, as the registers are set."""
         return False
@@ -150,7 +153,7 @@ class SimulatedSixAxis(RegisterChip):
         """What offset registers add to the gyro's counts."""
 
     def after_read(self, register, n):
-        status, bits = self.ready
+        status, bits = self.driver.READY
         seen = self.data_register if self.cleared_by_data else status
         if register <= seen < register + n:
             self.registers[status] &= ~bits & 0xFF

@@ -127,10 +127,29 @@ SIZES = {
 }
 
 
-def noise_at(chip, rate_hz):
+def noise_at(chip, rate_hz, step=0.0):
     """Standard deviations of a sample, (x, y, z), mg or deg/s: NOISE is at 100 Hz, and the filter
-    that the drivers choose is as much wider as the samples come faster."""
-    return tuple([sigma * math.sqrt(rate_hz / 100.0) for sigma in NOISE[chip][0]])
+    that the drivers choose is as much wider as the samples come faster. step: of a count, whose
+    rounding is noise of its own (a step / sqrt(12))."""
+    return tuple([math.sqrt(sigma * sigma * rate_hz / 100.0 + step * step / 12.0)
+                  for sigma in NOISE[chip][0]])
+
+
+def step_of(sensor, kind, full_scale=None):
+    """What a count is, mg or deg/s, at a full scale (g, deg/s); None: the chip's usual one."""
+    name = datasheets.chips(sensor)[kind == "gyro"]
+    driver = catalogue.driver(name)
+    rows = driver.GYRO_RANGES if kind == "gyro" else driver.ACCEL_RANGES
+    usual = getattr(driver, "RANGES", None)
+    wanted = full_scale or (usual[kind == "gyro"] if usual else rows[-1][0])
+    counts = [row[1] for row in rows if row[0] == wanted]
+    return (1.0 if kind == "gyro" else 1000.0) / counts[0]
+
+
+def noise_of(sensor, kind, rate_hz, full_scale=None):
+    """Standard deviations of a sample of a sensor at a rate and a full scale, its counts' rounding
+    among them."""
+    return noise_at(chip_of(sensor, kind), rate_hz, step_of(sensor, kind, full_scale))
 
 
 # The widest range of sizes that the diagnosis believes is 20 times the typical one (a crooked

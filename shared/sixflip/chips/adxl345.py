@@ -36,6 +36,7 @@ class ADXL345(Registers):
 
     chip = "ADXL345"
     sensor = "adxl345"
+    READY = (INT_SOURCE, 0x80)      # shown whatever INT_ENABLE says, section "INT_SOURCE"
     ACCEL_RANGES = tuple([(g, LSB_PER_G, code) for code, g in enumerate(RANGES_G)])
     GYRO_RANGES = ()
     TEMPERATURE = None

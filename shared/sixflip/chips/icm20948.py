@@ -17,6 +17,7 @@ WHO_AM_I = const(0x00)
 USER_CTRL = const(0x03)         # bit 6 FIFO on, 4 I2C off (SPI)
 PWR_MGMT_1 = const(0x06)        # bit 7 reset, bit 6 sleep, bits 2:0 clock
 PWR_MGMT_2 = const(0x07)
+INT_ENABLE_1 = const(0x11)      # bit 0: a new sample is shown
 INT_STATUS_1 = const(0x1A)      # bit 0: a new sample, cleared by reading
 INT_STATUS_2 = const(0x1B)      # bits 4:0: FIFO overflow, cleared by reading
 ACCEL_XOUT_H = const(0x2D)      # burst of 14: accel x y z, gyro x y z, temperature, big-endian
@@ -63,6 +64,8 @@ class ICM20948(Banked):
     FIFO = "Fifo"
     FIFO_DATA = FIFO_R_W
     FIFO_SETUP = ((USER_CTRL, 1), (FIFO_EN_2, 1))
+    READY = (INT_STATUS_1, 0x01)
+    READY_ON = (INT_ENABLE_1, 0x01)
     gyro_tolerance = 0.045          # table 1: 1.5 % at 25 °C, and 3 % with temperature
     zero_rate_dps = 5.0
     zero_rate_dps_per_c = 0.05

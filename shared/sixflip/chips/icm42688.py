@@ -63,6 +63,7 @@ class ICM42688(Banked):
     FIFO = "PacketFifo"
     FIFO_DATA = FIFO_OUT
     FIFO_SETUP = ((FIFO_CONFIG, 1), (FIFO_CONFIG1, 1))
+    READY = (INT_STATUS, 0x08)
     # tables 1: tolerances by characterisation, typical figures; thrice each
     gyro_tolerance = 0.015
     zero_rate_dps = 1.5

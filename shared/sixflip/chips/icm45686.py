@@ -18,6 +18,7 @@ ACCEL_DATA_X1 = const(0x00)     # burst of 14: accel x y z, gyro x y z, temperat
 PWR_MGMT0 = const(0x10)         # bits 3:2 gyro, 1:0 accelerometer: 11 is low noise
 FIFO_COUNT_0 = const(0x12)      # packets in it; the first answer may be an old one (AN-000364)
 FIFO_OUT = const(0x14)
+INT1_CONFIG0 = const(0x16)      # bit 2: a new sample is shown
 INT1_STATUS0 = const(0x19)      # bit 2: a new sample, cleared by reading; bit 7: reset done
 ACCEL_CONFIG0 = const(0x1B)     # bits 6:4 range, 3:0 output rate
 GYRO_CONFIG0 = const(0x1C)      # bits 7:4 range, 3:0 output rate
@@ -61,6 +62,8 @@ class ICM45686(SixAxis):
     FIFO = "PacketFifo"
     FIFO_DATA = FIFO_OUT
     FIFO_SETUP = ((FIFO_CONFIG0, 1), (FIFO_CONFIG3, 1))
+    READY = (INT1_STATUS0, 0x04)
+    READY_ON = (INT1_CONFIG0, 0x04)
     # no figure of the sheet could be had: those of the ICM-42688-P
     gyro_tolerance = 0.015
     zero_rate_dps = 1.5

@@ -11,6 +11,7 @@ except ImportError:
 WHO_AM_I = const(0x00)          # bits 6:1 = 110100, the others may read anything
 SMPLRT_DIV = const(0x15)
 DLPF_FS = const(0x16)           # bits 4:3 FS_SEL, bits 2:0 filter
+INT_CFG = const(0x17)           # bit 0: data ready is shown
 INT_STATUS = const(0x1A)        # bit 0: data ready, cleared by reading
 TEMP_OUT_H = const(0x1B)        # burst of 8: temperature, gyro x y z, big-endian
 PWR_MGM = const(0x3E)           # bit 7 reset, bit 6 sleep, bits 2:0 clock
@@ -34,6 +35,8 @@ class ITG3205(Registers):
     """The gyro half of a GY-85; it is no imu by itself."""
 
     chip = "ITG3205"
+    READY = (INT_STATUS, 0x01)
+    READY_ON = (INT_CFG, 0x01)
     TEMPERATURE = TEMPERATURE
     ACCEL_RANGES = ()
     GYRO_RANGES = ((RANGE_DPS, LSB_PER_DPS, 3),)
@@ -46,6 +49,7 @@ class ITG3205(Registers):
     def __init__(self, i2c, address=0x68, sleep_ms=None):
         Registers.__init__(self, i2c, address, sleep_ms)
         self._burst = bytearray(BURST)
+        self.output_rate_hz = 0
 
     def configure(self, rate_hz):
         """Reset, wake and set up for polling at rate_hz; OSError when a register does not
@@ -58,6 +62,7 @@ class ITG3205(Registers):
         self._set(SMPLRT_DIV, divider)
         self._set(DLPF_FS, dlpf_fs)
         self._hold()
+        self.output_rate_hz = 1000 / (1 + divider)
         if self._sleep_ms is not None:
             self._sleep_ms(70)      # start-up 50 ms (section 3.1), filter settling
 

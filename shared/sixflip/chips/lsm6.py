@@ -41,6 +41,7 @@ class LSM6(SixAxis):
     FIFO = "TaggedFifo"
     FIFO_DATA = FIFO_DATA_OUT_TAG
     FIFO_SETUP = ((FIFO_CTRL3, 2),)
+    READY = (STATUS_REG, 0x03)
     FIFO_STATUS = 0
     LEVEL_HIGH = 0
     setup = ((0x10, 10),)       # CTRL1 to CTRL10

@@ -22,6 +22,7 @@ GYRO_CONFIG = const(0x1B)
 ACCEL_CONFIG = const(0x1C)
 ACCEL_CONFIG_2 = const(0x1D)    # relatives only: filter of the accelerometer
 FIFO_EN = const(0x23)           # bit 7 temperature, 6:4 gyro, 3 accelerometer
+INT_ENABLE = const(0x38)        # bit 0: data ready is shown
 INT_STATUS = const(0x3A)        # bit 0: data ready, 4: FIFO overflow, cleared by reading
 ACCEL_XOUT_H = const(0x3B)      # burst of 14: accel x y z, temperature, gyro x y z, big-endian
 USER_CTRL = const(0x6A)         # bit 6 FIFO on, 4 I2C off (SPI), 2 FIFO reset, clears itself
@@ -64,6 +65,8 @@ class MPU6050(SixAxis):
     FIFO = "Fifo"
     FIFO_DATA = FIFO_R_W
     FIFO_SETUP = ((FIFO_EN, 1), (USER_CTRL, 1))
+    READY = (INT_STATUS, 0x01)
+    READY_ON = (INT_ENABLE, 0x01)
     # MPU-6000/6050 product specification rev. 3.4, table 6.1: sensitivity at 25 °C, zero-rate
     # output at 25 °C, and over the whole range of 125 K
     gyro_tolerance = 0.03

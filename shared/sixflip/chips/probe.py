@@ -104,6 +104,8 @@ def _first_bank(i2c, address):
 def _shifted(answers):
     """The sentence on an identification that came a bit late or early: the clock's other edge."""
     for register in answers:
+        if answers[register] in (0x00, 0xFF):
+            continue
         for row in _rows_at(0, register):
             for known in row[4]:
                 if known in (answers[register] << 1 & 0xFE, answers[register] << 1 & 0xFE | 1,
@@ -112,9 +114,9 @@ def _shifted(answers):
     return ""
 
 
-def _nearest(i2c, address, answers):
-    """"the nearest known is 0x68 in 0x75, MPU6050, 1 bit away", by the number of bits that
-    differ; of an answer that is nobody's, such as 0x00, that it is none."""
+def nearest(address, answers):
+    """"the nearest is 0x68 in 0x75, MPU6050, 1 bit away", by the number of bits that differ; of
+    an answer that is nobody's, such as 0x00, that it is none. answers: {register: answer}."""
     best = None
     for register in answers:
         if answers[register] in (0x00, 0xFF):
@@ -124,15 +126,20 @@ def _nearest(i2c, address, answers):
                 away = bin((answers[register] & row[6]) ^ known).count("1")
                 if best is None or away < best[0]:
                     best = away, known, register, row[4][known]
-    if not address:
-        said = _shifted(answers) if best is not None else ""
-        if said or i2c.mode not in (0, 3):
-            return ("%s: SPI mode %d is wrong, the chips take 0 and 3 (or the clock is too fast)"
-                    % (said or "that is no identification", i2c.mode))
     if best is None:
         return "that is no identification: no power, or two chips that pull at the lines"
     return "no chip that is known here; the nearest is 0x%02x in 0x%02x, %s, %d bit%s away" % (
         best[1], best[2], best[3], best[0], "" if best[0] == 1 else "s")
+
+
+def _stranger(i2c, address, answers):
+    """What is said of somebody who is none of ours; on SPI the mode may be the wrong one."""
+    if not address:
+        said = _shifted(answers)
+        if said or i2c.mode not in (0, 3):
+            return ("%s: SPI mode %d is wrong, the chips take 0 and 3 (or the clock is too fast)"
+                    % (said or "that is no identification", i2c.mode))
+    return nearest(address, answers)
 
 
 def _look(i2c, report):
@@ -148,7 +155,7 @@ def _look(i2c, report):
                 strangers[address] = answers
                 said = ["0x%02x in register 0x%02x" % (answers[r], r) for r in sorted(answers)]
                 report.append("%s answers %s: %s" % (_place(address), ", ".join(said),
-                                                     _nearest(i2c, address, answers)))
+                                                     _stranger(i2c, address, answers)))
         elif row[0] in found:
             report.append("%s: a second one, not used" % _place(address))
         else:

@@ -52,6 +52,7 @@ class QMI8658(SixAxis):
     COLUMNS = (6, 0, 1, 2, 3, 4, 5)
     HIGH = 1
     TEMPERATURE = TEMPERATURE
+    READY = (STATUS0, 0x03)
     MOST_HZ = 400                   # half of the fastest output rate
     gyro_tolerance = 0.09           # table 8: 3 %, 10 °/s, 0.1 °/s per °C, typical; thrice each
     zero_rate_dps = 30.0

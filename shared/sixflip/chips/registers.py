@@ -12,12 +12,16 @@ class Registers:
     setup, offsets  (first register, how many), ...: every register that scales readings (range,
                     filter, rate, power), and every one that shifts them; as they read at the
                     end of configure() they have to stay
+    READY           (register, bits): a new sample, cleared by reading it or the sample
+    READY_ON        (register, bits) that have it shown; None: it is always
     """
 
     chip = "chip"
     MOST_HZ = 500               # the most a second that configure() takes
     fifo = None                 # a Fifo where samples come through the chip's memory
     setup = offsets = ()
+    READY = (0, 0)
+    READY_ON = None
 
     def __init__(self, i2c, address, sleep_ms=None):
         self.address = address

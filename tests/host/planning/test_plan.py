@@ -3,7 +3,7 @@ import json
 
 import pytest
 
-from sixflip_host.cli import Parser
+from sixflip_host.cli import Parser, main
 from sixflip_host.errors import BadFile, UsageError
 from sixflip_host.experiment.session_rows import rows_of
 from sixflip_host.planning import detectable, plan_additions, plan_file, protocols
@@ -179,3 +179,24 @@ def test_a_size_that_the_capture_does_not_determine_is_no_number(tmp_path, capsy
     assert of(answer, "warm_up")["smallest"] is None
     assert all(e["smallest"] is None or e["smallest"] < 1e4 for e in answer["effects"])
     assert "too little of it happens" in planned(capsys, "--protocol", str(late))
+
+
+def test_the_plan_follows_range_and_rate(capsys):
+    """A count of ±16 g is 0.49 mg; twice the samples of sqrt(2) the noise tell as much."""
+    answers = []
+    for words in ([], ["--range", "16g,1500dps"], ["--rate", "400"]):
+        assert main(["plan", "--protocol", "paper", "--sensor", "lsm6dsv", "--json", *words]) == 0
+        said = capsys.readouterr()
+        answers.append(json.loads(said.out))
+        assert ("±2000 is taken" in said.err) == (words[:1] == ["--range"])
+    usual, wide, fast = [answer["noise"] for answer in answers]
+    for kind, step in (("accel", 1000 / 2049), ("gyro", 1 / 14.286)):
+        assert wide[kind][0] ** 2 - usual[kind][0] ** 2 == pytest.approx(
+            step ** 2 / 12 * (63 / 64 if kind == "accel" else 15 / 16), rel=0.05)
+        assert fast[kind][0] == pytest.approx(2 * usual[kind][0], rel=0.05)
+    of = [{(e["effect"], e["sensor"]): e["smallest"] for e in answer["effects"]}
+          for answer in answers]
+    seen = ("vibration", "accel")
+    assert of[1][seen] > of[0][seen] and of[2][seen] == pytest.approx(of[0][seen], rel=0.05)
+    assert main(["plan", "--range", "8"]) == 2
+    assert "expected a full scale" in capsys.readouterr().err

@@ -12,7 +12,6 @@ ASKED = sorted({(address, row[3], 1) for row in CHIPS for address in row[2]}) + 
     (0x1E, 0x0A, 3), (0x0D, 0x0D, 1), (0x7C, 0x00, 1)]
 TRIES = 3
 SAMPLES = 50
-INT_ENABLE, INT_STATUS = 0x38, 0x3A     # of an MPU6050, RM-MPU-6000A-00 4.2
 READY_US = 500000
 
 
@@ -68,26 +67,38 @@ def scanned(i2c):
 
 def data_ready(board, imu):
     """("ready", new samples between the first and the last, microseconds, nominal rate, how
-    often it was asked)."""
-    i2c, address, flag = board.i2c, imu.address, bytearray(1)
-    i2c.writeto_mem(address, INT_ENABLE, b"\x01")
-    i2c.readfrom_mem_into(address, INT_STATUS, flag)    # what was ready before
+    often it was asked) of each chip of the sensor, by what its driver says of a new sample."""
+    for chip in (imu.accel, imu.gyro) if hasattr(imu, "accel") else (imu,):
+        if chip.READY_ON:
+            register, bits = chip.READY_ON
+            before = chip._read(register)
+            chip._write(register, before | bits)
+        tell("ready", chip.chip, *count_ready(board, chip))
+        if chip.READY_ON:
+            chip._write(register, before)
+
+
+def count_ready(board, chip):
+    status, bits = chip.READY
+    sample = array("h", [0] * 7)
     started = board.ticks_us()
-    first = last = seen = asked = 0
+    first = last = asked = 0
+    seen = -1                   # what was ready before
     while board.ticks_diff(board.ticks_us(), started) < READY_US:
         asked += 1
         try:
-            i2c.readfrom_mem_into(address, INT_STATUS, flag)
+            new = chip._read(status) & bits
+            if new:
+                chip.read_into(sample)
         except OSError:         # the self-test counts them
             continue
-        if flag[0] & 1:
+        if new:
             last = board.ticks_diff(board.ticks_us(), started)
-            if not seen:
+            if seen < 0:
                 first = last
             seen += 1
         board.sleep_us(100)
-    i2c.writeto_mem(address, INT_ENABLE, b"\x00")
-    tell("ready", max(0, seen - 1), last - first, imu.output_rate_hz, asked)
+    return max(0, seen), last - first, chip.output_rate_hz, asked
 
 
 def measured(board, imu, settings):
@@ -111,10 +122,18 @@ def measured(board, imu, settings):
     tell("means", n, sums)
 
 
+def bus_of(board, settings):
+    """In words."""
+    if getattr(board.i2c, "spi", False):
+        freq = settings["spi"].get("freq", 1000000)
+        return "SPI at %d kHz, mode %d" % (freq // 1000, board.i2c.mode)
+    return "I2C at %d kHz" % (settings["freq"] // 1000)
+
+
 def look():
     from sixflip_device.find_sensor import find
     board, settings, problems = board_here()
-    tell("settings", board.name, settings["sensor"], settings["freq"], problems)
+    tell("settings", board.name, settings["sensor"], bus_of(board, settings), problems)
     levels(board)
     if getattr(board.i2c, "spi", False):    # one chip, no addresses to ask
         tell("scan", [])
@@ -130,7 +149,7 @@ def look():
     tell("sensor", imu.sensor, imu.name, imu.who_am_i, imu.accel_range_g, imu.accel_lsb_per_g,
          imu.gyro_lsb_per_dps if imu.has_gyro else 0, report)
     try:
-        if imu.sensor == "mpu6050":
+        if imu.fifo is None:        # else every sample is counted
             data_ready(board, imu)
         measured(board, imu, settings)
     except OSError as e:
