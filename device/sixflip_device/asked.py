@@ -13,8 +13,7 @@
 
 import json
 
-from sixflip.faces import FACES
-from sixflip.pose_codes import pose_code
+from sixflip.poses.faces import FACES, pose_code
 
 from .flash_files import FLAG, remove
 

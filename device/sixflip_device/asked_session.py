@@ -1,6 +1,6 @@
 """What sampling does otherwise when a plan, or a face of the session before, was asked for."""
 
-from sixflip.capture_writer import BlockWriter
+from sixflip.capture.writer import BlockWriter
 
 from .capture_meta import columns, meta_bytes, session_number
 from .capture_store import CaptureStore
@@ -19,7 +19,7 @@ class ContinuedStore(CaptureStore):
         asked, self._asked = self._asked, None
         if asked is None:  # once more, without samples
             return CaptureStore._open(self, meta)
-        from sixflip.capture_scan import go_on
+        from sixflip.capture.scan import go_on
         if asked.sums_only:
             self._short(asked.reason)
         self.bytes, self.kept = asked.bytes, asked.kept
@@ -52,11 +52,11 @@ def session(unit, chip):
     asked = unit.taken
     settings = unit.settings
     if asked.wanted:
-        from sixflip.planned_session import PlannedSession
+        from sixflip.poses.planned_session import PlannedSession
         return PlannedSession(chip, asked.wanted, asked.lengths, asked.hold_s,
                               settings["timeout_s"])
-    from sixflip.resumed_session import resume
-    from sixflip.session import Session
+    from sixflip.poses.planned_session import resume
+    from sixflip.poses.session import Session
     made = Session(*chip, pose_samples=settings["pose_samples"], timeout_s=settings["timeout_s"])
     resume(made, asked.placements, asked.samples, asked.moves)
     return made

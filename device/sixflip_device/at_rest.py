@@ -8,7 +8,7 @@ held against the stored one (turn_or_bias.py).
 
 from array import array
 
-from sixflip.still_window import StillWindow, window_length
+from sixflip.poses.still_window import StillWindow, window_length
 
 from .pacer import pacer
 from .quiet_run import QuietRun

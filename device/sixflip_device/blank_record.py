@@ -1,6 +1,6 @@
 """A record that knows its sensor and holds nothing measured yet."""
 
-from sixflip.record import Record
+from sixflip.record.record import Record
 
 
 def blank_record(unit):

@@ -5,7 +5,7 @@ import json
 import os
 
 import sixflip
-from sixflip import capture_blocks
+from sixflip.capture import blocks as capture_blocks
 
 from .flash_files import GOOD, REFUSED, UNSAVED
 

@@ -5,7 +5,7 @@ from .flash_files import NEW, remove
 
 def meta_of(root):
     """The metadata in the header of the session's file, or None."""
-    from sixflip.capture_scan import Scan
+    from sixflip.capture.scan import Scan
     try:
         with open(root + NEW, "rb") as f:
             return Scan(f).blocks.meta_bytes

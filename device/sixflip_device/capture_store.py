@@ -4,7 +4,7 @@ When space is short the samples are left out and the sums kept, and the file's e
 so. Room for the records is always left free.
 """
 
-from sixflip.capture_writer import BlockWriter
+from sixflip.capture.writer import BlockWriter
 
 from .flash_files import NEW, REFUSED, UNSAVED, free_bytes, remove
 

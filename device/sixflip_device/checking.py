@@ -1,6 +1,6 @@
 """Third phase: are the captured poses fit to solve from? And the record is begun."""
 
-from sixflip.pose_check import judge_session
+from sixflip.poses.pose_check import judge_session
 
 from .blank_record import blank_record
 

@@ -3,7 +3,7 @@
 Apart from capture_files.py, for a session that ends well needs none of it in its heap.
 """
 
-from sixflip.capture_blocks import COMPLETE, END
+from sixflip.capture.blocks import COMPLETE, END
 
 from .capture_files import refuse
 from .flash_files import NEW, REFUSED, remove
@@ -26,7 +26,7 @@ def unfinished(root):
 def _look(name):
     """(poses a capture holds, its samples, whether somebody asked for it); -1 poses when there
     is none."""
-    from sixflip.capture_scan import Scan  # long, and not needed for unfinished()
+    from sixflip.capture.scan import Scan  # long, and not needed for unfinished()
     try:
         with open(name, "rb") as f:
             scan = Scan(f)

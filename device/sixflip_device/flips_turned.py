@@ -5,8 +5,8 @@ By this session's own gyro it would be circular: its scale is to come from these
 
 import math
 
-from sixflip.faces import AXIS, FACES
-from sixflip.flip_angle import measured_angles, worthwhile
+from sixflip.gyro.flips import measured_angles, worthwhile
+from sixflip.poses.faces import AXIS, FACES
 
 from .in_force import again
 

@@ -4,7 +4,7 @@ The rest at power-up says so once (still_valid.py), with its limits; a register 
 sensor that is knocked later is seen here. Sample by sample only the window's integers are summed.
 """
 
-from sixflip.still_window import StillWindow, window_length
+from sixflip.poses.still_window import StillWindow, window_length
 
 from .still_valid import GOOD_MG, NOISE_TIMES
 

@@ -5,7 +5,7 @@ Between the ends of two windows nothing is allocated: no event, no host line, no
 
 from array import array
 
-from sixflip import session as machine
+from sixflip.poses import session as machine
 
 from .bus_recovery import BusLost
 from .pacer import pacer

@@ -1,7 +1,7 @@
 """Is a gyro axis inverted or exchanged? Asked of the moves, before the gyro is judged."""
 
-from sixflip.flip_turns import mean_rate
-from sixflip.gyro_axes import wrong_axes
+from sixflip.gyro.axis_signs import wrong_axes
+from sixflip.gyro.flips import mean_rate
 
 
 def run(unit):

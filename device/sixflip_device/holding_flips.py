@@ -1,6 +1,6 @@
 """Were the flips half turns? The moves between the faces tell, before the gyro is judged."""
 
-from sixflip.half_turns import excess
+from sixflip.gyro.half_turns import excess
 
 
 def run(unit):

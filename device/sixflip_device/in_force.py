@@ -36,7 +36,7 @@ def _ids(ids):
 def use(unit, slot, record):
     """Makes record (None: the data sheet's numbers) what corrects from now on; its terms, if it
     has some, do not yet: terms.py."""
-    from sixflip.correction import Correction
+    from sixflip.record.correction import Correction
     unit.slot = slot
     unit.record = record
     unit.correction = Correction(blank_record(unit) if record is None else record)

@@ -2,8 +2,8 @@
 
 from array import array
 
-from sixflip.faces import pose_name
-from sixflip.result_verdict import judge_result
+from sixflip.accelerometer.verdict import judge_result
+from sixflip.poses.faces import pose_name
 
 
 def _rms_g(residual):

@@ -1,6 +1,6 @@
 """What the gyro saw of the flips reaches both verdicts: a good one becomes doubtful."""
 
-from sixflip import flip_doubt
+from sixflip.gyro import verdict as gyro_verdict
 
 
 def run(unit):
@@ -10,13 +10,13 @@ def run(unit):
     taken.gyro = None
     tolerance = taken.gyro_tolerance
     if r.verdict == "good":
-        said = flip_doubt.scale_doubt(r, tolerance)
+        said = gyro_verdict.scale_doubt(r, tolerance)
         if said:
             for answer in (taken.facts["gyro"], record.gyro):
                 answer["verdict"], answer["reason"] = "doubtful", said
     if taken.verdict != "refused":
         known = taken.angles or ()
-        said = flip_doubt.accelerometer_doubt(r, tolerance, record.accel["tilt_deg"], known)
+        said = gyro_verdict.accelerometer_doubt(r, tolerance, record.accel["tilt_deg"], known)
         if said:
             taken.reason = said if taken.verdict == "good" else taken.reason + "; " + said
             taken.verdict = "doubtful"

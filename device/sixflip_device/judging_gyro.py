@@ -1,6 +1,6 @@
 """The verdict on the gyro. A matrix nobody should use is not kept."""
 
-from sixflip.gyro_verdict import judge_gyroscope
+from sixflip.gyro.verdict import judge_gyroscope
 
 
 def _section(r):

@@ -7,8 +7,8 @@
 
 import math
 
-from sixflip.correction_of import correction_of
-from sixflip.mounting import estimate, parse_axes
+from sixflip.record.correction import correction_of
+from sixflip.record.mounting import estimate, parse_axes
 
 from . import in_force
 from .still_valid import shaken

@@ -6,7 +6,7 @@ between them the next phase's compiler finds no kilobyte in one piece.
 
 from array import array
 
-from sixflip.placement import Move, Placement
+from sixflip.poses.placement import Move, Placement
 
 
 def copied(x):

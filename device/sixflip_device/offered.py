@@ -10,8 +10,8 @@ from .in_force import misfit
 
 def _take(unit, name):
     """(slot, record); ValueError or OSError when it is not to be had."""
-    from sixflip.correction_record import MOST, decode
-    from sixflip.plausibility import implausible
+    from sixflip.record.correction_record import MOST, decode
+    from sixflip.record.record import implausible
 
     from .record_slots import RecordSlots
     with open(name, "rb") as f:
@@ -19,7 +19,7 @@ def _take(unit, name):
     reason = implausible(record) or misfit(blank_record(unit))(record)
     if reason:
         raise ValueError(reason)
-    from sixflip.correction_of import correction_of
+    from sixflip.record.correction import correction_of
     correction_of(record)  # it can be calculated with
     return RecordSlots(unit.board.root).save(record), record
 

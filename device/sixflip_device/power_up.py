@@ -80,10 +80,10 @@ class Unit:
 # Small and needed in every phase, or behind objects that outlive one.
 LASTING = ("sixflip_device.power_up", "sixflip_device.events", "sixflip_device.host_line",
            "sixflip_device.flash_files", "sixflip_device.boards", "sixflip.chips",
-           "sixflip.faces", "sixflip.placement", "sixflip.record")
+           "sixflip.poses.faces", "sixflip.poses.placement", "sixflip.record.record")
 # As long as there is a sensor; of the drivers only what the sensor is made of.
 SAMPLING = ("sixflip_device.led", "sixflip_device.bus_recovery", "sixflip_device.pacer",
-            "sixflip_device.fifo_pacer", "sixflip.still_window")
+            "sixflip_device.fifo_pacer", "sixflip.poses.still_window")
 
 
 THRESHOLD = 4096   # bytes
@@ -130,7 +130,7 @@ def run(board, settings, problems=()):
         if phase == "sampling":
             unit.let_go()
             if unit.record is None:
-                free(("sixflip.record",))
+                free(("sixflip.record.record",))
         gc.collect()  # once more, now that the frames of the phase before are gone
         phase = _run_phase(phase, unit)
         free_unlasting(unit.sensor)

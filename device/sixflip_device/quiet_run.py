@@ -8,7 +8,7 @@ longer, one that would need more than LONGEST_S is called noisy.
 import math
 from array import array
 
-from sixflip.noise_floor import CAP
+from sixflip.poses.noise_floor import CAP
 
 RATE_DPS = 0.03    # turn of gravity's direction
 CHANGE_DPS = 0.04  # of the gyro from one third of the rest to another

@@ -8,7 +8,7 @@ one valid record is complete on the flash, and a cut leaves the old one or the n
 
 import os
 
-from sixflip.record import following, newer
+from sixflip.record.record import following, newer
 
 from .flash_files import remove
 
@@ -33,8 +33,8 @@ class RecordSlots:
                 data = f.read(MOST)
         except OSError:
             return None, ""
-        from sixflip.correction_record import decode  # not needed while sampling
-        from sixflip.plausibility import implausible
+        from sixflip.record.correction_record import decode  # not needed while sampling
+        from sixflip.record.record import implausible
         try:
             record = decode(data)
         except ValueError as e:
@@ -72,7 +72,7 @@ class RecordSlots:
         os.rename(self._root + NEW, self._name(slot))
 
     def _write(self, record, slot):
-        from sixflip.correction_record import encode
+        from sixflip.record.correction_record import encode
         data = encode(record)
         name = self._root + NEW
         try:

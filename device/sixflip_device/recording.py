@@ -2,8 +2,8 @@
 whatever the flash has room for. Loaded only when the host asks for it.
 """
 
-from sixflip.capture_blocks import STEPS, header
-from sixflip.capture_pieces import PieceWriter
+from sixflip.capture.blocks import STEPS, header
+from sixflip.capture.pieces import PieceWriter
 
 from .capture_store import CaptureStore
 

@@ -11,11 +11,10 @@ is not the table's.
 import json
 from array import array
 
-from sixflip import capture_blocks as cb
-from sixflip.capture_moves import CaptureMoves
-from sixflip.capture_scan import Scan, first_of, samples_in
-from sixflip.capture_writer import BlockWriter
-from sixflip.faces import FACES, face_of_code
+from sixflip.capture import blocks as cb
+from sixflip.capture.scan import CaptureMoves, Scan, first_of, samples_in
+from sixflip.capture.writer import BlockWriter
+from sixflip.poses.faces import FACES, face_of_code
 
 from .bus_recovery import READ
 from .capture_meta import columns, expected_bytes, meta_bytes, session_number

@@ -3,7 +3,7 @@
 The old correction is out of force while samples are taken (power_up.py): raw means raw.
 """
 
-import sixflip.session  # noqa: F401 - the longest source first, while there is room
+import sixflip.poses.session  # noqa: F401 - the longest source first, while there is room
 
 from .capture_store import CaptureStore
 from .flash_files import FLAG, remove

@@ -25,7 +25,7 @@ def _tell(unit):
                          missing=taken.missing)
         return False
     if taken.verdict != "refused":
-        from sixflip.plausibility import implausible
+        from sixflip.record.record import implausible
         reason = implausible(taken.record)
         if reason:  # it would not be read back
             taken.verdict, taken.reason = "refused", "no sensor is like that: " + reason

@@ -2,7 +2,7 @@
 
 from array import array
 
-from sixflip.still_window import StillWindow
+from sixflip.poses.still_window import StillWindow
 
 from .pacer import pacer
 

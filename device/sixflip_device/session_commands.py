@@ -1,6 +1,6 @@
 """What the host may ask for while a session is under way: redo, undo, and what is always so."""
 
-from sixflip.faces import FACES, face_of_code, pose_name
+from sixflip.poses.faces import FACES, face_of_code, pose_name
 
 
 def obey(command, unit, session, store, teller):

@@ -1,6 +1,6 @@
 """What a guided session says, to the host in events and to people with the lamp."""
 
-from sixflip.faces import FACES, pose_name
+from sixflip.poses.faces import FACES, pose_name
 
 from . import led
 

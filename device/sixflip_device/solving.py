@@ -1,6 +1,6 @@
 """Fourth phase: the accelerometer's parameters from the session's placements."""
 
-from sixflip.accelerometer import solve
+from sixflip.accelerometer.solver import solve
 
 
 def run(unit):

@@ -1,6 +1,6 @@
 """The gyro from the same session: its flips and rests (METHOD 2)."""
 
-from sixflip.gyroscope import solve_matrix
+from sixflip.gyro.solver import solve_matrix
 
 
 def run(unit):

@@ -1,8 +1,8 @@
-"""Samples as binary frames (sixflip.stream_frame) instead of lines."""
+"""Samples as binary frames (sixflip.capture.stream_frame) instead of lines."""
 
 from array import array
 
-from sixflip.stream_frame import CORRECTED, RAW, FrameWriter
+from sixflip.capture.stream_frame import CORRECTED, RAW, FrameWriter
 
 
 class BinaryOutput:

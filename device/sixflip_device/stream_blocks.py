@@ -1,8 +1,8 @@
-"""Every sample to the host as the blocks of a capture (sixflip.capture_pieces), without a
+"""Every sample to the host as the blocks of a capture (sixflip.capture.pieces), without a
 session: for logs of hours, whose times do not wrap."""
 
-from sixflip.capture_pieces import PieceWriter
-from sixflip.capture_writer import BlockWriter
+from sixflip.capture.pieces import PieceWriter
+from sixflip.capture.writer import BlockWriter
 
 from .capture_meta import columns, meta_bytes, session_number
 

@@ -1,4 +1,4 @@
-"""Roll, pitch and yaw of the corrected samples (sixflip.heading, Li Eq. 8) in the stream.
+"""Roll, pitch and yaw of the corrected samples (sixflip.gyro.heading, Li Eq. 8) in the stream.
 
 Every sample is integrated, not only those that are sent. Angles in degrees, yaw from where the
 stream began and not wrapped. "heading" in sixflip.json may hold gain and lever_arm.
@@ -7,7 +7,7 @@ stream began and not wrapped. "heading" in sixflip.json may hold gain and lever_
 import math
 from array import array
 
-from sixflip.heading import Heading
+from sixflip.gyro.heading import Heading
 
 
 class HeadingOutput:
@@ -20,7 +20,7 @@ class HeadingOutput:
         self._angles = (0.0, 0.0, 0.0)
         self._frames = None
         if unit.binary:
-            from sixflip.stream_frame import HEADING, FrameWriter
+            from sixflip.capture.stream_frame import HEADING, FrameWriter
             self._frames = FrameWriter(HEADING)
 
     def step(self, sample, dt_us):

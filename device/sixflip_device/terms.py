@@ -19,17 +19,17 @@ def _teller(unit):
 
 
 def _taken_apart(record):
-    from sixflip.term_numbers import numbers
+    from sixflip.record.term_correction import numbers
     return numbers(record)
 
 
 def _begun(unit):
-    from sixflip.term_correction import TermCorrection
+    from sixflip.record.term_correction import TermCorrection
     return TermCorrection(unit.record, _teller(unit))
 
 
 def _fill(correction, found):
-    from sixflip.term_units import fill
+    from sixflip.record.term_correction import fill
     fill(correction, found)
 
 
@@ -39,15 +39,15 @@ def bring(unit):
     try:
         found = _taken_apart(unit.record)
     except ValueError as e:
-        _refused(unit, str(e), "sections as sixflip.term_numbers has them")
+        _refused(unit, str(e), "sections as sixflip.record.term_correction has them")
         return
     means = unit.correction.rest
     unit.correction = None
     if small():
-        free(("sixflip.term_numbers",))
+        free(("sixflip.record.term_correction",))
     correction = _begun(unit)
     if small():
-        free(("sixflip.term_correction", "sixflip.correction"))
+        free(("sixflip.record.term_correction", "sixflip.record.correction"))
     _fill(correction, found)
     if means is not None:
         correction.set_rest(means)

@@ -127,7 +127,7 @@ def solve(capture, g=None, level=None):
     """The Solution of one capture by the code that runs on the board.
 
     g      local gravity, m/s² (default: what the capture says)
-    level  of sixflip.six_faces.LEVELS (default: the best that the poses allow)
+    level  of sixflip.accelerometer.six_faces.LEVELS (default: the best that the poses allow)
     """
     import numpy as np
 

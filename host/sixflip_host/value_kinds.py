@@ -4,8 +4,7 @@ A kind has `expected`, words for a person, and take(value), which returns the va
 Misfit. Nothing that comes out is of another type, out of range, or deeper than its table says.
 """
 
-from sixflip.faces import FACES
-from sixflip.pose_codes import pose_code
+from sixflip.poses.faces import FACES, pose_code
 
 LONGEST_TEXT = 1000     # characters of a text that are kept: reasons are sentences
 MOST_ITEMS = 1000       # of a list; a plan has hundreds of placements

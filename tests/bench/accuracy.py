@@ -19,10 +19,10 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "shared"), str(ROOT / "host")]
 
-from sixflip import accelerometer
+from sixflip.accelerometer import solver as accelerometer
 from sixflip.chips import catalogue
-from sixflip.faces import AXIS, SIGN
-from sixflip.placement import Placement
+from sixflip.poses.faces import AXIS, SIGN
+from sixflip.poses.placement import Placement
 from sixflip_sim import worlds
 
 G = 9.80665

@@ -1,6 +1,6 @@
 """What a raw capture takes: on the flash, on the wire to a host that records it, and in time.
 
-Bytes of a sample as capture_writer.py writes them (steps of a byte, or the number itself) and as
+Bytes of a sample as capture/writer.py writes them (steps of a byte, or the number itself) and as
 they were written before (whole numbers), of real recordings and of simulated sessions; the
 microseconds that keeping a sample takes on MicroPython's unix port; bytes a second on the wire.
 """
@@ -15,9 +15,9 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "shared"), str(ROOT / "host"), str(ROOT / "tests" / "worlds")]
 
-from sixflip.capture_blocks import ACCEL, GYRO, TEMP, places
-from sixflip.capture_pieces import PieceWriter
-from sixflip.capture_writer import BlockWriter
+from sixflip.capture.blocks import ACCEL, GYRO, TEMP, places
+from sixflip.capture.pieces import PieceWriter
+from sixflip.capture.writer import BlockWriter
 from sixflip_host import cli
 from sixflip_host.board.recording import EVENTS_BYTES, SHAKEN_BYTES, UART_BYTES
 from sixflip_host.capture import capture_file, recordings
@@ -30,7 +30,7 @@ TIMED = """
 import sys, time
 sys.path.insert(0, %r)
 from array import array
-from sixflip.capture_writer import BlockWriter
+from sixflip.capture.writer import BlockWriter
 rows = [array("h", r) for r in %r]
 writer = BlockWriter(lambda data: None, b"{}")
 begun = time.ticks_us()

@@ -16,8 +16,9 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "shared"), str(ROOT / "host")]
 
-from sixflip import accelerometer, gyroscope
-from sixflip.faces import AXIS, face_of_code
+from sixflip.accelerometer import solver as accelerometer
+from sixflip.gyro import solver as gyroscope
+from sixflip.poses.faces import AXIS, face_of_code
 from sixflip_host.simulation.simulated_capture import capture
 from sixflip_sim import worlds
 

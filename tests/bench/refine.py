@@ -17,7 +17,7 @@ sys.path[:0] = [str(ROOT / part) for part in ("shared", "host", "tests/worlds")]
 import hand_session
 import xsens_recording
 
-from sixflip import accelerometer
+from sixflip.accelerometer import solver as accelerometer
 from sixflip_host.calibrate import (
     gyro_rests,
     joint_refinement,

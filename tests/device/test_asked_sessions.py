@@ -7,8 +7,8 @@ import numpy as np
 from simulated_board import QUICK, STOP_WHEN_READY, power_on
 from test_power_up import STILL, Folder
 
-from sixflip.capture_reader import read as read_blocks
-from sixflip.faces import pose_name
+from sixflip.capture.reader import read as read_blocks
+from sixflip.poses.faces import pose_name
 from sixflip_device import asked, redo_session
 from sixflip_host.capture import capture_binary
 

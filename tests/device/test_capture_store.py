@@ -6,9 +6,9 @@ import tempfile
 import unittest
 from array import array
 
-from sixflip.capture_blocks import ACCEL
-from sixflip.capture_reader import read as read_blocks
-from sixflip.placement import Placement
+from sixflip.capture.blocks import ACCEL
+from sixflip.capture.reader import read as read_blocks
+from sixflip.poses.placement import Placement
 from sixflip_device import capture_files, capture_store, cut_short, flash_files
 from sixflip_device.capture_store import CaptureStore
 

@@ -7,7 +7,7 @@ import unittest
 from simulated_board import power_on
 from test_power_up import Folder
 
-from sixflip import correction_record
+from sixflip.record import correction_record
 
 SQUARE = {"tilt_deg": 2.0, "seed": 5}
 

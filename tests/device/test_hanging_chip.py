@@ -7,7 +7,7 @@ import unittest
 
 from simulated_board import SHORT_WORLD, SimulatedBoard, power_on
 
-from sixflip import still_window
+from sixflip.poses import still_window
 from sixflip_device.imu import CorrectedImu
 from sixflip_device.repeats import SAME
 from sixflip_sim import worlds

@@ -8,7 +8,7 @@ import unittest
 
 from simulated_board import power_on
 
-from sixflip import correction_record
+from sixflip.record import correction_record
 
 STILL = {"order": [], "first_rest_s": 60.0, "tilt_deg": 8.0, "tilt_dir_deg": 20.0}
 

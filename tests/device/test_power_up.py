@@ -8,8 +8,8 @@ import unittest
 
 from simulated_board import SHORT_WORLD, STOP_WHEN_READY, SimulatedBoard, TooLong, power_on
 
-from sixflip import correction_record
-from sixflip.capture_reader import read as read_blocks
+from sixflip.capture.reader import read as read_blocks
+from sixflip.record import correction_record
 from sixflip_device import power_up
 from sixflip_sim import worlds
 

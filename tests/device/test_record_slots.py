@@ -6,7 +6,7 @@ import os
 import tempfile
 import unittest
 
-from sixflip.correction_record import Record, encode
+from sixflip.record.correction_record import Record, encode
 from sixflip_device import flash_files, record_slots
 from sixflip_device.record_slots import RecordSlots
 

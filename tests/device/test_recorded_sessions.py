@@ -6,9 +6,9 @@ import unittest
 
 from simulated_board import STOP_WHEN_READY, SimulatedBoard, power_on
 
-from sixflip.capture_pieces import decode
-from sixflip.capture_reader import read as read_blocks
+from sixflip.capture.reader import read as read_blocks
 from sixflip_device import capture_store, flash_files
+from sixflip_host.board.stream_reader import decode_piece
 from sixflip_sim import worlds
 
 WORLD = {"first_rest_s": 6.0, "dwell_s": 4.0, "move_s": 1.5, "tilt_deg": 1.0,
@@ -27,7 +27,7 @@ class Recorded(SimulatedBoard):
             self._lines.append('{"cmd": "stop"}')
 
     def pieces(self):
-        found = [decode(line) for line in self.wire.split(b"\n") if line]
+        found = [decode_piece(line) for line in self.wire.split(b"\n") if line]
         assert [piece[0] for piece in found] == list(range(len(found)))
         return found
 

@@ -11,7 +11,7 @@ import unittest
 
 from simulated_board import SimulatedBoard, power_on
 
-from sixflip import correction_record
+from sixflip.record import correction_record
 from sixflip_device import at_rest, settings
 from sixflip_device.bus_recovery import Sensor
 from sixflip_device.events import Events

@@ -2,10 +2,10 @@
 
 import unittest
 
-from sixflip.stream_frame import HEADING, RAW
-from sixflip.stream_reader import decode
+from sixflip.capture.stream_frame import HEADING, RAW
 from sixflip_device import commands, stream
 from sixflip_device.boards.board import LineReader
+from sixflip_host.board.stream_reader import decode
 
 
 class Collected:

@@ -9,8 +9,9 @@ import shutil
 
 import storm
 
-from sixflip import capture_reader, correction_record
-from sixflip.capture_writer import BlockWriter
+from sixflip.capture import reader as capture_reader
+from sixflip.capture.writer import BlockWriter
+from sixflip.record import correction_record
 from sixflip_host import cli
 from sixflip_host.board import board_link, firmware_update
 from sixflip_host.board.board_events import events

@@ -20,8 +20,8 @@ sys.path[:0] = [str(ROOT / "shared"), str(ROOT / "host"), str(ROOT / "device"),
 from reacting_hand import ReactingHand  # noqa: E402
 from simulated_board import SimulatedBoard, TooLong  # noqa: E402
 
-from sixflip import correction_record  # noqa: E402
 from sixflip.chips import catalogue  # noqa: E402
+from sixflip.record import correction_record  # noqa: E402
 from sixflip_device import power_up, settings  # noqa: E402
 from sixflip_sim import worlds  # noqa: E402
 from sixflip_sim.sensor_model import STANDARD_G  # noqa: E402

@@ -19,9 +19,11 @@ import test_import_presets
 from scipy.io import savemat
 from test_term_correction import fields_of
 
-from sixflip import capture_blocks as cb
-from sixflip import capture_pieces, correction_record, record_terms
-from sixflip.term_numbers import TERMS
+from sixflip.capture import blocks as cb
+from sixflip.capture import pieces
+from sixflip.record import correction_record
+from sixflip.record.term_correction import TERMS
+from sixflip_host import record_terms
 from sixflip_host.capture import capture_binary, capture_file
 
 CORPUS = Path(__file__).resolve().parent / "corpus"
@@ -64,7 +66,7 @@ def pieces_of(capture):
     while at < len(data):
         piece = data[at:end]
         if len(out) < 2000 or len(out) > 4000:
-            body = struct.pack(capture_pieces.HEAD, 0, samples) + piece
+            body = struct.pack(pieces.HEAD, 0, samples) + piece
             out += struct.pack("<H", len(body)) + body
         if at and piece[0] == cb.STEPS:
             samples += struct.unpack_from("<H", piece, 12)[0]

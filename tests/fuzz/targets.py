@@ -19,8 +19,10 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "shared"), str(ROOT / "host"), str(ROOT / "device")]
 
-from sixflip import capture_blocks, capture_reader, correction_record
-from sixflip.correction_of import correction_of
+from sixflip.capture import blocks as capture_blocks
+from sixflip.capture import reader as capture_reader
+from sixflip.record import correction_record
+from sixflip.record.correction import correction_of
 from sixflip_device import settings as device_settings
 from sixflip_device.host_line import HostLine
 from sixflip_host import cli, json_numbers

@@ -83,7 +83,7 @@ def board_header(length, declared):
 
 def record_of(size):
     """A record that is one unknown section after the other, with a right CRC."""
-    from sixflip import correction_record
+    from sixflip.record import correction_record
     data = bytearray(correction_record.encode(correction_record.Record())[:-4])
     data += b"\xff\xff\xff" + b"\0" * 65535
     del data[size:]
@@ -213,7 +213,7 @@ META = {"sensor": "mpu6050", "rate_hz": 100, "accel_lsb_per_g": 16384, "gyro_lsb
 
 def board_file(counts):
     """The bytes of a board's file of int16 (n, 7), without delta coding: its longest form."""
-    from sixflip import capture_blocks as cb
+    from sixflip.capture import blocks as cb
 
     def sealed(kind, payload):
         block = struct.pack(cb.BLOCK, kind, 0, len(payload)) + payload

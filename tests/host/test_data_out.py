@@ -15,7 +15,7 @@ from rosbags.rosbag1 import Writer as Writer1
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
-from sixflip.correction import Correction
+from sixflip.record.correction import Correction
 from sixflip_host.capture import capture_file
 from sixflip_host.cli import main
 

@@ -12,7 +12,7 @@ from dds_loopback import LOOPBACK
 from micropython_tier import SESSION
 from written_records import of_a_gy85
 
-from sixflip import correction_record
+from sixflip.record import correction_record
 from sixflip_host import cli
 from sixflip_host.board import firmware_update
 from sixflip_host.board.board_link import MpremoteLink

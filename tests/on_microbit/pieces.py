@@ -21,15 +21,26 @@ def without_docstrings(tree):
     return tree
 
 
-def of_module(name):
-    """Sources of a shared module's statements, one after the other.
+def of_module(name, *wanted):
+    """Sources of a shared module's statements, one after the other; wanted: only those that
+    define one of these names, and imports.
 
     Imports among the shared modules are left out: on the board all names are in one place.
     """
     tree = without_docstrings(ast.parse((SHARED / (name + ".py")).read_text()))
     for node in tree.body:
-        if not (isinstance(node, ast.ImportFrom) and node.module.startswith("sixflip")):
+        among = isinstance(node, ast.ImportFrom) and node.module.startswith("sixflip")
+        if not among and (not wanted or defined(node) & {None, *wanted}):
             yield ast.unparse(node)
+
+
+def defined(node):
+    """Names that a statement defines, {None} for an import."""
+    if isinstance(node, (ast.Import, ast.ImportFrom)):
+        return {None}
+    if isinstance(node, ast.Assign):
+        return {target.id for target in node.targets}
+    return {getattr(node, "name", "")}
 
 
 def of_modules(*names):

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from on_qemu.simulated_sums import session_sums, vector_error_mg
 
-from sixflip.placement import Placement
+from sixflip.poses.placement import Placement
 from sixflip_host.calibrate import reference
 
-from .pieces import SHARED, of_modules
+from .pieces import SHARED, of_module, of_modules
 
 SUMS = [(1, 0, 16384), (2, 2, 16384), (3, 5, 256)]  # seed, tilt in degrees, counts per g
-SOLVER = ("elimination", "normal_equations")
+SOLVER = ("accelerometer/normal_equations",)
 COLLECT = "import gc\ngc.collect()"
 FREE = COLLECT + "\nprint(gc.mem_free())"
 BITS = """
@@ -27,7 +27,11 @@ ROW = "m = [s / %d for s in %r]"
 
 def send(board, names):
     """The modules, piece by piece; a collection between two, or what compiling left lies about."""
-    for piece in of_modules(*names):
+    send_pieces(board, of_modules(*names))
+
+
+def send_pieces(board, pieces):
+    for piece in pieces:
         board.exec(piece, COLLECT)
 
 
@@ -92,9 +96,10 @@ Q = n = None
 def test_flips_with_the_tilt_solved(microbit, seed, tilt_deg, lsb):
     """METHOD 1, level 2; the poses' sums are sent again in every round instead of kept."""
     placements = [Placement(*p) for p in session_sums(seed, tilt_deg, lsb)]
-    send(microbit, SOLVER + ("face_axes", "table_tilt"))
-    corrected = next(p for p in of_modules("pose_means") if p.startswith("def corrected"))
-    microbit.exec(corrected, COLLECT, PAIR, "P = n = None")
+    send(microbit, SOLVER)
+    send_pieces(microbit, of_module("poses/faces", "AXIS", "SIGN"))
+    send_pieces(microbit, of_module("accelerometer/six_faces", "in_plane", "upright", "corrected"))
+    microbit.exec(PAIR, "P = n = None")
     left = free(microbit)
     moved, rounds = 1.0, 0
     while moved > 1e-6 and rounds < 20:
@@ -119,8 +124,6 @@ def in_one(names):
     return "\n".join(line for line in lines if not line.startswith("from sixflip"))
 
 
-WHOLE_SOLVE = SOLVER + ("face_axes", "pose_means", "table_tilt", "six_faces")
-
 
 UNIT_ROWS = """
 n = NormalEquations(3)
@@ -129,7 +132,7 @@ for k in range(4): n.add([1.0 if i == k else 0.0 for i in range(4)], [0.0] * 3)
 
 
 def test_why_it_goes_over_in_pieces(microbit):
-    """Not even the two modules of the normal equations compile as one source in this heap. The
+    """Not even the module of the normal equations compiles as one source in this heap. The
     whole solve (six_faces) does not even in pieces, or leaves less than its elimination takes.
     """
     with pytest.raises(RuntimeError, match="MemoryError"):
@@ -141,7 +144,9 @@ def test_why_it_goes_over_in_pieces(microbit):
     microbit.reset()
     left = 0
     try:
-        send(microbit, WHOLE_SOLVE)
+        send(microbit, SOLVER)
+        send_pieces(microbit, of_module("poses/faces", "AXIS", "SIGN", "LEANING", "face_of_code"))
+        send(microbit, ("accelerometer/six_faces",))
         left = free(microbit)
     except RuntimeError as error:
         assert "MemoryError" in str(error)

@@ -12,8 +12,8 @@ sys.path[:0] = [HERE + "/../shared", HERE + "/../../shared"]
 import micropython  # noqa: E402  after the path is set
 from synthetic_operator import Operator  # noqa: E402
 
-from sixflip.capture_writer import BlockWriter  # noqa: E402
-from sixflip.session import Session  # noqa: E402
+from sixflip.capture.writer import BlockWriter  # noqa: E402
+from sixflip.poses.session import Session  # noqa: E402
 
 session = Session(16384, 65.5, 32767, 32767, 100)
 writer = BlockWriter(lambda data: None, b"{}")

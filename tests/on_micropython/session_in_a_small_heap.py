@@ -7,10 +7,10 @@ sys.path[:0] = [HERE + "/../shared", HERE + "/../../shared"]
 
 import gc  # noqa: E402  after the path is set
 
-from sixflip.session import COMPLETE, POSE, Session  # noqa: E402
+from sixflip.poses.session import COMPLETE, POSE, Session  # noqa: E402
 
 gc.collect()
-from sixflip.capture_writer import BlockWriter  # noqa: E402
+from sixflip.capture.writer import BlockWriter  # noqa: E402
 
 gc.collect()
 from synthetic_operator import Operator  # noqa: E402

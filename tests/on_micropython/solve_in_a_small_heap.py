@@ -9,7 +9,7 @@ gc.threshold(2048)
 HERE = __file__[: __file__.rindex("/")]
 sys.path[:0] = [HERE + "/../../shared"]
 
-from sixflip.six_faces import solve  # noqa: E402  after the path is set
+from sixflip.accelerometer.six_faces import solve  # noqa: E402  after the path is set
 
 M = (1.02, 0.98, 1.01)
 TILT = 0.035

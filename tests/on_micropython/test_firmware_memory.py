@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from sixflip.capture_pieces import decode
-from sixflip.capture_reader import read as read_blocks
+from sixflip.capture.reader import read as read_blocks
+from sixflip_host.board.stream_reader import decode_piece
 
 from . import session_tape
 
@@ -140,7 +140,7 @@ def test_a_session_that_the_host_records(micropython, tmp_path, sensor):
     events, _ = power_up(micropython, tmp_path, heap, "recorded_wire")
     assert only(events, "calibrating")["recorded"]
     assert only(events, "saved")["written"]
-    found = [decode(line) for line in (tmp_path / "wire").read_bytes().splitlines()]
+    found = [decode_piece(line) for line in (tmp_path / "wire").read_bytes().splitlines()]
     assert [piece[0] for piece in found] == list(range(len(found)))
     blocks = read_blocks(b"".join(dict.fromkeys(piece for _, _, piece in found)))
     assert (blocks.complete, blocks.damage, len(blocks.placements)) == (True, "", 12)

@@ -4,10 +4,10 @@ on the flash however early it was cut off. Runs on MicroPython."""
 import json
 from array import array
 
-from sixflip import capture_reader
-from sixflip.capture_blocks import ACCEL, GYRO, TEMP
-from sixflip.placement import Placement
-from sixflip.record import Record
+from sixflip.capture import reader as capture_reader
+from sixflip.capture.blocks import ACCEL, GYRO, TEMP
+from sixflip.poses.placement import Placement
+from sixflip.record.record import Record
 from sixflip_device import capture_meta, flash_files, record_slots, redo_session, saving
 from sixflip_device.capture_store import CaptureStore
 

@@ -28,6 +28,9 @@ PACKAGES = ("qemu-system-arm", "gcc-arm-none-eabi", "libnewlib-arm-none-eabi")
 WORLD = {"tilt_deg": 2.0, "first_rest_s": 6.0, "dwell_s": 3.5, "move_s": 1.5}
 POSE_SAMPLES = 200
 ALL_CHIPS = bool(os.environ.get("SIXFLIP_QEMU_CHIPS"))  # as `make test-qemu` says
+# What the host alone needs of the formats, and the shared tests to hold the board's side against.
+HOST_CODECS = ("sixflip_host/__init__.py", "sixflip_host/record_terms.py",
+               "sixflip_host/board/__init__.py", "sixflip_host/board/stream_reader.py")
 TOOLS = ("qemu-system-arm", "arm-none-eabi-gcc", "make", "gcc")
 
 
@@ -45,6 +48,8 @@ def frozen_files():
             files[path.name] = path
     for path in sorted((ROOT / "tests" / "on_qemu" / "on_board").glob("*.py")):
         files[path.name] = path
+    for name in HOST_CODECS:
+        files[name] = ROOT / "host" / name
     for name in ("unittest.py", "locked_loop.py", "redo_late.py"):
         files[name] = ROOT / "tests" / "on_micropython" / name
     return files

@@ -5,8 +5,8 @@ import ast
 import numpy as np
 import pytest
 
-from sixflip import accelerometer
-from sixflip.placement import Placement
+from sixflip.accelerometer import solver as accelerometer
+from sixflip.poses.placement import Placement
 from sixflip_host.calibrate import reference
 
 from .shared_tests import SHARED_TESTS, pass_on_the_board
@@ -20,8 +20,8 @@ def test_shared_tests_pass_on_the_board(board, name):
 
 SOLVE = """
 import gc, struct
-from sixflip import accelerometer
-from sixflip.placement import Placement
+from sixflip.accelerometer import solver as accelerometer
+from sixflip.poses.placement import Placement
 gc.collect(); before = gc.mem_alloc()
 r = accelerometer.solve([Placement(*p) for p in %r], %r)
 print([struct.unpack('<I', struct.pack('<f', x))[0] for row in r.P for x in row[:3]])

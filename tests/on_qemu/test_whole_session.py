@@ -10,9 +10,10 @@ import pytest
 from on_micropython.test_term_memory import ALL, with_terms
 from taped_board import TapedBoard
 
-from sixflip import correction_record, record_terms
 from sixflip.chips import catalogue
+from sixflip.record import correction_record
 from sixflip_device import power_up, settings
+from sixflip_host import record_terms
 from sixflip_sim.tape import open_tape
 from sixflip_sim.worlds import SEEN
 

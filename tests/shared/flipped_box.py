@@ -6,7 +6,7 @@ errors: measured = M true + b, in g, rounded to exact sums of counts.
 
 import math
 
-from sixflip.placement import Move, Placement
+from sixflip.poses.placement import Move, Placement
 
 UP = ((0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0))
 IDEAL = ((1, 0, 0), (0, 1, 0), (0, 0, 1))

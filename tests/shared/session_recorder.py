@@ -3,9 +3,9 @@ from array import array
 
 from synthetic_operator import Operator
 
-from sixflip import session as machine
-from sixflip.faces import pose_name
-from sixflip.session import Session
+from sixflip.poses import session as machine
+from sixflip.poses.faces import pose_name
+from sixflip.poses.session import Session
 
 
 def make(**options):

@@ -6,7 +6,7 @@ Not the simulator of the product: only what the session's tests need, on both in
 import math
 from array import array
 
-from sixflip.faces import AXIS, SIGN
+from sixflip.poses.faces import AXIS, SIGN
 
 
 class Noise:

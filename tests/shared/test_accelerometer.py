@@ -3,8 +3,8 @@ import unittest
 
 import flipped_box as box
 
-from sixflip import accelerometer
-from sixflip.elimination import DOUBLE, SingularSystem
+from sixflip.accelerometer import solver as accelerometer
+from sixflip.accelerometer.normal_equations import DOUBLE, SingularSystem
 
 G = accelerometer.G
 M = ((1.02, 0.01, -0.02), (0.015, 0.97, 0.01), (-0.01, 0.02, 1.03))

@@ -3,8 +3,8 @@ import unittest
 
 import flipped_box as box
 
-from sixflip import accelerometer
-from sixflip.verdict import judge_accelerometer
+from sixflip.accelerometer import solver as accelerometer
+from sixflip.accelerometer.verdict import judge_accelerometer
 
 SCATTER = math.radians(0.05)
 

@@ -6,12 +6,12 @@ from io import BytesIO
 
 from synthetic_operator import Noise
 
-from sixflip import capture_blocks as cb
-from sixflip.capture_reader import LOST, NAMES
-from sixflip.capture_reader import read as read_blocks
-from sixflip.capture_scan import Scan, go_on
-from sixflip.capture_writer import BlockWriter
-from sixflip.placement import Placement
+from sixflip.capture import blocks as cb
+from sixflip.capture.reader import LOST, NAMES
+from sixflip.capture.reader import read as read_blocks
+from sixflip.capture.scan import Scan, go_on
+from sixflip.capture.writer import BlockWriter
+from sixflip.poses.placement import Placement
 
 META = b'{"sensor": "mpu6050", "rate_hz": 100}'
 

@@ -6,14 +6,13 @@ from array import array
 
 from synthetic_operator import Operator
 
-from sixflip.capture_blocks import STEPS
-from sixflip.capture_moves import CaptureMoves
-from sixflip.capture_scan import Scan
-from sixflip.capture_writer import BlockWriter
-from sixflip.move_turn import turned
-from sixflip.placement_log import add_window, empty_move
-from sixflip.session import Session
-from sixflip.still_window import StillWindow
+from sixflip.capture.blocks import STEPS
+from sixflip.capture.scan import CaptureMoves, Scan
+from sixflip.capture.writer import BlockWriter
+from sixflip.poses.placement import turned
+from sixflip.poses.placement_log import add_window, empty_move
+from sixflip.poses.session import Session
+from sixflip.poses.still_window import StillWindow
 
 META = b"{}"
 

@@ -1,6 +1,7 @@
 import unittest
 
-from sixflip import faces, pose_codes
+from sixflip.poses import faces
+from sixflip.poses import faces as pose_codes
 
 
 class Names(unittest.TestCase):

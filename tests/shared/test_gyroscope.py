@@ -3,8 +3,9 @@ import unittest
 
 import flipped_box as box
 
-from sixflip import flip_angle, gyroscope
-from sixflip.elimination import DOUBLE
+from sixflip.accelerometer.normal_equations import DOUBLE
+from sixflip.gyro import flips
+from sixflip.gyro import solver as gyroscope
 
 M = ((1.02, 0.01, -0.02), (0.015, 0.97, 0.01), (-0.01, 0.02, 1.03))
 BIAS = (1.5, -2.0, 0.7)
@@ -198,7 +199,7 @@ class Angles(unittest.TestCase):
     def test_the_angle_really_turned(self):
         rests, moves = box.gyro_session(M, BIAS, 3.0, seed=5)
         P = solve(box.gyro_session(M, BIAS)).P
-        found = flip_angle.measured_angles(rests, moves, box.GYRO_LSB, P)
+        found = flips.measured_angles(rests, moves, box.GYRO_LSB, P)
         self.assertEqual(len(found), 6)
         for move in moves:
             before, after = rests[move.before].pose, rests[move.after].pose
@@ -211,16 +212,16 @@ class Angles(unittest.TestCase):
 
     def test_it_pays_only_beyond_the_gyros_own_error(self):
         good = {face: math.radians(180 + 0.4 * (1 - face % 2 * 2)) for face in range(6)}
-        self.assertEqual(flip_angle.worthwhile(good, 0.003), {})
-        self.assertEqual(flip_angle.worthwhile({}, 0.003), {})
+        self.assertEqual(flips.worthwhile(good, 0.003), {})
+        self.assertEqual(flips.worthwhile({}, 0.003), {})
         off = {face: math.radians(190) for face in range(5)}
         off[5] = math.radians(100)
-        used = flip_angle.worthwhile(off, 0.003)
+        used = flips.worthwhile(off, 0.003)
         self.assertEqual(sorted(used), [0, 1, 2, 3, 4])
         self.assertAlmostEqual(math.degrees(used[0]), 190, delta=0.1)
-        less = flip_angle.worthwhile(off, 0.03)
+        less = flips.worthwhile(off, 0.03)
         self.assertAlmostEqual(math.degrees(less[0]), 184.17, delta=0.1)
-        self.assertEqual(flip_angle.worthwhile(off, float("nan")), {})
+        self.assertEqual(flips.worthwhile(off, float("nan")), {})
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 import math
 import unittest
 
-from sixflip.heading import DriftIntegrator, Heading
+from sixflip.gyro.heading import DriftIntegrator, Heading
 
 G = 9.80665
 

@@ -1,7 +1,7 @@
 import math
 import unittest
 
-from sixflip import mounting
+from sixflip.record import mounting
 
 # Promrit, V: the average output of an MPU6050 on a wedge of 30 and 15 degrees.
 PAPER = (-0.2235, 0.4937, 0.8330)

@@ -1,8 +1,12 @@
 import unittest
 
-from sixflip.elimination import DOUBLE, SingularSystem, eliminate
-from sixflip.normal_equations import NormalEquations
-from sixflip.scale_form import inverse3, scale_form
+from sixflip.accelerometer.normal_equations import (
+    DOUBLE,
+    NormalEquations,
+    SingularSystem,
+    eliminate,
+)
+from sixflip.accelerometer.scale_form import inverse3, scale_form
 
 TIGHT = 1e-12 if DOUBLE else 2e-5
 

@@ -4,8 +4,7 @@ import unittest
 
 from test_correction_record import full
 
-from sixflip.plausibility import implausible
-from sixflip.record import following, newer
+from sixflip.record.record import following, implausible, newer
 
 
 def spoilt(section, field, value):

@@ -2,8 +2,8 @@ import unittest
 
 from session_recorder import Recorder, make, poses
 
-from sixflip import session as machine
-from sixflip.faces import pose_name
+from sixflip.poses import session as machine
+from sixflip.poses.faces import pose_name
 
 
 class SixFaces(unittest.TestCase):

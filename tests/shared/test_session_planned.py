@@ -3,11 +3,9 @@ import unittest
 from session_recorder import Recorder, make, poses
 from synthetic_operator import Operator
 
-from sixflip.faces import face_of_code, pose_name
-from sixflip.move_turn import has_gap
-from sixflip.planned_session import PlannedSession
-from sixflip.pose_codes import pose_code
-from sixflip.resumed_session import resume
+from sixflip.poses.faces import face_of_code, pose_code, pose_name
+from sixflip.poses.placement import has_gap
+from sixflip.poses.planned_session import PlannedSession, resume
 
 
 class Planned(unittest.TestCase):

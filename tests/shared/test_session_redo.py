@@ -2,9 +2,8 @@ import unittest
 
 from session_recorder import Recorder, make, poses
 
-from sixflip import session as machine
-from sixflip.faces import pose_name
-from sixflip.pose_codes import pose_code
+from sixflip.poses import session as machine
+from sixflip.poses.faces import pose_code, pose_name
 
 
 class Redo(unittest.TestCase):

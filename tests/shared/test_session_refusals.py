@@ -2,7 +2,7 @@ import unittest
 
 from session_recorder import Recorder, make, poses
 
-from sixflip import session as machine
+from sixflip.poses import session as machine
 
 
 class Refusals(unittest.TestCase):

@@ -3,8 +3,8 @@ from array import array
 
 from synthetic_operator import Noise
 
-from sixflip.noise_floor import ENTER, NoiseFloor
-from sixflip.still_window import SAME, SPAN, StillWindow, window_length
+from sixflip.poses.noise_floor import ENTER, NoiseFloor
+from sixflip.poses.still_window import SAME, SPAN, StillWindow, window_length
 
 
 def fill(window, rows, dt_us=10000):

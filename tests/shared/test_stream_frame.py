@@ -2,8 +2,8 @@
 
 import unittest
 
-from sixflip.stream_frame import CORRECTED, HEADING, RAW, SIZES, FrameWriter
-from sixflip.stream_reader import FrameReader, decode
+from sixflip.capture.stream_frame import CORRECTED, HEADING, RAW, SIZES, FrameWriter
+from sixflip_host.board.stream_reader import FrameReader, decode
 
 COUNTS = (10, -10, 2570, 266, 32767, -32768, 0)     # many bytes that are newlines
 

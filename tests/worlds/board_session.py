@@ -5,10 +5,13 @@ import json
 import numpy as np
 from hand_session import Sensor, session, six_faces
 
-from sixflip import accelerometer, correction_record, gyroscope, verdict
-from sixflip.capture_blocks import ACCEL, GYRO, TEMP
-from sixflip.capture_writer import BlockWriter
-from sixflip.session import COMPLETE, POSE, REFUSED, Session
+from sixflip.accelerometer import solver as accelerometer
+from sixflip.accelerometer import verdict
+from sixflip.capture.blocks import ACCEL, GYRO, TEMP
+from sixflip.capture.writer import BlockWriter
+from sixflip.gyro import solver as gyroscope
+from sixflip.poses.session import COMPLETE, POSE, REFUSED, Session
+from sixflip.record import correction_record
 
 SESSION = 0x5EED
 

@@ -6,7 +6,7 @@ import csv
 import numpy as np
 from board_session import make_record, run_board
 
-from sixflip import correction_record
+from sixflip.record import correction_record
 from sixflip_host.capture import capture_file
 from sixflip_host.planning import plan_file, protocols
 from sixflip_host.simulation import scenario, simulated_session

@@ -7,8 +7,7 @@ one to the next along the shortest way with a wobble on top, starting and ending
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from sixflip.faces import AXIS, SIGN
-from sixflip.pose_codes import pose_code
+from sixflip.poses.faces import AXIS, SIGN, pose_code
 from sixflip_host.capture.capture_file import Capture
 
 LSB_G, LSB_DPS, G = 16384.0, 65.5, 9.80665

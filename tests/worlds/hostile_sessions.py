@@ -10,8 +10,7 @@ against the error that was really made.
 
 import numpy as np
 
-from sixflip.faces import AXIS, FACES, SIGN
-from sixflip.pose_codes import pose_code
+from sixflip.poses.faces import AXIS, FACES, SIGN, pose_code
 from sixflip_host.capture.capture_file import Capture
 
 G = 9.80665

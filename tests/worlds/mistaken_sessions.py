@@ -16,11 +16,11 @@ from types import SimpleNamespace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from sixflip import session as machine
 from sixflip.chips import catalogue
-from sixflip.faces import AXIS, FACES, SIGN
-from sixflip.pose_check import judge_session
-from sixflip.record import Record
+from sixflip.poses import session as machine
+from sixflip.poses.faces import AXIS, FACES, SIGN
+from sixflip.poses.pose_check import judge_session
+from sixflip.record.record import Record
 from sixflip_device import (
     gyro_signs,
     holding_flips,

@@ -5,9 +5,9 @@ import sys
 import textwrap
 import threading
 
-from sixflip.faces import FACES
-from sixflip.record_terms import TERMS
+from sixflip.poses.faces import FACES
 
+from ..record_terms import TERMS
 from ..terminal import plain
 
 HOW = {

@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from sixflip import capture_reader
+from sixflip.capture import reader as capture_reader
 
 from .. import file_kinds
 from ..atomic_write import write_bytes

@@ -1,6 +1,6 @@
 """A board's capture, written down on this computer while it is taken.
 
-The blocks that come over the port (sixflip.capture_pieces) are appended to a file as they are,
+The blocks that come over the port (sixflip.capture.pieces) are appended to a file as they are,
 so that it is a capture of a board at every moment: kill this program, pull the plug, and what
 is missing is the block that was on its way.
 """
@@ -13,14 +13,14 @@ import struct
 import time
 import zlib
 
-from sixflip import capture_blocks as cb
-from sixflip import capture_pieces
-from sixflip.capture_reader import LOST
-from sixflip.capture_samples import start
+from sixflip.capture import blocks as cb
+from sixflip.capture.blocks import start
+from sixflip.capture.reader import LOST
 
 from ..capture.capture_binary import UNLABELLED
 from ..errors import BadFile, SixflipError
 from ..narration import log
+from .stream_reader import decode_piece
 
 SYNC_S = 1.0            # so much may be lost where this computer loses its power
 WAITING = 2000          # pieces kept while the header has not come: ten minutes
@@ -59,7 +59,7 @@ class Recording:
 
     def take(self, line):
         """Whether the line was a piece; it is on the disk then."""
-        found = capture_pieces.decode(line)
+        found = decode_piece(line)
         if found is None:
             return False
         _, samples, piece = found

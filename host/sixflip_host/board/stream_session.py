@@ -5,11 +5,11 @@ import json
 import math
 import time
 
-from sixflip.stream_frame import CORRECTED, HEADING, RAW
-from sixflip.stream_reader import FrameReader
+from sixflip.capture.stream_frame import CORRECTED, HEADING, RAW
 
 from ..errors import CheckFailed, NoBoard, SixflipError
 from .board_events import parse, unusable
+from .stream_reader import FrameReader
 
 KINDS = {"raw": RAW, "corrected": CORRECTED, "heading": HEADING}
 ANSWER_S = 10

@@ -10,7 +10,7 @@ import select
 import sys
 import threading
 
-from sixflip.faces import FACES
+from sixflip.poses.faces import FACES
 
 try:
     import termios

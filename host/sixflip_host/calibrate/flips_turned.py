@@ -8,8 +8,8 @@ flips lose nothing.
 
 import numpy as np
 
-from sixflip.faces import FACES
-from sixflip.flip_angle import NO_FLIP
+from sixflip.gyro.flips import NO_FLIP
+from sixflip.poses.faces import FACES
 
 from ..errors import SixflipError
 

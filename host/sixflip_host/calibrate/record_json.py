@@ -1,13 +1,12 @@
 """A correction record as a JSON object, units in the names."""
 
-from sixflip import record_terms
-
+from .. import record_terms
 from ..json_numbers import finite
 
 
 def record_json(record):
     """dict of a Record; sections that were not measured are null, terms {name: fields of
-    sixflip.record_terms} those that were found."""
+    sixflip_host.record_terms} those that were found."""
     return finite({
         "format": 1, "kind": "sixflip correction record", "sequence": record.sequence,
         "session": record.session, "float_bits": record.float_bits, "chip": record.chip,

@@ -6,8 +6,7 @@ root search instead of repeated substitution; in-plane turns as complex numbers.
 
 import numpy as np
 
-from sixflip.faces import AXIS, FACES, SIGN, face_of_code
-from sixflip.pose_codes import is_b
+from sixflip.poses.faces import AXIS, FACES, SIGN, face_of_code, is_b
 
 from ..errors import CheckFailed
 from .reference_sigma import mean_variance, sigma_P

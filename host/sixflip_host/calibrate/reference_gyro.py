@@ -8,9 +8,8 @@ import math
 
 import numpy as np
 
-from sixflip.faces import AXIS, face_of_code
-from sixflip.move_turn import GAP_US
-from sixflip.placement import LATE_US
+from sixflip.poses.faces import AXIS, face_of_code
+from sixflip.poses.placement import GAP_US, LATE_US
 
 from ..errors import CheckFailed
 

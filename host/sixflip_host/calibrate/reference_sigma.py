@@ -7,7 +7,7 @@ a steady drift of the zeros, found from a and b of each face along gravity.
 
 import numpy as np
 
-from sixflip.faces import AXIS, face_of_code
+from sixflip.poses.faces import AXIS, face_of_code
 
 STUDENT = 2.78 / 2
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sixflip.faces import LEANING
+from sixflip.poses.faces import LEANING
 
 from ..capture import rests
 from ..errors import BadFile, CheckFailed

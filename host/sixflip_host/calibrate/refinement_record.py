@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from sixflip import record_terms
-from sixflip.correction_record import Record
-from sixflip.record import following
+from sixflip.record.correction_record import Record
+from sixflip.record.record import following
 
+from .. import record_terms
 from ..errors import CheckFailed
 
 BIASES = ["accelerometer %s bias" % axis for axis in "xyz"]

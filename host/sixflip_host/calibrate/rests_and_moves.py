@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from sixflip.faces import AXIS, LEANING, SIGN, face_of_code, pose_name
-from sixflip.move_turn import GAP_US
-from sixflip.pose_codes import is_b
+from sixflip.poses.faces import AXIS, LEANING, SIGN, face_of_code, is_b, pose_name
+from sixflip.poses.placement import GAP_US
 
 from ..capture import still_windows
 from ..errors import BadFile, CheckFailed

@@ -2,9 +2,12 @@
 
 import numpy as np
 
-from sixflip import accelerometer, flip_doubt, gyroscope, verdict
+from sixflip.accelerometer import solver as accelerometer
+from sixflip.accelerometer import verdict
 from sixflip.chips import catalogue
-from sixflip.faces import FACES, face_of_code, pose_name
+from sixflip.gyro import solver as gyroscope
+from sixflip.gyro import verdict as gyro_verdict
+from sixflip.poses.faces import FACES, face_of_code, pose_name
 
 from ..capture import clock
 from ..capture.capture_binary import write_pauses
@@ -61,7 +64,7 @@ def doubt_flips(out, known=()):
     """
     if out.verdict == "refused" or out.gyro is None:
         return
-    sentence = flip_doubt.accelerometer_doubt(out.gyro, tolerance(out.capture),
+    sentence = gyro_verdict.accelerometer_doubt(out.gyro, tolerance(out.capture),
                                               out.accel.tilt_deg, known)
     if sentence:
         out.reason = sentence if out.verdict == "good" else out.reason + "; " + sentence
@@ -197,7 +200,7 @@ def solve_gyro(capture, placements, moves, accel_P=None, old=None, flips=None):
         return None, str(error)
     if found.verdict == "good":
         doubt = flips_short(flips.measured) if flips and flips.measured else \
-            flip_doubt.scale_doubt(found, tolerance(capture))
+            gyro_verdict.scale_doubt(found, tolerance(capture))
         if doubt:
             found.verdict, found.reason = "doubtful", doubt
     return found, ""

@@ -1,7 +1,6 @@
 """The fields of a record that its capture does not determine: nobody can recompute them."""
 
-from sixflip.record_terms import names_of
-
+from ..record_terms import names_of
 from .verify_checks import STATED
 
 SAVED = "the board counted or noted it when it saved the record"

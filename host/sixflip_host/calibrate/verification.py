@@ -1,7 +1,7 @@
 """Every comparison of a board's record against the same capture solved here."""
 
-from sixflip.accelerometer import best_level
-from sixflip.faces import face_of_code
+from sixflip.accelerometer.solver import best_level
+from sixflip.poses.faces import face_of_code
 
 from . import solution, verify_checks, verify_flips, verify_gyro
 

@@ -5,8 +5,8 @@ import re
 
 import numpy as np
 
-from sixflip.faces import pose_name
-from sixflip.scale_form import scale_form
+from sixflip.accelerometer.scale_form import scale_form
+from sixflip.poses.faces import pose_name
 
 from ..capture import pose_sums
 from ..errors import CheckFailed

@@ -4,11 +4,10 @@ import functools
 import os
 import struct
 
-from sixflip import correction_record, record_terms
-from sixflip.plausibility import implausible
-from sixflip.record import newer
+from sixflip.record import correction_record
+from sixflip.record.record import implausible, newer
 
-from .. import atomic_write
+from .. import atomic_write, record_terms
 from ..capture import capture_file, chip_scales
 from ..errors import BadFile, UsageError
 

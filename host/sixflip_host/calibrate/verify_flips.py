@@ -4,9 +4,8 @@ import math
 
 import numpy as np
 
-from sixflip.faces import FACES, SIGN, face_of_code
-from sixflip.flip_angle import NO_FLIP
-from sixflip.pose_codes import is_b
+from sixflip.gyro.flips import NO_FLIP
+from sixflip.poses.faces import FACES, SIGN, face_of_code, is_b
 
 from ..capture import pose_sums
 from . import reference_gyro, solution

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sixflip.move_turn import GAP_US
+from sixflip.poses.placement import GAP_US
 
 AT_A_TIME = 10_000      # samples whose rotations are there at once: each takes 300 bytes
 

@@ -6,9 +6,8 @@ where not all of the samples were kept: so both forms of a capture say the same.
 
 from typing import NamedTuple
 
-from sixflip.faces import pose_name
-from sixflip.placement import Placement
-from sixflip.pose_codes import pose_code
+from sixflip.poses.faces import pose_code, pose_name
+from sixflip.poses.placement import Placement
 
 from ..errors import BadFile
 from .capture_rows import quoted

@@ -4,9 +4,9 @@ import json
 
 import numpy as np
 
-from sixflip.capture_blocks import ACCEL, GAP_US, GROUPS, GYRO, MAG, TEMP
-from sixflip.capture_reader import read as read_blocks
-from sixflip.capture_writer import BlockWriter
+from sixflip.capture.blocks import ACCEL, GAP_US, GROUPS, GYRO, MAG, TEMP
+from sixflip.capture.reader import read as read_blocks
+from sixflip.capture.writer import BlockWriter
 
 from .. import sample_limit
 from ..errors import BadFile
@@ -36,7 +36,7 @@ def is_empty(data):
 def decode(data, path="capture"):
     """A Capture from the bytes of a board's file; readable up to the last whole block.
 
-    board_placements  what the board summed up itself, as sixflip.placement.Placement
+    board_placements  what the board summed up itself, as sixflip.poses.placement.Placement
     truncated         a sentence when the file was cut off or damaged, else None
     sums_only         the board had no room for all samples: taken says how many there were
     Raises BadFile when there is no readable header or not one sample.

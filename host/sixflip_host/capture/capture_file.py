@@ -9,7 +9,7 @@ import zlib
 
 import numpy as np
 
-from sixflip.faces import pose_name
+from sixflip.poses.faces import pose_name
 
 from .. import atomic_write, sample_limit
 from ..errors import BadFile
@@ -40,7 +40,7 @@ class Capture:
     t_us    int64 (n,) microseconds, not decreasing
     accel   int16 (n, 3) counts; gyro, mag likewise or None; temp int16 (n,) or None; accel is
             None only where read() was asked for captures of a gyro alone, too
-    pose    int16 (n,) codes of sixflip.faces, 0 while moving; None when nobody labelled
+    pose    int16 (n,) codes of sixflip.poses.faces, 0 while moving; None when nobody labelled
     board_placements, notes, truncated, sums_only, taken, complete, withdrawn
             what only a board's own file knows, see capture_binary
     assumed sentences on what a foreign file did not say, see open_recording
@@ -80,7 +80,7 @@ class Capture:
         return names + (["pose"] if self.pose is not None else [])
 
     def placements(self):
-        """Every unbroken run of a label as a sixflip.placement.Placement; sums are exact.
+        """Every unbroken run of a label as a sixflip.poses.placement.Placement; sums are exact.
 
         Where the board did not keep all samples, the placements are the board's.
         """
@@ -91,7 +91,7 @@ class Capture:
         return pose_sums.of(self)
 
     def moves(self):
-        """What lies between consecutive placements, as sixflip.placement.Move."""
+        """What lies between consecutive placements, as sixflip.poses.placement.Move."""
         return pose_sums.moves(self, self.placements())
 
 

@@ -9,8 +9,7 @@ import re
 
 import numpy as np
 
-from sixflip.faces import pose_name
-from sixflip.pose_codes import pose_code
+from sixflip.poses.faces import pose_code, pose_name
 
 from ..errors import BadFile
 from .growing import Growing

@@ -3,9 +3,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sixflip.faces import AXIS, FACES, LEANING, SIGN, pose_name
-from sixflip.noise_floor import NoiseFloor
-from sixflip.pose_label import CROOKED_DEG, HALF_TURN_DEG, SAME_DEG
+from sixflip.poses.faces import AXIS, FACES, LEANING, SIGN, pose_name
+from sixflip.poses.noise_floor import NoiseFloor
+from sixflip.poses.pose_label import CROOKED_DEG, HALF_TURN_DEG, SAME_DEG
 
 from . import rests
 from .attitude import heading_change

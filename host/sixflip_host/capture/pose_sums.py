@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from sixflip.placement import LATE_US, Move, Placement
-from sixflip.placement_log import PlacementLog
-from sixflip.still_window import window_length
+from sixflip.poses.placement import LATE_US, Move, Placement
+from sixflip.poses.placement_log import PlacementLog
+from sixflip.poses.still_window import window_length
 
 from . import rests
 from .still_windows import INT16_RAIL, POSE_SAMPLES

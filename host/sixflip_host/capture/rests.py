@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sixflip.faces import FACES, nearest_face
-from sixflip.noise_floor import WINDOWS, NoiseFloor
-from sixflip.pose_label import CROOKED_DEG
+from sixflip.poses.faces import FACES, nearest_face
+from sixflip.poses.noise_floor import WINDOWS, NoiseFloor
+from sixflip.poses.pose_label import CROOKED_DEG
 
 from . import still_windows
 

@@ -1,6 +1,6 @@
 """The board's still windows over a whole recording, in arrays, and what they say of rest.
 
-The same whole numbers as sixflip.still_window adds up one sample after another, so that what
+The same whole numbers as sixflip.poses.still_window adds up one sample after another, so that what
 the host finds is what the board would have found; the tests compare the two bit by bit.
 """
 from dataclasses import dataclass
@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from sixflip.noise_floor import CAP, ENTER, LEAVE, WINDOWS, NoiseFloor
-from sixflip.still_window import SAME, SPAN, window_length
+from sixflip.poses.noise_floor import CAP, ENTER, LEAVE, WINDOWS, NoiseFloor
+from sixflip.poses.still_window import SAME, SPAN, window_length
 
 from ..progress import steps
 

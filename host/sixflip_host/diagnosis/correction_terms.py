@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from sixflip import record_terms
-from sixflip.record import following
+from sixflip.record.record import following
 
+from .. import record_terms
 from ..calibrate import term_words
 from ..errors import CheckFailed
 from . import coefficient_fits

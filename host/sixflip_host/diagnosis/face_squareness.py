@@ -7,7 +7,7 @@ faces; what the others are off is seen.
 import numpy as np
 from scipy import stats
 
-from sixflip import faces
+from sixflip.poses import faces
 
 from ..experiment import nominal_rows, projection
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from sixflip import faces
 from sixflip.chips.catalogue import SENSORS
+from sixflip.poses import faces
 
 from .. import atomic_write
 from ..planning import plan_file, protocols

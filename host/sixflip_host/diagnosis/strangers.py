@@ -8,7 +8,7 @@ are tried over a decade: of a stranger no size is known.
 """
 import numpy as np
 
-from sixflip import faces
+from sixflip.poses import faces
 
 from ..experiment.terms import Design, harmonics
 

@@ -1,12 +1,12 @@
 """How much a record's terms take away on what was held out: the raw counts go through the code
-that the board runs (sixflip.correction), what comes out is judged as any capture is."""
+that the board runs (sixflip.record.correction), what comes out is judged as any capture is."""
 import copy
 
 import numpy as np
 
-from sixflip import record_terms
-from sixflip.correction_of import correction_of
+from sixflip.record.correction import correction_of
 
+from .. import record_terms
 from ..experiment import attitude_fit, nominal_rows
 from ..export.corrected_rows import corrected_rows
 from . import coefficient_fits, rest_model, turn_model

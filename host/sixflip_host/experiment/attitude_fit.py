@@ -7,7 +7,7 @@ Tedaldi et al. (ICRA 2014) for what lies in between.
 import numpy as np
 from scipy.optimize import least_squares
 
-from sixflip import faces
+from sixflip.poses import faces
 
 ALONG = 0.3e-3  # g: how well |f| = 1 holds
 ACROSS = 30e-3  # g: a table's tilt

@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sixflip import faces, pose_codes
+from sixflip.poses import faces
+from sixflip.poses import faces as pose_codes
 from sixflip_sim.effects.moment import Moment
 
 from .. import progress

@@ -6,7 +6,8 @@ temperature are what the plan says.
 """
 import numpy as np
 
-from sixflip import faces, pose_codes
+from sixflip.poses import faces
+from sixflip.poses import faces as pose_codes
 from sixflip_sim.effects.moment import Moment
 
 from . import noise_arrays

@@ -10,9 +10,9 @@ A measured + o - C (true specific force).
 
 import numpy as np
 
-from sixflip import record_terms
-from sixflip.correction_of import correction_of
+from sixflip.record.correction import correction_of
 
+from .. import record_terms
 from ..capture.capture_header import STANDARD_G
 from ..errors import BadFile
 

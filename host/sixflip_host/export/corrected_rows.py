@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from sixflip.correction_of import correction_of
+from sixflip.record.correction import correction_of
 
 from ..errors import BadFile
 
 
 def corrected_rows(correction, capture):
-    """(n, 6) m/s² and rad/s of sixflip.correction.Correction or its like; the last three are
+    """(n, 6) m/s² and rad/s of a sixflip.record.correction.Correction; the last three are
     meaningless where there is no gyro. BadFile where a term needs a temperature that the
     capture does not have."""
     n = len(capture)

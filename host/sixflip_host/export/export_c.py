@@ -1,8 +1,8 @@
 """A correction as a C header: single precision, no heap, C99 and C++ (Arduino, ESP-IDF)."""
 
-from sixflip.correction_of import correction_of
-from sixflip.record_terms import TERMS
+from sixflip.record.correction import correction_of
 
+from ..record_terms import TERMS
 from . import export_c_text as text
 from .affine_correction import AffineCorrection
 

@@ -10,7 +10,7 @@ import json
 
 import numpy as np
 
-from sixflip.faces import pose_name
+from sixflip.poses.faces import pose_name
 
 from .. import atomic_write
 from ..calibrate.record_json import record_json
@@ -24,7 +24,7 @@ KEY = "sixflip"             # of the JSON in the file's metadata
 def columns(capture, record=None, tell=None):
     """{name: array (n,)} of a capture, corrected where there is a record.
 
-    tell: as sixflip.correction.correction_of.
+    tell: as sixflip.record.correction.correction_of.
     """
     out = {"t_us": capture.t_us}
     if record is not None:

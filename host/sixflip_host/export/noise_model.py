@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sixflip.pose_codes import pose_code
-from sixflip.scale_form import scale_form
+from sixflip.accelerometer.scale_form import scale_form
+from sixflip.poses.faces import pose_code
 
 from ..calibrate.solution import solve
 from ..capture import rests

@@ -2,7 +2,7 @@
 
 import math
 
-from sixflip.pose_codes import pose_code
+from sixflip.poses.faces import pose_code
 
 from ..terminal import plain
 

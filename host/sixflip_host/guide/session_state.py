@@ -8,7 +8,7 @@ import math
 from dataclasses import dataclass, field, replace
 from statistics import median
 
-from sixflip.faces import FACES
+from sixflip.poses.faces import FACES
 
 from ..board.console import lasting
 from .board_values import TEXT, cleaned, number, poses, text, three, whole

@@ -2,8 +2,7 @@
 
 import math
 
-from sixflip.gyro_bias import gyro_bias_dps
-from sixflip.scale_form import scale_form
+from sixflip.accelerometer.scale_form import inverse3, scale_form
 
 from ..calibrate.verify_files import decode_record
 from ..capture.capture_header import STANDARD_G
@@ -96,3 +95,9 @@ def readable(rows):
         except BadFile as error:
             remarks.append(str(error))
     return out, remarks
+
+
+def gyro_bias_dps(P):
+    """The measured rate in deg/s that a gyro's P (4 x 3) maps to zero: b A = -o."""
+    A = inverse3([[P[i][j] for j in range(3)] for i in range(3)])
+    return [math.degrees(-sum([P[3][k] * A[k][j] for k in range(3)])) for j in range(3)]

@@ -5,7 +5,7 @@ its z along the sensor's z. The names of the shared module mounting.py are the s
 permutation as "-y x z" and the frame of the answer.
 """
 
-from sixflip.mounting import parse_axes
+from sixflip.record.mounting import parse_axes
 
 from ..errors import UsageError
 

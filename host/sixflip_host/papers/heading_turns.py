@@ -10,10 +10,11 @@ import math
 
 import numpy as np
 
-from sixflip import accelerometer, gyroscope
-from sixflip.correction import Correction
-from sixflip.correction_record import Record
-from sixflip.heading import Heading
+from sixflip.accelerometer import solver as accelerometer
+from sixflip.gyro import solver as gyroscope
+from sixflip.gyro.heading import Heading
+from sixflip.record.correction import Correction
+from sixflip.record.correction_record import Record
 from sixflip_sim import noise, worlds
 
 from ..simulation.simulated_capture import capture

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sixflip import accelerometer
+from sixflip.accelerometer import solver as accelerometer
 from sixflip_sim import worlds
 
 from ..simulation.simulated_capture import capture

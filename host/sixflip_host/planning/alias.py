@@ -7,7 +7,7 @@ signature that b can reproduce, averaged over a's coefficients with equal weight
 """
 import numpy as np
 
-from sixflip import faces
+from sixflip.poses import faces
 from sixflip_sim.effects.library import EFFECTS
 
 from ..experiment.projection import NEGLIGIBLE, basis, rank, without

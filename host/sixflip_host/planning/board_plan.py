@@ -2,7 +2,7 @@
 
 import math
 
-from sixflip import faces
+from sixflip.poses import faces
 
 from ..did_you_mean import instead
 from ..errors import UsageError

@@ -50,7 +50,7 @@ def present(diagnosis):
 
 
 def _faces(codes):
-    from sixflip import faces
+    from sixflip.poses import faces
     return [faces.face_of_code(c) for c in codes]
 
 

@@ -11,7 +11,8 @@ in the box. Poses may come back: each time is a placement of its own.
 import json
 import math
 
-from sixflip import faces, pose_codes
+from sixflip.poses import faces
+from sixflip.poses import faces as pose_codes
 
 from ..atomic_write import write_text
 from ..errors import BadFile

@@ -5,7 +5,8 @@ Their numbers are those of the findings: 5 s rests, 10 s moves, 8-9 degC with ta
 import math
 import random
 
-from sixflip import faces, pose_codes
+from sixflip.poses import faces
+from sixflip.poses import faces as pose_codes
 
 NAMES = ("paper", "return", "random", "backward", "recommended", "thermal", "soak",
          "turntable", "drive")

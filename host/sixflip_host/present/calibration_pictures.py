@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sixflip.faces import FACES, pose_name
+from sixflip.poses.faces import FACES, pose_name
 
 from ..capture import rests
 from ..figures import COLOURS, canvas

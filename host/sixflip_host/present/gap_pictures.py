@@ -150,7 +150,7 @@ def alias_matrix(diagnosis, path):
 
 def poses(gap, path):
     """Residual of each placement in the order of the capture, one panel a session."""
-    from sixflip.faces import pose_name
+    from sixflip.poses.faces import pose_name
     figure, axes = canvas(len(gap.parts), 1, 11.0, 1.2 + 2.2 * len(gap.parts))
     for number, (session, _) in enumerate(gap.parts):
         before, after = both(gap, number)

@@ -2,7 +2,7 @@
 
 import math
 
-from sixflip.faces import FACES, pose_name
+from sixflip.poses.faces import FACES, pose_name
 
 from ..calibrate.solution import middles_mg
 from ..terminal import console, plain, styled, table, verdict_text

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from sixflip import pose_codes
 from sixflip.chips import probe
+from sixflip.poses import faces
 from sixflip_sim import noise, worlds
 from sixflip_sim.effects import make as make_effects
 from sixflip_sim.effects.library import make as make_effect
@@ -85,7 +85,7 @@ def labels(world, look_us, moving):
     pose[:] = 0
     for name, t0, t1 in world.operator.log:
         inside = slice(*np.searchsorted(look_us, (t0, t1)))
-        pose[inside] = pose_codes.pose_code(name)
+        pose[inside] = faces.pose_code(name)
     pose[~rest] = 0
     return pose
 

@@ -2,7 +2,7 @@
 
 import contextlib
 
-from sixflip import correction_record
+from sixflip.record import correction_record
 
 from ..calibrate.verify_files import newest_of
 from ..errors import UsageError

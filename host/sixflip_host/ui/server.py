@@ -8,7 +8,7 @@ from pathlib import Path
 
 from aiohttp import web
 
-from sixflip.faces import FACES
+from sixflip.poses.faces import FACES
 
 from . import guard
 from .bench import ACTIONS

@@ -3,7 +3,7 @@
 import json
 import math
 
-from sixflip.correction_of import correction_of
+from sixflip.record.correction import correction_of
 
 from ..board import check_words
 from ..board.board_events import wait_for

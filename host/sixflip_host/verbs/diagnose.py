@@ -6,7 +6,7 @@ import os
 from ..diagnosis import blas_threads  # noqa: F401 (numpy asks for threads as it is loaded)
 
 # isort: split
-from sixflip import correction_record
+from sixflip.record import correction_record
 
 from .. import file_kinds, progress
 from ..calibrate import verify_files

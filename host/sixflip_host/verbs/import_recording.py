@@ -4,7 +4,7 @@ import dataclasses
 import json
 import re
 
-from sixflip.faces import pose_name
+from sixflip.poses.faces import pose_name
 
 from .. import file_kinds, progress
 from ..capture import capture_file, clock

@@ -5,10 +5,10 @@ import os
 
 import numpy as np
 
-from sixflip import correction_record, mounting
 from sixflip.chips.catalogue import SENSORS
-from sixflip.correction_of import correction_of
-from sixflip.record import following
+from sixflip.record import correction_record, mounting
+from sixflip.record.correction import correction_of
+from sixflip.record.record import following
 from sixflip_sim.worlds import usual_noise
 
 from .. import atomic_write, file_kinds

@@ -1,7 +1,7 @@
 """sixflip refine: all rests and moves of a capture in one least squares, with covariance."""
 import json
 
-from sixflip import correction_record
+from sixflip.record import correction_record
 
 from .. import atomic_write, file_kinds, progress
 from ..calibrate.verify_files import read_record

@@ -5,11 +5,10 @@ import math
 
 import numpy as np
 
-from sixflip import record_terms
-from sixflip.faces import pose_name
-from sixflip.scale_form import scale_form
+from sixflip.accelerometer.scale_form import scale_form
+from sixflip.poses.faces import pose_name
 
-from .. import atomic_write, file_kinds
+from .. import atomic_write, file_kinds, record_terms
 from ..board.ports import add_port, open_link
 from ..calibrate import solution, term_words
 from ..calibrate.record_json import record_json

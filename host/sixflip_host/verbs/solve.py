@@ -2,10 +2,10 @@
 
 import json
 
-from sixflip import gravity
-from sixflip.six_faces import LEVELS
+from sixflip.accelerometer.six_faces import LEVELS
 
 from .. import progress
+from ..calibrate import local_gravity as gravity
 from ..calibrate import solution
 from ..capture import open_recording
 from ..errors import UsageError

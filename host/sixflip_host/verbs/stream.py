@@ -2,7 +2,7 @@
 
 The nodes of the paper, all on one board: raw_imu is the raw stream, do_calib the calibration
 (on the board, or sixflip solve from a capture), apply_calib the corrected stream, and the robot
-reads that over the same serial line, as text or as binary frames (sixflip/stream_frame.py).
+reads that over the same serial line, as text or as binary frames (stream_frame.py).
 """
 
 import contextlib

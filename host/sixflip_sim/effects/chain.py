@@ -5,7 +5,7 @@ deg/s. Only the stages that some effect needs exist as methods, so the rest cost
 """
 import math
 
-from sixflip.faces import AXIS, SIGN
+from sixflip.poses.faces import AXIS, SIGN
 from sixflip_sim import noise
 from sixflip_sim.effects.effect import REGISTER, WORLD
 from sixflip_sim.effects.moment import Moment

@@ -16,7 +16,7 @@ class Moment:
     up           unit vector against gravity, table_x and table_y the table's axes, in the sensor
     before       f of the pose before this one (its own at the first)
     since_move   s since the last move ended
-    face         0..5 of shared/sixflip/faces.py, -1 elsewhere
+    face         0..5 of shared/sixflip/poses/faces.py, -1 elsewhere
     session      number of the session, 0 the first
     volts        of the supply; vibration_mg: rms of what shakes the sensor
     exp, sin, floor, gauss   the functions that fit the fields: math's, or numpy's;

@@ -1,5 +1,5 @@
 """Effects of what is around the sensor: the box, the table, gravity, vibration, the lever arm."""
-from sixflip.faces import AXIS, FACES
+from sixflip.poses.faces import AXIS, FACES
 from sixflip_sim.effects.effect import AXES, WORLD, Effect, per_axis
 
 MG_PER_DEG = 17.453292519943295  # 1 g turned by one degree, small angles

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sixflip import faces
+from sixflip.poses import faces
 
 EDGE_S, SHORTEST_S, SMOOTH_S = 0.1, 0.8, 5.0
 BLOCK_S = 2.5

@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from sixflip import faces
+from sixflip.poses import faces
 from sixflip_host.capture.capture_file import Capture
 
 from . import BASELINES, correlation, gaussian_process, regression, stepwise

@@ -9,7 +9,7 @@ import json
 
 import numpy as np
 
-from sixflip.pose_codes import pose_code
+from sixflip.poses.faces import pose_code
 from sixflip_host.capture import recordings
 from sixflip_host.capture.capture_file import Capture
 

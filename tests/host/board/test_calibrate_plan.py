@@ -98,7 +98,7 @@ def check_session(capsys, folder, world):
 
 
 def board_code(name):
-    from sixflip.pose_codes import pose_code
+    from sixflip.poses.faces import pose_code
     return pose_code(name)
 
 

@@ -118,7 +118,7 @@ def test_compiled_it_takes_the_place_of_the_source_and_back(link, monkeypatch):
     assert modules(link) == {"py"}
     firmware_update.copy(link, {}, quiet)
     assert modules(link) == {"mpy"}
-    assert link.run("from sixflip import faces; print(faces.__file__)", "").strip() \
+    assert link.run("from sixflip.poses import faces; print(faces.__file__)", "").strip() \
         == b"sixflip/faces.mpy"
     as_source(monkeypatch, link)
     assert modules(link) == {"py"}

@@ -12,14 +12,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sixflip.capture_pieces import PieceWriter, decode
-from sixflip.capture_reader import read as read_blocks
-from sixflip.capture_writer import BlockWriter
-from sixflip.placement import Placement
+from sixflip.capture.pieces import PieceWriter
+from sixflip.capture.reader import read as read_blocks
+from sixflip.capture.writer import BlockWriter
+from sixflip.poses.placement import Placement
 from sixflip_host import cli
 from sixflip_host.board import firmware_update
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.board.recording import Recording, RecordingLink, name_of
+from sixflip_host.board.stream_reader import decode_piece
 from sixflip_host.capture import capture_binary, capture_file
 from sixflip_host.planning import plan_file, protocols
 from sixflip_host.verbs import virtual_board_verb
@@ -73,7 +74,7 @@ def test_what_is_recorded_is_what_the_board_sent(tmp_path):
     lines = [b'{"event": "state"}' + sender.lines[0], b'{"event": "pose"}', *sender.lines[1:]]
     recording = recorded(tmp_path, lines)
     data = (tmp_path / "r.bin").read_bytes()
-    assert data == b"".join(decode(line)[2] for line in sender.lines)
+    assert data == b"".join(decode_piece(line)[2] for line in sender.lines)
     capture = capture_binary.decode(data)
     assert (len(capture), capture.complete, capture.truncated) == (400, True, None)
     assert np.flatnonzero(capture.pose).tolist() == list(range(100, 300))

@@ -5,7 +5,7 @@ import json
 import pytest
 from board_session import leave_files, unlabelled
 
-from sixflip import correction_record
+from sixflip.record import correction_record
 from sixflip_host import cli
 from sixflip_host.board import ports
 from sixflip_host.board.board_files import board_files

@@ -7,8 +7,8 @@ import drifting_part
 import numpy as np
 import pytest
 
-from sixflip import correction_record, record_terms
-from sixflip_host import cli
+from sixflip.record import correction_record
+from sixflip_host import cli, record_terms
 from sixflip_host.board.board_files import board_files
 from sixflip_host.board.local_link import LocalLink
 from sixflip_host.capture import capture_file

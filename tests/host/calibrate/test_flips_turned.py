@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hand_session import G, Sensor, session, six_faces
 
-from sixflip.faces import FACES, face_of_code
+from sixflip.poses.faces import FACES, face_of_code
 from sixflip_host.calibrate import flips_turned, solution
 from sixflip_host.capture import capture_file
 from sixflip_host.cli import main

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sixflip.capture_blocks import ACCEL
-from sixflip.capture_writer import BlockWriter
+from sixflip.capture.blocks import ACCEL
+from sixflip.capture.writer import BlockWriter
 from sixflip_host.board import board_events, pulled_files
 from sixflip_host.board.board_link import safe_name
 from sixflip_host.board.console import Console

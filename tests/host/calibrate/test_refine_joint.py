@@ -6,7 +6,7 @@ import pytest
 import xsens_recording
 from hand_session import RAD
 
-from sixflip import accelerometer
+from sixflip.accelerometer import solver as accelerometer
 from sixflip_host.calibrate import gyro_rests, joint_refinement, refinement, refinement_answer
 from sixflip_host.calibrate.rests_and_moves import RestsAndMoves
 from sixflip_host.capture import rests

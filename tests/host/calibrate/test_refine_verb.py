@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from hand_session import RAD, G
 
-from sixflip import correction_record, record_terms
+from sixflip.record import correction_record
+from sixflip_host import record_terms
 from sixflip_host.calibrate import refinement, refinement_record, refinement_report
 from sixflip_host.capture import capture_file
 from sixflip_host.errors import SixflipError

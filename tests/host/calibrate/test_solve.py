@@ -7,8 +7,8 @@ import pytest
 from board_session import unlabelled
 from hand_session import G, Sensor, session, six_faces
 
-from sixflip import accelerometer
-from sixflip.pose_codes import pose_code
+from sixflip.accelerometer import solver as accelerometer
+from sixflip.poses.faces import pose_code
 from sixflip_host.calibrate import reference
 from sixflip_host.capture import capture_file
 from sixflip_host.cli import main

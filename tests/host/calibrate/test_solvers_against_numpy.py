@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from sixflip import accelerometer, gyroscope
-from sixflip.elimination import SingularSystem, eliminate
-from sixflip.normal_equations import NormalEquations
-from sixflip.scale_form import scale_form
+from sixflip.accelerometer import solver as accelerometer
+from sixflip.accelerometer.normal_equations import NormalEquations, SingularSystem, eliminate
+from sixflip.accelerometer.scale_form import scale_form
+from sixflip.gyro import solver as gyroscope
 
 UP = np.array(box.UP, float)
 

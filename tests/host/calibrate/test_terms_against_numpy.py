@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from written_records import TERMS, with_terms
 
-from sixflip import record_terms
-from sixflip.correction_of import correction_of
-from sixflip.mounting import compensation
+from sixflip.record.correction import correction_of
+from sixflip.record.mounting import compensation
+from sixflip_host import record_terms
 from sixflip_host.capture.capture_file import Capture
 from sixflip_host.export.corrected_rows import corrected_rows
 

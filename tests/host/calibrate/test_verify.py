@@ -7,7 +7,7 @@ from binascii import crc32
 import pytest
 from board_session import leave_files, unlabelled
 
-from sixflip import correction_record
+from sixflip.record import correction_record
 from sixflip_host.cli import main
 
 

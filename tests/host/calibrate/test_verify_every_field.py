@@ -5,8 +5,9 @@ import copy
 import pytest
 from board_session import make_record, run_board, unlabelled
 
-from sixflip import correction_record, record_terms
-from sixflip.record_sections import FIELDS
+from sixflip.record import correction_record
+from sixflip.record.correction_record import FIELDS
+from sixflip_host import record_terms
 from sixflip_host.calibrate import unverifiable
 from sixflip_host.calibrate.verification import verify
 from sixflip_host.capture import capture_binary

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from board_session import leave_files, unlabelled
 
-from sixflip import correction_record
+from sixflip.record import correction_record
 from sixflip_host.calibrate import reference_gyro
 from sixflip_host.capture import capture_binary, capture_file
 from sixflip_host.cli import main
@@ -114,7 +114,7 @@ def test_an_axis_kept_from_the_record_before(tmp_path, capsys):
     """No good flip about x: its values are those of the older record, and are looked up there."""
     from board_session import make_record, run_board
 
-    from sixflip import gyroscope
+    from sixflip.gyro import solver as gyroscope
     capture = unlabelled(**SESSION)
     data, placements, moves = run_board(capture)
     old = [[1.01, 0.002, 0.0], [0.0, 0.99, 0.001], [0.003, 0.0, 1.02], [0.01, 0.02, -0.01]]

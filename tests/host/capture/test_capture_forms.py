@@ -7,9 +7,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from sixflip.capture_blocks import ACCEL, GYRO, TEMP
-from sixflip.capture_writer import BlockWriter
-from sixflip.placement import Placement
+from sixflip.capture.blocks import ACCEL, GYRO, TEMP
+from sixflip.capture.writer import BlockWriter
+from sixflip.poses.placement import Placement
 from sixflip_host import cli
 from sixflip_host.capture import capture_binary, capture_file
 from sixflip_host.errors import BadFile

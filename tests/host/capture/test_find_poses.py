@@ -5,7 +5,7 @@ import pytest
 from board_session import unlabelled
 from hand_session import Rotation, Sensor, face_attitude, session, six_faces
 
-from sixflip.faces import pose_name
+from sixflip.poses.faces import pose_name
 from sixflip_host.capture.attitude import heading_change
 from sixflip_host.capture.find_poses import find_poses
 from sixflip_host.capture.rests import rest
@@ -76,7 +76,7 @@ def test_nothing_still_at_all():
 def test_heading_change(face, turn):
     capture = session_of((face, 20), ((face + 2) % 6, 0), (face, 20 + turn))
     rests = [rest(capture, first, first + 400) for first in (0, 650, 1300)]
-    from sixflip.faces import AXIS, SIGN
+    from sixflip.poses.faces import AXIS, SIGN
     found = heading_change(capture, rests, capture.gyro[:400].mean(axis=0), AXIS[face],
                            SIGN[face])
     assert (found - turn + 180) % 360 - 180 == pytest.approx(0, abs=8)

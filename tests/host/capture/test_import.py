@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from sixflip.faces import pose_name
+from sixflip.poses.faces import pose_name
 from sixflip_host.calibrate import solution
 from sixflip_host.capture import capture_file
 from sixflip_host.capture.imports import units

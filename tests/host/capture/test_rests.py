@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from sixflip.still_window import StillWindow
+from sixflip.poses.still_window import StillWindow
 from sixflip_host.capture import rests, still_windows
 from sixflip_host.capture.capture_file import Capture
 

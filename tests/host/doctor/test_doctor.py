@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 from written_records import make_record
 
-from sixflip import correction_record
+from sixflip.record import correction_record
 from sixflip_host.board import firmware_update
 from sixflip_host.board.board_events import wait_for
 from sixflip_host.board.board_link import MpremoteLink

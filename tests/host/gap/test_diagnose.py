@@ -5,7 +5,8 @@ import xml.etree.ElementTree as ElementTree
 import numpy as np
 import pytest
 
-from sixflip import capture_blocks, capture_writer
+from sixflip.capture import blocks as capture_blocks
+from sixflip.capture import writer as capture_writer
 from sixflip_host import cli
 from sixflip_host.capture import capture_file
 from sixflip_host.simulation import scenario, simulated_session

@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from sixflip import pose_codes
+from sixflip.poses import faces
 from sixflip_host.diagnosis import answer, diagnosis
 from sixflip_host.experiment import blocks
 from sixflip_host.simulation import scenario, simulated_session
@@ -25,7 +25,7 @@ def steady(capture):
 
 
 def no_flips(capture):
-    flipped = [code for code in range(1, 13) if pose_codes.is_b(code)]
+    flipped = [code for code in range(1, 13) if faces.is_b(code)]
     capture.pose[np.isin(capture.pose, flipped)] = 0
 
 

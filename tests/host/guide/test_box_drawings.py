@@ -2,7 +2,7 @@
 
 import pytest
 
-from sixflip.faces import FACES
+from sixflip.poses.faces import FACES
 from sixflip_host.guide import box_drawings as drawings
 
 

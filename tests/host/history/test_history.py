@@ -10,10 +10,10 @@ import pytest
 from board_session import leave_files, make_record, unlabelled
 from PIL import Image
 
-from sixflip import correction_record
+from sixflip.record import correction_record
 from sixflip_host.capture import capture_binary, capture_file
 from sixflip_host.cli import main
-from sixflip_host.history import drift, remember, store
+from sixflip_host.history import drift, parameters, remember, store
 from sixflip_host.verbs import calibrate
 
 BOARD = "e6614c311b4c5a2f"
@@ -337,3 +337,12 @@ def test_all_rows_or_none(file):
     with pytest.raises(Exception, match="at is nothing"):
         store.add(file, [good, bad])
     assert store.read(file) == []
+
+
+def test_the_bias_of_a_gyros_matrix_is_what_it_maps_to_zero():
+    matrix = np.array([[0.98, 0.01, 0.0], [0.0, 1.02, -0.01], [0.02, 0.0, 1.0],
+                       [0.01, -0.02, 0.005]])
+    bias = np.radians(parameters.gyro_bias_dps(matrix.tolist()))
+    assert bias @ matrix[:3] + matrix[3] == pytest.approx(np.zeros(3), abs=1e-12)
+    with pytest.raises(ValueError):
+        parameters.gyro_bias_dps([[0.0] * 3] * 4)

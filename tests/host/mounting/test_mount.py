@@ -8,7 +8,7 @@ import pytest
 from board_session import leave_files, unlabelled
 from resting import rest
 
-from sixflip import correction_record, mounting
+from sixflip.record import correction_record, mounting
 from sixflip_host import cli
 from sixflip_host.capture import capture_file
 from sixflip_host.errors import CheckFailed, UsageError

@@ -20,7 +20,7 @@ def found():
 
 
 def test_the_papers_sensor_gives_the_papers_parameters():
-    from sixflip.scale_form import scale_form
+    from sixflip.accelerometer.scale_form import scale_form
     A, b = paper_tables.sensor()
     C = np.linalg.inv(A)
     P = np.zeros((4, 4))

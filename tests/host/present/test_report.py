@@ -10,7 +10,7 @@ import pytest
 from board_session import leave_files, unlabelled
 from PIL import Image
 
-from sixflip.faces import pose_name
+from sixflip.poses.faces import pose_name
 from sixflip_host.calibrate import solution
 from sixflip_host.capture import capture_binary, capture_file
 from sixflip_host.cli import main

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from board_session import leave_files, unlabelled
 
-from sixflip.correction import Correction
+from sixflip.record.correction import Correction
 from sixflip_host.capture import capture_file
 from sixflip_host.cli import main
 

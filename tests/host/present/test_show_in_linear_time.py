@@ -2,10 +2,10 @@
 
 import json
 
-from sixflip.capture_blocks import ACCEL
-from sixflip.capture_reader import read
-from sixflip.capture_writer import BlockWriter
-from sixflip.placement import Placement
+from sixflip.capture.blocks import ACCEL
+from sixflip.capture.reader import read
+from sixflip.capture.writer import BlockWriter
+from sixflip.poses.placement import Placement
 from sixflip_host.cli import main
 
 META = json.dumps({"sensor": "adxl345", "rate_hz": 100, "accel_lsb_per_g": 256}).encode()
@@ -43,7 +43,7 @@ def session(poses, withdrawn, notes=0):
 
 def looks(poses, withdrawn, monkeypatch):
     """How often the reader looks at the code of a pose."""
-    from sixflip import capture_reader
+    from sixflip.capture import reader as capture_reader
     monkeypatch.setattr(capture_reader, "Placement", lambda code, *more: Placement(
         Counted(code), *more))
     Counted.looked = 0

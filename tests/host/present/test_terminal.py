@@ -2,7 +2,7 @@
 
 import io
 
-from sixflip.faces import FACES
+from sixflip.poses.faces import FACES
 from sixflip_host import terminal
 from sixflip_host.board.console import Console
 from sixflip_host.present import gap_words

@@ -5,8 +5,8 @@ from array import array
 import numpy as np
 import pytest
 
-from sixflip import faces
 from sixflip.chips import probe
+from sixflip.poses import faces
 from sixflip_host.capture import capture_file
 from sixflip_host.cli import Parser
 from sixflip_host.errors import BadFile, UsageError

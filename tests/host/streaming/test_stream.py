@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from sixflip import correction_record
+from sixflip.record import correction_record
 from sixflip_host import cli
 from sixflip_host.board import firmware_update
 from sixflip_host.board.board_link import MpremoteLink
@@ -212,7 +212,7 @@ def test_boards_that_do_not_stream(lines, what):
 
 
 def test_time_beyond_32_bits():
-    from sixflip.stream_frame import RAW, FrameWriter
+    from sixflip.capture.stream_frame import RAW, FrameWriter
     writer = FrameWriter(RAW)
     times = [2 ** 32 - 20000, 2 ** 32 - 10000, 2 ** 32, 2 ** 32 + 10000]
     frames = [bytes(writer.frame(t, [0] * 7))[:-1] for t in times]

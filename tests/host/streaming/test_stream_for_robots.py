@@ -13,7 +13,7 @@ import dds_loopback
 import pytest
 from written_records import of_a_gy85
 
-from sixflip import correction_record
+from sixflip.record import correction_record
 from sixflip_host import cli
 from sixflip_host.board import firmware_update
 from sixflip_host.board.local_link import LocalLink

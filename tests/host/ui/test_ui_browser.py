@@ -13,7 +13,7 @@ from board_session import unlabelled
 from selenium.common.exceptions import StaleElementReferenceException
 from served import ScriptedLink, Served, until
 
-from sixflip.faces import FACES
+from sixflip.poses.faces import FACES
 from sixflip_host.capture import capture_file
 from sixflip_host.errors import NoBoard
 from sixflip_host.guide import box_drawings

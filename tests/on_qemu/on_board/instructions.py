@@ -78,10 +78,10 @@ def run(pose_samples):
     from float_lists import FloatSession
     from float_lists import solve as solve_lists
 
-    from sixflip import accelerometer
-    from sixflip.capture_writer import BlockWriter
-    from sixflip.session import Session
-    from sixflip.six_faces import solve as solve_means
+    from sixflip.accelerometer import solver as accelerometer
+    from sixflip.accelerometer.six_faces import solve as solve_means
+    from sixflip.capture.writer import BlockWriter
+    from sixflip.poses.session import Session
     start()
     made = [None]
 

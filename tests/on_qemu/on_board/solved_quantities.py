@@ -1,9 +1,10 @@
 """Everything a session's solve gives, by name: run here and on the host from the same integers."""
 
-from sixflip import accelerometer, gyroscope
-from sixflip.flip_angle import measured_angles
-from sixflip.placement import Move, Placement
-from sixflip.verdict import judge_accelerometer
+from sixflip.accelerometer import solver as accelerometer
+from sixflip.accelerometer.verdict import judge_accelerometer
+from sixflip.gyro import solver as gyroscope
+from sixflip.gyro.flips import measured_angles
+from sixflip.poses.placement import Move, Placement
 
 NOMINAL = [[1.0 if i == j else 0.0 for j in range(3)] for i in range(4)]
 

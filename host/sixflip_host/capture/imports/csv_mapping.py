@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 
-from sixflip.pose_codes import pose_code
+from sixflip.poses.faces import pose_code
 
 from ... import atomic_write
 from ...errors import BadFile, UsageError

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from sixflip import faces
+from sixflip.poses import faces
 
 from .detection import Finding, present
 

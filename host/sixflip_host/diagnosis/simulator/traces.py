@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sixflip import faces
+from sixflip.poses import faces
 
 from ...capture import rests as rest_finder
 from ...capture.attitude import _between, _rotation

@@ -10,8 +10,8 @@ import math
 
 import numpy as np
 
-from sixflip.correction import Correction
-from sixflip.heading import Heading
+from sixflip.gyro.heading import Heading
+from sixflip.record.correction import Correction
 from sixflip_sim import noise, worlds
 from sixflip_sim.effects import typical
 
