@@ -18,7 +18,7 @@ from .flash_files import free_bytes
 
 
 def _info(unit, command):
-    from .cut_short import unfinished
+    from .capture.cut_short import unfinished
     record = unit.record
     unit.events.emit(
         "info", board=unit.board.name, id=unit.board.unique_id,
@@ -74,17 +74,17 @@ def _stop(unit, command):
 
 
 def _restore(unit, command):
-    from . import in_force
-    in_force.restore(unit)
+    from .record import active_record
+    active_record.restore(unit)
 
 
 def _check(unit, command):
-    from .refresh import check
+    from .record.refresh import check
     check(unit)
 
 
 def _mount(unit, command):
-    from .mount import asked
+    from .record.mount import asked
     asked(unit, command)
 
 

@@ -3,7 +3,30 @@
 The first key is always "event". Lines are pure ASCII whatever the text was, floats carry
 seven significant digits (a single-precision board has no more), and NaN or infinity, which
 JSON does not know, becomes null.
+
+Text that cannot stand in JSON as it is: quotes, control characters, beyond ASCII.
+
+Lines from the host: one JSON object each, with a "cmd".
 """
+
+import json
+
+
+def quoted(value):
+    out = ['"']
+    for ch in value:
+        code = ord(ch)
+        if ch == '"' or ch == "\\":
+            out.append("\\" + ch)
+        elif 32 <= code < 127:
+            out.append(ch)
+        elif code < 0x10000:
+            out.append("\\u%04x" % code)
+        else:
+            code -= 0x10000
+            out.append("\\u%04x\\u%04x" % (0xD800 + (code >> 10), 0xDC00 + (code & 0x3FF)))
+    out.append('"')
+    return "".join(out)
 
 
 def _as_it_is(byte):
@@ -14,7 +37,6 @@ def _text(value):
     # its bytes: MicroPython keeps every character it ever made as a name, for good
     if all(map(_as_it_is, value.encode("utf-8", "surrogatepass"))):
         return '"' + value + '"'
-    from .json_escapes import quoted  # hardly any text needs it
     return quoted(value)
 
 
@@ -61,3 +83,25 @@ class Events:
     def error(self, what, expected="", **fields):
         """Something is wrong: what, and what was expected instead."""
         self.emit("error", what=what, expected=expected, **fields)
+
+
+class HostLine:
+    """poll() -> the next command as a dict, or None. A bad line is answered, never fatal."""
+
+    def __init__(self, board, events):
+        self._read_line = board.read_line
+        self._events = events
+
+    def poll(self):
+        line = self._read_line()
+        if line is None or not line.strip():
+            return None
+        try:
+            command = json.loads(line)
+        except (ValueError, RuntimeError):  # RuntimeError: nested too deep
+            command = None
+        if not isinstance(command, dict) or not isinstance(command.get("cmd"), str):
+            self._events.error("a line that is no command: " + line[:40],
+                               'expected a JSON object such as {"cmd": "info"}')
+            return None
+        return command

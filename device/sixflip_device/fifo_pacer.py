@@ -7,7 +7,7 @@ much, and moves both. In between, samples are a period apart. Whole numbers thro
 of a microsecond.
 """
 
-from .bus_recovery import READ
+from .sensor import READ
 
 BATCH = 8           # samples to wait for at a time
 SILENT_US = 500000  # without a sample: the chip hangs

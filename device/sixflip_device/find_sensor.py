@@ -21,7 +21,7 @@ def find(board, settings, tries=3):
     """
     from sixflip.chips import probe
 
-    from .bus_recovery import free_bus, sleeper
+    from .sensor import free_bus, sleeper
 
     for k in range(tries):
         try:

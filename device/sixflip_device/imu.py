@@ -7,11 +7,12 @@
 
 from array import array
 
-from . import in_force, power_up
-from .bus_recovery import READ, Sensor
+from . import power_up
 from .events import Events
 from .find_sensor import find
-from .repeats import Repeats
+from .frozen_sensor import Repeats
+from .record import active_record
+from .sensor import READ, Sensor
 
 
 class CorrectedImu:
@@ -29,7 +30,7 @@ class CorrectedImu:
 
     def __init__(self, board=None, rest_s=None, report=None):
         if board is None:
-            from .this_board import board_here
+            from .boards.this_board import board_here
             board, values, _ = board_here()
         else:
             from . import settings
@@ -41,17 +42,17 @@ class CorrectedImu:
         self._repeats = Repeats(unit.sensor, unit.events)
         self._sample = array("h", [0] * 7)
         self._out = array("f", [0.0] * 6)
-        self.reason = in_force.recall(unit)
-        in_force.use(unit, unit.slot, unit.record)
+        self.reason = active_record.recall(unit)
+        active_record.use(unit, unit.slot, unit.record)
         if unit.record is not None and unit.record.terms:
-            from .terms import bring
+            from .record.terms import bring
             bring(unit)
         self.calibrated = unit.record is not None
         if rest_s != 0 and imu.has_gyro:
-            from .refresh import refresh
+            from .record.refresh import refresh
             rest = refresh(unit, rest_s)
             if self.calibrated and values["mounting"] is not None:
-                from .mount import at_power_up
+                from .record.mount import at_power_up
                 at_power_up(unit, rest)
 
     def _read(self):

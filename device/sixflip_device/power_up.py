@@ -19,9 +19,8 @@ phase is let go of when it ends: a small board must not hold solver and session 
 import gc
 import sys
 
-from .events import Events
+from .events import Events, HostLine
 from .flash_files import FLAG, size
-from .host_line import HostLine
 
 
 class Unit:
@@ -78,13 +77,25 @@ class Unit:
 
 
 # Small and needed in every phase, or behind objects that outlive one.
-LASTING = ("sixflip_device.power_up", "sixflip_device.events", "sixflip_device.host_line",
+LASTING = ("sixflip_device.power_up", "sixflip_device.events",
            "sixflip_device.flash_files", "sixflip_device.boards", "sixflip.chips",
            "sixflip.poses.faces", "sixflip.poses.placement", "sixflip.record.record")
 # As long as there is a sensor; of the drivers only what the sensor is made of.
-SAMPLING = ("sixflip_device.led", "sixflip_device.bus_recovery", "sixflip_device.pacer",
-            "sixflip_device.fifo_pacer", "sixflip.poses.still_window")
+SAMPLING = ("sixflip_device.led", "sixflip_device.sensor", "sixflip_device.fifo_pacer",
+            "sixflip.poses.still_window")
 
+
+PLACES = {
+    "start": "session.start", "recall": "record.load_record", "rest": "record.rest",
+    "put_in_force": "record.activate", "asked": "session.session_request",
+    "redo_session": "session.redo_session", "sampling": "session.sampling",
+    "checking": "session.checking", "flips_turned": "session.flips_turned",
+    "solving": "session.solving", "judging": "session.judging",
+    "remember": "session.previous_record", "solving_gyro": "session.solving_gyro",
+    "gyro_signs": "session.gyro_signs", "holding_flips": "session.holding_flips",
+    "judging_gyro": "session.judging_gyro", "judging_flips": "session.judging_flips",
+    "saving": "record.saving", "resume": "record.reopen_sensor", "reuse": "record.apply_record",
+    "terms": "record.terms", "stream": "stream.stream"}
 
 THRESHOLD = 4096   # bytes
 SMALL_HEAP = 262144
@@ -112,7 +123,7 @@ def free_unlasting(sensor=None):
 
 def _run_phase(name, unit):
     # a function of its own: a frame that lives on keeps alive what passed through it
-    return __import__("sixflip_device." + name, None, None, ["run"]).run(unit)
+    return __import__("sixflip_device." + PLACES.get(name, name), None, None, ["run"]).run(unit)
 
 
 def run(board, settings, problems=()):
@@ -143,7 +154,7 @@ def run(board, settings, problems=()):
 
 
 def main():
-    from .this_board import board_here
+    from .boards.this_board import board_here
     board, values, problems = board_here()
     board_here = None
     free_unlasting()

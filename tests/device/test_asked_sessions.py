@@ -9,7 +9,7 @@ from test_power_up import STILL, Folder
 
 from sixflip.capture.reader import read as read_blocks
 from sixflip.poses.faces import pose_name
-from sixflip_device import asked, redo_session
+from sixflip_device.session import redo_session, session_request
 from sixflip_host.capture import capture_binary
 
 FACES = "Z+a Z+b X+a X+b Y-a Y-b Z-a Z-b X-a X-b Y+a Y+b"
@@ -97,7 +97,7 @@ class Plan(Folder):
 
     def test_an_empty_request_is_the_ordinary_session(self):
         for request in (None, {}, {"cmd": "calibrate"}):
-            self.assertEqual(asked.parse(request, 400), None)
+            self.assertEqual(session_request.parse(request, 400), None)
 
 
 class Redo(Folder):
@@ -197,12 +197,12 @@ class Redo(Folder):
         self.assertNotIn("capture.new", self.files())
 
     def test_of_a_session_that_kept_only_the_sums(self):
-        from sixflip_device import capture_store
-        real, capture_store.free_bytes = capture_store.free_bytes, lambda root: 30000
+        from sixflip_device.capture import store
+        real, store.free_bytes = store.free_bytes, lambda root: 30000
         try:
             self.calibrated()
         finally:
-            capture_store.free_bytes = real
+            store.free_bytes = real
         board = self.redo("X+")
         self.assertEqual(board.only("solved")["verdict"], "good")
         self.assertTrue(board.only("capture")["sums_only"])

@@ -9,8 +9,10 @@ from array import array
 from sixflip.capture.blocks import ACCEL
 from sixflip.capture.reader import read as read_blocks
 from sixflip.poses.placement import Placement
-from sixflip_device import capture_files, capture_store, cut_short, flash_files
-from sixflip_device.capture_store import CaptureStore
+from sixflip_device import flash_files
+from sixflip_device.capture import cut_short, files
+from sixflip_device.capture import store as capture_store
+from sixflip_device.capture.store import CaptureStore
 
 
 class FullFile:
@@ -71,7 +73,7 @@ class TestCaptureStore(unittest.TestCase):
             store = self.store()
             self.session(store)
             store.finish(complete, self.placements)
-            capture_files.refuse(self.root)
+            files.refuse(self.root)
             self.assertEqual(cut_short.unfinished(self.root), not complete)
 
     def test_all_of_it(self):
@@ -172,9 +174,9 @@ class TestCaptureStore(unittest.TestCase):
         store = self.store()
         self.session(store)
         store.finish(True, self.placements)
-        capture_files.finish_interrupted(self.root, 8)
+        files.finish_interrupted(self.root, 8)
         self.assertEqual(os.listdir(self.root), ["capture.new"])
-        capture_files.finish_interrupted(self.root, 7)
+        files.finish_interrupted(self.root, 7)
         self.assertEqual(os.listdir(self.root), ["capture.bin"])
 
     def test_a_session_whose_name_begins_like_the_records_is_another_one(self):
@@ -183,7 +185,7 @@ class TestCaptureStore(unittest.TestCase):
         os.rename(self.root + "capture.new", self.root + "x")
         with open(self.root + "x", "rb") as f, open(self.root + "capture.new", "wb") as g:
             g.write(f.read().replace(b'"session": 7', b'"session": 71'))
-        capture_files.finish_interrupted(self.root, 7)
+        files.finish_interrupted(self.root, 7)
         self.assertIn("capture.new", os.listdir(self.root))
 
     def test_power_cut_in_mid_session(self):

@@ -8,8 +8,8 @@ import unittest
 from simulated_board import SHORT_WORLD, SimulatedBoard, power_on
 
 from sixflip.poses import still_window
+from sixflip_device.frozen_sensor import SAME
 from sixflip_device.imu import CorrectedImu
-from sixflip_device.repeats import SAME
 from sixflip_sim import worlds
 
 RATE_HZ = 50

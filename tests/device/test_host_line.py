@@ -4,8 +4,7 @@ import json
 import unittest
 
 from sixflip_device.boards.board import Board, LineReader
-from sixflip_device.events import Events
-from sixflip_device.host_line import HostLine
+from sixflip_device.events import Events, HostLine
 
 
 class Typed(Board):

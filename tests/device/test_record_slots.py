@@ -7,8 +7,9 @@ import tempfile
 import unittest
 
 from sixflip.record.correction_record import Record, encode
-from sixflip_device import flash_files, record_slots
-from sixflip_device.record_slots import RecordSlots
+from sixflip_device import flash_files
+from sixflip_device.record import record_slots
+from sixflip_device.record.record_slots import RecordSlots
 
 
 class PowerCut(BaseException):

@@ -7,7 +7,8 @@ import unittest
 from simulated_board import STOP_WHEN_READY, SimulatedBoard, power_on
 
 from sixflip.capture.reader import read as read_blocks
-from sixflip_device import capture_store, flash_files
+from sixflip_device import flash_files
+from sixflip_device.capture import store
 from sixflip_host.board.stream_reader import decode_piece
 from sixflip_sim import worlds
 
@@ -38,7 +39,7 @@ class TestRecording(unittest.TestCase):
         self.root = os.path.join(self.folder.name, "")
 
     def tearDown(self):
-        capture_store.free_bytes = flash_files.free_bytes
+        store.free_bytes = flash_files.free_bytes
         self.folder.cleanup()
 
     def board(self, request, *answers):
@@ -76,7 +77,7 @@ class TestRecording(unittest.TestCase):
         self.assertEqual(n, len(read_blocks(self.file()).t_us))
 
     def test_the_host_gets_what_the_flash_has_no_room_for(self):
-        capture_store.free_bytes = lambda root: 30000
+        store.free_bytes = lambda root: 30000
         board = self.board('{"poses": "Z+a Z+b X+a X+b", "samples": 100, "record": true}')
         flash = read_blocks(self.file("refused.bin"))
         self.assertTrue(flash.sums_only and not len(flash.t_us))

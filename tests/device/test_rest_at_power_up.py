@@ -12,10 +12,11 @@ import unittest
 from simulated_board import SimulatedBoard, power_on
 
 from sixflip.record import correction_record
-from sixflip_device import at_rest, settings
-from sixflip_device.bus_recovery import Sensor
+from sixflip_device import settings
 from sixflip_device.events import Events
 from sixflip_device.find_sensor import find
+from sixflip_device.record import at_rest
+from sixflip_device.sensor import Sensor
 from sixflip_sim import rotation, worlds
 
 G = 9.80665

@@ -3,8 +3,9 @@
 import unittest
 
 from sixflip.capture.stream_frame import HEADING, RAW
-from sixflip_device import commands, stream
+from sixflip_device import commands
 from sixflip_device.boards.board import LineReader
+from sixflip_device.stream import stream
 from sixflip_host.board.stream_reader import decode
 
 

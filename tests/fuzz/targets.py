@@ -24,7 +24,7 @@ from sixflip.capture import reader as capture_reader
 from sixflip.record import correction_record
 from sixflip.record.correction import correction_of
 from sixflip_device import settings as device_settings
-from sixflip_device.host_line import HostLine
+from sixflip_device.events import HostLine
 from sixflip_host import cli, json_numbers
 from sixflip_host.board import board_answers, board_events, console
 from sixflip_host.board.board_schema import ANSWERS

@@ -41,7 +41,7 @@ def install(board, power_up):
 
     def phase(name, unit):
         if name == "sampling":
-            from sixflip_device import guided_session
+            from sixflip_device.session import guided_session
             plain = guided_session.GuidedSession
 
             def made(unit, store):

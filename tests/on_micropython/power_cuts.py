@@ -25,7 +25,8 @@ import vfs  # noqa: E402
 from cut_flash import ERASE, SYNC, WAYS, Cuts, Random, Recorded  # noqa: E402
 from written import FULL, Written, record, unit_at  # noqa: E402
 
-from sixflip_device import flash_files, recall, record_slots  # noqa: E402
+from sixflip_device import flash_files  # noqa: E402
+from sixflip_device.record import load_record, record_slots  # noqa: E402
 
 FLASH = "/flash"
 SHAPES = {"lfs2": (64, 4096, False), "fat": (512, 512, True)}
@@ -113,7 +114,7 @@ class Run:
 
     def _power_up(self, root):
         unit = unit_at(root)
-        recall.run(unit)
+        load_record.run(unit)
         return unit
 
     def _save_again(self, root):

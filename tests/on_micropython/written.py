@@ -8,8 +8,11 @@ from sixflip.capture import reader as capture_reader
 from sixflip.capture.blocks import ACCEL, GYRO, TEMP
 from sixflip.poses.placement import Placement
 from sixflip.record.record import Record
-from sixflip_device import capture_meta, flash_files, record_slots, redo_session, saving
-from sixflip_device.capture_store import CaptureStore
+from sixflip_device import flash_files
+from sixflip_device.capture import meta as capture_meta
+from sixflip_device.capture.store import CaptureStore
+from sixflip_device.record import record_slots, saving
+from sixflip_device.session import redo_session
 
 MASK = ACCEL | GYRO | TEMP
 POSES = 12
@@ -158,7 +161,7 @@ class Written:
 
     def redo(self, root, log):
         """What redo_session.py and sampling.py do: the old capture copied, then a face more."""
-        from sixflip_device import asked_session
+        from sixflip_device.session import asked_session
         unit = unit_at(root)
         unit.taken = asked = Nothing()
         asked.face, asked.wanted, asked.before = 0, None, True

@@ -21,7 +21,7 @@ from sixflip.poses import session as machine
 from sixflip.poses.faces import AXIS, FACES, SIGN
 from sixflip.poses.pose_check import judge_session
 from sixflip.record.record import Record
-from sixflip_device import (
+from sixflip_device.session import (
     gyro_signs,
     holding_flips,
     judging,

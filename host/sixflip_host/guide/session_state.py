@@ -26,7 +26,7 @@ class State:
     missing      poses still to come, in a session of six faces
     plan, at, of, next   a session by a plan: placements done, their number, the next one's name
     box, pose, reason, value, limit, unit, progress, total, left_s   the live state, see
-                 device/sixflip_device/session_teller.py; heard: number of live states
+                 device/sixflip_device/session/teller.py; heard: number of live states
     vector, rate three numbers each, g and deg/s, or None; trail: tuple of (second, vector, rate)
     refusal      why the last placement was not taken, "" once one was
     solved, saved, record   those events' own values, {} before

@@ -9,7 +9,7 @@ from ..errors import UsageError
 from . import plan_file, protocols
 
 SETTLING_S = 1.0        # of a dwell: until the board has seen that the box is at rest
-SHORTEST, LONGEST = 50, 60000   # samples of a pose; device/sixflip_device/asked.py
+SHORTEST, LONGEST = 50, 60000   # samples of a pose, as session_request.py on the board says
 MOST_POSES, MOST_TEXT = 200, 4096
 
 

@@ -6,7 +6,7 @@ Prints one Python literal a line, ("name", ...). Nothing is changed but the sens
 from array import array
 
 from sixflip.chips.catalogue import CHIPS
-from sixflip_device.this_board import board_here
+from sixflip_device.boards.this_board import board_here
 
 ASKED = sorted({(address, row[3], 1) for row in CHIPS for address in row[2]}) + [
     (0x1E, 0x0A, 3), (0x0D, 0x0D, 1), (0x7C, 0x00, 1)]
@@ -103,11 +103,11 @@ def count_ready(board, chip):
 
 def measured(board, imu, settings):
     """The firmware's own self-test, and the mean of some samples."""
-    from sixflip_device import self_test
-    from sixflip_device.bus_recovery import Sensor
+    from sixflip_device.sensor import Sensor
+    from sixflip_device.session import start
     quiet = Quiet()
     sensor = Sensor(board, imu, settings, quiet)
-    answer = self_test.run(board, sensor, settings["rate_hz"])
+    answer = start.run(board, sensor, settings["rate_hz"])
     sample = array("h", [0] * 7)
     sums = [0] * 7
     n = 0
