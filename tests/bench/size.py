@@ -1,9 +1,10 @@
 """Flash and heap of every module of the firmware, as a table: `make size`.
 
-flash, .py   bytes of the source, which is what `sixflip provision` copies
+flash, .py   bytes of the source, which `sixflip provision` copies to a MicroPython that loads no
+             compiled files of the version it makes
 flash, .mpy  bytes of the same compiled by MicroPython 1.25's mpy-cross
-heap         bytes of the module alone, compiled on an emulated Cortex-M3 (32-bit objects) with
-             what it imports there already; a phase's modules are let go of when it ends
+heap         bytes of the compiled module alone, loaded by an emulated Cortex-M3 (32-bit objects)
+             with what it imports there already
 
 With --write the table goes to device/README.md, where tests/host/test_size_table.py looks at it.
 """
@@ -27,9 +28,8 @@ TABLE = Path(__file__).resolve().parents[2] / "device" / "README.md"
 HEAD = """# What lands on the board
 
 `main.py` runs at power-up, `sixflip` is the shared core, `sixflip_device` the firmware around
-it. Bytes, printed by `make size`: the source as `sixflip provision` copies it, the same compiled
-by mpy-cross of MicroPython 1.25, and the heap that the module alone takes on a 32-bit board. Not
-all of them are there at once: a phase of the session is let go of when it ends.
+it. Bytes, printed by `make size`: the source, the same compiled by mpy-cross of MicroPython 1.25 as
+`sixflip provision` copies it, and the heap that the compiled module alone takes on a 32-bit board.
 """
 
 

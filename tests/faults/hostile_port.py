@@ -18,6 +18,8 @@ import time
 import serial
 from real_dialogue import ASKED, dialogue
 
+from sixflip_host.board.on_board_scripts import STAGED
+
 BYTE_S = 1e-4           # ten bits at 100 kBd
 ENOUGH = 4096           # bytes that a port says are waiting
 WRITTEN = re.compile(rb"f = open\((.+), 'wb'\)")
@@ -200,8 +202,8 @@ class HostileBoard:
             name = eval(re.search(rb"name = (.+)\n", code).group(1))
             self.files[name] = self.files.pop(name + ".new")
         elif b"exec(open" in code:
-            for name in [name for name in self.files if name.endswith(".new")]:
-                self.files[name[:-4]] = self.files.pop(name)
+            for name in [name for name in self.files if name.startswith(STAGED)]:
+                self.files[name[len(STAGED):]] = self.files.pop(name)
             self.files.pop("sixflip_update.py", None)
         elif b"os.remove(" in code:
             del self.files[eval(re.search(rb"os.remove\((.+)\)", code).group(1))]
@@ -213,7 +215,7 @@ class HostileBoard:
         out = b""
         for name in wanted if alone else list(self.files):
             digest = hashlib.sha256(self.files[name]).hexdigest()
-            hashed = wanted is None or name in wanted or name[:-4] in wanted
+            hashed = wanted is None or name.removeprefix(STAGED) in wanted
             out += b"%r\r\n" % ((name, len(self.files[name]), digest if hashed else None),)
         return out
 

@@ -22,7 +22,10 @@ from sixflip_host.virtual.virtual_board import VirtualBoard
 from sixflip_sim import worlds
 
 STILL = {"sensor": "mpu6050", "seed": 3, "order": []}
-PARTS = ("sixflip_device/power_up.py", "sixflip_device/a.py", "sixflip/b.py")
+# The second version has a folder where the first one had a module.
+PARTS = {1: ("sixflip_device/power_up.py", "sixflip_device/a.py", "sixflip/b.py"),
+         2: ("sixflip_device/power_up.py", "sixflip_device/a.py", "sixflip/b/core.py")}
+IMPORT = {1: "from sixflip import b", 2: "from sixflip.b import core as b"}
 SESSION = {"sensor": "mpu6050", "seed": 3, "tilt_deg": 2.0}
 POSES = tuple(face + letter for face in ("Z+", "Z-", "X+", "X-", "Y+", "Y-") for letter in "ab")
 # What is heard when the cable is pulled out of a board that calibrates.
@@ -51,10 +54,11 @@ def impatient():
 
 def firmware(folder, version):
     """A firmware of three modules that says which version each of them is; main.py is ours."""
-    hello = ('def main():\n    from sixflip_device import a\n    from sixflip import b\n'
+    hello = ('def main():\n    from sixflip_device import a\n    %s\n'
              '    print(\'{"event": "hello", "who_am_i": [%d, %%d, %%d]}\' %% (a.V, b.V))\n')
-    sources = {PARTS[0]: hello % version, PARTS[1]: "V = %d\n" % version,
-               PARTS[2]: "V = %d\n" % version,
+    power_up, a, b = PARTS[version]
+    sources = {power_up: hello % (IMPORT[version], version), a: "V = %d\n" % version,
+               b: "V = %d\n" % version,
                "sixflip/__init__.py": "", "sixflip_device/__init__.py": ""}
     files = {}
     for name, text in sources.items():
@@ -116,7 +120,7 @@ class Provisioned:
                 found = self.parts(link)
                 self.copy(link, self.new)
                 left = [name for name in link.files([]) if name.endswith(".new")
-                        or name == "sixflip_update.py"]
+                        or name.startswith(("sixflip_new", "sixflip_update", "sixflip/b."))]
                 return found, cut, self.parts(link), left
 
 

@@ -18,6 +18,7 @@ from on_micropython import session_tape
 
 from sixflip_host.atomic_write import write_bytes
 from sixflip_host.board.board_files import board_files
+from sixflip_host.board.compiled_firmware import FORMAT, for_board
 from sixflip_host.errors import SixflipError
 from sixflip_host.virtual.debian_packages import KEYRING, apt_get, cache_dir, debian_mirror
 from sixflip_host.virtual.micropython_fetch import SUITE
@@ -55,9 +56,13 @@ def frozen_files():
     return files
 
 
-def board_sources():
-    """{path on a board: bytes}: the firmware as it is provisioned, to be compiled there."""
-    return {name: path.read_bytes() for name, path in board_files().items()}
+def provisioned():
+    """{path on a board: bytes}: the firmware as it is provisioned, compiled."""
+    files, why = for_board({name: path.read_bytes() for name, path in board_files().items()},
+                           FORMAT)
+    if why:
+        raise RuntimeError("the firmware stays source: " + why)
+    return files
 
 
 def missing_tools():
@@ -162,8 +167,7 @@ def _build(board):
         except (SixflipError, subprocess.SubprocessError) as error:
             raise Unavailable("MicroPython's source package cannot be had: %s" % error) from None
     files = {name: path.read_bytes() for name, path in frozen_files().items()}
-    sources = board_sources()
-    files["sources.py"] = ("FILES = %r\n" % sources).encode()
+    files["provisioned.py"] = ("FILES = %r\n" % provisioned()).encode()
     files["tapes.py"] = tape_module().read_bytes()
     digest = hashlib.sha256()
     for name, data in sorted(files.items()):

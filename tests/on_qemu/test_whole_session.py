@@ -1,5 +1,6 @@
-"""A power-up with a whole session on the emulated board, the firmware compiled there: in less
-than the port's heap, nothing allocated while sampling, and the outcome of double precision."""
+"""A power-up with a whole session on the emulated board, the firmware compiled as provision sends
+it: in less than the port's heap, nothing allocated while sampling, and the outcome of double
+precision."""
 
 import io
 import json
@@ -21,7 +22,7 @@ from .firmware import ALL_CHIPS, POSE_SAMPLES, tape_bursts
 from .simulated_sums import vector_error_mg
 
 HEAP = 140032  # what the port leaves of its 140 KB
-SMALL_HEAP = 80 * 1024  # of which the test itself holds some 5; the limit is 100 KB
+SMALL_HEAP = 100 * 1024  # the limit for a whole session; the test itself holds some 5 KB of it
 SMALL = {"ballast": HEAP - SMALL_HEAP, "pose_samples": POSE_SAMPLES}
 
 

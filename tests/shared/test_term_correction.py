@@ -3,13 +3,13 @@
 import math
 import unittest
 
+import sixflip_host.record_terms as record_terms
 from sixflip.accelerometer.normal_equations import DOUBLE
 from sixflip.accelerometer.scale_form import inverse3
 from sixflip.record.correction import Correction, correction_of
 from sixflip.record.correction_record import MOST, decode, encode
 from sixflip.record.record import Record
 from sixflip.record.term_correction import TERMS
-from sixflip_host import record_terms
 
 P = [[1.01, 0.01, 0.02, 0.0], [-0.03, 0.99, 0.0, 0.0], [0.01, 0.02, 1.03, 0.0],
      [0.1, -0.2, 0.5, 1.0]]

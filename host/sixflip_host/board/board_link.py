@@ -23,7 +23,7 @@ from . import serial_ports
 from .board_answers import NoSpace, board_error, parse, short
 from .board_schema import ANSWERS
 from .buffered_serial import BufferedSerial, Endless
-from .on_board_scripts import UPDATE, script
+from .on_board_scripts import STAGED, UPDATE, script
 
 ANSWER_S = 10.0  # of silence; a board hashes 100 KB in about two seconds
 WHOLE_S = 60.0  # of an answer from first to last byte, however it drips: all but a file
@@ -224,8 +224,8 @@ class MpremoteLink:
         alone: list only those, and each has to be there.
         """
         wanted = None if hashed is None else set(hashed)
-        out = self.run(script("list_files", wanted=wanted, alone=alone), "listing its files",
-                       timeout=60)
+        out = self.run(script("list_files", wanted=wanted, staged=STAGED, alone=alone),
+                       "listing its files", timeout=60)
         found = {}
         for line in out.splitlines():
             name, size, digest = parse(self.port, line, ANSWERS["file"])
@@ -265,25 +265,28 @@ class MpremoteLink:
 
     def put(self, name, data, progress=None):
         """Write NAME.new, compare its hash on the board, then rename it to NAME."""
-        self.stage(name, data, progress)
+        self.write(name + ".new", name, data, progress)
         self.run(script("replace_file", name=name), "copying " + name)
 
+    def stage(self, name, data, progress=None):
+        """Write NAME below STAGED, where it waits for commit()."""
+        self.write(STAGED + name, name, data, progress)
+
     def commit(self, names, stale=()):
-        """Every NAME.new that was staged takes the place of NAME, and the stale files go: all or
-        nothing, even if the power fails meanwhile, for main.py goes on with it at the next
-        power-up."""
-        self.put(UPDATE, script("put_in_place", names=names, stale=list(stale)).encode())
+        """Every file that was staged takes its place, and the stale files go: all or nothing,
+        even if the power fails meanwhile, for main.py goes on with it at the next power-up."""
+        self.put(UPDATE, script("put_in_place", names=names, stale=list(stale),
+                                staged=STAGED).encode())
         self.finish()
 
     def finish(self):
         """Go on with a commit that was cut off."""
         self.run("exec(open(%r).read())" % UPDATE, "putting the files in their places", timeout=60)
 
-    def stage(self, name, data, progress=None):
-        """Write NAME.new and compare its hash on the board."""
+    def write(self, fresh, name, data, progress=None):
+        """Write the file `fresh`, for NAME, and compare its hash on the board."""
         doing = "copying " + name
-        fresh = name + ".new"
-        parents = [str(p) for p in reversed(PurePosixPath(name).parents) if str(p) != "."]
+        parents = [str(p) for p in reversed(PurePosixPath(fresh).parents) if str(p) != "."]
         if parents:
             self.run(script("make_folders", folders=parents), doing)
         try:

@@ -14,8 +14,8 @@ from .board_answers import NoSpace
 from .board_events import events, unusable
 from .board_files import board_files
 from .byte_progress import Bytes
-from .compiled_firmware import for_board, twin
-from .on_board_scripts import UPDATE
+from .compiled_firmware import for_board
+from .on_board_scripts import STAGED, UPDATE
 
 PLATFORMS = {"rp2": "pico", "esp32": "esp32", "pyboard": "pyboard"}
 SETTINGS = "sixflip.json"
@@ -52,8 +52,9 @@ def settings_line(data, wanted):
 def copy(link, wanted, say=print):
     """Bring the board's files up to date; returns (number copied, number already there).
 
-    On a board that starts a firmware all new files are copied beside the old ones first and
-    take their places together: pulled out at any time it starts the old one or the new one.
+    On a board that starts a firmware all new files are copied into a folder of their own first
+    and take their places together: pulled out at any time it starts the old one or the new one.
+    What an earlier firmware had and this one has not goes with the old one.
     """
     files, reason = firmware_for(link)
     if reason:
@@ -72,13 +73,13 @@ def copy(link, wanted, say=print):
     changed.sort(key=lambda name: name == "main.py")  # a half-copied board never starts it
     starts = "main.py" in present
     ready = [name for name in changed
-             if starts and present.get(name + ".new", (0, ""))[1] == hashes[name]]
+             if starts and present.get(STAGED + name, (0, ""))[1] == hashes[name]]
     # What a cable pulled out in mid-copy left behind.
     for name in present:
-        if name.endswith(".new") and name[:-4] not in ready and (
-                name[:-4] in files or twin(name[:-4]) in files):
+        if name.startswith(STAGED) and name[len(STAGED):] not in ready or \
+                name.endswith(".new") and of_the_firmware(name[:-4]):
             link.remove(name)
-    stale = [name for name in present if name not in files and twin(name) in files]
+    stale = [name for name in present if name not in files and of_the_firmware(name)]
     if not starts:
         remove(link, stale)     # MicroPython would import NAME.py before NAME.mpy
         stale = []
@@ -92,12 +93,17 @@ def copy(link, wanted, say=print):
             if not starts:
                 raise
             say("no room for the old firmware and the new one: without one until this is done")
-            remove(link, ["main.py", *[name + ".new" for name in changed], *stale])
+            remove(link, ["main.py", *[STAGED + name for name in changed], *stale])
             todo = [name for name in changed if name != "main.py"] + ["main.py"]
             bar.at(0)
             send(link, link.put, files, todo, bar)
     say("%d files copied, %d already there" % (len(todo), len(files) - len(todo)))
     return len(todo), len(files) - len(todo)
+
+
+def of_the_firmware(name):
+    """Whether it is a module in one of the firmware's two folders, of this version or another."""
+    return name.startswith(("sixflip/", "sixflip_device/")) and name.endswith((".py", ".mpy"))
 
 
 def other_drivers(sensor, files):

@@ -18,7 +18,7 @@ from pathlib import Path
 from ..atomic_write import read_bytes, write_bytes
 from ..errors import NoBoard, UsageError
 from .board_files import host_dir
-from .on_board_scripts import UPDATE, script
+from .on_board_scripts import STAGED, UPDATE, script
 
 END = object()
 
@@ -72,7 +72,7 @@ class LocalLink:
             name = path.relative_to(self.folder).as_posix()
             if path.is_file() and "__pycache__" not in name:
                 data = path.read_bytes()
-                wanted = hashed is None or name in hashed or name.removesuffix(".new") in hashed
+                wanted = hashed is None or name.removeprefix(STAGED) in hashed
                 found[name] = (len(data), hashlib.sha256(data).hexdigest() if wanted else None)
         return found
 
@@ -85,10 +85,11 @@ class LocalLink:
         write_bytes(path, data)
 
     def stage(self, name, data, progress=None):
-        self.put(name + ".new", data)
+        self.put(STAGED + name, data)
 
     def commit(self, names, stale=()):
-        self.put(UPDATE, script("put_in_place", names=names, stale=list(stale)).encode())
+        self.put(UPDATE, script("put_in_place", names=names, stale=list(stale),
+                                staged=STAGED).encode())
         self.finish()
 
     def finish(self):

@@ -6,7 +6,6 @@ import re
 from pathlib import Path
 
 from ..board import firmware_update, serial_ports
-from ..board.compiled_firmware import twin
 from ..errors import SixflipError
 from .finding import fault, ok, warning
 
@@ -145,8 +144,9 @@ def firmware(link):
         return [fault("firmware", "sixflip's firmware is not on this board", "sixflip provision")]
     differ = [name for name, data in ours.items()
               if there.get(name, (0, ""))[1] != hashlib.sha256(data).hexdigest()]
-    # source beside the compiled file is what MicroPython imports
-    differ += [name for name in there if name not in ours and twin(name) in ours]
+    # what an earlier firmware left may be imported in place of this one's: NAME.py before NAME.mpy
+    differ += [name for name in there if name not in ours
+               and firmware_update.of_the_firmware(name)]
     if differ:
         return [warning("firmware", "%d of its %d files are not this sixflip's (%s)" % (
             len(differ), len(ours), ", ".join(sorted(differ)[:3])), "sixflip provision")]

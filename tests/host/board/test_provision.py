@@ -35,14 +35,14 @@ def test_second_time_copies_nothing(board, capsys):
 
 def test_only_the_changed_file_and_main_last_and_then_both_in_place(link, monkeypatch):
     firmware_update.copy(link, {}, quiet)
-    link.put("sixflip/faces.mpy", b"damaged")
+    link.put("sixflip/poses/faces.mpy", b"damaged")
     link.put("main.py", b"damaged")
     order = []
     stage = link.stage
     monkeypatch.setattr(
         link, "stage", lambda name, *rest: (order.append(name), stage(name, *rest)))
     assert firmware_update.copy(link, {}, quiet)[0] == 2
-    assert order == ["sixflip/faces.mpy", "main.py", "sixflip_update.py"]
+    assert order == ["sixflip/poses/faces.mpy", "main.py", "sixflip_update.py"]
     assert firmware_update.copy(link, {}, quiet)[0] == 0
 
 
@@ -66,7 +66,7 @@ def test_what_is_configured_on_the_board_is_kept_and_said(link):
 
 def test_pulled_out_and_gone_on_with(board):
     def pull_out(name, *rest):
-        if name == "sixflip/faces.mpy":
+        if name == "sixflip/poses/faces.mpy":
             threading.Timer(0, board.unplug).start()
         return put(name, *rest)
 
@@ -119,7 +119,7 @@ def test_compiled_it_takes_the_place_of_the_source_and_back(link, monkeypatch):
     firmware_update.copy(link, {}, quiet)
     assert modules(link) == {"mpy"}
     assert link.run("from sixflip.poses import faces; print(faces.__file__)", "").strip() \
-        == b"sixflip/faces.mpy"
+        == b"sixflip/poses/faces.mpy"
     as_source(monkeypatch, link)
     assert modules(link) == {"py"}
 

@@ -1,4 +1,4 @@
-"""How much heap each module of the firmware takes, compiled here from its source."""
+"""How much heap each module of the firmware takes, as the board loads it compiled."""
 
 import gc
 import sys
@@ -9,8 +9,8 @@ from disk import Disk
 
 def run(modules):
     """modules: [(name, [those it imports])]. Prints a line each: name, bytes of its own."""
-    import sources
-    vfs.mount(Disk(sources.FILES), "/")
+    import provisioned
+    vfs.mount(Disk(provisioned.FILES), "/")
     sys.path[:] = ["", ".frozen"]
     for name, needed in modules:
         for loaded in list(sys.modules):

@@ -1,4 +1,4 @@
-"""A power-up of the firmware with a whole session, its sources compiled here as on a board.
+"""A power-up of the firmware with a whole session, its files compiled as provision sends them.
 
 run(sensor): bursts from a tape; run(sensor, world={}): a simulated chip inside; mode: a module
 that changes the board (locked_loop: the heap is locked while it samples; redo_late: a face is
@@ -42,14 +42,14 @@ class Teller:
 
 def run(sensor, world=None, mode="", ballast=0, record="", **changed):
     weight = bytearray(ballast)  # a smaller heap
-    import sources
-    disk = Disk(sources.FILES)
+    import provisioned
+    disk = Disk(provisioned.FILES)
     if record:
         disk.open("record_a.bin", "wb").write(bytes.fromhex(record))
         disk.open("calibrate.flag", "wb")
     i2c, clock = tape(sensor) if world is None else live(sensor, world)
     for name in list(sys.modules):
-        if name.split(".")[0] in ("sixflip", "sixflip_sim", "sources"):
+        if name.split(".")[0] in ("sixflip", "sixflip_sim", "provisioned"):
             del sys.modules[name]  # the firmware brings its own
     vfs.mount(disk, "/")
     sys.path[:] = ["", ".frozen"]
@@ -57,7 +57,7 @@ def run(sensor, world=None, mode="", ballast=0, record="", **changed):
     print("harness", gc.mem_alloc() - ballast, "heap", gc.mem_alloc() + gc.mem_free() - ballast)
 
     from sixflip_device import power_up, settings
-    assert power_up.__file__ == "sixflip_device/power_up.py", power_up.__file__
+    assert power_up.__file__ == "sixflip_device/power_up.mpy", power_up.__file__
     from taped_board import TapedBoard
     values, problems = settings.merge(dict(grace_ms=0, **changed))
     del settings

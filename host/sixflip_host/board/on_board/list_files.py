@@ -1,8 +1,9 @@
 """Runs on the board: one line (name, size, sha256 in hex or None) for every file.
 
-The host puts `wanted`, names to hash or None for all, in front, and `alone`: list only those,
-for on a slow board a walk past a hundred files takes longer than copying one. Paths start at
-the working directory, which is the flash's root wherever it is mounted.
+The host puts in front `wanted`, names to hash or None for all, `staged`, the folder in which the
+same names wait for an update, and `alone`: list only those wanted, for on a slow board a walk past
+a hundred files takes longer than copying one. Paths start at the working directory, which is the
+flash's root wherever it is mounted.
 """
 
 import binascii
@@ -26,7 +27,7 @@ def digest(name):
 def hashed(name):
     if wanted is None or name in wanted:  # noqa: F821
         return True
-    return name[-4:] == ".new" and name[:-4] in wanted  # noqa: F821
+    return name.startswith(staged) and name[len(staged):] in wanted  # noqa: F821
 
 
 def walk(folder):
