@@ -38,11 +38,12 @@ def test_only_the_changed_file_and_main_last_and_then_both_in_place(link, monkey
     link.put("sixflip/poses/faces.mpy", b"damaged")
     link.put("main.py", b"damaged")
     order = []
-    stage = link.stage
+    write = link.write
     monkeypatch.setattr(
-        link, "stage", lambda name, *rest: (order.append(name), stage(name, *rest)))
+        link, "write", lambda fresh, *rest: (order.append(fresh), write(fresh, *rest)))
     assert firmware_update.copy(link, {}, quiet)[0] == 2
-    assert order == ["sixflip/poses/faces.mpy", "main.py", "sixflip_update.py"]
+    assert order == ["sixflip_new/sixflip/poses/faces.mpy", "sixflip_new/main.py",
+                     "sixflip_update.py.new"]
     assert firmware_update.copy(link, {}, quiet)[0] == 0
 
 

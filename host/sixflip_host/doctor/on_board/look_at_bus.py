@@ -107,7 +107,7 @@ def measured(board, imu, settings):
     from sixflip_device.session import start
     quiet = Quiet()
     sensor = Sensor(board, imu, settings, quiet)
-    answer = start.run(board, sensor, settings["rate_hz"])
+    answer = start.self_test(board, sensor, settings["rate_hz"])
     sample = array("h", [0] * 7)
     sums = [0] * 7
     n = 0
