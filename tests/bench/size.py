@@ -28,8 +28,9 @@ TABLE = Path(__file__).resolve().parents[2] / "device" / "README.md"
 HEAD = """# What lands on the board
 
 `main.py` runs at power-up, `sixflip` is the shared core, `sixflip_device` the firmware around
-it. Bytes, printed by `make size`: the source, the same compiled by mpy-cross of MicroPython 1.25 as
-`sixflip provision` copies it, and the heap that the compiled module alone takes on a 32-bit board.
+it. Bytes, printed by `make size`: the source, the same compiled by mpy-cross of MicroPython 1.25,
+which is what `sixflip provision` copies, and the heap that the compiled module alone takes on a
+32-bit board.
 """
 
 
