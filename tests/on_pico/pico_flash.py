@@ -19,7 +19,7 @@ STILL = {"order": []}
 LAST_FACE = ["Y-a", "Y-b"]
 # for a board's REPL: the newest valid record
 LOAD = """
-from sixflip_device.record_slots import RecordSlots
+from sixflip_device.record.record_slots import RecordSlots
 slots = RecordSlots("/")
 slot, record, refused = slots.load(lambda record: "")
 print([slot, record.sequence, refused])

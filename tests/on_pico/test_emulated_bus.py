@@ -7,7 +7,7 @@ from sixflip_host.board.board_link import MpremoteLink  # noqa: E402
 from sixflip_host.emulated.emulated_pico import PATIENCE, PicoBoard  # noqa: E402
 
 SCRIPT = """
-from sixflip_device.bus_recovery import free_bus
+from sixflip_device.sensor import free_bus
 from sixflip_device.boards import pico
 from sixflip_device.settings import defaults
 board = pico.make(defaults())
