@@ -11,9 +11,8 @@ from simulated_board import SimulatedBoard  # noqa: E402
 
 from sixflip.chips import catalogue  # noqa: E402
 from sixflip_device import find_sensor, settings  # noqa: E402
-from sixflip_device.bus_recovery import BusLost, Sensor  # noqa: E402
 from sixflip_device.events import Events  # noqa: E402
-from sixflip_device.pacer import pacer  # noqa: E402
+from sixflip_device.sensor import BusLost, Sensor, pacer  # noqa: E402
 from sixflip_sim import worlds  # noqa: E402
 
 WITH = [name for name in catalogue.SENSORS if getattr(catalogue.driver(name), "FIFO", "")]

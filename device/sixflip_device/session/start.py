@@ -12,7 +12,7 @@ from sixflip.poses.still_window import StillWindow
 from .. import led
 from ..find_sensor import find
 from ..flash_files import FLAG
-from ..sensor import BusLost, pacer, Sensor
+from ..sensor import BusLost, Sensor, pacer
 
 SAMPLES = 50
 STILL_G = 0.03  # standard deviation per axis above which nobody calls it at rest
