@@ -6,8 +6,8 @@ import unittest
 
 from simulated_board import SHORT_WORLD, power_on
 
-from sixflip import correction_record
 from sixflip.chips import catalogue
+from sixflip.record import correction_record
 from sixflip_sim import worlds
 
 CHIPS = [name for name in catalogue.SENSORS if name not in worlds.SEEN]

@@ -5,7 +5,7 @@ import unittest
 from array import array
 
 from sixflip.chips import catalogue, probe
-from sixflip.still_window import StillWindow
+from sixflip.poses.still_window import StillWindow
 from sixflip_sim import worlds
 
 try:

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from sixflip import correction_record, record_terms
+from sixflip.record import correction_record
+from sixflip_host import record_terms
 
 G = 9.80665
 LSB, DPS = 8192.0, 65.5

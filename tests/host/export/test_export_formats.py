@@ -9,9 +9,8 @@ import pytest
 import yaml
 from written_records import TERMS, make_record, with_terms
 
-from sixflip import correction_record
-from sixflip.correction import Correction
-from sixflip.correction_of import correction_of
+from sixflip.record import correction_record
+from sixflip.record.correction import Correction, correction_of
 from sixflip_host.cli import main
 
 G = 9.80665
