@@ -193,10 +193,10 @@ def plain(gap, cause):
     return out
 
 
-def fitting(diagnosis, record, path):
+def fitting(sessions, record, path):
     """CheckFailed unless the record is of the sensor that was captured."""
     from .term_gain import corrected
-    for session in diagnosis.sessions:
+    for session in sessions:
         if not session.n:
             continue
         off = rms(np.linalg.norm(corrected(session, record).accel, axis=1) * 1e-3 - 1.0)

@@ -89,7 +89,10 @@ def answered(args, without, record):
         for path in paths:
             progress.doing("reading %s" % path)
             yield path, open_recording.read_samples(path, gravity)
-    found = diagnose(list(read(args.captures)), list(read(args.sim, gravity=False)),
+    captures = list(read(args.captures))
+    if record:
+        of_this_part(captures, record, args)
+    found = diagnose(captures, list(read(args.sim, gravity=False)),
                      list(read([args.reference] if args.reference else [])),
                      args.certified_box, without, args.jobs)
     loops = closed(found, args)
@@ -98,7 +101,7 @@ def answered(args, without, record):
         result["simulated"] = {kind: answer.of_loop(kind, loop) for kind, loop in loops.items()}
     terms = None
     if record:
-        terms = terms_of(found, record, args)
+        terms = correction_terms.Terms(found, record)
         result["terms"] = correction_terms.answer(terms, args.output)
     if args.report:
         from ..present import gap_report
@@ -176,13 +179,14 @@ def checked(result, wanted, args):
     return 0
 
 
-def terms_of(diagnosis, record, args):
-    """Terms of a Diagnosis for a record; CheckFailed or BadFile when it is another sensor's."""
+def of_this_part(captures, record, args):
+    """CheckFailed or BadFile when the record is another sensor's: before the diagnosis, which
+    takes its time."""
     from ..diagnosis import correction_terms
-    for session in diagnosis.sessions:
-        verify_files.fits(record, session.capture)
-    correction_terms.fitting(diagnosis, record, args.record)
-    return correction_terms.Terms(diagnosis, record)
+    from ..experiment import blocks
+    for _, capture in captures:
+        verify_files.fits(record, capture)
+    correction_terms.fitting([blocks.of(*one) for one in captures], record, args.record)
 
 
 def write_terms(terms, args):
