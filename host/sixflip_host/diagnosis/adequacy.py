@@ -143,3 +143,29 @@ def excess_at(units, statistics, chosen, index):
             inner = projections[point][columns, 0]
             total -= inner @ np.linalg.solve(gram, inner) - (~unit.silent[columns]).sum()
     return float(total)
+
+
+def share(units, statistics, index, without, including):
+    """Share (0 to 1) of the excess that is there with no cause at all, at the points `index` of
+    the grids, that goes with one cause: it is there `without` it and not `including` it, both
+    pairs of Forms and of points."""
+    total, before, after = (excess_at(units, statistics, forms, points)
+                            for forms, points in (([], index), without, including))
+    return float(np.clip((before - after) / max(total, before - after, 1e-9), 0.0, 1.0))
+
+
+def share_of_drift(units, statistics, chosen, index, levels):
+    """share() of noise that wanders more than usual, beside the Forms chosen: of the excess over
+    noise with no more flicker than evidence.Levels say."""
+    quiet = [_usual(unit, point, levels) for unit, point in zip(units, index)]
+    return share(units, statistics, quiet, (chosen, quiet), (chosen, index))
+
+
+def _usual(unit, point, levels):
+    """Index of the point of a unit's grid that has no more flicker than is usual."""
+    if unit.between:
+        return point
+    placement, flicker = unit.grid[point]
+    low = [b for a, b in unit.grid if a == placement]
+    low = [b for b in low if b <= levels.flicker] or [min(low)]
+    return unit.grid.index((placement, min(flicker, max(low))))

@@ -95,18 +95,18 @@ def _cause(kind, c):
 
 def _finding(f):
     found = _entry(f.sensor, f.axes, f.probabilities, f.score, f.value, f.unit,
-                   f.interval or {}, f.plausible, None)
+                   f.interval or {}, f.plausible, f.share)
     if f.hz:
         found["hz"] = {key: number(hz, 7) for key, hz in f.hz.items()}
     return found
 
 
 def _drift(kind, gap):
-    level, low, high, gain = gap.drift
     there = {"drift": gap.found.places["drift"]["drift"]}
-    floor, low, high = (v * FLOOR_OF_KERNEL for v in (level, low, high))
-    return _entry(kind, [], there, gain, dict.fromkeys("xyz", floor), UNITS[kind],
-                  dict.fromkeys("xyz", (low, high)), True, None)
+    floor, low, high = (v * FLOOR_OF_KERNEL for v in (
+        gap.drift.level, gap.drift.low, gap.drift.high))
+    return _entry(kind, [], there, gap.drift.score, dict.fromkeys("xyz", floor), UNITS[kind],
+                  dict.fromkeys("xyz", (low, high)), True, gap.drift.share)
 
 
 def _gap(kind, gap):

@@ -260,9 +260,9 @@ class Diagnosis:
     def _verdict(self):
         """verdict.of what was found in the rests, the turns, the moves and the samples."""
         judged = [*self.gaps.values(), *([self.turns] if self.turns else [])]
-        claims = [verdict.Claim(f.named, one_domain([f.effect, *f.rivals]), f.nameless)
+        claims = [verdict.Claim(f.named, told([f.effect, *f.rivals], f.share), f.nameless)
                   for f in self.findings if f.plausible]
-        claims += [verdict.Claim(sum(c.probabilities.values()), one_domain(c.names), c.nameless)
+        claims += [verdict.Claim(sum(c.probabilities.values()), told(c.names, c.share), c.nameless)
                    for _, c in self.causes if c.plausible]
         claims += [verdict.Claim(g.found.places["drift"]["drift"], True)
                    for g in self.gaps.values() if g.drift]
@@ -283,7 +283,7 @@ class Diagnosis:
         return detectability.visible_share(self) >= 0.5
 
 
-def one_domain(names):
-    """True when all effects of a class show themselves in the same way: where it comes from
-    is known then, if not its name."""
-    return len({terms.DOMAIN[n] for n in names}) == 1
+def told(names, share):
+    """True when all effects of a class show themselves in the same way, so that it is known
+    where it comes from, if not its name, and how much of the gap it accounts for."""
+    return share is not None and len({terms.DOMAIN[n] for n in names}) == 1

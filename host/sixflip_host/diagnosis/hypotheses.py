@@ -128,7 +128,9 @@ def _private(design, columns):
 
 
 RELATIVE = 0.5  # of an effect: how far a part's own form may be from the library's
-VARIABLE = {"temperature": ("~temperature",), "time": ("~time",),
+# What an effect, or all of a domain, is a function of: the strangers that have that variable.
+VARIABLE = {"thermal_scale": ("~thermal_orientation",),
+            "temperature": ("~temperature",), "time": ("~time",),
             "history": ("~history", "~time_since_move"),
             "time_since_move": ("~history", "~time_since_move"),
             # of the gyro in its turns a bend's own variable is the rate
@@ -141,7 +143,7 @@ def with_discrepancy(model, forms, scored, form):
     RELATIVE of the size that the form has in a Scored set; None where there is none."""
     if form.generic or not len(form.shared) or form.variant.endswith("~"):
         return None
-    wanted = VARIABLE.get(domain(form.effect), ())
+    wanted = VARIABLE.get(form.effect) or VARIABLE.get(domain(form.effect), ())
     free = list({f.effect: f for f in forms if f.effect in wanted and f.axis is None}.values())
     if not free:
         return None

@@ -26,7 +26,7 @@ def places(gap):
     tested = [_tested(gap, option) for option in gap.options if option.generic
               and option.axis is not None]
     tested += across(gap) + along(gap) + session(gap)
-    tested = controlled([t for t in tested if t is not None])
+    tested = strongest(controlled([t for t in tested if t is not None]))
     named = []
     for cause in gap.causes:
         for letter in cause.letters or [None]:
@@ -60,6 +60,14 @@ def order(place):
     return not place.named, place.domain in BROAD, -place.share
 
 
+def strongest(tested):
+    """The one with the largest share of each axis and domain: several strangers may have one."""
+    found = {}
+    for one in sorted(tested, key=lambda t: t.share):
+        found[one.axis, one.domain] = one
+    return list(found.values())
+
+
 def _tested(gap, option):
     """What a generic discrepancy on one axis takes off the excess, sessions together for
     what belongs to the sensor, apart for time."""
@@ -80,8 +88,8 @@ def _tested(gap, option):
     if freedom < 1:
         return None
     excess = max(gap.adequacy.excess_before, taken - freedom, 1e-9)
-    return Place(gap.kind, "xyz"[option.axis], option.effect[1:], (taken - freedom) / excess,
-                 stats.chi2.sf(taken, freedom))
+    return Place(gap.kind, "xyz"[option.axis], hypotheses.domain(option.effect),
+                 (taken - freedom) / excess, stats.chi2.sf(taken, freedom))
 
 
 def _explained(gram, inner):

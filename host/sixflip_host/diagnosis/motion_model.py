@@ -210,6 +210,8 @@ class MotionGap:
         self.bare = [m.y - t @ habits[self._own(m)] for m, t in zip(self.moves, self.tables)]
         if self.found:
             self.shrinkage = self._shrinkage()
+            for one in self.found:
+                one.share = self._share(one.effect)
             self.remarks.append("what was found in motion is judged on %d moves; what the hand "
                                 "adds counts as noise there" % len(self.moves))
 
@@ -290,6 +292,16 @@ class MotionGap:
             return holdout_gain.Shrinkage(*rms, None, None)
         low, high = np.quantile(1.0 - after / before, [0.05, 0.95])
         return holdout_gain.Shrinkage(*rms, 1.0 - other / own, (float(low), float(high)))
+
+    def _share(self, name):
+        """Share of the explainable gap that one of the effects found closes on what is held out,
+        or None where that is too small to measure."""
+        if self.shrinkage.share is None:
+            return None
+        power = self.gram.sum(axis=0)[:4, :4]
+        without = self.sizes * ~np.isin(np.arange(4), self.effects[name])
+        whole, rest = (float(v @ power @ v) for v in (self.sizes, without))
+        return float(np.clip(self.shrinkage.share * (1.0 - rest / whole), 0.0, 1.0))
 
     def _told(self, columns, folds):
         """True when all folds but one tell the sizes well enough for that one."""

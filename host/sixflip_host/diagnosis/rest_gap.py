@@ -151,7 +151,7 @@ class RestGap:
 
     @property
     def _named(self):
-        return any(c.share is not None for c in self.causes)
+        return any(c.effect != "drift" for c in self.causes)  # noise cannot be foretold
 
     def reason(self, name):
         """Why an effect could not be seen in this rest; "" where it could."""
@@ -211,7 +211,7 @@ def _sensor(rest, kind, chip, settings):
     chosen = [f for f in found.best.forms if not f.generic and len(f.shared)]
     causes = aliases.causes(found, units, forms)
     told = [_told(c, data, fits, chip, kind, chosen, found) for c in causes]
-    told += _drift(found, units, data, levels, kind)
+    told += _drift(found, units, data, levels, kind, chosen, fits.index)
     strange = [f for f in found.best.forms if f.generic and not _settled(f, units, fits, kind)]
     places = [Place(kind, letter, c.domain, 1.0 if c.share is None else c.share,
                     np.exp(-min(c.score, 600.0))) for c in told for letter in c.letters]
@@ -244,18 +244,15 @@ def _told(cause, data, fits, chip, kind, chosen, found):
     names = cause.names
     if found.places[cause.effect].get(SETTLED, 0.0) > 1.0 - posterior.HOLDS:
         names = [*names, "drift", *(["table_tilt"] if kind == "accel" else [])]
-    known = data.units, data.statistics
-    total = adequacy.excess_at(*known, [], fits.index)
-    now = adequacy.excess_at(*known, chosen, fits.index)
-    lost = adequacy.excess_at(*known, [f for f in chosen if f not in cause.chosen],
-                              fits.index) - now
-    share = float(np.clip(lost / max(total, lost, 1e-9), 0.0, 1.0))
+    rest = [form for form in chosen if form not in cause.chosen]
+    share = adequacy.share(data.units, data.statistics, fits.index, (rest, fits.index),
+                           (chosen, fits.index))
     place = dict(found.places[cause.effect])
     return RestCause(tuple(names), place, cause.score, cause.value, cause.interval, cause.unit,
                      cause.plausible, share, terms.DOMAIN[cause.effect])
 
 
-def _drift(found, units, data, levels, kind):
+def _drift(found, units, data, levels, kind, chosen, index):
     """[RestCause] of a drift in the likeliest set: its Allan floor on the axes that wander more
     than is usual, with a 90 % interval by the profile of the likelihood."""
     from .answer import FLOOR_OF_KERNEL
@@ -271,8 +268,9 @@ def _drift(found, units, data, levels, kind):
             interval[key] = (low * FLOOR_OF_KERNEL, high * FLOOR_OF_KERNEL)
     if not value:
         return []
+    share = adequacy.share_of_drift(units, data.statistics, chosen, index, levels)
     return [RestCause(("drift",), dict(found.places["drift"]), found.gains["drift"], value,
-                      interval, "mg" if kind == "accel" else "deg/s", True, None, "time")]
+                      interval, "mg" if kind == "accel" else "deg/s", True, share, "time")]
 
 
 def _held_out(rest, unit, chosen, index, levels):

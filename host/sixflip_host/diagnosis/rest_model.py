@@ -28,13 +28,25 @@ ALONG_FREEDOM = 10  # contrasts along gravity that a half of a session must have
 DOUBT = 0.5  # probability of a stranger in a cause's place, above which it is not explained
 
 
+@dataclass(frozen=True)
+class Drift:
+    """Noise that wanders more than it usually does: flicker level with its 90 % interval, score
+    (nats) and share of the excess over the usual noise that goes with it."""
+
+    level: float
+    low: float
+    high: float
+    score: float
+    share: float
+
+
 @dataclass(frozen=True, eq=False)
 class SensorGap:
     """What RestModel.fit found. parts: [(Session, NominalSensor)]; units, data; options (all
     Forms), forms (those that compete), noise (evidence.Levels), cost (cutoffs.Cutoffs); found
     (Posterior), chosen (its named Forms), strangers (its nameless ones), causes, adequacy,
     shrinkage; unexplained: bool; added: {domain: nats} of the strangers, strange_axes: {effect:
-    axes}; drift: (level, low, high, nats) or None; crooked: face_squareness.Crooked or None of
+    axes}; drift: Drift or None; crooked: face_squareness.Crooked or None of
     each session, none of it where something bends the reading."""
 
     model: object
@@ -52,7 +64,7 @@ class SensorGap:
     adequacy: adequacy.Adequacy
     added: dict
     strange_axes: dict
-    drift: tuple | None
+    drift: Drift | None
     unexplained: bool
     crooked: list
     shrinkage: object = None
@@ -143,13 +155,13 @@ class RestModel:
         nameless = [f for f in best.forms if f.generic]
         doubted = any(found.stranger_share(c.effect) > DOUBT for c in causes)
         crooked = [face_squareness.of(*part) for part in parts] if self.kind == "accel" else []
+        chosen = [f for f in best.forms if not f.generic and len(f.shared)]
         gap = SensorGap(
             self, parts, units, data, options, forms, noise, cost, found,
-            [f for f in best.forms if not f.generic and len(f.shared)], nameless, causes, fitted,
+            chosen, nameless, causes, fitted,
             added, {f.effect: posterior.axes_of(model, found, f) for f in nameless},
-            _drift(units, data, noise, found, fitted),
+            _drift(units, data, noise, found, fitted, chosen),
             not fitted.ok or bool(nameless) or doubted, crooked)
-        _shares(gap)
         _fill(gap, causes, data)
         return self.shrunk(self._tilted(gap))
 
@@ -230,36 +242,31 @@ class RestModel:
         return replace(rows, y=rows.y - np.hstack([d.columns for d in designs]) @ sizes)
 
 
-def _drift(units, data, noise, found, fitted):
-    """(flicker level, low, high, nats) where a drift is in the likeliest set, 90 % interval by
-    the profile of the likelihood, or None; what jumps or is on one axis alone is no noise, and
-    has no name."""
+def _drift(units, data, noise, found, fitted, chosen):
+    """Drift where it is in the likeliest set, its interval by the profile of the likelihood, or
+    None; what jumps or is on one axis alone is no noise, and has no name."""
     if "drift" not in found.best.names or fitted.odd:
         return None
     free = frozenset(["flicker"])
     course = sum(evidence.by_flicker(unit, statistics, found.best.shared, noise.prior(unit, free))
                  for unit, statistics in zip(units, data.statistics) if not unit.between)
     levels = sorted({b for _, b in units[0].grid})
-    return (*evidence.profile(levels, course), found.gains["drift"])
-
-
-def _shares(gap):
-    """Fill each cause's share of the excess: what is lost without it."""
-    index, data = gap.adequacy.index, (gap.units, gap.data.statistics)
-    total = max(adequacy.excess_at(*data, [], index), 1e-9)
-    now = adequacy.excess_at(*data, gap.chosen, index)
-    for cause in gap.causes:
-        rest = [c for c in gap.chosen if c not in cause.chosen]
-        lost = adequacy.excess_at(*data, rest, index) - now
-        cause.share = float(np.clip(lost / max(total, lost, 1e-9), 0.0, 1.0))
+    return Drift(*evidence.profile(levels, course), found.gains["drift"],
+                 adequacy.share_of_drift(units, data.statistics, chosen, fitted.index, noise))
 
 
 def _fill(gap, causes, data):
-    """Fill domain, unit, sizes and axes of causes that were found in this data."""
+    """Fill domain, unit, share of the excess, sizes and axes of causes that were found in this
+    data."""
+    index = gap.levels(data)
+    every = [*gap.chosen, *(f for cause in causes for f in cause.chosen if f not in gap.chosen)]
     for cause in causes:
+        rest = [form for form in every if form not in cause.chosen]
+        cause.share = adequacy.share(data.units, data.statistics, index, (rest, index),
+                                     (every, index))
         cause.domain = terms.DOMAIN[cause.effect]
         cause.unit = EFFECTS[cause.effect].units[gap.kind]
-        effect_estimates.fill(cause, data, gap.levels(data), gap.chip, gap.kind)
+        effect_estimates.fill(cause, data, index, gap.chip, gap.kind)
 
 
 def halves(kind, session, model, certified):

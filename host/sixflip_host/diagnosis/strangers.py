@@ -1,10 +1,11 @@
 """Nameless hypotheses, one a domain, that compete with the library's effects on equal terms.
 
-Shared ones have the same coefficients in every session: what is smooth in temperature, even and
-odd in orientation, follows the pose before or the time since the move, changes sign with the
-flip, repeats with the time since switching on. Private ones have coefficients of each session's
-own: a jump at some time, something periodic, something smooth in time. The widths of their priors
-are tried over a decade: of a stranger no size is known.
+Shared ones have the same coefficients in every session: what is smooth in temperature, what
+gravity adds in proportion to it, what is even and odd in orientation, follows the pose before or
+the time since the move, changes sign with the flip, repeats with the time since switching on.
+Private ones have coefficients of each session's own: a jump at some time, something periodic,
+something smooth in time. The widths of their priors are tried over a decade: of a stranger no
+size is known.
 """
 import numpy as np
 
@@ -20,7 +21,8 @@ JUMPS = 24  # times tried
 PERIODS = 16
 WALK = 16  # terms of a random walk
 # Of the others: their own.
-DOMAIN = {"jump": "time", "walk": "time", "periodic": "frequency", "own_time": "time"}
+DOMAIN = {"jump": "time", "walk": "time", "periodic": "frequency", "own_time": "time",
+          "thermal_orientation": "temperature"}
 
 
 def domain(effect):
@@ -42,6 +44,7 @@ def shared(session, up, sensor):
     if session.thermal:
         t = (session.temperature - session.temperature.mean()) / 5.0
         found.append(_smooth("temperature", [t, t ** 2, t ** 3], n, scale))
+        found.append(_smooth("thermal_orientation", [t * f[:, i] for i in range(3)], n, scale))
     before = np.stack(m.before, 1)
     history = [before[:, i] for i in range(3)] + [before[:, i] * before[:, j] for i in range(3)
                                                   for j in range(i)]

@@ -7,6 +7,7 @@ from sixflip_sim.effects import typical
 from sixflip_sim.effects.moment import Moment
 
 from ..experiment import covariance, linear_model, noise_arrays, nominal_rows, terms, turns
+from .detect import axis_order
 from .detect.detection import Finding, present
 from .evidence import Levels
 from .rest_model import RestModel
@@ -56,7 +57,11 @@ class TurnModel(RestModel):
             lsb = part.capture.meta["gyro_lsb_per_dps"]
             designs += [banded(chosen, width, times, lsb, self.chip) for width in BANDS_DPS
                         for times in TIMES]
-        designs += [nameless(chosen, name, of_rate) for name, of_rate in STRANGERS.items()]
+        designs += [nameless(chosen, name, functions) for name, functions in STRANGERS.items()]
+        if part.thermal:
+            reference = self.settings.reference_c
+            designs.append(nameless(chosen, "thermal_orientation",
+                                    lambda turn: _of_temperature(turn, reference)))
         bases = [np.diag(([ATTITUDE_DEG] * 2 + [FLIP_DEG] * t.flip) / np.array(t.seconds)) ** 2
                  + wandering for t, wandering in zip(chosen, turns.wandering(chosen))]
         groups = covariance.apart(bases, [np.eye(len(b)) / t.seconds
@@ -117,43 +122,52 @@ def _left(gap, part, unit):
     return left, known
 
 
-def _bends(w, dt):
+def _bends(turn):
     """Of each axis' own rate: what no power names."""
+    w = turn.middle
     return [np.clip(w, -20.0, 20.0) / 20.0, np.clip(w, -60.0, 60.0) / 60.0,
             np.clip(np.abs(w), 0.0, 30.0) / 30.0]
 
 
-def _of_motion(w, dt):
+def _of_motion(turn):
     """Of the rate of the others, and of how fast the rates change."""
-    change = np.gradient(w, axis=0) / dt[:, None]
+    w = turn.middle
+    change = np.gradient(w, axis=0) / turn.dt[:, None]
     size = np.linalg.norm(w, axis=1)[:, None] / 100.0
     product = np.stack([w[:, 1] * w[:, 2], w[:, 2] * w[:, 0], w[:, 0] * w[:, 1]], 1) / 1e4
     return [change / 100.0, np.broadcast_to(size, w.shape), size * w / 100.0, product]
 
 
+def _of_temperature(turn, reference_c):
+    """Of every rate in proportion to the temperature."""
+    warm = (turn.temperature - reference_c)[:, None] / 5.0
+    return [np.broadcast_to(warm * turn.middle[:, i:i + 1] / 100.0, turn.middle.shape)
+            for i in range(3)]
+
+
 STRANGERS = {"amplitude": _bends, "motion": _of_motion}
 
 
-def nameless(chosen, name, of_rate):
-    """Design of functions of the rate that no effect of the library has."""
-    return _of_rates("~" + name, "", chosen, of_rate, 10.0)
+def nameless(chosen, name, functions):
+    """Design of functions of a turn's rates that no effect of the library has."""
+    return _of_rates("~" + name, "", chosen, functions, 10.0)
 
 
 def banded(chosen, width, times, lsb, chip):
     """Design of a dead band that what is beyond it reads less by, counts, of so many times the
     usual width: a rate that is read was larger by the band, on its own side of 0, to which it
     comes over `width` deg/s."""
-    def less(w, dt):
-        return [-w / np.sqrt(w ** 2 + width ** 2) / lsb]
+    def less(turn):
+        return [-turn.middle / np.sqrt(turn.middle ** 2 + width ** 2) / lsb]
     prior = 10.0 * times * typical.size("dead_band", chip, "gyro")[0]
     return _of_rates("dead_band", "%g times, over %g deg/s" % (times, width), chosen, less, prior)
 
 
 def _of_rates(effect, variant, chosen, functions, prior):
-    """Design of functions (n, 3) of rates (n, 3) and steps (n,), a coefficient an axis each."""
+    """Design of functions of a turn, (n, 3) over its rates, a coefficient an axis each."""
     parts, number = [], 0
     for turn in chosen:
-        values = functions(turn.middle, turn.dt)
+        values = functions(turn)
         number = len(values)
         added = np.zeros((len(turn.dt), 3, 3 * number))
         for k, value in enumerate(values):
@@ -200,7 +214,8 @@ def swapped(sessions, nominal):
             value["xyz"[i]] = signed
     found = Finding("axis_swap", "gyro", sorted(value), value, "axis", score, "orientation",
                     "the gyro's axes are swapped or inverted against the accelerometer's",
-                    {k: (v, v) for k, v in value.items()})
+                    {k: (v, v) for k, v in value.items()},
+                    share=axis_order.explained(plain, best[0]))
     found.read = read
     return found
 

@@ -19,7 +19,7 @@ OTHERWISE = "cannot tell"
 @dataclass(frozen=True)
 class Claim:
     """probability that one of a class of names is there; told: they all show themselves in one
-    domain, and a size or a share is known with an interval; nameless: probability that what
+    domain, and the share of the gap that goes with them is known; nameless: probability that what
     stands in its place has no name."""
 
     probability: float

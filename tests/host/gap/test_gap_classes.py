@@ -79,3 +79,4 @@ def test_a_pair_of_which_one_is_in_the_registers(captures):
     found = causes(captures, both)
     assert {c["effect"] for c in found if c["effect"]} >= {"quantisation"}
     assert any("thermal_bias" in c["class"] for c in found) and len(found) == 2
+    assert all(0.9 < c["share"] <= 1.0 for c in found)

@@ -2,9 +2,17 @@
 what jumps, is missing or runs otherwise than an effect does has no name."""
 import numpy as np
 import pytest
+from scipy import stats
 
 from sixflip_host.diagnosis import aliases, odds, verdict
-from sixflip_host.diagnosis.detect import axis_order, codes, integrity, sample_clock, torn_reads
+from sixflip_host.diagnosis.detect import (
+    axis_order,
+    codes,
+    integrity,
+    sample_clock,
+    spectral_lines,
+    torn_reads,
+)
 from sixflip_host.diagnosis.detect.detection import present
 from sixflip_host.experiment import blocks
 from sixflip_host.simulation import scenario, simulated_session
@@ -44,11 +52,28 @@ def test_torn_reads_are_the_likelier_the_more_there_are():
     assert scores[3] > 3.0 * scores[2]
 
 
+def test_a_line_is_the_likelier_the_stronger_it_is_however_strong():
+    for x, number in ((0.5, 3), (30.0, 12), (400.0, 150)):
+        assert spectral_lines.log_beyond(x, number) == pytest.approx(
+            stats.gamma.logsf(x, number), rel=1e-9)
+    scores = []
+    for mg in (20.0, 60.0, 200.0):
+        plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 5,
+                                   "effects": [{"effect": "vibration", "sensor": "accel",
+                                                "x": mg, "frequency_hz": 17.3}]})
+        session = blocks.of("0", simulated_session.session(plan, 0))
+        line, = spectral_lines.findings([session])
+        assert "x" in line.axes and 0.9 < line.share <= 1.0
+        scores.append(line.score)
+    assert scores[0] < scores[1] < scores[2] and scores[2] > 1000.0
+
+
 def test_few_torn_reads_are_found_with_how_many():
     said = found([{"effect": "torn_reads", "sensor": "accel", "chance": 0.1}])
     assert list(said) == [("torn_reads", "accel")]
     low, high = said["torn_reads", "accel"].interval["chance"]
     assert low < 0.1 < high and said["torn_reads", "accel"].named > 0.95
+    assert said["torn_reads", "accel"].share > 0.9
 
 
 @pytest.mark.parametrize("size", [256, 600])

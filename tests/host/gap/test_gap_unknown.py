@@ -26,6 +26,18 @@ def test_a_step_at_another_time_in_each_session_is_unexplained(two_sessions):
     assert (found["where"][0]["sensor"], found["where"][0]["domain"]) == ("accel", "time")
 
 
+def test_a_scale_that_follows_the_temperature_is_no_drift_where_the_library_lacks_it(two_sessions):
+    for capture in two_sessions:
+        warm = capture.temp / capture.meta["temp_lsb_per_c"] - 25.0
+        capture.accel = np.rint(capture.accel * (1.0 + 5e-4 * warm)[:, None]).astype(np.int16)
+        capture.gyro = None  # the accelerometer alone: half the work
+    sessions = [blocks.of(str(k), c) for k, c in enumerate(two_sessions)]
+    settings = diagnosis.Settings(without=("thermal_scale",))
+    found = answer.of(diagnosis.Diagnosis(sessions, settings))
+    assert found["verdict"] == "unexplained"
+    assert found["where"][0]["domain"] == "temperature"
+
+
 def test_a_log_without_a_rest_cannot_tell_that_there_is_no_gap():
     t = np.arange(0.0, 40.0, 0.01)
     generator = np.random.default_rng(3)

@@ -26,12 +26,13 @@ def swapped(sessions):
                 axes.append([faces.SIGN[face] * (k == faces.AXIS[face]) for k in range(3)])
     if len(means) < 4 or np.linalg.matrix_rank(np.array(axes)) < 3:
         return []
-    matrix = np.linalg.lstsq(np.hstack([axes, np.ones((len(axes), 1))]), np.array(means),
+    means, axes = np.array(means), np.array(axes)
+    matrix = np.linalg.lstsq(np.hstack([axes, np.ones((len(axes), 1))]), means,
                              rcond=None)[0][:3].T  # measured = matrix · true
     best = nearest_permutation(matrix)
     if (best == np.eye(3)).all():
         return []
-    score = order_nats(np.array(means), np.array(axes), best)
+    score = order_nats(means, axes, best)
     if not present(score):
         return []
     value = {}
@@ -42,7 +43,14 @@ def swapped(sessions):
             value["xyz"[i]] = signed
     return [Finding("axis_swap", "accel", sorted(value), value, "axis", score, "orientation",
                     "axes are swapped or inverted against the labels",
-                    {k: (v, v) for k, v in value.items()})]
+                    {k: (v, v) for k, v in value.items()},
+                    share=explained(means - axes, means - axes @ best.T))]
+
+
+def explained(before, after):
+    """Share (0 to 1) of the squares of what is off before that is not after."""
+    before, after = np.sum(np.square(before)), np.sum(np.square(after))
+    return float(np.clip(1.0 - after / before, 0.0, 1.0)) if before > 0.0 else None
 
 
 def order_nats(means, axes, order):

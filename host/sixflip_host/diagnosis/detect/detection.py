@@ -10,15 +10,17 @@ from .. import odds
 class Finding:
     """effect, sensor, axes ("xyz" letters), value {key: size}, interval {key: (low, high)} or
     None, unit, score in nats, domain, words (a clause for people), rivals ({effect: why}),
+    share of what departs from a sound sensor in its domain (of the samples, peaks, gaps or their
+    power) that it accounts for, 0 to 1, or None where that is not known;
     plausible; place: {name: probability} of what stands here, "" nothing, "~..." nameless; hz:
     {axis: frequency of a line}."""
 
     def __init__(self, effect, sensor, axes, value, unit, score, domain, words, interval=None,
-                 rivals=None, plausible=True, place=None, hz=None):
+                 rivals=None, plausible=True, place=None, hz=None, share=None):
         self.effect, self.sensor, self.axes = effect, sensor, list(axes)
         self.value, self.unit, self.score, self.domain = value, unit, float(score), domain
         self.words, self.interval, self.rivals = words, interval, rivals or {}
-        self.plausible, self.hz = plausible, hz or {}
+        self.plausible, self.hz, self.share = plausible, hz or {}, share
         names = [effect, *sorted(self.rivals)]  # which of them, nobody can tell
         self.place = place or dict.fromkeys(names, odds.probability(self.score) / len(names))
 

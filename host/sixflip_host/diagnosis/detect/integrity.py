@@ -29,7 +29,7 @@ def findings(sessions):
 
 def _per_axis(effect, sensor, sizes, nats, words):
     """One Finding of what all sessions agree on, axis by axis (3,) in counts; 0 is nothing;
-    nats (3,) of each session."""
+    nats (3,) of each session. There is no sample that does otherwise: it is all of the gap."""
     least, total = np.min(sizes, axis=0), np.sum(nats, axis=0)
     axes = [i for i in range(3) if least[i] > 1 and present(total[i])]
     if not axes:
@@ -37,4 +37,4 @@ def _per_axis(effect, sensor, sizes, nats, words):
     value = {"xyz"[i]: int(least[i]) for i in axes}
     return [Finding(effect, sensor, ["xyz"[i] for i in axes], value, "counts",
                     sum(total[i] for i in axes), "amplitude", words,
-                    {k: (v, v) for k, v in value.items()})]
+                    {k: (v, v) for k, v in value.items()}, share=1.0)]

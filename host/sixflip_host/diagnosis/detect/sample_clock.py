@@ -11,6 +11,7 @@ import numpy as np
 from scipy import stats
 
 from ...capture import clock
+from .axis_order import explained
 from .detection import Finding, present
 
 FEWEST = 200  # samples
@@ -55,7 +56,8 @@ def rate(sessions, found):
     return [Finding("sample_rate", "device", [], {"rate": round(percent, 4)}, "%",
                     one - sound, "timing", "the samples come at %.2f Hz, not %g" % (
                         sessions[0].rate * (1 + percent / 100.0), sessions[0].rate),
-                    {"rate": (percent - half, percent + half)})]
+                    {"rate": (percent - half, percent + half)},
+                    share=explained(errors, errors - np.mean(errors)))]
 
 
 def drops(found):
@@ -68,12 +70,14 @@ def drops(found):
     if not lost or not present(score):
         return []
     expected = sum(one.expected for one in found)
+    late = np.concatenate([one.loss_periods for one in found])
     chance = 100.0 * lost / expected
     half = 100.0 * 1.645 * math.sqrt(lost) / expected
     return [Finding("dropped_samples", "device", [], {"chance": round(chance, 4)}, "%", score,
                     "timing", "%d of %d samples are missing, the longest gap lasts %.0f ms" % (
                         lost, expected, max(one.longest_loss_ms for one in found)),
-                    {"chance": (max(0.0, chance - half), chance + half)})]
+                    {"chance": (max(0.0, chance - half), chance + half)},
+                    share=explained(late, late - np.rint(late)))]
 
 
 def gap_nats(late, sigma, rows):

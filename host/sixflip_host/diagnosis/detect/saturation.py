@@ -16,24 +16,28 @@ SPREAD_SHARE = 0.02  # of the span of the readings, just inside their largest on
 
 def saturation(sessions, sensor, columns):
     """Samples on a rail, or many that share the largest value and few near it."""
-    value, words, score = {}, "", 0.0
+    value, words, score, ends = {}, "", 0.0, []
     for i in range(3):
         for session, counts in zip(sessions, columns):
             x = counts[:, i].astype(np.int64)
             on_rail = np.abs(x) >= _range_rail(session, sensor)
             if on_rail.any():
-                nats = level_nats(np.abs(x), on_rail, RAIL_CODES)
+                level = np.abs(x), on_rail
+                nats = level_nats(*level, RAIL_CODES)
                 said = "%d samples sit on the rail" % on_rail.sum()
             else:
-                nats = max(cut_off_nats(x), cut_off_nats(-x))
+                nats, level = max(((cut_off_nats(y), (y, y == y.max())) for y in (x, -x)),
+                                  key=lambda pair: pair[0])
                 said = "peaks are cut off at %d counts" % int(np.abs(x).max())
             if present(nats):
                 value["xyz"[i]] = 1
+                ends.append(peaks(*level))
                 score, words = score + nats, said
     if not value:
         return []
     return [Finding("saturation", sensor, sorted(value), value, "1", score, "amplitude", words,
-                    {k: (v, v) for k, v in value.items()})]
+                    {k: (v, v) for k, v in value.items()},
+                    share=float(np.sum(ends, axis=0)[0] / np.sum(ends)))]
 
 
 def railed(session, sensor="accel"):
@@ -71,12 +75,9 @@ def level_nats(x, at, width, free=0):
     `at` is True, against readings whose peaks end anywhere in the last part of their span. That
     noise does not move the next sample at the level counts for as much as the noise is wide.
     free: peaks that end there anyhow."""
-    step = int(steps(x[:, None])[0])
-    spread = max(4.0, 3.0 * step, SPREAD_SHARE * float(np.ptp(x)))
-    top = x[at].min()
-    visits = _runs(x >= top - spread)
-    reached = _reached(x >= top - spread, at)
-    inside, runs = visits - reached, max(reached - free, 0)
+    step, spread = _spread(x)
+    reached, inside = peaks(x, at)
+    runs = max(reached - free, 0)
     # A rail is known beforehand: what jumps there alone could have jumped anywhere.
     known = not free and not inside
     share = width / float(RAIL + 1) if known else width * step / spread
@@ -91,6 +92,19 @@ def level_nats(x, at, width, free=0):
         return 0.0  # readings as they thin out anyhow: what repeats there does so everywhere
     nats += runs * math.log(found / share)
     return nats + (inside * math.log((1.0 - found) / (1.0 - share)) if inside else 0.0)
+
+
+def peaks(x, at):
+    """(peaks that end at the level where `at` is True, those that end just inside of it)."""
+    near = x >= x[at].min() - _spread(x)[1]
+    reached = _reached(near, at)
+    return reached, _runs(near) - reached
+
+
+def _spread(x):
+    """(step of the counts, width of the last part of their span)."""
+    step = int(steps(x[:, None])[0])
+    return step, max(4.0, 3.0 * step, SPREAD_SHARE * float(np.ptp(x)))
 
 
 def _reached(near, at):

@@ -28,7 +28,7 @@ def findings(sessions):
     axes = [i for i in range(3) if usual[i] > SHAKEN * max(quiet[i], 1e-9)]
     if not axes:
         return []
-    value, interval, score = {}, {}, 0.0
+    value, interval, score, above = {}, {}, 0.0, []
     for i in axes:
         ranked = np.sort(level[:, i])
         # Ranks of the 90 % interval of a median [Conover, Practical Nonparametric Statistics].
@@ -38,9 +38,12 @@ def findings(sessions):
         value["xyz"[i]] = float("%.3g" % _amplitude(usual[i], quiet[i]))
         interval["xyz"[i]] = tuple(float(_amplitude(end, quiet[i])) for end in ends)
         # Half of the windows above a level that QUIET of them are below, if they were alike.
+        mean = float((level[:, i] ** 2).mean()) - quiet[i] ** 2
+        above.append((min(usual[i] ** 2 - quiet[i] ** 2, mean), mean))
         score += 0.5 * len(ranked) * np.log(0.25 / (QUIET * (1.0 - QUIET)))
     return [Finding("vibration", "accel", sorted(value), value, "mg", score, "frequency",
-                    "it is shaken most of the time", interval)]
+                    "it is shaken most of the time", interval,
+                    share=float(np.sum(above, axis=0)[0] / np.sum(above, axis=0)[1]))]
 
 
 def _amplitude(level, quiet):

@@ -6,9 +6,10 @@ distributed. The largest over all frequencies and axes must be improbable (Bonfe
 Source: Percival & Walden, Spectral Analysis for Physical Applications (1993), section 10.9.
 """
 import math
+from dataclasses import dataclass
 
 import numpy as np
-from scipy import ndimage, signal, stats
+from scipy import ndimage, signal, special
 
 from ...capture.registers import steps
 from .detection import Finding
@@ -25,6 +26,21 @@ LEAST_SHARE = 0.25  # of the standard deviation of the noise: smaller is no matt
 # there scatters as much as its mean (noise through a resonance is exponential). Something that
 # runs is steadier. Only what is steady, or strong, is named.
 STEADY, STRONG_SHARE = 0.6, 0.4
+Z_90 = 1.645
+
+
+@dataclass(frozen=True)
+class Line:
+    """axis (0..2); hz; nats; size: its amplitude, and error, relative; power of the line and
+    excess of the axis' whole spectrum over its floor, in one unit."""
+
+    axis: int
+    hz: float
+    nats: float
+    size: float
+    error: float
+    power: float
+    excess: float
 
 
 def findings(sessions):
@@ -36,16 +52,17 @@ def findings(sessions):
         lines = [line for line in (strongest(sessions, sensor, i) for i in range(3)) if line]
         if not lines:
             continue
-        top = max(lines, key=lambda line: line[2])
-        value = {"xyz"[i]: float("%.3g" % size) for i, _, _, size, _ in lines}
-        interval = {"xyz"[i]: (size * (1 - 1.6 * rel), size * (1 + 1.6 * rel))
-                    for i, _, _, size, rel in lines}
+        top = max(lines, key=lambda line: line.nats)
+        value = {"xyz"[line.axis]: float("%.3g" % line.size) for line in lines}
+        interval = {"xyz"[line.axis]: (line.size * (1 - Z_90 * line.error),
+                                       line.size * (1 + Z_90 * line.error)) for line in lines}
         rate = sessions[0].rate
+        share = sum(line.power for line in lines) / sum(line.excess for line in lines)
         out.append(Finding(
             "vibration", sensor, sorted(value), value, "mg" if sensor == "accel" else "deg/s",
-            top[2], "frequency", "a line at %.2f Hz (or folded from %.2f, %.2f Hz)"
-            % (top[1], rate - top[1], rate + top[1]), interval,
-            hz={"xyz"[i]: hz for i, hz, _, _, _ in lines}))
+            top.nats, "frequency", "a line at %.2f Hz (or folded from %.2f, %.2f Hz)"
+            % (top.hz, rate - top.hz, rate + top.hz), interval,
+            hz={"xyz"[line.axis]: line.hz for line in lines}, share=share))
     return out
 
 
@@ -105,7 +122,7 @@ def scatter(stretches, axis, k):
 
 
 def strongest(sessions, sensor, axis):
-    """(axis, Hz, nats, amplitude, relative error) of the strongest line, or None."""
+    """Line, the strongest one of an axis, or None."""
     stretches = rests(sessions, sensor)
     if not stretches:
         return None
@@ -119,21 +136,22 @@ def strongest(sessions, sensor, axis):
     if len(band) < 20 or not band.any():
         return None
     width = max(9, int(MEDIAN_SHARE * len(band)) | 1)
-    median_of_mean = stats.gamma.ppf(0.5, number) / number
+    median_of_mean = special.gammaincinv(number, 0.5) / number
     floor = ndimage.median_filter(band, size=width, mode="reflect") / median_of_mean
     ratio = band / np.maximum(floor, 1e-12)
     k = int(ratio.argmax())
     doubt = 1.0 + 2.0 * 1.25 / math.sqrt(width * number)  # the floor is a median itself
-    log_p = float(stats.gamma.logsf(ratio[k] * number / doubt, number))
-    nats = -(log_p + math.log(3.0 * len(band)))
+    nats = -(log_beyond(ratio[k] * number / doubt, number) + math.log(3.0 * len(band)))
     if nats < -math.log(CHANCE):
         return None
     near = slice(max(0, k - 2), k + 3)
     whole = plain[first:-1]
     below = np.median(whole[max(0, k - width // 2):k + width // 2 + 1]) / median_of_mean
-    excess = float((whole[near] - below).sum()) * (window ** 2).sum()
+    excess = float((whole[near] - below).sum())
+    usual = ndimage.median_filter(whole, size=width, mode="reflect") / median_of_mean
+    beyond = max(excess, float((whole - usual).sum()))
     # A sine of amplitude a: sum over the lobe of |X|^2 = a^2 n sum(w^2) / 4.
-    amplitude = math.sqrt(max(4.0 * excess / (n * (window ** 2).sum()), 0.0))
+    amplitude = math.sqrt(max(4.0 * excess / n, 0.0))
     spread = np.mean([s[:, axis].std() for s in stretches])
     if amplitude < max(LEAST_SHARE * spread, LEAST_STEPS * step(sessions, sensor, axis)):
         return None
@@ -142,7 +160,14 @@ def strongest(sessions, sensor, axis):
         return None
     error = 1.0 / math.sqrt(max(2.0 * number * ratio[k], 1.0))
     hz = _refined(mean, first + k) * rate / n
-    return axis, hz, min(nats, 999.0), amplitude, error
+    return Line(axis, hz, nats, amplitude, error, excess, beyond)
+
+
+def log_beyond(x, number):
+    """Logarithm of the probability that a Gamma variable of a whole number of stretches exceeds
+    x, however small: exp(-x) times the first terms of the series of exp(x)."""
+    k = np.arange(number)
+    return float(special.logsumexp(k * math.log(x) - special.gammaln(k + 1.0))) - x
 
 
 def _refined(power, k):

@@ -35,7 +35,7 @@ def finding(sessions, sensor, banded=()):
     if not tables:
         return []
     table = np.concatenate(tables, axis=1)
-    nats, number = max(competed(table, which) for which in (0, 1))
+    nats, number, others = max(competed(table, which) for which in (0, 1))
     if not present(nats):
         return []
     chances = sum(int((np.diff(column // PAGE) != 0).sum()) for counts in columns
@@ -44,7 +44,8 @@ def finding(sessions, sensor, banded=()):
     half = 1.645 * percent / np.sqrt(max(number, 1.0))
     return [Finding("torn_reads", sensor, [], {"chance": round(percent, 3)}, "%", nats, "noise",
                     "about %.0f samples mix the bytes of two readings" % number,
-                    {"chance": (max(percent - half, 0.0), percent + half)})]
+                    {"chance": (max(percent - half, 0.0), percent + half)},
+                    share=float(number / max(number + others, 1e-9)))]
 
 
 def jumps(sessions, without=()):
@@ -91,9 +92,10 @@ def paged(table):
 
 
 def competed(table, which):
-    """(nats over what has no name, samples torn) of a table (8, n) of tabled(); which: 0 with the
-    page of the sample before, 1 after. Shares of jumps and tails of the noise are the likeliest
-    of those tried, in each hypothesis by itself; what was tried for the name's sake is paid."""
+    """(nats over what has no name, samples torn, samples that jump otherwise) of a table (8, n)
+    of tabled(); which: 0 with the page of the sample before, 1 after. Shares of jumps and tails
+    of the noise are the likeliest of those tried, in each hypothesis by itself; what was tried
+    for the name's sake is paid."""
     off, moved, sigma = table[:3]
     same, chance = table[4 + 2 * which], table[5 + 2 * which].sum()
     far = np.abs(off) > NEAR
@@ -105,14 +107,15 @@ def competed(table, which):
         wide, share = _best(sound, anywhere, far, len(off))
         nameless += [alone, alone + wide, alone + _best(sound, jumped, far, len(off))[0]]
         torn, own = _best(sound, jumped * same, far, chance)
-        named.append((alone + torn, float(_held(sound, own * jumped * same))))
+        named.append((alone + torn, float(_held(sound, own * jumped * same)), 0.0))
         beside = sound + share * anywhere  # beside the torn ones there may be others
         torn, own = _best(beside, jumped * same, far, chance)
         rest = alone + len(off) * math.log1p(-share) + float(np.log(beside / sound).sum())
-        named.append((rest + torn, float(_held(beside, own * jumped * same))))
+        named.append((rest + torn, float(_held(beside, own * jumped * same)), float(_held(
+            sound + own * jumped * same, share * anywhere))))
         nameless.append(rest + _best(beside, jumped, far, len(off))[0])
-    score, number = max(named)
-    return score - max(nameless) - math.log(2.0 * len(SHARES)), number
+    score, number, others = max(named)
+    return score - max(nameless) - math.log(2.0 * len(SHARES)), number, others
 
 
 def _best(sound, jump, far, among):
