@@ -142,8 +142,8 @@ def test_an_interval_of_a_drift_is_that_of_its_likelihood():
     for seed, size in ((41, 0.06), (42, 0.12)):
         drift = {"effect": "drift", "sensor": "gyro", "x": size, "y": size, "z": size}
         whole = blocks.of("s", session([drift], seed))
-        level, low, high, _ = rest_model.RestModel("gyro", "mpu6050", diagnosis.Settings()).fit(
+        found = rest_model.RestModel("gyro", "mpu6050", diagnosis.Settings()).fit(
             [whole], [attitude_fit.fit(whole)]).drift
-        assert low < level < high
-        ratios += [level / low, high / level]
+        assert found.low < found.level < found.high and 0.5 < found.share <= 1.0
+        ratios += [found.level / found.low, found.high / found.level]
     assert max(ratios) < 1.9 and np.ptp(ratios) > 0.005
