@@ -4,6 +4,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 pytest.importorskip("mujoco", reason="the zoo needs MuJoCo: pip install 'sixflip[test]'")
@@ -77,7 +78,6 @@ def test_another_motion_shows_it_as_well(name):
 def test_parameters_are_given_back_with_their_intervals():
     texts = defects.pair("healthy", motion("box", 1), motion("box", 1), 5)
     real, sim = (capture_file.parse("log", t.encode()) for t in texts)
-    import numpy as np
     part = defects.real_part(np.random.default_rng(5))
     found = comparison.compare([("real.csv", real)], "sim.csv", sim)
     for p in found.parameters:
@@ -96,3 +96,13 @@ def test_the_zoo_knows_nobody():
     code = "import sys; sys.path.insert(0, %r); import defects, engine; " \
         "assert not [m for m in sys.modules if m.startswith('sixflip')]" % str(here)
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_a_rover_with_a_biased_accelerometer_has_no_scale_of_its_gyro():
+    """Its rests lie alike: the bias turns gravity with the robot, as a scale would."""
+    from sixflip_host.diagnosis.simulator import own_calibration, traces
+    texts = defects.pair("healthy", motion("rover", 2), motion("rover", 2), 108)
+    own = own_calibration.fitted(traces.of("real", capture_file.parse("log", texts[0].encode())))
+    part = defects.real_part(np.random.default_rng(108))
+    off = np.abs(np.linalg.inv(own.gyro) - part.gyro)
+    assert (off < 4.0 * own.gyro_sigma).all()

@@ -107,7 +107,7 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
                             columns, mean, sd, inflation, live, rows)
         delay += float(np.clip(result[2][k], -0.05, 0.05))
     log, beta, shared, sigma, left, beta_sigma = result
-    log += 0.5 * n / inflation * np.minimum(0.0, np.log(gains(h, beta, shared)))[live].sum()
+    log += 0.5 * n / inflation * np.minimum(0.0, np.log(gains(h, beta, shared, unit)))[live].sum()
     matrix = (np.eye(3) + beta[:, :3]) @ axes * unit
     log -= live.sum() * n / inflation * np.log(unit)
     return Fit(h, h.name, log, matrix, beta[:, 3] * unit, axes, unit,
@@ -116,7 +116,7 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
                left * unit)
 
 
-def gains(h, beta, shared):
+def gains(h, beta, shared, unit):
     """(3,): by how much the real log's own noise would be in the prediction, as power. Where that
     is less than in the reading itself, the fit may only have weakened a signal that is noisy in
     the real log; whether it has cannot be told from two logs [Fuller, Measurement Error Models
@@ -127,7 +127,7 @@ def gains(h, beta, shared):
     if h.copies and h.name == "":
         whole = whole + beta[:, 4:7]
     turned = beta[:, 7:10] if h.copies > 1 else np.zeros((3, 3))
-    return np.maximum((whole ** 2).sum(axis=1) + (turned ** 2).sum(axis=1), 1e-12)
+    return np.maximum(unit ** 2 * ((whole ** 2).sum(axis=1) + (turned ** 2).sum(axis=1)), 1e-12)
 
 
 def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,

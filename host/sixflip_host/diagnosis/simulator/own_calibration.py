@@ -14,6 +14,8 @@ from .hypotheses import BIAS, SHAPE
 
 ROUNDS = 8
 CARRY_RAD = np.radians(0.3)  # of a placement's tilt by handling, and of the attitude carried
+FREEDOM = 4.0  # of Student's t [Lange et al., J. Am. Stat. Assoc. 84 (1989), 881]
+MEDIAN_OF_TWO = np.log(2.0)  # of half the sum of two squares of unit variance
 NORM = 0.005  # m/s2: how well |force| repeats between rests, flicker included
 
 
@@ -56,7 +58,7 @@ def fitted(trace):
     ups /= np.maximum(np.linalg.norm(ups, axis=1), 1e-9)[:, None]
     gyro, gyro_sigma = np.eye(3), np.full((3, 3), SHAPE)
     if np.all(norms > 0.3 * trace.g):
-        gyro, gyro_sigma = by_carry(trace, rate, ups)
+        gyro, gyro_sigma = by_carry(trace, rate, ups, bias_sigma / trace.g)
     biases = trace.rest_means(trace.rate)
     spread = biases.std(axis=0, ddof=1) / np.sqrt(len(biases)) if len(biases) > 2 else \
         np.full(3, 0.001)
@@ -104,14 +106,21 @@ def matrix_of(p):
     return out, p[6:]
 
 
-def by_carry(trace, rate, ups):
-    """(matrix (3, 3), sigma (3, 3)) of the gyro by gravity before and after each move."""
-    matrix = np.eye(3)
-    gram = np.eye(9) / SHAPE ** 2
-    squares, number = 0.0, 0
-    for _ in range(3):
-        squares, number = 0.0, 0
-        gram, right = np.eye(9) / SHAPE ** 2, -(matrix - np.eye(3)).ravel() / SHAPE ** 2
+def by_carry(trace, rate, ups, tilt):
+    """(matrix (3, 3), sigma (3, 3)) of the gyro by gravity before and after each move.
+
+    tilt (3,): how far the direction of gravity in the sensor may be off, the same at every rest,
+    since a log whose rests lie alike does not show the accelerometer's bias; it turns with the
+    robot and would pass for a scale of the gyro. Over bumps the samples lie too far apart: how
+    much that matters is what every second of them makes of the same move. Moves are weighed by
+    Student's t besides.
+    """
+    coarse = [CARRY_RAD + astray(trace, rate, ups[k], k) for k in range(len(trace.rests) - 1)]
+    prior = np.concatenate([np.full(9, SHAPE), np.maximum(tilt, 1e-6)])
+    p, wider = np.zeros(12), 1.0
+    for _ in range(ROUNDS):
+        matrix = np.eye(3) + p[:9].reshape(3, 3)
+        gram, right, off = np.diag(prior ** -2.0), -p / prior ** 2, []
         for k in range(len(trace.rests) - 1):
             first, last = trace.rests[k][1] - 1, trace.rests[k + 1][0]
             true = rate[first:last + 1] @ matrix.T
@@ -121,18 +130,35 @@ def by_carry(trace, rate, ups):
             raw = 0.5 * (rate[first + 1:last + 1] + rate[first:last]) * dt
             # d(turn) = sum over samples of R(t) dM w dt, in the frame of the start
             spread = np.einsum("nij,nk->ijk", turns[:-1], raw).reshape(3, 9)
-            before = ups[k]
+            before, after = ups[k] + p[9:], ups[k + 1] + p[9:]
             x, y, z = before
             cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-            jacobian = cross @ spread
-            left = turns[-1] @ ups[k + 1] - before
+            jacobian = np.hstack([cross @ spread, np.eye(3) - turns[-1]])
+            left = turns[-1] @ after - before
             if np.linalg.norm(left) > 0.5:
                 continue  # a convention, not a parameter
-            squares, number = squares + (left ** 2).sum() / 2.0, number + 1
-            gram += jacobian.T @ jacobian / CARRY_RAD ** 2
-            right += jacobian.T @ left / CARRY_RAD ** 2
-        matrix = matrix + np.linalg.solve(gram, right).reshape(3, 3)
-    # Where gravity is carried worse than by hand, the intervals are as much wider.
-    wider = max(1.0, np.sqrt(squares / max(number, 1)) / CARRY_RAD)
-    gram = (gram - np.eye(9) / SHAPE ** 2) / wider ** 2 + np.eye(9) / SHAPE ** 2
-    return matrix, np.sqrt(np.diag(np.linalg.inv(gram))).reshape(3, 3)
+            size = (left ** 2).sum() / 2.0 / coarse[k] ** 2
+            weight = (FREEDOM + 2.0) / (FREEDOM + 2.0 * size / wider ** 2) / (
+                wider * coarse[k]) ** 2
+            off.append(size)
+            gram += weight * jacobian.T @ jacobian
+            right += weight * jacobian.T @ left
+        p = p + np.linalg.solve(gram, right)
+        # Where gravity is carried worse than that, the intervals are as much wider.
+        if off:
+            wider = max(1.0, np.sqrt(np.median(off) / MEDIAN_OF_TWO))
+    spread = np.sqrt(np.diag(np.linalg.inv(gram)))
+    return np.eye(3) + p[:9].reshape(3, 3), spread[:9].reshape(3, 3)
+
+
+def astray(trace, rate, up, k):
+    """Angle (rad) between where the whole gyro and every second of its samples carry a
+    direction in the k-th move."""
+    first, last = trace.rests[k][1] - 1, trace.rests[k + 1][0]
+    ends = []
+    for every in (1, 2):
+        t, w = trace.t[first:last + 1:every], rate[first:last + 1:every]
+        steps = 0.5 * (w[1:] + w[:-1]) * np.diff(t)[:, None]
+        ends.append(traces.chained(np.concatenate([np.eye(3)[None], _rotation(steps)]))[-1].T
+                    @ up)
+    return float(np.linalg.norm(ends[0] - ends[1]))

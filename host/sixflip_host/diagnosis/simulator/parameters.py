@@ -43,14 +43,15 @@ class Parameter:
 
 
 def compared(name, sensor, axis, unit, real, real_sigma, sim, sim_sigma, difference=None,
-             sigma=None, least=0.0):
+             sigma=None, least=0.0, apart=None):
     """Parameter from values and standard errors; difference: where it is known better than by
-    the two values; least: what no log of whole counts can tell from 0."""
+    the two values; least: what no log of whole counts can tell from 0; apart: standard errors
+    between the two, where that is not the difference over its own."""
     if difference is None:
         difference = real - sim
         sigma = float(np.hypot(real_sigma, sim_sigma))
     sigma = float(np.hypot(sigma, least))
-    differs = bool(abs(difference) > DIFFERS * sigma)
+    differs = bool(apart > DIFFERS if apart is not None else abs(difference) > DIFFERS * sigma)
     return Parameter(name, sensor, axis, unit, _number(real), _span(real, real_sigma),
                      _number(sim), _span(sim, sim_sigma), float(difference),
                      _span(difference, sigma), differs,
@@ -140,8 +141,11 @@ def noises(real, sim):
             if single_log.step(values[0], floor[0])[i] > COARSE * b.per_sample[i] > 0:
                 continue  # in steps that coarse the real one's noise does not show
             da, db = a.density[i] * scale, 0.0 if silent else b.density[i] * scale
+            # Noise is known to a share of itself: it is the ratio that can be told from one.
+            ratio = abs(np.log(max(da, 1e-12) / max(db, 1e-12)))
             out.append(compared("noise_density", kind, axis, unit, da, da * a.relative_sigma, db,
-                                db * b.relative_sigma))
+                                db * b.relative_sigma, apart=ratio / np.hypot(
+                                    a.relative_sigma, b.relative_sigma)))
         if not silent and (a.per_sample > DROWNED * floor[0]).all() and (b.density > 0).all():
             found += density_convention(kind, a, b, sim.rate_hz)
     return out, merged_noise(found)

@@ -5,6 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 SUBMEAN_S = 0.25  # noise density is taken from means this long: a filter's colour is in it
+# Of a standard normal: the median of its square, and the standard error of a deviation that is
+# taken from it, times the root of the number [Rousseeuw, Croux, J. Am. Stat. Assoc. 88 (1993)].
+MEDIAN_OF_SQUARE, MEDIAN_SIGMA = 0.4549, 1.17
 SETTLING = 4.0  # times the usual power: five means of one noise differ by as much in 0.3 %
 
 
@@ -40,7 +43,7 @@ def dead(real, sim):
     return out
 
 
-def noise(trace, values, held=1.0):
+def noise(trace, values):
     """Noise of values (n, 3) at the Trace's rests, or None where there is none."""
     m = max(2, int(SUBMEAN_S * trace.rate_hz))
     rests = []
@@ -49,19 +52,19 @@ def noise(trace, values, held=1.0):
         k = len(x) // m
         if k >= 2:
             means = x[:k * m].reshape(k, m, 3).mean(axis=1)
-            rests.append(((np.diff(means, axis=0) ** 2).sum(axis=0), k - 1,
-                          (np.diff(x, axis=0) ** 2).sum(axis=0) / 2.0, len(x) - 1))
+            rests.append((np.diff(means, axis=0) ** 2, np.diff(x, axis=0) ** 2))
     if len(rests) > 2:
         # A rest in which the robot still settles says nothing of the sensor's noise.
-        level = [(r[0] / r[1]).sum() for r in rests]
+        level = [means.mean(axis=0).sum() for means, _ in rests]
         rests = [r for r, own in zip(rests, level) if own <= SETTLING * np.median(level)]
-    squares, pairs, sample, number = (sum(column) for column in zip(*rests)) if rests else (
-        0, 0, 0, 0)
-    if pairs < 4:
+    squares, sample = (np.concatenate(x) for x in zip(*rests)) if rests else ([], [])
+    if len(squares) < 4:
         return None
-    per_mean = squares / pairs / 2.0
-    return Noise(np.sqrt(per_mean * m / trace.rate_hz), float(1.0 / np.sqrt(2.0 * pairs / 1.5)),
-                 np.sqrt(sample / max(number, 1)))
+    # By the median: in a part of a rest one axis may still be moved.
+    per_mean = np.median(squares, axis=0) / MEDIAN_OF_SQUARE / 2.0
+    return Noise(np.sqrt(per_mean * m / trace.rate_hz),
+                 float(MEDIAN_SIGMA / np.sqrt(len(squares) / 1.5)),
+                 np.sqrt(sample.mean(axis=0) / 2.0))
 
 
 def step(values, quantum):
