@@ -14,11 +14,43 @@ class Row:
         self.claim, self.figure, self.right = claim, figure, right
 
 
-def rows(plain, answer):
-    """list of Row: all causes, then what the plain figures show and no cause says."""
+def rows(plain, answer, others=()):
+    """list of Row: all causes and damages, then what the plain figures show and nobody says.
+    others: recordings diagnosed together with it."""
     rest = figures.rests(plain)
     found = [_judged(plain, cause, rest) for cause in answer["causes"]]
+    if others:
+        found = [_together([plain, *others], cause) or row
+                 for cause, row in zip(answer["causes"], found)]
+    found += [Row(one["words"], *_damage(plain, one, rest)) for one in answer["damage"]]
     return found + _verdict(answer, rest) + _unsaid(plain, answer, rest)
+
+
+def _together(recordings, cause):
+    """Row of a slope over the temperature by the rests of several files, or None."""
+    if "thermal_bias" not in cause["class"]:
+        return None
+    words, right = [], True
+    for key, value in cause["value"].items():
+        one = figures.between_files(recordings, cause["sensor"], "xyz".index(key[0]))
+        low, high = cause["interval_90"][key]
+        words.append("%s %.3g ± %.2g between files" % (key, one.value, one.error))
+        right &= abs(value - one.value) < AGREES * one.error + (high - low)
+    return Row("%s %s %s" % (" or ".join(cause["class"]), cause["sensor"], " ".join(
+        "%s=%.3g" % pair for pair in cause["value"].items())), "; ".join(words), bool(right))
+
+
+def _damage(plain, damage, rest):
+    """A plain figure of what a recording is said to have suffered."""
+    sensor = damage["sensor"]
+    if damage["kind"] == "repeats":
+        share = figures.repeated(plain, sensor)
+        return "%.3f of its rows repeat" % share, abs(
+            share - 1.0 + 1.0 / damage["value"]["times"]) < 0.1
+    if damage["kind"] in ("full_scale", "gravity") and sensor == "accel":
+        size = figures.gravity(plain, rest)
+        return "|a| is %.3f g" % size, abs(size - damage["value"]["factor"]) < 0.1
+    return "no recording here has any", False
 
 
 def _judged(plain, cause, rest):
@@ -77,19 +109,25 @@ def _dropped(plain, cause, rest):
 
 
 def _vibration(plain, cause, rest):
+    """A line is one in the mean spectrum of all stretches, and goes on in phase over the longest;
+    what is shaken at no steady frequency has a bump there."""
     sensor, words, right = cause["sensor"], [], True
-    hertz = cause.get("hz") or {}
     stretches = rest or [(0, len(plain.t))]
-    if not hertz:
+    lines = cause.get("lines") or {}
+    if not lines:
         ratio = figures.shaken(plain)
         return "third differences %.1f %.1f %.1f times the quietest" % tuple(ratio), \
             all(ratio["xyz".index(k)] > 2.0 for k in cause["value"])
-    for key, value in hertz.items():
-        peak, at = figures.line_at(plain, sensor, "xyz".index(key), value, stretches)
-        a, b = stretches[0]
-        close = abs(at - value) <= 2.0 / (plain.t[b - 1] - plain.t[a])
-        words.append("%s peak %.0f times at %.3f Hz" % (key, peak, at))
-        right &= peak > 20.0 and close
+    for key, line in lines.items():
+        p, at, bump = figures.line_at(plain, sensor, "xyz".index(key), line["hz"], stretches)
+        if line["steady"]:
+            share = figures.in_phase(plain, sensor, "xyz".index(key), line["hz"], stretches[0])
+            words.append("%s p %.0e at %.3f Hz, %.2f of it in phase" % (key, p, at, share))
+            right &= p < 1e-3 and share > 0.4
+        else:
+            words.append("%s %.1f times its neighbourhood about %.3g Hz" % (
+                key, bump, line["hz"]))
+            right &= bump > 2.0
     return "; ".join(words), right
 
 
@@ -139,7 +177,21 @@ def _lag(plain, cause, rest):
     return "gyro %.1f ms late" % seen, abs(value - seen) < 5.0 + 0.3 * abs(seen)
 
 
-JUDGES = {"quantisation": _steps, "dead_band": _band, "saturation": _rails, "torn_reads": _torn,
+def _rate_of_temperature(plain, cause, rest):
+    if not rest or plain.temp is None:
+        return "no rest with a temperature", None
+    words, right = [], True
+    for key, value in cause["value"].items():
+        one = figures.temperature_rate(plain, cause["sensor"], "xyz".index(key[0]), rest[0])
+        low, high = cause["interval_90"][key]
+        words.append("%s %.3g ± %.2g beside a cubic" % (key, one.value, one.error))
+        right &= one.t > 2.0 and abs(value - one.value) < AGREES * one.error + 0.25 * abs(
+            one.value) + (high - low)
+    return "; ".join(words), bool(right)
+
+
+JUDGES = {"thermal_rate": _rate_of_temperature, "quantisation": _steps, "dead_band": _band,
+          "saturation": _rails, "torn_reads": _torn,
           "sample_rate": _rate, "dropped_samples": _dropped, "vibration": _vibration,
           "thermal_bias": _slope, "warm_up": _time, "drift": _time, "g_sensitivity": _gravity,
           "filter_lag": _lag}
@@ -188,6 +240,10 @@ def _unsaid(plain, answer, rest):
             found.append(Row("NOT SAID: %s %s %s" % (
                 sensor, "-" if axis is None else "xyz"[axis], "/".join(effects)), figure, False))
     for sensor in sensors:
+        if plain.counts and figures.repeated(plain, sensor) > 0.3 and min(
+                figures.noise(plain, sensor, rest)) > 2.0 and not answer["damage"]:
+            found.append(Row("NOT SAID: %s repeats" % sensor, "%.2f of its rows" % (
+                figures.repeated(plain, sensor)), False))
         for axis in range(3):
             if plain.counts and figures.steps(plain, sensor, axis) > 1:
                 need(sensor, axis, ("quantisation",), "common divisor %d" % figures.steps(
@@ -200,7 +256,29 @@ def _unsaid(plain, answer, rest):
             for hertz, size, p in figures.lines(plain, sensor, axis, rest[0]):
                 need(sensor, axis, ("vibration",), "%.3f Hz, %.3g, p %.0e" % (hertz, size, p))
             _trend(plain, sensor, axis, rest[0], need)
+    if rest and abs(figures.gravity(plain, rest) - 1.0) > 0.5 and not answer["damage"]:
+        found.append(Row("NOT SAID: |a|", "%.3f g at rest" %
+                         figures.gravity(plain, rest), False))
+    found += _late(plain, answer)
     return found        # missing samples are an upper bound there: late stamps look the same
+
+
+def _late(plain, answer):
+    """A gyro that is behind, where its parts agree on it and nothing says why it is not seen."""
+    number = len(figures.rests(plain, 2.0)) if plain.gyro is not None else 0
+    if number < 12 or any(u["effect"] == "filter_lag" and u["sensor"] == "gyro"
+                          for u in answer["unseen"]):
+        return []
+    cut = np.linspace(0, len(plain.t), 5).astype(int)
+    parts = [figures.lag_ms(plain.part(a, b)) for a, b in zip(cut, cut[1:])]
+    parts = [one for one in parts if one is not None]
+    if len(parts) < 3:
+        return []
+    mean, error = np.mean(parts), np.std(parts, ddof=1) / np.sqrt(len(parts))
+    if abs(mean) < max(FIVE * error, 5.0) or _said(answer, "gyro", ("filter_lag",)) or _said(
+            answer, "accel", ("filter_lag",)):
+        return []
+    return [Row("NOT SAID: filter_lag", "%.1f ± %.1f ms" % (mean, error), False)]
 
 
 def _trend(plain, sensor, axis, rest, need):

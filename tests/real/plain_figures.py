@@ -94,6 +94,46 @@ def cubic_share(plain, sensor, axis, rest):
     return float(y.std()), float(left.std())
 
 
+def temperature_rate(plain, sensor, axis, rest):
+    """Slope over the rate of the temperature, per degC/min, of a rest, a cubic in the temperature
+    beside it: of what changes from block to block, since a sensor wanders."""
+    a, b = rest
+    t, y = means(plain.temp[a:b], 100), means(plain.of(sensor)[a:b, axis], 100)
+    rate = 60.0 * np.gradient(t, means(plain.t[a:b], 100))
+    u = (t - t.mean()) / max(np.ptp(t), 1e-9)
+    return regression(np.diff(y), [np.diff(x) for x in (rate, u, u ** 2, u ** 3)])
+
+
+def between_files(recordings, sensor, axis):
+    """Slope over the temperature from file to file, of the longest rest of each; its error by
+    what the blocks within the files leave, and by one degree of freedom at least."""
+    t, y = [], []
+    for one in recordings:
+        a, b = rests(one)[0]
+        t.append(one.temp[a:b].mean())
+        y.append(one.of(sensor)[a:b, axis].mean())
+    t, y = np.array(t), np.array(y)
+    slope, offset = np.polyfit(t, y, 1)
+    left = y - slope * t - offset
+    sigma = np.sqrt((left ** 2).sum() / max(len(t) - 2, 1))
+    return Slope(float(slope), float(sigma / np.sqrt(((t - t.mean()) ** 2).sum())),
+                 float(1.0 - left.var() / max(y.var(), 1e-300)))
+
+
+def gravity(plain, stretches):
+    """|a| in g of the longest rest; where nothing rests, the median of the samples."""
+    if not stretches:
+        return float(np.median(np.linalg.norm(plain.accel, axis=1))) / 1000.0
+    a, b = stretches[0]
+    return float(np.linalg.norm(plain.accel[a:b].mean(axis=0))) / 1000.0
+
+
+def noise(plain, sensor, stretches):
+    """Counts (3,): standard deviation of neighbouring samples, in the longest rest."""
+    a, b = stretches[0] if stretches else (0, len(plain.t))
+    return np.diff(plain.counts[sensor][a:b], axis=0).std(axis=0) / np.sqrt(2.0)
+
+
 def in_time(plain, sensor, axis, rest):
     """The strongest Slope over time or one of the decays of a rest."""
     a, b = rest
@@ -114,17 +154,43 @@ def wander(plain, sensor, axis, rest):
 
 
 def line_at(plain, sensor, axis, hertz, stretches):
-    """(peak over its neighbourhood within 2 / T of a frequency, its frequency) of the averaged
-    periodogram of the longest stretch."""
-    a, b = stretches[0]
-    x = signal.detrend(plain.of(sensor)[a:b, axis])
-    spacing = plain.rate / len(x)
-    power = np.abs(np.fft.rfft(x * np.hanning(len(x)))) ** 2
-    k = int(round(hertz / spacing))
-    near = slice(max(1, k - 3), k + 4)
-    around = np.concatenate([power[max(1, k - 60):max(1, k - 6)], power[k + 7:k + 60]])
-    top = max(1, k - 3) + int(power[near].argmax())
-    return float(power[near].max() / np.median(around)), top * spacing
+    """(p of the largest bin within 2 / T of a frequency, its frequency, how often the mean power
+    within a tenth of it is that of its neighbourhood) of the periodogram averaged over equal
+    parts of all stretches, 5 s long or 2 s where there are few."""
+    for seconds in (5.0, 2.0):
+        n = int(seconds * plain.rate)
+        parts = [signal.detrend(plain.of(sensor)[k:k + n, axis]) for a, b in stretches
+                 for k in range(a, b - n + 1, n)]
+        if len(parts) >= 4:
+            break
+    if not parts:
+        return 1.0, 0.0, 0.0
+    power = np.abs(np.fft.rfft(np.array(parts) * np.hanning(n), axis=1)) ** 2
+    power = (power / np.median(power[:, 2:], axis=1)[:, None]).mean(axis=0)
+    k, frequency = int(round(hertz / plain.rate * n)), np.fft.rfftfreq(n, 1.0 / plain.rate)
+    near = np.arange(max(1, k - 2), min(k + 3, len(power)))
+    beside = np.abs(frequency / hertz - 1.0)
+    around = np.median(power[(beside > 0.1) & (beside < 0.5)])
+    top = near[power[near].argmax()]
+    level = stats.gamma.median(len(parts)) / len(parts)
+    p = len(power) * stats.gamma.sf(power[top] / around * level * len(parts), len(parts))
+    return float(p), float(frequency[top]), float(power[beside < 0.1].mean() / around)
+
+
+def in_phase(plain, sensor, axis, hertz, stretch):
+    """Share of the power of a line in parts of 2 s that one sine over the whole stretch has, by
+    least squares at the best of the frequencies near."""
+    a, b = stretch
+    x, t = signal.detrend(plain.of(sensor)[a:b, axis]), np.arange(b - a) / plain.rate
+
+    def power(x, t, f):
+        design = np.stack([np.sin(2 * np.pi * f * t), np.cos(2 * np.pi * f * t)], 1)
+        return float((np.linalg.lstsq(design, x, rcond=None)[0] ** 2).sum())
+    n, span = int(2.0 * plain.rate), (b - a) / plain.rate
+    tried = hertz + np.arange(-2.0, 2.01, 0.25) / span
+    parts = [max(power(x[k:k + n], t[k:k + n], f) for f in hertz + np.array([-0.2, 0.0, 0.2]))
+             for k in range(0, b - a - n + 1, n)]
+    return max(power(x, t, f) for f in tried) / max(np.mean(parts), 1e-300)
 
 
 def lines(plain, sensor, axis, rest, lowest=0.7):

@@ -89,7 +89,8 @@ def judged(recording, place, folder):
     if code:
         raise SystemExit("diagnose of %s: exit %d: %s" % (recording.name, code, said))
     answer = json.loads(said)
-    return answer, found + claims.rows(plain, answer)
+    others = [BY_NAME[name].read(place / BY_NAME[name].file) for name in recording.others]
+    return answer, found + claims.rows(plain, answer, others)
 
 
 def show(recording, answer, rows):

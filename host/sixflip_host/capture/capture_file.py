@@ -119,7 +119,7 @@ def with_accelerometer(path, capture):
     """The same capture; BadFile where it is a gyro's alone."""
     if capture.accel is None:
         raise BadFile("%s: it holds a gyro alone, expected ax ay az as well: only sixflip show "
-                      "does without" % path)
+                      "and diagnose do without" % path)
     return capture
 
 

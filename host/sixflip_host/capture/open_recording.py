@@ -41,9 +41,9 @@ def read(path, gravity=True, gyro_alone=False):
     return capture if gyro_alone else capture_file.with_accelerometer(path, capture)
 
 
-def read_samples(path, gravity=True):
+def read_samples(path, gravity=True, gyro_alone=False):
     """read() for what needs every sample: BadFile where the board kept the poses' sums only."""
-    return capture_file.with_samples(path, read(path, gravity))
+    return capture_file.with_samples(path, read(path, gravity, gyro_alone))
 
 
 def _is_ours(path):

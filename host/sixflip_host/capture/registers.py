@@ -3,6 +3,7 @@ import numpy as np
 
 FEWEST_VALUES = 12  # distinct counts before a common divisor means anything
 FEWEST_SAMPLES = 50
+SPACED = 6  # times the smallest value: as far as the values next to each other are looked at
 RAIL = 32767
 LOW_BITS = 6  # bits that noise and motion must have moved
 MOVED = 4  # times a bit's weight that a column must span to have moved it
@@ -18,15 +19,26 @@ def steps(counts):
     return np.array(out)
 
 
+def spacing(size, least):
+    """Usual distance of the values next to each other among sizes (n,) of codes from `least` to
+    SPACED times that: what a column counts in where a file's decimals, a factor or few samples
+    leave codes out that have no common divisor."""
+    values = np.unique(size[(size >= least) & (size <= SPACED * least)])
+    return float(np.median(np.diff(values))) if len(values) > 2 else float(least)
+
+
 def dead_band(counts):
     """(3,) smallest count that is not 0, where many more near 0 were to be expected."""
     out = []
     for column in counts.T:
-        step = max(1, steps(column[:, None])[0])
         small = np.abs(column.astype(np.int64))
         zeros, others = int((small == 0).sum()), small[small > 0]
         least = int(others.min()) if len(others) else 0
-        near = int((others < 2 * least).sum()) if least else 0
+        if not least:
+            out.append(0)
+            continue
+        step = max(1, steps(column[:, None])[0], spacing(small, least))
+        near = int((others < 2 * least).sum())
         expected = near * (least / step - 1.0) / max(least / step, 1.0)
         out.append(least if zeros > 20 and least > 2 * step and expected > 40 else 0)
     return np.array(out)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sixflip.poses.faces import FACES, nearest_face
+from sixflip.poses.faces import FACES, LEANING, nearest_face
 from sixflip.poses.noise_floor import WINDOWS, NoiseFloor
 from sixflip.poses.pose_label import CROOKED_DEG
 
@@ -190,6 +190,35 @@ def by_variance(samples, limit, window=WINDOW, shortest=SHORTEST):
     half = window // 2
     return [Run(0, first + half, end + half) for first, end in _stretches(still)
             if end - first >= shortest]
+
+
+GYRO_STILL, GYRO_CREEPS_DPS = 4.0, 1.0   # times the quietest variance; off the usual reading
+
+
+def label_still_gyro(capture):
+    """The capture of a gyro alone, its rests labelled as leaning ones: where it is about as quiet
+    as ever, and reads about what it reads most of the time. A turn at a steady rate that lasts
+    for most of the recording looks the same."""
+    samples = capture.gyro / capture.meta["gyro_lsb_per_dps"]
+    window = max(8, int(capture.meta["rate_hz"]))
+    capture.pose = np.zeros(len(samples), np.int16)
+    if len(samples) < 3 * window:
+        return capture
+    spread = sliding_variance(samples, window)
+    least = 3.0 / 12.0 / capture.meta["gyro_lsb_per_dps"] ** 2
+    quiet = spread < GYRO_STILL * max(float(np.quantile(spread, 0.1)), least)
+    mean = np.stack([np.convolve(x, np.full(window, 1.0 / window), "valid")
+                     for x in samples.T], 1)
+    usual = np.median(mean[quiet], axis=0)
+    quiet &= np.abs(mean - usual).max(axis=1) < GYRO_CREEPS_DPS
+    half, number = window // 2, 0
+    for first, end in _stretches(quiet):
+        if end - first >= window:
+            number += 1
+            first = 0 if not first else first + half
+            end = len(samples) if end == len(quiet) else end + half
+            capture.pose[first:end] = LEANING + number
+    return capture
 
 
 def _stretches(still):

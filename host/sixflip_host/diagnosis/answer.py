@@ -4,8 +4,8 @@ import math
 from sixflip_sim.effects.drift import FLOOR_OF_UNIT
 
 from ..planning import next_capture
-from . import detectability
-from .detect import sample_clock
+from . import detectability, rest_noise
+from .detect import damage, line_frequency, sample_clock
 from .simulator import simulator_answer
 
 UNITS = {"accel": "mg", "gyro": "deg/s", "gyro_turns": "deg/s", "accel_motion": "mg"}
@@ -32,7 +32,9 @@ def of(diagnosis):
         "gap": {kind: _gap(kind, gap) for kind, gap in gaps(diagnosis).items()},
         "unseen": detectability.listed(diagnosis), "next": next_capture.proposed(diagnosis),
         "clock": sample_clock.answer(diagnosis.sessions, diagnosis.clocks),
-        "held_out": held_out(diagnosis), "remarks": diagnosis.remarks}
+        "held_out": held_out(diagnosis), "damage": damage.answer(diagnosis.damages),
+        "noise": rest_noise.answer(diagnosis.noise),
+        "remarks": diagnosis.remarks}
     if diagnosis.comparisons:
         answer["simulator"] = simulator_answer.of(diagnosis.comparisons)
     return answer
@@ -96,8 +98,12 @@ def _cause(kind, c):
 def _finding(f):
     found = _entry(f.sensor, f.axes, f.probabilities, f.score, f.value, f.unit,
                    f.interval or {}, f.plausible, f.share)
+    if f.share_interval:
+        found["share_interval_90"] = [number(v) for v in f.share_interval]
     if f.hz:
         found["hz"] = {key: number(hz, 7) for key, hz in f.hz.items()}
+    if f.lines:
+        found["lines"] = line_frequency.answer(f.lines)
     return found
 
 

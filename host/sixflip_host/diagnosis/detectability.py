@@ -45,15 +45,16 @@ def _named(diagnosis):
 
 
 def reason(diagnosis, name, sensor):
-    """Why an effect could not have been seen; "" when it could."""
+    """Why an effect could not have been seen; "" when it could, and of a sensor that is not
+    there."""
+    if sensor != "device" and any(getattr(s.capture, sensor) is None for s in diagnosis.sessions):
+        return ""
     if name in ("lever_arm", "filter_lag"):
         return in_motion(diagnosis, name, sensor)
     if sensor == "device" or name in ("supply", "table_tilt", "earth_rate", "local_gravity"):
         return ABSORBED.get(name, "")
     gap = diagnosis.gaps.get(sensor)
     if gap is None:
-        if sensor == "gyro" and any(s.gyro is None for s in diagnosis.sessions):
-            return ""
         if sensor in diagnosis.rest:
             return diagnosis.rest[sensor].reason(name)
         return "needs rests in several poses"

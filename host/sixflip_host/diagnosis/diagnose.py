@@ -3,6 +3,7 @@
 from .. import progress
 from ..experiment import blocks
 from . import diagnosis, noise_reference
+from .detect import byte_faults
 from .simulator import against_simulator, comparison, put_right
 
 
@@ -14,6 +15,7 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
     certified_box  the box is known to be square; without: effects left out of the library
     jobs       threads, 0: one a core
     """
+    captures, damages = byte_faults.repaired(captures)
     sessions = [blocks.of(name, capture) for name, capture in captures]
     noise = None
     for name, capture in reference:
@@ -32,4 +34,4 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
             progress.doing("the simulator's own captures")
             own = against_simulator.read(list(simulated), list(names), settings)
             settings.simulated = own.known
-    return diagnosis.Diagnosis(sessions, settings, own, comparisons)
+    return diagnosis.Diagnosis(sessions, settings, own, comparisons, damages)

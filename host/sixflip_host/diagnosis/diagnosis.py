@@ -7,10 +7,10 @@ import numpy as np
 from .. import progress
 from ..capture import registers
 from ..experiment import attitude_fit, blocks, terms
-from . import localisation, motion_model, odds, rest_gap, turn_model, verdict
+from . import localisation, motion_model, odds, rest_gap, rest_noise, turn_model, verdict
 from .detect import (
-    axis_order,
     codes,
+    held_values,
     integrity,
     noise_bursts,
     sample_clock,
@@ -18,6 +18,7 @@ from .detect import (
     shake_detector,
     spectral_lines,
     torn_reads,
+    wrong_scale,
 )
 from .detect.detection import present
 from .rest_model import RestModel
@@ -27,6 +28,7 @@ FEWEST_PLACEMENTS = 6
 COARSE = ("quantisation", "dead_band", "saturation", "torn_reads")
 NOISY = ("vibration", "torn_reads", "saturation")  # what makes some seconds louder
 SENSOR = {"accel": "accelerometer"}
+SCALES = ("full_scale", "gravity")  # damages that every reading of a sensor has
 LEAST_S = 5.0  # of a capture that can be said to show no gap
 
 
@@ -50,15 +52,16 @@ class Diagnosis:
     """sessions, findings (list of Finding), gaps {sensor: SensorGap}, rest {sensor: RestGap} of
     captures without poses, turns (SensorGap of the gyro in motion or None), motion (MotionGap of
     the accelerometer or None), where (list of Place), verdict, remarks (sentences); comparisons:
-    simulator.comparison.Comparison of each log of the user's own simulator."""
+    simulator.comparison.Comparison of each log of the user's own simulator; damages: list of
+    damage.Damage, those put right before given; noise: {sensor: rest_noise.RestNoise}
+    of rests without poses."""
 
-    def __init__(self, sessions, settings, simulator=None, comparisons=()):
+    def __init__(self, sessions, settings, simulator=None, comparisons=(), damages=()):
         sessions, others = blocks.same_chip(sessions)
         sessions, again = blocks.distinct(sessions)
         self.sessions, self.settings = sessions, settings
         self.remarks, self.gaps, self.rest, self.turns = [], {}, {}, None
         self.motion = None
-        self.scale_remark = ""
         self.remarks += ["%s is of another sensor (%s) and was left out" % (
             s.name, s.capture.meta["sensor"]) for s in others]
         self.remarks += ["%s repeats a capture before it and was left out" % s.name
@@ -73,11 +76,15 @@ class Diagnosis:
         self.remarks += self.stuck
         self.findings = [f for f in integrity.findings(sessions)
                          + spectral_lines.findings(sessions) if f.effect not in settings.without]
+        self.damages = [*damages, *held_values.findings(sessions),
+                        *wrong_scale.findings(sessions)]
+        self.remarks += [one.words for one in self.damages]
         self._noise(sessions)
         settings.shaken = {f.sensor: ["xyz".index(a) for a in f.axes] for f in self.findings
                            if f.effect == "vibration"}
         settings.coarse = any(f.sensor == "accel" and f.effect in COARSE for f in self.findings)
         self._poses()
+        self.noise = {} if self.gaps else rest_noise.of(sessions)
         if not self.gaps:
             progress.doing("the longest rest")
             self.rest = rest_gap.of(sessions, settings, [
@@ -120,6 +127,9 @@ class Diagnosis:
         self.remarks += [words for _, words, _ in bursts]
         self.nameless = [localisation.Place(sensor, None, "noise", 1.0, p)
                          for sensor, _, p in bursts]
+        self.nameless += [localisation.Place(one.sensor, axis, one.domain, 1.0,
+                                             odds.chance(one.score))
+                          for one in self.damages for axis in one.axes or (None,)]
         self.nameless += [localisation.Place(sensor, axis, "amplitude", 1.0, odds.chance(
             codes.bit_nats([getattr(s.capture, sensor)[:, "xyz".index(axis)] for s in sessions])))
             for sensor, axis, _, _ in bits]
@@ -134,14 +144,15 @@ class Diagnosis:
     def _poses(self):
         """The rests of sessions with poses, if any has enough of them."""
         usable = [s for s in self.sessions if s.placements() >= FEWEST_PLACEMENTS]
-        if not usable:
+        if not usable or any(s.capture.accel is None for s in self.sessions):
             return
         swapped = any(f.effect == "axis_swap" for f in self.findings)
         bad = [c for s in usable for c in s.contradicted()]
         if bad and not swapped:
             self.remarks.append("labels that gravity contradicts: " + ", ".join(
                 "%s (%.0f deg off)" % pair for pair in bad))
-        if swapped or self.stuck:
+        scaled = any(d.sensor == "accel" and d.kind in SCALES for d in self.damages)
+        if swapped or scaled or self.stuck:
             return
         if bad:
             usable = self._changed(usable, lambda s: s.without_poses(
@@ -158,10 +169,6 @@ class Diagnosis:
             return
         progress.doing("the nominal sensor")
         nominal = [attitude_fit.fit(s) for s in usable]
-        self.scale_remark = axis_order.full_scale(usable, nominal)
-        if self.scale_remark:
-            self.remarks.append(self.scale_remark)
-            return
         self._judge(usable, nominal)
 
     def _changed(self, usable, change):
@@ -260,10 +267,11 @@ class Diagnosis:
     def _verdict(self):
         """verdict.of what was found in the rests, the turns, the moves and the samples."""
         judged = [*self.gaps.values(), *([self.turns] if self.turns else [])]
-        claims = [verdict.Claim(f.named, told([f.effect, *f.rivals], f.share), f.nameless)
-                  for f in self.findings if f.plausible]
-        claims += [verdict.Claim(sum(c.probabilities.values()), told(c.names, c.share), c.nameless)
-                   for _, c in self.causes if c.plausible]
+        claims = [verdict.Claim(f.named, told([f.effect, *f.rivals], f.share) and self._sized(f),
+                                f.nameless) for f in self.findings if f.plausible]
+        claims += [verdict.Claim(sum(c.probabilities.values()), told(c.names, c.share) and bool(
+            c.effect == "drift" or shrinkage.interval), c.nameless)
+            for c, shrinkage in self._shrinking() if c.plausible]
         claims += [verdict.Claim(g.found.places["drift"]["drift"], True)
                    for g in self.gaps.values() if g.drift]
         nameless = [p for g in judged for p in verdict.of_gap(g.found, g.adequacy)]
@@ -272,8 +280,21 @@ class Diagnosis:
         # A size that no part has is a name for something else.
         nameless += [f.named for f in self.findings if not f.plausible]
         nameless += [c.place.get(c.effect, 0.0) for _, c in self.causes if not c.plausible]
-        broken = bool(self.stuck or self.scale_remark)
+        broken = bool(self.stuck)
         return verdict.of(claims, [*nameless, float(broken)], self.sees())
+
+    def _sized(self, finding):
+        """Whether the interval of a Finding's share is known; in motion, that of the gap."""
+        if finding.domain != "motion":
+            return finding.share_interval is not None
+        return bool(self.motion and self.motion.shrinkage and self.motion.shrinkage.interval)
+
+    def _shrinking(self):
+        """[(cause, holdout_gain.Shrinkage of the gap it is found in)]"""
+        found = [(c, gap.shrinkage) for gaps in (self.gaps, self.rest) for gap in gaps.values()
+                 for c in gap.causes]
+        return found + [(c, self.turns.shrinkage) for c in (self.turns.causes if self.turns
+                                                            else ())]
 
     def sees(self):
         """True when the capture would have shown most of what it is asked about."""

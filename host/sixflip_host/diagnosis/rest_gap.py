@@ -36,6 +36,7 @@ OFFSETS = {"accel": (0.1, 0.3, 1.0, 3.0, 12.0), "gyro": (0.003, 0.01, 0.05, 0.3,
 FLICKERS = {"accel": (0.005, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 4.0, 12.0, 40.0),
             "gyro": (0.0002, 0.001, 0.002, 0.004, 0.008, 0.016, 0.03, 0.1, 0.3, 1.0)}
 PIECES, FOLDS = 12, 4
+BENT = 4.0  # standard deviations of its square or cube at which an axis is bent
 MEANS = 12  # fewer say nothing of how a reading goes on
 SETTLED = "~session"  # the level by which one rest differs from the next
 
@@ -209,20 +210,24 @@ def _sensor(rest, kind, chip, settings):
     found = posterior.search(model, forms, cutoffs.of(units, forms, levels))
     fits = adequacy.of(units, data.statistics, found.best)
     chosen = [f for f in found.best.forms if not f.generic and len(f.shared)]
+    strange = [(f, ["xyz"[axis] for axis, _ in posterior.axes_of(model, found, f)])
+               for f in found.best.forms if f.generic and not _settled(f, units, fits, kind)]
     causes = aliases.causes(found, units, forms)
     told = [_told(c, data, fits, chip, kind, chosen, found) for c in causes]
+    beaten = [c for c, one in zip(causes, told) if _beaten(one, strange, found)]
+    chosen = [f for f in chosen if not any(f in c.chosen for c in beaten)]
+    told = [one for c, one in zip(causes, told) if c not in beaten]
     told += _drift(found, units, data, levels, kind, chosen, fits.index)
-    strange = [f for f in found.best.forms if f.generic and not _settled(f, units, fits, kind)]
     places = [Place(kind, letter, c.domain, 1.0 if c.share is None else c.share,
                     np.exp(-min(c.score, 600.0))) for c in told for letter in c.letters]
-    for form in strange:
+    for form, letters in strange:
         gain = np.exp(-min(found.gains[form.effect], 600.0))
-        letters = ["xyz"[axis] for axis, _ in posterior.axes_of(model, found, form)] or [None]
-        places += [Place(kind, k, hypotheses.domain(form.effect), 1.0, gain) for k in letters]
+        places += [Place(kind, k, hypotheses.domain(form.effect), 1.0, gain)
+                   for k in letters or [None]]
     if not fits.ok and not places:
         places = [Place(kind, None, "time", 1.0, fits.p)]
     return RestGap(kind, rest, tuple(told), tuple(places),
-                   (*(1.0 - found.places[f.effect].get("", 0.0) for f in strange),
+                   (*(1.0 - found.places[f.effect].get("", 0.0) for f, _ in strange),
                     *([] if fits.ok else [1.0 - fits.p])),
                    tuple(_held_out(rest, unit, chosen, point, levels)
                          for unit, point in zip(units, fits.index)),
@@ -241,6 +246,7 @@ def _told(cause, data, fits, chip, kind, chosen, found):
     than that, what does it is among the names. Its share: what is lost without it."""
     cause.unit = EFFECTS[cause.effect].units[kind]
     effect_estimates.fill(cause, data, list(fits.index), chip, kind)
+    _add_bent(cause, data, list(fits.index))
     names = cause.names
     if found.places[cause.effect].get(SETTLED, 0.0) > 1.0 - posterior.HOLDS:
         names = [*names, "drift", *(["table_tilt"] if kind == "accel" else [])]
@@ -250,6 +256,29 @@ def _told(cause, data, fits, chip, kind, chosen, found):
     place = dict(found.places[cause.effect])
     return RestCause(tuple(names), place, cause.score, cause.value, cause.interval, cause.unit,
                      cause.plausible, share, terms.DOMAIN[cause.effect])
+
+
+def _beaten(cause, strange, found):
+    """Whether something without a name says more on every axis of a cause: what the name gains
+    may be no more than a part of that."""
+    return bool(cause.letters) and all(any(
+        (not letters or letter in letters) and found.gains[form.effect] > cause.score
+        for form, letters in strange) for letter in cause.letters)
+
+
+def _add_bent(cause, data, index):
+    """Add the axes whose reading only bends: their slope is next to nothing, and is said so."""
+    ratios = np.abs(cause.theta) / np.sqrt(np.maximum(np.diag(cause.covariance), 1e-300))
+    bent = {"xyz"[axis] for key, axis, ratio in zip(cause.keys, cause.axes, ratios)
+            if key.endswith("+") and ratio > BENT}
+    missing = bent - set(cause.letters)
+    if missing:
+        theta, sigma = effect_estimates.effective(cause, data, index)
+        half = {key: effect_estimates.Z_90 * sigma[key] for key in theta if key in missing}
+        cause.value = {**cause.value, **{key: float(theta[key]) for key in half}}
+        cause.interval = {**cause.interval, **{
+            key: (float(theta[key] - half[key]), float(theta[key] + half[key])) for key in half}}
+        cause.letters = sorted({*cause.letters, *half})
 
 
 def _drift(found, units, data, levels, kind, chosen, index):

@@ -7,7 +7,7 @@ from sixflip_sim.effects import typical
 from sixflip_sim.effects.moment import Moment
 
 from ..experiment import covariance, linear_model, noise_arrays, nominal_rows, terms, turns
-from .detect import axis_order
+from .detect import axis_order, wrong_scale
 from .detect.detection import Finding, present
 from .evidence import Levels
 from .rest_model import RestModel
@@ -194,6 +194,11 @@ def swapped(sessions, nominal):
     plain = np.array([t.off() for t in found])
     if len(found) < 3 or plain.mean() < WRONG_DEG:  # the plain order does: no other is tried
         return None
+    # Nor is the plain order in a range that is not the header's another order.
+    plain = min([plain, *(np.array([t.integrated(np.eye(3) / times).off() for t in found])
+                          for times in wrong_scale.RANGES)], key=np.sum)
+    if plain.mean() < WRONG_DEG:
+        return None
     best = None
     for order in itertools.permutations(range(3)):
         for signs in itertools.product((1.0, -1.0), repeat=3):
@@ -215,7 +220,7 @@ def swapped(sessions, nominal):
     found = Finding("axis_swap", "gyro", sorted(value), value, "axis", score, "orientation",
                     "the gyro's axes are swapped or inverted against the accelerometer's",
                     {k: (v, v) for k, v in value.items()},
-                    share=axis_order.explained(plain, best[0]))
+                    share=axis_order.explained(plain, best[0]), number=len(plain))
     found.read = read
     return found
 

@@ -39,7 +39,8 @@ class Session:
     stand still; labelled: by whoever captured it; runs: tuple of rests.Run, the placements;
     thermometer or None. Of the blocks (n,): placement (number of its run), code, face (-1:
     leaning), first, end (samples), t and since (s, since the capture's and the rest's begin),
-    seconds; accel (n, 3) mg and gyro (n, 3) deg/s or None as the chip gave them; temperature
+    seconds; accel (n, 3) mg and gyro (n, 3) deg/s as the chip gave them, None of a
+    sensor that there is not; temperature
     and temperature_rate or None; vibration mg rms above the quietest. Of the sensor (3,):
     noise_accel, noise_gyro of a mean over one second, mg and deg/s; rounding_accel,
     rounding_gyro of the mean of a rest, by steps of the counts; None without a gyro.
@@ -205,6 +206,8 @@ def _labelled(capture):
     """The capture with the poses that are found in it."""
     found = copy.copy(capture)
     found.meta = dict(capture.meta)
+    if capture.accel is None:
+        return rests.label_still_gyro(found)
     try:
         find_poses(capture).label(found)
     except (ValueError, IndexError, ZeroDivisionError):
@@ -228,7 +231,8 @@ def _blocks(capture, runs, rate, t_s, labelled, smooth):
              "seconds": (end - first) / rate, "accel": accel, "gyro": gyro,
              "temperature": smooth.at(t) if smooth else None,
              "temperature_rate": smooth.rate_at(t) if smooth else None,
-             "vibration": block_noise.vibration(capture, first, end), "noise_accel": None,
+             "vibration": np.zeros(len(cut)) if capture.accel is None
+             else block_noise.vibration(capture, first, end), "noise_accel": None,
              "noise_gyro": None, "rounding_accel": None, "rounding_gyro": None}
     for sensor, counts, scale in _sensors(capture) if len(cut) else ():
         found["noise_" + sensor] = block_noise.white(counts, first, end, rate) * scale
@@ -238,20 +242,20 @@ def _blocks(capture, runs, rate, t_s, labelled, smooth):
 
 def _sensors(capture):
     """[(name, counts, mg or deg/s a count)] of the sensors that there are."""
-    meta = capture.meta
-    found = [("accel", capture.accel, 1000.0 / meta["accel_lsb_per_g"])]
+    meta, found = capture.meta, []
+    if capture.accel is not None:
+        found.append(("accel", capture.accel, 1000.0 / meta["accel_lsb_per_g"]))
     if capture.gyro is not None:
         found.append(("gyro", capture.gyro, 1.0 / meta["gyro_lsb_per_dps"]))
     return found
 
 
 def _readings(capture, first, end):
-    """((n, 3) mg, (n, 3) deg/s or None): means of the blocks."""
-    meta = capture.meta
-    accel = _means(capture.accel, first, end) * (1000.0 / meta["accel_lsb_per_g"])
-    if capture.gyro is None:
-        return accel, None
-    return accel, _means(capture.gyro, first, end) / meta["gyro_lsb_per_dps"]
+    """((n, 3) mg, (n, 3) deg/s): means of the blocks; None of a sensor that there is not."""
+    found = dict.fromkeys(("accel", "gyro"))
+    for sensor, counts, scale in _sensors(capture):
+        found[sensor] = _means(counts, first, end) * scale
+    return found["accel"], found["gyro"]
 
 
 def _means(counts, first, end):
@@ -276,9 +280,8 @@ def distinct(sessions):
     kept, again = [], []
     for session in sessions:
         same = any(len(session.capture) == len(other.capture)
-                   and np.array_equal(session.capture.accel, other.capture.accel)
-                   and np.array_equal(session.capture.t_us, other.capture.t_us)
-                   for other in kept)
+                   and all(np.array_equal(getattr(session.capture, k), getattr(other.capture, k))
+                           for k in ("t_us", "accel", "gyro")) for other in kept)
         (again if same else kept).append(session)
     return kept, again
 

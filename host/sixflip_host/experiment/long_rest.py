@@ -40,7 +40,7 @@ class LongRest:
     """Arrays over n means: t (s since the capture began), seconds (s that each lasts), rest and
     session (their numbers), temperature or None (degC, with temperature_rate). values, noise:
     {sensor: (n, 3) mg or deg/s}, {sensor: (n, 3) standard deviation of a mean}. up (3,): the
-    attitude; thermometers: one a session, or None."""
+    attitude, 0 where no accelerometer tells; thermometers: one a session, or None."""
 
     t: np.ndarray
     seconds: np.ndarray
@@ -124,7 +124,7 @@ def of(sessions, lines=()):
         for k, one in enumerate(thermometers):
             temperature[number == k] = one.at(t[number == k])
             rate[number == k] = one.rate_at(t[number == k])
-    mean = values["accel"].mean(axis=0)
+    mean = values["accel"].mean(axis=0) if "accel" in values else np.zeros(3)
     return LongRest(t, seconds, np.array([r for _, r, _, _ in table]), number, temperature, rate,
                     values, noise, mean / max(np.linalg.norm(mean), 1e-9), thermometers)
 
@@ -137,9 +137,10 @@ def _inner(session):
 
 
 def _one_attitude(runs, sessions):
-    """The (session, first, end) of runs that lie as the longest one does."""
-    if not runs:
-        return []
+    """The (session, first, end) of runs that lie as the longest one does; all of them where
+    nothing tells how they lie."""
+    if not runs or any(s.capture.accel is None for s in sessions):
+        return runs
     means = np.array([sessions[k].capture.accel[a:b].mean(axis=0) for k, a, b in runs])
     up = means / np.maximum(np.linalg.norm(means, axis=1), 1e-9)[:, None]
     top = max(range(len(runs)), key=lambda i: runs[i][2] - runs[i][1])

@@ -35,7 +35,13 @@ def sentence(answer):
 
 
 def _effects_sentence(answer):
-    """The first line of the effects alone."""
+    """The first line of the effects alone; what is damaged comes before everything."""
+    damage = [one["words"] for one in answer["damage"]]
+    first = "".join("The recording is damaged: %s. " % words for words in damage[:1])
+    return first + _of_effects(answer)
+
+
+def _of_effects(answer):
     causes = [c for c in answer["causes"] if c["plausible"]]
     verdict = answer["verdict"]
     if verdict == "no gap":
@@ -81,7 +87,9 @@ def _does(cause):
     if cause["effect"] != "vibration":
         return DOES.get(cause["effect"], cause["effect"])
     if not cause.get("hz"):
-        return "is shaken, at no steady frequency"
+        about = sorted({"%.3g" % line["hz"] for line in cause.get("lines", {}).values()})
+        return "is shaken%s, at no steady frequency" % (
+            " at about %s Hz" % " and ".join(about) if about else "")
     lines = {}
     for axis, hz in cause["hz"].items():
         lines.setdefault("%.6g Hz" % hz, []).append(axis.upper())
@@ -127,6 +135,9 @@ def show(answer):
             out.print(plain("  " + axes_line(gap)))
     for kind, loop in answer.get("simulated", {}).items():
         out.print(plain(loop_line(kind, loop)))
+    for sensor, noise in answer["noise"].items():
+        for line in noise_lines(sensor, noise):
+            out.print(plain(line))
     _rest(out, answer)
     if "terms" in answer:
         show_terms(out, answer["terms"])
@@ -186,6 +197,22 @@ def loop_line(kind, loop):
             "it %.3g (%s)." % (", ".join(sorted({e["effect"] for e in loop["effects"]})),
                                  loop["before"], loop["unit"], loop["after"], loop["floor"],
                                  SENSOR[kind]))
+
+
+def noise_lines(sensor, noise):
+    """What a sensor reads at rest and how it is noisy, a line each."""
+    unit = noise["unit"]
+    names = [("bias", "bias", unit), ("density", "noise density", unit + "/√Hz"),
+             ("instability", "bias instability", unit), ("walk", "random walk", unit + "/s/√Hz")]
+    lines = ["At rest, %s, %.3g s:" % (SENSOR[sensor], noise["seconds"])]
+    for key, words, of in names:
+        if key not in noise:
+            continue
+        spans = noise.get(key + "_interval_90", {})
+        lines.append("  %s, %s: %s" % (words, of, ", ".join(
+            "%s %.3g%s" % (axis.upper(), value, " (%.3g … %.3g)" % tuple(spans[axis])
+                           if axis in spans else "") for axis, value in noise[key].items())))
+    return lines
 
 
 def _rest(out, answer):

@@ -85,11 +85,11 @@ def answered(args, without, record):
     from ..diagnosis import answer, correction_terms
     from ..diagnosis.diagnose import diagnose
 
-    def read(paths, gravity=True):
+    def read(paths, gravity=True, gyro_alone=False):
         for path in paths:
             progress.doing("reading %s" % path)
-            yield path, open_recording.read_samples(path, gravity)
-    captures = list(read(args.captures))
+            yield path, open_recording.read_samples(path, gravity, gyro_alone)
+    captures = list(read(args.captures, gyro_alone=not args.sim and not record))
     if record:
         of_this_part(captures, record, args)
     found = diagnose(captures, list(read(args.sim, gravity=False)),

@@ -1,5 +1,7 @@
 """What import tells by itself from names and values, what it passes over, and what it refuses."""
 
+import datetime
+
 import numpy as np
 import pytest
 
@@ -148,9 +150,9 @@ def test_a_gyro_alone_and_an_accelerometer_alone(tmp_path, capsys):
     capture, _ = imported(tmp_path, capsys, text)
     assert capture.accel is None and (capture.gyro == GYRO).all()
     assert main(["show", str(tmp_path / "out.csv")]) == 0
-    for verb in ("solve", "diagnose"):
-        assert main([verb, str(tmp_path / "out.csv")]) == 4
-        assert "holds a gyro alone, expected ax ay az" in capsys.readouterr().err
+    assert main(["solve", str(tmp_path / "out.csv")]) == 4
+    assert "holds a gyro alone, expected ax ay az" in capsys.readouterr().err
+    assert main(["diagnose", str(tmp_path / "in.csv")]) == 0
     capture, _ = imported(tmp_path, capsys, table(["%.2f" % t for t in SECONDS]))
     assert capture.gyro is None
 
@@ -263,10 +265,48 @@ def test_acceleration_without_gravity_asks_for_its_unit(tmp_path, capsys):
     ("t,ax,ay,az\n", (), "no rows behind the column names"),
     ("1 2 3\n4 5 6\n", ("--rate", "9"), "no column names in it, expected --columns"),
     ("t,ax,ay\n0,1,2\n", (), "no column for az, expected --map az=NAME"),
-    (b"t,ax,ay,az\n0,\xff,2,3\n", (), "line 2: bytes that are not UTF-8"),
+    (b"t,ax,ay,az\n0,\x81,2,3\n", (), "line 2: bytes that are neither UTF-8"),
     ("t,ax,ay,az\n0,5,5,5\n0,5,5,5\n", (), "t stands still")])
 def test_bad_files_are_refused_with_their_line(tmp_path, capsys, text, words, line):
     assert line in refused(tmp_path, capsys, text, *words)
+
+
+def clock(t, form):
+    """The time t seconds behind 23:59:58.5 on the last of February, in a form."""
+    day = datetime.datetime(2024, 2, 29, 23, 59, 58, 500000) + datetime.timedelta(seconds=t)
+    return day.strftime(form)
+
+
+@pytest.mark.parametrize("head, form", [
+    ("timestamp", "%Y-%m-%dT%H:%M:%S.%f"), ("time", "%Y-%m-%d %H:%M:%S.%fZ"),
+    ("datetime", "%Y-%m-%dT%H:%M:%S.%f+05:30"), ("timestamp", '"%Y-%m-%d %H:%M:%S,%f"')])
+def test_dates_and_times_of_day_are_times(tmp_path, capsys, head, form):
+    capture, said = imported(tmp_path, capsys, table([clock(t, form) for t in SECONDS], head))
+    assert "dates and times of day in the column %s" % head in said
+    assert capture.meta["rate_hz"] == pytest.approx(100.0, rel=1e-6)
+    assert capture.t_us[-1] == 10_000 * (ROWS - 1)
+
+
+def test_times_of_day_alone_and_a_date_beside_them(tmp_path, capsys):
+    times = ["2024-05-31,%s" % clock(t - 9e3, "%H:%M:%S.%f") for t in SECONDS]
+    capture, _ = imported(tmp_path, capsys, table(times, "date,time"))
+    assert capture.t_us[-1] == 10_000 * (ROWS - 1)
+
+
+@pytest.mark.parametrize("times, line", [
+    (["05/06/2024 10:00:0%d.%d" % divmod(k, 10) for k in range(50)], "day and month"),
+    (["2024-02-30T10:00:0%d.%d" % divmod(k, 10) for k in range(50)], "expected a number"),
+    ([clock(k, "%H:%M:%S") for k in range(50)], "runs backwards")])
+def test_dates_that_say_nothing_sure_are_refused(tmp_path, capsys, times, line):
+    assert line in refused(tmp_path, capsys, table(times, "t"), "--time-column", "t")
+
+
+def test_latin_1_and_utf_16_are_read_and_said(tmp_path, capsys):
+    text = "# Beschleunigung in °, µ\n" + table(["%.2f" % t for t in SECONDS])
+    for encoding, words in (("latin-1", "Latin-1"), ("utf-16", "UTF-16")):
+        capture, said = imported(tmp_path, capsys, text.encode(encoding))
+        assert (capture.accel == COUNTS).all() and words in said
+    assert "Latin-1" not in imported(tmp_path, capsys, text)[1]
 
 
 @pytest.mark.parametrize("name, sensor, axis, unit", [

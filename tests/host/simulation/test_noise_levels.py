@@ -6,8 +6,8 @@ import yaml
 
 from sixflip_host.capture import capture_file
 from sixflip_host.capture.capture_file import Capture
-from sixflip_host.experiment import signal_measures
-from sixflip_host.export import noise_spectrum, other_simulators
+from sixflip_host.experiment import noise_spectrum, signal_measures
+from sixflip_host.export import other_simulators
 from sixflip_host.export.noise_model import measure
 
 RATE, N, K = 50.0, 4e-3, 4e-4

@@ -25,7 +25,7 @@ FILLERS = {"raw", "lsb", "counts", "count", "b", "body", "imu", "field", "data",
            "mps2", "ms2", "radps", "rps", "dps", "mg",
            "rs", "s"}       # the last two: a_RS_S_x of EuRoC and its followers
 TIMES = {"t", "ts", "time", "times", "timestamp", "timestamps", "stamp", "seconds", "millis",
-         "micros", "tick", "ticks", "clock"}
+         "micros", "tick", "ticks", "clock", "datetime", "date", "utc"}
 TIME_UNITS = {"ns": 1e-3, "us": 1.0, "ms": 1e3, "s": 1e6}     # microseconds
 UNIT_OF_TIME = {"s": "s", "sec": "s", "secs": "s", "second": "s", "seconds": "s", "ms": "ms",
                 "msec": "ms", "millis": "ms", "milliseconds": "ms", "us": "us", "µs": "us",
@@ -205,12 +205,13 @@ def times(names):
         bare, unit = _without_unit(name)
         words = _words(bare)
         unit = UNIT_OF_TIME.get(unit.lower(), "")
-        if not words or set(words) & {"covariance", "diff", "delta", "dt", "zone", "date"}:
+        if not words or set(words) & {"covariance", "diff", "delta", "dt", "zone"}:
             continue
         said = [UNIT_OF_TIME[word] for word in words if word in UNIT_OF_TIME]
         if set(words) & TIMES:
             unit = unit or (said[-1] if said and words[-1] in UNIT_OF_TIME else "")
-            found.append((0 if "stamp" in words and "header" in words else 1, name, unit))
+            rank = 0 if "stamp" in words and "header" in words else 3 if "date" in words else 1
+            found.append((rank, name, unit))
         elif words[0] in UNIT_OF_TIME and len(words) == 1 and len(words[0]) > 1:
             found.append((2, name, UNIT_OF_TIME[words[0]]))
     pairs = _second_pairs(names)

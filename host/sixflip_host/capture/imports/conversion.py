@@ -46,6 +46,7 @@ class Conversion:
         values, times, labels = self._read()
         for why, lines in self.table.passed_over.items():
             self.remarks.append("passed over: %s (%d line%s)" % (why, lines, "s" * (lines > 1)))
+        self.assumed += getattr(self.table, "said", ())
         pose = self._poses(labels)
         celsius = values.get("temp")
         t_us, order = self._times(times, values, None if celsius is None else celsius[:, 0])
@@ -98,11 +99,17 @@ class Conversion:
         options, table = self.options, self.table
         if options.time_column:
             table.index(options.time_column)
+            self._stamps(options.time_column)
             return (options.time_column,)
         taken = set(self.columns.values())
         for name, unit in column_names.times(table.names or ()):
             pair = name if isinstance(name, tuple) else (name,)
-            if not set(pair) & taken and all(table.holds_numbers(one) for one in pair):
+            if set(pair) & taken:
+                continue
+            if len(pair) == 1 and self._stamps(name):
+                self.assumed.append("times are the dates and times of day in the column %s" % name)
+                return pair
+            if all(table.holds_numbers(one) for one in pair):
                 self._named_time_unit = unit
                 if options.rate is not None and options.time_unit is None and not unit:
                     return None         # the rate was said, and no more
@@ -119,6 +126,16 @@ class Conversion:
         return None
 
     _named_time_unit = ""
+    _dated = False          # times are dates and times of day, which are read as seconds
+
+    def _stamps(self, name):
+        """Whether a column holds dates and times of day."""
+        self._dated = getattr(self.table, "holds_stamps", lambda one: False)(name)
+        if self._dated and self.options.time_unit not in (None, "s"):
+            raise UsageError("--time-unit %s: %s holds dates and times of day, expected none" % (
+                self.options.time_unit, name))
+        self._named_time_unit = "s" if self._dated else ""
+        return self._dated
 
     # reading
 

@@ -14,10 +14,10 @@ import numpy as np
 
 from ...errors import BadFile
 from ..capture_rows import quoted
-from ..unpack import Source, whole_lines
+from ..unpack import Source
+from . import text_lines, wall_clock
 
 DELIMITERS = (",", ";", "\t", None)     # None: any run of blanks
-LONGEST_LINE = 1 << 16
 HEADER_SEARCH = 200                     # lines in which the column names must appear
 COMMENT = ("#", "//")
 DECIMAL_COMMA = re.compile(r"(^|[;\t ])[+-]?\d+,\d+([eE][+-]?\d+)?($|[;\t ])")
@@ -38,6 +38,7 @@ class Table:
     width       values in every row
     preamble    lines before the names
     passed_over {what: lines} that means nothing, after blocks() has come to its end
+    said        {sentence: True} on what nobody said of the text itself, after blocks()
     units       {sensor: unit} that the file's format says, whatever the names
     """
 
@@ -48,7 +49,7 @@ class Table:
         self.names = names
         self.width = width
         self.preamble = preamble
-        self.passed_over = {}
+        self.passed_over, self.said = {}, {}
         self._source = source
         self._separator = separator
         self._first = first             # lines before the rows
@@ -63,15 +64,24 @@ class Table:
         raise BadFile("%s: there is no column %s, expected one of %s" % (
             self.path, quoted(column), " ".join(self.names or ["1 to %d" % self.width])))
 
-    def holds_numbers(self, column):
-        """True where the first row has a number in a column, and where there is no row at all."""
+    def first_cell(self, column):
+        """What the first row has in a column; "0" where there is no row at all."""
         place = self.index(column)
         for _, text in self._texts():
             for line in text.split("\n")[self._first:]:
                 if line.strip() and not line.startswith(COMMENT):
                     cells = _cells(self._decimal(line), self._separator)
-                    return place < len(cells) and _all_numbers([cells[place]])
-        return True
+                    return cells[place] if place < len(cells) else ""
+        return "0"
+
+    def holds_numbers(self, column):
+        """True where the first row has a number in a column."""
+        return _all_numbers([self.first_cell(column)])
+
+    def holds_stamps(self, column):
+        """True where the first row has a date or a time of day in a column, to be read as
+        seconds."""
+        return wall_clock.is_stamp(self.first_cell(column))
 
     def blocks(self, columns, label=None):
         """Block after Block of columns of numbers, and of one with labels.
@@ -104,7 +114,7 @@ class Table:
 
     def _texts(self):
         """(number of the first line, text) of the file, without NULs, with decimal points."""
-        for line, text in _texts(self.path, self._source):
+        for line, text in text_lines.texts(self.path, self._source, self.said):
             if "\0" in text:
                 self._pass_over("NUL bytes",
                                 sum("\0" in one for one in text.split("\n")))
@@ -184,8 +194,12 @@ class Table:
 
     def _number(self, line, column, cell):
         try:
-            value = float(cell if "_" not in cell else "")
+            value = wall_clock.seconds(cell) if ":" in cell else float(
+                cell if "_" not in cell else "")
         except ValueError:
+            if wall_clock.is_ambiguous(cell):
+                raise BadFile.at(self.path, line, "%s is %s, whose day and month cannot be told"
+                                 % (column, quoted(cell)), wall_clock.EXPECTED) from None
             found = "%s is missing" % column if not cell.strip() else \
                 "%s is %s" % (column, quoted(cell))
             raise BadFile.at(self.path, line, found, "a number") from None
@@ -193,16 +207,6 @@ class Table:
             raise BadFile.at(self.path, line, "%s is %s" % (column, quoted(cell)),
                              "a finite number")
         return value
-
-
-def _texts(path, source):
-    """(number of the first line, text of whole lines), blocks of a file in UTF-8."""
-    for line, block in whole_lines(path, source.pieces(), 1, LONGEST_LINE):
-        try:
-            yield line, block.decode("utf-8-sig" if line == 1 else "utf-8")
-        except UnicodeDecodeError as error:
-            raise BadFile.at(path, line + block.count(b"\n", 0, error.start),
-                             "bytes that are not UTF-8 text", "a CSV file") from None
 
 
 def read_table(path, delimiter="auto", skip=None, names=None, is_header=None):
@@ -228,7 +232,7 @@ def read_table(path, delimiter="auto", skip=None, names=None, is_header=None):
 def _first_lines(path, source, wanted):
     """The first lines of a file, some more than are wanted where there are as many."""
     lines = [""]
-    for _, text in _texts(path, source):
+    for _, text in text_lines.texts(path, source):
         more = text.replace("\0", "").split("\n")
         lines = [*lines[:-1], lines[-1] + more[0], *more[1:]]
         if len(lines) > wanted:

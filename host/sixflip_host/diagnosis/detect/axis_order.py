@@ -1,4 +1,4 @@
-"""Axes swapped or inverted against the labels, and a full scale that is off by two or four."""
+"""Axes swapped or inverted against the labels."""
 import itertools
 import math
 
@@ -16,7 +16,7 @@ def swapped(sessions):
     """Accelerometer axes against the labels of the faces."""
     means, axes = [], []
     for session in sessions:
-        if not session.labelled:
+        if not session.labelled or session.capture.accel is None:
             continue
         for code, first, end in session.runs:
             face = faces.face_of_code(code)
@@ -44,7 +44,7 @@ def swapped(sessions):
     return [Finding("axis_swap", "accel", sorted(value), value, "axis", score, "orientation",
                     "axes are swapped or inverted against the labels",
                     {k: (v, v) for k, v in value.items()},
-                    share=explained(means - axes, means - axes @ best.T))]
+                    share=explained(means - axes, means - axes @ best.T), number=len(means))]
 
 
 def explained(before, after):
@@ -76,13 +76,3 @@ def nearest_permutation(matrix):
                 signed[i, order[i]] = np.sign(matrix[i, order[i]]) or 1.0
             best = total, signed
     return best[1]
-
-
-def full_scale(sessions, nominal):
-    """A sentence when the readings are off by a factor of two or four, else ""."""
-    size = float(np.median([1.0 / np.cbrt(abs(np.linalg.det(m.matrix))) for m in nominal]))
-    for factor in (0.25, 0.5, 2.0, 4.0):
-        if abs(size / factor - 1.0) < 0.1:
-            return ("the accelerometer reads %g times gravity: its full scale is not the one the "
-                    "header states" % factor)
-    return ""

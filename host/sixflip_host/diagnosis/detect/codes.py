@@ -3,7 +3,7 @@ import math
 
 import numpy as np
 
-from ...capture.registers import LOW_BITS, RAIL, steps
+from ...capture.registers import LOW_BITS, RAIL, spacing, steps
 
 STEPS_TRIED = 1 << LOW_BITS
 
@@ -19,15 +19,25 @@ def step_nats(counts):
     return np.array(out)
 
 
+def distinct(counts):
+    """(3,) number of codes that appear."""
+    return np.array([len(np.unique(column)) for column in counts.T])
+
+
+def zeros(counts):
+    """(3,) number of runs of readings that are 0."""
+    return np.array([_runs(column == 0) for column in counts.T])
+
+
 def band_nats(counts):
     """(3,) log likelihood ratio (nats) of readings near 0 being 0: how often the readings just
     outside of the band would have gone inside (Poisson), and how much more often 0 is read than
     a code beside it. A run of samples counts once."""
     out = []
     for column in counts.T:
-        step = max(1, int(steps(column[:, None])[0]))
         size = np.abs(column.astype(np.int64))
         least = int(size[size > 0].min()) if size.any() else 0
+        step = max(1, steps(column[:, None])[0], spacing(size, least)) if least else 1
         if least <= step:
             out.append(0.0)
             continue

@@ -57,7 +57,7 @@ def rate(sessions, found):
                     one - sound, "timing", "the samples come at %.2f Hz, not %g" % (
                         sessions[0].rate * (1 + percent / 100.0), sessions[0].rate),
                     {"rate": (percent - half, percent + half)},
-                    share=explained(errors, errors - np.mean(errors)))]
+                    share=explained(errors, errors - np.mean(errors)), number=len(errors))]
 
 
 def drops(found):
@@ -77,7 +77,7 @@ def drops(found):
                     "timing", "%d of %d samples are missing, the longest gap lasts %.0f ms" % (
                         lost, expected, max(one.longest_loss_ms for one in found)),
                     {"chance": (max(0.0, chance - half), chance + half)},
-                    share=explained(late, late - np.rint(late)))]
+                    share=explained(late, late - np.rint(late)), number=len(late))]
 
 
 def gap_nats(late, sigma, rows):

@@ -37,7 +37,7 @@ def saturation(sessions, sensor, columns):
         return []
     return [Finding("saturation", sensor, sorted(value), value, "1", score, "amplitude", words,
                     {k: (v, v) for k, v in value.items()},
-                    share=float(np.sum(ends, axis=0)[0] / np.sum(ends)))]
+                    share=float(np.sum(ends, axis=0)[0] / np.sum(ends)), number=int(np.sum(ends)))]
 
 
 def railed(session, sensor="accel"):

@@ -13,6 +13,8 @@ def findings(sessions):
     """list of Finding: vibration of captures without poses, from what changes from one sample
     to the next (third differences: no motion of a hand or a vehicle is so fast)."""
     levels = []
+    if any(session.capture.accel is None for session in sessions):
+        return []
     for session in sessions:
         m = max(8, int(WINDOW_S * session.rate))
         x = session.capture.accel.astype(float) * (1000.0 / session.capture.meta[

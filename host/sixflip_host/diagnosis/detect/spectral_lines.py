@@ -6,13 +6,14 @@ distributed. The largest over all frequencies and axes must be improbable (Bonfe
 Source: Percival & Walden, Spectral Analysis for Physical Applications (1993), section 10.9.
 """
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from scipy import ndimage, signal, special
 
 from ...capture.registers import steps
+from . import line_frequency
 from .detection import Finding
+from .line_frequency import Line
 
 LENGTH_S, SHORTEST_S = 5.0, 2.0
 LOWEST_HZ, LOWEST_MOVING_HZ = 0.7, 2.0  # a hand or a vehicle moves more slowly than that
@@ -21,6 +22,9 @@ FEWEST = 4  # stretches
 MEDIAN_SHARE, OF_MEDIAN = 0.25, math.log(2.0)
 WHOLE_PEAK = 0.85  # of a Hann window's main lobe and its neighbours
 LEAST_STEPS = 0.5
+# Bins to each side; a line has that share of the power in them in its own lobe. A hand that
+# steadies the box, or a motor under load, has a wider bump.
+BESIDE, NARROW = 10, 0.6
 LEAST_SHARE = 0.25  # of the standard deviation of the noise: smaller is no matter
 # A bench or a table sways at its own frequencies, by chance: from stretch to stretch the power
 # there scatters as much as its mean (noise through a resonance is exponential). Something that
@@ -29,41 +33,48 @@ STEADY, STRONG_SHARE = 0.6, 0.4
 Z_90 = 1.645
 
 
-@dataclass(frozen=True)
-class Line:
-    """axis (0..2); hz; nats; size: its amplitude, and error, relative; power of the line and
-    excess of the axis' whole spectrum over its floor, in one unit."""
-
-    axis: int
-    hz: float
-    nats: float
-    size: float
-    error: float
-    power: float
-    excess: float
-
-
 def findings(sessions):
     """list of Finding: at most one vibration a sensor."""
     out = []
     for sensor in ("accel", "gyro"):
         if any(getattr(s.capture, sensor) is None for s in sessions):
             continue
-        lines = [line for line in (strongest(sessions, sensor, i) for i in range(3)) if line]
-        if not lines:
-            continue
-        top = max(lines, key=lambda line: line.nats)
-        value = {"xyz"[line.axis]: float("%.3g" % line.size) for line in lines}
-        interval = {"xyz"[line.axis]: (line.size * (1 - Z_90 * line.error),
-                                       line.size * (1 + Z_90 * line.error)) for line in lines}
-        rate = sessions[0].rate
-        share = sum(line.power for line in lines) / sum(line.excess for line in lines)
-        out.append(Finding(
-            "vibration", sensor, sorted(value), value, "mg" if sensor == "accel" else "deg/s",
-            top.nats, "frequency", "a line at %.2f Hz (or folded from %.2f, %.2f Hz)"
-            % (top.hz, rate - top.hz, rate + top.hz), interval,
-            hz={"xyz"[line.axis]: line.hz for line in lines}, share=share))
+        lines = [line for line in (of_axis(sessions, sensor, i) for i in range(3)) if line]
+        if lines:
+            out.append(_told(lines, sensor, sessions[0].rate))
     return out
+
+
+def of_axis(sessions, sensor, axis):
+    """The Line of an axis by all files together or by one of them, whichever says more, with
+    the frequency of every file that shows it; a slow one where nothing faster is there."""
+    groups = [sessions, *([s] for s in sessions if len(sessions) > 1)]
+    found = [strongest(some, sensor, axis) for some in groups]
+    found = [line_frequency.refined(line, sessions, sensor) for line in found if line]
+    found = [line for line in found if line]
+    slow = line_frequency.slow(sessions, sensor, axis)
+    return max(found, key=lambda line: line.nats, default=slow)
+
+
+def _told(lines, sensor, rate):
+    """Finding of the lines of a sensor."""
+    top = max(lines, key=lambda line: line.nats)
+    value = {line.letter: float("%.3g" % line.amplitude) for line in lines}
+    interval = {line.letter: (line.amplitude * (1 - Z_90 * line.error),
+                              line.amplitude * (1 + Z_90 * line.error)) for line in lines}
+    steady = [line for line in lines if line.steady]
+    if steady:
+        strong = max(steady, key=lambda line: line.nats)
+        words = "a line at %.6g Hz (or folded from %.6g, %.6g Hz)" % (
+            strong.hz, rate - strong.hz, rate + strong.hz)
+    else:
+        words = "it is shaken at about %.3g Hz, at no steady frequency" % top.hz
+    return Finding("vibration", sensor, sorted(value), value,
+                   "mg" if sensor == "accel" else "deg/s", top.nats, "frequency", words, interval,
+                   hz={line.letter: line.hz for line in steady}, lines=lines,
+                   share=float(np.average([line.power / line.excess for line in lines],
+                                          weights=[line.amplitude ** 2 for line in lines])),
+                   number=max(1, int(0.5 / top.error ** 2)))
 
 
 def rests(sessions, sensor):
@@ -122,7 +133,7 @@ def scatter(stretches, axis, k):
 
 
 def strongest(sessions, sensor, axis):
-    """Line, the strongest one of an axis, or None."""
+    """The Line that is strongest in the spectrum of short stretches, or None."""
     stretches = rests(sessions, sensor)
     if not stretches:
         return None
@@ -159,8 +170,10 @@ def strongest(sessions, sensor, axis):
             stretches, axis, first + k) > STEADY:
         return None
     error = 1.0 / math.sqrt(max(2.0 * number * ratio[k], 1.0))
-    hz = _refined(mean, first + k) * rate / n
-    return Line(axis, hz, nats, amplitude, error, excess, beyond)
+    hz = line_frequency.peak(mean, first + k) * rate / n
+    lobe, beside = (float((band - floor)[max(0, k - w):k + w + 1].sum()) for w in (2, BESIDE))
+    return Line(axis, hz, rate / n, nats, amplitude, error, narrow=lobe > NARROW * beside,
+                power=excess, excess=beyond)
 
 
 def log_beyond(x, number):
@@ -169,11 +182,3 @@ def log_beyond(x, number):
     k = np.arange(number)
     return float(special.logsumexp(k * math.log(x) - special.gammaln(k + 1.0))) - x
 
-
-def _refined(power, k):
-    """Index of a peak between the bins: parabola through the logarithms."""
-    if not 0 < k < len(power) - 1:
-        return float(k)
-    a, b, c = np.log(np.maximum(power[k - 1:k + 2], 1e-300))
-    below = a - 2.0 * b + c
-    return k + (0.5 * (a - c) / below if below < 0 else 0.0)

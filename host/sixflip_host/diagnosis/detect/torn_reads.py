@@ -22,6 +22,7 @@ FREEDOM = (5.0, 15.0, 200.0)  # of Student's t: how heavy the tails of the noise
 CALM = 8.0  # standard deviations that the neighbours of a sample at rest may span
 LOUD = (2.0, 3.0, 5.0)  # times the noise, of samples that are louder without a name
 NEAR = 2.0  # standard deviations within which a sample's chance of a jump is small
+LEAST = 1e-200  # of a density: what a float still divides by
 BLURRED = 100.0  # counts: with wider noise a page more or less tells nothing
 
 
@@ -45,7 +46,8 @@ def finding(sessions, sensor, banded=()):
     return [Finding("torn_reads", sensor, [], {"chance": round(percent, 3)}, "%", nats, "noise",
                     "about %.0f samples mix the bytes of two readings" % number,
                     {"chance": (max(percent - half, 0.0), percent + half)},
-                    share=float(number / max(number + others, 1e-9)))]
+                    share=float(number / max(number + others, 1e-9)),
+                    number=max(1, round(number + others)))]
 
 
 def jumps(sessions, without=()):
@@ -170,4 +172,4 @@ def _student(z, freedom):
     """Density of Student's t."""
     peak = math.exp(math.lgamma(0.5 * (freedom + 1.0)) - math.lgamma(0.5 * freedom)
                     ) / math.sqrt(math.pi * freedom)
-    return peak * (1.0 + z * z / freedom) ** (-0.5 * (freedom + 1.0))
+    return peak * np.maximum((1.0 + z * z / freedom) ** (-0.5 * (freedom + 1.0)), LEAST)

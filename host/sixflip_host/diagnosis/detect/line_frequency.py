@@ -1,0 +1,195 @@
+"""The frequency of a line: steady to 1 / T or not, file by file; and lines too slow for short
+stretches.
+
+A sine goes on in phase: over a stretch T the whole of its power lies within 1 / T. What a hand,
+wheels or a motor under load do wanders, and their power spreads over the more bins the longer
+one looks. That is shaking, and is no line.
+"""
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy import ndimage, signal, stats
+
+STEADY = 0.5  # of the power of short stretches that has to go on in phase over the whole
+PADDED = 4  # times its length: the transform in which a peak is looked for
+SHORT_BINS = 1.5  # bins of a short stretch within which the line lies
+SLOW_S = 40.0  # a rest that shows lines slower than LOWEST_HZ
+SLOWEST, FASTEST_HZ = 8.0, 1.0  # periods in the rest, and what short stretches see
+SLOW_RATE = 4.0  # Hz of the means that slow lines are looked for in
+SLOW_CHANCE, SLOW_SHARE, SLOW_WIDTH = 1e-6, 0.5, 25
+HALVES = 0.5  # of the amplitude that either half of a rest has, in phase with the other
+LOBE = 0.8  # of the power around a peak that a sine has in its own lobe
+
+
+@dataclass(frozen=True)
+class Line:
+    """axis; hz, known to `bin_hz` in the spectrum; nats; amplitude in mg or deg/s with its
+    relative error; narrow: it is as narrow as a sine in short stretches; power of the line and
+    excess of the spectrum over its floor, in one unit; steady: it goes on in phase; low, high:
+    90 % interval of the frequency; files: ((name, hz, low, high), ...) of those that show it by
+    themselves."""
+
+    axis: int
+    hz: float
+    bin_hz: float
+    nats: float
+    amplitude: float
+    error: float
+    narrow: bool = True
+    power: float = 1.0
+    excess: float = 1.0
+    steady: bool = False
+    low: float = 0.0
+    high: float = 0.0
+    files: tuple = ()
+
+    @property
+    def letter(self):
+        return "xyz"[self.axis]
+
+
+def peak(power, k):
+    """Index of a peak between the bins: parabola through the logarithms."""
+    if not 0 < k < len(power) - 1:
+        return float(k)
+    a, b, c = np.log(np.maximum(power[k - 1:k + 2], 1e-300))
+    below = a - 2.0 * b + c
+    return float(k + (0.5 * (a - c) / below if below < 0 else 0.0))
+
+
+def refined(line, sessions, sensor):
+    """The Line with its frequency by the longest unbroken stretch of each file; not steady where
+    none of them keeps the phase."""
+    seen = [(s.name, *found) for s in sessions for found in [_over_whole(line, s, sensor)]
+            if found]
+    if not seen or not line.narrow:
+        return replace(line, low=line.hz - line.bin_hz, high=line.hz + line.bin_hz)
+    best = max(seen, key=lambda one: one[1])
+    return replace(line, steady=True, hz=best[2], low=best[2] - best[3], high=best[2] + best[3],
+                   files=tuple((name, hz, hz - half, hz + half) for name, _, hz, half in seen))
+
+
+def longest(session, sensor):
+    """(n, 3) counts of the longest rest, or of the whole file where nothing rests."""
+    counts = getattr(session.capture, sensor)
+    if not session.runs:
+        return counts
+    _, first, end = max(session.runs, key=lambda run: run[2] - run[1])
+    edge = int(0.1 * session.rate)
+    return counts[first + edge:end - edge]
+
+
+def _over_whole(line, session, sensor):
+    """(strength, Hz, half of its 90 % interval) of a line over the longest stretch of a file, or
+    None where it does not keep its phase."""
+    x = longest(session, sensor)[:, line.axis].astype(float)
+    short = int(round(session.rate / line.bin_hz))
+    if len(x) < 2 * short:  # nothing longer to hold against: as narrow as can be seen
+        return _found(line, x, session.rate) if len(x) >= short // 2 else None
+    parts = len(x) // short
+    each = [_found(line, x[k * short:(k + 1) * short], session.rate) for k in range(parts)]
+    power = np.mean([one[0] ** 2 for one in each if one] or [0.0])
+    whole = _found(line, x, session.rate)
+    if whole is None or whole[0] ** 2 < STEADY * power:
+        return None
+    halves = [_found(line, half, session.rate) for half in (x[:len(x) // 2], x[len(x) // 2:])]
+    apart = abs(halves[0][1] - halves[1][1]) / 4.0 if all(halves) else 0.0
+    return whole[0], whole[1], math.hypot(whole[2], 1.645 * apart)
+
+
+def _found(line, x, rate):
+    """(amplitude in counts, Hz, half of its 90 % interval) of the sine nearest to a line."""
+    n = len(x)
+    if n < 16:
+        return None
+    window = np.hanning(n)
+    power = np.abs(np.fft.rfft(signal.detrend(x) * window, PADDED * n))
+    spacing = rate / (PADDED * n)
+    low = max(1, int((line.hz - SHORT_BINS * line.bin_hz) / spacing))
+    high = min(len(power) - 2, int((line.hz + SHORT_BINS * line.bin_hz) / spacing) + 1)
+    if high <= low:
+        return None
+    k = low + int(power[low:high + 1].argmax())
+    amplitude = 2.0 * float(power[k]) / float(window.sum())
+    if amplitude <= 0.0:
+        return None
+    noise = max(float(np.var(x)) - 0.5 * amplitude ** 2, 1.0 / 12.0)
+    # Of a frequency [Rife & Boorstyn, IEEE Trans. IT 20 (1974) 591, eq. 24].
+    sigma = rate / (2.0 * math.pi) * math.sqrt(24.0 * noise / (amplitude ** 2 * n ** 3))
+    return amplitude, peak(power, k) * spacing, 1.645 * sigma
+
+
+def slow(sessions, sensor, axis):
+    """The strongest Line between SLOWEST periods of a long rest and FASTEST_HZ, or None."""
+    found = [_slow(s, sensor, axis) for s in sessions if s.runs]
+    found = [line for line in found if line]
+    if not found:
+        return None
+    best = max(found, key=lambda line: line.nats)
+    return replace(best, files=tuple(one for line in found for one in line.files))
+
+
+def _slow(session, sensor, axis):
+    meta, m = session.capture.meta, max(1, int(session.rate / SLOW_RATE))
+    x = longest(session, sensor)[:, axis]
+    rate, n = session.rate / m, len(x) // m
+    if n / rate < SLOW_S:
+        return None
+    scale = 1000.0 / meta["accel_lsb_per_g"] if sensor == "accel" else \
+        1.0 / meta["gyro_lsb_per_dps"]
+    x = x[:n * m].reshape(n, m).mean(axis=1) * scale
+    u = np.linspace(-1.0, 1.0, n)
+    x = x - np.polynomial.polynomial.polyval(u, np.polynomial.polynomial.polyfit(u, x, 3))
+    window = np.hanning(n)
+    power = np.abs(np.fft.rfft(x * window)) ** 2 / (window ** 2).sum()
+    first, end = int(SLOWEST), min(int(FASTEST_HZ * n / rate), len(power) - 2)
+    if end - first < SLOW_WIDTH:
+        return None
+    band = power[first:end]
+    # The floor falls with the frequency as flicker or a walk does: with that slope taken off, it
+    # is the running median of the logarithm.
+    fall = np.log(np.arange(first, end))
+    fall *= min(stats.theilslopes(np.log(np.maximum(band, 1e-300)), fall)[0], 0.0)
+    flat = np.log(np.maximum(band, 1e-300)) - fall
+    floor = np.exp(ndimage.median_filter(flat, SLOW_WIDTH, mode="reflect") + fall) / math.log(2.0)
+    ratio = band / floor
+    k = int(ratio.argmax())
+    if not _in_both_halves(x, (first + k) / n, math.sqrt(4.0 * band[k] / n)):
+        return None
+    doubt = 1.0 + 2.5 / math.sqrt(SLOW_WIDTH)
+    nats = float(ratio[k]) / doubt - math.log(3.0 * len(band))
+    lobe, around = (band[max(0, k - w):k + w + 1].sum() for w in (2, 8))
+    amplitude = math.sqrt(4.0 * lobe / n)
+    if nats < -math.log(SLOW_CHANCE) or lobe < LOBE * around or amplitude < SLOW_SHARE * x.std():
+        return None
+    line = Line(axis, peak(power, first + k) * rate / n, rate / n, min(nats, 999.0), amplitude,
+                1.0 / math.sqrt(2.0 * ratio[k]), power=float(lobe),
+                excess=float(max(around, lobe)), steady=True)
+    sigma = rate / (2.0 * math.pi) * math.sqrt(24.0 * float(floor[k]) / (
+        amplitude ** 2 * float(n) ** 3))
+    low, high = line.hz - 1.645 * sigma, line.hz + 1.645 * sigma
+    return replace(line, low=low, high=high, files=((session.name, line.hz, low, high),))
+
+
+def _in_both_halves(x, cycles, amplitude):
+    """Whether a sine of so many cycles a sample is in both halves of x, about as large as in
+    the whole: what wanders makes a peak, and does not go on."""
+    t = np.arange(len(x))
+    design = np.stack([np.sin(2.0 * np.pi * cycles * t), np.cos(2.0 * np.pi * cycles * t),
+                       np.ones(len(x)), t / len(x)], 1)
+    middle = len(x) // 2
+    sizes = [np.linalg.lstsq(design[part], x[part], rcond=None)[0][:2]
+             for part in (slice(0, middle), slice(middle, None))]
+    together = float(sizes[0] @ sizes[1])
+    return together > HALVES ** 2 * amplitude ** 2
+
+
+def answer(lines):
+    """For --json: of each axis its frequency, the interval and the files that show it."""
+    return {line.letter: {"hz": float("%.7g" % line.hz), "steady": line.steady,
+                          "interval_90_hz": [float("%.7g" % line.low), float("%.7g" % line.high)],
+                          "files": [{"capture": name, "hz": float("%.7g" % hz),
+                                     "interval_90_hz": [float("%.7g" % low),
+                                                        float("%.7g" % high)]}
+                                    for name, hz, low, high in line.files]} for line in lines}

@@ -1,0 +1,140 @@
+"""A full scale that is not the one the header states: gravity at rest is not 1 g, the gyro does
+not turn as far as gravity does, or as far as a flip of half a circle.
+
+Three hypotheses about one factor: a sound part, whose scale and offset err by a few percent; a
+range that is off by a power of two; and any factor at all, which has no name.
+"""
+import math
+
+import numpy as np
+from scipy import stats
+
+from sixflip.poses import faces
+
+from ...capture.imports import gravity
+from .damage import Damage
+from .detection import present
+
+SOUND_ACCEL = 0.1  # of |a|: ±80 mg of offset and 3 % of scale [MPU-6000 PS rev 3.4, table 6.2]
+SOUND_GYRO = 0.05  # ±3 % of scale [table 6.1], and a misaligned axis
+MOVING = 3.0  # times that, where a hand or wheels pull at the accelerometer, or the gyro is late
+RANGES = (0.0625, 0.125, 0.25, 0.5, 2.0, 4.0, 8.0, 16.0)
+WIDEST = 64.0  # any factor without a name lies within that and its inverse
+ALIKE = 0.8  # correlation of gravity's turning and the gyro's that tells a factor
+HAND_DEG = 12.0  # of a half turn by hand, at worst
+PARTS = 8  # of a recording, whose factors give the error of the whole
+
+
+def findings(sessions):
+    """[Damage] of the accelerometer, then of the gyro."""
+    if any(s.capture.accel is None for s in sessions):
+        return []
+    found = [accelerometer(sessions)]
+    if not found[0] and all(s.capture.gyro is not None for s in sessions):
+        found.append(gyro(sessions))
+    return [one for one in found if one]
+
+
+def accelerometer(sessions):
+    """Damage where |a| is not gravity, or None."""
+    sizes = [one for one in map(at_rest, sessions) if one]
+    if not sizes:
+        return None
+    size = float(np.median([one for one, _ in sizes]))
+    width = SOUND_ACCEL * (1.0 if all(rests for _, rests in sizes) else MOVING)
+    factor, nats = competed([size], [width])
+    if not present(nats):
+        return None
+    if factor:
+        words = ("the accelerometer reads %g times gravity: its full scale is not the one the "
+                 "header states" % factor)
+    else:
+        words = "|a| is %.3g g at rest: the accelerometer's scale is not that of the header" % size
+    return Damage("full_scale" if factor else "gravity", "accel", (), "amplitude", words, nats,
+                  {"factor": round(size, 4)})
+
+
+def at_rest(session):
+    """(|a| in g, whether it rests) of a session, or None."""
+    lsb = session.capture.meta["accel_lsb_per_g"]
+    if session.runs:
+        return float(np.median([np.linalg.norm(session.capture.accel[a:b].mean(axis=0))
+                                for _, a, b in session.runs])) / lsb, True
+    seen = gravity.seen(session.capture.accel)
+    return (seen.size / lsb, seen.rests) if seen else None
+
+
+def competed(factors, widths):
+    """(the range that factors are off by, or None where none is likelier than any factor at all;
+    nats of one of both over 1). factors, widths (n,): relative standard deviations."""
+    factors, widths = np.array(factors), np.array(widths)
+
+    def of(times):
+        return float(stats.norm.logpdf(factors, times, widths * times).sum())
+    sound = of(1.0)
+    ranges = {times: of(times) - math.log(len(RANGES)) for times in RANGES}
+    best = max(ranges, key=ranges.get)
+    middle = max(float(np.average(factors, weights=1.0 / widths ** 2)), 1e-3)
+    narrow = math.log(math.sqrt(2.0 * math.pi) / math.sqrt(float((1.0 / widths ** 2).sum()))
+                      / (2.0 * math.log(WIDEST)))
+    nameless = of(middle) + narrow
+    if max(ranges[best], nameless) <= sound:
+        return None, 0.0
+    if ranges[best] > nameless:
+        return best, ranges[best] - sound
+    return None, nameless - sound
+
+
+def gyro(sessions):
+    """Damage where the gyro turns farther or less far than gravity and flips do, or None."""
+    factors, widths = [], []
+    for session in sessions:
+        for factor, width in (*_by_gravity(session), *_by_flips(session)):
+            factors.append(factor)
+            widths.append(width)
+    if not factors:
+        return None
+    factor, nats = competed(factors, widths)
+    if not present(nats):
+        return None
+    size = float(np.average(factors, weights=1.0 / np.square(widths)))
+    words = "the gyro turns %.3g times as far as %s" % (
+        size, "gravity and half a circle tell: its full scale is not the one the header states"
+        if factor else "gravity tells: its scale is not that of the header")
+    return Damage("full_scale", "gyro", (), "amplitude", words, nats, {"factor": round(size, 4)})
+
+
+def _by_gravity(session):
+    """[(factor, relative width)] by which the gyro reads more than gravity turns."""
+    meta, capture = session.capture.meta, session.capture
+    known = 1.0 / meta["gyro_lsb_per_dps"]
+    whole = gravity.turn_factor(capture.accel, capture.gyro, known, session.rate)
+    if whole is None or whole[1] < ALIKE or whole[0] <= 0.0:
+        return []
+    m, parts = len(capture.accel) // PARTS, []
+    for k in range(PARTS):
+        one = gravity.turn_factor(capture.accel[k * m:(k + 1) * m],
+                                  capture.gyro[k * m:(k + 1) * m], known, session.rate)
+        if one is not None and one[1] >= ALIKE and one[0] > 0.0:
+            parts.append(1.0 / one[0])
+    size = float(np.median(parts)) if parts else 1.0 / whole[0]
+    spread = float(np.std(parts)) / size / math.sqrt(len(parts)) if len(parts) > 2 else 0.0
+    return [(size, math.hypot(MOVING * SOUND_GYRO, spread))]
+
+
+def _by_flips(session):
+    """[(factor, relative width)] of half turns about a face's axis that labels tell."""
+    found, capture = [], session.capture
+    if not session.labelled:
+        return []
+    rates = capture.gyro / capture.meta["gyro_lsb_per_dps"]
+    for one, other in zip(session.runs, session.runs[1:]):
+        face = faces.face_of_code(one.code)
+        if face < 0 or face != faces.face_of_code(other.code) or one.code == other.code:
+            continue
+        bias = 0.5 * (rates[one.first:one.end].mean(axis=0)
+                      + rates[other.first:other.end].mean(axis=0))
+        middle = slice((one.first + one.end) // 2, (other.first + other.end) // 2)
+        turned = np.trapezoid((rates[middle] - bias)[:, faces.AXIS[face]], session.t_s[middle])
+        found.append((abs(float(turned)) / 180.0, math.hypot(SOUND_GYRO, HAND_DEG / 180.0)))
+    return found

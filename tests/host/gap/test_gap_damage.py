@@ -1,0 +1,140 @@
+"""What recordings suffer: bytes put together wrongly, values that are held, scales that are not
+the header's. One is put in and exactly that is found; the sound recording has none."""
+import copy
+
+import numpy as np
+import pytest
+
+from sixflip_host.capture import registers
+from sixflip_host.diagnosis import turn_model
+from sixflip_host.diagnosis.detect import (
+    byte_faults,
+    codes,
+    held_values,
+    integrity,
+    wrong_scale,
+)
+from sixflip_host.experiment import attitude_fit, blocks
+from sixflip_host.simulation import scenario, simulated_session
+
+
+@pytest.fixture(scope="module")
+def sound():
+    return simulated_session.session(scenario.from_dict(
+        {"sensor": "mpu6050", "scene": "paper", "seed": 3}), 0)
+
+
+def damaged(capture):
+    """[(kind, sensor, axes)] of all damages, and the recording as it is looked at further."""
+    mended, found = byte_faults.repaired([("one", capture)])
+    session = blocks.of(*mended[0])
+    found = [*found, *held_values.findings([session]), *wrong_scale.findings([session])]
+    return [(d.kind, d.sensor, d.axes) for d in found], session
+
+
+def changed(capture, sensor, axis, rule):
+    """The capture with a rule applied to an axis of a sensor."""
+    out = copy.copy(capture)
+    counts = np.array(getattr(capture, sensor))
+    counts[:, axis] = rule(counts[:, axis].astype(np.int64)).astype(np.int16)
+    setattr(out, sensor, counts)
+    return out
+
+
+def low_or(x):
+    return np.where(x & 255 >= 128, (x & 255) - 256, x)
+
+
+RULES = {
+    "15 bits without their sign": ("gyro", 0, lambda x: x % 32768, "sign_extension"),
+    "15 bits cut": ("accel", 2, lambda x: (x + 16384) % 32768 - 16384, "sign_extension"),
+    "low byte signed and added": ("gyro", 1, lambda x: x - 256 * (x & 255 >= 128),
+                                  "sign_extension"),
+    "low byte signed and or-ed": ("accel", 1, low_or, "sign_extension"),
+    "sign and magnitude": ("gyro", 2, lambda x: np.where(x < 0, -32768 - x, x),
+                           "sign_extension"),
+    "bytes exchanged": ("accel", 1, lambda x: ((x << 8 & 0xff00 | x >> 8 & 0xff) + 32768)
+                        % 65536 - 32768, "byte_order"),
+}
+
+
+def test_a_sound_recording_has_no_damage(sound):
+    assert damaged(sound)[0] == []
+
+
+@pytest.mark.parametrize("name", RULES)
+def test_bytes_put_together_wrongly_are_named_and_put_right(sound, name):
+    sensor, axis, rule, kind = RULES[name]
+    found, session = damaged(changed(sound, sensor, axis, rule))
+    assert found == [(kind, sensor, ("xyz"[axis],))]
+    again = getattr(session.capture, sensor)[:, axis].astype(int)
+    true = getattr(sound, sensor)[:, axis].astype(int)
+    assert (again == true).mean() > (0.9 if "or-ed" in name else 0.9999)
+    assert integrity.findings([session]) == []
+
+
+@pytest.mark.parametrize("times", [2, 3])
+@pytest.mark.parametrize("sensor", ["accel", "gyro"])
+def test_values_of_one_sensor_that_are_held(sound, sensor, times):
+    held = copy.copy(sound)
+    counts = getattr(sound, sensor)
+    setattr(held, sensor, np.repeat(counts[::times], times, axis=0)[:len(counts)])
+    found, session = damaged(held)
+    assert found == [("repeats", sensor, ())]
+    assert held_values.findings([session])[0].value["times"] == pytest.approx(times, rel=0.02)
+
+
+@pytest.mark.parametrize("factor", [0.5, 2.0, 4.0])
+@pytest.mark.parametrize("sensor, key", [("accel", "accel_lsb_per_g"),
+                                         ("gyro", "gyro_lsb_per_dps")])
+def test_a_range_that_is_not_the_headers(sound, sensor, key, factor):
+    other = copy.copy(sound)
+    other.meta = dict(sound.meta, **{key: sound.meta[key] / factor})
+    found, session = damaged(other)
+    assert found == [("full_scale", sensor, ())]
+    size = wrong_scale.findings([session])[0].value["factor"]
+    assert size == pytest.approx(factor, rel=0.05)
+
+
+@pytest.mark.parametrize("factor", [0.25, 0.5, 2.0, 4.0])
+def test_a_wrong_range_of_the_gyro_is_no_other_order_of_its_axes(sound, factor):
+    other = copy.copy(sound)
+    other.meta = dict(sound.meta, gyro_lsb_per_dps=sound.meta["gyro_lsb_per_dps"] / factor)
+    session = blocks.of("one", other)
+    assert turn_model.swapped([session], [attitude_fit.fit(session)]) is None
+
+
+def test_flips_alone_tell_the_gyros_range(sound):
+    """Two poses of one face and the half turn between them: gravity does not turn."""
+    rows = np.flatnonzero(sound.pose > 0)
+    first = sound.pose[rows[0]]
+    codes = list(dict.fromkeys(sound.pose[rows].tolist()))
+    end = int(np.flatnonzero(sound.pose == codes[1]).max()) + 1
+    assert first == codes[0]
+    two = copy.copy(sound)
+    for name in ("t_us", "accel", "gyro", "temp", "pose"):
+        setattr(two, name, getattr(sound, name)[:end])
+    assert damaged(two)[0] == []
+    two.meta = dict(sound.meta, gyro_lsb_per_dps=2.0 * sound.meta["gyro_lsb_per_dps"])
+    assert damaged(two)[0] == [("full_scale", "gyro", ())]
+
+
+def test_gravity_that_no_range_explains(sound):
+    other = copy.copy(sound)
+    other.meta = dict(sound.meta, accel_lsb_per_g=sound.meta["accel_lsb_per_g"] / 1.5)
+    assert damaged(other)[0] == [("gravity", "accel", ())]
+
+
+def band_of(values):
+    return registers.dead_band(np.repeat(np.rint(values)[:, None], 3, axis=1).astype(int))[0]
+
+
+def test_a_dead_band_is_wider_than_the_spacing_elsewhere():
+    """A rate printed with one decimal and taken as counts of 131 per deg/s: 0, 13, 26, 39 … is
+    how it is spaced, and a band of five such steps is one."""
+    rate = 0.4 * np.random.default_rng(4).standard_normal(4000)
+    printed = np.round(rate, 1) * 131.0
+    assert band_of(printed) == 0 and codes.band_nats(np.rint(printed)[:, None])[0] <= 0.0
+    banded = np.where(np.abs(printed) < 40.0, 0.0, printed)
+    assert band_of(banded) == 52
+    assert codes.band_nats(np.rint(banded)[:, None])[0] > 20.0
