@@ -215,7 +215,7 @@ class HostileBoard:
         out = b""
         for name in wanted if alone else list(self.files):
             digest = hashlib.sha256(self.files[name]).hexdigest()
-            hashed = wanted is None or name.removeprefix(STAGED) in wanted
+            hashed = wanted is None or {name, name.removeprefix(STAGED)} & wanted
             out += b"%r\r\n" % ((name, len(self.files[name]), digest if hashed else None),)
         return out
 

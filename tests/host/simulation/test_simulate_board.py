@@ -18,16 +18,16 @@ def test_what_the_board_keeps_is_what_numpy_counts(tmp_path, effects):
     """Power-up, guided session, capture.bin: every sample in it, exactly."""
     world = worlds.make(dict(SHORT_WORLD, seed=7, warm_c=6.0, effects=effects))
     chip = world.chips[0]
-    taken, sample = [], chip.sample
+    taken, measure = [], chip.measure
 
     def listen(k, t_us):
         taken.append(k)
-        sample(k, t_us)
+        measure(k, t_us)
 
-    chip.sample = listen
+    chip.measure = listen
     board = power_on(tmp_path, board=SimulatedBoard(world, tmp_path, (STOP_WHEN_READY,)))
     assert board.only("solved")["verdict"] in ("good", "doubtful")
-    chip.sample = sample
+    chip.measure = measure
     capture = capture_file.read(str(tmp_path / "capture.bin"))
     kept = np.column_stack([capture.accel, capture.gyro, capture.temp])
     simulator.vectorise(world.model)
