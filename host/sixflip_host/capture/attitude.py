@@ -47,6 +47,23 @@ def _unit(vector):
     return np.asarray(vector, float) / np.linalg.norm(vector)
 
 
+def carried(steps):
+    """(n + 1, 3, 3): the products of the first 0, 1, ... n of rotations (n, 3, 3), in as few
+    operations as there are rows and columns when they are laid out in a square."""
+    n = len(steps)
+    width = max(1, int(np.sqrt(n)))
+    square = np.tile(np.eye(3), (-(-n // width) * width, 1, 1))
+    square[:n] = steps
+    square = square.reshape(-1, width, 3, 3)
+    for k in range(1, width):
+        square[:, k] = square[:, k - 1] @ square[:, k]
+    now = np.eye(3)
+    for row in square:
+        row[:] = now @ row
+        now = row[-1]
+    return np.concatenate([np.eye(3)[None], square.reshape(-1, 3, 3)[:n]])
+
+
 def _rotation(vectors):
     """Rotation matrices (n, 3, 3) of rotation vectors (n, 3), rad (Rodrigues)."""
     angle = np.linalg.norm(vectors, axis=1)

@@ -9,11 +9,16 @@ LOW_BITS = 6  # bits that noise and motion must have moved
 MOVED = 4  # times a bit's weight that a column must span to have moved it
 
 
+def codes(column):
+    """The different values of a column of 16-bit counts, in order."""
+    return np.flatnonzero(np.bincount(column.astype(np.int64) + RAIL + 1)) - RAIL - 1
+
+
 def steps(counts):
     """(3,) greatest common divisor of the counts' distances; 1 where too few values differ."""
     out = []
     for column in counts.T:
-        values = np.unique(column).astype(np.int64)
+        values = codes(column)
         values = values[np.abs(values) < RAIL]  # a rail need not lie on a step
         out.append(int(np.gcd.reduce(np.diff(values))) if len(values) >= FEWEST_VALUES else 1)
     return np.array(out)

@@ -7,7 +7,7 @@ capture shows, or as the chip's data sheet and published plots have.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from sixflip_sim.effects import typical
 
@@ -72,8 +72,8 @@ def of(units, statistics, scored, shaken=()):
         parts.append((chi2, max(freedom, 1.0)))
         before += float(one[0][point, 0]) - unit.freedom
     chi2, freedom = (sum(part[k] for part in parts) for k in (0, 1))
-    p = float(stats.chi2.sf(chi2, freedom))
-    worst = min(float(stats.chi2.sf(*part)) for part in parts)
+    p = float(special.chdtrc(freedom, chi2))
+    worst = min(float(special.chdtrc(*part[::-1])) for part in parts)
     largest = max([chi2 / freedom] + [c / f for c, f in parts])
     ok = not (min(p, 0.5 * worst) < DOUBTFUL_P and largest > DOUBTFUL_RATIO)
     odd, chance = _odd(units, scored, theta, shaken)
@@ -95,21 +95,28 @@ def _odd(units, scored, theta, shaken):
         return "", 1.0
     x = np.concatenate([one[np.isfinite(one).all(axis=1)] for one in left])
     number = len(x)
-    tails = float(stats.kurtosis(x, axis=None))
+    tails = _kurtosis(x)
     if tails > KURTOSIS_SIGMAS * np.sqrt(24.0 / x.size) + 0.5:
-        return "heavy tails", float(stats.norm.sf((tails - 0.5) / np.sqrt(24.0 / x.size)))
+        return "heavy tails", float(special.ndtr(-(tails - 0.5) / np.sqrt(24.0 / x.size)))
     size = (x ** 2).mean(axis=0)
     if not size.min() > 0.0:  # an axis that always reads the same has no noise to compare
         return "", 1.0
     size = np.delete(size, shaken) if len(shaken) < 2 else size[:1]  # a line is noise with a name
-    if size.max() / size.min() > stats.f.isf(DOUBTFUL_P / 3.0, number, number) * UNLIKE ** 2:
-        return "one axis more than the others", 3.0 * float(stats.f.sf(
-            size.max() / size.min() / UNLIKE ** 2, number, number))
+    if size.max() / size.min() > special.fdtri(
+            number, number, 1.0 - DOUBTFUL_P / 3.0) * UNLIKE ** 2:
+        return "one axis more than the others", 3.0 * float(special.fdtrc(
+            number, number, size.max() / size.min() / UNLIKE ** 2))
     together = np.abs(np.corrcoef(x.T)[np.triu_indices(3, 1)]).max()
     if together > 4.0 / np.sqrt(number) + 0.1:
-        return "axes move together", 6.0 * float(stats.norm.sf(
-            np.arctanh(together - 0.1) * np.sqrt(number)))
+        return "axes move together", 6.0 * float(special.ndtr(
+            -np.arctanh(together - 0.1) * np.sqrt(number)))
     return "", 1.0
+
+
+def _kurtosis(x):
+    """Fourth moment over the square of the second, less 3."""
+    off = (x - x.mean()) ** 2
+    return float((off ** 2).mean() / off.mean() ** 2 - 3.0)
 
 
 def innovations(unit, point, private, explained):

@@ -16,7 +16,7 @@ BENT = ("orientation", "amplitude")  # domains of what bends the reading itself
 
 def possible(gap):
     """Whether a crooked box would be told from all else that a SensorGap shows."""
-    if gap.unexplained or gap.drift or gap.settings.coarse:
+    if gap.unexplained or gap.drift or gap.model.conditions.coarse:
         return False
     if bent(gap.causes):
         return False

@@ -9,10 +9,10 @@ def of(found, named=()):
     loops = {}
     for kind, gap in found.gaps.items():
         progress.doing("the simulator again, with what was found")
-        loops[kind] = closed_loop.close(_with(gap, named), found.settings.reference_c)
+        loops[kind] = closed_loop.close(_with(gap, named), found.conditions.reference_c)
     if found.turns:
         loops["gyro_turns"] = closed_loop_turns.close(_with(found.turns, named),
-                                                      found.settings.reference_c)
+                                                      found.conditions.reference_c)
     if found.motion:
         loops["accel_motion"] = closed_loop_motion.close(_with(found.motion, named))
     return {kind: loop for kind, loop in loops.items() if loop}

@@ -25,8 +25,7 @@ class Fit:
         quadratic, projections = statistics
         k = len(columns)
         precision = np.diag(1.0 / prior ** 2) if k else np.zeros((0, 0))
-        gram = unit.gram[:, columns[:, None], columns[None]] if k else np.zeros(
-            (len(unit.grid), 0, 0))
+        gram = unit.gram.of(columns)
         inner = projections[:, columns]
         loglik = -0.5 * quadratic - unit.logdet[:, None]
         if k:

@@ -174,7 +174,7 @@ class Fit:
             return fields
         meta = sessions[0].capture.meta
         celsius = np.concatenate([s.temperature for s in sessions])
-        fields.update(t0_c=self.diagnosis.settings.reference_c, low_c=float(celsius.min()),
+        fields.update(t0_c=self.diagnosis.conditions.reference_c, low_c=float(celsius.min()),
                       high_c=float(celsius.max()), temp_lsb_per_c=float(meta["temp_lsb_per_c"]),
                       temp_offset_c=float(meta["temp_offset_c"]))
         for name, end in (("k1", ""), ("k2", "+")):

@@ -1,10 +1,11 @@
 """Captures in, a Diagnosis out: the one way in for the verb, the report and Python programs."""
+from dataclasses import replace
 
 from .. import progress
 from ..experiment import blocks
 from . import diagnosis, noise_reference
 from .detect import byte_faults
-from .simulator import against_simulator, comparison, put_right
+from .settings import Settings
 
 
 def diagnose(captures, simulator=(), reference=(), certified_box=False, without=(), jobs=0):
@@ -17,12 +18,13 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
     """
     captures, damages = byte_faults.repaired(captures)
     sessions = [blocks.of(name, capture) for name, capture in captures]
-    noise = None
+    noise = {}
     for name, capture in reference:
         noise = noise_reference.levels(capture, name)
-    settings = diagnosis.Settings(certified_box, without, noise, jobs)
+    settings = Settings(certified_box, tuple(without), noise, jobs)
     own, comparisons = None, []
     if simulator:
+        from .simulator import against_simulator, comparison, put_right
         progress.doing("conventions and parameters of the simulator")
         comparisons = [comparison.compare(captures, *log) for log in simulator]
         # What a log with another convention reads is no effect of a sensor.
@@ -33,5 +35,5 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
             names, simulated = zip(*sound)
             progress.doing("the simulator's own captures")
             own = against_simulator.read(list(simulated), list(names), settings)
-            settings.simulated = own.known
-    return diagnosis.Diagnosis(sessions, settings, own, comparisons, damages)
+            settings = replace(settings, simulated=own.known)
+    return diagnosis.of(sessions, settings, own, comparisons, damages)

@@ -102,35 +102,53 @@ class Reduced:
 
 class Elimination:
     """What integrating private columns out of a unit takes, for all of its columns at once: made
-    once, then any shared columns are an indexing. R = 1."""
+    once for each point of the grid that is asked for, then any shared columns are an indexing.
+    R = 1."""
 
     def __init__(self, unit, statistics, private):
-        self.unit, self.private = unit, private
-        quadratic, projections = statistics
-        index = private.index
-        block = unit.gram[:, index[:, None], index[None]] + np.diag(private.prior ** -2.0)
-        self.solved = np.linalg.solve(block, unit.gram[:, index])
-        inner = np.linalg.solve(block, projections[:, index])
-        self.quadratic = quadratic - (projections[:, index] * inner).sum(axis=1)
-        self.inner = projections - unit.gram[:, :, index] @ inner
-        self.logdet = (unit.logdet + 0.5 * np.linalg.slogdet(block)[1]
-                       + np.log(private.prior).sum())
+        self.unit, self.statistics, self.private = unit, statistics, private
+        points, size = unit.logdet.shape[0], len(unit.silent)
+        self.solved = np.empty((points, len(private), size))
+        self.inner, self.quadratic = np.empty((points, size, 1)), np.empty((points, 1))
+        self.logdet, self._done = np.empty(points), np.zeros(points, bool)
+
+    def _fill(self, points):
+        points = points[~self._done[points]]
+        if not len(points):
+            return
+        self._done[points] = True
+        index, quadratic, projections = self.private.index, *self.statistics
+        cross = self.unit.gram[_block(points, index, np.arange(len(self.unit.silent)))]
+        block = cross[:, :, index] + np.diag(self.private.prior ** -2.0)
+        self.solved[points] = np.linalg.solve(block, cross)
+        own = projections[points]
+        inner = np.linalg.solve(block, own[:, index])
+        self.quadratic[points] = quadratic[points] - (own[:, index] * inner).sum(axis=1)
+        self.inner[points] = own - cross.transpose(0, 2, 1) @ inner
+        self.logdet[points] = (self.unit.logdet[points] + 0.5 * np.linalg.slogdet(block)[1]
+                               + np.log(self.private.prior).sum())
 
     def reduced(self, columns, points):
         """Reduced of these shared columns at these points of the grid."""
-        cross = self.unit.gram[np.ix_(points, columns, self.private.index)]
-        solved = self.solved[np.ix_(points, np.arange(len(self.private)), columns)]
-        return Reduced(self.unit.gram[np.ix_(points, columns, columns)] - cross @ solved,
-                       self.inner[np.ix_(points, columns)], self.quadratic[points],
+        self._fill(points)
+        cross = self.unit.gram[_block(points, columns, self.private.index)]
+        solved = self.solved[_block(points, np.arange(len(self.private)), columns)]
+        return Reduced(self.unit.gram[_block(points, columns, columns)] - cross @ solved,
+                       self.inner[points[:, None], columns], self.quadratic[points],
                        self.logdet[points])
+
+
+def _block(points, rows, columns):
+    """Index of rows and columns of matrices at points, as numpy.ix_ makes it."""
+    return points[:, None, None], rows[:, None], columns
 
 
 def reduced(unit, statistics, shared, private, points):
     """Reduced of one unit without anything made before, for R data sets."""
     k, p = len(shared), len(private)
     both = (private + shared).index
-    gram = unit.gram[np.ix_(points, both, both)]
-    inner = statistics[1][np.ix_(points, both)]
+    gram = unit.gram[_block(points, both, both)]
+    inner = statistics[1][points[:, None], both]
     if not p:
         return Reduced(gram, inner, statistics[0][points], unit.logdet[points])
     block = gram[:, :p, :p] + np.diag(private.prior ** -2.0)
@@ -170,7 +188,12 @@ def fit(unit, statistics, shared, private, level, points=EVERY, elimination=None
 def coefficients(fits, shared):
     """(theta (R, k), V (R, k, k)) of several Fits together."""
     covariance = np.linalg.inv(sum(f.gram for f in fits) + np.diag(shared.prior ** -2.0))
-    return np.einsum("rij,rj->ri", covariance, sum(f.inner for f in fits)), covariance
+    return _times(covariance, sum(f.inner for f in fits)), covariance
+
+
+def _times(matrices, vectors):
+    """(R, k) of matrices (R, k, k) and vectors (R, k)."""
+    return (matrices @ vectors[:, :, None])[:, :, 0]
 
 
 def predictive(fit, theta, covariance):
@@ -178,10 +201,10 @@ def predictive(fit, theta, covariance):
     k = theta.shape[1]
     if not k:
         return -0.5 * fit.quadratic - fit.logdet + fit.level
-    left = fit.inner - np.einsum("rij,rj->ri", fit.gram, theta)
+    left = fit.inner - _times(fit.gram, theta)
     squares = fit.quadratic - (theta * (fit.inner + left)).sum(axis=1)
-    widened = np.eye(k) + np.einsum("rij,rjk->rik", covariance, fit.gram)
-    gain = np.linalg.solve(widened, np.einsum("rij,rj->ri", covariance, left)[:, :, None])[..., 0]
+    widened = np.eye(k) + covariance @ fit.gram
+    gain = np.linalg.solve(widened, _times(covariance, left)[:, :, None])[..., 0]
     return (-0.5 * (squares - (left * gain).sum(axis=1)) - fit.logdet + fit.level
             - 0.5 * np.linalg.slogdet(widened)[1])
 

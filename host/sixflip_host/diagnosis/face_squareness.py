@@ -5,7 +5,7 @@ worth a word all the same. Twelve parameters of a sensor take up three of the an
 faces; what the others are off is seen.
 """
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from sixflip.poses import faces
 
@@ -62,4 +62,4 @@ def of(session, nominal):
     deg = np.linalg.norm(size.reshape(-1, 2), axis=1) / MG_A_DEG
     chi2 = float((size ** 2).sum()) / PLACEMENT_MG ** 2
     return Crooked({faces.pose_name(2 * f + 1)[:2]: float(d) for f, d in zip(found, deg)},
-                   float(stats.chi2.sf(chi2, rank)), flipped)
+                   float(special.chdtrc(rank, chi2)), flipped)

@@ -7,6 +7,7 @@ their ratio has a Fieller interval [Fieller, JRSS B 16 (1954) 175]; unbounded me
 is too small to measure.
 """
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,12 +17,15 @@ Z_90 = 1.6448536269514722
 FLOOR = 0.05  # of the noise's variance, standard deviation: it is estimated, too
 
 
+@dataclass(frozen=True)
 class Shrinkage:
     """before, after, floor (RMS a contrast, mg or deg/s); share, interval (or None)."""
 
-    def __init__(self, before, after, floor, share, interval):
-        self.before, self.after, self.floor = before, after, floor
-        self.share, self.interval = share, interval
+    before: float
+    after: float
+    floor: float
+    share: float | None
+    interval: tuple | None
 
 
 def of(data, chosen, index):

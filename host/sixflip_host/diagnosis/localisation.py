@@ -1,7 +1,7 @@
 """Stage 2: where the gap lies. A share of the excess and a test per domain and axis, false
 discoveries controlled [Benjamini & Hochberg, JRSS B 57 (1995) 289]."""
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from ..experiment import covariance, linear_model
 from . import face_squareness, hypotheses, odds, session_offsets
@@ -89,7 +89,7 @@ def _tested(gap, option):
         return None
     excess = max(gap.adequacy.excess_before, taken - freedom, 1e-9)
     return Place(gap.kind, "xyz"[option.axis], hypotheses.domain(option.effect),
-                 (taken - freedom) / excess, stats.chi2.sf(taken, freedom))
+                 (taken - freedom) / excess, special.chdtrc(freedom, taken))
 
 
 def _explained(gram, inner):
@@ -116,7 +116,7 @@ def across(gap):
     share = 1.0 - (ORDINARY_PLACEMENT_MG / worst) ** 2
     # As many placements as there are, two directions each, against what a hand does.
     number = 2 * sum(s.placements() for s in gap.sessions)
-    p = stats.chi2.sf(number * (worst / ORDINARY_PLACEMENT_MG) ** 2, number)
+    p = special.chdtrc(number, number * (worst / ORDINARY_PLACEMENT_MG) ** 2)
     return [Place("accel", None, "across_gravity", share, p)]
 
 
@@ -137,7 +137,7 @@ def along(gap):
         return []
     excess = max(gap.adequacy.excess_before, chi2 - freedom, 1e-9)
     return [Place(gap.kind, None, "along_gravity", (chi2 - freedom) / excess,
-                  stats.chi2.sf(chi2, freedom))]
+                  special.chdtrc(freedom, chi2))]
 
 
 def session(gap):
@@ -153,7 +153,7 @@ def session(gap):
     for axis in range(3):
         chi2 = float((z[:, axis] ** 2 / variance[:, axis]).sum())
         found.append(Place(gap.kind, "xyz"[axis], "session", max(chi2 - len(z), 0.0) / max(
-            excess, chi2), stats.chi2.sf(chi2, len(z))))
+            excess, chi2), special.chdtrc(len(z), chi2)))
     return found
 
 

@@ -47,7 +47,7 @@ class Model:
 
     def __init__(self, units, statistics, levels):
         self.units, self.statistics, self.levels = units, statistics, levels
-        self._known = {}
+        self._known, self._priors = {}, {}
         self._eliminations = {}
 
     def scored(self, forms):
@@ -81,7 +81,7 @@ class Model:
         fits, privates = [], []
         chances = 0.0 if base is None else base.chances
         for place, (unit, statistics) in enumerate(zip(self.units, self.statistics)):
-            level = self.levels.prior(unit, free)
+            level = self._prior(place, free)
             private = NONE if base is None else base.private[place]
             if form is not None and form.choices and not unit.between:
                 private, nats = self._chosen(place, shared, private, form, level)
@@ -96,6 +96,11 @@ class Model:
         score = float(evidence.score(fits, shared, self.units[0].apart)[0])
         return Scored(forms, score - chances, tuple(fits), tuple(privates), chances)
 
+    def _prior(self, place, free):
+        """(G,) log prior of one unit's grid, made once for what is free."""
+        if (place, free) not in self._priors:
+            self._priors[place, free] = self.levels.prior(self.units[place], free)
+        return self._priors[place, free]
 
     def _elimination(self, place, private):
         """evidence.Elimination of private columns from one unit, made once."""

@@ -23,6 +23,7 @@ from . import (
     strangers,
     wandering,
 )
+from .settings import Conditions, Settings
 
 ALONG_FREEDOM = 10  # contrasts along gravity that a half of a session must have
 DOUBT = 0.5  # probability of a stranger in a cause's place, above which it is not explained
@@ -120,11 +121,13 @@ class SensorGap:
 
 @dataclass(frozen=True)
 class RestModel:
-    """The model of one sensor at rest: kind "accel" or "gyro", chip, diagnosis.Settings."""
+    """The model of one sensor at rest: kind "accel" or "gyro", chip, and what was asked for and
+    holds for all of its sessions."""
 
     kind: str
     chip: str
-    settings: object
+    settings: Settings
+    conditions: Conditions = Conditions()
     drifts = True  # whether noise may wander
     form = 0.02  # cutoffs.Cutoffs.form
 
@@ -148,7 +151,7 @@ class RestModel:
         for cause in causes:
             cause.other_axes = posterior.rival_axes(model, forms, found, cause.chosen[0])
         fitted = adequacy.of(units, data.statistics, best,
-                             self.settings.shaken.get(self.kind, ()))
+                             self.conditions.shaken.get(self.kind, ()))
         added = posterior.domains_left(found)
         if fitted.odd and "drift" in best.names:
             added["time"] = found.gains["drift"]
@@ -201,7 +204,7 @@ class RestModel:
     def unit(self, part, model, certified, wanted=None):
         """Unit of one session; certified: the box is no nuisance; wanted: see
         linear_model.unit."""
-        reference = self.settings.reference_c
+        reference = self.conditions.reference_c
         designs = terms.library(part, model.up, self.kind, reference, self.chip)
         if self.kind == "accel":
             designs.append(terms.of_terms("box_tilt", "accel", part.moment(model.up), part.n,

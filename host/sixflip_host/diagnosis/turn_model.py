@@ -52,14 +52,14 @@ class TurnModel(RestModel):
     def unit(self, part, model, certified, wanted=None):
         y, chosen = turns.calibrated(turns.of(part, model.up))
         names = [n for n in EFFECTS if n != "thermal_scale" or part.thermal]
-        designs = [design(n, chosen, self.settings.reference_c, self.chip) for n in names]
+        designs = [design(n, chosen, self.conditions.reference_c, self.chip) for n in names]
         if "dead_band" not in self.settings.without:
             lsb = part.capture.meta["gyro_lsb_per_dps"]
             designs += [banded(chosen, width, times, lsb, self.chip) for width in BANDS_DPS
                         for times in TIMES]
         designs += [nameless(chosen, name, functions) for name, functions in STRANGERS.items()]
         if part.thermal:
-            reference = self.settings.reference_c
+            reference = self.conditions.reference_c
             designs.append(nameless(chosen, "thermal_orientation",
                                     lambda turn: _of_temperature(turn, reference)))
         bases = [np.diag(([ATTITUDE_DEG] * 2 + [FLIP_DEG] * t.flip) / np.array(t.seconds)) ** 2
@@ -83,8 +83,7 @@ def astray(gap):
     were lost in them, against all being alike: what is left across gravity of each turn in
     degrees, beside what its bias may be off normal of one size, or of one and of a far
     larger one for a share of the turns."""
-    left, known = (np.concatenate(v) for v in zip(*(_left(gap, part, unit) for part, unit in
-                                                    zip(gap.parts, gap.units))))
+    left, known = (np.concatenate(v) for v in zip(*(_left(gap, unit) for unit in gap.units)))
     levels = np.array(LEVELS_DEG + FAR_DEG)
     variances = known[None] + levels[:, None, None] ** 2
     each = -0.5 * (left ** 2 / variances + np.log(variances)).sum(axis=2)  # (levels, turns)
@@ -99,12 +98,11 @@ def astray(gap):
     return best - alike - np.log(len(SHARES) * len(FAR_DEG)), number
 
 
-def _left(gap, part, unit):
+def _left(gap, unit):
     """(turns, 2) degrees that scale, misalignment, bias and the effects found leave of each
     turn across gravity, turns far off counting little in the fit; (turns, 2) deg^2 that the
     bias and gravity's direction may make of it."""
-    y, chosen = turns.calibrated(turns.of(part[0], part[1].up))
-    columns = turns.nuisance(chosen)
+    y, columns, chosen = unit.rows.y, unit.rows.nuisance, unit.turns
     for form in gap.chosen:
         columns = np.hstack([columns, unit.raw(form.columns)])
     seconds = np.array([t.seconds for t in chosen])
@@ -217,12 +215,11 @@ def swapped(sessions, nominal):
         signed = int(read[i, source]) * (source + 1)
         if signed != i + 1:
             value["xyz"[i]] = signed
-    found = Finding("axis_swap", "gyro", sorted(value), value, "axis", score, "orientation",
-                    "the gyro's axes are swapped or inverted against the accelerometer's",
-                    {k: (v, v) for k, v in value.items()},
-                    share=axis_order.explained(plain, best[0]), number=len(plain))
-    found.read = read
-    return found
+    return Finding("axis_swap", "gyro", sorted(value), value, "axis", score, "orientation",
+                   "the gyro's axes are swapped or inverted against the accelerometer's",
+                   {k: (v, v) for k, v in value.items()},
+                   share=axis_order.explained(plain, best[0]), number=len(plain),
+                   read=read)
 
 
 def order_nats(off, plain):

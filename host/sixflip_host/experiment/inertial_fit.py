@@ -5,6 +5,8 @@ both ends pins it. What is left is seen from the table, as frequencies over the 
 transform): the hand's own acceleration is large there and can be anything, but its mean is zero,
 for the box rests at both ends; and what is fixed to the box or to the sensor turns with it.
 """
+from dataclasses import dataclass
+
 import numpy as np
 
 from sixflip_sim.effects import typical
@@ -13,6 +15,7 @@ from sixflip_sim.effects.moment import Moment
 
 from ..capture.attitude import _rotation
 from . import noise_arrays, projection, terms
+from .turns import Turn
 
 EFFECT_NAMES = ("lever_arm", "filter_lag")
 EACH = (0, 1, 2)
@@ -37,69 +40,97 @@ MG_PER_METRE_S2 = 1000.0 / 9.80665
 SMALL_DEG = 10.0
 
 
+@dataclass(frozen=True, eq=False)
 class Move:
-    """y (n, 3) mg, columns (n, 3, k) of all sessions and local (n, 3, l) of each, over the
-    frequencies 0 ... n - 1 of the move, along (onwards, axis, up); flat; seconds; bin_s; felt
-    (samples, 3) g, moment of the samples, seen: how these become those. Of the session: session
-    (number), white (mg of a second), by_hand."""
+    """One move of a session: turn (turns.Turn, integrated), session (its number), by_hand, white
+    (mg of a second); flat: the vertical stays where it was in the box; seconds, bin_s; over the
+    frequencies 0 ... n - 1, along (onwards, axis, up): y (n, 3) mg and table (n, 3, k + l), the
+    first `shared` of whose columns all sessions have, the others each session for itself."""
 
-    def __init__(self, turn, session, nominal, course):
-        """turn: turns.Turn, integrated; course (4, samples): hats over the session."""
-        capture = session.capture
-        part = slice(turn.first, turn.last)
-        rate = turn.rate @ turn.matrix.T - turn.shift
-        body = pinned(turn)
-        felt = np.einsum("nji,j->ni", body, turn.before)
-        measured = nominal.corrected(capture.accel[part] * (
-            1000.0 / capture.meta["accel_lsb_per_g"]))
-        frame = self._frame(turn, body, rate)
-        share = path(turn)
-        self.felt = felt
-        seen = self.seen = _Seen(body, frame, share, len(share))
-        self.seconds, self.bin_s = turn.seconds, turn.seconds / seen.n
-        self.y = seen.of(1000.0 * (measured - felt)[:, :, None])[:, :, 0]
-        m = Moment(np.exp, np.sin, np.floor, noise_arrays.gauss)
-        m.f, m.w = tuple(felt.T), tuple(rate.T)
-        m.w_rate = tuple(np.gradient(rate, turn.t, axis=0).T)
-        self.moment = m
-        own = seen.of(np.concatenate([spread(name, m) for name in EFFECT_NAMES], axis=2))
-        edge = own[:, :, :3] @ frame.T * (not self.flat)
-        memory = np.zeros((len(felt), 3, 3))
-        for i in range(3):
-            memory[:, i, i] = felt[0, i] - felt[:, i]
-        static = seen.held(np.concatenate([_orientation(felt), memory], axis=2))
-        bias = np.zeros((len(felt), 3, 3 * HATS))
-        for i in range(3):
-            bias[:, i, i::3] = course[:, part].T
-        self.local = np.concatenate([own[:, :, :3], seen.held(bias)], axis=2)
-        strange = seen.of(_of_motion(felt, rate, np.stack(m.w_rate, 1)))
-        self.columns = np.concatenate([own, strange, edge, self._habits(seen.n), static], axis=2)
+    turn: Turn
+    session: int
+    by_hand: bool
+    white: float
+    flat: bool
+    seconds: float
+    bin_s: float
+    y: np.ndarray
+    table: np.ndarray
+    shared: int
 
-    def _frame(self, turn, body, rate):
-        """(3, 3): onwards, axis, up as rows in the frame of the start; fills flat."""
-        up = turn.before
-        leaned = np.einsum("nji,j->ni", body, up) @ up
-        self.flat = bool(leaned.min() > np.cos(np.radians(FLAT_DEG)))
-        turned = (np.einsum("nij,nj->ni", body[1:], 0.5 * (rate[1:] + rate[:-1]))
-                  * turn.dt[:, None]).sum(axis=0)
-        axis = turned - up * (turned @ up)
-        size = np.linalg.norm(axis)
-        axis = axis / size if size > SMALL_DEG else projection.lateral_basis(up)[0]
-        return np.stack([np.cross(axis, up), axis, up])
+    @property
+    def columns(self):
+        return self.table[:, :, :self.shared]
 
-    def _habits(self, n):
-        """Up and down, and onwards, in the same way whenever a box is turned over: metres."""
-        out = np.zeros((n, 3, 2 * HABITS))
-        if not self.flat:
-            size = MG_PER_METRE_S2 * (np.pi / self.seconds) ** 2 * np.sqrt(n / 2.0)
-            for k in range(1, HABITS + 1):
-                out[k, 2, k - 1] = out[k, 0, HABITS + k - 1] = size
-        return out
+
+def move(turn, capture, nominal, course, session, by_hand, white):
+    """Move of a turn; nominal: NominalSensor; course (4, samples): hats over the session."""
+    body, felt, rate = carried(turn)
+    frame, flat = _frame(turn, body, rate)
+    seen = Seen.of_turn(turn)
+    scale = 1000.0 / capture.meta["accel_lsb_per_g"]
+    measured = nominal.corrected(capture.accel[turn.first:turn.last] * scale)
+    y = seen.of(1000.0 * (measured - felt)[:, :, None])[:, :, 0]
+    m = moment(turn)
+    own = seen.of(np.concatenate([spread(name, m) for name in EFFECT_NAMES], axis=2))
+    edge = own[:, :, :3] @ frame.T * (not flat)
+    memory = np.zeros((len(felt), 3, 3))
+    for i in range(3):
+        memory[:, i, i] = felt[0, i] - felt[:, i]
+    static = seen.held(np.concatenate([_orientation(felt), memory], axis=2))
+    bias = np.zeros((len(felt), 3, 3 * HATS))
+    for i in range(3):
+        bias[:, i, i::3] = course[:, turn.first:turn.last].T
+    strange = seen.of(_of_motion(felt, rate, np.stack(m.w_rate, 1)))
+    shared = [own, strange, edge, _habits(seen.n, turn.seconds, flat), static]
+    return Move(turn, session, by_hand, white, flat, turn.seconds, turn.seconds / seen.n, y,
+                np.concatenate([*shared, own[:, :, :3], seen.held(bias)], axis=2),
+                sum(part.shape[2] for part in shared))
+
+
+def carried(turn):
+    """(body (n, 3, 3): attitude at each sample, felt (n, 3) g: what gravity is there, rate (n, 3)
+    deg/s as the turn was corrected)."""
+    body = pinned(turn)
+    return (body, np.einsum("nji,j->ni", body, turn.before),
+            turn.rate @ turn.matrix.T - turn.shift)
+
+
+def moment(turn):
+    """moment.Moment of a turn's samples."""
+    _, felt, rate = carried(turn)
+    m = Moment(np.exp, np.sin, np.floor, noise_arrays.gauss)
+    m.f, m.w = tuple(felt.T), tuple(rate.T)
+    m.w_rate = tuple(np.gradient(rate, turn.t, axis=0).T)
+    return m
+
+
+def _frame(turn, body, rate):
+    """((3, 3): onwards, axis, up as rows in the frame of the start; whether it is flat)."""
+    up = turn.before
+    leaned = np.einsum("nji,j->ni", body, up) @ up
+    turned = (np.einsum("nij,nj->ni", body[1:], 0.5 * (rate[1:] + rate[:-1]))
+              * turn.dt[:, None]).sum(axis=0)
+    axis = turned - up * (turned @ up)
+    size = np.linalg.norm(axis)
+    axis = axis / size if size > SMALL_DEG else projection.lateral_basis(up)[0]
+    return np.stack([np.cross(axis, up), axis, up]), bool(
+        leaned.min() > np.cos(np.radians(FLAT_DEG)))
+
+
+def _habits(n, seconds, flat):
+    """Up and down, and onwards, in the same way whenever a box is turned over: metres."""
+    out = np.zeros((n, 3, 2 * HABITS))
+    if not flat:
+        size = MG_PER_METRE_S2 * (np.pi / seconds) ** 2 * np.sqrt(n / 2.0)
+        for k in range(1, HABITS + 1):
+            out[k, 2, k - 1] = out[k, 0, HABITS + k - 1] = size
+    return out
 
 
 def priors(chip):
-    """(k,) standard deviations of Move.columns' coefficients; of the effects ten times the
-    typical size, as everywhere."""
+    """(k,) standard deviations of the coefficients of all sessions' columns; of the effects ten
+    times the typical size, as everywhere."""
     effect = [10.0 * typical.size(name, chip, "accel")[0] for name in EFFECT_NAMES
               for _ in EFFECTS[name].keys]
     strange = [PRIOR_MG] * (COMPETING_NUMBER - EFFECTS_NUMBER)
@@ -108,8 +139,8 @@ def priors(chip):
 
 
 def local_priors(by_hand):
-    """(k,) standard deviations of Move.local's coefficients: where hand or wheels turn the box
-    in this session, and the course of the bias."""
+    """(k,) standard deviations of the coefficients of a session's own columns: where hand or
+    wheels turn the box in it, and the course of the bias."""
     centre, bias = (HAND_CM, BIAS_MG) if by_hand else (WHEELS_CM, STRANGE_BIAS_MG)
     return np.concatenate([[centre] * 3, [bias] * (3 * HATS)])
 
@@ -141,19 +172,27 @@ def pinned(turn):
     return _rotation(np.outer(path(turn), off / size * angle)) @ body
 
 
-class _Seen:
-    """Accelerations in the body as the move's frequencies."""
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """Accelerations in the body as a move's n frequencies: turned (samples, 3, 3) into onwards,
+    axis, up; share (samples,) of the way; edges (n + 1,) of the bins; cosines (n, n)."""
 
-    def __init__(self, body, frame, share, samples):
-        self.n = int(np.clip(samples // 5, FEWEST_BINS, MOST_BINS))
-        self.turned = frame @ body  # (samples, 3, 3)
-        self.share = share
-        self.edges = np.linspace(0, samples, self.n + 1).astype(int)
-        self.counts = np.diff(self.edges)[:, None, None]
-        k = np.arange(self.n)
-        self.cosines = np.sqrt(2.0 / self.n) * np.cos(
-            np.pi / self.n * (k[None, :] + 0.5) * k[:, None])
-        self.cosines[0] /= np.sqrt(2.0)
+    n: int
+    turned: np.ndarray
+    share: np.ndarray
+    edges: np.ndarray
+    cosines: np.ndarray
+
+    @classmethod
+    def of_turn(cls, turn):
+        body, _, rate = carried(turn)
+        share = path(turn)
+        n = int(np.clip(len(share) // 5, FEWEST_BINS, MOST_BINS))
+        k = np.arange(n)
+        cosines = np.sqrt(2.0 / n) * np.cos(np.pi / n * (k[None, :] + 0.5) * k[:, None])
+        cosines[0] /= np.sqrt(2.0)
+        return cls(n, _frame(turn, body, rate)[0] @ body, share,
+                   np.linspace(0, len(share), n + 1).astype(int), cosines)
 
     def held(self, values):
         """of() what is there at rest, too: across gravity that was taken for its attitude."""
@@ -167,7 +206,8 @@ class _Seen:
         return self._frequencies(self.turned @ values)
 
     def _frequencies(self, table):
-        means = np.add.reduceat(table, self.edges[:-1], axis=0) / self.counts
+        means = np.add.reduceat(table, self.edges[:-1], axis=0)
+        means /= np.diff(self.edges)[:, None, None]
         return np.tensordot(self.cosines, means, axes=1)
 
 

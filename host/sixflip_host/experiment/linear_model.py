@@ -4,10 +4,11 @@ What is left of the rows (nominal_rows.py) after projection is the contrasts z. 
 is white / n + placement + flicker, the two last levels by restricted maximum likelihood
 [Patterson & Thompson, Biometrika 58 (1971) 545] on a grid.
 
-Everything later needs only z' C^-1 z, S' C^-1 z and S' C^-1 S for each point of the grid (S: the
-columns of all effects), so that is all that is kept: any subset of effects is an indexing. What
-is a nuisance of one placement only is projected out there, and the covariance is factored in
-time (covariance.py), so that all of it grows as the session does.
+Everything later needs only z' C^-1 z, S' C^-1 z and S' C^-1 S for the points of the grid (S: the
+columns of all effects), so that is all that is kept, the last only where it was asked for
+(gram.py): any subset of effects is an indexing. What is a nuisance of one placement only is
+projected out there, and the covariance is factored in time (covariance.py), so that all of it
+grows as the session does.
 """
 from dataclasses import dataclass, field
 
@@ -15,6 +16,7 @@ import numpy as np
 
 from ..progress import steps
 from . import covariance
+from .gram import Grams
 from .nominal_rows import Rows
 
 NOTHING = 1e-7  # share of its energy below which a column is silent
@@ -27,7 +29,8 @@ class Unit:
     rows; designs: list of terms.Design, their K columns side by side; grid: list of (placement
     level, flicker level), G of them, in a table of this shape; z (m,) contrasts and columns (m,
     K), in the basis of the rows' groups without what space (m, p), orthonormal, holds; freedom;
-    energy (K,), silent (K,) bool; gram (G, K, K), logdet (G,), quadratic (G,), inner (G, K).
+    energy (K,), silent (K,) bool; gram (G, K, K) as gram.Grams, logdet (G,), quadratic (G,),
+    inner (G, K).
     signature: what the protocol is known by, see cutoffs.py. within: {(effect, number of its
     choice): nats that the blocks of the rests say for it}. between: it lies between the
     sessions, see session_offsets.py. turns: the turns that it was made of. apart: the units
@@ -45,7 +48,7 @@ class Unit:
     freedom: int
     energy: np.ndarray
     silent: np.ndarray
-    gram: np.ndarray
+    gram: Grams
     logdet: np.ndarray
     quadratic: np.ndarray
     inner: np.ndarray
@@ -58,7 +61,7 @@ class Unit:
 
     @property
     def coarse(self):
-        return np.arange(len(self.grid)).reshape(self.shape)[::2, ::2].ravel()
+        return _coarse(self.shape)
 
     def around(self, point):
         """Indices of a point of the grid and its neighbours."""
@@ -93,8 +96,7 @@ class Unit:
         """(quadratic (G, R), projections (G, K, R)) of contrasts z (m, R), default the data's."""
         if z is None:
             return self.quadratic[:, None], self.inner[:, :, None]
-        quadratic, inner, _, _ = _reduce(self.groups, self.grid, self.space, self._common(),
-                                         self.columns, z, False)
+        quadratic, inner, _ = _reduce(self.gram, self.columns, z)
         return quadratic, inner
 
     def chi2(self, z, index):
@@ -166,8 +168,10 @@ def unit(rows, designs, wanted=None, **about):
     if not any(g.lateral.shape[1] for g in groups):
         placements = placements[:1]
     grid = [(a, b) for a in placements for b in flickers]
-    quadratic, inner, gram, logdet = _reduce(groups, grid, space, _common(rows), columns, z, True)
-    return Unit(rows, designs, grid, (len(placements), len(flickers)), groups, space, z[:, 0],
+    shape = len(placements), len(flickers)
+    gram = Grams(groups, grid, space, _common(rows), columns)
+    quadratic, inner, logdet = _reduce(gram, columns, z, _coarse(shape))
+    return Unit(rows, designs, grid, shape, groups, space, z[:, 0],
                 columns, len(z) - space.shape[1], 3.0 * (raw ** 2).mean(axis=0), silent, gram,
                 logdet, quadratic[:, 0], inner[:, :, 0], **about)
 
@@ -178,36 +182,45 @@ def _common(rows):
     return covariance.turned(rows.groups, rows.common)
 
 
-def _reduce(groups, grid, space, common, columns, z, with_gram):
-    """(quadratic (G, R), inner (G, K, R), gram (G, K, K) or None, logdet (G,)) with the space
-    projected out in the metric of each point of the grid."""
-    placements = list(dict.fromkeys(a for a, _ in grid))
-    flickers = list(dict.fromkeys(b for _, b in grid))
-    loud = np.flatnonzero((columns != 0.0).any(axis=0))  # the others stay zero
-    fixed, k, number = space.shape[1] + common.shape[1], len(loud), z.shape[1]
-    every = np.hstack([space, common, columns[:, loud], z])
-    known = np.diag(np.repeat([0.0, 1.0], [space.shape[1], common.shape[1]]))
-    with_all = np.arange(every.shape[1]) if with_gram else np.r_[:fixed, fixed + k:every.shape[1]]
-    size = columns.shape[1]
-    quadratic, logdet = np.empty((len(grid), number)), np.empty(len(grid))
-    inner = np.zeros((len(grid), size, number))
-    gram = np.zeros((len(grid), size, size)) if with_gram else None
+def _coarse(shape):
+    """Every other level of placement and of flicker, as indices of the grid."""
+    return np.arange(shape[0] * shape[1]).reshape(shape)[::2, ::2].ravel()
+
+
+def _reduce(gram, columns, z, kept=()):
+    """(quadratic (G, R), inner (G, K, R), logdet (G,)) of contrasts z (m, R) and columns (m, K)
+    with the space projected out in the metric of each point of the grid; of the points `kept` the
+    columns' gram.Grams are filled as well."""
+    placements = list(dict.fromkeys(a for a, _ in gram.grid))
+    flickers = list(dict.fromkeys(b for _, b in gram.grid))
+    loud, fixed, number = gram.loud, gram.fixed, z.shape[1]
+    every = np.hstack([gram.space, gram.common, columns[:, loud], z])
+    quadratic, logdet = np.empty((len(gram), number)), np.empty(len(gram))
+    inner = np.zeros((len(gram), columns.shape[1], number))
+    size = fixed + len(loud)
     for b, level in enumerate(steps(flickers, "levels of noise")):
-        factor = covariance.Factor(groups, placements, level)
-        products = np.zeros((len(placements), fixed + k, len(with_all)))
+        factor = covariance.Factor(gram.groups, placements, level)
+        index = np.arange(len(placements)) * len(flickers) + b
+        full = np.isin(index, kept)
+        products = np.zeros((len(placements), size, size))
+        right = np.zeros((len(placements), size, number))
         squares = np.zeros((len(placements), number))
         for white in factor.whitened_parts(every):
-            squares += (white[:, :, fixed + k:] ** 2).sum(axis=1)
+            squares += (white[:, :, size:] ** 2).sum(axis=1)
             for a, one in enumerate(white):
-                products[a] += one[:, :fixed + k].T @ (one if with_gram else one[:, with_all])
-        for a, product in enumerate(products):
-            index = a * len(flickers) + b
-            metric = np.linalg.cholesky(product[:fixed, :fixed] + known)
-            own = np.linalg.solve(metric, product[fixed:, :fixed].T)
-            its = np.linalg.solve(metric, product[:fixed, -number:])
-            quadratic[index] = squares[a] - (its ** 2).sum(axis=0)
-            inner[index, loud] = product[fixed:, -number:] - own.T @ its
-            if with_gram:
-                gram[index][np.ix_(loud, loud)] = product[fixed:, fixed:fixed + k] - own.T @ own
-            logdet[index] = factor.logdet[a] + np.log(np.diag(metric)).sum()
-    return quadratic, inner, gram, logdet
+                left = one[:, :size]
+                right[a] += left.T @ one[:, size:]
+                if full[a]:
+                    products[a] += left.T @ left
+                else:
+                    products[a, :fixed] += left[:, :fixed].T @ left
+        for a, point in enumerate(index):
+            metric = gram.metric(products[a])
+            own = np.linalg.solve(metric, products[a, :fixed, fixed:])
+            its = np.linalg.solve(metric, right[a, :fixed])
+            quadratic[point] = squares[a] - (its ** 2).sum(axis=0)
+            inner[point, loud] = right[a, fixed:] - own.T @ its
+            logdet[point] = factor.logdet[a] + np.log(np.diag(metric)).sum()
+            if full[a]:
+                gram.put(point, products[a])
+    return quadratic, inner, logdet

@@ -12,7 +12,7 @@ takes what the other two add there for its own.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import optimize, signal
+from scipy import optimize
 
 TAPERS = 4
 HIGHEST = 0.1  # of the sample rate: above that a chip's own filter takes noise away
@@ -56,6 +56,7 @@ def levels(rests, rate, walks):
 
 def _power(x, rate):
     """(f, two-sided power density) of one rest."""
+    from scipy import signal
     x, n = signal.detrend(np.asarray(x, float)), len(x)
     total = np.zeros(n // 2 + 1)
     place = np.pi * np.arange(1, n + 1) / (n + 1)
@@ -71,6 +72,7 @@ def _grouped(f, power, n, rate):
     use = (f > (TAPERS + 1) / 2.0 * rate / n) & (f < HIGHEST * rate)
     f, power = f[use], power[use]
     if len(f) > 30:
+        from scipy import signal
         usual = signal.medfilt(power, min(2 * (len(f) // 20) + 11, 201))
         lines = np.flatnonzero(power > LINE * usual)
         near = (lines[:, None] + np.arange(-TAPERS, TAPERS + 1)).ravel()

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..capture.attitude import _rotation
+from ..capture.attitude import _rotation, carried
 from .projection import cross, lateral_basis
 
 ROUNDS = 2  # of fits that begin with what the one before left
@@ -71,12 +71,8 @@ class Turn:
     def integrated(self, matrix=None):
         """The turn with its attitude, of the rates as they are or turned by a matrix (3, 3)."""
         rate = self.middle if matrix is None else self.middle @ matrix.T
-        turns = _rotation(np.radians(rate) * self.dt[:, None])
-        now, out = np.eye(3), np.empty((len(turns), 3, 3))
-        for k, turn in enumerate(turns):
-            out[k] = now
-            now = now @ turn
-        return replace(self, attitude=out, end=now)
+        way = carried(_rotation(np.radians(rate) * self.dt[:, None]))
+        return replace(self, attitude=way[:-1], end=way[-1])
 
     def corrected(self, matrix, shift):
         """The turn with matrix (3, 3) and shift (3,) deg/s taken out of its rates."""

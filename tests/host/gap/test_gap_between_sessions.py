@@ -18,7 +18,7 @@ def sessions(effects=(), change=((0, 0, 0), (0, 0, 0)), seed=61):
 
 
 def test_a_bias_that_differs_from_session_to_session_is_found_there():
-    found = diagnosis.Diagnosis(sessions(change=((0, 0, 0), (0, 1000, 0))),
+    found = diagnosis.of(sessions(change=((0, 0, 0), (0, 1000, 0))),
                                 diagnosis.Settings())
     between = found.gaps["accel"].units[-1]
     assert between.between
@@ -32,7 +32,7 @@ def test_a_bias_that_differs_from_session_to_session_is_found_there():
 
 
 def test_an_ordinary_change_is_no_gap():
-    found = diagnosis.Diagnosis(sessions(change=((0, 0, 0), (20, -20, 20))),
+    found = diagnosis.of(sessions(change=((0, 0, 0), (20, -20, 20))),
                                 diagnosis.Settings())
     assert found.verdict == "no gap"
     assert not answer.of(found)["where"]
@@ -40,7 +40,7 @@ def test_an_ordinary_change_is_no_gap():
 
 def test_products_of_the_other_axes_leave_the_axis_open():
     """Where only the length of gravity is known x: f_y f_z and y: f_x f_z add the same."""
-    found = diagnosis.Diagnosis(
+    found = diagnosis.of(
         sessions([{"effect": "cross_quadratic", "sensor": "accel", "xyz": 4.0}]),
         diagnosis.Settings())
     cause, = answer.of(found)["causes"]

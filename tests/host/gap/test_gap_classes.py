@@ -32,7 +32,7 @@ def causes(captures, change):
             mg = change(t, warm, capture.accel / LSB_G)
             capture.accel = np.rint(capture.accel + mg * LSB_G / 1000.0).astype(np.int16)
         sessions = [blocks.of(str(k), c) for k, c in enumerate(captures)]
-        return answer.of(diagnosis.Diagnosis(sessions, diagnosis.Settings(jobs=1)))["causes"]
+        return answer.of(diagnosis.of(sessions, diagnosis.Settings(jobs=1)))["causes"]
     finally:
         for capture, accel in zip(captures, kept):
             capture.accel = accel

@@ -12,7 +12,7 @@ def diagnosed(faces, tilt_deg=2.0):
                                "world": {"tilt_deg": tilt_deg, "placement_scatter_deg": 0.03},
                                "effects": effects})
     sessions = [blocks.of(str(k), simulated_session.session(plan, k)) for k in range(2)]
-    return diagnosis.Diagnosis(sessions, diagnosis.Settings())
+    return diagnosis.of(sessions, diagnosis.Settings())
 
 
 def test_a_square_box_on_a_tilted_table():

@@ -51,7 +51,7 @@ def diagnosed(captures, course):
         capture.gyro = np.round(kept + added).astype(kept.dtype)
         sessions.append(blocks.of(str(number), capture))
         restored.append(kept)
-    found = diagnosis.Diagnosis(sessions, diagnosis.Settings(jobs=1))
+    found = diagnosis.of(sessions, diagnosis.Settings(jobs=1))
     for capture, kept in zip(captures, restored):
         capture.gyro = kept
     return found

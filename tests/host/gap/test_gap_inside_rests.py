@@ -24,7 +24,7 @@ def diagnosed(captures, change):
         capture.accel = np.rint(changed).astype(np.int16)
         sessions.append(blocks.of(str(number), capture))
         restored.append(kept)
-    found = answer.of(diagnosis.Diagnosis(sessions, diagnosis.Settings(jobs=1)))
+    found = answer.of(diagnosis.of(sessions, diagnosis.Settings(jobs=1)))
     for capture, kept in zip(captures, restored):
         capture.accel = kept
     return found

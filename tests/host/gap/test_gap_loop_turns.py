@@ -10,8 +10,8 @@ def test_scales_that_differ_by_direction_close_the_gap_when_simulated_again():
     plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 4,
                                "effects": [{"effect": "asymmetry", "sensor": "gyro", "x": 3.0}]})
     sessions = [blocks.of(str(k), simulated_session.session(plan, k)) for k in range(2)]
-    found = diagnosis.Diagnosis(sessions, diagnosis.Settings())
-    loop = closed_loop_turns.close(found.turns, found.settings.reference_c)
+    found = diagnosis.of(sessions, diagnosis.Settings())
+    loop = closed_loop_turns.close(found.turns, found.conditions.reference_c)
     assert [e["effect"] for e in loop.effects] == ["asymmetry"]
     assert loop.effects[0]["x"] == pytest.approx(3.0, abs=0.2)
     assert loop.before > 3.0 * loop.floor
@@ -23,6 +23,6 @@ def test_nothing_found_is_nothing_to_add():
     plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 5,
                                "effects": []})
     sessions = [blocks.of(str(k), simulated_session.session(plan, k)) for k in range(2)]
-    found = diagnosis.Diagnosis(sessions, diagnosis.Settings())
+    found = diagnosis.of(sessions, diagnosis.Settings())
     assert found.turns is not None
     assert closed_loop_turns.close(found.turns, 25.0) is None

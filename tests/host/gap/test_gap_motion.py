@@ -28,7 +28,7 @@ def judged(found, more=(), without=()):
     models = [attitude_fit.fit(s) for s in posed]
     turned = [turns.calibrated(turns.of(s, m.up))[1] for s, m in zip(posed, models)]
     others = [blocks.of("driven %d" % k, c) for k, c in enumerate(more)]
-    return motion_model.MotionGap(posed + others, models, turned, found[0].meta["sensor"], without)
+    return motion_model.judged(posed + others, models, turned, found[0].meta["sensor"], without)
 
 
 def inside(finding, key, true, slack=1.8):
@@ -124,7 +124,7 @@ def test_a_hand_in_the_air_is_not_told_from_the_box():
     flipped = (one[0].pose <= 12) & (one[0].pose % 2 == 0)
     one[0].pose[flipped] = 0
     found = judged(one)
-    assert found.found == [] and found.chosen == ["lever_arm"]
+    assert found.found == [] and found.chosen == ("lever_arm",)
     assert any("turned about a point" in r and "flips on a table tell" in r
                for r in found.remarks)
 
@@ -137,7 +137,7 @@ def test_flips_on_a_table_tell_it_in_one_session():
 
 def test_an_effect_left_out_of_the_library_is_not_named():
     gap = judged(captures([ARM]), without={"lever_arm"})
-    assert gap.found == [] and gap.chosen == []
+    assert gap.found == [] and gap.chosen == ()
 
 
 def test_a_robot_that_turns_on_the_spot_tells_the_arm_across_the_vertical():

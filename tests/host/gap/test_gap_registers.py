@@ -18,7 +18,7 @@ def captures(effects=(), seed=71, sensor="mpu6050"):
 
 def diagnosed(two):
     sessions = [blocks.of(str(k), c) for k, c in enumerate(two)]
-    return diagnosis.Diagnosis(sessions, diagnosis.Settings())
+    return diagnosis.of(sessions, diagnosis.Settings())
 
 
 def test_rests_cut_off_at_a_rail_tell_of_the_rail_only():

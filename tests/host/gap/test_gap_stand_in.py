@@ -21,9 +21,9 @@ def test_a_play_along_the_whole_way_is_hysteresis_whatever_its_form():
             added[k] = 0.02 * np.tanh((state - now) / 0.1)
         capture.accel = np.rint(capture.accel + 16384.0 * added).astype(np.int16)
         sessions.append(blocks.of(str(number), capture))
-    found = diagnosis.Diagnosis(sessions, diagnosis.Settings())
+    found = diagnosis.of(sessions, diagnosis.Settings())
     assert {name for _, cause in found.causes for name in cause.names} <= {"hysteresis", "creep"}
     assert found.verdict in ("explained", "partly explained")
-    one = diagnosis.Diagnosis(sessions[:1], diagnosis.Settings())
+    one = diagnosis.of(sessions[:1], diagnosis.Settings())
     assert one.verdict in ("unexplained", "cannot tell", "partly explained", "explained")
     assert len(one.gaps["accel"].causes) <= 2

@@ -25,7 +25,7 @@ def diagnosed(captures, change):
             changed = change(t, capture.accel.astype(float), capture.gyro.astype(float))
             capture.accel, capture.gyro = (np.rint(x).astype(np.int16) for x in changed)
         sessions = [blocks.of(str(k), c) for k, c in enumerate(captures)]
-        return answer.of(diagnosis.Diagnosis(sessions, diagnosis.Settings(jobs=1)))
+        return answer.of(diagnosis.of(sessions, diagnosis.Settings(jobs=1)))
     finally:
         for capture, (accel, gyro) in zip(captures, kept):
             capture.accel, capture.gyro = accel, gyro

@@ -20,7 +20,7 @@ def test_a_step_at_another_time_in_each_session_is_unexplained(two_sessions):
         after = np.arange(len(capture)) > share * len(capture)
         capture.accel[after] += np.array([50, -40, 60], np.int16)  # 3 mg
     sessions = [blocks.of(str(k), c) for k, c in enumerate(two_sessions)]
-    found = answer.of(diagnosis.Diagnosis(sessions, diagnosis.Settings()))
+    found = answer.of(diagnosis.of(sessions, diagnosis.Settings()))
     assert found["verdict"] == "unexplained"
     assert [c["effect"] for c in found["causes"]] == []
     assert (found["where"][0]["sensor"], found["where"][0]["domain"]) == ("accel", "time")
@@ -33,7 +33,7 @@ def test_a_scale_that_follows_the_temperature_is_no_drift_where_the_library_lack
         capture.gyro = None  # the accelerometer alone: half the work
     sessions = [blocks.of(str(k), c) for k, c in enumerate(two_sessions)]
     settings = diagnosis.Settings(without=("thermal_scale",))
-    found = answer.of(diagnosis.Diagnosis(sessions, settings))
+    found = answer.of(diagnosis.of(sessions, settings))
     assert found["verdict"] == "unexplained"
     assert found["where"][0]["domain"] == "temperature"
 
@@ -50,6 +50,6 @@ def test_a_log_without_a_rest_cannot_tell_that_there_is_no_gap():
     meta = {"sensor": "mpu6050", "rate_hz": 100, "accel_lsb_per_g": 16384.0,
             "gyro_lsb_per_dps": 65.5, "g": 9.80665}
     capture = capture_file.Capture(meta, (t * 1e6).astype(np.int64), *counts)
-    found = diagnosis.Diagnosis([blocks.of("moving", capture)], diagnosis.Settings())
+    found = diagnosis.of([blocks.of("moving", capture)], diagnosis.Settings())
     assert not found.sessions[0].runs
     assert found.verdict == "cannot tell"

@@ -111,7 +111,7 @@ def found():
         (a, b) for a in "xyz" for b in "xyz")}
     two = [session([dict(SENSITIVE, **sizes), {"effect": "thermal_bias", "sensor": "accel",
                                                "z": -1.8}], 35, k) for k in range(2)]
-    return diagnosis.Diagnosis([blocks.of(str(k), c) for k, c in enumerate(two)],
+    return diagnosis.of([blocks.of(str(k), c) for k, c in enumerate(two)],
                                diagnosis.Settings(jobs=1))
 
 

@@ -10,11 +10,11 @@ import copy
 import math
 
 import numpy as np
-from scipy import stats
 
 from ...capture.registers import RAIL
 from .damage import Damage
 from .detection import present
+from .torn_reads import student
 
 FEWEST = 50  # samples
 LEAP = 12.0  # times the usual step, and at least LEAST_LEAP counts: what a rule may take back
@@ -173,9 +173,9 @@ def likelihood(steps):
     that are evenly spread, or of another t far wider."""
     width, best = _usual(steps), -math.inf
     for freedom in FREEDOM:
-        sound = stats.t.pdf(steps / width, freedom) / width
+        sound = student(steps / width, freedom) / width
         others = [np.full(len(steps), 1.0 / 131072.0)]
-        others += [stats.t.pdf(steps / (times * width), 5.0) / (times * width)
+        others += [student(steps / (times * width), 5.0) / (times * width)
                    for times in WIDER]
         for other in others:
             best = max(best, *(float(np.log((1.0 - share) * sound + share * other).sum())
@@ -187,5 +187,6 @@ def _levels(y):
     """Log likelihood of readings that are no course in time: about one level, or anywhere."""
     anywhere = -len(y) * math.log(float(np.ptp(y)) + 1.0)
     width = max(float(np.std(y)), 0.5)
-    about = float(stats.norm.logpdf(y, np.mean(y), width).sum())
+    about = -0.5 * float((((y - np.mean(y)) / width) ** 2).sum()) - len(y) * math.log(
+        width * math.sqrt(2.0 * math.pi))
     return max(anywhere, about, likelihood(y - np.median(y)))

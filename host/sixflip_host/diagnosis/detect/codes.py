@@ -3,7 +3,7 @@ import math
 
 import numpy as np
 
-from ...capture.registers import LOW_BITS, RAIL, spacing, steps
+from ...capture.registers import LOW_BITS, RAIL, codes, spacing, steps
 
 STEPS_TRIED = 1 << LOW_BITS
 
@@ -13,7 +13,7 @@ def step_nats(counts):
     code that appears lies there with a chance of one in the width of a step."""
     out = []
     for column, step in zip(counts.T, steps(counts)):
-        values = np.unique(column).astype(np.int64)
+        values = codes(column)
         number = int((np.abs(values) < RAIL).sum())
         out.append((number - 1) * math.log(step) - math.log(STEPS_TRIED) if step > 1 else 0.0)
     return np.array(out)
@@ -45,14 +45,14 @@ def band_nats(counts):
         missed = beside * (1.0 - step / least)
         expected, zeros = max(beside * step / least, 1e-3), _runs(size == 0)
         piled = zeros * math.log(max(zeros / expected, 1.0)) - max(zeros - expected, 0.0)
-        out.append(missed + piled - math.log(len(np.unique(size))) if zeros else 0.0)
+        out.append(missed + piled - math.log(len(codes(size))) if zeros else 0.0)
     return np.array(out)
 
 
 def bit_nats(columns):
     """Nats of a bit that never changes while the codes around it do: each code that appears in
     the columns would have it either way."""
-    return len(np.unique(np.concatenate(columns))) * math.log(2.0)
+    return len(codes(np.concatenate(columns))) * math.log(2.0)
 
 
 def _runs(mask):

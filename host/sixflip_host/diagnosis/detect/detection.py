@@ -4,30 +4,47 @@ Its score is the log likelihood ratio of the samples with the effect against the
 has no name: no effect at all, or the stranger of its domain (jumps of any size, codes that are
 missing anywhere, gaps of any length, any matrix). What was tried to find it is taken off.
 """
-from scipy import stats
+from dataclasses import dataclass, field
+
+from scipy import special
 
 from .. import odds
 
 
+@dataclass(frozen=True, eq=False)
 class Finding:
-    """effect, sensor, axes ("xyz" letters), value {key: size}, interval {key: (low, high)} or
-    None, unit, score in nats, domain, words (a clause for people), rivals ({effect: why}),
+    """effect, sensor, axes ("xyz" letters), value {key: size}, unit, score in nats, domain, words
+    (a clause for people), interval {key: (low, high)} or None, rivals ({effect: why}), plausible;
     share of what departs from a sound sensor in its domain (of the samples, peaks, gaps or their
     power) that it accounts for, 0 to 1, or None where that is not known; number: of those, which
-    tell how well the share is known;
-    plausible; place: {name: probability} of what stands here, "" nothing, "~..." nameless; hz:
-    {axis: frequency of a steady line}; lines: the line_frequency.Line of each axis."""
+    tell how well the share is known; place: {name: probability} of what stands here, "" nothing,
+    "~..." nameless, by the score where it is not given; hz: {axis: frequency of a steady line};
+    lines: the line_frequency.Line of each axis; read (3, 3): what is true as swapped axes read
+    it."""
 
-    def __init__(self, effect, sensor, axes, value, unit, score, domain, words, interval=None,
-                 rivals=None, plausible=True, place=None, hz=None, share=None, number=1,
-                 lines=()):
-        self.effect, self.sensor, self.axes = effect, sensor, list(axes)
-        self.value, self.unit, self.score, self.domain = value, unit, float(score), domain
-        self.words, self.interval, self.rivals = words, interval, rivals or {}
-        self.plausible, self.hz, self.share = plausible, hz or {}, share
-        self.number, self.lines = number, tuple(lines)
-        names = [effect, *sorted(self.rivals)]  # which of them, nobody can tell
-        self.place = place or dict.fromkeys(names, odds.probability(self.score) / len(names))
+    effect: str
+    sensor: str
+    axes: list
+    value: dict
+    unit: str
+    score: float
+    domain: str
+    words: str
+    interval: dict | None = None
+    rivals: dict = field(default_factory=dict)
+    plausible: bool = True
+    share: float | None = None
+    number: float = 1
+    place: dict | None = None
+    hz: dict = field(default_factory=dict)
+    lines: tuple = ()
+    read: object = None
+
+    def __post_init__(self):
+        if self.place is None:
+            names = [self.effect, *sorted(self.rivals)]  # which of them, nobody can tell
+            chance = odds.probability(self.score) / len(names)
+            object.__setattr__(self, "place", dict.fromkeys(names, chance))
 
     @property
     def share_interval(self):
@@ -36,8 +53,8 @@ class Finding:
         if self.share is None:
             return None
         hit, among = self.share * self.number, max(float(self.number), 1.0)
-        low = float(stats.beta.ppf(0.05, hit, among - hit + 1.0)) if hit > 0.0 else 0.0
-        return low, float(stats.beta.ppf(0.95, hit + 1.0, among - hit)) if hit < among else 1.0
+        low = float(special.betaincinv(hit, among - hit + 1.0, 0.05)) if hit > 0.0 else 0.0
+        return low, float(special.betaincinv(hit + 1.0, among - hit, 0.95)) if hit < among else 1.0
 
     @property
     def probabilities(self):

@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import ndimage, signal, stats
+from scipy import linalg, ndimage
 
 STEADY = 0.5  # of the power of short stretches that has to go on in phase over the whole
 PADDED = 4  # times its length: the transform in which a peak is looked for
@@ -98,13 +98,21 @@ def _over_whole(line, session, sensor):
     return whole[0], whole[1], math.hypot(whole[2], 1.645 * apart)
 
 
+def _slope(x, y):
+    """Median of the slopes of all pairs of points [Sen, JASA 63 (1968) 1379]."""
+    one, other = np.triu_indices(len(x), 1)
+    return float(np.median((y[other] - y[one]) / (x[other] - x[one])))
+
+
 def _found(line, x, rate):
     """(amplitude in counts, Hz, half of its 90 % interval) of the sine nearest to a line."""
     n = len(x)
     if n < 16:
         return None
     window = np.hanning(n)
-    power = np.abs(np.fft.rfft(signal.detrend(x) * window, PADDED * n))
+    course = np.stack([np.ones(n), np.linspace(-1.0, 1.0, n)], 1)
+    x = x - course @ linalg.lstsq(course, x)[0]
+    power = np.abs(np.fft.rfft(x * window, PADDED * n))
     spacing = rate / (PADDED * n)
     low = max(1, int((line.hz - SHORT_BINS * line.bin_hz) / spacing))
     high = min(len(power) - 2, int((line.hz + SHORT_BINS * line.bin_hz) / spacing) + 1)
@@ -150,7 +158,7 @@ def _slow(session, sensor, axis):
     # The floor falls with the frequency as flicker or a walk does: with that slope taken off, it
     # is the running median of the logarithm.
     fall = np.log(np.arange(first, end))
-    fall *= min(stats.theilslopes(np.log(np.maximum(band, 1e-300)), fall)[0], 0.0)
+    fall *= min(_slope(fall, np.log(np.maximum(band, 1e-300))), 0.0)
     flat = np.log(np.maximum(band, 1e-300)) - fall
     floor = np.exp(ndimage.median_filter(flat, SLOW_WIDTH, mode="reflect") + fall) / math.log(2.0)
     ratio = band / floor

@@ -4,7 +4,7 @@ samples far off their neighbours.
 No effect of the library does that, and no touch does it often: it is said where, not what.
 """
 import numpy as np
-from scipy import stats
+from scipy import special
 
 WINDOW_S = 0.5
 LOUD = 9.0  # times the usual variance of the differences from sample to sample
@@ -63,12 +63,12 @@ def found(sessions):
         sums = np.sum([loud(s, sensor) for s in sessions], axis=0)
         if sums[0] >= FEWEST and sums[1] >= FEWEST_RESTS:
             m = max(8, int(WINDOW_S * sessions[0].rate))
-            chance = 3.0 * stats.chi2.sf(LOUD * m / 2.0, m / 2.0)  # differences share samples
+            chance = 3.0 * special.chdtrc(m / 2.0, LOUD * m / 2.0)  # differences share samples
             out.append((sensor, "the %s is far louder in %d of %d half seconds at rest: noise "
                         "that comes in bursts" % (words, sums[0], sums[2]),
-                        float(stats.binom.sf(sums[0] - 1, sums[2], min(chance, 1.0)))))
+                        float(special.bdtrc(sums[0] - 1, sums[2], min(chance, 1.0)))))
         number, looked = np.sum([spikes(s, sensor) for s in sessions], axis=0)
-        p = float(stats.binom.sf(number - 1, looked, 3.0 * SPIKE_CHANCE)) if looked else 1.0
+        p = float(special.bdtrc(number - 1, looked, 3.0 * SPIKE_CHANCE)) if looked else 1.0
         if number >= LEAST_SPIKES and p < SPIKES_P:
             out.append((sensor, "%d of %d samples of the %s at rest are far off those before and "
                         "after them: spikes" % (number, looked, words), p))

@@ -8,7 +8,6 @@ cannot contradict them and is not judged.
 import math
 
 import numpy as np
-from scipy import stats
 
 from ...capture import clock
 from .axis_order import explained
@@ -46,7 +45,7 @@ def rate(sessions, found):
               for session, one in zip(sessions, found)]
     known = np.diag(np.square(widths) + CRYSTAL ** 2)
     alike = OSCILLATOR ** 2 * ((1.0 - WANDERS ** 2) + WANDERS ** 2 * np.eye(len(errors)))
-    sound, own, one = (float(stats.multivariate_normal.logpdf(errors, np.zeros(len(errors)), c))
+    sound, own, one = (_log_normal(errors, c)
                        for c in (known, known + OSCILLATOR ** 2 * np.eye(len(errors)),
                                  known + alike))
     if one < own - APART or not present(one - sound):
@@ -58,6 +57,12 @@ def rate(sessions, found):
                         sessions[0].rate * (1 + percent / 100.0), sessions[0].rate),
                     {"rate": (percent - half, percent + half)},
                     share=explained(errors, errors - np.mean(errors)), number=len(errors))]
+
+
+def _log_normal(errors, covariance):
+    """Log density of errors (n,) that are normal about 0, but for a constant."""
+    return -0.5 * float(errors @ np.linalg.solve(covariance, errors)
+                        + np.linalg.slogdet(covariance)[1])
 
 
 def drops(found):
@@ -88,7 +93,8 @@ def gap_nats(late, sigma, rows):
     if not number:
         return 0.0
     off = late - np.maximum(np.rint(late), 1.0)
-    exact = float(stats.norm.logpdf(off, 0.0, sigma).sum()) + number * math.log(LONGEST)
+    exact = float((-0.5 * (off / sigma) ** 2).sum()) - number * math.log(
+        sigma * math.sqrt(2.0 * math.pi)) + number * math.log(LONGEST)
     length = number * math.log(0.5) - float((np.maximum(np.rint(late), 1.0) - 1.0).sum()) * 0.1
     own = number * math.log(number / (rows * HICCUP)) - (number - rows * HICCUP)
     return exact + length + own

@@ -8,7 +8,7 @@ Source: Percival & Walden, Spectral Analysis for Physical Applications (1993), s
 import math
 
 import numpy as np
-from scipy import ndimage, signal, special
+from scipy import ndimage, special
 
 from ...capture.registers import steps
 from . import line_frequency
@@ -106,7 +106,9 @@ def spectrum(stretches, axis):
     """(mean power (k,), the same with every stretch counted alike, R, window)."""
     window = np.hanning(len(stretches[0]))
     x = np.array([s[:, axis] for s in stretches])
-    x = signal.detrend(x, axis=1)  # what creeps or drifts is no line
+    # What creeps or drifts is no line: a straight one is taken off.
+    course = np.linspace(-1.0, 1.0, x.shape[1])
+    x = x - x.mean(axis=1)[:, None] - np.outer(x @ course / (course @ course), course)
     power = np.abs(np.fft.rfft(x * window, axis=1)) ** 2 / (window ** 2).sum()
     # Every stretch counts alike: a burst of noise in one of them is no line.
     level = np.median(power[:, 1:], axis=1)

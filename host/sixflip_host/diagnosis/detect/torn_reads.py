@@ -36,7 +36,7 @@ def finding(sessions, sensor, banded=()):
     if not tables:
         return []
     table = np.concatenate(tables, axis=1)
-    nats, number, others = max(competed(table, which) for which in (0, 1))
+    nats, number, others = competed(table)
     if not present(nats):
         return []
     chances = sum(int((np.diff(column // PAGE) != 0).sum()) for counts in columns
@@ -82,41 +82,43 @@ def paged(table):
         return 0.0, 0.0
     far, whole, other = np.abs(off) > NEAR, [], []
     for freedom in FREEDOM:
-        sound, jumped = (_student(z, freedom) / sigma for z in (off, moved))
+        sound, jumped = (student(z, freedom) / sigma for z in (off, moved))
         alone = float(np.log(sound).sum())
         gain, share = _best(sound, jumped, far, len(off))
         whole.append((alone + gain, float(_held(sound, share * jumped))))
         other += [alone, alone + _best(sound, np.full(len(off), 0.5 / WIDE), far, len(off))[0]]
-        other += [alone + _best(sound, _student(off / times, freedom) / (sigma * times), far,
+        other += [alone + _best(sound, student(off / times, freedom) / (sigma * times), far,
                                 len(off))[0] for times in LOUD]
     score, number = max(whole)
     return score - max(other) - math.log(len(SHARES)), number
 
 
-def competed(table, which):
+def competed(table):
     """(nats over what has no name, samples torn, samples that jump otherwise) of a table (8, n)
-    of tabled(); which: 0 with the page of the sample before, 1 after. Shares of jumps and tails
-    of the noise are the likeliest of those tried, in each hypothesis by itself; what was tried
-    for the name's sake is paid."""
+    of tabled(), torn with the page of the sample before or of the one after. Shares of jumps and
+    tails of the noise are the likeliest of those tried, in each hypothesis by itself; what was
+    tried for the name's sake is paid."""
     off, moved, sigma = table[:3]
-    same, chance = table[4 + 2 * which], table[5 + 2 * which].sum()
     far = np.abs(off) > NEAR
-    named, nameless = [], []
+    anywhere = np.full(len(off), 0.5 / WIDE)
+    pages = [(table[4 + 2 * k], table[5 + 2 * k].sum()) for k in (0, 1)]
+    named, nameless = ([], []), []
     for freedom in FREEDOM:
-        sound, jumped = (_student(z, freedom) / sigma for z in (off, moved))
-        anywhere = np.full(len(off), 0.5 / WIDE)
+        sound, jumped = (student(z, freedom) / sigma for z in (off, moved))
         alone = float(np.log(sound).sum())
         wide, share = _best(sound, anywhere, far, len(off))
         nameless += [alone, alone + wide, alone + _best(sound, jumped, far, len(off))[0]]
-        torn, own = _best(sound, jumped * same, far, chance)
-        named.append((alone + torn, float(_held(sound, own * jumped * same)), 0.0))
         beside = sound + share * anywhere  # beside the torn ones there may be others
-        torn, own = _best(beside, jumped * same, far, chance)
         rest = alone + len(off) * math.log1p(-share) + float(np.log(beside / sound).sum())
-        named.append((rest + torn, float(_held(beside, own * jumped * same)), float(_held(
-            sound + own * jumped * same, share * anywhere))))
         nameless.append(rest + _best(beside, jumped, far, len(off))[0])
-    score, number, others = max(named)
+        for tried, (same, chance) in zip(named, pages):
+            mixed = jumped * same
+            torn, own = _best(sound, mixed, far, chance)
+            tried.append((alone + torn, float(_held(sound, own * mixed)), 0.0))
+            torn, own = _best(beside, mixed, far, chance)
+            tried.append((rest + torn, float(_held(beside, own * mixed)),
+                          float(_held(sound + own * mixed, share * anywhere))))
+    score, number, others = max(max(tried) for tried in named)
     return score - max(nameless) - math.log(2.0 * len(SHARES)), number, others
 
 
@@ -168,7 +170,7 @@ def tabled(column, banded):
     return np.array(out, float)
 
 
-def _student(z, freedom):
+def student(z, freedom):
     """Density of Student's t."""
     peak = math.exp(math.lgamma(0.5 * (freedom + 1.0)) - math.lgamma(0.5 * freedom)
                     ) / math.sqrt(math.pi * freedom)

@@ -7,7 +7,6 @@ range that is off by a power of two; and any factor at all, which has no name.
 import math
 
 import numpy as np
-from scipy import stats
 
 from sixflip.poses import faces
 
@@ -70,7 +69,8 @@ def competed(factors, widths):
     factors, widths = np.array(factors), np.array(widths)
 
     def of(times):
-        return float(stats.norm.logpdf(factors, times, widths * times).sum())
+        return -float((0.5 * ((factors / times - 1.0) / widths) ** 2
+                       + np.log(widths * times)).sum())
     sound = of(1.0)
     ranges = {times: of(times) - math.log(len(RANGES)) for times in RANGES}
     best = max(ranges, key=ranges.get)

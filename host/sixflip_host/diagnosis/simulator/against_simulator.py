@@ -20,11 +20,9 @@ class Simulator:
     noise: {sensor: (3,) of a second}; remarks."""
 
     def __init__(self, sessions, settings):
-        same = stages.Settings(settings.certified, settings.without, settings.reference,
-                               settings.jobs)
-        self.found = stages.Diagnosis(sessions, same)
+        self.found = stages.of(sessions, settings)
         self.known, self.remarks = {}, []
-        self.reference_c = same.reference_c
+        self.reference_c = self.found.conditions.reference_c
         for kind, gap in self.found.gaps.items():
             if not gap.chosen:
                 continue

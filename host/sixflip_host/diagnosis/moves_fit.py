@@ -1,0 +1,177 @@
+"""All moves of all sessions fitted together: what each says of the columns that all have.
+
+A move is the unit of replication: its own information on the sizes, weighted by how well it agrees
+with the others (Student's t), habits of the hand and bends of the sensor beside them.
+"""
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..experiment import inertial_fit
+from . import handling_noise
+
+FEWEST_FLAT = 6  # turns on a table, if there is one session only
+SINGLE_FOLDS = 2
+ROUNDS, FREEDOM = 4, 4.0  # of weighting; Student's t
+BENT, WANDERED = (0.03, 0.1, 0.3, 1.0), (0.1, 0.3, 1.0)  # of the widest priors
+EFFECTS = {"lever_arm": np.arange(3), "filter_lag": np.array([3])}  # their columns
+AT_A_TIME = 64  # moves left out together
+
+
+@dataclass(frozen=True, eq=False)
+class MovesFit:
+    """moves; prior (k,) of all columns: those of inertial_fit.COMPETING first, then nuisances;
+    folds (moves,): which session; gram (moves, k, k) and inner (moves, k), weighted; precision:
+    [(n, 3)] of each move, 1/mg²; one_hand: all turned in the air by one hand."""
+
+    moves: list
+    prior: np.ndarray
+    folds: np.ndarray
+    gram: np.ndarray
+    inner: np.ndarray
+    precision: list
+    one_hand: bool
+
+    @property
+    def nuisance(self):
+        return np.arange(inertial_fit.COMPETING_NUMBER, len(self.prior))
+
+    def own(self, move):
+        """Indices of the columns that a move has."""
+        return _own(move, sorted({m.session for m in self.moves}))
+
+    def sizes(self, columns, among=None):
+        """(theta (4,), covariance (4, 4)) with the effects that columns name; zeros elsewhere.
+        The larger of what the model and what the scatter of the moves (jackknife) say. among
+        (moves,) bool: of these moves only."""
+        chosen = np.arange(len(self.moves)) if among is None else np.flatnonzero(among)
+        prior = self.prior[columns]
+        gram = self.gram[chosen[:, None, None], columns[:, None], columns]
+        inner = self.inner[chosen[:, None], columns]
+        theta, covariance = solved(gram.sum(axis=0), inner.sum(axis=0), prior)
+        each = without_each(gram, inner, prior) - theta
+        grown = np.sqrt(np.maximum((each ** 2).sum(axis=0) / np.diag(covariance), 1.0))
+        covariance = covariance * grown * grown[:, None]
+        out, spread = np.zeros(4), np.zeros((4, 4))
+        effects = np.flatnonzero(columns < 4)
+        out[columns[effects]] = theta[effects]
+        spread[np.ix_(columns[effects], columns[effects])] = covariance[np.ix_(effects, effects)]
+        return out, spread
+
+    def rms(self, left):
+        """mg of what is left of each move, (n, 3) mg: quiet moves, directions and frequencies
+        count more, as they do for the sizes."""
+        total = sum(float((p * x ** 2).sum()) for p, x in zip(self.precision, left))
+        return float(np.sqrt(total / sum(float(p.sum()) for p in self.precision)))
+
+    def bare(self, columns, kept):
+        """[(n, 3)] mg of each move less what the columns of this set add, all but the effects
+        `kept` (4,) bool."""
+        habits = np.zeros(len(self.prior))
+        habits[columns] = solved(self.gram.sum(axis=0)[np.ix_(columns, columns)],
+                                 self.inner.sum(axis=0)[columns], self.prior[columns])[0]
+        habits[:4][kept] = 0.0
+        return [m.y - m.table @ habits[self.own(m)] for m in self.moves]
+
+
+def fit(moves, chip):
+    """MovesFit of moves of one chip."""
+    sessions = sorted({m.session for m in moves})
+    by_hand = {m.session: m.by_hand for m in moves}
+    # What a hand in the air turns the box about may be its grip as well.
+    one_hand = len(sessions) == 1 and by_hand[sessions[0]] and sum(
+        m.flat for m in moves) < FEWEST_FLAT
+    folds = np.array([sessions.index(m.session) for m in moves])
+    if len(sessions) == 1:
+        folds = np.arange(len(moves)) % SINGLE_FOLDS
+    shared = inertial_fit.priors(chip)
+    wide = np.concatenate([shared, *(inertial_fit.local_priors(by_hand[s]) for s in sessions)])
+    left, weights = [m.y for m in moves], np.ones(len(moves))
+    for _ in range(ROUNDS):
+        variances = handling_noise.spectra(moves, left, weights)
+        gram, inner = _information(moves, sessions, variances, len(wide))
+        total = np.tensordot(weights, gram, axes=1), weights @ inner
+        prior = _settled(*total, wide, len(shared), len(sessions))
+        theta, _ = solved(*total, prior)
+        weights, excess = _weighted(gram, inner, theta)
+        left = [m.y - m.table @ theta[_own(m, sessions)] for m in moves]
+    weights = weights / excess
+    gram *= weights[:, None, None]
+    inner *= weights[:, None]
+    return MovesFit(moves, prior, folds, gram, inner,
+                    [w / v for w, v in zip(weights, variances)], one_hand)
+
+
+def _own(move, sessions):
+    local = np.arange(move.table.shape[2] - move.shared)
+    start = move.shared + len(local) * sessions.index(move.session)
+    return np.concatenate([np.arange(move.shared), start + local])
+
+
+def _information(moves, sessions, variances, k):
+    """(gram (moves, k, k), inner (moves, k)) of each move."""
+    gram, inner = np.zeros((len(moves), k, k)), np.zeros((len(moves), k))
+    for j, (move, variance) in enumerate(zip(moves, variances)):
+        own = _own(move, sessions)
+        root = 1.0 / np.sqrt(variance)
+        scaled = (move.table * root[:, :, None]).reshape(-1, len(own))
+        gram[j][np.ix_(own, own)] = scaled.T @ scaled
+        inner[j, own] = scaled.T @ (move.y * root).ravel()
+    return gram, inner
+
+
+def _settled(gram, inner, wide, shared, sessions):
+    """(k,) prior: how large bends of the sensor and the course of its bias are, the likeliest of a
+    few levels, in place of priors that would let them be anything."""
+    local = (len(wide) - shared) // sessions
+    bends = np.arange(shared - inertial_fit.BENDS, shared)
+    courses = shared + np.flatnonzero(np.tile(np.arange(local) >= 3, sessions))
+    tried = []
+    for bent in BENT:
+        for wandered in WANDERED:
+            prior = wide.copy()
+            prior[bends] *= bent
+            prior[courses] *= wandered
+            tried.append((_evidence(gram, inner, prior), -len(tried), prior))
+    return max(tried, key=lambda one: one[:2])[2]
+
+
+def solved(gram, inner, prior):
+    """(theta (k,), covariance (k, k)) of moves together."""
+    scaled = gram * prior * prior[:, None] + np.eye(len(prior))
+    covariance = np.linalg.inv(scaled) * prior * prior[:, None]
+    return covariance @ inner, covariance
+
+
+def without_each(gram, inner, prior):
+    """(moves, k): sizes from all moves but one."""
+    total, right = gram.sum(axis=0), inner.sum(axis=0)
+    found = []
+    for first in range(0, len(gram), AT_A_TIME):
+        part = slice(first, first + AT_A_TIME)
+        scaled = (total - gram[part]) * prior * prior[:, None] + np.eye(len(prior))
+        found.append(np.linalg.solve(scaled, ((right - inner[part]) * prior)[:, :, None]
+                                     )[:, :, 0] * prior)
+    return np.concatenate(found)
+
+
+def _weighted(gram, inner, theta):
+    """(weights (moves,), mean excess): how well each move's effects agree with all others'."""
+    part = gram[:, :4, :4]
+    left = inner[:, :4] - gram[:, :4] @ theta
+    values, vectors = np.linalg.eigh(part)
+    keep = values > 1e-9 * np.maximum(values[:, -1:], 1e-30)
+    turned = np.einsum("jab,ja->jb", vectors, left)
+    q = (np.where(keep, turned ** 2 / np.where(keep, values, 1.0), 0.0)).sum(axis=1)
+    rank = keep.sum(axis=1)
+    weights = (FREEDOM + rank) / (FREEDOM + q)
+    excess = float((weights * q).sum() / rank.sum())
+    return weights, max(excess, 1.0)
+
+
+def _evidence(gram, inner, prior):
+    """Log evidence of all columns against none of them; inner (k,)."""
+    scaled = gram * prior * prior[:, None] + np.eye(len(prior))
+    lower = np.linalg.cholesky(scaled)
+    half = np.linalg.solve(lower, inner * prior)
+    return float(0.5 * (half ** 2).sum() - np.log(np.diag(lower)).sum())

@@ -1,0 +1,75 @@
+"""The third stage: what the rests, the turns between them and the moves say of both sensors."""
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+from .. import progress
+from . import localisation, motion_model, odds, turn_model
+from .detect.detection import present
+from .rest_model import RestModel
+
+
+@dataclass(frozen=True, eq=False)
+class RestsJudged:
+    """gaps {sensor: SensorGap} at rest; turns: SensorGap of the gyro in motion or None; motion:
+    MotionGap of the accelerometer or None; findings (of axes and in motion), nameless, remarks."""
+
+    gaps: dict
+    turns: object
+    motion: object
+    findings: tuple
+    nameless: tuple
+    remarks: tuple
+
+
+def of(rests, findings, settings, conditions):
+    """RestsJudged of UsableRests; findings: of their samples. Both sensors at rest and the gyro's
+    turns go side by side where there are cores: the linear algebra lets other threads run."""
+    sessions, nominal = rests.sessions, rests.nominal
+    chip = sessions[0].capture.meta["sensor"]
+    swapped = turns = None
+    with ThreadPoolExecutor(settings.threads) as pool:
+        model = RestModel("accel", chip, settings, conditions)
+        jobs = {"accel": pool.submit(model.fit, sessions, nominal)}
+        if all(s.gyro is not None for s in sessions):
+            swapped = turn_model.swapped(sessions, nominal)
+            # The Earth's rate on the wrong axes looks like gravity in the gyro.
+            put_right = sessions if swapped is None else [
+                s.with_gyro_axes(swapped.read) for s in sessions]
+            model = RestModel("gyro", chip, settings, conditions)
+            jobs["gyro"] = pool.submit(model.fit, put_right, nominal)
+            bent = any(f.sensor == "gyro" and f.effect == "dead_band" for f in findings)
+            if swapped is None and not bent and all(
+                    turn_model.usable(s, m) for s, m in zip(sessions, nominal)):
+                turns = turn_model.TurnModel("gyro", chip, settings, conditions).fit(
+                    sessions, nominal)
+        gaps = {kind: job.result() for kind, job in jobs.items()}
+    progress.doing("what moves between the rests show")
+    motion = motion_model.of(rests.everything, sessions, nominal, turns, settings)
+    found, nameless, remarks = [], [], []
+    if swapped is not None and swapped.effect not in settings.without:
+        found.append(swapped)
+    if turns:
+        astray = _astray(turns)
+        nameless += [place for place, _ in astray]
+        remarks += [words for _, words in astray]
+    # What the rests do not explain would be carried into the moves.
+    if motion and not any(gap.unexplained for gap in gaps.values()):
+        found += motion.found
+        remarks += motion.remarks
+        if not turns.found.best.forms:  # a gyro that bends carries gravity wrongly, too
+            nameless += motion.nameless
+    if not conditions.coarse:
+        said = [one.remark() for one in gaps["accel"].crooked if one]
+        remarks += dict.fromkeys(sentence for sentence in said if sentence)
+    return RestsJudged(gaps, turns, motion, tuple(found), tuple(nameless), tuple(remarks))
+
+
+def _astray(turns):
+    """[(Place, sentence)] of turns that end far from where gravity says: samples lost under a
+    steady clock."""
+    nats, number = turn_model.astray(turns)
+    if not present(nats):
+        return []
+    return [(localisation.Place("gyro", None, "motion", 1.0, odds.chance(nats)),
+             "about %.0f turns end far from where gravity says, the others do not: samples may be "
+             "lost although their times are steady" % number)]

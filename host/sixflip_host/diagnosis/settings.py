@@ -1,0 +1,32 @@
+"""What a diagnosis is asked for, and what the registers and the thermometer say that all of its
+stages have to know."""
+import os
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, eq=False)
+class Settings:
+    """certified: the box is square; without: effects left out of the library; reference: {sensor:
+    flicker level of a noise capture}; jobs: threads, 0: one a core; simulated: {sensor: [(effect,
+    variant, key, coefficient)]} that the simulator compared with has already."""
+
+    certified: bool = False
+    without: tuple = ()
+    reference: dict = field(default_factory=dict)
+    jobs: int = 0
+    simulated: dict = field(default_factory=dict)
+
+    @property
+    def threads(self):
+        return self.jobs or os.cpu_count() or 1
+
+
+@dataclass(frozen=True, eq=False)
+class Conditions:
+    """reference_c: temperature that slopes are taken about; coarse: registers move what the
+    accelerometer reads near zero; shaken: {sensor: axes (0..2) that a line of the spectrum is
+    on}."""
+
+    reference_c: float = 25.0
+    coarse: bool = False
+    shaken: dict = field(default_factory=dict)
