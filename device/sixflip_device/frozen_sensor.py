@@ -7,11 +7,12 @@ has its own eye on this, its windows.
 
 from array import array
 
-SAME = 32    # as in still_window.py, which a small heap has no room for while it streams
+from sixflip.poses.still_window import SAME
+
 MOST = 4096  # repeats from one attempt to the next
 
 
-class Repeats:
+class FrozenSensor:
     """seen(sample) -> whether it is one of a chip that hangs: not to be used. BusLost when the
     chip cannot be set up anew."""
 

@@ -7,11 +7,11 @@
 
 from array import array
 
-from . import power_up
 from .events import Events
 from .find_sensor import find
-from .frozen_sensor import Repeats
-from .record import active_record
+from .firmware import Firmware
+from .frozen_sensor import FrozenSensor
+from .record.active_record import activate, load
 from .sensor import READ, Sensor
 
 
@@ -35,39 +35,36 @@ class CorrectedImu:
         else:
             from . import settings
             values, _ = settings.load(board.root)
-        self._unit = unit = power_up.Unit(board, values)
-        unit.events = Events(report or (lambda line: None))
+        self._firmware = firmware = Firmware(board, values)
+        firmware.events = Events(report or (lambda line: None))
         imu, _ = find(board, values)
-        unit.sensor = Sensor(board, imu, values, unit.events)
-        self._repeats = Repeats(unit.sensor, unit.events)
+        firmware.sensor = Sensor(board, imu, values, firmware.events)
+        self._frozen = FrozenSensor(firmware.sensor, firmware.events)
         self._sample = array("h", [0] * 7)
         self._out = array("f", [0.0] * 6)
-        self.reason = active_record.recall(unit)
-        active_record.use(unit, unit.slot, unit.record)
-        if unit.record is not None and unit.record.terms:
-            from .record.terms import bring
-            bring(unit)
-        self.calibrated = unit.record is not None
+        self.reason = load(firmware)
+        activate(firmware)
+        self.calibrated = firmware.record is not None
         if rest_s != 0 and imu.has_gyro:
-            from .record.refresh import refresh
-            rest = refresh(unit, rest_s)
+            from .record.check_at_rest import refresh
+            rest = refresh(firmware, rest_s)
             if self.calibrated and values["mounting"] is not None:
                 from .record.mount import at_power_up
-                at_power_up(unit, rest)
+                at_power_up(firmware, rest)
 
     def _read(self):
         # a chip that had to be set up anew delivers from the next sample on
         for _ in range(3):
-            if self._unit.sensor.read_into(self._sample) == READ:
-                if self._repeats.seen(self._sample):
+            if self._firmware.sensor.read_into(self._sample) == READ:
+                if self._frozen.seen(self._sample):
                     raise OSError("the sensor hangs: it repeats its reading")
                 return self._sample
-            self._unit.board.sleep_us(20000)
+            self._firmware.board.sleep_us(20000)
         raise OSError("the sensor answers, but not with samples")
 
     def read(self):
         """(ax, ay, az) in m/s2 and (gx, gy, gz) in rad/s, six floats, corrected."""
-        self._unit.correction.apply(self._read(), self._out)
+        self._firmware.correction.apply(self._read(), self._out)
         return tuple(self._out)
 
     def raw(self):

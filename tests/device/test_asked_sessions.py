@@ -96,8 +96,9 @@ class Plan(Folder):
             self.assertEqual(self.read("capture.bin")[:4], b"6CAP")
 
     def test_an_empty_request_is_the_ordinary_session(self):
-        for request in (None, {}, {"cmd": "calibrate"}):
-            self.assertEqual(session_request.parse(request, 400), None)
+        for request in ({}, {"cmd": "calibrate"}):
+            asked = session_request.parse(request, 400)
+            self.assertEqual((asked.plan, asked.goes_on, asked.record), (None, False, False))
 
 
 class Redo(Folder):

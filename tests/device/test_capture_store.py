@@ -10,7 +10,7 @@ from sixflip.capture.blocks import ACCEL
 from sixflip.capture.reader import read as read_blocks
 from sixflip.poses.placement import Placement
 from sixflip_device import flash_files
-from sixflip_device.capture import cut_short, files
+from sixflip_device.capture import files
 from sixflip_device.capture import store as capture_store
 from sixflip_device.capture.store import CaptureStore
 
@@ -68,13 +68,13 @@ class TestCaptureStore(unittest.TestCase):
             return read_blocks(f.read())
 
     def test_a_capture_that_lacks_poses_is_unfinished_and_a_complete_one_is_not(self):
-        self.assertFalse(cut_short.unfinished(self.root))       # there is none
+        self.assertFalse(files.unfinished(self.root))       # there is none
         for complete in (True, False):
             store = self.store()
             self.session(store)
             store.finish(complete, self.placements)
             files.refuse(self.root)
-            self.assertEqual(cut_short.unfinished(self.root), not complete)
+            self.assertEqual(files.unfinished(self.root), not complete)
 
     def test_all_of_it(self):
         store = self.store()
@@ -192,7 +192,7 @@ class TestCaptureStore(unittest.TestCase):
         store = self.store()
         self.session(store)
         store._file.close()  # and no end block
-        cut_short.file_cut_short(self.root)
+        files.file_cut_short(self.root)
         self.assertEqual(os.listdir(self.root), ["refused.bin"])
         self.assertEqual(len(self.content("refused.bin").placements), 3)
 
@@ -201,18 +201,18 @@ class TestCaptureStore(unittest.TestCase):
             store = self.store()
             self.session(store, poses)
             store._file.close()
-            cut_short.file_cut_short(self.root)
+            files.file_cut_short(self.root)
             self.assertEqual(len(self.content("refused.bin").placements), left)
 
     def test_power_cut_before_the_first_sample_leaves_nothing(self):
         self.store()._file.close()
-        cut_short.file_cut_short(self.root)
+        files.file_cut_short(self.root)
         self.assertEqual(os.listdir(self.root), [])
 
     def test_power_cut_before_the_header_is_whole(self):
         with open(self.root + "capture.new", "wb") as f:
             f.write(b"6CAP")
-        cut_short.file_cut_short(self.root)
+        files.file_cut_short(self.root)
         self.assertEqual(os.listdir(self.root), [])
 
     def test_power_cut_in_a_session_nobody_asked_for_leaves_one_with_more_poses(self):
@@ -222,11 +222,11 @@ class TestCaptureStore(unittest.TestCase):
                 store.add(10000, array("h", [1, -2, 16384, 0, 0, 0, 0]))
             self.session(store, poses)
             store._file.close()
-            cut_short.file_cut_short(self.root)
+            files.file_cut_short(self.root)
             self.assertEqual(os.listdir(self.root), ["refused.bin"])
             self.assertEqual(len(self.content("refused.bin").placements), 6)
         store = self.store()
         self.session(store, 2)
         store._file.close()
-        cut_short.file_cut_short(self.root)
+        files.file_cut_short(self.root)
         self.assertEqual(len(self.content("refused.bin").placements), 2)

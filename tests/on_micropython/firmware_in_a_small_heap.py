@@ -113,7 +113,6 @@ from sixflip_device import power_up, settings  # noqa: E402
 
 values, problems = settings.merge({"grace_ms": 0})
 del settings
-power_up.free_unlasting()
 if mode and mode != "live":
     __import__(mode).install(board, power_up)
 power_up.run(board, values, problems)

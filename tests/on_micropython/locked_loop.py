@@ -37,20 +37,20 @@ class Lock:
 def install(board, power_up):
     lock = Lock(board)
     board.sleep_us = lock.sleep_us
-    run_phase = power_up._run_phase
+    run_phase = power_up.phase
 
-    def phase(name, unit):
-        if name == "sampling":
+    def phase(name, *given):
+        if name == "session.sampling":
             from sixflip_device.session import guided_session
             plain = guided_session.GuidedSession
 
-            def made(unit, store):
-                lock.guided = plain(unit, store)
+            def made(*parts):
+                lock.guided = plain(*parts)
                 return lock.guided
             guided_session.GuidedSession = made
-        after = run_phase(name, unit)
+        after = run_phase(name, *given)
         if lock.guided is not None:
             lock.guided = None
             print('{"event": "locked", "turns": %d, "of": %d}' % (lock.locked, lock.samples))
         return after
-    power_up._run_phase = phase
+    power_up.phase = phase

@@ -12,7 +12,9 @@ from sixflip_device import flash_files
 from sixflip_device.capture import meta as capture_meta
 from sixflip_device.capture.store import CaptureStore
 from sixflip_device.record import record_slots, saving
-from sixflip_device.session import redo_session
+from sixflip_device.session import redo_session, sampling
+from sixflip_device.session.calibration import Calibration
+from sixflip_device.session.session_request import SessionRequest
 
 MASK = ACCEL | GYRO | TEMP
 POSES = 12
@@ -55,7 +57,7 @@ class Events:
 
 
 def unit_at(root):
-    """A power_up.Unit, as far as recall, saving and redo_session look at one."""
+    """A Firmware, as far as load_record, saving and redo_session look at one."""
     unit = Nothing()
     unit.events = Events()
     unit.board = Nothing()
@@ -64,8 +66,8 @@ def unit_at(root):
     unit.sensor = Nothing()
     unit.sensor.imu = Imu()
     unit.sensor.read_into = lambda sample: 0
-    unit.record = unit.slot = unit.correction = unit.bias_dps = unit.taken = None
-    unit.first, unit.asked = True, False
+    unit.record = unit.slot = unit.correction = unit.bias_dps = unit.request = None
+    unit.first = True
     return unit
 
 
@@ -161,17 +163,13 @@ class Written:
 
     def redo(self, root, log):
         """What redo_session.py and sampling.py do: the old capture copied, then a face more."""
-        from sixflip_device.session import asked_session
         unit = unit_at(root)
-        unit.taken = asked = Nothing()
-        asked.face, asked.wanted, asked.before = 0, None, True
         flash_files.remove(root + flash_files.REFUSED)  # of the good session, this time
         redo_session.session_number = lambda board: NEW
-        if redo_session.run(unit) != "sampling":
+        request = redo_session.run(unit, SessionRequest(goes_on=True, face=0))
+        if request is None:
             raise ValueError(unit.events.told)
-        taken = Nothing()
-        taken.session = 0
-        store = asked_session.store_of(unit, taken)
+        store = sampling.new_store(unit, request)[1]
         self.sample(store, NEW, log, 2, POSES - 2)
 
     def save(self, root, number, how="complete"):
@@ -179,13 +177,11 @@ class Written:
         with open(root + flash_files.NEW, "rb") as f:
             self.whole[number] = f.read()
         unit = unit_at(root)
-        unit.record = None
-        unit.slot = "a" if self.scenario and number == NEW else None
-        taken = unit.taken = Nothing()
-        taken.how, taken.ended, taken.missing = how, "it ended", []
-        taken.verdict, taken.reason, taken.facts, taken.kept = "good", "fine", {}, True
-        taken.record = record(number)
-        saving.run(unit)
+        if number == NEW:
+            unit.slot, unit.record, _ = record_slots.RecordSlots(root).load(lambda r: "")
+        session = sampling.SessionResult(number, how, "it ended", [], [], [], True)
+        calibration = Calibration(record(number), "good", "fine", {})
+        saving.run(unit, session, calibration if how == "complete" else None)
         errors = [t for t in unit.events.told if t[0] == "error"]
         if errors:
             raise ValueError(errors)

@@ -17,19 +17,11 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from sixflip.chips import catalogue
+from sixflip.gyro import solver as gyroscope
 from sixflip.poses import session as machine
 from sixflip.poses.faces import AXIS, FACES, SIGN
-from sixflip.poses.pose_check import judge_session
 from sixflip.record.record import Record
-from sixflip_device.session import (
-    gyro_signs,
-    holding_flips,
-    judging,
-    judging_flips,
-    judging_gyro,
-    solving,
-    solving_gyro,
-)
+from sixflip_device.session.calibration import calibrate
 
 G = 9.80665
 RATE_HZ = 100
@@ -280,29 +272,20 @@ def judged(plan, s, refusals=()):
         return out
     if plan.labels:
         plan.labels(s.placements)
-    taken = SimpleNamespace(placements=s.placements, moves=s.moves, angles=None, flips={},
-                            record=Record())
-    taken.record.chip = plan.chip
-    taken.record.accel_lsb_per_g, taken.record.gyro_lsb_per_dps = plan.lsb, plan.gyro_lsb
-    taken.found = judge_session(s.placements, plan.lsb, rail=plan.rails[0])
-    taken.gyro_tolerance = catalogue.driver(plan.chip).gyro_tolerance
-    unit = SimpleNamespace(taken=taken, record=None, slot=None)
-    solving.run(unit)
-    judging.run(unit)
-    out.verdict, out.reason = taken.verdict, taken.reason
-    if taken.record.accel is None or taken.verdict == "refused":
+    record = Record()
+    record.chip = plan.chip
+    record.accel_lsb_per_g, record.gyro_lsb_per_dps = plan.lsb, plan.gyro_lsb
+    calibration = calibrate(s.placements, s.moves, record, None, plan.rails[0],
+                            catalogue.driver(plan.chip).gyro_tolerance)
+    out.verdict, out.reason = calibration.verdict, calibration.reason
+    if record.accel is None or out.verdict == "refused":
         return out
-    if solving_gyro.run(unit) == "gyro_signs":
-        gyro_signs.run(unit)
-        holding_flips.run(unit)
-        P, sigma = taken.gyro.P, taken.gyro.sigma
-        judging_gyro.run(unit)
-        judging_flips.run(unit)
-        told = taken.facts["gyro"]
+    told = calibration.facts["gyro"]
+    if "bias_dps" in told:
+        solved = gyroscope.solve_matrix(s.placements, s.moves, plan.gyro_lsb, record.accel["P"])
         out.gyro, out.gyro_reason = told["verdict"], told["reason"]
-        out.matrix_error, out.matrix_sigma = _gyro_error(plan, P, sigma)
-    out.verdict, out.reason = taken.verdict, taken.reason
-    out.error_mg, out.sigma_mg = _accel_error(plan, taken.record.accel)
+        out.matrix_error, out.matrix_sigma = _gyro_error(plan, solved.P, solved.sigma)
+    out.error_mg, out.sigma_mg = _accel_error(plan, record.accel)
     return out
 
 

@@ -29,18 +29,22 @@ def session_number(board):
     return crc & 0xFFFFFFFF
 
 
-def meta_bytes(unit, number):
-    """The capture's metadata, JSON in bytes: what the driver says, and who and how."""
-    meta = unit.sensor.imu.metadata()
-    if unit.asked == "nobody":
+def meta_bytes(firmware, number, unasked=False):
+    """The capture's metadata, JSON in bytes: what the driver says, and who and how.
+
+    number: the session's; unasked: the board began it by itself
+    """
+    meta = firmware.sensor.imu.metadata()
+    if unasked:
         meta["unasked"] = True
-    meta.update({"g": unit.settings["g"], "device_id": unit.board.unique_id,
-                 "board": unit.board.name, "firmware": sixflip.__version__, "session": number,
+    meta.update({"g": firmware.settings["g"], "device_id": firmware.board.unique_id,
+                 "board": firmware.board.name, "firmware": sixflip.__version__, "session": number,
                  "float_bits": 64 if 1.0 + 1e-9 != 1.0 else 32})
     return json.dumps(meta).encode()
 
 
 def columns(imu):
+    """The column mask (sixflip.capture.blocks) of what a sensor delivers."""
     mask = capture_blocks.ACCEL
     mask |= capture_blocks.GYRO if imu.has_gyro else 0
     mask |= capture_blocks.TEMP if imu.has_temp else 0

@@ -23,7 +23,7 @@ class CaptureStore:
                     belongs to are removed. None: a file is continued, and they are left alone
     sums_only  True from the moment samples are no longer kept
     reason     why, in words
-    recorded   True where every sample is asked for, whatever the file holds (recording.py)
+    recorded   True where every sample is asked for, whatever the file holds (session_stores.py)
     samples    how many the session had, kept how many of them are in the file; bytes its size
     """
 
@@ -140,8 +140,7 @@ class CaptureStore:
         if not self._broken:
             self._end(complete)
         if self._broken:
-            from .rescue import write_again
-            write_again(self, placements, complete)
+            self._write_sums(placements, complete)
         self._close()
         if self._broken:
             remove(self._root + NEW)
@@ -152,3 +151,30 @@ class CaptureStore:
         self._writer.end(complete)
         self._flush()
         self._close()
+
+    def _write_sums(self, placements, complete):
+        """The last resort where the file is broken: the poses' sums alone, in a new file, for a
+        half-written block lies in the way of the old one."""
+        self._close()
+        meta = self._meta or meta_of(self._root)
+        if meta is None:
+            return
+        remove(self._root + NEW)
+        self.kept = 0
+        samples = self.samples
+        self._open(meta)
+        self._writer.samples = samples
+        if not self._broken:
+            for placement in placements:
+                self._writer.pose(placement)
+            self._end(complete)
+
+
+def meta_of(root):
+    """The metadata in the header of the session's file, or None."""
+    from sixflip.capture.scan import Scan
+    try:
+        with open(root + NEW, "rb") as f:
+            return Scan(f).blocks.meta_bytes
+    except (OSError, ValueError):
+        return None

@@ -1,6 +1,23 @@
-"""The record in force: loaded if it fits this sensor, restored (refresh.py: at rest)."""
+"""The active record: does it fit this sensor, what is corrected by it, and the one before it.
 
-from .blank_record import blank_record
+Activating a record makes the correction of its numbers, of its terms as well where it has some.
+"""
+
+from sixflip.record.record import Record
+
+
+def blank_record(firmware):
+    """A record that knows its sensor and holds nothing measured yet."""
+    imu = firmware.sensor.imu
+    record = Record()
+    record.chip = imu.sensor
+    record.who_am_i = tuple(imu.who_am_i)
+    record.accel_range_g = imu.accel_range_g
+    record.gyro_range_dps = imu.gyro_range_dps
+    record.accel_lsb_per_g = imu.accel_lsb_per_g
+    record.gyro_lsb_per_dps = imu.gyro_lsb_per_dps
+    record.g = firmware.settings["g"]
+    return record
 
 
 def misfit(own):
@@ -33,58 +50,68 @@ def _ids(ids):
     return "/".join(["0x%02x" % i for i in ids])
 
 
-def use(unit, slot, record):
-    """Makes record (None: the data sheet's numbers) what corrects from now on; its terms, if it
-    has some, do not yet: terms.py."""
-    from sixflip.record.correction import Correction
-    unit.slot = slot
-    unit.record = record
-    unit.correction = Correction(blank_record(unit) if record is None else record)
-    unit.bias_dps = None
-    if record is not None and record.gyro_bias is not None:
-        unit.bias_dps = record.gyro_bias["bias_dps"]
-
-
-def recall(unit):
+def load(firmware):
     """Finds the newest record that fits; "" or why there is none. Tells it as an event."""
     from .record_slots import RecordSlots
-    slot, record, refusals = RecordSlots(unit.board.root).load(misfit(blank_record(unit)))
-    unit.slot, unit.record = slot, record
+    slot, record, refusals = RecordSlots(firmware.board.root).load(misfit(blank_record(firmware)))
+    firmware.slot, firmware.record = slot, record
     refused = dict(refusals)
     if record is None:
         reason = "; ".join(["slot %s: %s" % r for r in refusals]) or "none is stored"
-        unit.events.emit("no_record", reason=reason, refused=refused)
+        firmware.events.emit("no_record", reason=reason, refused=refused)
         return reason
     from ..capture.files import finish_interrupted
-    finish_interrupted(unit.board.root, record.session)
+    finish_interrupted(firmware.board.root, record.session)
     accel = record.accel
-    unit.events.emit("record", slot=slot, sequence=record.sequence, session=record.session,
+    firmware.events.emit("record", slot=slot, sequence=record.sequence, session=record.session,
                      verdict=accel["verdict"], reason=accel["reason"], temp_c=record.temp_c,
                      measured=record.measured(), terms=[tag for tag, _ in record.terms],
                      refused=refused)
     return ""
 
 
-def again(unit, own):
-    """The record that was let go of for a session is read again; own as for misfit()."""
-    if unit.record is None and unit.slot is not None:
-        from .record_slots import RecordSlots
-        unit.slot, unit.record, _ = RecordSlots(unit.board.root).load(misfit(own))
+def _term_range_teller(firmware):
+    """For a TermCorrection: tells, once, a temperature outside of what its terms were measured at.
+    """
+    def tell(temp_c, low_c, high_c):
+        firmware.events.emit("term_range", temp_c=temp_c, low_c=low_c, high_c=high_c,
+                         note="outside of what the terms were measured at; the edge holds")
+    return tell
 
 
-def restore(unit):
+def activate(firmware):
+    """From now on firmware.record corrects, or the data sheet's numbers without one. Terms that
+    cannot be are told and left out."""
+    from sixflip.record.correction import Correction, correction_of
+    record = firmware.record
+    firmware.bias_dps = None
+    if record is None:
+        firmware.correction = Correction(blank_record(firmware))
+        return
+    try:
+        firmware.correction = correction_of(record, _term_range_teller(firmware))
+    except ValueError as e:
+        firmware.events.error("the record's terms are not in force: %s" % e,
+                          "sections as sixflip.record.term_correction has them")
+        firmware.correction = Correction(record)
+    if record.gyro_bias is not None:
+        firmware.bias_dps = record.gyro_bias["bias_dps"]
+
+
+run = activate
+
+
+def restore(firmware):
     """The record before this one becomes the newest again."""
     from .record_slots import RecordSlots
     try:
-        slot, record = RecordSlots(unit.board.root).restore(misfit(blank_record(unit)))
+        slot, record = RecordSlots(firmware.board.root).restore(misfit(blank_record(firmware)))
     except ValueError as e:
-        unit.events.error("restore: %s" % e, "an older valid record for this sensor")
+        firmware.events.error("restore: %s" % e, "an older valid record for this sensor")
         return
     except OSError as e:
-        unit.events.error("restore: the flash gives an error: %s" % e, "room for a record")
+        firmware.events.error("restore: the flash gives an error: %s" % e, "room for a record")
         return
-    use(unit, slot, record)
-    if record.terms:
-        from .terms import beside_stream
-        beside_stream(unit)
-    unit.events.emit("restored", slot=slot, sequence=record.sequence, session=record.session)
+    firmware.slot, firmware.record = slot, record
+    activate(firmware)
+    firmware.events.emit("restored", slot=slot, sequence=record.sequence, session=record.session)

@@ -10,18 +10,18 @@ import math
 from sixflip.record.correction import correction_of
 from sixflip.record.mounting import estimate, parse_axes
 
-from . import active_record
-from .still_valid import shaken
+from .active_record import activate
+from .check_at_rest import shaken
 
 OFF_G = 0.02        # |G| of a calibrated sensor at rest
 CHANGED_DEG = 0.1   # below it, nothing is written at power-up
 KEYS = ("axes", "frame", "order")
 
 
-def _options(unit, command):
+def _options(firmware, command):
     """What estimate() takes; ValueError with a sentence."""
     options = {}
-    for source in (unit.settings["mounting"] or {}, command):
+    for source in (firmware.settings["mounting"] or {}, command):
         for name in KEYS:
             if source.get(name) is not None:
                 if not isinstance(source[name], str):
@@ -35,14 +35,14 @@ def _options(unit, command):
     return options
 
 
-def _gravity(unit, rest):
+def _gravity(firmware, rest):
     """G in g in the sensor's axes, corrected; ValueError unless it is gravity and no more."""
     if not rest.still:
         raise ValueError("not at rest: " + rest.reason)
-    reason = shaken(unit, rest)
+    reason = shaken(firmware, rest)
     if reason:
         raise ValueError(reason + "; stop the engine")
-    record = unit.record
+    record = firmware.record
     held, record.mounting = record.mounting, None  # it must not turn what is to be measured
     G = [x / record.g for x in correction_of(record).apply(rest.means, [0.0] * 6)[:3]]
     record.mounting = held
@@ -67,79 +67,77 @@ def _same(old, new):
     return True
 
 
-def _take(unit, mounting, rest):
+def _take(firmware, mounting, rest):
     """Into the record, onto the flash, in force; OSError when the flash will not take it."""
     from .record_slots import RecordSlots
-    record = unit.record
+    record = firmware.record
     before = record.mounting, record.sequence
     record.mounting = mounting
     try:
-        slot = RecordSlots(unit.board.root).save(record)
+        slot = RecordSlots(firmware.board.root).save(record)
     except OSError:
         record.mounting, record.sequence = before
         raise
-    bias, means = unit.bias_dps, unit.correction.rest
-    active_record.use(unit, slot, record)
+    bias, means = firmware.bias_dps, firmware.correction.rest
+    firmware.slot = slot
+    activate(firmware)
     if means is not None:
-        unit.correction.set_rest(means)
-        unit.bias_dps = bias
-    if record.terms:
-        from .terms import beside_stream
-        beside_stream(unit)
-    unit.output = None
+        firmware.correction.set_rest(means)
+        firmware.bias_dps = bias
+    firmware.output = None
 
 
-def _refuse(unit, reason):
-    held = unit.record is not None and unit.record.mounting is not None
-    unit.events.emit("not_mounted", reason=reason, mounting="stored" if held else "none")
+def _refuse(firmware, reason):
+    held = firmware.record is not None and firmware.record.mounting is not None
+    firmware.events.emit("not_mounted", reason=reason, mounting="stored" if held else "none")
 
 
-def _tell(unit, rest, written):
-    facts = dict(unit.record.mounting or {})
+def _tell(firmware, rest, written):
+    facts = dict(firmware.record.mounting or {})
     if rest is not None:
         # of the angles, by noise alone
-        noise = max(rest.noise[:3]) / unit.sensor.imu.accel_lsb_per_g
+        noise = max(rest.noise[:3]) / firmware.sensor.imu.accel_lsb_per_g
         facts["sigma_deg"] = math.degrees(noise / math.sqrt(rest.n))
-    unit.events.emit("mounted", off=rest is None, slot=unit.slot, written=written,
-                     sequence=unit.record.sequence, **facts)
+    firmware.events.emit("mounted", off=rest is None, slot=firmware.slot, written=written,
+                     sequence=firmware.record.sequence, **facts)
 
 
-def measure(unit, rest, command, always=True):
+def measure(firmware, rest, command, always=True):
     """From a Rest; a "mounted" event, or "not_mounted" with the reason.
 
     always False: the same angles as before are not written again.
     """
     try:
-        mounting = estimate(*_gravity(unit, rest), **_options(unit, command))
-        written = always or not _same(unit.record.mounting, mounting)
+        mounting = estimate(*_gravity(firmware, rest), **_options(firmware, command))
+        written = always or not _same(firmware.record.mounting, mounting)
         if written:
-            _take(unit, mounting, rest)
+            _take(firmware, mounting, rest)
     except ValueError as e:
-        return _refuse(unit, str(e))
+        return _refuse(firmware, str(e))
     except OSError as e:
-        return _refuse(unit, "the record could not be written: %s" % e)
-    return _tell(unit, rest, written)
+        return _refuse(firmware, "the record could not be written: %s" % e)
+    return _tell(firmware, rest, written)
 
 
-def asked(unit, command):
-    """The command."""
-    if unit.record is None:
-        return _refuse(unit, "no correction is in force: calibrate first")
+def mount(firmware, command):
+    """Obeys the command; it is answered with a "mounted" or "not_mounted" event."""
+    if firmware.record is None:
+        return _refuse(firmware, "no correction is in force: calibrate first")
     try:
-        _options(unit, command)
+        _options(firmware, command)
         if command.get("off") is True:
-            if unit.record.mounting is not None:
-                _take(unit, None, None)
-            return _tell(unit, None, True)
+            if firmware.record.mounting is not None:
+                _take(firmware, None, None)
+            return _tell(firmware, None, True)
     except ValueError as e:
-        return _refuse(unit, str(e))
+        return _refuse(firmware, str(e))
     except OSError as e:
-        return _refuse(unit, "the record could not be written: %s" % e)
-    from .refresh import refresh
-    return measure(unit, refresh(unit, max(3.0, unit.settings["rest_s"])), command)
+        return _refuse(firmware, "the record could not be written: %s" % e)
+    from .check_at_rest import refresh
+    return measure(firmware, refresh(firmware, max(3.0, firmware.settings["rest_s"])), command)
 
 
-def at_power_up(unit, rest):
+def at_power_up(firmware, rest):
     """When sixflip.json says so; "at_power_up": false leaves it to the command."""
-    if unit.settings["mounting"].get("at_power_up", True) and rest.reason != "interrupted":
-        measure(unit, rest, {}, False)
+    if firmware.settings["mounting"].get("at_power_up", True) and rest.reason != "interrupted":
+        measure(firmware, rest, {}, False)

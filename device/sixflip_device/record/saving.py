@@ -1,12 +1,11 @@
-"""Last phase of a calibration: what came of it is told, and the record goes to flash.
+"""The last phase of a calibration: what came of it is told, and the record goes to flash.
 
-A refused session replaces nothing: its capture is kept as refused.bin, and the record
-before goes on. A good one that says nothing new is kept as unsaved.bin.
-
-Is a new calibration worth a write to the flash?
+A refused session replaces nothing: its capture is kept as refused.bin, and the record before
+stays active. The capture of a good one that says nothing new is kept as unsaved.bin, and the flash
+is not written to: its blocks bear only so many writes.
 """
 
-from ..capture.files import keep, keep_unsaved, refuse
+from ..capture.files import file_cut_short, keep, keep_unsaved, refuse
 from ..flash_files import UNSAVED
 
 TIMES = 2.0  # standard errors of the difference
@@ -37,70 +36,62 @@ def unchanged(old, new):
     return True
 
 
-def _file_away(unit, how):
-    """how: of capture_files. A capture that cannot be renamed stays as capture.new."""
-    if unit.taken.kept:
+def _file_away(firmware, session, how):
+    """how: of capture/files.py. A capture that cannot be renamed stays as capture.new."""
+    if session.has_capture:
         try:
-            how(unit.board.root)
+            how(firmware.board.root)
         except OSError as e:
-            unit.events.error("the capture stays as capture.new: %s" % e, "a rename that works")
+            firmware.events.error("the capture stays as capture.new: %s" % e,
+                                  "a rename that works")
 
 
-def _tell(unit):
-    """The solved event; True when there is something to save."""
-    taken = unit.taken
-    if taken.how != "complete":
-        unit.events.emit("solved", verdict="refused", reason=taken.ended,
-                         missing=taken.missing)
-        return False
-    if taken.verdict != "refused":
+def _verdict(calibration):
+    """(verdict, reason); a record that would not be read back is refused."""
+    if calibration.verdict != "refused":
         from sixflip.record.record import implausible
-        reason = implausible(taken.record)
-        if reason:  # it would not be read back
-            taken.verdict, taken.reason = "refused", "no sensor is like that: " + reason
-    unit.events.emit("solved", verdict=taken.verdict, reason=taken.reason, **taken.facts)
-    taken.facts = None
-    return taken.verdict != "refused"
+        reason = implausible(calibration.record)
+        if reason:
+            return "refused", "no sensor is like that: " + reason
+    return calibration.verdict, calibration.reason
 
 
-def _save(unit, new):
-    """Writes it if it says anything new; sets unit.record and unit.slot."""
-    from .active_record import again
-    again(unit, new)
-    old = unit.record
+def _save(firmware, session, new):
+    """Writes the record if it says anything new, and makes it the firmware's."""
+    old = firmware.record
     if old is not None:
         new.mounting = old.mounting  # the box has moved, the sensor in it has not
         new.terms = old.terms  # they count from whatever temperature it is calibrated at
         if unchanged(old, new):
-            _file_away(unit, keep_unsaved)
-            return unit.events.emit(
-                "saved", slot=unit.slot, sequence=old.sequence, written=False, capture=UNSAVED,
-                reason="no number changed by more than its uncertainty")
+            _file_away(firmware, session, keep_unsaved)
+            firmware.events.emit(
+                "saved", slot=firmware.slot, sequence=old.sequence, written=False,
+                capture=UNSAVED, reason="no number changed by more than its uncertainty")
+            return
     from .record_slots import RecordSlots
-    unit.record = new
+    firmware.record = new
     try:
-        unit.slot = RecordSlots(unit.board.root).save(new)
+        firmware.slot = RecordSlots(firmware.board.root).save(new)
     except OSError as e:
-        unit.slot = None
-        unit.events.error("the record could not be written: %s; it is in force until the "
-                          "power goes" % e, "room for 1 KB on the flash")
-        return _file_away(unit, keep_unsaved)
-    _file_away(unit, keep)
-    return unit.events.emit("saved", slot=unit.slot, sequence=new.sequence, written=True)
+        firmware.slot = None
+        firmware.events.error("the record could not be written: %s; it is in force until the "
+                              "power goes" % e, "room for 1 KB on the flash")
+        _file_away(firmware, session, keep_unsaved)
+        return
+    _file_away(firmware, session, keep)
+    firmware.events.emit("saved", slot=firmware.slot, sequence=new.sequence, written=True)
 
 
-def run(unit):
-    taken = unit.taken
-    taken.placements = taken.moves = None
-    if _tell(unit):
-        _save(unit, taken.record)
-    elif taken.how == "complete":
-        _file_away(unit, refuse)
+def run(firmware, session, calibration):
+    """The solved and the saved event; calibration None: the session did not come to its end."""
+    if calibration is None:
+        firmware.events.emit("solved", verdict="refused", reason=session.ended,
+                             missing=session.missing)
+        _file_away(firmware, session, file_cut_short)
+        return
+    verdict, reason = _verdict(calibration)
+    firmware.events.emit("solved", verdict=verdict, reason=reason, **calibration.facts)
+    if verdict == "refused":
+        _file_away(firmware, session, refuse)
     else:
-        from ..capture.cut_short import file_cut_short
-        _file_away(unit, file_cut_short)
-    unit.taken = None
-    if taken.how == "bus lost":
-        unit.events.error(taken.ended, "the sensor that was there a moment ago")
-        return "start"
-    return "resume"
+        _save(firmware, session, calibration.record)

@@ -1,4 +1,4 @@
-"""Six faces, each with a flip: paces the samples, keeps them, obeys the host.
+"""A session under way: samples are paced and kept, events and the lamp tell, the host is obeyed.
 
 Between the ends of two windows nothing is allocated: no event, no host line, no float.
 """
@@ -6,35 +6,99 @@ Between the ends of two windows nothing is allocated: no event, no host line, no
 from array import array
 
 from sixflip.poses import session as machine
+from sixflip.poses.faces import FACES, pose_name
 
+from .. import led
 from ..sensor import BusLost, pacer
-from .teller import Teller, names
+
+
+def names(codes):
+    return [pose_name(code) for code in codes]
+
+
+class Teller:
+    """Turns the state of a session.Session into events; step() once a sample for the lamp."""
+
+    def __init__(self, board, session, rate_hz, events):
+        self._session = session
+        self._rate_hz = rate_hz
+        self._events = events
+        self._lamp = led.Lamp(board, rate_hz)
+        self._lamp.show(led.MEASURING)
+        self._told = None
+        self._repeated = 0
+        self.step = self._lamp.step
+
+    def pose(self, placement):
+        self._lamp.flash(led.TAKEN)
+        n = placement.n
+        self._events.emit("pose", pose=pose_name(placement.pose), n=n,
+                          mean=[s / n for s in placement.sums], noise=placement.noise,
+                          **self._todo())
+
+    def refused(self):
+        session = self._session
+        self._lamp.flash(led.REFUSED)
+        self._events.emit("refused", pose=self._pose(), reason=session.reason,
+                          value=session.value, limit=session.limit, unit=session.unit)
+
+    def redo(self, what):
+        """A face, or a pose of a plan, is to be taken again."""
+        self._events.emit("redo", face=what, **self._todo())
+        self._told = None
+
+    def _todo(self):
+        """What is still to be done; of a plan, which may be long, what is next."""
+        session = self._session
+        if session.wanted is None:
+            return {"missing": names(session.missing())}
+        at = session.place()
+        return {"next": names(session.wanted[at:at + 1]), "at": at, "of": len(session.wanted)}
+
+    def _pose(self):
+        session = self._session
+        if session.candidate:
+            return pose_name(session.candidate)
+        return FACES[session.face] if session.face >= 0 else ""
+
+    def state(self):
+        """Once a window: what is missing when something changed and with every eighth, else
+        the vector. Both make a line that a full heap has no room for in one piece."""
+        session = self._session
+        self._lamp.show(led.STATES.get(session.state, led.WAITING))
+        key = (session.state, session.candidate, session.face, session.reason)
+        if key != self._told:
+            self._told = key
+            self._repeated = 0
+        more = {"live": session.live()} if self._repeated % 8 else self._todo()
+        self._repeated += 1
+        left = session.left_s
+        if session.state == "capturing":
+            left = (session.pose_samples - session.progress) / self._rate_hz
+        self._events.emit("state", state=session.state, pose=self._pose(), reason=session.reason,
+                          value=session.value, limit=session.limit, unit=session.unit,
+                          progress=session.progress, total=session.pose_samples, left_s=left,
+                          **more)
 
 
 class GuidedSession:
-    """run() -> "complete", "timed out", "stopped", "changed" or "bus lost"; the results are in
+    """Feeds a session of sixflip.poses with samples and a CaptureStore with the same.
 
-    .session (placements, moves) and .ended (a sentence, "" when complete).
+    run() -> "complete", "timed out", "stopped", "changed" (somebody wrote to the chip's offset
+    registers) or "bus lost"; session has the placements and moves, ended is a sentence, "" when
+    complete.
     """
 
-    def __init__(self, unit, store):
-        settings = unit.settings
-        imu = unit.sensor.imu
-        rate_hz = settings["rate_hz"]
-        self._unit = unit
+    def __init__(self, firmware, store, session):
+        self._firmware = firmware
         self._store = store
-        chip = (imu.accel_lsb_per_g, imu.gyro_lsb_per_dps, imu.accel_rail, imu.gyro_rail, rate_hz)
-        if unit.taken is None:
-            self.session = machine.Session(*chip, pose_samples=settings["pose_samples"],
-                                           timeout_s=settings["timeout_s"])
-        else:
-            from .asked_session import session
-            self.session = session(unit, chip)
-        self._teller = Teller(unit.board, self.session, rate_hz, unit.events)
+        self.session = session
+        self._teller = Teller(firmware.board, session, firmware.settings["rate_hz"],
+                              firmware.events)
         self.ended = ""
 
     def run(self):
-        sensor = self._unit.sensor
+        sensor = self._firmware.sensor
         self._teller.state()
         try:
             sensor.check()  # whatever was changed before is set up anew
@@ -50,19 +114,19 @@ class GuidedSession:
             self.ended = str(e)
             return "bus lost"
         finally:
-            self._unit.board.led(False)
+            self._firmware.board.led(False)
 
     def _sample_until_done(self):
-        unit = self._unit
+        firmware = self._firmware
         sample = array("h", [0] * 7)
-        next_sample = pacer(unit.board, unit.sensor, unit.settings["rate_hz"]).next
+        next_sample = pacer(firmware.board, firmware.sensor, firmware.settings["rate_hz"]).next
         feed = self.session.feed
         keep = self._store.add
         step = self._teller.step
         while True:
             dt = next_sample(sample)
             if dt < 0:
-                if unit.sensor.shifted:
+                if firmware.sensor.shifted:
                     return "changed"
                 # the attempt is thrown away, everything accepted stays
                 self.session.interrupt()
@@ -103,15 +167,15 @@ class GuidedSession:
 
     def _listen(self):
         """One line of the host; "stopped" when it ends the session."""
-        command = self._unit.host.poll()
+        command = self._firmware.host.poll()
         if command is None:
             return ""
         if command["cmd"] == "stop":
             self.ended = "stopped by the host"
             return "stopped"
         try:
-            from .session_commands import obey  # most sessions hear none
-            obey(command, self._unit, self.session, self._store, self._teller)
+            from ..commands import obey_in_session  # most sessions hear none
+            obey_in_session(command, self._firmware, self.session, self._store, self._teller)
         except MemoryError:
-            self._unit.events.error("no memory for this now", "fewer placements taken")
+            self._firmware.events.error("no memory for this now", "fewer placements taken")
         return ""

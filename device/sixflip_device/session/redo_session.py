@@ -19,6 +19,7 @@ from sixflip.poses.faces import FACES, face_of_code
 from ..capture.meta import columns, expected_bytes, meta_bytes, session_number
 from ..flash_files import GOOD, NEW, REFUSED, UNSAVED, free_bytes, remove
 from ..sensor import READ
+from .session_request import SessionRequest
 
 GAP_S = 60
 WARMER_C = 3.0  # 2.7 mg at the 0.9 mg/degC typical of an MPU6050's Z axis
@@ -43,19 +44,19 @@ def _last(root):
     raise ValueError("there is no session before this one")
 
 
-def _fits(unit, scan, number):
+def _fits(firmware, scan, number):
     """ValueError when the session was another sensor's, or a colder one's."""
     old = json.loads(str(scan.blocks.meta_bytes, "utf-8"))
-    new = json.loads(str(meta_bytes(unit, number), "utf-8"))
+    new = json.loads(str(meta_bytes(firmware, number), "utf-8"))
     for key in SAME:
         if old.get(key) != new.get(key):
             raise ValueError("%s was %s in the session before and is %s"
                              % (key, old.get(key), new.get(key)))
-    imu = unit.sensor.imu
+    imu = firmware.sensor.imu
     if scan.blocks.columns != columns(imu):
         raise ValueError("the session before has other columns")
     sample = array("h", [0] * 7)
-    if imu.has_temp and unit.sensor.read_into(sample) == READ:
+    if imu.has_temp and firmware.sensor.read_into(sample) == READ:
         n = sum([p.n for p in scan.blocks.placements])
         mean = sum([p.sums[6] for p in scan.blocks.placements]) / n
         warmer = (sample[6] - mean) / imu.temp_lsb_per_c
@@ -105,24 +106,48 @@ def _no_room(root, name, bytes):
     return "%d bytes are free, a copy of the session before takes %d" % (free, bytes)
 
 
-def _copy(unit, name, asked, stretches):
-    """The samples of the stretches, the placements that stay and the notes, in a new file;
-    asked gets moves, samples, kept and bytes, its placements find their samples there."""
-    placements = asked.placements
-    firsts = [p.first for p in placements]  # in the old file
+class SessionBefore:
+    """The session before, as far as the one that goes on from it takes it over.
+
+    session        the number of the new session, in the header of the copied capture
+    placements     those that stay; their samples are found in the copy
+    moves          to each of them, and the one under way at the end
+    samples, kept, bytes   of the copy: samples there were, those that are in it, its size
+    seconds, us    the time that the new session begins at
+    sums_only, reason      no samples are kept, and why
+    """
+
+    def __init__(self, session, placements, moves, samples, kept, bytes, seconds, us, reason):
+        self.session = session
+        self.placements = placements
+        self.moves = moves
+        self.samples = samples
+        self.kept = kept
+        self.bytes = bytes
+        self.seconds = seconds
+        self.us = us
+        self.sums_only = reason != ""
+        self.reason = reason
+
+
+def _copy(firmware, name, meta, stay, face, stretches, room):
+    """The samples of the stretches (none without room), the placements that stay and the notes in
+    a new file: (moves, samples dropped, samples copied, bytes). The placements that stay find
+    their samples there from now on."""
+    firsts = [p.first for p in stay]  # in the old file
     at = dropped = 0
-    with open(unit.board.root + NEW, "wb") as f, open(unit.board.root + name, "rb") as g:
+    with open(firmware.board.root + NEW, "wb") as f, open(firmware.board.root + name, "rb") as g:
         scan = Scan(g)
-        moves = CaptureMoves(placements, scan.blocks.columns,
-                             int(1000000 / unit.settings["rate_hz"] + 0.5),
-                             unit.sensor.imu.gyro_rail, unit.sensor.imu.gyro_lsb_per_dps)
-        writer = BlockWriter(f.write, meta_bytes(unit, asked.session), scan.blocks.columns, 1)
+        moves = CaptureMoves(stay, scan.blocks.columns,
+                             int(1000000 / firmware.settings["rate_hz"] + 0.5),
+                             firmware.sensor.imu.gyro_rail, firmware.sensor.imu.gyro_lsb_per_dps)
+        writer = BlockWriter(f.write, meta, scan.blocks.columns, 1)
         for kind, block in scan.each():
             if kind == cb.SAMPLES or kind == cb.STEPS:
                 n = samples_in(block)
                 if [1 for begin, end in stretches if begin < at + n and end > at]:
                     moves.block(block)
-                    if asked.room:
+                    if room:
                         f.write(block)
                 else:
                     moves.skip(n)
@@ -130,54 +155,51 @@ def _copy(unit, name, asked, stretches):
                 at += n
             elif kind == cb.POSE and first_of(block) in firsts:
                 # it comes right after its samples: what was dropped by now was before them
-                p = placements[firsts.index(first_of(block))]
+                p = stay[firsts.index(first_of(block))]
                 p.first -= dropped
                 writer.pose(p)
             elif kind == cb.NOTE:
                 f.write(block)
         writer.note("%s, after a pause of unknown length: %d s stand for it"
-                    % (FACES[asked.face] + " again" if asked.face >= 0 else "continued", GAP_S))
-        asked.bytes = f.tell()
-    asked.kept = at - dropped if asked.room else 0
-    asked.samples -= dropped
-    asked.moves = moves.moves()
+                    % (FACES[face] + " again" if face >= 0 else "continued", GAP_S))
+        return moves.moves(), dropped, at - dropped if room else 0, f.tell()
 
 
-def _take_over(unit, asked):
-    """The session before as asked wants it, its copy made; ValueError or OSError."""
-    root = unit.board.root
+def _read_before(firmware, face, unasked):
+    """The SessionBefore, its capture copied; face: 0..5 is taken again, -1: what is missing is
+    taken. ValueError or OSError when there is nothing to go on from."""
+    root = firmware.board.root
     name, scan = _last(root)
     blocks = scan.blocks
-    asked.placements = _that_stay(blocks.placements, asked.face)
-    _fits(unit, scan, asked.session)
-    stretches = _stretches(blocks.placements, asked.placements)
+    session = session_number(firmware.board)
+    stay = _that_stay(blocks.placements, face)
+    _fits(firmware, scan, session)
+    stretches = _stretches(blocks.placements, stay)
     samples = sum([end - begin + 2 * SLACK for begin, end in stretches])
-    asked.reason = _no_room(root, name, expected_bytes(samples, blocks.columns))
-    asked.room = not asked.reason
-    if asked.face >= 0 and not asked.room:
-        raise ValueError(asked.reason)
+    reason = _no_room(root, name, expected_bytes(samples, blocks.columns))
+    room = not reason
+    if face >= 0 and not room:
+        raise ValueError(reason)
     if scan.sums_only():
-        asked.reason = "so did the session before; its flips do not count for the gyro"
-    asked.sums_only = asked.reason != ""
-    asked.samples = scan.samples()
-    asked.seconds, asked.us = scan.seconds + GAP_S, scan.us
-    _copy(unit, name, asked, stretches)
+        reason = "so did the session before; its flips do not count for the gyro"
+    meta = meta_bytes(firmware, session, unasked)
+    moves, dropped, kept, size = _copy(firmware, name, meta, stay, face, stretches, room)
+    return SessionBefore(session, stay, moves, scan.samples() - dropped, kept, size,
+                         scan.seconds + GAP_S, scan.us, reason)
 
 
-def run(unit):
-    asked = unit.taken
-    unit.taken = None
-    asked.session = session_number(unit.board)
+def run(firmware, request):
+    """The SessionRequest with the session before in it. Where there is none to go on from: one for
+    all six faces, or None and an error event when a face was to be taken again."""
+    face = request.face
     try:
-        _take_over(unit, asked)
+        before = _read_before(firmware, face, request.unasked)
     except (ValueError, OSError) as e:
-        unit.asked = False
-        remove(unit.board.root + NEW)
-        if asked.face < 0:
-            unit.events.emit("afresh", reason=str(e))
-            return "sampling"
-        unit.events.error("face %s cannot be taken again: %s" % (FACES[asked.face], e),
+        remove(firmware.board.root + NEW)
+        if face < 0:
+            firmware.events.emit("afresh", reason=str(e))
+            return SessionRequest()
+        firmware.events.error("face %s cannot be taken again: %s" % (FACES[face], e),
                           "calibrate all faces")
-        return "put_in_force"
-    unit.taken = asked
-    return "sampling"
+        return None
+    return SessionRequest(goes_on=True, face=face, before=before, unasked=request.unasked)

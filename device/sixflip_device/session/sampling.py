@@ -1,77 +1,98 @@
-"""Second phase: a guided session, its raw capture streamed to flash.
+"""A guided session, its raw capture streamed to flash.
 
-The old correction is out of force while samples are taken (power_up.py): raw means raw.
+No correction is active while samples are taken: raw means raw.
 """
 
-import sixflip.poses.session  # noqa: F401 - the longest source first, while there is room
+from sixflip.poses.session import Session
 
+from ..capture.files import refuse_first
+from ..capture.meta import columns, expected_bytes, meta_bytes, session_number
 from ..capture.store import CaptureStore
 from ..flash_files import FLAG, remove
-from ..power_up import free
-from .guided_session import GuidedSession
-from .teller import names
+from .guided_session import GuidedSession, names
+
+HANDLING_S = 6  # of a pose, at most: for the size of a capture
 
 
-class Taken:
-    """What is left of sampling.
+class SessionResult:
+    """What a session leaves.
 
-    session     the number that names it in capture and record
-    how, ended  "complete", "timed out", "stopped" or "bus lost", and a sentence
-    placements, moves, missing (names)
-    kept        the capture's file is whole
+    number             names the session in capture and record
+    how, ended         "complete", "timed out", "stopped", "changed" or "bus lost", and a sentence
+    placements, moves  of sixflip.poses.placement; missing: names of poses still to come
+    has_capture        the capture's file, capture.new, is whole
     """
 
-
-def new_store(unit, number, samples):
-    """The CaptureStore of a session that begins, of so many samples or fewer."""
-    from ..capture.meta import columns, expected_bytes, meta_bytes
-    mask = columns(unit.sensor.imu)
-    what = unit.board.root, meta_bytes(unit, number), mask, expected_bytes(samples, mask)
-    recording, unit.recording = unit.recording, False
-    if not recording:
-        return CaptureStore(*what)
-    from ..capture.recorded_store import RecordedStore
-    return RecordedStore(unit.board, *what)
+    def __init__(self, number, how, ended, placements, moves, missing, has_capture):
+        self.number = number
+        self.how = how
+        self.ended = ended
+        self.placements = placements
+        self.moves = moves
+        self.missing = missing
+        self.has_capture = has_capture
 
 
-def _store(unit, number):
-    # twelve poses with six seconds of handling each
-    return new_store(unit, number,
-                     12 * (unit.settings["pose_samples"] + 6 * unit.settings["rate_hz"]))
-
-
-def run(unit):
-    remove(unit.board.root + FLAG)
-    taken = Taken()
-    if unit.taken is None:
-        from ..capture.meta import session_number
-        taken.session = session_number(unit.board)
-        store = _store(unit, taken.session)
+def new_store(firmware, request):
+    """(number of the session, its CaptureStore) of a SessionRequest."""
+    board = firmware.board
+    mask = columns(firmware.sensor.imu)
+    if request.before is not None:
+        from ..capture.session_stores import ContinuedStore
+        number = request.before.session
+        return number, ContinuedStore(board.root, meta_bytes(firmware, number, request.unasked),
+                                      mask, request.before)
+    rate_hz = firmware.settings["rate_hz"]
+    if request.plan:
+        poses, samples = len(request.plan), sum(request.lengths)
     else:
-        from .asked_session import store_of
-        store = store_of(unit, taken)
-    unit.asked = False
-    free(("sixflip_device.capture.meta", "sixflip.chips.header"))
-    guided = GuidedSession(unit, store)
-    unit.taken = None
-    unit.events.emit("calibrating", missing=names(guided.session.missing()),
-                     plan=guided.session.wanted is not None,
-                     session=taken.session, sums_only=store.sums_only, reason=store.reason,
-                     recorded=store.recorded)
-    taken.how = "interrupted"
+        poses, samples = 12, 12 * firmware.settings["pose_samples"]
+    samples += (HANDLING_S * poses + 2 * request.hold_s) * rate_hz
+    number = session_number(board)
+    where = board.root, meta_bytes(firmware, number, request.unasked), mask
+    if not request.record:
+        return number, CaptureStore(*where, expected_bytes(samples, mask))
+    from ..capture.session_stores import RecordedStore
+    return number, RecordedStore(board, *where, expected_bytes(samples, mask))
+
+
+def new_session(firmware, request):
+    """The sixflip.poses Session of a SessionRequest, that of the session before taken over."""
+    imu = firmware.sensor.imu
+    settings = firmware.settings
+    chip = (imu.accel_lsb_per_g, imu.gyro_lsb_per_dps, imu.accel_rail, imu.gyro_rail,
+            settings["rate_hz"])
+    if request.plan:
+        from sixflip.poses.planned_session import PlannedSession  # most sessions have no plan
+        return PlannedSession(chip, request.plan, request.lengths, request.hold_s,
+                              settings["timeout_s"])
+    session = Session(*chip, pose_samples=settings["pose_samples"],
+                      timeout_s=settings["timeout_s"])
+    if request.before is not None:
+        from sixflip.poses.planned_session import resume
+        resume(session, request.before.placements, request.before.samples, request.before.moves)
+    return session
+
+
+def run(firmware, request):
+    """The SessionResult of a SessionRequest."""
+    remove(firmware.board.root + FLAG)
+    number, store = new_store(firmware, request)
+    session = new_session(firmware, request)
+    firmware.correction = None
+    firmware.events.emit("calibrating", missing=names(session.missing()),
+                         plan=session.wanted is not None, session=number,
+                         sums_only=store.sums_only, reason=store.reason, recorded=store.recorded)
+    guided = GuidedSession(firmware, store, session)
+    how = "interrupted"
     try:
-        taken.how = guided.run()
+        how = guided.run()
     finally:
         # after Ctrl-C too: what was captured stays readable
-        taken.kept = store.finish(taken.how == "complete", guided.session.placements)
-        if taken.how == "interrupted" and taken.kept:
-            from ..capture.files import refuse_first
-            refuse_first(unit.board.root)
-    taken.ended = guided.ended
-    taken.placements = guided.session.placements
-    taken.moves = guided.session.moves
-    taken.missing = names(guided.session.missing())
-    unit.events.emit("capture", samples=store.samples, kept=store.kept,
-                     sums_only=store.sums_only, bytes=store.bytes, reason=store.reason)
-    unit.taken = taken
-    return "checking" if taken.how == "complete" else "saving"
+        has_capture = store.finish(how == "complete", session.placements)
+        if how == "interrupted" and has_capture:
+            refuse_first(firmware.board.root)
+    firmware.events.emit("capture", samples=store.samples, kept=store.kept,
+                         sums_only=store.sums_only, bytes=store.bytes, reason=store.reason)
+    return SessionResult(number, how, guided.ended, session.placements, session.moves,
+                         names(session.missing()), has_capture)

@@ -1,4 +1,4 @@
-"""Before sampling: what kind of calibration is it? The flag's file or the host's line says.
+"""What kind of calibration is wanted? The line of the host says, or the file of the flag.
 
     empty, or {"cmd": "calibrate"}          six faces in any order
     {"poses": "Z+a Z+b L1 Z+b", "samples": [400, 400, 300, 400], "rest_s": 30}
@@ -8,7 +8,7 @@
     {"continue": true}                      the session before goes on where it ended; when
                                             there is none, or nothing is missing: six faces
 
-"record": true with the first two: every block of the capture is sent to the host (recording.py).
+"record": true with the first two: every block of the capture is sent to the host as well.
 """
 
 import json
@@ -18,35 +18,45 @@ from sixflip.poses.faces import FACES, pose_code
 from ..flash_files import FLAG, remove
 
 MOST_POSES = 200
-MOST_TEXT = 4096
+MOST_TEXT = 4096  # characters of the flag's file
 SHORTEST, LONGEST = 50, 60000  # samples of a pose
 
 
-class Asked:
-    """For sampling. wanted, lengths, hold_s: a plan, see PlannedSession; wanted None: none.
+class SessionRequest:
+    """What session.sampling is to do; the six faces in any order unless it says otherwise.
 
-    before  it goes on with the session before; then face: 0..5 to be taken again, or -1, and
-    placements, moves, samples, seconds, us, kept, bytes, room, sums_only, reason, session: what
-    redo_session.py took over of it
+    plan     codes of poses in the order planned, or None; lengths: samples of each of them;
+             hold_s: seconds of rest before the first and after the last
+    goes_on  the session before goes on; face: 0..5 for one that is taken again, -1 otherwise
+    before   the SessionBefore that it goes on from (redo_session.py), None until it was read
+    record   every block of the capture is sent to the host
+    unasked  nobody asked: a board without a record calibrates by itself
     """
 
-    wanted = None
-    before = False
-    face = -1
+    def __init__(self, plan=None, lengths=(), hold_s=0, goes_on=False, face=-1, before=None,
+                 record=False, unasked=False):
+        self.plan = plan
+        self.lengths = lengths
+        self.hold_s = hold_s
+        self.goes_on = goes_on
+        self.face = face
+        self.before = before
+        self.record = record
+        self.unasked = unasked
 
 
-def _flag(unit):
-    """The request in the flag's file, None when it is empty or not there; ValueError."""
+def _flag(root):
+    """The request in the flag's file, {} when it is empty or not there; ValueError."""
     try:
-        with open(unit.board.root + FLAG) as f:
+        with open(root + FLAG) as f:
             text = f.read(MOST_TEXT + 1)
     except OSError:
-        return None
+        return {}
     finally:
-        remove(unit.board.root + FLAG)
+        remove(root + FLAG)
     if len(text) > MOST_TEXT:
         raise ValueError("more than %d characters" % MOST_TEXT)
-    return json.loads(text) if text.strip() else None
+    return json.loads(text) if text.strip() else {}
 
 
 def _whole(value, low, high, what):
@@ -56,50 +66,44 @@ def _whole(value, low, high, what):
 
 
 def parse(request, pose_samples):
-    """An Asked, or None for the ordinary six faces; ValueError with a sentence."""
-    if request is None:
-        return None
+    """The SessionRequest of a dict; ValueError with a sentence. pose_samples: as set."""
     if not isinstance(request, dict):
         raise ValueError("expected a JSON object")
-    asked = Asked()
+    unasked = request.get("unasked") is True
     if request.get("continue"):
-        asked.before = True
-        return asked
+        return SessionRequest(goes_on=True, unasked=unasked)
     if "redo" in request:
         if request["redo"] not in FACES:
             raise ValueError("redo without a face, expected one of " + " ".join(FACES))
-        asked.before = True
-        asked.face = FACES.index(request["redo"])
-        return asked
+        return SessionRequest(goes_on=True, face=FACES.index(request["redo"]))
+    record = request.get("record") is True
     if "poses" not in request:
-        return None
+        return SessionRequest(record=record, unasked=unasked)
     poses = request["poses"]
     if not isinstance(poses, str) or not 0 < len(poses.split()) <= MOST_POSES:
         raise ValueError("poses: expected 1 to %d names in one text" % MOST_POSES)
-    asked.wanted = [pose_code(name) for name in poses.split()]
+    plan = [pose_code(name) for name in poses.split()]
     lengths = request.get("samples", pose_samples)
     if not isinstance(lengths, list):
-        lengths = [lengths] * len(asked.wanted)
-    if len(lengths) != len(asked.wanted):
-        raise ValueError("%d poses and %d times samples" % (len(asked.wanted), len(lengths)))
-    asked.lengths = [_whole(n, SHORTEST, LONGEST, "samples") for n in lengths]
-    asked.hold_s = _whole(request.get("rest_s", 0), 0, 3600, "rest_s")
-    return asked
+        lengths = [lengths] * len(plan)
+    if len(lengths) != len(plan):
+        raise ValueError("%d poses and %d times samples" % (len(plan), len(lengths)))
+    return SessionRequest(plan, [_whole(n, SHORTEST, LONGEST, "samples") for n in lengths],
+                          _whole(request.get("rest_s", 0), 0, 3600, "rest_s"), record=record)
 
 
-def run(unit):
-    unit.recording = False
-    request, unit.request = unit.request, None
+def run(firmware):
+    """The SessionRequest; None, and an error event, when it cannot be understood."""
+    request, firmware.request = firmware.request, None
+    recording, firmware.recording = firmware.recording, False
     try:
-        flag = _flag(unit)
-        unit.taken = parse(request or flag, unit.settings["pose_samples"])
-        unit.recording = (request or flag or {}).get("record") is True and (
-            unit.taken is None or not unit.taken.before)
-    except (ValueError, RuntimeError) as e:
-        unit.events.error("no calibration: what was asked for cannot be understood: %s" % e,
-                          "%s empty, or a plan or a face as sixflip calibrate writes it" % FLAG)
-        unit.asked = False
-        return "put_in_force"
-    if unit.taken is not None and unit.taken.before:
-        return "redo_session"
-    return "sampling"
+        request = request or _flag(firmware.board.root)
+        asked = parse(request, firmware.settings["pose_samples"])
+    except (ValueError, RuntimeError) as e:  # RuntimeError: JSON that is nested too deep
+        firmware.events.error(
+            "no calibration: what was asked for cannot be understood: %s" % e,
+            "%s empty, or a plan or a face as sixflip calibrate writes it" % FLAG)
+        return None
+    if recording and not request:  # a host that writes down the stream gets the session as well
+        asked.record = True
+    return asked

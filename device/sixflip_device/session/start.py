@@ -1,6 +1,7 @@
-"""First phase: the sensor, the self-test, the grace window.
+"""The first phase: the sensor is searched for and tested, and a host may stop the firmware.
 
-Half a second of samples at power-up: does the sensor deliver what it should?
+The test is half a second of samples: does the sensor deliver what it should? In the grace window
+nothing else happens, so that a host or a Ctrl-C can always get at the board.
 """
 
 import os
@@ -52,92 +53,96 @@ LOOK_AGAIN_US = 2000000
 STEP_US = 20000
 
 
-def _wait(unit, us, pattern):
+def _wait(firmware, us, pattern):
     """Waits, obeying the host; True when it changed what to do."""
-    board = unit.board
+    board = firmware.board
     lamp = led.Lamp(board, 1000000 // STEP_US)
     lamp.show(pattern)
     started = board.ticks_us()
     while board.ticks_diff(board.ticks_us(), started) < us:
         lamp.step()
-        if unit.listen():
+        if firmware.listen():
             return True
         board.sleep_us(STEP_US)
     return False
 
 
-def _hello(unit, imu, report):
-    unit.events.emit(
-        "hello", firmware=sixflip.__version__, board=unit.board.name, id=unit.board.unique_id,
+def _hello(firmware, imu, report):
+    firmware.events.emit(
+        "hello", firmware=sixflip.__version__, board=firmware.board.name,
+        id=firmware.board.unique_id,
         sensor=None if imu is None else imu.sensor, chip=None if imu is None else imu.name,
         who_am_i=None if imu is None else imu.who_am_i, report=report,
         float_bits=64 if 1.0 + 1e-9 != 1.0 else 32)
 
 
-def _no_sensor(unit, report):
-    wanted = unit.settings["sensor"]
-    unit.events.error(
+def _no_sensor(firmware, report):
+    wanted = firmware.settings["sensor"]
+    firmware.events.error(
         "no usable sensor: " + "; ".join(report),
         "an MPU6050 or another sensor that docs/wiring.md lists"
         if wanted == "auto" else "sensor %s as in sixflip.json" % wanted)
 
 
-def _find_sensor(unit):
-    """Looks until the chip is there; False when the host stopped it. Says so once."""
+def _find_sensor(firmware):
+    """Looks until the chip is there, and says once why it is not; False when the host stopped it.
+
+    A calibration that was asked for meanwhile waits until there is a sensor.
+    """
     said = None
-    unit.sensor = None
-    while not unit.stopped:
+    firmware.sensor = None
+    while not firmware.stopped:
         try:
-            imu, report = find(unit.board, unit.settings)
+            imu, report = find(firmware.board, firmware.settings)
         except OSError as e:
             report = getattr(e, "report", None) or [
                 "the bus fails while the chip is set up (%s)" % e]
-            if said is None and unit.first:
-                _hello(unit, None, report)
+            if said is None and firmware.first:
+                _hello(firmware, None, report)
             if report != said:
                 said = report
-                _no_sensor(unit, report)
-            _wait(unit, LOOK_AGAIN_US, led.NO_CHIP)
+                _no_sensor(firmware, report)
+            _wait(firmware, LOOK_AGAIN_US, led.NO_CHIP)
             continue
-        unit.sensor = Sensor(unit.board, imu, unit.settings, unit.events)
-        _hello(unit, imu, report)
+        firmware.sensor = Sensor(firmware.board, imu, firmware.settings, firmware.events)
+        _hello(firmware, imu, report)
         return True
     return False
 
 
-def _self_test(unit):
-    answer = self_test(unit.board, unit.sensor, unit.settings["rate_hz"])
-    unit.events.emit("selftest", who_am_i=unit.sensor.imu.who_am_i, **answer)
+def _self_test(firmware):
+    answer = self_test(firmware.board, firmware.sensor, firmware.settings["rate_hz"])
+    firmware.events.emit("selftest", who_am_i=firmware.sensor.imu.who_am_i, **answer)
 
 
-def _asked_for(unit):
+def _asked_for(firmware):
     """A held button or the flag file asks for a calibration."""
-    if unit.board.button():
+    if firmware.board.button():
         return True
     try:
-        os.stat(unit.board.root + FLAG)
+        os.stat(firmware.board.root + FLAG)
         return True
     except OSError:
         return False
 
 
-def _grace(unit):
+def _grace(firmware):
     """The window in which a host can stop the firmware before it does anything."""
-    ms = unit.settings["grace_ms"]
-    unit.events.emit("grace", ms=ms)
-    _wait(unit, ms * 1000, led.MEASURING)
-    unit.asked = unit.asked or _asked_for(unit)
+    ms = firmware.settings["grace_ms"]
+    firmware.events.emit("grace", ms=ms)
+    _wait(firmware, ms * 1000, led.MEASURING)
+    if firmware.request is None and _asked_for(firmware):
+        firmware.request = {}
 
 
-def run(unit):
-    try:
-        if not _find_sensor(unit):
-            return ""
-        _self_test(unit)
-        if unit.first:
-            _grace(unit)
-    except BusLost as e:
-        unit.events.error(str(e), "the sensor that was there a moment ago")
-        _wait(unit, LOOK_AGAIN_US, led.NO_CHIP)
-        return "" if unit.stopped else "start"
-    return "" if unit.stopped else "recall"
+def run(firmware):
+    """Until there is a tested sensor, or the host has stopped the firmware."""
+    while _find_sensor(firmware):
+        try:
+            _self_test(firmware)
+            if firmware.first:
+                _grace(firmware)
+            return
+        except BusLost as e:
+            firmware.events.error(str(e), "the sensor that was there a moment ago")
+            _wait(firmware, LOOK_AGAIN_US, led.NO_CHIP)

@@ -1,12 +1,12 @@
 """While samples are streamed: is the corrected reading at rest still as long as gravity?
 
-The rest at power-up says so once (still_valid.py), with its limits; a register that strays or a
+The rest at power-up says so once (check_at_rest.py), with its limits; a register that strays or a
 sensor that is knocked later is seen here. Sample by sample only the window's integers are summed.
 """
 
 from sixflip.poses.still_window import StillWindow, window_length
 
-from ..record.still_valid import GOOD_MG, NOISE_TIMES
+from ..record.check_at_rest import GOOD_MG, NOISE_TIMES
 
 WINDOWS = 20  # still ones in a row, 5 s: nothing that drives speeds up evenly for so long
 NOISE_G = 0.005  # of a record that does not know its noise; most sensors have half of it or less
@@ -17,10 +17,10 @@ class GravityWatch:
     """step(dt_us, sample) with every sample; a "gravity" event says once that |a| is off, and
     again only after a rest in which it was right, or with another record."""
 
-    def __init__(self, unit):
-        imu = unit.sensor.imu
-        rate_hz = unit.settings["rate_hz"]
-        self._unit = unit
+    def __init__(self, firmware):
+        imu = firmware.sensor.imu
+        rate_hz = firmware.settings["rate_hz"]
+        self._firmware = firmware
         self._imu = imu
         self._window = StillWindow(window_length(rate_hz, rate_hz), imu.accel_rail,
                                    imu.gyro_rail, 1000000 // rate_hz)
@@ -37,12 +37,12 @@ class GravityWatch:
             self._look()
 
     def _look(self):
-        unit = self._unit
-        if unit.record is not self._record:
-            self._record = unit.record
+        firmware = self._firmware
+        if firmware.record is not self._record:
+            self._record = firmware.record
             self._said = False
             self._rest_begins()
-        error_mg = None if unit.record is None else self._error_mg()
+        error_mg = None if firmware.record is None else self._error_mg()
         if error_mg is None:
             self._rest_begins()
             return
@@ -53,20 +53,21 @@ class GravityWatch:
         error_mg = self._sum_mg / self._n
         off = abs(error_mg) > GOOD_MG
         if off and not self._said:
-            unit.events.emit("gravity", a_error_mg=error_mg, limit_mg=GOOD_MG)
+            firmware.events.emit("gravity", a_error_mg=error_mg, limit_mg=GOOD_MG)
         self._said = off
         self._rest_begins()
 
     def _error_mg(self):
         """By how much |a| of the window is off g; None when it is no rest."""
-        unit, window = self._unit, self._window
-        noise = NOISE_TIMES * (unit.record.accel["noise_g"] or NOISE_G) * self._imu.accel_lsb_per_g
+        firmware, window = self._firmware, self._window
+        noise_g = firmware.record.accel["noise_g"] or NOISE_G
+        noise = NOISE_TIMES * noise_g * self._imu.accel_lsb_per_g
         if window.jumped or max([window.variance(k) for k in range(3)]) > noise * noise:
             return None
         means = [window.mean(k) for k in range(6)]
         means.append(window.total(6) / window.n)
-        out = unit.correction.apply(means, [0.0] * 6)
+        out = firmware.correction.apply(means, [0.0] * 6)
         if self._imu.has_gyro and max([abs(x) for x in out[3:]]) > TURN_RADPS:
             return None
         length = (out[0] * out[0] + out[1] * out[1] + out[2] * out[2]) ** 0.5
-        return (length / unit.settings["g"] - 1) * 1000
+        return (length / firmware.settings["g"] - 1) * 1000

@@ -19,7 +19,7 @@ from .solve import local_gravity
 HELP = "is the calibration still valid? some seconds of rest against the record"
 EXAMPLE = ("sixflip check\n"
            "         sixflip check rest.csv --record record_a.bin")
-# The board's own limits (still_valid.py of the firmware; a test compares them): what ageing, a
+# The board's own limits (check_at_rest.py of the firmware; a test compares them): what ageing, a
 # knock or warming by 15 K may well do to a calibrated sensor, and what they do not.
 GOOD_MG = 5.0
 NOISE_TIMES = 3.0

@@ -77,7 +77,7 @@ def test_a_recording_that_is_no_rest_is_not_judged(tmp_path, capsys, calibrated)
 
 
 def test_limits_are_those_of_the_firmware():
-    source = (DEVICE / "record" / "still_valid.py").read_text()
+    source = (DEVICE / "record" / "check_at_rest.py").read_text()
     for name in ("GOOD_MG", "NOISE_TIMES", "WARMER_C"):
         board = float(re.search(r"^%s = ([\d.]+)$" % name, source, re.M).group(1))
         assert board == getattr(check, name)

@@ -62,7 +62,6 @@ def run(sensor, world=None, mode="", ballast=0, record="", **changed):
     values, problems = settings.merge(dict(grace_ms=0, **changed))
     del settings
     board = TapedBoard(i2c, "/", Teller(ballast).told, clock)
-    power_up.free_unlasting()
     if mode:
         __import__(mode).install(board, power_up)
     power_up.run(board, values, problems)

@@ -1,15 +1,20 @@
-"""A session whose capture goes to the host as well, block by block as it is taken: all of it,
-whatever the flash has room for. Loaded only when the host asks for it.
+"""The stores of unusual sessions, loaded only when one is wanted: of a session whose capture goes
+to the host as well, and of one that goes on with the capture of the session before.
 """
 
 from sixflip.capture.blocks import STEPS, header
 from sixflip.capture.pieces import PieceWriter
+from sixflip.capture.writer import BlockWriter
 
-from .store import CaptureStore
+from ..flash_files import NEW
+from .store import CaptureStore, meta_of
 
 
 class RecordedStore(CaptureStore):
-    """CaptureStore, and every block to the host; header_again() for one that missed it."""
+    """A CaptureStore that sends every block to the host, whatever the flash has room for.
+
+    header_again() sends the header to a host that missed it.
+    """
 
     recorded = True
 
@@ -36,7 +41,6 @@ class RecordedStore(CaptureStore):
             self.kept += 1
 
     def header_again(self):
-        from .rescue import meta_of
         meta = self._meta or meta_of(self._root)
         if meta is not None:
             self._send(header(meta, self._columns))
@@ -50,3 +54,27 @@ class RecordedStore(CaptureStore):
         self._writer.end(complete)
         self._to_file, self._to_host = True, False
         return CaptureStore.finish(self, complete, placements)
+
+
+class ContinuedStore(CaptureStore):
+    """Goes on with the file that redo_session.py has begun; before: its SessionBefore."""
+
+    def __init__(self, root, meta, mask, before):
+        self._before = before
+        CaptureStore.__init__(self, root, meta, mask)
+
+    def _open(self, meta):
+        before, self._before = self._before, None
+        if before is None:  # the file was broken: once more, without samples
+            return CaptureStore._open(self, meta)
+        from sixflip.capture.scan import go_on
+        if before.sums_only:
+            self._short(before.reason)
+        self.bytes, self.kept = before.bytes, before.kept
+        try:
+            self._file = open(self._root + NEW, "ab")  # noqa: SIM115 - open for a session
+        except OSError as e:
+            self._fail(e)
+        self._writer = BlockWriter(self._write, None, self._columns, sums_only=self.sums_only)
+        go_on(self._writer, before.samples, before.seconds, before.us)
+        return None
