@@ -1,16 +1,17 @@
 """What happens at power-up, in the order of METHOD 6, and after it until the host says stop.
 
-    phase                    needs                       gives
-    session.start            settings                    sensor, tested; the grace window is over
-    record.load_record       sensor                      record, or a request without one
-    record.check_at_rest     record                      correction; the gyro's bias of today
-    session.session_request  request, the flag's file    SessionRequest
-    session.redo_session     SessionRequest              the same with the session before it
-    session.sampling         sensor, SessionRequest      SessionResult, the capture
-    session.calibration      SessionResult, record       Calibration
-    record.saving            both                        record, on the flash
-    record.active_record     record                      correction
-    stream.stream            correction                  corrected samples, or a request
+    phase                            needs                     gives
+    session.start                    settings                  sensor, tested; the grace is over
+    record.load_record               sensor                    record, or a request without one
+    record.check_at_rest             record                    correction, the gyro's bias of today
+    session.session_request          request, the flag's file  SessionRequest
+    session.redo_session             SessionRequest            it with the session before
+    session.sampling                 sensor, SessionRequest    SessionResult, the capture
+    session.calibrate_accelerometer  SessionResult, record     Calibration
+    session.calibrate_gyro           both of them, record      Calibration
+    record.saving                    both of them              record, on the flash
+    record.active_record             record                    correction
+    stream.stream                    correction                corrected samples, or a request
 
 Every phase is a module with run(firmware, ...). The modules that it imports leave the heap when it
 ends: the session and the solver together take more than the 100 KB that a board may have.
@@ -68,7 +69,9 @@ def calibrate(firmware):
     session = phase("session.sampling", firmware, request)
     calibration = None
     if session.how == "complete":
-        calibration = phase("session.calibration", firmware, session)
+        calibration = phase("session.calibrate_accelerometer", firmware, session)
+        if firmware.sensor.imu.has_gyro:
+            calibration = phase("session.calibrate_gyro", firmware, session, calibration)
     phase("record.saving", firmware, session, calibration)
     if session.how == "bus lost":
         raise BusLost(session.ended)

@@ -13,8 +13,7 @@ from sixflip_device.capture import meta as capture_meta
 from sixflip_device.capture.store import CaptureStore
 from sixflip_device.record import record_slots, saving
 from sixflip_device.session import redo_session, sampling
-from sixflip_device.session.calibration import Calibration
-from sixflip_device.session.session_request import SessionRequest
+from sixflip_device.session.session_values import Calibration, SessionRequest, SessionResult
 
 MASK = ACCEL | GYRO | TEMP
 POSES = 12
@@ -179,8 +178,8 @@ class Written:
         unit = unit_at(root)
         if number == NEW:
             unit.slot, unit.record, _ = record_slots.RecordSlots(root).load(lambda r: "")
-        session = sampling.SessionResult(number, how, "it ended", [], [], [], True)
-        calibration = Calibration(record(number), "good", "fine", {})
+        session = SessionResult(number, how, "it ended", [], [], [], True)
+        calibration = Calibration(record(number), "good", "fine", {}, {})
         saving.run(unit, session, calibration if how == "complete" else None)
         errors = [t for t in unit.events.told if t[0] == "error"]
         if errors:

@@ -21,7 +21,8 @@ from sixflip.gyro import solver as gyroscope
 from sixflip.poses import session as machine
 from sixflip.poses.faces import AXIS, FACES, SIGN
 from sixflip.record.record import Record
-from sixflip_device.session.calibration import calibrate
+from sixflip_device.session.calibrate_accelerometer import calibrate_accelerometer
+from sixflip_device.session.calibrate_gyro import calibrate_gyro
 
 G = 9.80665
 RATE_HZ = 100
@@ -275,8 +276,9 @@ def judged(plan, s, refusals=()):
     record = Record()
     record.chip = plan.chip
     record.accel_lsb_per_g, record.gyro_lsb_per_dps = plan.lsb, plan.gyro_lsb
-    calibration = calibrate(s.placements, s.moves, record, None, plan.rails[0],
-                            catalogue.driver(plan.chip).gyro_tolerance)
+    calibration = calibrate_accelerometer(s.placements, s.moves, record, None, plan.rails[0])
+    calibration = calibrate_gyro(calibration, s.placements, s.moves, None,
+                                 catalogue.driver(plan.chip).gyro_tolerance)
     out.verdict, out.reason = calibration.verdict, calibration.reason
     if record.accel is None or out.verdict == "refused":
         return out

@@ -19,7 +19,7 @@ from sixflip.poses.faces import FACES, face_of_code
 from ..capture.meta import columns, expected_bytes, meta_bytes, session_number
 from ..flash_files import GOOD, NEW, REFUSED, UNSAVED, free_bytes, remove
 from ..sensor import READ
-from .session_request import SessionRequest
+from .session_values import SessionBefore, SessionRequest
 
 GAP_S = 60
 WARMER_C = 3.0  # 2.7 mg at the 0.9 mg/degC typical of an MPU6050's Z axis
@@ -104,30 +104,6 @@ def _no_room(root, name, bytes):
     if free is None or free >= bytes + RESERVE:
         return ""
     return "%d bytes are free, a copy of the session before takes %d" % (free, bytes)
-
-
-class SessionBefore:
-    """The session before, as far as the one that goes on from it takes it over.
-
-    session        the number of the new session, in the header of the copied capture
-    placements     those that stay; their samples are found in the copy
-    moves          to each of them, and the one under way at the end
-    samples, kept, bytes   of the copy: samples there were, those that are in it, its size
-    seconds, us    the time that the new session begins at
-    sums_only, reason      no samples are kept, and why
-    """
-
-    def __init__(self, session, placements, moves, samples, kept, bytes, seconds, us, reason):
-        self.session = session
-        self.placements = placements
-        self.moves = moves
-        self.samples = samples
-        self.kept = kept
-        self.bytes = bytes
-        self.seconds = seconds
-        self.us = us
-        self.sums_only = reason != ""
-        self.reason = reason
 
 
 def _copy(firmware, name, meta, stay, face, stretches, room):

@@ -10,27 +10,9 @@ from ..capture.meta import columns, expected_bytes, meta_bytes, session_number
 from ..capture.store import CaptureStore
 from ..flash_files import FLAG, remove
 from .guided_session import GuidedSession, names
+from .session_values import SessionResult
 
 HANDLING_S = 6  # of a pose, at most: for the size of a capture
-
-
-class SessionResult:
-    """What a session leaves.
-
-    number             names the session in capture and record
-    how, ended         "complete", "timed out", "stopped", "changed" or "bus lost", and a sentence
-    placements, moves  of sixflip.poses.placement; missing: names of poses still to come
-    has_capture        the capture's file, capture.new, is whole
-    """
-
-    def __init__(self, number, how, ended, placements, moves, missing, has_capture):
-        self.number = number
-        self.how = how
-        self.ended = ended
-        self.placements = placements
-        self.moves = moves
-        self.missing = missing
-        self.has_capture = has_capture
 
 
 def new_store(firmware, request):

@@ -16,33 +16,11 @@ import json
 from sixflip.poses.faces import FACES, pose_code
 
 from ..flash_files import FLAG, remove
+from .session_values import SessionRequest
 
 MOST_POSES = 200
 MOST_TEXT = 4096  # characters of the flag's file
 SHORTEST, LONGEST = 50, 60000  # samples of a pose
-
-
-class SessionRequest:
-    """What session.sampling is to do; the six faces in any order unless it says otherwise.
-
-    plan     codes of poses in the order planned, or None; lengths: samples of each of them;
-             hold_s: seconds of rest before the first and after the last
-    goes_on  the session before goes on; face: 0..5 for one that is taken again, -1 otherwise
-    before   the SessionBefore that it goes on from (redo_session.py), None until it was read
-    record   every block of the capture is sent to the host
-    unasked  nobody asked: a board without a record calibrates by itself
-    """
-
-    def __init__(self, plan=None, lengths=(), hold_s=0, goes_on=False, face=-1, before=None,
-                 record=False, unasked=False):
-        self.plan = plan
-        self.lengths = lengths
-        self.hold_s = hold_s
-        self.goes_on = goes_on
-        self.face = face
-        self.before = before
-        self.record = record
-        self.unasked = unasked
 
 
 def _flag(root):
