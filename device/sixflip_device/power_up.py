@@ -23,6 +23,11 @@ import sys
 from .firmware import Firmware
 from .sensor import BusLost
 
+# Bytes. Collected so often, what lasts stays at the front of a small heap and the free rest in one
+# piece: an event of a kilobyte and a half finds room in it.
+COLLECT_AFTER = 4096
+SMALL_HEAP = 262144
+
 
 def main():
     """The firmware of this board, whichever it is."""
@@ -35,6 +40,8 @@ def run(board, settings, problems=()):
     firmware = Firmware(board, settings)
     for problem in problems:
         firmware.events.error(problem, "the settings as the README lists them")
+    if hasattr(gc, "threshold") and gc.mem_free() + gc.mem_alloc() < SMALL_HEAP:
+        gc.threshold(COLLECT_AFTER)
     while not firmware.stopped:
         try:
             power_up(firmware)
@@ -88,10 +95,10 @@ def phase(name, *given):
         if sys.implementation.name == "micropython":  # a computer has room, and tests hold on
             for module in [one for one in sys.modules
                            if one.startswith("sixflip") and one not in loaded]:
-                _forget(module)
+                forget(module)
 
 
-def _forget(name):
+def forget(name):
     """Whatever still uses the module keeps it alive; the next import loads it again."""
     sys.modules.pop(name, None)
     dot = name.rfind(".")

@@ -5,6 +5,8 @@ out are the samples that end a window or a block. An allocation is a MemoryError
 the firmware. Prints how many turns were locked, and how many there were.
 """
 
+import sys
+
 import micropython
 
 
@@ -40,17 +42,20 @@ def install(board, power_up):
     run_phase = power_up.phase
 
     def phase(name, *given):
-        if name == "session.sampling":
-            from sixflip_device.session import guided_session
-            plain = guided_session.GuidedSession
+        if name != "session.sampling":
+            return run_phase(name, *given)
+        loaded = set(sys.modules)
+        from sixflip_device.session import guided_session
+        plain = guided_session.GuidedSession
 
-            def made(*parts):
-                lock.guided = plain(*parts)
-                return lock.guided
-            guided_session.GuidedSession = made
+        def made(*parts):
+            lock.guided = plain(*parts)
+            return lock.guided
+        guided_session.GuidedSession = made
         after = run_phase(name, *given)
-        if lock.guided is not None:
-            lock.guided = None
-            print('{"event": "locked", "turns": %d, "of": %d}' % (lock.locked, lock.samples))
+        lock.guided = None
+        print('{"event": "locked", "turns": %d, "of": %d}' % (lock.locked, lock.samples))
+        for module in [one for one in sys.modules if one not in loaded]:
+            power_up.forget(module)
         return after
     power_up.phase = phase
