@@ -7,7 +7,7 @@ import os
 import sixflip
 from sixflip.capture import blocks as capture_blocks
 
-from ..flash_files import GOOD, REFUSED, UNSAVED
+from ..flash_files import GOOD, NEW, REFUSED, UNSAVED
 
 HEAD = 1200  # bytes of a file: a capture's metadata, or a whole record
 BEFORE = (GOOD, UNSAVED, REFUSED, "record_a.bin", "record_b.bin")
@@ -56,3 +56,13 @@ def expected_bytes(samples, mask):
     were measured of seven columns that take 16 when they are whole (tests/bench/capture_size.py).
     """
     return samples * (2 + 2 * len(capture_blocks.places(mask))) * 3 // 4
+
+
+def meta_of(root):
+    """The metadata in the header of the session's file, or None."""
+    from sixflip.capture.scan import Scan
+    try:
+        with open(root + NEW, "rb") as f:
+            return Scan(f).blocks.meta_bytes
+    except (OSError, ValueError):
+        return None

@@ -7,7 +7,8 @@ from sixflip.capture.pieces import PieceWriter
 from sixflip.capture.writer import BlockWriter
 
 from ..flash_files import NEW
-from .store import CaptureStore, meta_of
+from .meta import meta_of
+from .store import CaptureStore
 
 
 class RecordedStore(CaptureStore):

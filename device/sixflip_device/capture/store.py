@@ -7,6 +7,7 @@ so. Room for the records is always left free.
 from sixflip.capture.writer import BlockWriter
 
 from ..flash_files import NEW, REFUSED, UNSAVED, free_bytes, remove
+from .meta import meta_of
 
 RESERVE = 24576      # bytes left for the records, and for the file system's own needs
 SUMS_BYTES = 4096    # what the poses of a session take without their samples
@@ -168,13 +169,3 @@ class CaptureStore:
             for placement in placements:
                 self._writer.pose(placement)
             self._end(complete)
-
-
-def meta_of(root):
-    """The metadata in the header of the session's file, or None."""
-    from sixflip.capture.scan import Scan
-    try:
-        with open(root + NEW, "rb") as f:
-            return Scan(f).blocks.meta_bytes
-    except (OSError, ValueError):
-        return None

@@ -19,6 +19,9 @@ ACROSS_DEG = 5.0
 COMMON_DEG = 15.0
 OFF_HALF_TURN_DEG = 40.0
 
+# Faults of a flip.
+SATURATED, GAP, NOT_A_HALF_TURN, NOT_FLAT = "saturated", "gap", "not a half turn", "not flat"
+
 
 def integral(sums, n, duration_us, lsb_per_dps):
     """[Ix Iy Iz] in rad and T in s from the counts of gx gy gz summed over n samples."""
@@ -47,7 +50,7 @@ class Flip:
 
     face; turned [3] rad without bias; T in s; angle rad from a to b, right-handed about the
     face's axis, 0..2 pi; along: +1 or -1, the way it was turned; lean_deg: part across the
-    axis; used, reason
+    axis; used; fault, reason: why it is not used, a fault from above and a sentence
     """
 
 
@@ -79,22 +82,23 @@ def _flip(move, a, b, lsb_per_dps, bias, rotation):
     flip.along = 1 if about >= 0.0 else -1
     flip.angle = (about if b > a else -about) % (2.0 * math.pi)
     flip.lean_deg = _lean(flip, rotation)
-    flip.reason = _why_not(move, flip, abs(math.degrees(about)))
-    flip.used = not flip.reason
+    flip.fault, flip.reason = _fault(move, flip, abs(math.degrees(about)))
+    flip.used = not flip.fault
     return flip
 
 
-def _why_not(move, flip, turned_deg):
+def _fault(move, flip, turned_deg):
+    """(fault, sentence), both "" where the flip can be used."""
     if move.saturated:
-        return "the gyro was saturated: turn the box more slowly"
+        return SATURATED, "the gyro was saturated: turn the box more slowly"
     if has_gap(move):
-        return "a gap of %d ms in the samples" % (move.largest_gap_us // 1000)
+        return GAP, "a gap of %d ms in the samples" % (move.largest_gap_us // 1000)
     if not abs(turned_deg - 180.0) <= OFF_HALF_TURN_DEG:
-        return "turned by %.0f degrees, expected 140 to 220" % turned_deg
+        return NOT_A_HALF_TURN, "turned by %.0f degrees, expected 140 to 220" % turned_deg
     if not flip.lean_deg <= ACROSS_DEG:
-        return ("did not stay flat: %.1f degrees across the axis, %.0f is the limit"
-                % (flip.lean_deg, ACROSS_DEG))
-    return ""
+        return NOT_FLAT, ("did not stay flat: %.1f degrees across the axis, %.0f is the limit"
+                          % (flip.lean_deg, ACROSS_DEG))
+    return "", ""
 
 
 def _lean(flip, rotation):
@@ -115,18 +119,18 @@ def _across(turned, k):
 def _misaligned_not_leaning(flips):
     """Two flips about one axis that lean alike show a misaligned gyro: what P is to take."""
     for f in flips:
-        if f.used or not f.reason.startswith("did not stay flat") or f.lean_deg > COMMON_DEG:
+        if f.fault != NOT_FLAT or f.lean_deg > COMMON_DEG:
             continue
         k = AXIS[f.face]
         for other in flips:
             if other is f or AXIS[other.face] != k or not other.turned[k]:
                 continue
-            if not (other.used or other.reason.startswith("did not stay flat")):
+            if not (other.used or other.fault == NOT_FLAT):
                 continue
             ratio = f.turned[k] / other.turned[k]
             apart = [f.turned[i] - ratio * other.turned[i] for i in range(3)]
             if _across(apart, k) <= ACROSS_DEG:
-                f.used, f.reason = True, ""
+                f.used, f.fault, f.reason = True, "", ""
                 break
 
 
@@ -140,7 +144,7 @@ def measured_angles(placements, moves, lsb_per_dps, P):
     found = {}
     for f in find_flips(placements, moves, lsb_per_dps, bias, P[:3]):
         # Its own test of the half turn is the point here, not a reason to leave it out.
-        if f.used or f.reason.startswith("turned"):
+        if f.used or f.fault == NOT_A_HALF_TURN:
             k = AXIS[f.face]
             raw = SIGN[f.face] * f.turned[k]
             turn = SIGN[f.face] * sum([f.turned[i] * P[i][k] for i in range(3)])

@@ -31,7 +31,7 @@ def angles(r, flips):
                 r.across_deg = max(r.across_deg, abs(math.degrees(across)))
         if f.used or not r.flips.get(name, {"used": False})["used"]:
             r.flips[name] = {"angle_deg": math.degrees(abs(turn)), "used": f.used,
-                             "reason": f.reason}
+                             "fault": f.fault, "reason": f.reason}
 
 
 def spread(r, rows, used, c, bias):
@@ -68,7 +68,7 @@ class GyroscopeResult:
 
     bias_dps [3]  measured rate at rest, deg/s
     sigma 4 x 3, sigma_bias_dps [3]   standard errors
-    flips     {"Z+": {"angle_deg", "used", "reason"}, ...}; the angle by the solved P
+    flips     {"Z+": {"angle_deg", "used", "fault", "reason"}, ...}; the angle by the solved P
     missing   axes 0..2 without a usable flip: P keeps the old matrix there
     wrong_axes  sentence or ""; signs_seen: axes whose sign the moves confirmed
     excess    ([3], standard errors [3]): by what part of half a turn the flips about each axis

@@ -9,6 +9,7 @@ the others shows in any case.
 
 import math
 
+from sixflip.gyro.flips import NOT_A_HALF_TURN
 from sixflip.poses.faces import AXIS, FACES
 
 SCALE_OFF = 0.2
@@ -140,7 +141,7 @@ def apart(r, axis):
     for face in range(6):
         flip = r.flips.get(FACES[face])
         if AXIS[face] == axis and flip and (
-                flip["used"] or flip["reason"].startswith("turned")):
+                flip["used"] or flip["fault"] == NOT_A_HALF_TURN):
             turned[FACES[face]] = (abs(flip["angle_deg"] - 180.0), flip["angle_deg"])
     if not turned:
         return None

@@ -45,7 +45,7 @@ def test_the_answer_has_the_form_of_the_format(tmp_path, capsys):
     assert gyro["bias_dps"] == pytest.approx(sensor.bw, abs=0.02)
     assert list(gyro["flips"]) == ["Z+", "Z-", "X+", "X-", "Y+", "Y-"]
     for face, flip in gyro["flips"].items():
-        assert list(flip) == ["angle_deg", "used", "reason"]
+        assert list(flip) == ["angle_deg", "used", "fault", "reason"]
         assert flip["used"] and flip["angle_deg"] == pytest.approx(180, abs=2)
         assert "%.2f" % flip["angle_deg"] in words and face in words
     assert gyro["verdict"] == "good" and "turned, deg" in words
