@@ -14,7 +14,7 @@ help:
 	@echo "make micropython     the MicroPython interpreter that the virtual board runs on"
 	@echo "make test-qemu       the tests on the emulated Cortex-M3 and micro:bit, a session of every chip"
 	@echo "make test-pico       the whole product on an emulated Raspberry Pi Pico (an hour or two)"
-	@echo "make size            flash and heap of every module of the firmware"
+	@echo "make size            flash and heap of every module of the firmware, and what its start takes"
 	@echo "make check           ruff"
 	@echo "make bench-accuracy  vector error against imucal, imu_calib and the theoretical bound"
 	@echo "make bench           that, and every other benchmark"

@@ -34,6 +34,18 @@ which is what `sixflip provision` copies, and the heap that the compiled module 
 """
 
 
+START = """
+## Start-up
+
+From the import of `sixflip_device.power_up` to the end of the self-test, on an emulated Cortex-M3
+with an MPU6050 on tape, printed by `make size`: instructions of the processor, bytes of heap that
+the firmware has in use then, and the least heap in which it starts, what the interpreter and the
+tape hold among them.
+
+%s
+"""
+
+
 def modules():
     """{name on the board: path} of what a board with MicroPython gets."""
     return {name: path for name, path in board_files().items() if name.endswith(".py")}
@@ -96,6 +108,45 @@ def heap():
             for line in printed.strip().splitlines()}
 
 
+def start_up():
+    """Two lines, source and compiled: what the firmware takes to start; [] without an emulator."""
+    from debian_tier import Unavailable
+    from on_qemu.board import QemuBoard, cortex_m3
+    from on_qemu.firmware import build
+    try:
+        elf = build()
+    except Unavailable:
+        return []
+    rows = ["| the firmware as | instructions to the self-test | heap then | least heap |",
+            "|---|---|---|---|"]
+    with QemuBoard(cortex_m3(elf), ("-icount", "shift=6")) as board:
+        for form in ("source", "compiled"):
+            _, count, used, _ = started(board, form).split()
+            rows.append("| %s | %.1f million | %s | %d KB |"
+                        % (form, int(count) / 1e6, used, least_heap(board, form)))
+    return rows
+
+
+def started(board, form, heap=0):
+    """The line that start_up.py prints, "" where the heap is too small."""
+    try:
+        said = board.exec("import start_up\nstart_up.run(%r, %d)" % (form, heap))
+    except RuntimeError as error:
+        if "MemoryError" not in str(error):
+            raise
+        return ""
+    return next((line for line in said.splitlines() if line.startswith("started")), "")
+
+
+def least_heap(board, form):
+    """KB of heap in which the firmware starts, to 4 KB, what interpreter and tape hold included."""
+    low, high = 20, 136     # it does not, it does
+    while high - low > 4:
+        middle = (low + high) // 2
+        low, high = (low, middle) if started(board, form, middle * 1024) else (middle, high)
+    return high
+
+
 def table(of_flash, of_heap):
     """Markdown, the largest .mpy first; the sum of everything last."""
     lines = ["| module | flash, .py | flash, .mpy | heap |", "|---|---|---|---|"]
@@ -110,6 +161,9 @@ def table(of_flash, of_heap):
 def main(words):
     of_heap = heap()
     text = HEAD + "\n" + table(flash(), of_heap) + "\n"
+    rows = start_up() if of_heap else []
+    if rows:
+        text += START % "\n".join(rows)
     if words == ["--write"] and of_heap:
         TABLE.write_text(text)
     else:

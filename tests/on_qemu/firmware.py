@@ -56,10 +56,14 @@ def frozen_files():
     return files
 
 
+def sources():
+    """{path on a board: bytes}: the firmware uncompiled."""
+    return {name: path.read_bytes() for name, path in board_files().items()}
+
+
 def provisioned():
-    """{path on a board: bytes}: the firmware as it is provisioned, compiled."""
-    files, why = for_board({name: path.read_bytes() for name, path in board_files().items()},
-                           FORMAT)
+    """The same as it is provisioned, compiled."""
+    files, why = for_board(sources(), FORMAT)
     if why:
         raise RuntimeError("the firmware stays source: " + why)
     return files
@@ -167,7 +171,7 @@ def _build(board):
         except (SixflipError, subprocess.SubprocessError) as error:
             raise Unavailable("MicroPython's source package cannot be had: %s" % error) from None
     files = {name: path.read_bytes() for name, path in frozen_files().items()}
-    files["provisioned.py"] = ("FILES = %r\n" % provisioned()).encode()
+    files["provisioned.py"] = ("FILES = %r\nSOURCES = %r\n" % (provisioned(), sources())).encode()
     files["tapes.py"] = tape_module().read_bytes()
     digest = hashlib.sha256()
     for name, data in sorted(files.items()):

@@ -88,7 +88,8 @@ class Disk:
             return (FILE, 0, 0, 0, 0, 0, self.written[path].size, 0, 0, 0)
         if path in self.given:
             return (FILE, 0, 0, 0, 0, 0, len(self.given[path]), 0, 0, 0)
-        if not path or path + "/__init__.mpy" in self.given:
+        if not path or any(
+                path + "/__init__" + ending in self.given for ending in (".mpy", ".py")):
             return (FOLDER, 0, 0, 0, 0, 0, 0, 0, 0, 0)
         raise OSError(ENOENT)
 
