@@ -139,7 +139,7 @@ def started(board, form, heap=0):
 
 
 def least_heap(board, form):
-    """KB of heap in which the firmware starts, to 4 KB, what interpreter and tape hold included."""
+    """KB of heap in which the firmware starts, to 4 KB, interpreter and tape included."""
     low, high = 20, 136     # it does not, it does
     while high - low > 4:
         middle = (low + high) // 2
