@@ -17,6 +17,7 @@ from scipy import optimize
 TAPERS = 4
 HIGHEST = 0.1  # of the sample rate: above that a chip's own filter takes noise away
 GROUPS = 80  # of frequencies, equally spaced in their logarithm
+PARTS, FEWEST = 20, 9  # of the frequencies, whose medians a line is held against; in each
 LINE = 6.0  # times its neighbourhood: no noise, but a line, for a mean of four tapers
 HALF_OF_90 = 1.353  # nats below the maximum at the ends of a 90 % interval: half of chi2(0.9, 1)
 ROUNDS = 200
@@ -51,7 +52,21 @@ def levels(rests, rate, walks):
                        1)[:, :3 if walks else 2]
     found, top = _likeliest(columns, power, shape)
     out = [_level(columns, power, shape, found, top, k) for k in range(columns.shape[1])]
+    out = [_sparing(columns, power, shape, out, k) for k in range(len(out))]
     return (*out, None) if not walks else tuple(out)
+
+
+def _sparing(columns, power, shape, levels, k):
+    """A Level whose value is the likeliest one without the others that the data do not show: what
+    cannot be negative would take a part of it on average. Their likelihoods differ by less than
+    HALF_OF_90, so that its own interval holds it."""
+    absent = [j for j, one in enumerate(levels) if j and j != k and one.low == 0.0]
+    present = [j for j in range(len(levels)) if j not in absent]
+    if not absent:
+        return levels[k]
+    square = _likeliest(columns[:, present], power, shape)[0][present.index(k)]
+    value = float(np.clip(np.sqrt(square), levels[k].low, levels[k].high))
+    return Level(value, levels[k].low, levels[k].high)
 
 
 def _power(x, rate):
@@ -72,9 +87,7 @@ def _grouped(f, power, n, rate):
     use = (f > (TAPERS + 1) / 2.0 * rate / n) & (f < HIGHEST * rate)
     f, power = f[use], power[use]
     if len(f) > 30:
-        from scipy import signal
-        usual = signal.medfilt(power, min(2 * (len(f) // 20) + 11, 201))
-        lines = np.flatnonzero(power > LINE * usual)
+        lines = np.flatnonzero(power > LINE * _usual(f, power))
         near = (lines[:, None] + np.arange(-TAPERS, TAPERS + 1)).ravel()
         keep = np.ones(len(f), bool)
         keep[near[(near >= 0) & (near < len(f))]] = False
@@ -85,6 +98,24 @@ def _grouped(f, power, n, rate):
     return Groups(np.array([np.exp(np.log(f[p]).mean()) for p in parts]),
                   np.array([power[p].mean() for p in parts]),
                   np.array([len(p) * TAPERS / (TAPERS + 1.0) for p in parts]))
+
+
+def _usual(f, power):
+    """Median power about each frequency, on straight lines between parts in the logarithms of
+    both: it falls as steeply as noise does, and the first frequencies are no lines."""
+    edges = [0]
+    for edge in np.searchsorted(f, np.geomspace(f[0], f[-1], PARTS + 1)[1:-1]).tolist():
+        if edge - edges[-1] >= FEWEST:
+            edges.append(edge)
+    parts = np.split(np.arange(len(f)), edges[1:])
+    x = [np.log(f[part]).mean() for part in parts]
+    y = [np.median(np.log(power[part])) for part in parts]
+    if len(parts) < 2:
+        return np.full(len(f), np.exp(y[0]))
+    slope = np.interp(np.log(f), x, y)
+    first = np.log(f) < x[0]
+    slope[first] += (y[1] - y[0]) / (x[1] - x[0]) * (np.log(f[first]) - x[0])
+    return np.exp(slope)
 
 
 def _likelihood(columns, power, shape, squares):

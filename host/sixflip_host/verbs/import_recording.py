@@ -7,7 +7,7 @@ import re
 from sixflip.poses.faces import pose_name
 
 from .. import file_kinds, progress
-from ..capture import capture_file, clock
+from ..capture import capture_file, clock, clock_words
 from ..capture.capture_header import SENSORS, STANDARD_G
 from ..capture.imports import presets
 from ..capture.imports.column_names import TIME_UNITS
@@ -84,7 +84,7 @@ def run(args):
         print(json.dumps({
             "format": 1, "kind": "sixflip import", "capture": args.output,
             "samples": len(capture), "meta": capture.meta, "assumed": assumed,
-            "remarks": remarks, "clock": measured and clock.as_json(measured),
+            "remarks": remarks, "clock": measured and clock_words.as_json(measured),
             "poses": [pose_name(one.pose) for one in capture.placements()]
             if capture.pose is not None else None}))
         return 0

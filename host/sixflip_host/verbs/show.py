@@ -13,7 +13,7 @@ from ..board.ports import add_port, open_link
 from ..calibrate import solution, term_words
 from ..calibrate.record_json import record_json
 from ..calibrate.verify_files import RECORDS, decode_record
-from ..capture import clock, open_recording
+from ..capture import clock, clock_words, open_recording
 from ..capture.capture_binary import EXTRAS, PAUSES, write_pauses
 from ..errors import BadFile
 from ..file_arguments import add_input
@@ -134,7 +134,7 @@ def _capture_json(capture):
     return {"format": 1, "kind": "sixflip capture", "meta": capture.meta,
             "samples": len(capture), "columns": capture.columns(),
             "duration_s": _duration(capture), "remarks": solution.capture_remarks(capture),
-            "notes": capture.notes, "clock": clock.as_json(measured) if measured else None,
+            "notes": capture.notes, "clock": clock_words.as_json(measured) if measured else None,
             "placements": [{"pose": pose_name(one.pose), "first": one.first, "n": one.n,
                             "mean": [s / one.n for s in one.sums], "noise": one.noise}
                            for one in capture.placements()]}
@@ -161,7 +161,7 @@ def _capture_words(name, capture):
         gaps = np.diff(capture.t_us)
         out.print("  longest interval %.1f ms, usual %.1f ms" % (
             gaps.max() / 1e3, np.median(gaps) / 1e3))
-        for line in clock.words(measured):
+        for line in clock_words.words(measured):
             out.print("  " + line)
     if len(pauses):
         out.print("  %d of the pauses are writes to the board's flash" % len(pauses))

@@ -38,6 +38,22 @@ def test_an_hour_gives_noise_density_and_walk_back_within_three_percent_and_thei
     assert np.abs(errors).max() < 0.03
 
 
+def test_six_hours_give_the_walk_back_within_three_percent_as_allantools_has_it():
+    rate, walk, errors = 5.0, 4e-3, []
+    for seed in range(6):
+        rng, n = np.random.default_rng(seed), int(6 * 3600 * rate)
+        x = rng.normal(0.0, N * np.sqrt(rate), n) + np.cumsum(
+            rng.normal(0.0, walk / np.sqrt(rate), n))
+        found = noise_spectrum.levels([x], rate, True)[2]
+        assert found.value == pytest.approx(walk, rel=0.03)
+        assert 0.95 * found.low < walk < 1.05 * found.high
+        errors.append(found.value / walk - 1.0)
+        (tau,), (deviation,), _, _ = allantools.oadev(x, rate=rate, data_type="freq", taus=[10.0])
+        theirs = np.sqrt(3.0 / tau * (deviation ** 2 - N ** 2 / tau))
+        assert found.value == pytest.approx(theirs, rel=0.05)
+    assert abs(np.mean(errors)) < 0.015
+
+
 def test_the_intervals_hold_the_truth_as_often_as_they_say():
     held = [0, 0]
     for seed in range(40):

@@ -6,21 +6,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sixflip.chips import catalogue
-
 from ...errors import BadFile, UsageError
-from .. import clock
+from .. import clock, clock_words
 from ..capture_file import Capture, check_times
 from ..capture_header import ACCEL, GYRO, MAG, check_sensor
 from ..growing import Growing
-from . import column_names, csv_mapping, time_stamps, units
+from . import column_names, csv_mapping, table_columns, temperature, time_stamps, units
 from .options import with_the_file
 from .told_units import ToldUnits
-
-TEMPERATURE = {row[0]: catalogue.driver(row[0]).TEMPERATURE for row in catalogue.CHIPS
-               if row[1] and catalogue.driver(row[0]).TEMPERATURE}
-CELSIUS = (100, 0.0)            # counts per °C and offset, of a chip whose own are not known
-COLD_C, HOT_C = -60.0, 150.0    # what a chip can have
 
 
 @dataclass(frozen=True)
@@ -36,10 +29,14 @@ class Conversion:
     """One table becoming a Capture, step by step; `assumed` and `remarks` grow on the way."""
 
     def __init__(self, options, table):
-        self.options, self.table = with_the_file(options, table), table
-        self.assumed, self.remarks = [], []
-        self.columns, self.named_units = self._readings()
-        self.time = self._time_column()
+        options = with_the_file(options, table)
+        readings = table_columns.readings(options, table)
+        times = table_columns.times(options, table, set(readings.columns.values()))
+        self.options = options if times.rate is None else replace(options, rate=times.rate)
+        self.table = table
+        self.columns, self.named_units = readings.columns, readings.units
+        self.time, self._named_time_unit = times.columns, times.unit
+        self.assumed, self.remarks = list(times.assumed), list(readings.remarks)
 
     def run(self):
         """Imported."""
@@ -47,7 +44,9 @@ class Conversion:
         for why, lines in self.table.passed_over.items():
             self.remarks.append("passed over: %s (%d line%s)" % (why, lines, "s" * (lines > 1)))
         self.assumed += getattr(self.table, "said", ())
-        pose = self._poses(labels)
+        pose, moving = csv_mapping.poses(self.options, list(self._label_of), labels, self.rows)
+        if moving:
+            self.remarks.append("taken as moving: " + " ".join(moving))
         celsius = values.get("temp")
         t_us, order = self._times(times, values, None if celsius is None else celsius[:, 0])
         if order is not None:
@@ -55,87 +54,6 @@ class Conversion:
             pose = pose if pose is None else pose[order]
         capture = self._capture(values, t_us, pose)
         return Imported(capture, tuple(self.assumed), tuple(self.remarks))
-
-    # what is which
-
-    def _readings(self):
-        """({our name: column of the table}, {sensor: unit in the names})."""
-        options, table = self.options, self.table
-        given = csv_mapping.parse_pairs("--map", options.map)
-        for name in given:
-            if name not in csv_mapping.TARGETS:
-                raise UsageError("--map %s: expected one of %s" % (
-                    name, " ".join(csv_mapping.TARGETS)))
-            table.index(given[name])
-        found, named, remarks = column_names.readings(table.names or (),
-                                                      os.path.basename(str(table.path)))
-        used = set(given.values())
-        chosen = {ours: name for ours, name in found.items()
-                  if ours not in given and name not in used}
-        if "mx" in chosen and options.mag_lsb is None:      # of no use to anybody here
-            for name in MAG:
-                chosen.pop(name, None)
-        chosen.update(given)
-        for group in (ACCEL, GYRO, MAG):
-            there = [name for name in group if name in chosen]
-            if there and len(there) < 3:
-                self._no_column(next(name for name in group if name not in chosen))
-        if "ax" not in chosen and "gx" not in chosen:
-            self._no_column("ax")
-        self.remarks += remarks
-        return chosen, {**named, **table.units}
-
-    def _no_column(self, absent):
-        names = self.table.names
-        if not names:
-            raise BadFile("%s: no column names in it, expected --columns with a name for each of "
-                          "its %d columns, such as ax,ay,az,gx,gy,gz, and - for others" % (
-                              self.table.path, self.table.width))
-        raise BadFile("%s: no column for %s, expected --map %s=NAME with one of %s" % (
-            self.table.path, absent, absent, " ".join(names)))
-
-    def _time_column(self):
-        """Names of the columns that hold the times (two: seconds and nanoseconds), or None."""
-        options, table = self.options, self.table
-        if options.time_column:
-            table.index(options.time_column)
-            self._stamps(options.time_column)
-            return (options.time_column,)
-        taken = set(self.columns.values())
-        for name, unit in column_names.times(table.names or ()):
-            pair = name if isinstance(name, tuple) else (name,)
-            if set(pair) & taken:
-                continue
-            if len(pair) == 1 and self._stamps(name):
-                self.assumed.append("times are the dates and times of day in the column %s" % name)
-                return pair
-            if all(table.holds_numbers(one) for one in pair):
-                self._named_time_unit = unit
-                if options.rate is not None and options.time_unit is None and not unit:
-                    return None         # the rate was said, and no more
-                self.assumed.append("times are in the column %s" % " and ".join(pair))
-                return pair
-        stated = getattr(table, "rate_hz", None)
-        if options.rate is None and stated is not None:
-            self.options = replace(options, rate=stated)
-            self.assumed.append("%g Hz, as the file says" % stated)
-        elif options.rate is None:
-            raise UsageError("%s: no column of times was recognised, expected --rate HZ, or "
-                             "--time-column with one of %s" % (table.path, " ".join(
-                                 table.names or ["1 to %d" % table.width])))
-        return None
-
-    _named_time_unit = ""
-    _dated = False          # times are dates and times of day, which are read as seconds
-
-    def _stamps(self, name):
-        """Whether a column holds dates and times of day."""
-        self._dated = getattr(self.table, "holds_stamps", lambda one: False)(name)
-        if self._dated and self.options.time_unit not in (None, "s"):
-            raise UsageError("--time-unit %s: %s holds dates and times of day, expected none" % (
-                self.options.time_unit, name))
-        self._named_time_unit = "s" if self._dated else ""
-        return self._dated
 
     # reading
 
@@ -236,25 +154,6 @@ class Conversion:
             lambda row: self.line_of(int(row if order is None else order[row])))
         return time_stamps.microseconds(self.table.path, name, times, scale, unit), order
 
-    # labels
-
-    def _poses(self, labels):
-        """Pose codes from a label column or a sections file, or None."""
-        options = self.options
-        given = csv_mapping.parse_pairs("--label", options.label)
-        if options.label_column:
-            pose, moving = csv_mapping.poses_from_labels(list(self._label_of), labels, given)
-        elif options.sections:
-            pose, moving = csv_mapping.poses_from_sections(options.sections, self.rows, given)
-        else:
-            return None
-        if not pose.any():
-            raise BadFile("%s: no label is a pose, expected --label THEIRS=Z+a for %s" % (
-                options.sections or options.file, " ".join(moving)))
-        if moving:
-            self.remarks.append("taken as moving: " + " ".join(moving))
-        return pose
-
     # counts
 
     def _capture(self, values, t_us, pose):
@@ -301,7 +200,13 @@ class Conversion:
                 self.remarks += counts[group].remarks
                 if counts[group].kind == "float":
                     meta[key] = "float"
-        temp = self._temperature(meta, values["temp"][:, 0]) if "temp" in values else None
+        temp = None
+        if "temp" in values:
+            told = temperature.counts(path, options, self.columns["temp"], values["temp"][:, 0])
+            temp = told.counts
+            meta.update(told.meta)
+            self.assumed += told.assumed
+            self.remarks += told.remarks
         meta["imported_from"] = os.path.basename(str(path))
         capture = Capture(meta, t_us, *(counts[group].counts if group in counts else None
                                         for group in (ACCEL, GYRO)), temp=temp,
@@ -321,34 +226,10 @@ class Conversion:
                 raise BadFile("%s: the times do not say the rate, expected times that run, or "
                               "--rate HZ" % self.table.path)
         else:
-            self.remarks += clock.words(measured)
+            self.remarks += clock_words.words(measured)
         if self.options.rate is not None:
             return {"rate_hz": self.options.rate, "rate": "stated"}
         return clock.header(measured)
-
-    def _temperature(self, meta, values):
-        """int16 counts of the thermometer; None where the column is none."""
-        options, path = self.options, self.table.path
-        lsb, offset = TEMPERATURE.get(options.sensor, CELSIUS)
-        kind = options.temp_units
-        if kind is None:
-            celsius = bool(values.min() >= COLD_C and values.max() <= HOT_C)
-            kind = "c" if celsius else "counts" if options.sensor in TEMPERATURE else None
-            if kind == "c":
-                self.assumed.append("%s is in °C" % self.columns["temp"])
-            elif kind is None:
-                self.remarks.append("%s goes from %g to %g, which is no °C: left out" % (
-                    self.columns["temp"], values.min(), values.max()))
-                return None
-        if kind == "counts" and options.sensor not in TEMPERATURE:
-            raise UsageError("--temp-units counts needs --sensor %s" % " or ".join(TEMPERATURE))
-        counts = np.rint((values.astype(float) - offset) * lsb if kind == "c" else values)
-        if np.abs(counts).max() > 32767:
-            raise BadFile("%s: the temperature reaches %g, expected %s" % (
-                path, values[np.argmax(np.abs(counts))],
-                "°C" if kind == "c" else "16 bit counts (or --temp-units c)"))
-        meta["temp_lsb_per_c"], meta["temp_offset_c"] = lsb, offset
-        return counts.astype(np.int16)
 
 
 def _what(group):

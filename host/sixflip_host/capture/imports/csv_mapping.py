@@ -88,3 +88,19 @@ def poses_from_sections(path, rows, given):
         else:
             poses[start:end] = code
     return poses, ignored
+
+
+def poses(options, labels, number, rows):
+    """(int16 codes of samples by a column of labels or a file of sections, or None where there is
+    neither; what was taken as moving). labels, number: as poses_from_labels takes them."""
+    given = parse_pairs("--label", options.label)
+    if options.label_column:
+        pose, moving = poses_from_labels(labels, number, given)
+    elif options.sections:
+        pose, moving = poses_from_sections(options.sections, rows, given)
+    else:
+        return None, []
+    if not pose.any():
+        raise BadFile("%s: no label is a pose, expected --label THEIRS=Z+a for %s" % (
+            options.sections or options.file, " ".join(moving)))
+    return pose, moving

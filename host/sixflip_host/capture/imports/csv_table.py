@@ -5,7 +5,6 @@ comments, the header once more, NUL bytes, a last line without newline. What may
 is refused with its line.
 """
 
-import csv
 import math
 import re
 from typing import NamedTuple
@@ -15,11 +14,9 @@ import numpy as np
 from ...errors import BadFile
 from ..capture_rows import quoted
 from ..unpack import Source
-from . import text_lines, wall_clock
+from . import csv_head, text_lines, wall_clock
+from .csv_head import COMMENT, all_numbers, cells_of
 
-DELIMITERS = (",", ";", "\t", None)     # None: any run of blanks
-HEADER_SEARCH = 200                     # lines in which the column names must appear
-COMMENT = ("#", "//")
 DECIMAL_COMMA = re.compile(r"(^|[;\t ])[+-]?\d+,\d+([eE][+-]?\d+)?($|[;\t ])")
 
 
@@ -70,13 +67,13 @@ class Table:
         for _, text in self._texts():
             for line in text.split("\n")[self._first:]:
                 if line.strip() and not line.startswith(COMMENT):
-                    cells = _cells(self._decimal(line), self._separator)
+                    cells = cells_of(self._decimal(line), self._separator)
                     return cells[place] if place < len(cells) else ""
         return "0"
 
     def holds_numbers(self, column):
         """True where the first row has a number in a column."""
-        return _all_numbers([self.first_cell(column)])
+        return all_numbers([self.first_cell(column)])
 
     def holds_stamps(self, column):
         """True where the first row has a date or a time of day in a column, to be read as
@@ -159,7 +156,7 @@ class Table:
         for number, text in enumerate(texts, line):
             if self._means_nothing(text):
                 continue
-            cells = _cells(text, self._separator)
+            cells = cells_of(text, self._separator)
             if len(cells) != self.width:
                 raise BadFile.at(self.path, number, "%d values" % len(cells), str(self.width))
             rows.append([self._number(number, column, cells[place])
@@ -177,7 +174,7 @@ class Table:
         if text.startswith(COMMENT):
             self._pass_over("comments")
             return True
-        if self.names and _cells(text, self._separator) == self.names:
+        if self.names and cells_of(text, self._separator) == self.names:
             self._pass_over("the column names once more")
             return True
         return False
@@ -186,7 +183,7 @@ class Table:
         """The Block of a last line without newline: None where it is no whole row."""
         if self._means_nothing(text):
             return None
-        if len(_cells(text, self._separator)) != self.width:
+        if len(cells_of(text, self._separator)) != self.width:
             self._pass_over("a last row that is cut short")
             return None
         self._pass_over("a missing newline at the end")
@@ -218,69 +215,12 @@ def read_table(path, delimiter="auto", skip=None, names=None, is_header=None):
     is_header   function(list of names) -> bool, to find the line of names by itself
     """
     source = Source(path)
-    lines = _first_lines(path, source, (skip or 0) + HEADER_SEARCH)
-    head, first, separator = _find_head(path, lines, delimiter, skip, is_header)
-    found = None if head is None else _cells(lines[head].lstrip("#"), separator)
+    lines = csv_head.first_lines(path, source, (skip or 0) + csv_head.SEARCH)
+    head, first, separator = csv_head.find(path, lines, delimiter, skip, is_header)
+    found = None if head is None else cells_of(lines[head].lstrip("#"), separator)
     names = names or found
     row = next((text for text in lines[first:] if text.strip()
                 and not text.startswith(COMMENT)), "")
-    width = len(names) if names else len(_cells(row, separator))
+    width = len(names) if names else len(cells_of(row, separator))
     comma = separator != "," and bool(DECIMAL_COMMA.search(row))
     return Table(path, source, names, width, separator, first, lines[:head or 0], comma)
-
-
-def _first_lines(path, source, wanted):
-    """The first lines of a file, some more than are wanted where there are as many."""
-    lines = [""]
-    for _, text in text_lines.texts(path, source):
-        more = text.replace("\0", "").split("\n")
-        lines = [*lines[:-1], lines[-1] + more[0], *more[1:]]
-        if len(lines) > wanted:
-            break
-    if not any(line.strip() for line in lines):
-        raise BadFile.at(path, 1, "the file is empty", "a CSV file")
-    return lines
-
-
-def _find_head(path, lines, delimiter, skip, is_header):
-    """(index of the line of column names or None, lines before the rows, delimiter)."""
-    choices = DELIMITERS if delimiter == "auto" else \
-        (None if delimiter == "blank" else delimiter,)
-    start = skip or 0
-    if start >= len(lines):
-        raise BadFile.at(path, len(lines), "only %d lines" % len(lines),
-                         "more than the %d to skip" % start)
-    search = range(start, min(len(lines), start + HEADER_SEARCH)) if skip is None else (start,)
-    for number in search:
-        for separator in choices:
-            if is_header and is_header(_cells(lines[number].lstrip("#"), separator)):
-                return number, number + 1, separator
-    while skip is None and start + 1 < len(lines) and (
-            not lines[start].strip() or lines[start].startswith(COMMENT)):
-        start += 1
-    separator = max(choices, key=lambda one: (len(_cells(lines[start], one)), one is not None))
-    cells = _cells(lines[start] if separator == "," else lines[start].replace(",", "."), separator)
-    if any(_all_numbers([cell]) for cell in cells):     # no line of names has numbers in it
-        return None, start, separator
-    return start, start + 1, separator
-
-
-def _cells(line, separator):
-    """The cells of a line without the blanks and the quotes around them."""
-    if separator is None:
-        return [cell.strip('"') for cell in line.split()]
-    if '"' in line:
-        try:
-            cells = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
-            return [cell.strip() for cell in cells]
-        except csv.Error:       # what it calls a line has an end inside
-            pass
-    return [cell.strip() for cell in line.strip().split(separator)] if separator != "\t" \
-        else [cell.strip() for cell in line.rstrip("\r").split(separator)]
-
-
-def _all_numbers(cells):
-    try:
-        return bool([float(cell) for cell in cells])
-    except ValueError:
-        return False

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from ...capture import clock
+from ...capture import clock, clock_words
 from .axis_order import explained
 from .detection import Finding, present
 
@@ -115,14 +115,14 @@ def remarks(sessions, found):
                          "without a sample; that is the recorder's doing, not the sensor's" % (
                              one.pauses, 1e3 * one.longest_pause_s))
         elif one.pauses:
-            lines.append(clock.pause_words(one))
-        lines += [clock.burst_words(one), clock.jitter_words(one)]
+            lines.append(clock_words.pause_words(one))
+        lines += [clock_words.burst_words(one), clock_words.jitter_words(one)]
         said += ["%s: %s" % (session.name, line) for line in lines if line]
     return said
 
 
 def answer(sessions, found):
     """For --json: every capture's clock, and whether its header's rate is stated or measured."""
-    return [dict(clock.as_json(one), capture=session.name, header_hz=session.rate,
+    return [dict(clock_words.as_json(one), capture=session.name, header_hz=session.rate,
                  header_rate="measured" if clock.is_measured(session.capture.meta) else "stated")
             for session, one in zip(sessions, found) if one is not None]

@@ -1,0 +1,103 @@
+"""Which columns of a table hold the readings and which the times: said, or told from the names and
+the first row."""
+
+import os
+from typing import NamedTuple
+
+from ...errors import BadFile, UsageError
+from ..capture_header import ACCEL, GYRO, MAG
+from . import column_names, csv_mapping
+
+
+class Readings(NamedTuple):
+    """columns: {our name: column of the table}; units: {sensor: unit in the names}; remarks:
+    sentences on what was left out."""
+
+    columns: dict
+    units: dict
+    remarks: list
+
+
+class Times(NamedTuple):
+    """columns: names of those that hold the times (two: seconds and nanoseconds), or None; unit
+    in the name, or ""; rate: Hz that the file says where it has no times, or None; assumed:
+    sentences."""
+
+    columns: object
+    unit: str
+    rate: object
+    assumed: tuple
+
+
+def readings(options, table):
+    """Readings of a table; UsageError for a --map that is none, BadFile for an axis without a
+    column."""
+    given = csv_mapping.parse_pairs("--map", options.map)
+    for name in given:
+        if name not in csv_mapping.TARGETS:
+            raise UsageError("--map %s: expected one of %s" % (
+                name, " ".join(csv_mapping.TARGETS)))
+        table.index(given[name])
+    found, named, remarks = column_names.readings(table.names or (),
+                                                  os.path.basename(str(table.path)))
+    used = set(given.values())
+    chosen = {ours: name for ours, name in found.items()
+              if ours not in given and name not in used}
+    if "mx" in chosen and options.mag_lsb is None:      # of no use to anybody here
+        for name in MAG:
+            chosen.pop(name, None)
+    chosen.update(given)
+    for group in (ACCEL, GYRO, MAG):
+        there = [name for name in group if name in chosen]
+        if there and len(there) < 3:
+            _no_column(table, next(name for name in group if name not in chosen))
+    if "ax" not in chosen and "gx" not in chosen:
+        _no_column(table, "ax")
+    return Readings(chosen, {**named, **table.units}, remarks)
+
+
+def _no_column(table, absent):
+    if not table.names:
+        raise BadFile("%s: no column names in it, expected --columns with a name for each of "
+                      "its %d columns, such as ax,ay,az,gx,gy,gz, and - for others" % (
+                          table.path, table.width))
+    raise BadFile("%s: no column for %s, expected --map %s=NAME with one of %s" % (
+        table.path, absent, absent, " ".join(table.names)))
+
+
+def times(options, table, taken):
+    """Times of a table; taken: the columns of its readings. UsageError where there are none and
+    nobody says a rate."""
+    if options.time_column:
+        table.index(options.time_column)
+        return Times((options.time_column,), _unit_of_stamps(options, table, options.time_column),
+                     None, ())
+    for name, unit in column_names.times(table.names or ()):
+        pair = name if isinstance(name, tuple) else (name,)
+        if set(pair) & taken:
+            continue
+        if len(pair) == 1 and _unit_of_stamps(options, table, name):
+            return Times(pair, "s", None, (
+                "times are the dates and times of day in the column %s" % name,))
+        if all(table.holds_numbers(one) for one in pair):
+            if options.rate is not None and options.time_unit is None and not unit:
+                return Times(None, unit, None, ())      # the rate was said, and no more
+            return Times(pair, unit, None, ("times are in the column %s" % " and ".join(pair),))
+    stated = getattr(table, "rate_hz", None)
+    if options.rate is None and stated is not None:
+        return Times(None, "", stated, ("%g Hz, as the file says" % stated,))
+    if options.rate is None:
+        raise UsageError("%s: no column of times was recognised, expected --rate HZ, or "
+                         "--time-column with one of %s" % (table.path, " ".join(
+                             table.names or ["1 to %d" % table.width])))
+    return Times(None, "", None, ())
+
+
+def _unit_of_stamps(options, table, name):
+    """"s" of a column of dates and times of day, which are read as seconds; "" of any other."""
+    if not getattr(table, "holds_stamps", lambda one: False)(name):
+        return ""
+    if options.time_unit not in (None, "s"):
+        raise UsageError("--time-unit %s: %s holds dates and times of day, expected none" % (
+            options.time_unit, name))
+    return "s"

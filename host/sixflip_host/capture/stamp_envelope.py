@@ -1,0 +1,112 @@
+"""The even clock under the stamps of a recording: a first guess of its period, and where its
+lower envelope is lifted.
+
+A stamp cannot be earlier than its sample, so the even clock is the lower envelope of the stamps:
+what rises above it and comes back is late, what lifts it for good is a gap.
+"""
+
+import math
+
+import numpy as np
+
+ON_GRID, MOSTLY = 0.25, 0.9     # intervals within a quarter of whole periods, and how many are
+SPANS = tuple(2 ** k for k in range(1, 12))     # rows that a burst may have
+PACE_ROWS = 8           # a span that tells the pace
+REACH = 64              # rows in which a recorder that was late catches up
+EVEN = 0.1              # scatter of spans, of their length, that are beyond the bursts
+PART = 0.7              # of a period: less is no sample
+MOST_WHOLE = 2.0        # periods a row on the mean: with more the usual interval is a burst's
+COARSE = 1.5            # periods that a step of the stamps has where rows share a stamp
+NOISE = 6.0             # times the envelope's own scatter: gaps below are none
+COUNTED = 1 << 16       # rows at a time
+
+
+def first_guess(t_us, known):
+    """(period in µs, rows that a burst has at most)."""
+    gaps = np.diff(t_us[:COUNTED + 1]).astype(float)
+    gaps = np.delete(gaps, known[known < len(gaps)])
+    if not len(gaps):
+        gaps = np.diff(t_us).astype(float)
+    usual = float(np.median(gaps))
+    if usual > 0:
+        whole = np.rint(gaps / usual)
+        near = (whole >= 1) & (np.abs(gaps / usual - whole) < ON_GRID)
+        if near.mean() >= MOSTLY and whole.mean() < MOST_WHOLE:
+            return _pace(gaps, whole == 1), 1
+    times = np.concatenate([[0.0], np.cumsum(gaps)])
+    for rows in SPANS:
+        if rows * 4 > len(times):
+            break
+        spans = times[rows:] - times[:-rows]
+        middle = float(np.median(spans))
+        if middle > 0 and 1.4826 * np.median(np.abs(spans - middle)) < EVEN * middle:
+            return middle / rows, rows
+    return float(t_us[-1] - t_us[0]) / (len(t_us) - 1), max(1, len(t_us) // 8)
+
+
+def _pace(gaps, usual):
+    """The usual interval, µs, by spans of intervals (n,) that most often hold no gap: after a
+    late row a recorder may hurry for a while, which is not its pace. usual: bool (n,)."""
+    wide = 1.0 - usual.mean()
+    rows = PACE_ROWS if wide < 0.05 else 1
+    times = np.concatenate([[0.0], np.cumsum(gaps)])
+    spans = (times[rows:] - times[:-rows]) / rows
+    if not len(spans):
+        return float(gaps.mean())
+    middle = float(np.median(spans))
+    near = np.abs(spans - middle) <= (0.05 if rows > 1 else 0.5) * middle
+    return float(spans[near].mean())
+
+
+def resolution(t_us):
+    """The step of the stamps, µs: what all their differences are multiples of."""
+    return float(np.gcd.reduce(np.diff(t_us[:COUNTED]))) or 1.0
+
+
+class Gaps:
+    """Where the envelope of the stamps is lifted, and how far they are above it.
+
+    places, lift    indices of intervals, µs beyond a period; known ones and those found
+    late, bursts, latest, jitter    rows, groups, µs, µs
+    """
+
+    def __init__(self, t_us, period, width, resolution, known):
+        reach = max(REACH, 2 * width)
+        places, lifts = [], []
+        self.late = self.bursts = 0
+        self.latest, squares, number = 0.0, 0.0, 0
+        limit = resolution if resolution > COARSE * period else PART * period
+        for first in range(0, len(t_us), COUNTED):
+            some = t_us[first:first + COUNTED + reach + 1]
+            beyond = (some - some[0]) - np.arange(len(some)) * period
+            lowest = _lowest_ahead(beyond, reach)
+            rows = min(COUNTED, len(some))
+            jumps = np.diff(lowest)[:rows]
+            here = known[(known >= first) & (known < first + len(jumps))] - first
+            some = jumps[jumps != 0] if width > 1 else jumps
+            spread = 1.4826 * float(np.median(np.abs(some))) if len(some) else 0.0
+            lifted = np.flatnonzero(jumps > max(limit, NOISE * spread))
+            for place in np.union1d(lifted, here).astype(int).tolist():
+                places.append(first + place)
+                lifts.append(max(float(jumps[place]), 0.0))
+            above = (beyond - lowest)[:rows]
+            late = above > limit
+            self.late += int(late.sum())
+            self.bursts += int((np.diff(late.astype(np.int8), prepend=0) == 1).sum())
+            self.latest = max(self.latest, float(above[late].max(initial=0)))
+            rest = above[~late]
+            if len(rest):
+                squares += float(((rest - rest.mean()) ** 2).sum())
+                number += len(rest)
+        self.places, self.lift = np.array(places, int), np.array(lifts, float)
+        self.jitter = math.sqrt(squares / max(number, 1))
+
+
+def _lowest_ahead(values, reach):
+    """The least of each value and those up to `reach` behind it."""
+    least, span = values.astype(float), 1
+    while span <= reach:        # spans of 2, 4, 8 … values; the last one overlaps
+        step = min(span, reach + 1 - span)
+        np.minimum(least[:-step], least[step:], out=least[:-step])
+        span += step
+    return least
