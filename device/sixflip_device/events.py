@@ -1,12 +1,8 @@
-"""One JSON object a line on the serial port, for people and for the host alike.
+"""Lines to the host and from it: one JSON object each.
 
-The first key is always "event". Lines are pure ASCII whatever the text was, floats carry
-seven significant digits (a single-precision board has no more), and NaN or infinity, which
-JSON does not know, becomes null.
-
-Text that cannot stand in JSON as it is: quotes, control characters, beyond ASCII.
-
-Lines from the host: one JSON object each, with a "cmd".
+The first key of an event is always "event". Lines are pure ASCII whatever the text was, floats
+have seven significant digits (a single-precision board has no more), and NaN or infinity, which
+JSON does not know, becomes null. A line of the host has a "cmd" (commands.py).
 """
 
 import json

@@ -5,7 +5,7 @@ import os
 FLAG = "calibrate.flag"  # its presence asks for a calibration at the next power-up
 OFFERED = "offered.bin"   # a record that a host wants in force (offered.py)
 NEW = "capture.new"
-GOOD = "capture.bin"      # of the sessions: see capture_files.py
+GOOD = "capture.bin"      # of the sessions: see capture/files.py
 UNSAVED = "unsaved.bin"
 REFUSED = "refused.bin"
 

@@ -1,8 +1,8 @@
-"""A chip that hangs: it answers, awake and set up as it should be, and repeats itself.
+"""A chip that hangs: it answers, awake and set up as it should be, and repeats one reading.
 
-Noise does not give a triple SAME times over: what repeats itself so often is no measurement.
-The chip is set up anew then, and again after twice as many, for as long as it takes; a session
-has its own eye on this, its windows.
+Noise does not give the same triple SAME times over, so what repeats itself so often is no
+measurement. The chip is set up anew then, and again after twice as many, for as long as it
+takes. A session has its own eye on this, in its windows.
 """
 
 from array import array

@@ -1,13 +1,12 @@
-"""A bus that fails while sampling: retry, free it, identify the chip, configure it again.
+"""The sensor behind a bus that may fail: retried, freed, identified and configured again; one
+sample a period.
 
-The usual cause is a reset in mid-read: the chip holds SDA low until it has been clocked out,
-up to nine pulses. The other one is a chip that lost its power for a moment and came back
-asleep; it answers, with frozen numbers, so awake() is asked now and then.
+The usual cause of a failing bus is a reset in mid-read: the chip holds SDA low until it has been
+clocked out, up to nine pulses. The other one is a chip that lost its power for a moment and came
+back asleep; it answers, with frozen numbers, so awake() is asked now and then.
 
-Only the chip that was there is had back, by its ID register: in mid-session a small heap has
-no room for the prober. Once it is given up, the start phase probes for whatever is there.
-
-One sample a period by the board's clock; now and then, whether the chip is awake.
+Only the chip that was there is accepted again, by its ID register. Once it is given up
+(BusLost), the firmware begins anew and probes for whatever is there.
 """
 
 

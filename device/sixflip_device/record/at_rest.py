@@ -1,22 +1,15 @@
 """A few seconds at rest: gyro bias, |a| and temperature, with a check that a kick cannot fool.
 
-The last windows (quiet_run.py) must be even in noise and must not wander, window by window
-and third by third, and they must be so many that a turn of RATE_DPS would have shown in
-gravity's direction. A turn about the vertical does not show there: along it the bias is
-held against the stored one (turn_or_bias.py).
+The last windows must be even in noise and must not wander, window by window and third by third,
+and they must be so many that a turn of RATE_DPS would have shown in gravity's direction. The
+limits are far below what would move the bias by 0.05 deg/s. The number of windows is such that
+chance alone stays at a third of the limits: a quiet sensor is done in 2 s, a noisy one needs
+longer, and one that would need more than LONGEST_S is called noisy.
 
-A steady turn about the vertical looks like gyro bias; how far the stored bias tells them apart.
-
-Across the vertical gravity has shown already that nothing turns (quiet_run.py), so a bias may
-have changed there by any amount. Along it a change is believed as far as switching on and
-ageing (SWITCHED_ON_DPS) and temperature explain it; without a stored bias, as far as the data
-sheet's zero-rate output goes.
-
-The last windows of a rest that may be one, and what still speaks against it.
-
-Limits are far below what would move the bias by 0.05 deg/s. The number of windows is such
-that chance alone stays at a third of them: a quiet sensor is done in 2 s, a noisy one needs
-longer, one that would need more than LONGEST_S is called noisy.
+A steady turn about the vertical does not show in gravity's direction and looks like gyro bias.
+Along the vertical a change of the bias is therefore believed as far as switching on and ageing
+(SWITCHED_ON_DPS) and temperature explain it; without a stored bias, as far as the data sheet's
+zero-rate output goes. Across the vertical it may have changed by any amount.
 """
 
 import math

@@ -1,12 +1,10 @@
-"""Roll, pitch and yaw of the corrected samples (sixflip.gyro.heading, Li Eq. 8) in the stream.
+"""What is streamed, and how: samples as lines or as binary frames
+(sixflip/capture/stream_frame.py), angles, or every sample as the blocks of a capture
+(sixflip/capture/pieces.py).
 
-Every sample is integrated, not only those that are sent. Angles in degrees, yaw from where the
-stream began and not wrapped. "heading" in sixflip.json may hold gain and lever_arm.
-
-Samples as binary frames (sixflip.capture.stream_frame) instead of lines.
-
-Every sample to the host as the blocks of a capture (sixflip.capture.pieces), without a
-session: for logs of hours, whose times do not wrap.
+Angles are roll, pitch and yaw of the corrected samples (sixflip/gyro/heading.py, Li Eq. 8), in
+degrees, yaw from where the stream began and not wrapped; every sample is integrated, not only
+those that are sent. The blocks make logs of hours, whose times do not wrap.
 """
 
 import math

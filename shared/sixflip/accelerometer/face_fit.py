@@ -1,6 +1,8 @@
-"""Do the six faces agree? What noise, placing by hand and the flips leave unexplained.
+"""Do the six faces agree? What noise, placing by hand and the flips leave unexplained, in a
+verdict.
 
-Which face is not square to the others, and by how much; said when face_fit.py found one.
+Where they do not agree it is said which face is probably not square to the others, and by how
+much.
 """
 
 import math

@@ -1,12 +1,9 @@
 """Weighted least squares with four columns, solved by hand: Li Eq. 7, P = (X'X)^-1 X'Y.
 
-X holds the measured rows, Y the true ones (Li's sentence below Eq. 7 has them swapped).
-Bring rows to a size near 1 (g, not counts): the condition is then 3 instead of 9e7 and
-single precision is enough.
-
-Gauss-Jordan elimination with row pivoting, for the few columns of the normal equations.
-
-Arrays hold their numbers unboxed: a list of floats costs four times the heap.
+X holds the measured rows, Y the true ones (Li's sentence below Eq. 7 has them swapped). Rows are
+to be of a size near 1 (g, not counts): the condition of X'X is then 3 instead of 9e7, and single
+precision is enough. The elimination is Gauss-Jordan with row pivoting. Arrays hold their numbers
+unboxed; a list of floats takes four times the heap.
 """
 
 import math

@@ -1,15 +1,13 @@
-"""Standard errors of the accelerometer's parameters, and what the residuals should be.
+"""Standard errors of the accelerometer's parameters, and how large the residuals should be.
 
-Three things move a pose mean: the sensor's noise, the box never lying twice the same (about
-0.05 degrees, 0.9 mg across gravity and almost nothing along it, METHOD 1), and a zero that
-drifts. The noise is measured within the poses. The scatter is found from the residuals of the
-faces' means, which flips leave over: 18 numbers for 12 parameters. Of six left over, four see
-the scatter, so its part is widened as Student's t with four degrees of freedom asks for. A
-drift shows along gravity, which a flip does not change: between a and b of every face.
+Three things move the mean of a pose: the sensor's noise, the box never lying twice the same
+(about 0.05 degrees, which is 0.9 mg across gravity and almost nothing along it, METHOD 1), and a
+zero that drifts. The noise is measured within the poses. The scatter of placing is found from
+the residuals of the faces' means: 18 numbers for 12 parameters. Of the six left over four see
+the scatter, so its part is widened as Student's t with four degrees of freedom asks for. A drift
+shows along gravity between a and b of every face, because a flip does not change gravity there.
 
-What a fit leaves over on every face, and how much of it noise and placing explain.
-
-r is an AccelerometerResult still in g.
+In all functions r is an AccelerometerResult (solver.py) whose P is still in g.
 """
 
 import math

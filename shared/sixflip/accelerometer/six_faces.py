@@ -1,10 +1,10 @@
-"""P from pose means, in g: the paper's flip average and ours with the tilt solved (METHOD 1).
+"""P from the means of poses: the paper's average of each flip, and ours with the table's tilt
+solved.
 
-The table's tilt, from the two captures of a face turned by 180 degrees on it.
-
-METHOD 1, level 2. All vectors in g, body axes. u is the face's own axis.
-
-Means of poses, before and after the correction. Pose codes are those of faces.py.
+METHOD 1. All vectors are in g in the box's axes, u is a face's own axis. The two captures of a
+face differ by a half turn about u, so half the difference of their corrected means, less its
+part along u, is what gravity has across u: the table's tilt. With it in the true vectors P is
+solved again, until it stands still. Pose codes are those of sixflip/poses/faces.py.
 """
 
 import math

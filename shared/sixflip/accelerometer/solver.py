@@ -1,6 +1,7 @@
-"""Accelerometer from still poses: [mx my mz 1] P = [tx ty tz 1] (Li Eq. 6-7, METHOD 1).
+"""The accelerometer from still poses: [mx my mz 1] P = [tx ty tz 1] (Li Eq. 6-7, METHOD 1).
 
-Solved on pose means in g, one row per placement; given back in m/s2.
+Solved on the means of the poses in g, one row a placement: noise in single samples would
+attenuate the scale. The result is in m/s2.
 """
 
 import math

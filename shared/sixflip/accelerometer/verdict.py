@@ -1,9 +1,8 @@
-"""The verdict on the accelerometer's parameters. Every test is written so that NaN fails it.
+"""Good, doubtful or refused, and the sentence that says why: the accelerometer.
 
-Good, doubtful or refused, and the one sentence that says why: the accelerometer.
-
-The first thing found speaks: the poses as they were captured, then what was solved from them.
-A board looks at one after the other, to hold one of the two modules only.
+The first thing found speaks: the poses as they were captured (sixflip/poses/pose_check.py), then
+the parameters, how the faces agree, and how well a corrected vector is known. Every comparison
+is written so that NaN fails it.
 """
 
 import math

@@ -1,6 +1,6 @@
-"""Goes through a capture's file block by block: what a board can hold of it, without samples.
-
-The moves of a session that is in a file, summed up from its samples as while they came.
+"""A capture's file gone through block by block, as a board can: its placements, notes and times
+without its samples, and the moves between the placements, summed up from the samples as while
+they came.
 """
 
 import binascii

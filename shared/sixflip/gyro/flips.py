@@ -1,12 +1,11 @@
-"""The half turns of a session as the gyro's integral saw them, and which of them count.
+"""The half turns of a session as the gyro's integral saw them, and which of them can be used.
 
-An integral is the exact sum of counts over n samples, divided by n, times the time that
-really passed, late samples apart (move_turn): rad in measured units, bias still in it.
+An integral is the exact sum of counts over n samples, divided by n, times the time that really
+passed, with the samples that were late apart (placement.turned): rad in the gyro's own scale,
+its bias still in it.
 
-The flip angles the gyro measured, for the accelerometer's solve where that pays (METHOD 1).
-
-The gyro's P must not come from these same flips: that would be circular. A stored record or
-the host's refinement from the face-to-face moves will do.
+By a gyro that was calibrated in another session the same integrals tell how far each flip really
+turned; the accelerometer is solved with these angles where that pays (METHOD 1).
 """
 
 import math

@@ -1,8 +1,7 @@
-"""Gyro from the flips: [Ix Iy Iz T] P = true turn, half a turn or none (METHOD 2).
+"""The gyro from the flips: [Ix Iy Iz T] P = true turn, half a turn or none (METHOD 2).
 
-The same four-column least squares as the accelerometer: scale, misalignment, bias at once.
-
-How well the gyro is known: the flips by the solved matrix, and the standard errors.
+The same four-column least squares as the accelerometer's: scale, misalignment and bias at once,
+and the standard errors from how well a hand turns a box by half a turn.
 """
 
 import math

@@ -1,10 +1,9 @@
-"""Good, doubtful or refused, and the sentence that says why: the gyro.
+"""Good, doubtful or refused, and the sentence that says why: the gyro, and what it says of the
+flips.
 
-Half turns were assumed: what the gyro's view of the same flips says about that.
-
-Six flips short by one angle look like another tilt to the accelerometer. To the gyro they are
-another scale, which the moves between the faces contradict (half_turns.py); and one flip off
-the others shows in any case.
+Half turns are assumed. Six flips that are short by one angle look like another tilt of the table
+to the accelerometer, and like another scale to the gyro, which the moves between the faces
+contradict (half_turns.py). One flip that differs from the others shows in any case.
 """
 
 import math

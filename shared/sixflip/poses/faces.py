@@ -1,8 +1,9 @@
-"""Faces and names of the poses: six faces, each twice (a, and b turned by 180 degrees).
+"""Names and codes of the poses: six faces of the box, each captured twice, and leaning poses.
 
-Which axis points up on each of the six faces; all that the solve needs of faces.py.
-
-Codes of names: what a plan, a file or a host calls a pose or a face.
+A face is called after the axis of the sensor that points up on it, which then reads +g: "Z+".
+Its first capture is "Z+a", the second, turned by half a turn flat on the table, "Z+b". In
+programs a face is a number 0..5 and a pose a code: 0 while the box moves, 1..12 for the faces,
+12 + k for the k-th leaning pose "Lk".
 """
 
 import math

@@ -1,6 +1,7 @@
-"""What a session yields: still placements of the box and the moves between them.
+"""What a session yields: placements, the box at rest in one pose, and the moves between them.
 
-How far a move turned the box, by the sums of its samples; functions of a placement.Move.
+Both are sums of raw counts in whole numbers, so that nothing is lost by single-precision floats.
+The functions below tell how far a move has turned the box.
 """
 
 

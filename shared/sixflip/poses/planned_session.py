@@ -1,6 +1,5 @@
-"""A session that follows a plan: so long each pose, a rest before the first, one pose undone.
-
-A session that goes on after another one: the placements of both are solved together.
+"""Sessions other than the six faces in any order: one that follows a plan, with a length for every
+pose and a rest at both ends, and one that goes on with the placements of the session before.
 """
 
 from sixflip.poses.faces import face_of_code

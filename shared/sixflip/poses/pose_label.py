@@ -1,6 +1,8 @@
-"""Which pose a rest is, in any order: the face from gravity, a or b from the gyro.
+"""Which pose a rest of the box is: the face from gravity, a or b from the gyro.
 
-A planned session: the plan names the pose, gravity and gyro check it.
+A session without a plan takes the faces in any order and names what it finds. A planned session
+knows which pose comes next, and gravity and gyro only check that it is the one. A rest that is
+no pose is refused with a reason, the measured value and its limit.
 """
 
 from sixflip.poses.faces import LEANING, face_of_code

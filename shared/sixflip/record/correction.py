@@ -1,7 +1,4 @@
-"""Raw counts to m/s2 and rad/s with what a correction record holds.
-
-The correction of a record: with its terms where it has some.
-"""
+"""Raw counts to m/s2 and rad/s by what a record holds; with terms by term_correction.py."""
 
 import math
 

@@ -1,14 +1,13 @@
-"""A calibration as bytes on flash. Little-endian, layout version 1:
+"""A record as bytes on flash and in files. Little-endian, layout version 1:
 
-head (magic ... time), sections (tag u8, length u16, payload), CRC-32 of all before it (u32).
-A section is there when the thing was really measured. Unknown sections are kept as they are:
-firmware from before the terms (record_terms.py) loads and keeps a record that has some.
+head (magic ... time), sections (tag u8, length u16, payload), CRC-32 of all before it (u32). A
+section is there when the thing was really measured. Unknown sections are kept as they are, so
+that firmware from before the terms loads and keeps a record that has some.
 
-The sections of a correction record: fields in order, each with how it is stored.
-
-d, f: numbers (f may be None, stored as NaN), matrices row by row; B: a bit for each of the
-axes 0..2; s: text with its length; a tuple: one of these words. Numbers of kind d are what
-the correction is made of and must be finite.
+A section's fields stand in a fixed order, each stored as its kind says: d, f: numbers (f may be
+None, stored as NaN), matrices row by row; B: a bit for each of the axes 0..2; s: text with its
+length; a tuple: one of these words. Numbers of kind d are what the correction is made of and
+must be finite.
 """
 
 import struct

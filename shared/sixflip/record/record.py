@@ -1,12 +1,11 @@
-"""What a calibration leaves: a Record. correction_record.py turns it into bytes and back.
+"""What a calibration leaves: a Record, and whether it can be a sensor's.
 
-Can a correction record be a sensor's? Its CRC says only that the bytes are what was written.
+A CRC says only that the bytes are what was written. A record is therefore held against what
+sensors have when it comes from flash, from a host or from a file, and a new one before it is
+saved:
 
-Asked of a record that comes from flash, from a host or from a file, and of a new one before it
-is saved. Limits:
-
-    g        9.7 to 9.9 m/s2: on Earth and above it (gravity.py: 9.718 in 20 km, 9.834 at a pole)
-    scale    0.8 to 1.2 (METHOD 1; accelerometer/verdict.py and gyro/verdict.py refuse the same)
+    g        9.7 to 9.9 m/s2: on Earth and above it (9.718 in 20 km, 9.834 at a pole)
+    scale    0.8 to 1.2 (METHOD 1; both verdicts refuse the same)
     turned   0.35: a box within 15 degrees of a face (pose_label.CROOKED_DEG), and 5 more for the
              chip in it. So each diagonal element is larger than the others of its row together,
              and no P is singular
@@ -46,8 +45,8 @@ class Record:
               face, 0 where 180 degrees were assumed; "scale_sigma" and "sequence" of the
               record whose gyro measured them}; None: 180 degrees everywhere
     mounting  {"roll_deg", "pitch_deg", "order", "axes", "frame"}
-    terms     [(tag, bytes)], as stored: record_terms.py takes them apart, and checks them,
-              where they are used; a session has no heap to spare for that
+    terms     [(tag, bytes)], as stored: term_correction.py takes them apart and checks
+              them where they are used
     """
 
     def __init__(self):

@@ -1,7 +1,8 @@
-"""The correction with the terms of a record, sample by sample; floats on the board, and on the
-host arrays of samples that have one temperature count.
+"""The correction with the terms of a record: what follows the temperature, and the g-sensitivity.
 
-Order, the reverse of that in which the errors come about:
+It runs sample by sample, with floats on the board and on the host with arrays of samples that
+have one temperature count. The order is the reverse of that in which the errors come about:
+
 1. P, unit and bias of the record, in the sensor's axes (correction.py)
 2. accelerometer: less the thermal bias, then divided by the thermal scale, because a drifting
    offset is not stretched by the scale
@@ -11,19 +12,15 @@ Order, the reverse of that in which the errors come about:
 
 P holds the bias and the scale at the temperature of the calibration, the last rest the gyro's at
 its own: terms count from there, so that a calibration or a rest at another temperature leaves
-them valid. Outside of the temperatures a term was measured at, its edge holds.
+them valid. Outside of the temperatures that a term was measured at, its value at the edge holds.
 
-The numbers of a record's terms that the correction is made of, checked; all that a board needs
-of a term. They stand first in its section (the host's record_terms.py has the rest), 64 bits each:
+The numbers of a term stand first in its section of the record, 64 bits each; the host's
+record_terms.py has the rest:
 
     accel_thermal_bias, gyro_thermal_bias     k1 [3], k2 [3], t0_c, low_c, high_c,
                                               temp_lsb_per_c, temp_offset_c
     accel_thermal_scale, gyro_thermal_scale   k1 [3], then likewise
     g_sensitivity                             k [3 x 3], row by row
-
-One term that follows the chip's temperature.
-
-From the units a record's terms are stored in to those that samples are corrected in.
 """
 
 import struct
