@@ -9,6 +9,7 @@ import json
 
 
 def quoted(value):
+    """A JSON string of text that cannot stand in JSON as it is."""
     out = ['"']
     for ch in value:
         code = ord(ch)
@@ -70,6 +71,7 @@ class Events:
         self._write_line = write_line
 
     def emit(self, event, **fields):
+        """Writes an event and its fields as a line."""
         line = '{"event": "' + event + '"'  # grown: a list of its parts would double it
         for name in fields:
             line += ', "' + name + '": ' + to_json(fields[name])
@@ -89,6 +91,7 @@ class HostLine:
         self._events = events
 
     def poll(self):
+        """The next command as a dict with "cmd", or None."""
         line = self._read_line()
         if line is None or not line.strip():
             return None

@@ -3,9 +3,9 @@
 import os
 
 FLAG = "calibrate.flag"  # its presence asks for a calibration at the next power-up
-OFFERED = "offered.bin"   # a record that a host wants in force (offered.py)
-NEW = "capture.new"
-GOOD = "capture.bin"      # of the sessions: see capture/files.py
+UPLOADED = "offered.bin"  # a record that a host has put there (record/load_record.py)
+NEW = "capture.new"       # of the session under way; what becomes of it: capture/files.py
+GOOD = "capture.bin"
 UNSAVED = "unsaved.bin"
 REFUSED = "refused.bin"
 

@@ -24,6 +24,7 @@ class FrozenSensor:
         self._due = SAME
 
     def seen(self, sample):
+        """Whether the sample repeats too many before it, and is not to be used."""
         most = self._count(sample, 0)
         if self._sensor.imu.has_gyro:
             most = max(most, self._count(sample, 1))

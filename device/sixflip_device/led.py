@@ -43,6 +43,7 @@ class Lamp:
         self._countdown = 1
 
     def show(self, pattern):
+        """This pattern from now on, over and over."""
         if pattern != self._base:
             self._base = pattern
             if not self._once:
@@ -50,11 +51,13 @@ class Lamp:
                 self._countdown = 1
 
     def flash(self, pattern):
+        """This pattern once, then the shown one goes on."""
         self._once = pattern
         self._position = 0
         self._countdown = 1
 
     def step(self):
+        """To be called once a sample."""
         self._countdown -= 1
         if self._countdown > 0:
             return

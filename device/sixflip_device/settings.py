@@ -33,6 +33,7 @@ KNOWN = {
 
 
 def defaults():
+    """{name: value} of a sixflip.json that says nothing."""
     return {name: KNOWN[name][0] for name in KNOWN}
 
 

@@ -104,7 +104,7 @@ def look(moved=still, axis=(0.0, 0.0, 1.0), push=no_push, longest_s=5.0, stored=
                          {"bias_dps": then, "temp_c": 25.0} if stored else None)
     if not imu.has_gyro:
         return rest, None, None
-    got = rest.bias_dps(imu)
+    got = at_rest.bias_dps(rest.means, imu)
     return rest, max(abs(got[k] - truth[k]) for k in range(3)), board.ticks_us() / 1e6
 
 

@@ -1,6 +1,6 @@
 """Which file a session's capture ends in, once it is known what became of the session.
 
-    capture.bin   of the session whose record is in force
+    capture.bin   of the session whose record is active
     unsaved.bin   of a good session after it, whose record was not written: it said nothing new
     refused.bin   of a session after both that was refused, stopped or cut short
 

@@ -37,17 +37,19 @@ class RecordedStore(CaptureStore):
             self._pieces.sequence += 1  # the host says which samples it has not got
 
     def add(self, dt_us, sample):
+        """As CaptureStore.add; the host gets every sample, whatever the file holds."""
         self._writer.add(dt_us, sample)
         if not self.sums_only:
             self.kept += 1
 
     def header_again(self):
+        """Sends the header to a host that has missed it."""
         meta = self._meta or meta_of(self._root)
         if meta is not None:
             self._send(header(meta, self._columns))
 
     def finish(self, complete, placements=()):
-        """The host gets the poses in force once more: it knows those that it has."""
+        """The host is sent the accepted poses once more; it knows those that it has."""
         self._writer.flush()
         self._to_file = False
         for placement in placements:

@@ -50,7 +50,7 @@ class CaptureStore:
             if free is not None and free < RESERVE + expected_bytes:
                 self._short("%d bytes free, %d of them for the records; a session may take %d" % (
                     free, RESERVE, expected_bytes))
-        self._free = free  # less what was written since; None: nobody knows
+        self._free = free  # less what was written since; None: the port cannot tell
         self._open(meta_bytes)
 
     def _open(self, meta):
@@ -69,6 +69,7 @@ class CaptureStore:
 
     @property
     def samples(self):
+        """How many the session had."""
         return self._writer.samples
 
     def _short(self, reason):
@@ -108,13 +109,16 @@ class CaptureStore:
             writer.sums_only = True
 
     def pose(self, placement):
+        """Keeps a Placement, and all before it, on the flash at once."""
         self._writer.pose(placement)
         self._flush()
 
     def withdraw(self, code, first=None):
+        """The placements of a pose (with first: only that one) do not count any more."""
         self._writer.withdraw(code, first)
 
     def note(self, text):
+        """Keeps a sentence about what happened."""
         self._writer.note(text)
 
     def _flush(self):
@@ -136,7 +140,7 @@ class CaptureStore:
     def finish(self, complete, placements=()):
         """Ends the file. False when not even the sums could be kept (reason says why).
 
-        placements: those in force, to be written again if the file is broken.
+        placements: those accepted, to be written again if the file is broken.
         """
         if not self._broken:
             self._end(complete)

@@ -20,34 +20,9 @@ from sixflip.poses.still_window import StillWindow, window_length
 
 from ..sensor import pacer
 
-SWITCHED_ON_DPS = 1.0
-UNKNOWN_TEMPERATURE_C = 15.0
+SWITCHED_ON_DPS = 1.0  # by which a bias changes from one switching-on to the next
+UNKNOWN_TEMPERATURE_C = 15.0  # taken for the change of temperature of a sensor that has none
 ANY_DPS = 40.0  # the largest zero-rate output of a data sheet (ITG-3205 rev. 1.0, table 3.1)
-
-
-def judge(rest, imu, stored):
-    """Sets rest.unseen_dps, and rest.reason when it turns. stored: {"bias_dps", "temp_c"}."""
-    bias = rest.bias_dps(imu)
-    for x in bias:
-        if abs(x) > ANY_DPS:
-            rest.reason = "turning: %.0f deg/s are no bias" % x
-            return
-    if stored is None:
-        rest.unseen_dps = imu.zero_rate_dps
-        return
-    warmer = UNKNOWN_TEMPERATURE_C
-    if imu.has_temp and stored["temp_c"] is not None:
-        warmer = abs(rest.means[6] / imu.temp_lsb_per_c + imu.temp_offset_c - stored["temp_c"])
-    limit = SWITCHED_ON_DPS + imu.zero_rate_dps_per_c * warmer
-    up = rest.means[:3]
-    size = sum([x * x for x in up]) ** 0.5
-    change = sum([(bias[k] - stored["bias_dps"][k]) * up[k] for k in range(3)]) / size
-    rest.unseen_dps = limit
-    if not abs(change) <= limit:
-        rest.reason = ("turning about the vertical, or the gyro's bias has jumped: by %.1f deg/s, "
-                       "limit %.1f" % (change, limit))
-
-
 RATE_DPS = 0.03    # turn of gravity's direction
 CHANGE_DPS = 0.04  # of the gyro from one third of the rest to another
 ALLOW = (1.0, 0.02)  # mg, deg/s: a window's mean against all, beyond SIGMAS
@@ -77,6 +52,7 @@ class QuietRun:
         self.variances = []
 
     def look(self, window):
+        """Takes a full StillWindow; "" when the windows so far are a rest, or why not."""
         self.length = window.length
         self.most = int(LONGEST_S * self.rate_hz / window.length) + 3
         if window.accel_saturated or window.gyro_saturated or window.stale or window.jumped:
@@ -165,30 +141,57 @@ class QuietRun:
                 return True
         return False
 
-    def result(self, rest):
-        """The means, noise and number of samples into a Rest."""
+    def found(self):
+        """(number of samples, seven mean counts, six standard deviations) of the rest."""
         n = len(self.totals)
-        rest.n = n * self.length
-        rest.means = [self._mean(k, 0, n) for k in range(7)]
-        rest.noise = self._sd() + [0.0] * (6 - self.axes)
+        return (n * self.length, [self._mean(k, 0, n) for k in range(7)],
+                self._sd() + [0.0] * (6 - self.axes))
 
 
 class Rest:
-    """still False: reason says why; else means (7) and noise (6) in counts of n samples.
+    """What watch() found; the numbers are counts of n samples.
 
-    unseen_dps  a turn about the vertical slower than this would pass for bias; None: no gyro
+    still       the board was at rest; reason: "" or why not
+    means       seven, ax ay az gx gy gz temp; noise: six standard deviations
+    unseen_dps  a turn about the vertical that is slower would pass for bias; None without a gyro
     """
 
-    def __init__(self):
-        self.still = False
-        self.reason = "moving"
-        self.n = 0
-        self.means = [0.0] * 7
-        self.noise = [0.0] * 6
-        self.unseen_dps = None
+    def __init__(self, reason, n=0, means=(0.0,) * 7, noise=(0.0,) * 6, unseen_dps=None):
+        self.still = not reason
+        self.reason = reason
+        self.n = n
+        self.means = means
+        self.noise = noise
+        self.unseen_dps = unseen_dps
 
-    def bias_dps(self, imu):
-        return [self.means[3 + k] / imu.gyro_lsb_per_dps for k in range(3)]
+
+def bias_dps(means, imu):
+    """The gyro's mean counts as deg/s, three."""
+    return [means[3 + k] / imu.gyro_lsb_per_dps for k in range(3)]
+
+
+def bias_plausibility(means, imu, stored):
+    """("" or why the gyro's mean at rest is a turn and no bias, how slow a turn would not show).
+
+    stored: a record's gyro_bias, {"bias_dps", "temp_c"}, or None; the turn in deg/s
+    """
+    bias = bias_dps(means, imu)
+    for x in bias:
+        if abs(x) > ANY_DPS:
+            return "turning: %.0f deg/s are no bias" % x, None
+    if stored is None:
+        return "", imu.zero_rate_dps
+    warmer = UNKNOWN_TEMPERATURE_C
+    if imu.has_temp and stored["temp_c"] is not None:
+        warmer = abs(means[6] / imu.temp_lsb_per_c + imu.temp_offset_c - stored["temp_c"])
+    limit = SWITCHED_ON_DPS + imu.zero_rate_dps_per_c * warmer
+    up = means[:3]
+    size = sum([x * x for x in up]) ** 0.5
+    change = sum([(bias[k] - stored["bias_dps"][k]) * up[k] for k in range(3)]) / size
+    if abs(change) <= limit:
+        return "", limit
+    return ("turning about the vertical, or the gyro's bias has jumped: by %.1f deg/s, "
+            "limit %.1f" % (change, limit)), limit
 
 
 def watch(board, sensor, rate_hz, longest_s, stored=None, poll=None):
@@ -198,7 +201,6 @@ def watch(board, sensor, rate_hz, longest_s, stored=None, poll=None):
     wait (the host asked).
     """
     imu = sensor.imu
-    rest = Rest()
     window = StillWindow(window_length(rate_hz, rate_hz), imu.accel_rail, imu.gyro_rail,
                          1000000 // rate_hz)
     quiet = QuietRun(imu.accel_lsb_per_g, imu.gyro_lsb_per_dps, rate_hz)
@@ -206,6 +208,7 @@ def watch(board, sensor, rate_hz, longest_s, stored=None, poll=None):
     sample = array("h", [0] * 7)
     longest = int(longest_s * rate_hz / window.length)
     seen = 0
+    reason = "not waited for (rest_s is %s)" % longest_s
     while seen < longest or 1 < len(quiet.totals) and seen < longest + quiet.most:
         full = False
         while not full:
@@ -213,16 +216,13 @@ def watch(board, sensor, rate_hz, longest_s, stored=None, poll=None):
             if dt >= 0:
                 full = window.add(dt, sample)
         seen += 1
-        rest.reason = quiet.look(window)
-        if not rest.reason:
-            quiet.result(rest)
+        reason = quiet.look(window)
+        if not reason:
+            n, means, noise = quiet.found()
+            unseen_dps = None
             if imu.has_gyro:
-                judge(rest, imu, stored)
-            rest.still = not rest.reason
-            return rest
+                reason, unseen_dps = bias_plausibility(means, imu, stored)
+            return Rest(reason, n, means, noise, unseen_dps)
         if poll is not None and poll():
-            rest.reason = "interrupted"
-            return rest
-    if not seen:
-        rest.reason = "not waited for (rest_s is %s)" % longest_s
-    return rest
+            return Rest("interrupted")
+    return Rest(reason)

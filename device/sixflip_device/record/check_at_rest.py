@@ -16,7 +16,7 @@ def _noise_mg(rest, imu):
 
 
 def shaken(firmware, rest):
-    """"" or why nothing is to be measured in this rest, an engine for one: its noise."""
+    """"" or why nothing is to be measured in this rest: noise, an engine's for one."""
     if not rest.still or firmware.record is None or not firmware.record.accel["noise_g"]:
         return ""
     noise_mg = _noise_mg(rest, firmware.sensor.imu)
@@ -31,7 +31,8 @@ def _known(correction, temp_c):
 
 
 def compare(firmware, rest):
-    """A dict for an event: a_error_mg, noise_mg, temp_c, verdict, words (a list)."""
+    """What a Rest says of the record, as a dict for an event: a_error_mg by which |a| is off,
+    noise_mg, temp_c, verdict "good", "doubtful" or "none", and words (a list of sentences)."""
     facts = {"verdict": "none", "words": [], "a_error_mg": None, "noise_mg": None,
              "temp_c": None}
     words = facts["words"]
@@ -86,13 +87,13 @@ def refresh(firmware, rest_s=None, name="rest"):
         held = "measured before"
     if measured:
         firmware.correction.set_rest(rest.means)
-        firmware.bias_dps = rest.bias_dps(firmware.sensor.imu)
+        firmware.bias_dps = at_rest.bias_dps(rest.means, firmware.sensor.imu)
     firmware.events.emit(name, still=rest.still, reason=rest.reason or reason,
-                     bias_dps=firmware.bias_dps,
-                     bias="measured now" if measured else held,
-                     unseen_turn_dps=rest.unseen_dps if measured else None,
-                     note="a turn about the vertical below %.1f deg/s would pass for bias"
-                     % rest.unseen_dps if measured else "", **facts)
+                         bias_dps=firmware.bias_dps,
+                         bias="measured now" if measured else held,
+                         unseen_turn_dps=rest.unseen_dps if measured else None,
+                         note="a turn about the vertical below %.1f deg/s would pass for bias"
+                         % rest.unseen_dps if measured else "", **facts)
     return rest
 
 

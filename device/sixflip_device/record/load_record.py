@@ -5,14 +5,14 @@ is loaded. Without one a calibration comes first; where one was left unfinished,
 import os
 
 from ..capture.files import file_cut_short, unfinished
-from ..flash_files import NEW, OFFERED, REFUSED, remove, size
+from ..flash_files import NEW, REFUSED, UPLOADED, remove, size
 from .active_record import blank_record, load, misfit
 
 
 def run(firmware):
     """Sets slot and record, or a request without a record; what a power cut left is filed."""
     root = firmware.board.root
-    if size(root + OFFERED):
+    if size(root + UPLOADED):
         take_uploaded(firmware)
     load(firmware)
     try:
@@ -53,7 +53,7 @@ def take_uploaded(firmware):
 
     It is looked at once and gone afterwards, whatever came of it.
     """
-    name = firmware.board.root + OFFERED
+    name = firmware.board.root + UPLOADED
     reason = ""
     try:
         slot, record = _checked(firmware, name)

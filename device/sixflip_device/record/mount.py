@@ -1,4 +1,4 @@
-"""How the sensor sits in the robot: measured at rest, stored in the record, in force at once.
+"""How the sensor sits in the robot: measured at rest, stored in the record, and active at once.
 
 {"cmd": "mount", "axes": "-y x z", "frame": "ned", "order": "xyz"}; what it leaves out is as
 "mounting" in sixflip.json says, or else axes x y z, frame rep103, the paper's choice of order.
@@ -68,7 +68,7 @@ def _same(old, new):
 
 
 def _take(firmware, mounting, rest):
-    """Into the record, onto the flash, in force; OSError when the flash will not take it."""
+    """Stores the mounting with the record and activates it; OSError when the flash fails."""
     from .record_slots import RecordSlots
     record = firmware.record
     before = record.mounting, record.sequence

@@ -13,6 +13,7 @@ from ..sensor import BusLost, pacer
 
 
 def names(codes):
+    """Names of pose codes."""
     return [pose_name(code) for code in codes]
 
 
@@ -30,6 +31,7 @@ class Teller:
         self.step = self._lamp.step
 
     def pose(self, placement):
+        """A Placement was accepted."""
         self._lamp.flash(led.TAKEN)
         n = placement.n
         self._events.emit("pose", pose=pose_name(placement.pose), n=n,
@@ -37,6 +39,7 @@ class Teller:
                           **self._todo())
 
     def refused(self):
+        """A rest was refused; the session says why."""
         session = self._session
         self._lamp.flash(led.REFUSED)
         self._events.emit("refused", pose=self._pose(), reason=session.reason,
@@ -98,6 +101,7 @@ class GuidedSession:
         self.ended = ""
 
     def run(self):
+        """How the session ended, see above."""
         sensor = self._firmware.sensor
         self._teller.state()
         try:

@@ -16,7 +16,7 @@ from ..flash_files import FLAG
 from ..sensor import BusLost, Sensor, pacer
 
 SAMPLES = 50
-STILL_G = 0.03  # standard deviation per axis above which nobody calls it at rest
+STILL_G = 0.03  # largest standard deviation of an axis at rest, g
 
 
 def self_test(board, sensor, rate_hz):

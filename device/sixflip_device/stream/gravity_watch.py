@@ -33,6 +33,7 @@ class GravityWatch:
         self._sum_mg = 0.0
 
     def step(self, dt_us, sample):
+        """One sample, dt_us after the one before."""
         if self._window.add(dt_us, sample):
             self._look()
 

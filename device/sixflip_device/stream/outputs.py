@@ -29,6 +29,7 @@ class LineOutput:
         """Nothing happens between two samples that are sent."""
 
     def send(self, t_us, sample):
+        """Sends a sample that is due, at t_us since the stream began."""
         firmware = self._firmware
         if firmware.raw:
             firmware.events.emit("sample", t_us=t_us, raw=sample)
@@ -50,6 +51,7 @@ class BinaryOutput:
         """Nothing happens between two samples that are sent."""
 
     def send(self, t_us, sample):
+        """Sends a sample that is due, at t_us since the stream began."""
         firmware = self._firmware
         if not firmware.raw:
             sample = firmware.correction.apply(sample, self._out)
@@ -71,6 +73,7 @@ class BlockOutput:
         self._pieces.send(self._writer.written if self._writer else 0, data)
 
     def step(self, sample, dt_us):
+        """Takes every sample, dt_us after the one before."""
         self._writer.add(dt_us, sample)
 
     def send(self, t_us, sample):
@@ -91,10 +94,12 @@ class HeadingOutput:
             self._frames = FrameWriter(HEADING)
 
     def step(self, sample, dt_us):
+        """Takes every sample, dt_us after the one before."""
         out = self._firmware.correction.apply(sample, self._out)
         self._angles = self._heading.step(out[:3], out[3:], dt_us * 1e-6)
 
     def send(self, t_us, sample):
+        """Sends a sample that is due, at t_us since the stream began."""
         roll, pitch, yaw = [math.degrees(x) for x in self._angles]
         if self._frames:
             self._firmware.board.write_bytes(self._frames.frame(t_us, (roll, pitch, yaw)))

@@ -27,6 +27,7 @@ class PieceWriter:
         self._body = bytearray(0)
 
     def send(self, samples, piece):
+        """Sends a header or block; samples: how many were written before it."""
         end = HEAD_SIZE + len(piece)
         if len(self._body) < end + 4:
             self._body = bytearray(end + 4)

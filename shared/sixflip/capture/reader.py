@@ -18,7 +18,7 @@ class Blocks:
     t_us          array('q'): microseconds since the start of the session
     rows          array('h'): samples one after the other, len(names) counts each
     starts        array('l'): number of the first sample of every block of samples
-    placements    in force, in the order they were accepted (while they are read, all)
+    placements    accepted, in the order they were accepted (while they are read, all)
     withdrawn     codes of the poses that were taken back
     notes         texts
     lost          (first, n) of the samples that never came, by the board's count; missing: all

@@ -19,7 +19,7 @@ LENGTH = 32  # samples summed up in one go; any number will do
 class CaptureMoves:
     """block() of every block of samples in the file's order; then moves() has them.
 
-    placements  in force in that file; columns: its mask; gyro_rail: |count| at or beyond is
+    placements  accepted in that file; columns: its mask; gyro_rail: |count| at or beyond is
                 saturated, 0 without a gyro; lsb_per_dps: its counts
     """
 
@@ -35,6 +35,7 @@ class CaptureMoves:
         self._at = 0
 
     def block(self, block):
+        """One whole block of samples, head and CRC included."""
         payload = block[4:-4]
         seconds, us, count = start(payload)
         # in it the first sample has no interval

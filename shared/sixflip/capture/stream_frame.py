@@ -35,6 +35,7 @@ class FrameWriter:
         self._out[-1] = NEWLINE
 
     def frame(self, t_us, values):
+        """The bytes of a frame; they are valid until the next call."""
         body = self._body
         struct.pack_into(HEAD, body, 0, self._kind, self.sequence, t_us & 0xFFFFFFFF)
         struct.pack_into(VALUES[self._kind], body, HEAD_SIZE, *values)

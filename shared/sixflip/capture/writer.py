@@ -109,6 +109,7 @@ class BlockWriter:
         self._write(block + struct.pack("<I", binascii.crc32(block)))
 
     def pose(self, placement):
+        """A Placement."""
         p = placement
         values = list(p.sums) + list(p.noise)
         self._block(
@@ -121,6 +122,7 @@ class BlockWriter:
         self._block(cb.WITHDRAWN, payload if first is None else payload + struct.pack("<I", first))
 
     def note(self, text):
+        """A sentence about what happened, 1024 bytes at most."""
         self._block(cb.NOTE, text.encode()[:1024])
 
     def end(self, complete):

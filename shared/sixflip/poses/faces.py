@@ -71,4 +71,5 @@ def face_code(name):
 
 
 def is_b(code):
+    """Whether a code is the second capture of a face."""
     return 1 <= code <= LEANING and code % 2 == 0

@@ -50,6 +50,7 @@ class NoiseFloor:
         self.say("", 0, 0, "")
 
     def say(self, reason, value, limit, unit):
+        """Sets why a window is not still, the measured value, its limit and unit."""
         self.reason = reason
         self.value = value
         self.limit = limit

@@ -1,4 +1,4 @@
-"""Placements in force and the moves between them, in the order of the session.
+"""Placements that are accepted and the moves between them, in the order of the session.
 
 While a move lasts its path (see Move) grows window by window, R from 0 and J from 9 on, behind
 them what the last window turned. Within a window of a quarter of a second the axis of the turn
@@ -19,6 +19,7 @@ IN_TIME = (0, 0, 0, 0)  # late of every move whose samples came when they should
 
 
 def empty_move(first):
+    """A Move that begins at a sample and has none yet."""
     return Move(-1, -1, first, 0, [0, 0, 0], 0, [0, 0, 0, 0], False, 0)
 
 
@@ -149,6 +150,7 @@ class PlacementLog:
         return found
 
     def drop_at(self, i):
+        """Takes out the placement at an index; the moves around it become one."""
         merged = self.moves.pop(i)
         absorb(merged, span_of(self.placements.pop(i), self.period_us))
         merged.path = None

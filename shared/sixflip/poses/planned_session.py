@@ -6,11 +6,11 @@ from sixflip.poses.faces import face_of_code
 from sixflip.poses.placement_log import empty_move
 from sixflip.poses.session import COMPLETE, POSE, WINDOW, Session
 
-PAUSE_US = 60000000  # between the two; how long it was nobody knows
+PAUSE_US = 60000000  # between the two sessions; its true length is unknown
 
 
 def resume(session, placements, samples, moves=None):
-    """Put the placements of a session of so many samples in force, and its moves.
+    """Take over the placements and moves of an earlier session of so many samples.
 
     moves   to each of them and the one under way at its end (capture/scan.py); None: nothing
             is known of them

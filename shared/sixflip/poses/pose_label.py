@@ -54,12 +54,14 @@ class PoseLabel:
             self.code = code
 
     def refuse(self, reason, value, limit, unit):
+        """Sets why the rest is no pose."""
         self.reason = reason
         self.value = value
         self.limit = limit
         self.unit = unit
 
     def off_face(self, off_deg):
+        """Refuses a box that does not lie flat on a face; whether it did."""
         if off_deg > CROOKED_DEG:
             reason = "crooked" if off_deg <= LEANING_DEG else "leaning"
             self.refuse(reason, off_deg, CROOKED_DEG, "deg")

@@ -42,6 +42,7 @@ class PoseSums:
         return ""
 
     def full(self):
+        """Whether all windows are taken."""
         return self.taken == self.windows
 
     def means(self):
@@ -65,6 +66,7 @@ class PoseSums:
         return ""
 
     def placement(self):
+        """The Placement of the windows taken."""
         noise = array("f", [math.sqrt(v / self.taken) for v in self.squares])
         span = self.span
         made = Placement(self.pose, span.first, span.n, self.sums, noise, span.duration_us)

@@ -20,9 +20,9 @@ TIMED_OUT = 5  # nothing accepted for timeout_s; what stood in the way is in `ob
 
 SETTLE_WINDOWS = 2  # still windows (0.5 s) before the capture starts
 US = 1000000
-# Without a gyro a mere knock must not pass for a flip:
-KNOCK_US = 500000  # it lasts no longer,
-KNOCKS_S = 3  # and two are further apart.
+# Without a gyro a flip shows only by its motion, and a knock on the table must not pass for one.
+KNOCK_US = 500000  # longest knock that still counts as one, microseconds
+KNOCKS_S = 3  # least time between two knocks, seconds
 
 
 class Session:
@@ -48,7 +48,7 @@ class Session:
         self.withdrawn = []
         self.obstacle = ""
         period_us = int(US / rate_hz + 0.5)
-        self._handled = 2 - -KNOCK_US // (length * period_us)  # windows; a knock touches one less
+        self._handled = 2 - -KNOCK_US // (length * period_us)  # windows, more than a knock touches
         self._window = StillWindow(
             length, accel_rail, gyro_rail if gyro_lsb_per_dps else 0, period_us
         )

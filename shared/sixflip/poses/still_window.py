@@ -38,6 +38,7 @@ class StillWindow:
         self.clear()
 
     def clear(self):
+        """Begins a new window."""
         for i in range(6):
             self.s[i] = 0
             self.q[i] = 0
@@ -114,6 +115,7 @@ class StillWindow:
         return self.s[i] + self.n * self.ref[i]
 
     def mean(self, i):
+        """Mean of an axis (0..5) in counts."""
         return self.ref[i] + self.s[i] / self.n
 
     def spread(self, i):

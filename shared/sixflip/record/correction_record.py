@@ -160,7 +160,7 @@ def encode(record):
 
 def decode(data):
     """The Record in bytes. ValueError, one sentence, for anything else. The terms stay bytes,
-    nobody has looked into them."""
+    they are not looked into."""
     if len(data) < HEAD_SIZE + 4 or bytes(data[:4]) != MAGIC:
         raise ValueError("no correction record: expected %d bytes or more that begin with 6FLP"
                          % (HEAD_SIZE + 4))

@@ -93,21 +93,25 @@ class ThermalTerm:
         self._is_gyro_bias = is_gyro_bias
 
     def celsius(self, count):
+        """Degrees C of a temperature count."""
         return count / self.lsb + self.offset
 
     def _distance(self, t):
         return min(max(t, self.low), self.high) - self.t0
 
     def count_from(self, t):
+        """The term counts from this temperature in degrees C: there it is nothing."""
         d = self._distance(t)
         for j in range(3):
             self.base[j] = self._nominal - (self.k1[j] + self.k2[j] * d) * d
 
     def at_rest(self, count):
+        """A rest at a temperature count has measured the gyro's bias anew."""
         if self._is_gyro_bias:
             self.count_from(self.celsius(count))
 
     def fill(self, t):
+        """Writes the term at t degrees C into its place."""
         d = self._distance(t)
         for j in range(3):
             self.into[self.first + j] = self.base[j] + (self.k1[j] + self.k2[j] * d) * d
@@ -171,6 +175,7 @@ class TermCorrection(Correction):
         return out
 
     def set_rest(self, means):
+        """As Correction.set_rest; the gyro's terms count from this rest."""
         Correction.set_rest(self, means)
         for one in self.thermal:
             one.at_rest(means[6])
