@@ -2,6 +2,8 @@
 
 import json
 
+from sixflip import STANDARD_G
+
 FILE = "sixflip.json"
 MOST_TEXT = 4096  # characters of it: a small heap has no room for any more
 
@@ -23,7 +25,7 @@ KNOWN = {
     "fifo": (None, "bool", 0, 0),
     "grace_ms": (2000, "int", 0, 60000),
     "stream_hz": (10, "float", 0, 500),
-    "g": (9.80665, "float", 9.7, 9.9),
+    "g": (STANDARD_G, "float", 9.7, 9.9),
     "pose_samples": (400, "int", 50, 5000),
     "timeout_s": (300, "int", 5, 3600),
     "rest_s": (5, "float", 0, 60),

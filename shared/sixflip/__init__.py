@@ -1,3 +1,4 @@
 """On-site calibration of MEMS IMUs; the same files run on MicroPython and CPython."""
 
 __version__ = "0.1.0"
+STANDARD_G = 9.80665  # m/s2, standard gravity (3rd CGPM, 1901)

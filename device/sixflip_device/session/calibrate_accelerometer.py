@@ -10,6 +10,7 @@ from array import array
 from sixflip.accelerometer.solver import solve
 from sixflip.accelerometer.verdict import judge_accelerometer
 from sixflip.poses.faces import AXIS, FACES, pose_name
+from sixflip.poses.still_window import RAIL
 
 from ..record.active_record import blank_record
 from .session_values import Calibration
@@ -27,7 +28,7 @@ def run(firmware, session):
                                    imu.accel_rail)
 
 
-def calibrate_accelerometer(placements, moves, record, earlier=None, rail=32767):
+def calibrate_accelerometer(placements, moves, record, earlier=None, rail=RAIL):
     """The Calibration of a session's placements.
 
     record   a Record that knows its sensor, and nothing else yet; it is filled in

@@ -2,7 +2,6 @@
 
 import errno
 import os
-import time
 
 from serial.tools import list_ports
 
@@ -81,13 +80,3 @@ def why_not(device):
 def held(device):
     return ("%s: another program holds the port (a second terminal?); close it and try again"
             % device)
-
-
-def wait_for_board(seconds):
-    """Rows of boards() as soon as there are any, or [] after so many seconds."""
-    end = time.monotonic() + seconds
-    while True:
-        rows = boards()
-        if rows or time.monotonic() > end:
-            return rows
-        time.sleep(0.2)

@@ -66,7 +66,7 @@ class RestsAndMoves:
         steps = np.diff(capture.t_us)
         usual = float(np.median(steps))
         rail = capture.meta.get("gyro_range_dps", np.inf) * capture.meta["gyro_lsb_per_dps"]
-        rail = min(still_windows.INT16_RAIL, rail) - 1
+        rail = min(still_windows.RAIL, rail) - 1
         spans = []
         for k in range(len(runs) - 1):
             first, last = runs[k][2] - 1, runs[k + 1][1]

@@ -8,6 +8,7 @@ from sixflip.chips import catalogue
 from sixflip.gyro import solver as gyroscope
 from sixflip.gyro import verdict as gyro_verdict
 from sixflip.poses.faces import FACES, face_of_code, pose_name
+from sixflip.poses.still_window import RAIL
 
 from ..capture import clock
 from ..capture.capture_binary import write_pauses
@@ -15,7 +16,6 @@ from ..capture.find_poses import HELD_BY_HAND, find_poses
 from ..capture.imports import units
 from . import flips_turned
 
-INT16_RAIL = 32767
 RATE_OFF = 0.2          # of the rate in the header
 JUMP = 10               # times the usual interval
 SESSION_WITH_FLIPS = 3  # faces turned by 180 degrees by chance are not that many
@@ -107,7 +107,7 @@ def unfinished(placements, labelled):
 def rail(capture):
     """Accelerometer count at which the chip is saturated."""
     full_scale = capture.meta.get("accel_range_g", np.inf) * capture.meta["accel_lsb_per_g"]
-    return int(min(INT16_RAIL, full_scale - 1))
+    return int(min(RAIL, full_scale - 1))
 
 
 def halves(capture, solution):

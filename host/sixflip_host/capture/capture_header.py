@@ -3,6 +3,7 @@
 import json
 import math
 
+from sixflip import STANDARD_G  # noqa: F401 - for what reads captures
 from sixflip.chips import catalogue
 
 from ..errors import BadFile
@@ -16,7 +17,6 @@ ACCEL = ("ax", "ay", "az")
 GYRO = ("gx", "gy", "gz")
 MAG = ("mx", "my", "mz")
 COLUMNS = ("t_us",) + ACCEL + GYRO + ("temp",) + MAG + ("pose",)
-STANDARD_G = 9.80665
 G = (9.7, 9.9)          # m/s², as sixflip.record.record
 RATES = ("stated", "measured")     # key `rate`: how rate_hz is known; measured is never judged
 LONGEST_LINE = 1 << 20      # bytes; what comes behind the header has no limit of its own

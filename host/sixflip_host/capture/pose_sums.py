@@ -7,7 +7,7 @@ from sixflip.poses.placement_log import PlacementLog
 from sixflip.poses.still_window import window_length
 
 from . import rests
-from .still_windows import INT16_RAIL, POSE_SAMPLES
+from .still_windows import POSE_SAMPLES, RAIL
 
 AT_A_TIME = 1000        # windows as floats, which take four times the room of counts
 
@@ -64,7 +64,7 @@ def _move(capture, index, before, after):
     first, end = before.first + before.n, after.first
     gyro = capture.gyro[first:end]
     gaps = np.diff(capture.t_us[first - 1:end])
-    rail = min(INT16_RAIL, capture.meta.get("gyro_range_dps", np.inf)
+    rail = min(RAIL, capture.meta.get("gyro_range_dps", np.inf)
                * capture.meta["gyro_lsb_per_dps"])
     saturated = bool(len(gyro)) and bool((np.abs(gyro.astype(np.int32)) >= rail - 1).any())
     move = Move(index, index + 1, first, end - first,

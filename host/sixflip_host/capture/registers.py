@@ -1,10 +1,11 @@
 """Columns of counts: steps, a band that reads nothing, bits and columns that stick."""
 import numpy as np
 
+from sixflip.poses.still_window import RAIL
+
 FEWEST_VALUES = 12  # distinct counts before a common divisor means anything
 FEWEST_SAMPLES = 50
 SPACED = 6  # times the smallest value: as far as the values next to each other are looked at
-RAIL = 32767
 LOW_BITS = 6  # bits that noise and motion must have moved
 MOVED = 4  # times a bit's weight that a column must span to have moved it
 

@@ -9,11 +9,10 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from sixflip.poses.noise_floor import CAP, ENTER, LEAVE, WINDOWS, NoiseFloor
-from sixflip.poses.still_window import SAME, SPAN, window_length
+from sixflip.poses.still_window import RAIL, SAME, SPAN, window_length
 
 from ..progress import steps
 
-INT16_RAIL = 32767
 POSE_SAMPLES = 400  # sets the length of a window as on the board, a quarter of a second
 AT_A_TIME = 400  # windows whose samples are there as wide integers at once
 
@@ -71,7 +70,7 @@ def of(capture):
     count = len(capture) // length
     full_scale = capture.meta.get("accel_range_g", np.inf) * capture.meta["accel_lsb_per_g"]
     gyro = capture.gyro is not None
-    rails = int(min(INT16_RAIL, full_scale - 1)), INT16_RAIL if gyro else 0
+    rails = int(min(RAIL, full_scale - 1)), RAIL if gyro else 0
     lsb = capture.meta["accel_lsb_per_g"], capture.meta["gyro_lsb_per_dps"] if gyro else 0
     axes = 6 if gyro else 3
     table = {"mean": np.zeros((count, axes)), "variance": np.zeros((count, axes)),

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sixflip.poses import faces
-from sixflip.poses import faces as pose_codes
 from sixflip_sim.effects.moment import Moment
 
 from .. import progress
@@ -100,7 +99,7 @@ class Session:
 
     def without_poses(self, labels):
         """The same session without the placements with these labels."""
-        codes = {pose_codes.pose_code(label) for label in labels}
+        codes = {faces.pose_code(label) for label in labels}
         return self._of_runs([run for run in self.runs if run.code not in codes])
 
     def without_samples(self, bad):
@@ -195,7 +194,7 @@ def of(name, capture):
     labelled = capture.pose is not None and bool((capture.pose > 0).any())
     if not labelled:
         capture = _labelled(capture)
-    unsteady = {pose_codes.pose_code(name) for name in capture.meta.get(HELD_BY_HAND, ())}
+    unsteady = {faces.pose_code(name) for name in capture.meta.get(HELD_BY_HAND, ())}
     runs = tuple(rests.labelled(capture.pose, max(FEWEST_SAMPLES, SHORTEST_S * rate), unsteady))
     smooth = thermometer.of(capture, t_s)
     return Session(name, capture, rate, t_s, timeless, labelled, runs, smooth,

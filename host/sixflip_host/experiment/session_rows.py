@@ -7,7 +7,6 @@ temperature are what the plan says.
 import numpy as np
 
 from sixflip.poses import faces
-from sixflip.poses import faces as pose_codes
 from sixflip_sim.effects.moment import Moment
 
 from . import noise_arrays
@@ -59,7 +58,7 @@ def rows_of(protocol, blocks=1, turns=False):
             common = {"session": number, "attitude": attitude, "before": before,
                       "leaning": rest.leaning, "plan": session, "placement": placement,
                       "face": -1 if rest.leaning
-                      else faces.face_of_code(pose_codes.pose_code(rest.pose))}
+                      else faces.face_of_code(faces.pose_code(rest.pose))}
             flip = previous is not None and previous[:2] == rest.pose[:2] and not rest.leaning
             if turns and flip and previous != rest.pose:
                 sign = 1.0 if rest.turn == "left" else -1.0

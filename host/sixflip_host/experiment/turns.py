@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sixflip.poses.still_window import RAIL
+
 from ..capture.attitude import _rotation, carried
 from .projection import cross, lateral_basis
 
@@ -18,7 +20,6 @@ ROUNDS = 2  # of fits that begin with what the one before left
 PULL_DPS = 0.1  # deg/s per g, typical (effects/typical.py: g_sensitivity)
 SHORTEST_S, LONGEST_S, LEAST_DEG = 0.3, 60.0, 20.0
 LATE_S = 0.1  # the longest delay of the library's filter_lag
-RAIL = 32767
 _known = weakref.WeakKeyDictionary()  # {Session: {up: turns}}: what was integrated is not again
 
 

@@ -8,9 +8,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from sixflip import STANDARD_G as G
+
 from ..errors import BadFile, UsageError
 
-G = 9.80665
 DEG = np.pi / 180.0
 MARK = "put back by sixflip export"  # in every file that is made from a diagnosis
 AXES = "xyz"

@@ -15,7 +15,7 @@ from ..experiment.projection import basis, without
 
 PLACEMENT_DEG = 0.05  # scatter of placing a box by hand (METHOD section 1)
 FLIP_DEG = 0.4  # error of a half turn by hand (METHOD section 2)
-POWER_80, TESTS, FALSE_ALARM = 0.8416212335729143, 12, 0.05
+POWER_80 = 0.8416212335729143
 QUANTILE = 2.8652589 + POWER_80  # two-sided 5 % over 12 tests (Bonferroni), and 80 % power
 SILENT = math.inf
 MG_PER_RAD = 1000.0

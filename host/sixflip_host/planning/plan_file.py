@@ -12,7 +12,6 @@ import json
 import math
 
 from sixflip.poses import faces
-from sixflip.poses import faces as pose_codes
 
 from ..atomic_write import write_text
 from ..errors import BadFile
@@ -106,7 +105,7 @@ def _pose(spec, where):
     name = spec.get("pose")
     if not isinstance(name, str) or not name:
         raise ValueError("%s: pose is %r, expected a name like Z+a or L1" % (where, name))
-    code = pose_codes.pose_code(name)
+    code = faces.pose_code(name)
     turn = spec.get("turn", "left")
     if turn not in ("left", "right"):
         raise ValueError("%s: turn is %r, expected left or right" % (where, turn))

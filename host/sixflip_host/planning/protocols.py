@@ -6,7 +6,6 @@ import math
 import random
 
 from sixflip.poses import faces
-from sixflip.poses import faces as pose_codes
 
 NAMES = ("paper", "return", "random", "backward", "recommended", "thermal", "soak",
          "turntable", "drive")
@@ -63,7 +62,7 @@ def face_rest(code, turn="left", **timing):
     face = (code - 1) // 2
     up = [0.0, 0.0, 0.0]
     up[faces.AXIS[face]] = float(faces.SIGN[face])
-    return Rest(faces.pose_name(code), tuple(up), 180.0 * pose_codes.is_b(code), turn=turn,
+    return Rest(faces.pose_name(code), tuple(up), 180.0 * faces.is_b(code), turn=turn,
                 **timing)
 
 

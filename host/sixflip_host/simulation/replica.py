@@ -1,13 +1,13 @@
 """A simulated sensor fitted to a recording at rest, and what it counts in the same time."""
 import numpy as np
 
+from sixflip.poses.still_window import RAIL
 from sixflip_sim.effects import make
 from sixflip_sim.sensor_model import STANDARD_G, SensorModel, Triad
 
 from ..experiment import signal_measures
 from . import simulator
 
-RAIL = 32767
 UNIT = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 _RADIAN = np.pi / 180.0
 

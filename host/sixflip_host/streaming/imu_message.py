@@ -15,7 +15,6 @@ TOPIC, FRAME = "/imu/data_raw", "imu_link"
 UNKNOWN = (0.0,) * 9                # sensor_msgs/Imu: all zeros, the covariance is unknown
 ABSENT = (-1.0,) + (0.0,) * 8       # and -1 first: there is no such measurement
 JUMP_S, JUMP_SAMPLES = 0.5, 10      # a gap larger than both is a jump of the clock
-G = 9.80665
 
 
 @dataclasses.dataclass(frozen=True)

@@ -2,11 +2,12 @@
 
 import math
 
+from sixflip import STANDARD_G as G
+
 NEAR_M_S2 = 0.4  # farther from the mean of a rest than this: another rest, or a move
 EDGE_S = 0.8  # left out at both ends of a rest: slow starts and ends of moves
 SHORTEST_S = 3.6  # of a rest
 STREAM_HZ = 50
-G = 9.80665
 
 
 class Rest:

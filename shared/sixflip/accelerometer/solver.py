@@ -6,13 +6,14 @@ attenuate the scale. The result is in m/s2.
 
 import math
 
+from sixflip import STANDARD_G
 from sixflip.accelerometer.scale_form import scale_form
 from sixflip.accelerometer.sigma import spread
 from sixflip.accelerometer.six_faces import LEVELS, corrected, pairs, pose_mean, truths
 from sixflip.accelerometer.six_faces import solve as solve_means
 from sixflip.poses.faces import face_of_code
 
-G = 9.80665
+G = STANDARD_G
 
 
 class AccelerometerResult:

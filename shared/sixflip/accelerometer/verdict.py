@@ -9,6 +9,7 @@ import math
 
 from sixflip.accelerometer.face_fit import judge_fit
 from sixflip.poses.pose_check import judge_session
+from sixflip.poses.still_window import RAIL
 
 SCALE_OFF = 0.2
 # Cross-axis sensitivity is 2 % per axis at most in the data sheets (MPU6050 3.4, table 6.2).
@@ -96,7 +97,7 @@ def _praise(r):
             % (r.tilt_deg, r.tilt_spread_deg, worst))
 
 
-def judge_accelerometer(result, placements, lsb_per_g, missing=(), failure="", rail=32767,
+def judge_accelerometer(result, placements, lsb_per_g, missing=(), failure="", rail=RAIL,
                         halves=None):
     """("good" | "doubtful" | "refused", sentence).
 

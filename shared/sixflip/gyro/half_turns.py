@@ -8,6 +8,7 @@ unknowns; people err alike on all faces, give or take the hand: x = common + han
 
 import math
 
+from sixflip import STANDARD_G
 from sixflip.accelerometer.normal_equations import NormalEquations
 from sixflip.accelerometer.scale_form import inverse3
 from sixflip.accelerometer.six_faces import corrected
@@ -17,7 +18,6 @@ from sixflip.poses.placement import COARSE, FINE, has_gap
 # A move's gravity is met no better than this: windows of a quarter of a second, a hand that
 # wobbles by 10 degrees. Measured over healthy sessions by tests/bench/mistakes.py.
 MOVE = math.radians(0.3)
-G = 9.80665  # m/s2: that of the place moves a direction by a thousandth of a bias
 
 
 def excess(placements, moves, lsb_per_g, r, accel_P):
@@ -65,7 +65,8 @@ def _solve(rows, r):
 
 def _gravity(p, lsb_per_g, accel_P):
     """Unit vector, box axes."""
-    v = corrected(accel_P, [s * G / (p.n * lsb_per_g) for s in p.sums[:3]])
+    # the place's own gravity moves a direction by a thousandth of a bias
+    v = corrected(accel_P, [s * STANDARD_G / (p.n * lsb_per_g) for s in p.sums[:3]])
     n = math.sqrt(sum([a * a for a in v]))
     return [a / n for a in v]
 

@@ -9,6 +9,8 @@ configured, whose tangential acceleration then is Accel.
 
 import math
 
+from sixflip import STANDARD_G
+
 
 class DriftIntegrator:
     """Li Eq. 8 for one angle, rad."""
@@ -37,7 +39,7 @@ class Heading:
     lever_arm   metres from the turning point forward to the sensor, None: not configured
     """
 
-    def __init__(self, gain=-0.02, lever_arm=None, g=9.80665):
+    def __init__(self, gain=-0.02, lever_arm=None, g=STANDARD_G):
         self.g = g
         self.roll = DriftIntegrator(gain)
         self.pitch = DriftIntegrator(gain)

@@ -63,13 +63,6 @@ def pose_code(name):
     )
 
 
-def face_code(name):
-    """0..5 of "Z+" ... "Y-"; ValueError when there is no such face."""
-    if name not in FACES:
-        raise ValueError("no face is called %r: expected one of %s" % (name, " ".join(FACES)))
-    return FACES.index(name)
-
-
 def is_b(code):
     """Whether a code is the second capture of a face."""
     return 1 <= code <= LEANING and code % 2 == 0

@@ -1,6 +1,7 @@
 """Is every capture what its label says: still, alive, in range, on that face?"""
 
 from sixflip.poses.faces import FACES, face_of_code, nearest_face, pose_name
+from sixflip.poses.still_window import RAIL
 
 # A pose this much noisier than the middle one was not at rest.
 NOISIER = 3.0
@@ -9,7 +10,7 @@ LEANS_DEG = 30.0
 ALIVE = 0.5
 
 
-def judge_session(placements, lsb_per_g, missing=(), rail=32767, halves=None):
+def judge_session(placements, lsb_per_g, missing=(), rail=RAIL, halves=None):
     """("refused", sentence) when a face or pose is missing or one is no good, else None."""
     have = {(p.pose - 1) // 2 for p in placements if 1 <= p.pose <= 12}
     absent = [FACES[f] for f in range(6) if f not in have]
@@ -20,7 +21,7 @@ def judge_session(placements, lsb_per_g, missing=(), rail=32767, halves=None):
     return judge_poses(placements, lsb_per_g, rail, halves)
 
 
-def judge_poses(placements, lsb_per_g, rail=32767, halves=None):
+def judge_poses(placements, lsb_per_g, rail=RAIL, halves=None):
     """("refused", sentence) for the first capture that cannot be used, or None."""
     used = [p for p in placements if face_of_code(p.pose) >= 0]
     has_gyro = [1 for p in used if p.sums[3] or p.sums[4] or p.sums[5]]

@@ -13,7 +13,7 @@ saved:
              sheets (ADXL345 rev. E, table 1: 250 mg; ITG-3205 rev. 1.0, table 3.1: 40 deg/s)
 """
 
-
+from sixflip import STANDARD_G
 
 MEASURED = ("accel", "gyro", "gyro_bias", "mounting")
 
@@ -57,7 +57,7 @@ class Record:
         self.accel_range_g = self.gyro_range_dps = 0
         self.accel_lsb_per_g = self.gyro_lsb_per_dps = 0.0
         self.temp_c = None
-        self.g = 9.80665
+        self.g = STANDARD_G
         self.accel = self.gyro = self.gyro_bias = self.mounting = self.flips = None
         self.terms = []
         self.unknown = []

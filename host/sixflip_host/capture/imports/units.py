@@ -5,6 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sixflip.poses.still_window import RAIL
+
 from ...errors import BadFile
 from ..capture_header import STANDARD_G
 
@@ -16,7 +18,6 @@ GYRO_UNITS = {"counts": None, "si": 180 / math.pi, "rad/s": 180 / math.pi, "dps"
 LARGEST = 1e9           # in any unit: no sensor, and squares of more leave a float
 MOST_DISTINCT = 1 << 17 # sizes of values in whole steps: 16 bits have a quarter of that
 ON_GRID = 0.02          # of a step: how far values may lie off whole steps to be called counts
-RAIL = 32767
 ROOM = 32000            # counts that the largest of float values gets; the rest is headroom
 MOST_ON_RAIL = 1e-3     # share of samples one count beyond 16 bits that are taken as on the rail
 AT_A_TIME = 1 << 16

@@ -19,8 +19,7 @@ LENGTH_S, SHORTEST_S = 5.0, 2.0
 LOWEST_HZ, LOWEST_MOVING_HZ = 0.7, 2.0  # a hand or a vehicle moves more slowly than that
 CHANCE = 0.001
 FEWEST = 4  # stretches
-MEDIAN_SHARE, OF_MEDIAN = 0.25, math.log(2.0)
-WHOLE_PEAK = 0.85  # of a Hann window's main lobe and its neighbours
+MEDIAN_SHARE = 0.25
 LEAST_STEPS = 0.5
 # Bins to each side; a line has that share of the power in them in its own lobe. A hand that
 # steadies the box, or a motor under load, has a wider bump.
