@@ -16,7 +16,8 @@ from .errors import SixflipError, UsageError, internal_error
 from .narration import log, narrated
 from .terminal import plain
 
-# A verb's module has HELP (one line), EXAMPLE, add_arguments(parser) and run(args) -> exit code.
+# A verb's module has HELP (one line), EXAMPLE, add_arguments(parser) and run(args) -> exit code,
+# and more() where its help ends in a text.
 VERBS = {
     "boards": "sixflip_host.verbs.boards",
     "provision": "sixflip_host.verbs.provision",
@@ -120,7 +121,9 @@ def parser_for(verb):
     """The argument parser of one verb."""
     module = load(verb)
     parser = Parser(prog="sixflip " + verb, description=module.HELP, allow_abbrev=False,
-                    epilog="example: %s\n\n%s" % (module.EXAMPLE, EXIT_CODES),
+                    epilog="example: %s\n\n%s%s" % (
+                        module.EXAMPLE, module.more() if hasattr(module, "more") else "",
+                        EXIT_CODES),
                     formatter_class=argparse.RawDescriptionHelpFormatter)
     add_global(parser)
     module.add_arguments(parser)

@@ -35,14 +35,15 @@ class Numbered:
 class Running:
     """A board with a numbered chip that is set up, and what next() gives."""
 
-    def __init__(self, sensor, rate_hz=200, **more):
+    def __init__(self, sensor, rate_hz=200, fifo=None, **more):
         spec = {"sensor": sensor, "order": [], "first_rest_s": 1000.0}
         spec.update(more)
         self.world = worlds.make(spec)
         for chip in self.world.chips:
             chip.model = Numbered()
         self.board = SimulatedBoard(self.world, ".")
-        self.values, problems = settings.merge({"rate_hz": rate_hz, "sensor": sensor})
+        self.values, problems = settings.merge({"rate_hz": rate_hz, "sensor": sensor,
+                                                "fifo": fifo})
         assert not problems
         imu, self.report = find_sensor.find(self.board, self.values)
         self.sensor = Sensor(self.board, imu, self.values, Events(self.board.write_line))

@@ -46,7 +46,7 @@ class TestSettings(unittest.TestCase):
 
     def test_one_bad_value_leaves_the_others(self):
         bad = {"rate_hz": 0, "grace_ms": "2", "stream_hz": True, "pose_samples": 400.5,
-               "sensor": "bmi160", "sda": -1, "g": 0, "board": "", "mounting": 3, "nonsense": 1}
+               "sensor": "bmi323", "sda": -1, "g": 0, "board": "", "mounting": 3, "nonsense": 1}
         values, problems = self.load(json.dumps(dict(bad, scl=7)).encode())
         self.assertEqual(values["scl"], 7)
         self.assertEqual(len(problems), len(bad))
@@ -57,7 +57,7 @@ class TestSettings(unittest.TestCase):
         self.assertEqual(values, wanted)
 
     def test_sentence_names_what_was_expected(self):
-        _, problems = self.load(b'{"sensor": "bmi160"}')
+        _, problems = self.load(b'{"sensor": "bmi323"}')
         self.assertIn("mpu6050", problems[0])
         _, problems = self.load(b'{"rate_hz": 5000}')
         self.assertIn("10 to 500", problems[0])

@@ -24,7 +24,7 @@ BYTE_S = 1e-4           # ten bits at 100 kBd
 ENOUGH = 4096           # bytes that a port says are waiting
 WRITTEN = re.compile(rb"f = open\((.+), 'wb'\)")
 PIECE = re.compile(rb"w\((.*)\)", re.S)
-BUS = b"""('settings', 'pico', 'auto', 400000, [])
+BUS = b"""('settings', 'pico', 'auto', 'I2C at 400 kHz', [])
 ('lines', 'GPIO4', 'GPIO5', 1, 1, 1, 1)
 ('scan', [104])
 ('ids', {(104, 117): b'h', (104, 0): b'\\x80', (83, 0): 5})

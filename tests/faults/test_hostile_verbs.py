@@ -41,7 +41,7 @@ def test_at_an_honest_board_every_verb_does_its_work(verb, tmp_path):
     ("pull", "files", b"('main.py', 'x', None)\n", "a whole number"),
     ("pull", "files", b"('main.py', None, None)\n", "a whole number"),
     ("pull", "files", b"('main.py', 1e999, None)\n", "a whole number"),
-    ("doctor", "bus", b"('settings', 'pico', 'auto', 'fast', [])\n", "a number"),
+    ("doctor", "bus", b"('settings', 'pico', 'auto', 400, [])\n", "a text"),
     ("provision", "selftest", b'{"event": "selftest", "ok": 1}\n', "true or false"),
     ("check", "check", b'{"event": "check", "still": true, "verdict": []}\n', "good, doubtful"),
     ("check", "check", b'{"event": "check", "still": true, "verdict": "good", "bias_dps": [1]}\n',

@@ -95,20 +95,23 @@ def test_the_pages_name_every_sensor():
         assert [name for name in catalogue.SENSORS if "`%s`" % name not in text] == []
 
 
-@pytest.mark.parametrize("sensor", CHIPS)
+@pytest.mark.parametrize("sensor", [*CHIPS, "mpu6050", "gy85"])
 def test_simulator_plan_and_prior_have_one_and_the_same_figure(sensor):
     for kind in ("accel", "gyro"):
         chip = typical.chip_of(sensor, kind)
-        assert chip == "%s-%s" % (sensor, kind)
-        assert typical.size("thermal_bias", sensor, kind) == (
-            datasheets.figure(sensor, kind, "offset_per_c"), datasheets.source(sensor, kind))
+        for axis in "xyz":
+            assert typical.size("thermal_bias", sensor, kind, axis) == (
+                datasheets.figures(sensor, kind, "offset_per_c")["xyz".index(axis)],
+                datasheets.source(sensor, kind))
         sigma = worlds.usual_noise(sensor)[kind == "gyro"]
         assert typical.NOISE[chip][0] == (sigma,) * 3
-        assert typical.DENSITY[chip][0][0] == datasheets.figure(sensor, kind, "density")
+        assert typical.DENSITY[chip][0] == datasheets.figures(sensor, kind, "density")
         for effect in typical.SIZES:
             if kind in ("accel", "gyro") and "mpu6050-" + kind in typical.SIZES[effect]:
                 size, source = typical.size(effect, sensor, kind)
                 assert size > 0 and source, effect
+                assert ("rev" in source or "not stated" in source or sensor in worlds.SEEN
+                        or source.startswith("as the MPU6050: ")), (effect, source)
 
 
 def test_a_part_is_drawn_within_what_its_sheet_allows():

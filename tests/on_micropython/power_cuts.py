@@ -4,7 +4,8 @@
 
 SCENARIO: save0..save3 (a record, with so many before it), restore, session (a second session's
 capture and its record), refused (one that times out), redo (a face again: the capture before is
-copied). WAYS: "whole" operations are done or not; "halves": torn ones leave old and new;
+copied); with ":lsm6dsox" behind it that chip's. WAYS: "whole" operations are done or not;
+"halves": torn ones leave old and new;
 "data": garbage too, but of FAT's sectors not in those of its table and root folder; "all":
 everywhere. EVERY: each n-th cut only; SAMPLES: of a pose; twice: the power fails once more, at
 each operation of the mending. After each cut the flash is mounted again, the firmware's own

@@ -5,6 +5,8 @@ import json
 
 import pytest
 
+from sixflip.chips import catalogue
+
 RECORDS = ("save0", "save1", "save2", "save3", "restore")
 CAPTURES = ("session", "refused", "redo")
 
@@ -24,6 +26,14 @@ def cut(micropython):
 def test_a_record_is_the_old_or_the_new_one(cut, fs, ways, scenario):
     found = cut(fs, scenario, ways)
     assert found["cuts"] > 15 and len(found["seen"]) == 2
+    assert found["losses"] == {}
+
+
+@pytest.mark.parametrize("sensor", [name for name in catalogue.SENSORS
+                                    if name not in ("mpu6050", "adxl345")])
+def test_a_record_of_every_chip_is_the_old_or_the_new_one(cut, sensor):
+    found = cut("lfs2", "save1:" + sensor, "whole")
+    assert found["cuts"] > 5 and len(found["seen"]) == 2
     assert found["losses"] == {}
 
 

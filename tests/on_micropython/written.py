@@ -6,6 +6,7 @@ from array import array
 
 from sixflip.capture import reader as capture_reader
 from sixflip.capture.blocks import ACCEL, GYRO, TEMP
+from sixflip.chips import catalogue
 from sixflip.poses.placement import Placement
 from sixflip.record.record import Record
 from sixflip_device import flash_files
@@ -37,7 +38,18 @@ class Imu:
 
     def metadata(self):
         return {"sensor": self.sensor, "who_am_i": self.who_am_i, "rate_hz": 100,
-                "accel_lsb_per_g": 16384, "gyro_lsb_per_dps": 65.5}
+                "accel_lsb_per_g": self.accel_lsb_per_g,
+                "gyro_lsb_per_dps": self.gyro_lsb_per_dps}
+
+
+def as_chip(sensor):
+    """From now on everything is of this sensor, at its widest ranges."""
+    driver = catalogue.driver(sensor)
+    Imu.sensor = sensor
+    if len(catalogue.ids_of(sensor)):
+        Imu.who_am_i = (min(catalogue.ids_of(sensor)),) * 2
+    Imu.accel_range_g, Imu.accel_lsb_per_g, _ = driver.ACCEL_RANGES[-1]
+    Imu.gyro_range_dps, Imu.gyro_lsb_per_dps, _ = driver.GYRO_RANGES[-1]
 
 
 class Nothing:
@@ -74,8 +86,8 @@ def record(session):
     r = Record()
     r.session = session
     r.chip, r.who_am_i = Imu.sensor, Imu.who_am_i
-    r.accel_range_g, r.gyro_range_dps = 2, 500
-    r.accel_lsb_per_g, r.gyro_lsb_per_dps = 16384, 65.5
+    r.accel_range_g, r.gyro_range_dps = Imu.accel_range_g, Imu.gyro_range_dps
+    r.accel_lsb_per_g, r.gyro_lsb_per_dps = Imu.accel_lsb_per_g, Imu.gyro_lsb_per_dps
     r.temp_c = 25.0
     r.accel = {"P": [[x + session * 1e-3 for x in row] for row in P],
                "sigma_P": [[1e-5] * 4] * 4, "tilt_deg": 1.0, "tilt_spread_deg": 0.01,
@@ -90,14 +102,17 @@ def pose(k, n, first):
 
 
 class Written:
-    """One scenario: prepare() before, act() is what the power fails in.
+    """One scenario, of a chip as "save1:lsm6dsox" (else an MPU6050): prepare() before, act() is
+    what the power fails in.
 
     seen      sessions whose record was found in force after a cut
     may_stay  files that may be on the flash after a cut, and need not be
     """
 
     def __init__(self, scenario, samples):
-        self.scenario = scenario
+        self.scenario, _, chip = scenario.partition(":")
+        if chip:
+            as_chip(chip)
         self.samples = samples
         self.seen = set()
         self.flushed = []      # (operations so far, poses that were on the flash by then)

@@ -5,7 +5,7 @@ from sixflip.chips import catalogue
 from sixflip_device import settings
 from sixflip_device.boards.spi_bus import KEYS
 
-from ..board import chip_options, firmware_update
+from ..board import chip_options, firmware_update, settings_help
 from ..board.ports import add_port, open_link
 from ..errors import UsageError
 from ..terminal import plain
@@ -14,6 +14,11 @@ HELP = "copy the firmware onto a board and test its sensor"
 EXAMPLE = ("sixflip provision --sensor gy85 --pins sda=4,scl=5\n"
            "         sixflip provision --sensor lsm6dsox --range 8g,2000dps --rate 200")
 BOARDS = ("pico", "esp32", "pyboard", "raspberry_pi")
+
+
+def more():
+    """The settings, at the end of --help."""
+    return settings_help.lines() + "\n\n"
 
 
 def add_arguments(parser):

@@ -55,9 +55,11 @@ class Memory:
 
 
 def words(counts, columns, high):
-    """Two bytes of each of these counts; high: which of them is the high one."""
+    """Two bytes of each of these counts (None: of nothing); high: which is the high one."""
     found = bytearray(2 * len(columns))
     for i, column in enumerate(columns):
+        if column is None:
+            continue
         found[2 * i + high] = counts[column] >> 8 & 0xFF
         found[2 * i + 1 - high] = counts[column] & 0xFF
     return found

@@ -3,7 +3,7 @@
 from sixflip.chips import icm42688 as chip
 from sixflip_sim.chips.banked import SimulatedBanked, signed
 from sixflip_sim.chips.fifo import packet
-from sixflip_sim.chips.six_axis import range_of
+from sixflip_sim.chips.six_axis import range_of, rate_of
 
 _SAMPLES_BIG = 0x10
 
@@ -70,7 +70,7 @@ class SimulatedICM42688(SimulatedBanked):
         if (self.registers[chip.PWR_MGMT0] != chip.LOW_NOISE
                 or self.registers[chip.ACCEL_CONFIG0] & 15 != code):
             return 0
-        return {row[1]: row[0] for row in chip.OUTPUT_RATES}.get(code, 0)
+        return rate_of(chip.OUTPUT_RATES, code)
 
     def _bandwidth(self, bits):
         column = [row[0] for row in chip.OUTPUT_RATES].index(self.output_hz())

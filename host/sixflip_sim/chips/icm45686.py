@@ -2,7 +2,7 @@
 
 from sixflip.chips import icm45686 as chip
 from sixflip_sim.chips.fifo import packet
-from sixflip_sim.chips.six_axis import SimulatedSixAxis, range_of
+from sixflip_sim.chips.six_axis import SimulatedSixAxis, range_of, rate_of
 
 
 class SimulatedICM45686(SimulatedSixAxis):
@@ -75,7 +75,7 @@ class SimulatedICM45686(SimulatedSixAxis):
         if (self.registers[chip.PWR_MGMT0] != chip.LOW_NOISE
                 or self.registers[chip.ACCEL_CONFIG0] & 15 != code):
             return 0
-        return {row[1]: row[0] for row in chip.OUTPUT_RATES}.get(code, 0)
+        return rate_of(chip.OUTPUT_RATES, code)
 
     def _bandwidth(self, register):
         part = (2, 4, 8, 16, 32, 64, 128, 128)[self.indirect.get(register, 0) & 7]

@@ -4,7 +4,7 @@ from sixflip.chips import lsm6ds as chip
 from sixflip.chips.lsm6 import FUNC_CFG_ACCESS, IF_INC
 from sixflip_sim.chips.fifo import words
 from sixflip_sim.chips.lsm6 import HIDDEN, SimulatedLSM6
-from sixflip_sim.chips.six_axis import range_of
+from sixflip_sim.chips.six_axis import range_of, rate_of
 
 
 class SimulatedLSM6DS(SimulatedLSM6):
@@ -21,7 +21,7 @@ class SimulatedLSM6DS(SimulatedLSM6):
         code = self.output_code()
         if code != self.registers[chip.CTRL1_XL] >> 4:
             return 0            # the driver runs both alike; anything else is not simulated
-        return {row[1]: row[0] for row in chip.OUTPUT_RATES}.get(code, 0)
+        return rate_of(chip.OUTPUT_RATES, code)
 
     def accel(self):
         return (range_of(chip.ACCEL_RANGES, self.registers[chip.CTRL1_XL] >> 2 & 3),

@@ -3,7 +3,7 @@
 from sixflip.chips import lsm6dsv as chip
 from sixflip.chips.lsm6 import BDU, CTRL3, FUNC_CFG_ACCESS, IF_INC
 from sixflip_sim.chips.lsm6 import HIDDEN, SimulatedLSM6
-from sixflip_sim.chips.six_axis import range_of
+from sixflip_sim.chips.six_axis import range_of, rate_of
 
 
 class SimulatedLSM6DSV(SimulatedLSM6):
@@ -27,7 +27,7 @@ class SimulatedLSM6DSV(SimulatedLSM6):
         code = self.output_code()
         if code != self.registers[chip.CTRL1]:
             return 0
-        return {row[1]: row[0] for row in chip.OUTPUT_RATES}.get(code, 0)
+        return rate_of(chip.OUTPUT_RATES, code)
 
     def accel(self):
         hz = self.output_hz()

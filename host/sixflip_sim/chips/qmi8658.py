@@ -1,7 +1,7 @@
 """Simulated QMI8658, by the driver's own tables."""
 
 from sixflip.chips import qmi8658 as chip
-from sixflip_sim.chips.six_axis import SimulatedSixAxis, range_of
+from sixflip_sim.chips.six_axis import SimulatedSixAxis, range_of, rate_of
 
 _PARTS = (0.0266, 0.0363, 0.0539, chip.FILTER_PART)     # of the output rate, table 22
 _UNFILTERED = 0.275
@@ -56,7 +56,7 @@ class SimulatedQMI8658(SimulatedSixAxis):
         if (self.registers[chip.CTRL7] & chip.BOTH_ON != chip.BOTH_ON
                 or self.registers[chip.CTRL2] & 15 != code):
             return 0
-        return {row[1]: row[0] for row in chip.OUTPUT_RATES}.get(code, 0)
+        return rate_of(chip.OUTPUT_RATES, code)
 
     def accel(self):
         setting = self.registers[chip.CTRL5]

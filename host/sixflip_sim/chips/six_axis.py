@@ -124,7 +124,11 @@ class SimulatedSixAxis(RegisterChip):
     def _take(self, k, t_us):
         self.measure(k, t_us)
         data = words(self.counts, self.columns, self.high())
-        self.registers[self.data_register:self.data_register + len(data)] = data
+        at = self.data_register
+        for column in self.columns:
+            if column is not None:
+                self.registers[at:at + 2] = data[at - self.data_register:][:2]
+            at += 2
 
     def reachable(self):
         register, bits = self.no_i2c
@@ -165,3 +169,11 @@ def range_of(ranges, bits):
         if row[2] == bits:
             return row[1]
     return ranges[-1][1]
+
+
+def rate_of(rates, bits):
+    """Hz of the output rate with these bits; 0 where there is none."""
+    for row in rates:
+        if row[1] == bits:
+            return row[0]
+    return 0

@@ -1,9 +1,9 @@
 """Typical sizes of each effect on each chip, with their sources.
 
 SIZES[effect][chip] = (size, source); one number stands for every coefficient unless a dict of
-keys says otherwise. Chips: mpu6050-accel mpu6050-gyro adxl345 itg3205, and "-accel" and "-gyro"
-of every other sensor, whose figures are those of datasheets.py; where that has none, the
-MPU6050's stands in its place, and the source says so.
+keys says otherwise. Chips: a sensor's name with "-accel" or "-gyro", and adxl345 and itg3205,
+which have one of them. What a data sheet states is in datasheets.py and comes from there for
+every chip; what none states is here, said to be so, with what stands in for it.
 """
 import math
 
@@ -14,15 +14,13 @@ from sixflip_sim.effects import datasheets
 _MPU = "MPU-6050 PS rev 3.4, table 6."
 _ADXL = "ADXL345 rev E, table 1"
 _ITG = "ITG-3205 PS rev 1.0, table 3.1"
-_SEEN = "seen on recorded units"
-_JUDGED = "judged from the range of published units"
+_SEEN = "not stated in the data sheet: seen on recorded units"
+_JUDGED = "not stated in the data sheet: judged from the range of published units"
 
-NOISE = {  # standard deviation a sample at 100 Hz, (x, y, z); mg or deg/s
-    "mpu6050-accel": ((3.3, 3.0, 4.6), _SEEN + "; " + _MPU + "2: 0.4 mg/sqrt(Hz)"),
-    "mpu6050-gyro": ((0.05, 0.05, 0.05), _MPU + "1: 0.05 deg/s rms"),
-    "adxl345": ((2.9, 2.9, 4.3), _ADXL + ": 0.75 LSB rms XY, 1.1 Z"),
-    "itg3205": ((0.38, 0.38, 0.38), _ITG + ": 0.38 deg/s rms"),
-}
+NOISE = {}      # standard deviation a sample at 100 Hz, (x, y, z), mg or deg/s; and its source
+DENSITY = {}    # of white noise, mg or deg/s per sqrt(Hz), likewise
+# Slow noise is in no sheet: as on recorded units of these four, of the others as much less as
+# their white noise is.
 FLICKER = {  # level of each of the exponentials of 10...1000 s, mg or deg/s
     "mpu6050-accel": 0.05, "mpu6050-gyro": 0.001, "adxl345": 0.05, "itg3205": 0.004,
 }
@@ -31,35 +29,16 @@ FLICKER = {  # level of each of the exponentials of 10...1000 s, mg or deg/s
 FLOOR = {
     "mpu6050-accel": 0.08, "mpu6050-gyro": 0.002, "adxl345": 0.08, "itg3205": 0.008,
 }
-# White noise density, mg or deg/s per sqrt(Hz), (x, y, z).
-DENSITY = {
-    "mpu6050-accel": ((0.4, 0.4, 0.4), _MPU + "2"), "mpu6050-gyro": ((0.005,) * 3, _MPU + "1"),
-    "adxl345": ((0.29, 0.29, 0.43), _ADXL + ": 0.75 and 1.1 LSB rms at 100 Hz"),
-    "itg3205": ((0.03, 0.03, 0.03), _ITG),
-}
-SIZES = {
-    "thermal_bias": {
-        "mpu6050-accel": ({"x": 0.5, "y": 0.5, "z": 0.9}, _MPU + "2: 35 and 60 mg over 70 degC"),
-        "mpu6050-gyro": (0.1, "0.04-0.3 " + _SEEN),
-        "adxl345": ({"x": 0.4, "y": 0.4, "z": 1.2}, _ADXL),
-        "itg3205": (0.3, _ITG + ": 40 deg/s over 125 degC")},
-    "thermal_scale": {
-        "mpu6050-accel": (0.02, _MPU + "2"), "mpu6050-gyro": (0.02, _MPU + "1: 2 % over 125 degC"),
-        "adxl345": (0.01, _ADXL), "itg3205": (0.1, _ITG + ": 10 %")},
+SIZES = {"thermal_bias": {}, "thermal_scale": {}, "quadratic": {}, "cubic": {}, "filter_lag": {}}
+STANDS_IN = {
     "warm_up": {
         "mpu6050-accel": (4.0, _JUDGED), "mpu6050-gyro": (0.05, _JUDGED),
         "adxl345": (4.0, _JUDGED), "itg3205": (0.3, _JUDGED)},
     "thermal_rate": {
         "mpu6050-accel": (1.0, _JUDGED), "mpu6050-gyro": (0.02, _JUDGED),
         "adxl345": (1.0, _JUDGED), "itg3205": (0.05, _JUDGED)},
-    "quadratic": {
-        "mpu6050-accel": (5.0, _MPU + "2: 0.5 % nonlinearity"), "mpu6050-gyro": (0.2, _MPU + "1"),
-        "adxl345": (5.0, _ADXL + ": 0.5 % of full scale"), "itg3205": (0.2, _ITG + ": 0.2 %")},
     "cross_quadratic": {
         "mpu6050-accel": (4.0, _JUDGED), "adxl345": (4.0, _JUDGED)},
-    "cubic": {
-        "mpu6050-accel": (5.0, _MPU + "2: 0.5 % nonlinearity"), "mpu6050-gyro": (0.2, _MPU + "1"),
-        "adxl345": (5.0, _ADXL + ": 0.5 % of full scale"), "itg3205": (0.2, _ITG + ": 0.2 %")},
     "asymmetry": {
         "mpu6050-accel": (3.0, _JUDGED), "mpu6050-gyro": (5.9, _SEEN),
         "adxl345": (3.0, _JUDGED), "itg3205": (5.9, _SEEN)},
@@ -90,10 +69,6 @@ SIZES = {
     "dropped_samples": {
         "mpu6050-accel": (0.1, _JUDGED), "mpu6050-gyro": (0.1, _JUDGED),
         "adxl345": (0.1, _JUDGED), "itg3205": (0.1, _JUDGED)},
-    "filter_lag": {
-        "mpu6050-accel": (4.9, "MPU-6050 RM rev 4.2, register 26"),
-        "mpu6050-gyro": (4.8, "MPU-6050 RM rev 4.2, register 26"),
-        "adxl345": (5.0, _JUDGED), "itg3205": (5.0, _JUDGED)},
     "hysteresis": {
         "mpu6050-accel": (5.0, "as creep: what fades slowly and what stays are one memory"),
         "mpu6050-gyro": (0.01, _JUDGED),
@@ -167,45 +142,62 @@ def chip_of(sensor, kind):
     """The chip behind a sensor for kind accel or gyro; of one that we do not know, an MPU6050."""
     if sensor in ("gy85", "adxl345", "itg3205"):
         return "adxl345" if kind == "accel" else "itg3205"
-    chip = "%s-%s" % (sensor, kind)
-    return chip if chip in NOISE else "mpu6050-" + kind
+    return "%s-%s" % (sensor if sensor in catalogue.SENSORS else "mpu6050", kind)
+
+
+def _by_axis(values):
+    """Three figures as one number where they are the same."""
+    return values[0] if len(set(values)) == 1 else dict(zip("xyz", values))
 
 
 def _of_the_data_sheet(sensor, kind, bandwidth_hz):
     """{effect: size} of what a data sheet has figures for."""
     bend = datasheets.figure(sensor, kind, "bend")
-    found = {"thermal_bias": datasheets.figure(sensor, kind, "offset_per_c"),
+    delay = datasheets.figure(sensor, kind, "delay_ms")
+    found = {"thermal_bias": _by_axis(datasheets.figures(sensor, kind, "offset_per_c")),
              "thermal_scale": datasheets.figure(sensor, kind, "scale_per_c"),
-             "filter_lag": 1000.0 / (2.0 * math.pi * bandwidth_hz)}
+             "filter_lag": delay or 1000.0 / (2.0 * math.pi * bandwidth_hz)}
     if bend is not None:    # of full scale, at 1 g and at 100 °/s: mg and °/s
         found["quadratic"] = found["cubic"] = 10.0 * bend if kind == "accel" else bend
     return found
 
 
+def _bandwidths(sensor):
+    """(accelerometer, gyro) Hz with the filters that the driver takes for 100 samples a second."""
+    if sensor == "gy85":
+        return 100.0, 42.0      # ADXL345 table 7, 200 Hz output; ITG-3205 section 8.4, DLPF_CFG 3
+    return worlds.simulated(sensor).nominal_hz
+
+
 def _add(sensor):
-    """The entries of a sensor that stands in datasheets.py."""
-    bandwidths = worlds.simulated(sensor).nominal_hz
-    noise = datasheets.noise(sensor, bandwidths)
-    for kind, hz, sigma in zip(("accel", "gyro"), bandwidths, noise):
-        chip, source = "%s-%s" % (sensor, kind), datasheets.source(sensor, kind)
-        density = datasheets.figure(sensor, kind, "density")
-        NOISE[chip] = (sigma,) * 3, source
-        DENSITY[chip] = (density,) * 3, source
-        # slow noise has no figure in these sheets: as much less than the MPU6050's as the white
-        quieter = density / DENSITY["mpu6050-" + kind][0][0]
-        FLICKER[chip] = quieter * FLICKER["mpu6050-" + kind]
-        FLOOR[chip] = quieter * FLOOR["mpu6050-" + kind]
-        sizes = _of_the_data_sheet(sensor, kind, hz)
-        for effect, known in SIZES.items():
-            if effect in sizes:
-                known[chip] = sizes[effect], source
-            elif "mpu6050-" + kind in known:
-                size_, said = known["mpu6050-" + kind]
-                known[chip] = size_, "as the MPU6050: " + said
+    """The entries of a sensor."""
+    seen = sensor in worlds.SEEN
+    for kind, hz, sigma in zip(("accel", "gyro"), _bandwidths(sensor), worlds.usual_noise(sensor)):
+        if datasheets.chips(sensor)[kind == "gyro"] is None:
+            continue
+        chip, source = chip_of(sensor, kind), datasheets.source(sensor, kind)
+        like = chip if chip in FLICKER else "mpu6050-" + kind
+        density = datasheets.figures(sensor, kind, "density")
+        NOISE[chip] = (sigma,) * 3, "recorded units; " * seen + source
+        DENSITY[chip] = density, source
+        quieter = max(density) / datasheets.figure("mpu6050", kind, "density")
+        FLICKER.setdefault(chip, quieter * FLICKER[like])
+        FLOOR.setdefault(chip, quieter * FLOOR[like])
+        for effect, size_ in _of_the_data_sheet(sensor, kind, hz).items():
+            SIZES[effect][chip] = size_, source
+        for effect, known in STANDS_IN.items():
+            if like in known:
+                size_, said = known[like]
+                SIZES.setdefault(effect, {})[chip] = (
+                    size_, said if chip == like else "as the MPU6050: " + said)
+        for effect in ("quadratic", "cubic"):
+            if chip not in SIZES[effect]:
+                size_, said = SIZES[effect]["mpu6050-" + kind]
+                SIZES[effect][chip] = size_, "no figure in %s, as the MPU6050: %s" % (source, said)
 
 
 for _sensor in catalogue.SENSORS:
-    if _sensor not in worlds.SEEN:
+    if _sensor != "adxl345":    # half of a GY-85
         _add(_sensor)
 
 

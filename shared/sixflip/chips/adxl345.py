@@ -1,6 +1,6 @@
 """Analog Devices ADXL345, an accelerometer. Source: datasheet rev. E, register map table 19."""
 
-from sixflip.chips.registers import Registers, in_range, row_of_range
+from sixflip.chips.registers import Registers, in_range, row_of_range, words_into
 
 try:
     from micropython import const
@@ -92,13 +92,6 @@ class ADXL345(Registers):
         when all three are 0 or all are -1, which no working accelerometer reads."""
         burst = self._burst
         self._i2c.readfrom_mem_into(self.address, DATAX0, burst)
-        ones = 0
-        zeros = 0xFFFF
-        for i in range(3):
-            word = burst[2 * i + 1] << 8 | burst[2 * i]
-            ones |= word
-            zeros &= word
-            sample[i] = (word ^ 0x8000) - 0x8000
-            sample[i + 3] = 0
-        sample[6] = 0
-        return ones != 0 and zeros != 0xFFFF
+        for i in range(3, 7):
+            sample[i] = 0
+        return words_into(sample, burst, 0, (0, 1, 2), 1)

@@ -28,6 +28,8 @@ CHIPS = (
     ("icm20948", "icm20948.ICM20948", _68, 0x00, {0xEA: "ICM-20948"}, 0x7F, 0xFF),
     # 13-52-25 rev. A, table 21; the other way round than ST's: 0x6b is the usual one
     ("qmi8658", "qmi8658.QMI8658", (0x6B, 0x6A), 0x00, {0x05: "QMI8658"}, None, 0xFF),
+    # BST-BMI160-DS000-07 rev. 0.8, CHIP_ID (00h)
+    ("bmi160", "bmi160.BMI160", _68, 0x00, {0xD1: "BMI160"}, None, 0xFF),
     # two chips, see probe.py
     ("gy85", "gy85.GY85", (), None, {}, None, 0xFF),
     # ITG-3205 rev. 1.0, section 8.1: bits 6:1; the others may read anything

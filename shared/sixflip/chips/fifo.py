@@ -12,6 +12,8 @@ level may be asked again). Frames are in one of the formats below.
 
 from errno import EIO, ETIMEDOUT
 
+from sixflip.chips.registers import words_into
+
 FULL = -1
 ATTEMPTS = 3                # at a transfer that nobody acknowledges
 CHUNK = 16                  # frames read at a time, two in a transfer
@@ -90,18 +92,7 @@ class Fifo:
         return self._words(at, self.imu.COLUMNS, sample)
 
     def _words(self, at, columns, sample):
-        """Words of the burst from a byte on into columns of the sample."""
-        burst = self._burst
-        high = self.imu.HIGH
-        ones = 0
-        zeros = 0xFFFF
-        for column in columns:
-            word = burst[at + high] << 8 | burst[at + 1 - high]
-            ones |= word
-            zeros &= word
-            sample[column] = (word ^ 0x8000) - 0x8000
-            at += 2
-        return ones != 0 and zeros != 0xFFFF
+        return words_into(sample, self._burst, at, columns, self.imu.HIGH)
 
     def _out_of_step(self, found):
         raise OSError(EIO, "a frame of its FIFO begins with 0x%02x" % found)

@@ -1,6 +1,6 @@
 """InvenSense ITG-3205, a gyro with a thermometer. Source: datasheet PS-ITG-3205A-00 rev. 1.0."""
 
-from sixflip.chips.registers import Registers, filter_code, rate_divider
+from sixflip.chips.registers import Registers, filter_code, rate_divider, words_into
 
 try:
     from micropython import const
@@ -22,6 +22,7 @@ ID_MASK = const(0x7E)
 ID = const(0x68)
 FS_2000 = const(0x18)           # FS_SEL = 3; it is 0, "reserved", after power-up
 BURST = const(8)
+COLUMNS = (6, 3, 4, 5)
 
 LSB_PER_DPS = 14.375
 RANGE_DPS = const(2000)
@@ -75,11 +76,4 @@ class ITG3205(Registers):
         they are. False when every bit is 0 or every bit is 1."""
         burst = self._burst
         self._i2c.readfrom_mem_into(self.address, TEMP_OUT_H, burst)
-        ones = 0
-        zeros = 0xFFFF
-        for i in range(4):
-            word = burst[2 * i] << 8 | burst[2 * i + 1]
-            ones |= word
-            zeros &= word
-            sample[i + 2 if i else 6] = (word ^ 0x8000) - 0x8000
-        return ones != 0 and zeros != 0xFFFF
+        return words_into(sample, burst, 0, COLUMNS, 0)

@@ -61,12 +61,7 @@ class LSM6(SixAxis):
         self._set(FIFO_CTRL4, STREAM)
 
     def fifo_level(self):
-        self._read_temperature()
+        self._read_temperature(OUT_TEMP_L)
         two = self._two
         self._fetch(self.FIFO_STATUS, two)
         return -1 if two[1] & OVERRUN else (two[0] | (two[1] & self.LEVEL_HIGH) << 8) // 2
-
-    def _read_temperature(self):
-        two = self._two
-        self._fetch(OUT_TEMP_L, two)
-        self.fifo_temperature = ((two[0] | two[1] << 8) ^ 0x8000) - 0x8000

@@ -121,7 +121,7 @@ class LSM6DS3TRC(LSM6DS):
         self._set(FIFO_CTRL5_3TRC, self._output_code << 3 | 0x06)
 
     def fifo_level(self):
-        self._read_temperature()
+        self._read_temperature(self.DATA)
         four = self._four
         self._fetch(FIFO_STATUS1, four)
         if four[1] & 0x40 or four[2] or four[3] & 0x03:    # overrun, or in mid-pattern

@@ -5,8 +5,6 @@ register read beside lewisxhe's SensorLib. After a reset its samples are big-end
 does not count up: CTRL1 says otherwise here.
 """
 
-from errno import EIO
-
 from sixflip.chips.six_axis import SixAxis, in_range
 
 try:
@@ -59,27 +57,13 @@ class QMI8658(SixAxis):
     zero_rate_dps_per_c = 0.3
     setup = ((CTRL1, 3), (CTRL5, 1), (CTRL7, 1))    # offsets are shifted by commands, not kept
 
-    def _wait_done(self):
-        """Until RESULT says that the reset is over: 15 ms (table 7), in which nothing may be
-        written; OSError when it never does."""
-        for _ in range(50 if self._sleep_ms else 2000):
-            if self._sleep_ms is not None:
-                self._sleep_ms(5)
-            try:
-                if self._read(RESULT) == DONE:
-                    return
-            except OSError:
-                continue
-        raise OSError(EIO, "%s at 0x%02x: reset not finished, expected 0x80 in register 0x4d"
-                      % (self.chip, self.address))
-
     def configure(self, rate_hz):
         """Reset and set up for polling at rate_hz; OSError when a register does not take its
         value, ValueError for a rate that is no chip's."""
         in_range(rate_hz, self.MOST_HZ)
         hz, code = self._output_rate(OUTPUT_RATES, rate_hz)
         self._write(RESET_REGISTER, RESET)
-        self._wait_done()
+        self._wait_for(RESULT, 0xFF, DONE)  # 15 ms (table 7), in which nothing may be written
         for register, value in ((CTRL1, COUNT_UP), (CTRL2, self._accel_bits << 4 | code),
                                 (CTRL3, self._gyro_bits << 4 | code), (CTRL5, FILTERS_ON),
                                 (CTRL7, BOTH_ON)):

@@ -111,8 +111,12 @@ class Registers:
         return metadata(self)
 
     def _wait_clear(self, register, mask):
-        """Wait until the bits of mask read 0 (end of a reset), else OSError. A chip may
-        leave its address unanswered while it resets, so errors count as "not yet"."""
+        """Wait until the bits of mask read 0 (end of a reset), else OSError."""
+        self._wait_for(register, mask, 0)
+
+    def _wait_for(self, register, mask, bits):
+        """Wait until the bits of mask read as these, else OSError. A chip may leave its address
+        unanswered while it resets, so errors count as "not yet"."""
         tries = 2000 if self._sleep_ms is None else 50
         found = -1
         for _ in range(tries):
@@ -122,14 +126,30 @@ class Registers:
                 found = self._read(register)
             except OSError:
                 continue
-            if found & mask == 0:
+            if found & mask == bits:
                 return
         if found < 0:
             raise OSError(errno.EIO, "%s at 0x%02x: no answer after its reset"
                           % (self.chip, self.address))
         raise OSError(errno.EIO, "%s at 0x%02x: reset not finished, register 0x%02x reads "
-                      "0x%02x, expected bits 0x%02x clear"
-                      % (self.chip, self.address, register, found, mask))
+                      "0x%02x, expected 0x%02x in bits 0x%02x"
+                      % (self.chip, self.address, register, found, bits, mask))
+
+
+def words_into(sample, burst, at, columns, high):
+    """Words of a burst from a byte on into columns of a sample, array('h'); None: two bytes of
+    something else. high: which byte of a word is the high one. False when every bit is 0 or every
+    bit is 1: no sensor reads like that, a sleeping one does."""
+    ones = 0
+    zeros = 0xFFFF
+    for column in columns:
+        if column is not None:
+            word = burst[at + high] << 8 | burst[at + 1 - high]
+            ones |= word
+            zeros &= word
+            sample[column] = (word ^ 0x8000) - 0x8000
+        at += 2
+    return ones != 0 and zeros != 0xFFFF
 
 
 def row_of_range(ranges, full_scale, what):

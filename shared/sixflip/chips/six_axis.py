@@ -1,6 +1,6 @@
-"""Accelerometer, gyro and thermometer behind one burst of 14 bytes: what such chips share."""
+"""Accelerometer, gyro and thermometer behind one burst: what such chips share."""
 
-from sixflip.chips.registers import Registers, in_range, row_of_range
+from sixflip.chips.registers import Registers, in_range, row_of_range, words_into
 
 RAIL = 32767
 BURST = 14
@@ -11,7 +11,8 @@ class SixAxis(Registers):
 
     ACCEL_RANGES, GYRO_RANGES   (full scale, counts per unit, its bits in the register), ...
     RANGES          the usual full scales, g and °/s
-    DATA, COLUMNS   first register of the burst; the columns of a sample in its order
+    DATA, COLUMNS   first register of the burst; the columns of a sample in its order, None for
+                    two bytes of something else
     HIGH            which byte of a word is the high one, 0 or 1
     TEMPERATURE     °C = counts / first + second
     FIFO            the class of fifo.py that reads the chip's memory, "": it has none that is used
@@ -42,7 +43,7 @@ class SixAxis(Registers):
             self.GYRO_RANGES, gyro_range_dps or self.RANGES[1], "gyro_range_dps")
         self.temp_lsb_per_c, self.temp_offset_c = self.TEMPERATURE
         self.rate_hz = self.filter_hz = self.output_rate_hz = 0
-        self._burst = bytearray(BURST)
+        self._burst = bytearray(2 * len(self.COLUMNS))
 
     def use_fifo(self):
         """From the next configure() on every sample comes through the chip's memory."""
@@ -72,26 +73,20 @@ class SixAxis(Registers):
             self.fifo.start()
         self._hold()
 
+    def _read_temperature(self, register):
+        """For the samples of a FIFO that has none; low byte first."""
+        self._fetch(register, self._two)
+        self.fifo_temperature = ((self._two[0] | self._two[1] << 8) ^ 0x8000) - 0x8000
+
     def answers(self, i2c):
         """Whether the chip answers on this bus, to be used from now on, as to the probe."""
         return self._answers(i2c, self.ID_REGISTER, self.who_am_i[0])
 
     def read_into(self, sample):
-        """One burst into sample, array('h', 7): ax ay az gx gy gz temp, counts. False when
-        every bit is 0 or every bit is 1: no sensor reads like that, a sleeping one does."""
+        """One burst into sample, array('h', 7): ax ay az gx gy gz temp, counts; see words_into."""
         burst = self._burst
         self._i2c.readfrom_mem_into(self.address, self.DATA, burst)
-        high = self.HIGH
-        ones = 0
-        zeros = 0xFFFF
-        i = 0
-        for column in self.COLUMNS:
-            word = burst[i + high] << 8 | burst[i + 1 - high]
-            ones |= word
-            zeros &= word
-            sample[column] = (word ^ 0x8000) - 0x8000
-            i += 2
-        return ones != 0 and zeros != 0xFFFF
+        return words_into(sample, burst, 0, self.COLUMNS, self.HIGH)
 
 
 def output_rate(rates, rate_hz):

@@ -8,7 +8,9 @@ from types import SimpleNamespace
 import pytest
 from written_records import make_record
 
+from sixflip.chips import probe
 from sixflip.record import correction_record
+from sixflip_device.boards.spi_bus import SPIBus
 from sixflip_host.board import firmware_update
 from sixflip_host.board.board_events import wait_for
 from sixflip_host.board.board_link import MpremoteLink
@@ -18,6 +20,8 @@ from sixflip_host.doctor import reach, wiring
 from sixflip_host.errors import NoBoard
 from sixflip_host.verbs import doctor
 from sixflip_host.virtual.virtual_board import VirtualBoard
+from sixflip_sim import worlds
+from sixflip_sim.spi import SimulatedSPI
 
 STILL = {"sensor": "mpu6050", "seed": 3, "order": []}
 
@@ -115,6 +119,18 @@ def test_a_fault_is_named_with_what_to_do(bench, world, lines, check, state, wor
         assert [one for one in found if one.state != "ok"] == named
     if state == "warning":
         assert not any(one.state == "fault" for one in found)
+
+
+def test_on_spi_the_bus_is_called_so_and_a_wrong_mode_is_named():
+    spi = SPIBus(SimulatedSPI(worlds.make(STILL).i2c, 1), 1)
+    with pytest.raises(probe.NoChip) as caught:
+        probe.find(spi)
+    said = {"settings": ("pico", "auto", "SPI at 1000 kHz, mode 1", []), "scan": ([],),
+            "ids": ({},), "no sensor": (caught.value.report,)}
+    found = wiring.judge(said)
+    assert "SPI at 1000 kHz" in found[0].found and "I2C" not in found[0].found
+    assert [one.state for one in found] == ["ok", "fault"]
+    assert "SPI mode 1 is wrong, the chips take 0 and 3" in found[1].found
 
 
 def findings(capsys, *words):

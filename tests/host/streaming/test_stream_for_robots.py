@@ -20,6 +20,7 @@ from sixflip_host.board.local_link import LocalLink
 from sixflip_host.errors import CheckFailed, NoBoard
 from sixflip_host.streaming import imu_message, publishing, ros2_publisher
 from sixflip_host.verbs import stream as verb
+from sixflip_sim.worlds import usual_noise
 
 SAMPLES = 300
 G = 9.80665
@@ -160,7 +161,7 @@ def test_covariances_from_the_record():
     rate, force = imu_message.covariances(of_a_gy85())
     noise = (3e-3 * G) ** 2 + G ** 2 * 1e-6
     assert force[::4] == pytest.approx([noise + x ** 2 for x in (2e-2, 3e-2, 4e-2)])
-    assert rate[::4] == pytest.approx([math.radians(0.38) ** 2 + x ** 2
+    assert rate[::4] == pytest.approx([math.radians(usual_noise("gy85")[1]) ** 2 + x ** 2
                                        for x in (2e-2, 3e-2, 4e-2)])
     assert imu_message.covariances(None) == (imu_message.UNKNOWN,) * 2
     unknown = of_a_gy85()
