@@ -125,6 +125,16 @@ def test_compiled_it_takes_the_place_of_the_source_and_back(link, monkeypatch):
     assert modules(link) == {"py"}
 
 
+def test_what_an_earlier_firmware_had_and_this_one_has_not_goes(link):
+    firmware_update.copy(link, {}, quiet)
+    link.put("sixflip/record.mpy", b"a module where there is a folder now")
+    link.put("sixflip_device/maker.txt", b"no module")
+    firmware_update.copy(link, {}, quiet)
+    there = link.files([])
+    assert "sixflip/record.mpy" not in there and "sixflip/record/record.mpy" in there
+    assert "sixflip_device/maker.txt" in there
+
+
 def test_source_left_beside_a_half_copied_firmware_is_not_imported(link, monkeypatch):
     as_source(monkeypatch, link)
     link.remove("main.py")
