@@ -26,11 +26,15 @@ SMALL_HEAP = 100 * 1024  # the limit for a whole session; the test itself holds 
 SMALL = {"ballast": HEAP - SMALL_HEAP, "pose_samples": POSE_SAMPLES}
 
 
-def session(board, sensor, **how):
-    """(events, their bytes in use, newest record, {word: value} of the rest that it printed)."""
-    code = "import whole_session\nwhole_session.run(%r, **%r)" % (sensor, how)
+def session(board, sensor, record=None, **how):
+    """(events, their bytes in use, newest record, {word: value} of the rest that it printed);
+    record: bytes of one that is active already."""
+    pieces = ["import whole_session"]
+    if record is not None:
+        pieces.append("whole_session.give(bytes.fromhex(%r))" % record.hex())
+    pieces.append("whole_session.run(%r, **%r)" % (sensor, how))
     events, used, said = [], [], {}
-    for line in board.exec(code).splitlines():
+    for line in board.exec(*pieces).splitlines():
         if "{" in line:
             used.append(int(line[: line.index("{")] or 0))
             events.append(json.loads(line[line.index("{") :]))
@@ -128,7 +132,7 @@ def test_every_term_in_force_and_kept_through_a_session(board, sensor):
     _, _, record, _ = session(board, sensor, **SMALL)
     record.accel["P"][3][0] += 0.02  # so that the session has something new to say
     events, used, record, said = session(
-        board, sensor, record=bytes(correction_record.encode(with_terms(record))).hex(), **SMALL)
+        board, sensor, record=bytes(correction_record.encode(with_terms(record))), **SMALL)
     assert int(said["heap"]) == SMALL_HEAP
     assert named(events, "record")[0]["terms"] == [16, 17, 18, 19, 20]
     assert len(named(events, "pose")) == 12

@@ -2,8 +2,8 @@
 
 run(sensor): bursts from a tape; run(sensor, world={}): a simulated chip inside; mode: a module
 that changes the board (locked_loop: the heap is locked while it samples; redo_late: a face is
-asked for again); ballast: bytes that are gone from the heap beforehand; record: in hexadecimal,
-one in force already, when a session is asked for; other names are settings. Prints the events
+asked for again); ballast: bytes that are gone from the heap beforehand; give(): a record
+that is active already, when a session is asked for; other names are settings. Prints the events
 with the bytes in use after each, and the newest record in hexadecimal, if there is one.
 """
 
@@ -40,12 +40,20 @@ class Teller:
         print(gc.mem_alloc() - self.ballast, text)
 
 
-def run(sensor, world=None, mode="", ballast=0, record="", **changed):
+given = []
+
+
+def give(record):
+    """A record in bytes for the flash; in an exec of its own, whose text is gone afterwards."""
+    given.append(record)
+
+
+def run(sensor, world=None, mode="", ballast=0, **changed):
     weight = bytearray(ballast)  # a smaller heap
     import provisioned
     disk = Disk(provisioned.FILES)
-    if record:
-        disk.open("record_a.bin", "wb").write(bytes.fromhex(record))
+    if given:
+        disk.open("record_a.bin", "wb").write(given.pop())
         disk.open("calibrate.flag", "wb")
     i2c, clock = tape(sensor) if world is None else live(sensor, world)
     for name in list(sys.modules):
