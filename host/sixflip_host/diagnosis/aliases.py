@@ -12,6 +12,7 @@ import math
 
 import numpy as np
 
+from ..experiment.terms import is_stranger
 from . import evidence, odds
 
 SAME, NATS, SIGMAS = 0.9, 3.0, 3.0
@@ -21,7 +22,7 @@ class Cause:
     """One effect found: chosen (Candidates), members ({effect: why it cannot be told}),
     score (nats), theta, sigma, covariance (over keys), keys, axes, share, plausible;
     other_axes: those that cannot be told from the axes chosen; place: {name: probability} of
-    what stands here, "" nothing, "~..." something nameless; alike: the members that cannot be
+    what stands here, "" nothing; alike: the members that cannot be
     told from the effect in principle."""
 
     def __init__(self, effect, chosen, score):
@@ -48,7 +49,7 @@ class Cause:
     @property
     def nameless(self):
         """Probability that what stands here has no name."""
-        return sum(p for name, p in self.place.items() if name.startswith("~"))
+        return odds.nameless(self.place)
 
 
 def causes(found, units, forms):
@@ -71,8 +72,8 @@ def causes(found, units, forms):
         cause.sigma = np.sqrt(np.diag(cause.covariance))
         cause.members = {name: "probability %.2f" % found.places[form.effect][name]
                          for name in found.alternatives(form.effect)
-                         if name not in ("", form.effect) and not name.startswith("~")
-                         and name != "drift"}
+                         if name not in ("", form.effect, "drift")
+                         and not is_stranger(name)}
         _aliases(cause, forms, best.forms, grams, each)
         out.append(cause)
     out.sort(key=lambda c: -c.score)
@@ -97,7 +98,7 @@ def _places(columns, wanted):
 def _aliases(cause, forms, beside, grams, each):
     """Add to cause.members every other effect that cannot be told from it in principle, the
     other members of the set projected out."""
-    own = [i for i, key in enumerate(cause.keys) if not key.endswith("+")]
+    own = [i for i, power in enumerate(cause.chosen[0].powers) if power == 1]
     mine, theta = cause.chosen[0].columns[own], cause.theta[own]
     even = balanced(grams, mine)
     for name in dict.fromkeys(f.effect for f in forms if not f.generic and len(f.shared)):
@@ -107,7 +108,7 @@ def _aliases(cause, forms, beside, grams, each):
         others = np.concatenate([*others, np.zeros(0, dtype=int)])
         others = others[~np.isin(others, mine)].astype(int)
         spaces = [f.columns for f in forms if f.effect == name and f.axis is None
-                  and not f.variant.endswith("+")]
+                  and not f.record]
         left = reproduced(even, mine, theta, spaces, others)
         if left is None:
             continue
@@ -179,7 +180,7 @@ def alias_table(gram, options):
     """(names, index): A(row | column) of the first plain variants, for the report."""
     first = {}
     for o in options:
-        if o.axis is None and not o.generic and not o.variant.endswith("+"):
+        if o.axis is None and not o.generic and not o.record:
             first.setdefault(o.effect, o)
     names = list(first)
     table = np.eye(len(names))

@@ -43,8 +43,9 @@ def found(gap):
     if not mine:
         return [], data
     model = posterior.Model(units, data.statistics, gap.noise)
-    same = tuple(f for f in forms if any((f.effect, f.variant, f.axis) == (
-        c.effect, c.variant.rstrip("~"), None) for c in gap.found.best.forms))
+    same = tuple(f for f in forms if any(
+        (f.effect, f.variant, f.axis, f.record) == (c.effect, c.variant, None, c.record)
+        for c in gap.found.best.forms))
     without = model.scored(same)
     best = max((model.scored((*same, f)) for f in mine), key=lambda s: s.score)
     gain = best.score - without.score

@@ -69,11 +69,9 @@ def specs(gap, theta, reference_c):
         start += len(candidate.keys)
         cls = EFFECTS[candidate.effect]
         spec = {"effect": candidate.effect, "sensor": gap.kind}
-        for key, value in zip(candidate.keys, mine):
-            own = key.rstrip("+")
-            if key != own and own in ("x", "y", "z") and own + "2" in cls.keys:
-                own += "2"  # a square beside a slope
-            elif key != own:
+        for key, power, value in zip(candidate.keys, candidate.powers, mine):
+            own = key if power == 1 else "%s%d" % (key, power)  # a square beside a slope: x2
+            if own not in cls.keys:
                 continue
             spec[own] = float(np.clip(value, -cls.largest[gap.kind], cls.largest[gap.kind]))
         spec.update(shape(candidate.effect, candidate.variant, reference_c))
@@ -83,7 +81,7 @@ def specs(gap, theta, reference_c):
 
 def shape(effect, variant, reference_c):
     """The parameters that a variant's name stands for."""
-    words = variant.rstrip("+").split()
+    words = variant.split()
     out = {}
     if effect in ("thermal_bias", "thermal_scale"):
         out["reference_c"] = round(reference_c, 3)

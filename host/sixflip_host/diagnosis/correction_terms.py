@@ -159,10 +159,12 @@ class Fit:
         theta = self.theta if theta is None else theta
         sizes, sigmas = {}, {}
         for candidate in self.candidates[term]:
-            for key, axis, column in zip(candidate.keys, candidate.axes, candidate.columns):
+            for key, power, axis, column in zip(candidate.keys, candidate.powers, candidate.axes,
+                                                candidate.columns):
                 if "xyz"[axis] in term.cause.letters:
                     place = int(np.flatnonzero(self.columns == column)[0])
-                    sizes[key], sigmas[key] = float(theta[place]), float(self.sigma[place])
+                    sizes[key, power] = float(theta[place])
+                    sigmas[key, power] = float(self.sigma[place])
         sessions = self.gap.sessions
         fields = {"axes": ["xyz".index(letter) for letter in term.cause.letters],
                   "origin": record_terms.ORIGINS[self.gap.same_session],
@@ -170,16 +172,16 @@ class Fit:
                   "before": None, "after": None, "floor": None}
         if term.name == "g_sensitivity":
             for name, values in (("k", sizes), ("sigma", sigmas)):
-                fields[name] = [[values.get(a + b, 0.0) for b in "xyz"] for a in "xyz"]
+                fields[name] = [[values.get((a + b, 1), 0.0) for b in "xyz"] for a in "xyz"]
             return fields
         meta = sessions[0].capture.meta
         celsius = np.concatenate([s.temperature for s in sessions])
         fields.update(t0_c=self.diagnosis.conditions.reference_c, low_c=float(celsius.min()),
                       high_c=float(celsius.max()), temp_lsb_per_c=float(meta["temp_lsb_per_c"]),
                       temp_offset_c=float(meta["temp_offset_c"]))
-        for name, end in (("k1", ""), ("k2", "+")):
-            fields[name] = [sizes.get(a + end, 0.0) for a in "xyz"]
-            fields["sigma_" + name] = [sigmas.get(a + end, 0.0) for a in "xyz"]
+        for name, power in (("k1", 1), ("k2", 2)):
+            fields[name] = [sizes.get((a, power), 0.0) for a in "xyz"]
+            fields["sigma_" + name] = [sigmas.get((a, power), 0.0) for a in "xyz"]
         return fields
 
 
@@ -187,8 +189,9 @@ def plain(gap, cause):
     """The candidates of a cause in the form that the board can take out."""
     out = []
     for c in cause.chosen:
-        bend = "+" if c.variant.endswith("~") and cause.effect == "thermal_bias" else ""
-        out += [o for o in gap.options if (o.effect, o.axis, o.variant) == (c.effect, c.axis, bend)
+        bent = c.discrepancy and cause.effect == "thermal_bias"
+        out += [o for o in gap.options
+                if (o.effect, o.axis, o.variant, o.record) == (c.effect, c.axis, "", bent)
                 and not any(np.isin(o.columns, one.columns).any() for one in out)]
     return out
 

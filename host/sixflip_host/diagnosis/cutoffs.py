@@ -90,7 +90,7 @@ def _key(units, forms, levels, points):
     for unit, point in zip(units, points):
         h.update(repr((unit.signature, unit.freedom, point)).encode())
     h.update(repr((levels, sorted(
-        (f.effect, f.variant, str(f.axis), len(f.shared)) for f in forms))).encode())
+        (f.effect, f.variant, str(f.axis), f.record, len(f.shared)) for f in forms))).encode())
     return h.hexdigest()[:24]
 
 

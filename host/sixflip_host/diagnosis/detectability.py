@@ -68,7 +68,7 @@ def reason(diagnosis, name, sensor):
         return "the box is certified" if diagnosis.settings.certified else ""
     if name.startswith("thermal") and any(s.temperature is None for s in gap.sessions):
         return "no temperature column"
-    mine = [o for o in gap.options if o.effect == name and not o.variant.endswith("+")]
+    mine = [o for o in gap.options if o.effect == name and not o.record]
     if not mine:
         return "silent: " + ABSORBED.get(name, "nothing of it is left")
     smallest = least(gap, mine)

@@ -42,8 +42,8 @@ def effective(cause, data, levels):
     gram = sum(u.gram[i] for u, i in zip(data.units, levels))
     base = {}
     for candidate in sorted(cause.chosen, key=lambda c: -_energy(c, cause, gram)):
-        for key, column in zip(candidate.keys, candidate.columns):
-            if not key.endswith("+"):
+        for key, power, column in zip(candidate.keys, candidate.powers, candidate.columns):
+            if power == 1:
                 base.setdefault(key, column)
     plain = np.array(list(base.values()))
     every = np.concatenate([c.columns for c in cause.chosen])

@@ -2,7 +2,7 @@
 
 Each has forms (a lag, a time constant, one axis or all) of which the best speaks for it.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,15 +13,16 @@ from .evidence import NONE, Columns
 TYPICAL = 0.2  # of a design's prior, which is ten times the typical size: twice typical
 WIDTHS = (0.2, 1.0)  # of the strangers' scale, tried for what is a session's own
 WALKS = (0.1, 0.3, 1.0, 3.0)
-FREE = {"drift": ("flicker", "time"), "~session": ("switch_on", "session")}
+FREE = {"drift": ("flicker", "time"), "session": ("switch_on", "session")}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Form:
     """One way in which a hypothesis can be: shared Columns; choices, a tuple of Columns of which
     each session takes one for its own (index: all columns that are in them); free, names of
-    levels that may be anything. effect, variant, axis, keys, axes, columns and prior are those
-    of the design behind it."""
+    levels that may be anything. effect, variant, axis, keys, axes, powers, record, columns and
+    prior are those of the design behind it; discrepancy: columns of the strangers of its own
+    variable are beside those, with the power BESIDE."""
 
     effect: str
     variant: str = ""
@@ -32,15 +33,18 @@ class Form:
     choices: tuple = ()
     free: frozenset = frozenset()
     index: tuple = ()
+    powers: tuple = ()
+    record: bool = False
+    discrepancy: bool = False
 
     @property
     def generic(self):
-        return self.effect.startswith("~")
+        return terms.is_stranger(self.effect)
 
     @property
     def family(self):
         """What no two members of a set may have in common: a walk of one axis is one of all."""
-        return "drift" if self.effect == "~walk" else self.effect
+        return "drift" if self.effect == "walk" else self.effect
 
     @property
     def columns(self):
@@ -50,18 +54,23 @@ class Form:
     def prior(self):
         return self.shared.prior
 
+    @property
+    def identity(self):
+        """What tells it from all other forms of the same units."""
+        return self.effect, self.variant, self.axis, self.record, self.discrepancy
+
     def __hash__(self):
-        return hash((self.effect, self.variant, self.axis))
+        return hash(self.identity)
 
     def __eq__(self, other):
-        return (self.effect, self.variant, self.axis) == (other.effect, other.variant, other.axis)
+        return self.identity == other.identity
 
 
 def domain(effect):
     """Where a hypothesis shows itself."""
     if effect in FREE:
         return FREE[effect][1]
-    return strangers.domain(effect) if effect.startswith("~") else terms.DOMAIN[effect]
+    return strangers.domain(effect) if terms.is_stranger(effect) else terms.DOMAIN[effect]
 
 
 def of(units, without=(), drift=True):
@@ -88,7 +97,9 @@ def of(units, without=(), drift=True):
                               tuple(design.keys[i] for i in mine),
                               tuple(design.axes[i] for i in mine),
                               Columns(index, (1.0 if design.generic else TYPICAL)
-                                      * design.prior[mine])))
+                                      * design.prior[mine]),
+                              powers=tuple(design.powers[i] for i in mine),
+                              record=design.record))
     for name, (level, _) in FREE.items():
         if drift and name not in without:
             found.append(Form(name, free=frozenset([level])))
@@ -100,7 +111,7 @@ def _one_axis(design, columns):
     choices = tuple(Columns(columns[mine], width * design.prior[mine])
                     for axis in range(3) for width in WALKS
                     for mine in [np.flatnonzero(np.array(design.axes) == axis)])
-    return Form("~walk", "one axis", None, design.keys, design.axes, NONE, choices,
+    return Form("walk", "one axis", None, design.keys, design.axes, NONE, choices,
                 index=tuple(columns.tolist()))
 
 
@@ -113,7 +124,8 @@ def on_axis(form, axis):
             return None
         return Form(form.effect, form.variant, "only " + "xyz"[axis],
                     tuple(form.keys[i] for i in keep), (axis,) * len(keep),
-                    Columns(form.shared.index[keep], form.shared.prior[keep]))
+                    Columns(form.shared.index[keep], form.shared.prior[keep]),
+                    powers=tuple(form.powers[i] for i in keep))
     choices = tuple(Columns(one.index[mine], one.prior[mine]) for one in form.choices
                     for mine in [np.array([index[i] == axis for i in one.index])])
     return Form(form.effect, form.variant, "only " + "xyz"[axis], choices=choices)
@@ -127,21 +139,22 @@ def _private(design, columns):
                 index=tuple(columns.tolist()))
 
 
+BESIDE = 0  # the power of a column that belongs to a stranger, see terms.Design
 RELATIVE = 0.5  # of an effect: how far a part's own form may be from the library's
 # What an effect, or all of a domain, is a function of: the strangers that have that variable.
-VARIABLE = {"thermal_scale": ("~thermal_orientation",),
-            "temperature": ("~temperature",), "time": ("~time",),
-            "history": ("~history", "~time_since_move"),
-            "time_since_move": ("~history", "~time_since_move"),
+VARIABLE = {"thermal_scale": ("thermal_orientation",),
+            "temperature": ("temperature",), "time": ("time",),
+            "history": ("history", "time_since_move"),
+            "time_since_move": ("history", "time_since_move"),
             # of the gyro in its turns a bend's own variable is the rate
-            "orientation": ("~orientation", "~amplitude"), "motion": ("~motion",),
-            "amplitude": ("~amplitude",)}
+            "orientation": ("orientation", "amplitude"), "motion": ("motion",),
+            "amplitude": ("amplitude",)}
 
 
 def with_discrepancy(model, forms, scored, form):
     """The form with a discrepancy in its own variable beside it, whose standard deviation is
     RELATIVE of the size that the form has in a Scored set; None where there is none."""
-    if form.generic or not len(form.shared) or form.variant.endswith("~"):
+    if form.generic or not len(form.shared) or form.discrepancy:
         return None
     wanted = VARIABLE.get(form.effect) or VARIABLE.get(domain(form.effect), ())
     free = list({f.effect: f for f in forms if f.effect in wanted and f.axis is None}.values())
@@ -164,6 +177,6 @@ def with_discrepancy(model, forms, scored, form):
     if not columns:
         return None
     prior = np.array(prior) / np.sqrt(np.bincount(axes, minlength=3)[axes])
-    return Form(form.effect, form.variant + "~", form.axis,
-                form.keys + tuple("xyz"[a] + "~+" for a in axes), form.axes + tuple(axes),
-                form.shared + Columns(np.array(columns), prior))
+    return replace(form, keys=form.keys + tuple("xyz"[a] for a in axes),
+                   axes=form.axes + tuple(axes), powers=form.powers + (BESIDE,) * len(axes),
+                   shared=form.shared + Columns(np.array(columns), prior), discrepancy=True)

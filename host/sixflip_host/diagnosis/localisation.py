@@ -71,7 +71,7 @@ def strongest(tested):
 def _tested(gap, option):
     """What a generic discrepancy on one axis takes off the excess, sessions together for
     what belongs to the sensor, apart for time."""
-    apart = option.effect == "~time"
+    apart = option.effect == "time"
     taken = freedom = 0.0
     sums = None
     for statistics, unit, index in zip(gap.data.statistics, gap.units, gap.levels()):

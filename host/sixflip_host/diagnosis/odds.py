@@ -6,6 +6,8 @@ odds: how rare it is that chance alone gains so much in a search (cutoffs.py).
 """
 import math
 
+from ..experiment.terms import is_stranger
+
 HOLDS = 0.95  # probability that a class of names must hold
 PRESENT = math.log(HOLDS / (1.0 - HOLDS))  # nats beyond its cost: more likely there than not
 CHANCE = 0.005  # two sensors, turns, moves, box, registers and spectra share 5 %, with room
@@ -19,6 +21,11 @@ def shares(scores):
     weights = {name: math.exp(value - top) for name, value in scores.items()}
     total = sum(weights.values())
     return {name: w / total for name, w in weights.items() if w / total > 1e-6}
+
+
+def nameless(place):
+    """Probability that what stands in a place ({name: probability}) has no name."""
+    return sum(p for name, p in place.items() if name and is_stranger(name))
 
 
 def probability(score, cost=COST):

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..experiment.terms import is_stranger
 from . import evidence, hypotheses, odds
 from .evidence import NONE
 from .odds import HOLDS, PRESENT
@@ -162,7 +163,7 @@ class Posterior:
 
     def stranger_share(self, effect):
         """Probability that what stands in a member's place has no name."""
-        return sum(p for name, p in self.places[effect].items() if name.startswith("~"))
+        return odds.nameless(self.places[effect])
 
 
 def search(model, forms, cost, most=MOST):
@@ -291,7 +292,8 @@ def rival_axes(model, forms, found, form):
         return []
     others = model.scored(tuple(f for f in found.best.forms if f is not form))
     return [one.axis for one in forms if one.effect == form.effect
-            and one.variant == form.variant.rstrip("~") and one.axis not in (None, form.axis)
+            and (one.variant, one.record) == (form.variant, form.record)
+            and one.axis not in (None, form.axis)
             and model.extended(others, one).score > found.best.score - AS_WELL]
 
 
@@ -313,4 +315,4 @@ def axes_of(model, found, form):
 def domains_left(posterior):
     """{domain: nats} of the nameless members of the best set."""
     return {hypotheses.domain(name): gain for name, gain in posterior.gains.items()
-            if name.startswith("~")}
+            if is_stranger(name)}

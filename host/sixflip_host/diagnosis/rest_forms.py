@@ -6,6 +6,8 @@ function on each axis with a coefficient of its own. Where a thermometer moved b
 tens of degrees a straight slope is not all there is: a form with its square and cube beside it
 competes, made perpendicular to the slope so that the slope keeps its meaning.
 """
+from dataclasses import replace
+
 import numpy as np
 
 from ..experiment import terms
@@ -68,11 +70,11 @@ def _bent(slope):
         done = np.stack(basis, 1)
         one = one - done @ np.linalg.lstsq(done, one, rcond=None)[0]
         basis.append(one * size / max(float(np.std(one)), 1e-12))
-    keys = slope.keys + tuple(k + bend for bend in ("+", "++") for k in slope.keys)
-    return Design(slope.effect, (slope.variant + " cube").strip(), keys, slope.axes * 3,
-                  np.hstack([slope.columns, *(np.repeat(one[:, None], 3, axis=1)
-                                              for one in basis[2:])]),
-                  np.concatenate([slope.prior, np.tile(BEND * slope.prior, 2)]))
+    return replace(slope, variant=(slope.variant + " cube").strip(), keys=slope.keys * 3,
+                   axes=slope.axes * 3, columns=np.hstack([slope.columns, *(
+                       np.repeat(one[:, None], 3, axis=1) for one in basis[2:])]),
+                   prior=np.concatenate([slope.prior, np.tile(BEND * slope.prior, 2)]),
+                   powers=tuple(power for power in (1, 2, 3) for _ in slope.keys))
 
 
 def _nameless(rest, sensor):
@@ -88,16 +90,16 @@ def _nameless(rest, sensor):
                             [tuple(3 * k + axis for k in one for axis in range(3))
                              for one in choices]))
     u = (rest.t - rest.t.min()) / max(float(np.ptp(rest.t)), 1e-9)
-    add("~time", strangers.hats(rest.t, CORNERS))
+    add("time", strangers.hats(rest.t, CORNERS))
     if rest.moved_c >= MOVES_C:
-        add("~temperature", strangers.hats(rest.temperature, CORNERS))
+        add("temperature", strangers.hats(rest.temperature, CORNERS))
     places = np.unique(np.linspace(1, rest.n - 1, JUMPS + 2)[1:-1].round().astype(int))
-    add("~jump", [np.where(np.arange(rest.n) < k, -0.5, 0.5) for k in places],
+    add("jump", [np.where(np.arange(rest.n) < k, -0.5, 0.5) for k in places],
         [(k,) for k in range(len(places))])
     halves = range(3, min(WAVES, rest.n // 3) + 1)
     if len(halves) > 1:
         waves = [wave(np.pi * k * u) for k in halves for wave in (np.cos, np.sin)]
-        add("~periodic", waves, [(2 * k, 2 * k + 1) for k in range(len(halves))])
+        add("periodic", waves, [(2 * k, 2 * k + 1) for k in range(len(halves))])
     turns = (np.arange(WALK) + 0.5) * np.pi
     add("drift", [np.sqrt(2.0) * np.sin(k * u) / k for k in turns], [tuple(range(WALK))], "walk")
     return found

@@ -13,7 +13,6 @@ from sixflip_sim.effects.library import EFFECTS
 from .. import progress
 from ..experiment import covariance, linear_model, long_rest, nominal_rows, terms
 from ..experiment.flicker import flicker_kernel
-from ..experiment.terms import Design
 from . import (
     adequacy,
     aliases,
@@ -23,6 +22,7 @@ from . import (
     evidence,
     holdout_gain,
     hypotheses,
+    odds,
     posterior,
     rest_forms,
     session_offsets,
@@ -38,7 +38,7 @@ FLICKERS = {"accel": (0.005, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 4.0, 12.0, 40.
 PIECES, FOLDS = 12, 4
 BENT = 4.0  # standard deviations of its square or cube at which an axis is bent
 MEANS = 12  # fewer say nothing of how a reading goes on
-SETTLED = "~session"  # the level by which one rest differs from the next
+SETTLED = "session"  # the level by which one rest differs from the next
 
 
 @dataclass(frozen=True)
@@ -91,8 +91,7 @@ class RestCause:
     @property
     def nameless(self):
         """Probability that what stands here has no name."""
-        return sum(p for name, p in self.place.items()
-                   if name.startswith("~") and name != SETTLED)
+        return odds.nameless(self.place) - self.place.get(SETTLED, 0.0)
 
     @property
     def letters(self):
@@ -183,8 +182,7 @@ def _units(rest, kind, chip, settings):
         float(rest.temperature[-1] - rest.temperature[0]) / 3.0))
     found = []
     for axis in range(3):
-        own = [Design(d.effect, d.variant, d.keys, d.axes, d.columns * (
-            np.array(d.axes) == axis), d.prior, d.choices) for d in designs]
+        own = [replace(d, columns=d.columns * (np.array(d.axes) == axis)) for d in designs]
         group = covariance.alone(np.diag(rest.noise[kind][:, axis] ** 2), lateral, kernel)
         rows = nominal_rows.Rows(rest.values[kind][:, axis], group, np.ones((rest.n, 1)),
                                  (OFFSETS[kind], FLICKERS[kind]), (0,))
@@ -269,8 +267,8 @@ def _beaten(cause, strange, found):
 def _add_bent(cause, data, index):
     """Add the axes whose reading only bends: their slope is next to nothing, and is said so."""
     ratios = np.abs(cause.theta) / np.sqrt(np.maximum(np.diag(cause.covariance), 1e-300))
-    bent = {"xyz"[axis] for key, axis, ratio in zip(cause.keys, cause.axes, ratios)
-            if key.endswith("+") and ratio > BENT}
+    bent = {"xyz"[axis] for power, axis, ratio in zip(
+                cause.chosen[0].powers, cause.axes, ratios) if power > 1 and ratio > BENT}
     missing = bent - set(cause.letters)
     if missing:
         theta, sigma = effect_estimates.effective(cause, data, index)

@@ -141,7 +141,7 @@ class RestModel:
         options = hypotheses.of(units, self.settings.without, self.drifts)
         noise = self.usual()
         # A square beside a slope is for the board's record; here a discrepancy stands for it.
-        forms = [f for f in options if not f.variant.endswith("+")]
+        forms = [f for f in options if not f.record]
         cost = replace(cutoffs.of(units, forms, noise), form=self.form)
         model = posterior.Model(units, data.statistics, noise)
         progress.doing("what explains it best")
@@ -223,7 +223,7 @@ class RestModel:
             part, self.kind, width * strangers.SCALE[self.kind],
             adequacy.usual(self.chip, self.kind)) for width in hypotheses.WALKS])
         found = {("drift", k): float(row.sum()) for k, row in enumerate(nats)}
-        found.update({("~walk", k): float(v) for k, v in enumerate(nats.T.ravel())})
+        found.update({("walk", k): float(v) for k, v in enumerate(nats.T.ravel())})
         return found
 
     def between(self, units, nominal):

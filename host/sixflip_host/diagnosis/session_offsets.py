@@ -10,12 +10,12 @@ The bias of each session by generalised least squares at an ordinary point of th
 is then independent of the contrasts that are left in that session (Gauss-Markov), so this unit
 stands beside the others as one more session would.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import linalg
 
-from ..experiment import covariance, linear_model, nominal_rows, terms
+from ..experiment import covariance, linear_model, nominal_rows
 
 SWITCH_ON = {"accel": (0.7, 2.0, 6.0, 20.0, 60.0, 200.0),  # mg
              "gyro": (0.03, 0.1, 0.3, 1.0, 3.0, 10.0)}  # deg/s
@@ -79,8 +79,7 @@ def unit(kind, rows, models, designs):
     own, start = [], 0
     for d in designs[0]:
         k = len(d.keys)
-        own.append(terms.Design(d.effect, d.variant, d.keys, d.axes,
-                                     columns[:, start:start + k], d.prior))
+        own.append(replace(d, columns=columns[:, start:start + k], choices=()))
         start += k
     rows = nominal_rows.Rows(y, covariance.alone(spread @ errors @ spread.T, np.eye(len(y)),
                                                  np.zeros((len(y), len(y)))),

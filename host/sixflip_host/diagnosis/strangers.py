@@ -27,11 +27,12 @@ DOMAIN = {"jump": "time", "walk": "time", "periodic": "frequency", "own_time": "
 
 def domain(effect):
     """GAP's domain of a nameless effect."""
-    return DOMAIN.get(effect[1:], effect[1:])
+    return DOMAIN.get(effect, effect)
 
 
 def designs(session, up, sensor):
-    """list of Design whose effect begins with "~", in the same order for every session."""
+    """list of Design that are no effect's of the library but a walk, in the same order for every
+    session."""
     return shared(session, up, sensor) + private(session, sensor)
 
 
@@ -61,19 +62,19 @@ def private(session, sensor):
     """Nameless functions of time; choices: which of their columns go together, one choice a
     session."""
     n, scale = session.n, SCALE[sensor]
-    own = _smooth("own_time", hats(session.t, OWN_HATS), n, scale)
-    own.choices = [tuple(range(3 * OWN_HATS))]
+    own = _smooth("own_time", hats(session.t, OWN_HATS), n, scale,
+                  choices=[tuple(range(3 * OWN_HATS))])
     starts = np.unique(session.placement, return_index=True)[1][1:]
     chosen = starts[np.linspace(0, len(starts) - 1, JUMPS).round().astype(int)] if len(
         starts) else np.zeros(JUMPS, dtype=int)
-    jump = _smooth("jump", [np.where(np.arange(n) < k, -0.5, 0.5) for k in chosen], n, scale)
-    jump.choices = [tuple(range(3 * k, 3 * k + 3)) for k in range(JUMPS)]
+    jump = _smooth("jump", [np.where(np.arange(n) < k, -0.5, 0.5) for k in chosen], n, scale,
+                   choices=[tuple(range(3 * k, 3 * k + 3)) for k in range(JUMPS)])
     span = max(float(np.ptp(session.t)), 1.0)
     periods = np.geomspace(min(16.0, span), span, PERIODS)
     waves = [wave(2.0 * np.pi * session.t / period) for period in periods
              for wave in (np.cos, np.sin)]
-    periodic = _smooth("periodic", waves, n, scale)
-    periodic.choices = [tuple(range(6 * k, 6 * k + 6)) for k in range(PERIODS)]
+    periodic = _smooth("periodic", waves, n, scale,
+                       choices=[tuple(range(6 * k, 6 * k + 6)) for k in range(PERIODS)])
     return [own, jump, periodic, walk(session, scale)]
 
 
@@ -83,10 +84,8 @@ def walk(session, scale):
     37], which end `scale` off on average. A session of its own choice."""
     u = (session.t - session.t.min()) / max(float(np.ptp(session.t)), 1.0)
     terms = (np.arange(WALK) + 0.5) * np.pi
-    found = _smooth("walk", [np.sqrt(2.0) * np.sin(k * u) / k for k in terms], session.n, scale)
-    found.effect, found.variant = "drift", "walk"
-    found.choices = [tuple(range(3 * WALK))]
-    return found
+    return _smooth("drift", [np.sqrt(2.0) * np.sin(k * u) / k for k in terms], session.n, scale,
+                   "walk", [tuple(range(3 * WALK))])
 
 
 def _flip(session, scale):
@@ -102,11 +101,11 @@ def _flip(session, scale):
         keys.append("%s%d" % ("xyz"[faces.AXIS[face]], face))
         axes.append(faces.AXIS[face])
         columns.append(column.reshape(-1))
-    return Design("~flip", "", keys, axes, np.stack(columns, 1), np.full(len(keys), scale))
+    return Design("flip", "", keys, axes, np.stack(columns, 1), np.full(len(keys), scale))
 
 
-def _smooth(name, functions, n, scale, variant=""):
-    """Design of these functions (n,) on each axis."""
+def _smooth(name, functions, n, scale, variant="", choices=()):
+    """Design of these functions (n,) on each axis; choices: of columns, one a session."""
     keys, axes, columns = [], [], []
     for number, values in enumerate(functions):
         for axis in range(3):
@@ -115,8 +114,8 @@ def _smooth(name, functions, n, scale, variant=""):
             keys.append("%s%d" % ("xyz"[axis], number))
             axes.append(axis)
             columns.append(column.reshape(-1))
-    return Design("~" + name, variant, keys, axes, np.stack(columns, 1),
-                  np.full(len(keys), scale))
+    return Design(name, variant, keys, axes, np.stack(columns, 1),
+                  np.full(len(keys), scale), choices)
 
 
 def hats(x, number):

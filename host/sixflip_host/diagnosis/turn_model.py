@@ -148,7 +148,7 @@ STRANGERS = {"amplitude": _bends, "motion": _of_motion}
 
 def nameless(chosen, name, functions):
     """Design of functions of a turn's rates that no effect of the library has."""
-    return _of_rates("~" + name, "", chosen, functions, 10.0)
+    return _of_rates(name, "", chosen, functions, 10.0)
 
 
 def banded(chosen, width, times, lsb, chip):
@@ -172,7 +172,7 @@ def _of_rates(effect, variant, chosen, functions, prior):
             for axis in range(3):
                 added[:, axis, 3 * k + axis] = value[:, axis]
         parts.append(turns.projected(turn, added))
-    keys = ["%s%s" % ("xyz"[a], "" if not k and effect[0] != "~" else k)
+    keys = ["%s%s" % ("xyz"[a], "" if not k and not terms.is_stranger(effect) else k)
             for k in range(number) for a in range(3)]
     return terms.Design(effect, variant, keys, [0, 1, 2] * number, np.vstack(parts),
                              np.full(3 * number, prior))

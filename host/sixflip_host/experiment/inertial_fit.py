@@ -22,9 +22,9 @@ EACH = (0, 1, 2)
 # What competes in motion, in the order of Move's columns: effect, variant, axis of each column.
 # Without a name: what is read along each axis with the size of the rate, with each rate, with
 # their products, with their changes, and a scale that the size of the rate changes.
-COMPETING = (("lever_arm", "", EACH), ("filter_lag", "", (0,)), ("~motion", "speed", EACH),
-             ("~motion", "rates", EACH * 3), ("~motion", "squares", EACH * 6),
-             ("~motion", "changes", EACH * 3), ("~motion", "scale", EACH))
+COMPETING = (("lever_arm", "", EACH), ("filter_lag", "", (0,)), ("motion", "speed", EACH),
+             ("motion", "rates", EACH * 3), ("motion", "squares", EACH * 6),
+             ("motion", "changes", EACH * 3), ("motion", "scale", EACH))
 EFFECTS_NUMBER = 4  # columns of those with a name
 COMPETING_NUMBER = sum(len(axes) for _, _, axes in COMPETING)
 FAST_DPS, FAST_DPS2 = 100.0, 300.0  # a hand's rate, and its change

@@ -6,7 +6,7 @@ several variants; they compete, and all go by the effect's one name.
 """
 
 import copy
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -34,22 +34,39 @@ DOMAIN = {  # where an effect shows itself
     "torn_reads": "noise", "axis_swap": "orientation"}
 
 
+@dataclass(frozen=True, eq=False)
 class Design:
-    """Columns (3n, k) of one variant of one effect in one session.
+    """Columns (3n, k) of one variant of one effect, or of a stranger, in one session.
 
-    keys (k,): the effect's own; those of a bend beside it end in "+". axes (k,): 0..2, the
-    axis whose coefficient it is. prior (k,): a size ten times the typical one. choices: tuples
-    of columns of which a session has one for its own.
+    keys (k,): the effect's own; axes (k,): 0..2, the axis whose coefficient it is; prior (k,): a
+    size ten times the typical one; choices: tuples of columns of which a session has one for its
+    own; powers (k,): 1 for the effect's own columns, 2 and 3 for a square and a cube of them, as
+    a bend beside a slope; record: it is there because a record of the board has that form.
     """
 
-    def __init__(self, effect, variant, keys, axes, columns, prior, choices=()):
-        self.effect, self.variant, self.keys = effect, variant, tuple(keys)
-        self.axes, self.columns, self.prior = tuple(axes), columns, prior
-        self.choices = choices
+    effect: str
+    variant: str
+    keys: tuple
+    axes: tuple
+    columns: np.ndarray
+    prior: np.ndarray
+    choices: tuple = ()
+    powers: tuple = ()
+    record: bool = False
+
+    def __post_init__(self):
+        for name in ("keys", "axes", "choices"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        object.__setattr__(self, "powers", tuple(self.powers) or (1,) * len(self.keys))
 
     @property
     def generic(self):
-        return self.effect.startswith("~")
+        return is_stranger(self.effect)
+
+
+def is_stranger(name):
+    """True of the name of a hypothesis that is no effect of the library."""
+    return name not in EFFECTS
 
 
 def of_terms(name, sensor, moment, n, variant="", only=None, shape=None, chip="mpu6050"):
@@ -69,18 +86,12 @@ def of_terms(name, sensor, moment, n, variant="", only=None, shape=None, chip="m
     return Design(name, variant, keys, axes, np.stack(columns, 1), np.full(len(keys), prior))
 
 
-def bent(design, other, prior):
-    """design with the columns of another function of the same thing beside it."""
-    keys = design.keys + tuple(k + "+" for k in other.keys)
-    return Design(design.effect, design.variant + "+", keys, design.axes + other.axes,
-                  np.hstack([design.columns, other.columns]),
-                  np.concatenate([design.prior, np.full(len(other.keys), prior)]))
-
-
-def powered(design, columns, prior):
-    """design with further columns, one for each of its own."""
-    twin = Design(design.effect, design.variant, design.keys, design.axes, columns, design.prior)
-    return bent(design, twin, prior)
+def squared(design, columns, prior):
+    """design with a further column for each of its own, a square beside a slope."""
+    return replace(design, keys=design.keys * 2, axes=design.axes * 2,
+                   columns=np.hstack([design.columns, columns]),
+                   prior=np.concatenate([design.prior, np.full(len(design.keys), prior)]),
+                   powers=(1,) * len(design.keys) + (2,) * len(design.keys), record=True)
 
 
 def agreed(sessions):
@@ -155,7 +166,7 @@ def _thermal(session, m, terms, found, sensor, reference_c):
         bias = terms("thermal_bias", label, felt, only=("x", "y", "z"), shape=shape)
         if not lag:  # a record of the board holds a square, too
             dt = np.repeat(felt.temperature - reference_c, 3)[:, None]
-            found.append(powered(bias, bias.columns * dt, 0.1 * bias.prior[0]))
+            found.append(squared(bias, bias.columns * dt, 0.1 * bias.prior[0]))
         if sensor == "accel":
             terms("thermal_scale", label, felt, shape=shape)
         terms("thermal_rate", label, felt)

@@ -23,9 +23,8 @@ def unit(generator, theta=0.0, jump=0.0, n=40):
         steps[:, 2, k] = np.arange(n) >= start
     y = theta * slope + generator.standard_normal((n, 3))
     y[:, 2] += jump * steps[:, 2, generator.integers(3)]
-    jumps = Design("~jump", "", ["z0", "z1", "z2"], [2, 2, 2], steps.reshape(-1, 3),
-                   np.full(3, 10.0))
-    jumps.choices = [(0,), (1,), (2,)]
+    jumps = Design("jump", "", ["z0", "z1", "z2"], [2, 2, 2], steps.reshape(-1, 3),
+                   np.full(3, 10.0), [(0,), (1,), (2,)])
     designs = [Design("thermal_bias", "", ["x"], [0], slope.reshape(-1, 1), np.array([10.0])),
                Design("warm_up", "", ["y"], [1], other.reshape(-1, 1), np.array([10.0])), jumps]
     nuisance = np.kron(np.ones((n, 1)), np.eye(3))
@@ -116,7 +115,7 @@ def test_a_coefficient_that_differs_between_sessions_does_not_gain():
 def test_a_jump_of_each_sessions_own_is_a_stranger_beside_the_effect():
     generator = np.random.default_rng(10)
     said = found([unit(generator, 3.0, 4.0), unit(generator, 3.0, 4.0)])
-    assert said.best.names == {"thermal_bias", "~jump"}
+    assert said.best.names == {"thermal_bias", "jump"}
     assert posterior.domains_left(said).keys() == {"time"}
 
 

@@ -147,7 +147,7 @@ def test_what_stands_in_a_names_place_without_one_makes_it_doubtful():
 
 
 def test_probabilities_of_a_place_add_up_and_chance_bounds_them():
-    shares = odds.shares({"": 2.0, "creep": 9.0, "hysteresis": 8.0, "~history": 1.0})
+    shares = odds.shares({"": 2.0, "creep": 9.0, "hysteresis": 8.0, "history": 1.0})
     assert sum(shares.values()) == pytest.approx(1.0)
     assert shares["creep"] / shares["hysteresis"] == pytest.approx(np.e)
     assert odds.probability(odds.COST) == 0.5 and odds.chance(-3.0) == 1.0
@@ -157,7 +157,7 @@ def test_names_that_cannot_be_told_in_principle_share_their_probability():
     cause = aliases.Cause("warm_up", [], 30.0)
     cause.members = {"thermal_bias": "alias index 0.98", "creep": "probability 0.04"}
     cause.alike = {"thermal_bias"}
-    cause.place = {"warm_up": 0.9, "thermal_bias": 0.02, "creep": 0.04, "": 0.03, "~time": 0.01}
+    cause.place = {"warm_up": 0.9, "thermal_bias": 0.02, "creep": 0.04, "": 0.03, "time": 0.01}
     assert cause.probabilities == pytest.approx(
         {"warm_up": 0.46, "thermal_bias": 0.46, "creep": 0.04})
     assert list(cause.probabilities)[0] == "warm_up" and cause.nameless == pytest.approx(0.01)

@@ -18,7 +18,7 @@ class Finding:
     share of what departs from a sound sensor in its domain (of the samples, peaks, gaps or their
     power) that it accounts for, 0 to 1, or None where that is not known; number: of those, which
     tell how well the share is known; place: {name: probability} of what stands here, "" nothing,
-    "~..." nameless, by the score where it is not given; hz: {axis: frequency of a steady line};
+    by the score where it is not given; hz: {axis: frequency of a steady line};
     lines: the line_frequency.Line of each axis; read (3, 3): what is true as swapped axes read
     it."""
 
@@ -69,7 +69,7 @@ class Finding:
     @property
     def nameless(self):
         """Probability that what stands here has no name."""
-        return sum(p for name, p in self.place.items() if name.startswith("~"))
+        return odds.nameless(self.place)
 
 
 def present(score):
