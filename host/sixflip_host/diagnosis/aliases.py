@@ -9,6 +9,7 @@ as much in the alias index as all that lies within them: there are few such cont
 error in the form of an effect can turn them round.
 """
 import math
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -18,19 +19,39 @@ from . import evidence, odds
 SAME, NATS, SIGMAS = 0.9, 3.0, 3.0
 
 
+@dataclass(frozen=True, eq=False)
 class Cause:
-    """One effect found: chosen (Candidates), members ({effect: why it cannot be told}),
-    score (nats), theta, sigma, covariance (over keys), keys, axes, share, plausible;
-    other_axes: those that cannot be told from the axes chosen; place: {name: probability} of
-    what stands here, "" nothing; alike: the members that cannot be
-    told from the effect in principle."""
+    """One effect found: chosen (tuple of Form), score (nats); place: {name: probability} of what
+    stands here, "" nothing; members ({effect: why it cannot be told}), alike: those of them that
+    cannot be told from the effect in principle; theta (k,), covariance (k, k) over the form's
+    columns; other_axes: those that cannot be told from the axes chosen. Of its size, see
+    effect_estimates.sized: value and interval {key: ...}, letters of the axes, plausible, share
+    of the excess, domain, unit."""
 
-    def __init__(self, effect, chosen, score):
-        self.effect, self.chosen, self.score = effect, chosen, score
-        self.members, self.share, self.plausible = {}, None, True
-        self.other_axes, self.alike = [], set()
-        self.domain = None
-        self.place = {effect: odds.probability(score)}
+    effect: str
+    chosen: tuple
+    score: float
+    place: dict
+    members: dict = field(default_factory=dict)
+    alike: frozenset = frozenset()
+    theta: np.ndarray | None = None
+    covariance: np.ndarray | None = None
+    other_axes: tuple = ()
+    value: dict = field(default_factory=dict)
+    interval: dict = field(default_factory=dict)
+    letters: tuple = ()
+    plausible: bool = True
+    share: float | None = None
+    domain: str | None = None
+    unit: str | None = None
+
+    @property
+    def keys(self):
+        return self.chosen[0].keys
+
+    @property
+    def axes(self):
+        return self.chosen[0].axes
 
     @property
     def names(self):
@@ -64,18 +85,14 @@ def causes(found, units, forms):
     for form in best.forms:
         if form.generic or not len(form.shared):
             continue
-        cause = Cause(form.effect, [form], found.gains[form.effect])
-        cause.place = found.places[form.effect]
         place = _places(shared.index, form.columns)
-        cause.keys, cause.axes = list(form.keys), list(form.axes)
-        cause.theta, cause.covariance = theta[place], covariance[np.ix_(place, place)]
-        cause.sigma = np.sqrt(np.diag(cause.covariance))
-        cause.members = {name: "probability %.2f" % found.places[form.effect][name]
-                         for name in found.alternatives(form.effect)
-                         if name not in ("", form.effect, "drift")
-                         and not is_stranger(name)}
-        _aliases(cause, forms, best.forms, grams, each)
-        out.append(cause)
+        likely = {name: "probability %.2f" % found.places[form.effect][name]
+                  for name in found.alternatives(form.effect)
+                  if name not in ("", form.effect, "drift") and not is_stranger(name)}
+        alike = _aliases(form, theta[place], likely, forms, best.forms, grams, each)
+        out.append(Cause(form.effect, (form,), found.gains[form.effect],
+                         found.places[form.effect], {**likely, **alike}, frozenset(alike),
+                         theta[place], covariance[np.ix_(place, place)]))
     out.sort(key=lambda c: -c.score)
     return [c for k, c in enumerate(out) if not any(
         c.effect in b.members and b.effect in c.members for b in out[:k])]
@@ -95,16 +112,16 @@ def _places(columns, wanted):
     return [int(np.flatnonzero(columns == w)[0]) for w in wanted]
 
 
-def _aliases(cause, forms, beside, grams, each):
-    """Add to cause.members every other effect that cannot be told from it in principle, the
-    other members of the set projected out."""
-    own = [i for i, power in enumerate(cause.chosen[0].powers) if power == 1]
-    mine, theta = cause.chosen[0].columns[own], cause.theta[own]
+def _aliases(form, theta, known, forms, beside, grams, each):
+    """{effect: why} of every other one but the known that cannot be told from a form with these
+    sizes in principle, the other members of the set projected out."""
+    own = [i for i, power in enumerate(form.powers) if power == 1]
+    mine, theta, found = form.columns[own], theta[own], {}
     even = balanced(grams, mine)
     for name in dict.fromkeys(f.effect for f in forms if not f.generic and len(f.shared)):
-        if name == cause.effect or name in cause.members:
+        if name == form.effect or name in known:
             continue
-        others = [f.columns for f in beside if f.effect not in (name, cause.effect)]
+        others = [f.columns for f in beside if f.effect not in (name, form.effect)]
         others = np.concatenate([*others, np.zeros(0, dtype=int)])
         others = others[~np.isin(others, mine)].astype(int)
         spaces = [f.columns for f in forms if f.effect == name and f.axis is None
@@ -115,11 +132,10 @@ def _aliases(cause, forms, beside, grams, each):
         apart = reproduced(grams[0] + grams[1], mine, theta, spaces, others)[1]
         if left[0] > SAME and not any(_told(g, mine, theta, spaces, others)
                                       for g in each if len(each) > 1):
-            cause.members[name] = "alias index %.2f" % left[0]
+            found[name] = "alias index %.2f" % left[0]
         elif apart < SIGMAS:
-            cause.members[name] = "%.1f standard deviations apart" % apart
-        if name in cause.members:
-            cause.alike.add(name)
+            found[name] = "%.1f standard deviations apart" % apart
+    return found
 
 
 KIN = ({"temperature", "time"}, {"history", "time_since_move"})

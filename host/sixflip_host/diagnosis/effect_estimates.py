@@ -1,6 +1,11 @@
 """The size of a cause with its interval, the axes that have it, and whether it is believable."""
+from dataclasses import replace
+
 import numpy as np
 
+from sixflip_sim.effects.library import EFFECTS
+
+from ..experiment import terms
 from . import plausible
 
 SIGNIFICANT = 3.0  # standard deviations at which an axis is said to have the effect
@@ -8,21 +13,20 @@ Z_90 = 1.645
 FORM = 0.05  # of a size, standard deviation: parts do not have the library's very curves
 
 
-def fill(cause, data, levels, chip, kind):
-    """Fill value and interval {key: ...}, letters of the axes, plausible."""
+def sized(cause, data, levels, chip, kind, share=None):
+    """The aliases.Cause with value and interval {key: ...}, letters of the axes, plausible,
+    domain and unit; share: of the excess. levels: index into each unit's grid."""
     theta, sigma = effective(cause, data, levels)
-    cause.value = {k: float(v) for k, v in theta.items()}
-    cause.interval = {k: (float(v - Z_90 * sigma[k]), float(v + Z_90 * sigma[k]))
-                      for k, v in theta.items()}
-    cause.letters = []
-    if cause.effect != "box_tilt":
-        cause.letters = letters(cause, theta, sigma)
-        axis_of = dict(zip(cause.keys, cause.axes))
-        cause.value = {k: v for k, v in cause.value.items()
-                       if "xyz"[axis_of[k]] in cause.letters}
-        cause.interval = {k: cause.interval[k] for k in cause.value}
-        cause.letters = sorted({*cause.letters, *("xyz"[a] for a in cause.other_axes)})
-    cause.plausible = plausible.believable(cause.effect, chip, kind, cause.value, sigma)
+    axis_of = dict(zip(cause.keys, cause.axes))
+    shown = [] if cause.effect == "box_tilt" else letters(cause, theta, sigma)
+    value = {k: float(v) for k, v in theta.items() if not shown or "xyz"[axis_of[k]] in shown}
+    interval = {k: (float(v - Z_90 * sigma[k]), float(v + Z_90 * sigma[k]))
+                for k, v in value.items()}
+    if shown:
+        shown = sorted({*shown, *("xyz"[a] for a in cause.other_axes)})
+    return replace(cause, value=value, interval=interval, letters=shown, share=share,
+                   plausible=plausible.believable(cause.effect, chip, kind, value, sigma),
+                   domain=terms.DOMAIN[cause.effect], unit=EFFECTS[cause.effect].units[kind])
 
 
 def letters(cause, theta, sigma):

@@ -8,8 +8,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sixflip_sim.effects.library import EFFECTS
-
 from .. import progress
 from ..experiment import covariance, linear_model, long_rest, nominal_rows, terms
 from ..experiment.flicker import flicker_kernel
@@ -242,9 +240,8 @@ def _settled(form, units, fits, kind):
 def _told(cause, data, fits, chip, kind, chosen, found):
     """RestCause of an aliases.Cause; where the change from one rest to the next may be no more
     than that, what does it is among the names. Its share: what is lost without it."""
-    cause.unit = EFFECTS[cause.effect].units[kind]
-    effect_estimates.fill(cause, data, list(fits.index), chip, kind)
-    _add_bent(cause, data, list(fits.index))
+    cause = _with_bent(effect_estimates.sized(cause, data, list(fits.index), chip, kind), data,
+                       list(fits.index))
     names = cause.names
     if found.places[cause.effect].get(SETTLED, 0.0) > 1.0 - posterior.HOLDS:
         names = [*names, "drift", *(["table_tilt"] if kind == "accel" else [])]
@@ -264,19 +261,21 @@ def _beaten(cause, strange, found):
         for form, letters in strange) for letter in cause.letters)
 
 
-def _add_bent(cause, data, index):
-    """Add the axes whose reading only bends: their slope is next to nothing, and is said so."""
+def _with_bent(cause, data, index):
+    """The cause with the axes whose reading only bends: their slope is next to nothing, and is
+    said so."""
     ratios = np.abs(cause.theta) / np.sqrt(np.maximum(np.diag(cause.covariance), 1e-300))
-    bent = {"xyz"[axis] for power, axis, ratio in zip(
-                cause.chosen[0].powers, cause.axes, ratios) if power > 1 and ratio > BENT}
-    missing = bent - set(cause.letters)
-    if missing:
-        theta, sigma = effect_estimates.effective(cause, data, index)
-        half = {key: effect_estimates.Z_90 * sigma[key] for key in theta if key in missing}
-        cause.value = {**cause.value, **{key: float(theta[key]) for key in half}}
-        cause.interval = {**cause.interval, **{
-            key: (float(theta[key] - half[key]), float(theta[key] + half[key])) for key in half}}
-        cause.letters = sorted({*cause.letters, *half})
+    powers = cause.chosen[0].powers
+    missing = {"xyz"[axis] for power, axis, ratio in zip(powers, cause.axes, ratios)
+               if power > 1 and ratio > BENT} - set(cause.letters)
+    if not missing:
+        return cause
+    theta, sigma = effect_estimates.effective(cause, data, index)
+    half = {key: effect_estimates.Z_90 * sigma[key] for key in theta if key in missing}
+    return replace(cause, value={**cause.value, **{key: float(theta[key]) for key in half}},
+                   interval={**cause.interval, **{
+                       key: (float(theta[key] - half[key]), float(theta[key] + half[key]))
+                       for key in half}}, letters=sorted({*cause.letters, *half}))
 
 
 def _drift(found, units, data, levels, kind, chosen, index):

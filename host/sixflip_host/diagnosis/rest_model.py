@@ -3,8 +3,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sixflip_sim.effects.library import EFFECTS
-
 from .. import progress
 from ..experiment import linear_model, nominal_rows, terms
 from . import (
@@ -147,9 +145,8 @@ class RestModel:
         progress.doing("what explains it best")
         found = posterior.search(model, forms, cost)
         best = found.best
-        causes = aliases.causes(found, units, forms)
-        for cause in causes:
-            cause.other_axes = posterior.rival_axes(model, forms, found, cause.chosen[0])
+        causes = [replace(c, other_axes=posterior.rival_axes(model, forms, found, c.chosen[0]))
+                  for c in aliases.causes(found, units, forms)]
         fitted = adequacy.of(units, data.statistics, best,
                              self.conditions.shaken.get(self.kind, ()))
         added = posterior.domains_left(found)
@@ -165,8 +162,7 @@ class RestModel:
             added, {f.effect: posterior.axes_of(model, found, f) for f in nameless},
             _drift(units, data, noise, found, fitted, chosen),
             not fitted.ok or bool(nameless) or doubted, crooked)
-        _fill(gap, causes, data)
-        return self.shrunk(self._tilted(gap))
+        return self.shrunk(self._tilted(replace(gap, causes=_sized(gap, causes, data))))
 
     def _tilted(self, gap):
         """The gap with a crooked box among its causes where there is one."""
@@ -174,9 +170,8 @@ class RestModel:
                 and "box_tilt" not in self.settings.without and box_tilt_test.possible(gap):
             progress.doing("whether the box is square")
             box, data = box_tilt_test.found(gap)
-            _fill(gap, box, data)
             gap = replace(gap, causes=gap.causes + [
-                c for c in box if max(map(abs, c.value.values()), default=0.0)
+                c for c in _sized(gap, box, data) if max(map(abs, c.value.values()), default=0.0)
                 >= box_tilt_test.LEAST_DEG])
         if box_tilt_test.bent(gap.causes):
             gap = replace(gap, crooked=[])  # a nonlinearity leans the faces as well
@@ -258,18 +253,15 @@ def _drift(units, data, noise, found, fitted, chosen):
                  adequacy.share_of_drift(units, data.statistics, chosen, fitted.index, noise))
 
 
-def _fill(gap, causes, data):
-    """Fill domain, unit, share of the excess, sizes and axes of causes that were found in this
-    data."""
-    index = gap.levels(data)
+def _sized(gap, causes, data):
+    """The causes that were found in this data with their sizes and shares of the excess."""
+    index, found = gap.levels(data), []
     every = [*gap.chosen, *(f for cause in causes for f in cause.chosen if f not in gap.chosen)]
     for cause in causes:
         rest = [form for form in every if form not in cause.chosen]
-        cause.share = adequacy.share(data.units, data.statistics, index, (rest, index),
-                                     (every, index))
-        cause.domain = terms.DOMAIN[cause.effect]
-        cause.unit = EFFECTS[cause.effect].units[gap.kind]
-        effect_estimates.fill(cause, data, index, gap.chip, gap.kind)
+        share = adequacy.share(data.units, data.statistics, index, (rest, index), (every, index))
+        found.append(effect_estimates.sized(cause, data, index, gap.chip, gap.kind, share))
+    return found
 
 
 def halves(kind, session, model, certified):

@@ -154,10 +154,11 @@ def test_probabilities_of_a_place_add_up_and_chance_bounds_them():
 
 
 def test_names_that_cannot_be_told_in_principle_share_their_probability():
-    cause = aliases.Cause("warm_up", [], 30.0)
-    cause.members = {"thermal_bias": "alias index 0.98", "creep": "probability 0.04"}
-    cause.alike = {"thermal_bias"}
-    cause.place = {"warm_up": 0.9, "thermal_bias": 0.02, "creep": 0.04, "": 0.03, "time": 0.01}
+    cause = aliases.Cause(
+        "warm_up", (), 30.0,
+        {"warm_up": 0.9, "thermal_bias": 0.02, "creep": 0.04, "": 0.03, "time": 0.01},
+        {"thermal_bias": "alias index 0.98", "creep": "probability 0.04"},
+        frozenset(["thermal_bias"]))
     assert cause.probabilities == pytest.approx(
         {"warm_up": 0.46, "thermal_bias": 0.46, "creep": 0.04})
     assert list(cause.probabilities)[0] == "warm_up" and cause.nameless == pytest.approx(0.01)
