@@ -15,9 +15,10 @@ from . import evidence, session_offsets
 from .evidence import Levels
 
 PLACEMENT = {"accel": 0.87, "gyro": 0.003}  # 0.05 deg across gravity, mg; the Earth's rate
-TIMES_TYPICAL = 4.0
 ABSORBED = 0.6  # leverage above which a residual is mostly fitted away
 FEWEST = 20  # innovations of a session
+# Standard deviations of a kurtosis that chance reaches once in 30,000; how much one axis' noise
+# may be above another's in a chip as it is [ADXL345 rev. E, table 1: Z 1.1 LSB, X and Y 0.75].
 KURTOSIS_SIGMAS, UNLIKE = 4.0, 1.5
 DOUBTFUL_P, DOUBTFUL_RATIO = 1e-3, 1.3  # white noise itself is known to some 5 %
 
@@ -33,12 +34,6 @@ def levels(sensor, kind, reference=None):
         return Levels(PLACEMENT[kind], max(reference, usual(sensor, kind) / 4.0),
                       session_offsets.UNUSUAL[kind], True)
     return Levels(PLACEMENT[kind], usual(sensor, kind), session_offsets.UNUSUAL[kind])
-
-
-def allowance(sensor, kind, reference=None):
-    """Largest flicker level that counts as noise in one rest, mg or deg/s."""
-    level = usual(sensor, kind)
-    return TIMES_TYPICAL * level if reference is None else max(2.0 * reference, level)
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ import numpy as np
 from ..experiment.terms import is_stranger
 from . import evidence, odds
 
-SAME, NATS, SIGMAS = 0.9, 3.0, 3.0
+SAME, SIGMAS = 0.9, 3.0  # GAP stage 4: alias index and distinguishability of one class
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,14 +136,6 @@ def _aliases(form, theta, known, forms, beside, grams, each):
         elif apart < SIGMAS:
             found[name] = "%.1f standard deviations apart" % apart
     return found
-
-
-KIN = ({"temperature", "time"}, {"history", "time_since_move"})
-
-
-def related(one, other):
-    """Whether two domains are one variable, or two that go together."""
-    return one == other or any({one, other} <= kin for kin in KIN)
 
 
 def balanced(grams, mine):

@@ -12,7 +12,7 @@ from sixflip_sim.effects.moment import Moment
 from ..experiment import noise_arrays, turns
 from . import closed_loop, coefficient_fits
 
-ROUNDS = 3
+ROUNDS = 3  # of a linear correction that is off by its square each time
 
 
 def close(gap, reference_c):

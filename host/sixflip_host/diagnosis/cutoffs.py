@@ -20,7 +20,7 @@ from . import evidence
 from .evidence import NONE
 from .odds import CHANCE
 
-RUNS = 160
+RUNS = 160  # of which the upper tenth, 16, tell the scale of the tail to a quarter
 UPPER = 0.1
 TIMES_USUAL = 1.6  # of the usual levels, that a null has at most
 MARGIN_NATS = 1.0  # noise is not quite what it is simulated as
@@ -29,7 +29,7 @@ FORMAT = 9
 STRANGERS = 3  # simulated for each nameless hypothesis
 STRANGE_CHI2 = 200.0  # of a simulated stranger: ten times what a cost amounts to
 SURE = 0.9  # share of the strangers beside which no name may be taken in
-LEAST_SHARE, MOST_SHARE = 0.02, 0.5
+LEAST_SHARE, MOST_SHARE = 0.02, 0.5  # a form is never known better; beyond half it is no part
 
 
 @dataclass(frozen=True)

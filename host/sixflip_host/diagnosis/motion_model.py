@@ -26,7 +26,7 @@ from . import (
 )
 from .detect.detection import Finding
 
-FEWEST_MOVES = 12
+FEWEST_MOVES = 12  # three for each of the four sizes
 LEAST_NATS = 9.0
 STRANGE_SHARE = 0.06  # of what a stranger gains, that a name must gain beside it: a quarter of
 # the stranger's size, squared, is of another form than the strangers of motion have
@@ -37,7 +37,7 @@ LEAST_LAG_MS = 0.5  # two sensors of one chip are not sampled at the same moment
 TIMES_SIGMA = 4.5  # 80 % power at the threshold
 KNOWN_CM = 5.0  # standard deviation beyond which a direction of the arm is not known
 UNTOLD = 0.1  # of an effect's power
-RESAMPLED = 400
+RESAMPLED = 400  # of which 20 lie beyond either end of a 90 % interval
 
 
 @dataclass(frozen=True, eq=False)

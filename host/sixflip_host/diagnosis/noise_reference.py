@@ -5,7 +5,7 @@ from ..errors import BadFile
 from ..experiment import blocks, long_rest
 from ..experiment.signal_measures import allan
 
-SHORTEST_S = 20.0
+SHORTEST_S = 20.0  # flicker shows from some seconds on
 
 
 def levels(capture, path):

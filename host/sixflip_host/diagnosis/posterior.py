@@ -14,7 +14,7 @@ from . import evidence, hypotheses, odds
 from .evidence import NONE
 from .odds import HOLDS, PRESENT
 
-MOST, BEAM = 4, 3
+MOST, BEAM = 4, 3  # members of a set (GAP stage 3); sets that the search goes on with
 FORM_COST = 1.0  # nats
 AS_WELL = 3.0  # nats, GAP stage 4
 NOISE_FORM = 0.2  # of a name's gain, that its true form may leave to noise that wanders

@@ -28,7 +28,7 @@ COMPETING = (("lever_arm", "", EACH), ("filter_lag", "", (0,)), ("motion", "spee
 EFFECTS_NUMBER = 4  # columns of those with a name
 COMPETING_NUMBER = sum(len(axes) for _, _, axes in COMPETING)
 FAST_DPS, FAST_DPS2 = 100.0, 300.0  # a hand's rate, and its change
-FEWEST_BINS, MOST_BINS = 12, 60
+FEWEST_BINS, MOST_BINS = 12, 60  # five samples each in between: a hand moves below 10 Hz
 FLAT_DEG = 15.0  # a move that leaves the vertical where it was, in the box
 HATS = 4  # of the bias's course over a session
 HABITS = 4  # cosines that hands have in common when they turn a box over
@@ -37,7 +37,7 @@ PRIOR_METRES, PRIOR_CM, PRIOR_MG = 0.1, 10.0, 5.0
 BIAS_MG, STRANGE_BIAS_MG = 10.0, 60.0  # a session calibrated by its own poses, or by others'
 HAND_CM, WHEELS_CM = 0.3, 0.03  # how well the same hand, the same axle hold their centre
 MG_PER_METRE_S2 = 1000.0 / 9.80665
-SMALL_DEG = 10.0
+SMALL_DEG = 10.0  # of turning: less has no axis of its own
 
 
 @dataclass(frozen=True, eq=False)

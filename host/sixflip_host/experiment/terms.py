@@ -15,10 +15,10 @@ from sixflip_sim.effects.library import EFFECTS
 
 from .thermometer import MOVES_C
 
-LAGS_S = (0.0, 15.0, 30.0, 60.0, -30.0)
-WARM_UP_S = (30.0, 60.0, 120.0, 240.0, 480.0)
-CREEP_S = (5.0, 15.0, 30.0, 60.0, 120.0)
-LONG_MEMORY_S = 30.0
+LAGS_S = (0.0, 15.0, 30.0, 60.0, -30.0)  # GAP: a neighbouring thermometer, 10-60 s
+WARM_UP_S = (30.0, 60.0, 120.0, 240.0, 480.0)  # GAP: 60-300 s, and an octave to both sides
+CREEP_S = (5.0, 15.0, 30.0, 60.0, 120.0)  # GAP: 60-70 s seen on Z; down to a rest's length
+LONG_MEMORY_S = 30.0  # longer than two rests with the move between them
 PLAY_G = (0.1, 0.2, 0.4)  # widths of a play operator
 LEAST_VIBRATION_MG = 5.0
 DOMAIN = {  # where an effect shows itself

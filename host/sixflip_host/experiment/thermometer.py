@@ -2,7 +2,7 @@
 import numpy as np
 from scipy import ndimage
 
-STEP_S = 1.0
+STEP_S = 1.0  # a chip's temperature follows its surroundings over tens of seconds
 SMOOTH_S = 8.0
 RATE_S = 40.0
 MOVES_C = 0.4  # less than this over a whole capture says nothing about temperature

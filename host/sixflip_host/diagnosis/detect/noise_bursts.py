@@ -31,7 +31,7 @@ def loud(session, sensor):
 
 
 SPIKE = 4.5  # standard deviations of a single sample off its neighbours, which agree
-AGREE = 4.0
+AGREE = 4.0  # standard deviations that the four neighbours may differ by
 SPIKE_CHANCE = 5e-5  # of such a sample, where noise is a little heavier than normal
 LEAST_SPIKES, SPIKES_P = 10, 1e-6
 

@@ -17,10 +17,10 @@ from .line_frequency import Line
 
 LENGTH_S, SHORTEST_S = 5.0, 2.0
 LOWEST_HZ, LOWEST_MOVING_HZ = 0.7, 2.0  # a hand or a vehicle moves more slowly than that
-CHANCE = 0.001
+CHANCE = 0.001  # six axes together: well below what registers and spectra share, see odds.py
 FEWEST = 4  # stretches
-MEDIAN_SHARE = 0.25
-LEAST_STEPS = 0.5
+MEDIAN_SHARE = 0.25  # of the band: wider than any line, narrower than a filter's colour
+LEAST_STEPS = 0.5  # of the counts: rounding makes lines as large as that
 # Bins to each side; a line has that share of the power in them in its own lobe. A hand that
 # steadies the box, or a motor under load, has a wider bump.
 BESIDE, NARROW = 10, 0.6
