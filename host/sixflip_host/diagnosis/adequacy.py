@@ -15,6 +15,7 @@ from . import evidence, session_offsets
 from .evidence import Levels
 
 PLACEMENT = {"accel": 0.87, "gyro": 0.003}  # 0.05 deg across gravity, mg; the Earth's rate
+TIMES_TYPICAL = 4.0  # of flicker, that one rest may have: data sheets give no largest value
 ABSORBED = 0.6  # leverage above which a residual is mostly fitted away
 FEWEST = 20  # innovations of a session
 # Standard deviations of a kurtosis that chance reaches once in 30,000; how much one axis' noise
