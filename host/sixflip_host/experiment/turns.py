@@ -20,7 +20,6 @@ ROUNDS = 2  # of fits that begin with what the one before left
 PULL_DPS = 0.1  # deg/s per g, typical (effects/typical.py: g_sensitivity)
 SHORTEST_S, LONGEST_S, LEAST_DEG = 0.3, 60.0, 20.0
 LATE_S = 0.1  # the longest delay of the library's filter_lag
-RAIL = 32767  # of int16
 _known = weakref.WeakKeyDictionary()  # {Session: {up: turns}}: what was integrated is not again
 
 
