@@ -44,3 +44,14 @@ def find(board, settings, tries=3):
                 board.sleep_us(20000)
                 free_bus(board)
     raise error
+
+
+def run(firmware):
+    """The phase after a calibration: for the seconds of a solve nobody has read the sensor, so
+    it is identified and set up anew. BusLost where it is gone or is another one."""
+    from .sensor import BusLost, Sensor
+    try:
+        imu = find(firmware.board, firmware.settings)[0]
+    except OSError as e:
+        raise BusLost(str(e)) from e
+    firmware.sensor = Sensor(firmware.board, imu, firmware.settings, firmware.events)

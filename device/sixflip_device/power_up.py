@@ -10,6 +10,7 @@
     session.calibrate_accelerometer  SessionResult, record     Calibration
     session.calibrate_gyro           both of them, record      Calibration
     record.saving                    both of them              record, on the flash
+    find_sensor                      settings                  sensor, identified anew
     record.active_record             record                    correction
     stream.stream                    correction                corrected samples, or a request
 
@@ -86,6 +87,7 @@ def calibrate(firmware):
     phase("record.saving", firmware, session, calibration)
     if session.how == "bus lost":
         raise BusLost(session.ended)
+    phase("find_sensor", firmware)
     phase("record.active_record", firmware)
 
 
