@@ -8,7 +8,8 @@ from sixflip_host.board.console import Console
 from sixflip_host.present import gap_words
 
 GAP = {
-    "verdict": "explained", "remarks": [], "damage": [], "held_out": "each session by the others",
+    "verdict": "explained", "remarks": [], "damage": [], "noise": {},
+    "held_out": "each session by the others",
     "where": [{"sensor": "gyro", "axis": "x", "domain": "orientation", "share": 0.9, "p": 1e-9}],
     "causes": [{
         "sensor": "gyro_turns", "axes": ["x"], "effect": None, "plausible": False,
