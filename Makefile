@@ -51,39 +51,39 @@ test-pico: micropython
 		--durations 0 tests/on_pico
 
 size: setup
-	@$(BIN)/python tests/bench/size.py
+	@$(BIN)/python -m tests.studies.bench.size
 
 check: setup
 	$(BIN)/ruff check .
 
 bench-accuracy: setup
-	@$(BIN)/python tests/bench/accuracy.py
+	@$(BIN)/python -m tests.studies.bench.accuracy
 
 bench: bench-accuracy
-	@for each in $(filter-out tests/bench/accuracy.py,$(wildcard tests/bench/*.py)); do \
-		echo; echo "== $$each"; $(BIN)/python $$each || exit 1; done
+	@for each in $(filter-out __init__ accuracy,$(basename $(notdir $(wildcard tests/studies/bench/*.py)))); do \
+		echo; echo "== $$each"; $(BIN)/python -m tests.studies.bench.$$each || exit 1; done
 
 fidelity: setup
 	@$(BIN)/python -m sixflip_host.simulation.fidelity
 
 # COUNT=220 cases, SEED=1, JOBS=2; the result is in blind-output/
 blind: setup
-	@$(BIN)/python tests/blind/blind_run.py --count $(or $(COUNT),220) --seed $(or $(SEED),1) \
+	@$(BIN)/python -m tests.studies.blind.blind_run --count $(or $(COUNT),220) --seed $(or $(SEED),1) \
 		--jobs $(or $(JOBS),2)
 
 # every study to its end, whatever the others say; JOBS=2
 blind-studies: setup
 	@failed=0; for each in unattended null_study left_out resolved; do \
-		echo; echo "== $$each"; $(BIN)/python tests/blind/studies/$$each.py \
+		echo; echo "== $$each"; $(BIN)/python -m tests.studies.robustness.$$each \
 		$$([ $$each = unattended ] || echo --jobs $(or $(JOBS),2)) || failed=1; done; exit $$failed
 
 # SEEDS=3 of each defect, KINDS=box,rover; the printed table is the result
 zoo: setup
-	@$(BIN)/python tests/zoo/zoo_run.py --seeds $(or $(SEEDS),3) --kinds $(or $(KINDS),box,rover)
+	@$(BIN)/python -m tests.studies.zoo.zoo_run --seeds $(or $(SEEDS),3) --kinds $(or $(KINDS),box,rover)
 
 # every claim on the recordings of ../shared/data beside a plain computation; ONLY=name
 real: setup
-	@$(BIN)/python tests/real/real_run.py --only "$(ONLY)"
+	@$(BIN)/python -m tests.studies.real.real_run --only "$(ONLY)"
 
 reproduce: setup
 	@$(BIN)/sixflip reproduce

@@ -1,6 +1,6 @@
 """The sensor on a bus that may be stuck: probed, and configured."""
 
-POLLED_HZ = 125  # the longest turn of a session's loop takes a Pico 7 ms: tests/bench/instructions
+POLLED_HZ = 125  # the longest turn of a session's loop takes a Pico 7 ms: the bench instructions
 
 
 def by_fifo(imu, rate_hz, wanted, report):

@@ -4,13 +4,13 @@ import json
 import unittest
 
 import numpy as np
-from simulated_board import QUICK, STOP_WHEN_READY, power_on
 from test_power_up import STILL, Folder
 
 from sixflip.capture.reader import read as read_blocks
 from sixflip.poses.faces import pose_name
 from sixflip_device.session import redo_session, session_request
 from sixflip_host.capture import capture_binary
+from tests.worlds.simulated_board import QUICK, STOP_WHEN_READY, power_on
 
 FACES = "Z+a Z+b X+a X+b Y-a Y-b Z-a Z-b X-a X-b Y+a Y+b"
 BACK = "Y+b X-a Z+a"

@@ -3,10 +3,9 @@
 import tempfile
 import unittest
 
-from simulated_board import QUICK, SHORT_WORLD, STOP_WHEN_READY, SimulatedBoard
-
 from sixflip_device import power_up, settings
 from sixflip_sim import worlds
+from tests.worlds.simulated_board import QUICK, SHORT_WORLD, STOP_WHEN_READY, SimulatedBoard
 
 # sensor, who_am_i, register, and what it reads as configured
 SHIFTING = (("adxl345", None, 0x1E, 0x00), ("gy85", None, 0x20, 0x00),

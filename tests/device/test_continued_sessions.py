@@ -2,11 +2,11 @@
 
 import json
 
-from simulated_board import STOP_WHEN_READY, power_on
 from test_power_up import STILL, Folder
 
 from sixflip.capture.reader import read as read_blocks
 from sixflip.poses.faces import pose_name
+from tests.worlds.simulated_board import STOP_WHEN_READY, power_on
 
 FIRST = ["Z+a", "Z+b", "X+a"]
 REST = ["X+a", "X+b", "Y+a", "Y+b", "Z-a", "Z-b", "X-a", "X-b", "Y-a", "Y-b"]

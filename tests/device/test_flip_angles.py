@@ -4,10 +4,10 @@ import math
 import os
 import unittest
 
-from simulated_board import power_on
 from test_power_up import Folder
 
 from sixflip.record import correction_record
+from tests.worlds.simulated_board import power_on
 
 SQUARE = {"tilt_deg": 2.0, "seed": 5}
 

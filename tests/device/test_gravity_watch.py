@@ -3,9 +3,8 @@
 import tempfile
 import unittest
 
-from simulated_board import SHORT_WORLD, SimulatedBoard, power_on
-
 from sixflip_sim import worlds
+from tests.worlds.simulated_board import SHORT_WORLD, SimulatedBoard, power_on
 
 
 class Streaming(SimulatedBoard):

@@ -5,11 +5,10 @@ import shutil
 import tempfile
 import unittest
 
-from simulated_board import SHORT_WORLD, SimulatedBoard, power_on
-
 from sixflip.poses.still_window import SAME
 from sixflip_device.imu import CorrectedImu
 from sixflip_sim import worlds
+from tests.worlds.simulated_board import SHORT_WORLD, SimulatedBoard, power_on
 
 RATE_HZ = 50
 

@@ -6,9 +6,8 @@ import shutil
 import tempfile
 import unittest
 
-from simulated_board import power_on
-
 from sixflip.record import correction_record
+from tests.worlds.simulated_board import power_on
 
 STILL = {"order": [], "first_rest_s": 60.0, "tilt_deg": 8.0, "tilt_dir_deg": 20.0}
 

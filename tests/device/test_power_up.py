@@ -6,12 +6,17 @@ import shutil
 import tempfile
 import unittest
 
-from simulated_board import SHORT_WORLD, STOP_WHEN_READY, SimulatedBoard, TooLong, power_on
-
 from sixflip.capture.reader import read as read_blocks
 from sixflip.record import correction_record
 from sixflip_device import power_up
 from sixflip_sim import worlds
+from tests.worlds.simulated_board import (
+    SHORT_WORLD,
+    STOP_WHEN_READY,
+    SimulatedBoard,
+    TooLong,
+    power_on,
+)
 
 STILL = {"order": [], "first_rest_s": 30.0, "tilt_deg": 2.0}
 

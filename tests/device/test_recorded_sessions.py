@@ -4,13 +4,12 @@ import os
 import tempfile
 import unittest
 
-from simulated_board import STOP_WHEN_READY, SimulatedBoard, power_on
-
 from sixflip.capture.reader import read as read_blocks
 from sixflip_device import flash_files
 from sixflip_device.capture import store
 from sixflip_host.board.stream_reader import decode_piece
 from sixflip_sim import worlds
+from tests.worlds.simulated_board import STOP_WHEN_READY, SimulatedBoard, power_on
 
 WORLD = {"first_rest_s": 6.0, "dwell_s": 4.0, "move_s": 1.5, "tilt_deg": 1.0,
          "order": ["Z+a", "Z+b", "X+a", "X+b"]}

@@ -9,8 +9,6 @@ import shutil
 import tempfile
 import unittest
 
-from simulated_board import SimulatedBoard, power_on
-
 from sixflip.record import correction_record
 from sixflip_device import settings
 from sixflip_device.events import Events
@@ -18,6 +16,7 @@ from sixflip_device.find_sensor import find
 from sixflip_device.record import at_rest
 from sixflip_device.sensor import Sensor
 from sixflip_sim import rotation, worlds
+from tests.worlds.simulated_board import SimulatedBoard, power_on
 
 G = 9.80665
 LIMIT_DPS = 0.05

@@ -4,11 +4,10 @@ through a reset of the chip, a bus that fails and a supply that is cut while it 
 import tempfile
 import unittest
 
-from simulated_board import SHORT_WORLD, power_on
-
 from sixflip.chips import catalogue
 from sixflip.record import correction_record
 from sixflip_sim import worlds
+from tests.worlds.simulated_board import SHORT_WORLD, power_on
 
 CHIPS = [name for name in catalogue.SENSORS if name not in worlds.SEEN]
 # A few of everything, at random times: read again, freed, identified, set up anew.

@@ -5,13 +5,12 @@ import tempfile
 import unittest
 from array import array
 
-from simulated_board import QUICK, SHORT_WORLD, STOP_WHEN_READY, SimulatedBoard
-
 from sixflip.chips import catalogue, probe
 from sixflip_device import power_up, settings
 from sixflip_device.boards.spi_bus import SPIBus, SpidevPort, values_of
 from sixflip_sim import worlds
 from sixflip_sim.spi import SimulatedSPI
+from tests.worlds.simulated_board import QUICK, SHORT_WORLD, STOP_WHEN_READY, SimulatedBoard
 
 
 def world(sensor, **more):

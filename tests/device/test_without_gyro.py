@@ -4,7 +4,7 @@ import shutil
 import tempfile
 import unittest
 
-from simulated_board import power_on
+from tests.worlds.simulated_board import power_on
 
 SLOWLY = {"sensor": "adxl345", "tilt_deg": 0.0, "dwell_s": 8.0, "move_s": 4.0}
 

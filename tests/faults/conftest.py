@@ -1,7 +1,8 @@
 """Where the tests of faults find what the other tests have: a simulated board, a MicroPython."""
 
 import pytest
-from micropython_tier import micropython
+
+from tests.worlds.micropython_tier import micropython
 
 __all__ = ["micropython"]
 

@@ -1,7 +1,7 @@
 """Every fault at every step of the protocol, once: where the steps are is read off a run
 without faults."""
 
-import storm
+from tests.faults import storm
 
 # One of each, of a size a working bus has now and then.
 FAULTS = (

@@ -5,11 +5,10 @@ import os
 import tempfile
 import time
 
-from hostile_answers import Attack
-from hostile_port import HostileBoard, run
-
 from sixflip_host import cli
 from sixflip_host.history import store
+from tests.faults.hostile_answers import Attack
+from tests.faults.hostile_port import HostileBoard, run
 
 # (words, seconds of the board's clock in which the verb has to end). A calibration may take as
 # long as the board says that it waits for a person; a copy answers file by file.

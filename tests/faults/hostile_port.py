@@ -16,9 +16,9 @@ import re
 import time
 
 import serial
-from real_dialogue import ASKED, dialogue
 
 from sixflip_host.board.on_board_scripts import STAGED
+from tests.faults.real_dialogue import ASKED, dialogue
 
 BYTE_S = 1e-4           # ten bits at 100 kBd
 ENOUGH = 4096           # bytes that a port says are waiting

@@ -4,11 +4,10 @@ import functools
 import tempfile
 from pathlib import Path
 
-import storm
-from reacting_hand import ReactingHand
-from simulated_board import SimulatedBoard, power_on
-
 from sixflip_sim import worlds
+from tests.faults import storm
+from tests.faults.reacting_hand import ReactingHand
+from tests.worlds.simulated_board import SimulatedBoard, power_on
 
 # What a host asks for, and the event that answers.
 ASKED = {"info": ({"cmd": "info"}, "info"), "check": ({"cmd": "check"}, "check"),

@@ -7,8 +7,6 @@ import json
 import random
 import shutil
 
-import storm
-
 from sixflip.capture import reader as capture_reader
 from sixflip.capture.writer import BlockWriter
 from sixflip.record import correction_record
@@ -20,6 +18,7 @@ from sixflip_host.errors import SixflipError
 from sixflip_host.verbs import calibrate
 from sixflip_host.virtual.virtual_board import VirtualBoard
 from sixflip_sim import worlds
+from tests.faults import storm
 
 STILL = {"sensor": "mpu6050", "seed": 3, "order": []}
 # The second version has a folder where the first one had a module.

@@ -7,24 +7,18 @@ poses of two seconds are settings that a user may choose as well.
 
 import math
 import random
-import sys
 import tempfile
 from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "shared"), str(ROOT / "host"), str(ROOT / "device"),
-                str(ROOT / "tests" / "worlds")]
-
-from reacting_hand import ReactingHand  # noqa: E402
-from simulated_board import SimulatedBoard, TooLong  # noqa: E402
-
-from sixflip.chips import catalogue  # noqa: E402
-from sixflip.record import correction_record  # noqa: E402
-from sixflip_device import power_up, settings  # noqa: E402
-from sixflip_sim import worlds  # noqa: E402
-from sixflip_sim.sensor_model import STANDARD_G  # noqa: E402
+from sixflip.chips import catalogue
+from sixflip.record import correction_record
+from sixflip_device import power_up, settings
+from sixflip_sim import worlds
+from sixflip_sim.sensor_model import STANDARD_G
+from tests.faults.reacting_hand import ReactingHand
+from tests.worlds.simulated_board import SimulatedBoard, TooLong
 
 SETTINGS = {"rate_hz": 25, "pose_samples": 50, "rest_s": 6, "grace_ms": 0, "timeout_s": 40,
             "stream_hz": 10}

@@ -1,12 +1,12 @@
 """A bus that fails: at every step of the protocol once, and at random. What comes of it is the
-right correction or a refusal with its reason. tests/bench/bus_storm.py runs ten thousand."""
+right correction or a refusal with its reason. The bench bus_storm runs ten thousand."""
 
 import collections
 import gc
 
-import fault_matrix
 import pytest
-import storm
+
+from tests.faults import fault_matrix, storm
 
 NAMES = ("mpu6050", "gy85", "mpu6500")
 

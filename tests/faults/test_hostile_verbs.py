@@ -1,15 +1,15 @@
-"""Every verb at boards that answer with malice: tests/bench/hostile_board.py runs thousands."""
+"""Every verb at boards that answer with malice: the bench hostile_board runs thousands."""
 
 import ast
 import json
 from pathlib import Path
 
-import hostile_board
 import pytest
-from hostile_port import Dripping, HostileBoard, Instead, run
-from real_dialogue import dialogue
 
 from sixflip_host.board import board_schema
+from tests.faults import hostile_board
+from tests.faults.hostile_port import Dripping, HostileBoard, Instead, run
+from tests.faults.real_dialogue import dialogue
 
 DEVICE = Path(__file__).resolve().parents[2] / "device" / "sixflip_device"
 SEEDS = {"provision": 4, "provision --json": 2, "pull": 12}

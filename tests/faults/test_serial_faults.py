@@ -1,18 +1,18 @@
-"""A cable that fails while a board is provisioned, calibrated or pulled. tests/bench/
-serial_faults.py cuts a provisioning everywhere and has more seeds."""
+"""A cable that fails while a board is provisioned, calibrated or pulled. The bench
+serial_faults cuts a provisioning everywhere and has more seeds."""
 
 import random
 import time
 
 import pytest
-import serial_faults as faults
 from mpremote.transport_serial import SerialTransport
-from serial_faults import BadCable, verb
 
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.board.buffered_serial import BufferedSerial, Endless
 from sixflip_host.errors import NoBoard
 from sixflip_host.virtual.virtual_board import VirtualBoard
+from tests.faults import serial_faults as faults
+from tests.faults.serial_faults import BadCable, verb
 
 SESSION = {"sensor": "mpu6050", "seed": 3, "tilt_deg": 2.0}
 

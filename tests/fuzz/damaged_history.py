@@ -1,6 +1,6 @@
 """Damaged histories by seed, and what the verb `history` makes of each:
 
-    python tests/fuzz/damaged_history.py [--runs 1000] [--first 0]
+    python -m tests.fuzz.damaged_history [--runs 1000] [--first 0]
 
 Values of other types and sizes put into the table by SQL, or bytes of the file changed, cut out
 or cut off. It may end with 0 or 4, in one line. Prints how many ended how; exits with 1 when one
@@ -18,9 +18,6 @@ import sqlite3
 import sys
 import tempfile
 from pathlib import Path
-
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "shared"), str(ROOT / "host")]
 
 from sixflip_host import cli
 from sixflip_host.history import store

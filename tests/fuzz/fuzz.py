@@ -1,6 +1,6 @@
 """Fuzzing of one target, guided by coverage where atheris can be had:
 
-    python tests/fuzz/fuzz.py capture_text [-max_total_time=600] [more of libFuzzer's options]
+    python -m tests.fuzz.fuzz capture_text [-max_total_time=600] [more of libFuzzer's options]
 
 What libFuzzer finds to be new is kept beside the corpus only with -keep: the corpus in the tree
 is small and chosen. A crash leaves its input as crash-* in the current folder: put it into
@@ -57,11 +57,11 @@ def main():
     try:
         import atheris
     except ImportError:
-        import targets
+        from tests.fuzz import targets
         blindly(targets.TARGETS[name], [p.read_bytes() for p in sorted(folder.iterdir())], options)
         return
     with atheris.instrument_imports(include=OURS):
-        import targets
+        from tests.fuzz import targets
     # A folder in front is where libFuzzer writes: one of this process, thrown away.
     found = Path(targets.FOLDER) / "found"
     found.mkdir()

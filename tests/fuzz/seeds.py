@@ -1,23 +1,14 @@
-"""Writes the valid part of the corpus: `python tests/fuzz/seeds.py`. Small, and the same always.
+"""Writes the valid part of the corpus: `python -m tests.fuzz.seeds`. Small, and the same always.
 
 What fuzzing found lies beside it under names that say what it was.
 """
 
 import io
 import struct
-import sys
 from pathlib import Path
 
-import targets  # noqa: F401  sets sys.path
-
-TESTS = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(TESTS / name) for name in ("host/capture", "worlds", "shared")]
-
-import hostile_sessions
 import numpy as np
-import test_import_presets
 from scipy.io import savemat
-from test_term_correction import fields_of
 
 from sixflip.capture import blocks as cb
 from sixflip.capture import pieces
@@ -25,6 +16,9 @@ from sixflip.record import correction_record
 from sixflip.record.term_correction import TERMS
 from sixflip_host import record_terms
 from sixflip_host.capture import capture_binary, capture_file
+from tests.host.capture import test_import_presets
+from tests.shared.test_term_correction import fields_of
+from tests.worlds import hostile_sessions
 
 CORPUS = Path(__file__).resolve().parent / "corpus"
 

@@ -12,12 +12,7 @@ import io
 import json
 import os
 import struct
-import sys
 import tempfile
-from pathlib import Path
-
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "shared"), str(ROOT / "host"), str(ROOT / "device")]
 
 from sixflip.capture import blocks as capture_blocks
 from sixflip.capture import reader as capture_reader

@@ -1,10 +1,10 @@
 """A damaged history is exit code 4 and one line: tests/fuzz/damaged_history.py runs thousands."""
 
 
-import damaged_history
 import pytest
 
 from sixflip_host.history import store
+from tests.fuzz import damaged_history
 
 
 @pytest.mark.parametrize("part", range(3))

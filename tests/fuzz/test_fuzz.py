@@ -6,10 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from tests.fuzz import targets
+
 HERE = Path(__file__).resolve().parent
-
-import targets
-
 FILES = sorted(path for path in (HERE / "corpus").rglob("*") if path.is_file())
 # Runs that take a second or two: a target that goes through a whole verb is slower.
 RUNS = {"capture_text": 300, "capture_of_a_board": 25, "recorded_pieces": 100, "record": 40,
@@ -30,9 +29,9 @@ def test_every_target_has_a_corpus():
 @pytest.mark.parametrize("name", targets.TARGETS)
 def test_some_runs(name, tmp_path):
     done = subprocess.run(
-        [sys.executable, str(HERE / "fuzz.py"), name, "-runs=%d" % RUNS.get(name, A_FEW),
+        [sys.executable, "-m", "tests.fuzz.fuzz", name, "-runs=%d" % RUNS.get(name, A_FEW),
          "-seed=1", "-max_len=6000", "-rss_limit_mb=1500", "-timeout=60",
          "-artifact_prefix=%s/" % tmp_path],
-        capture_output=True, text=True, errors="replace", timeout=300)
+        cwd=HERE.parents[1], capture_output=True, text=True, errors="replace", timeout=300)
     kept = [path.read_bytes()[:2000] for path in tmp_path.iterdir()]
     assert done.returncode == 0, "%s\n%s" % (kept, done.stderr[-3000:])

@@ -7,7 +7,6 @@ import sys
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-from board_session import leave_files, unlabelled
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
@@ -18,6 +17,7 @@ from rosbags.typesys import Stores, get_typestore
 from sixflip.record.correction import Correction
 from sixflip_host.capture import capture_file
 from sixflip_host.cli import main
+from tests.worlds.board_session import leave_files, unlabelled
 
 G = 9.80665
 

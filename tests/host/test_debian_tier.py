@@ -2,8 +2,9 @@
 
 import os
 
-import debian_tier
 import pytest
+
+from tests import debian_tier
 
 
 def test_nothing_is_installed_when_nothing_is_missing(monkeypatch):

@@ -8,15 +8,15 @@ import sys
 from pathlib import Path
 
 import pytest
-from dds_loopback import LOOPBACK
-from micropython_tier import SESSION
-from written_records import of_a_gy85
 
 from sixflip.record import correction_record
 from sixflip_host import cli
 from sixflip_host.board import firmware_update
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.virtual.virtual_board import VirtualBoard
+from tests.worlds.dds_loopback import LOOPBACK
+from tests.worlds.micropython_tier import SESSION
+from tests.worlds.written_records import of_a_gy85
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = sorted((ROOT / "docs").glob("*.md"))
@@ -103,6 +103,14 @@ def test_the_make_targets_mentioned_exist():
     for target in sorted(targets):
         done = subprocess.run(["make", "-n", target], cwd=ROOT, capture_output=True, text=True)
         assert done.returncode == 0, (target, done.stderr)
+
+
+def test_the_studies_mentioned_exist():
+    text = "\n".join(p.read_text() for p in [ROOT / "README.md", *PAGES])
+    modules = set(re.findall(r"python -m (tests\.[\w.]+\w)", text))
+    assert len(modules) > 5
+    for module in sorted(modules):
+        assert (ROOT / module.replace(".", "/")).with_suffix(".py").is_file(), module
 
 
 def test_the_readme_leads_to_a_calibrated_board(micropython, tmp_path):

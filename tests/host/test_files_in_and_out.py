@@ -5,7 +5,6 @@ import json
 import os
 
 import pytest
-from board_session import leave_files, unlabelled
 
 from sixflip_host import cli, file_arguments
 from sixflip_host.board import pulled_files
@@ -13,6 +12,7 @@ from sixflip_host.board.local_link import LocalLink
 from sixflip_host.capture import capture_file
 from sixflip_host.errors import UsageError
 from sixflip_host.verbs.export import FORMATS
+from tests.worlds.board_session import leave_files, unlabelled
 
 PICTURE = b"\x89PNG\r\n\x1a\nof a cat"
 NOTES = b"# what I did on Sunday\n"

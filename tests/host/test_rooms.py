@@ -3,7 +3,9 @@
 import ast
 from pathlib import Path
 
-HOST = Path(__file__).resolve().parents[2] / "host" / "sixflip_host"
+ROOT = Path(__file__).resolve().parents[2]
+HOST = ROOT / "host" / "sixflip_host"
+STUDIES = ROOT / "tests" / "studies"
 
 
 def imports():
@@ -63,3 +65,10 @@ def test_a_circle_is_seen():
         assert "'a', 'b', 'c'" in str(error)
     else:
         raise AssertionError("no circle was seen")
+
+
+def test_a_study_is_found_by_its_package_and_changes_no_path():
+    sources = list(STUDIES.rglob("*.py"))
+    assert len(sources) > 50
+    assert not [path.name for path in sources if "sys.path" in path.read_text()]
+    assert not list(STUDIES.rglob("test_*.py"))

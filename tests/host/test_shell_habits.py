@@ -16,12 +16,12 @@ import termios
 
 import numpy as np
 import pytest
-from board_session import leave_files, unlabelled
 
 from sixflip_host import atomic_write, cli, completion
 from sixflip_host.capture import capture_file
 from sixflip_host.cli import VERBS, main
 from sixflip_host.history import remember, store
+from tests.worlds.board_session import leave_files, unlabelled
 
 COMMAND = [sys.executable, "-m", "sixflip_host"]
 OLD = b"# sixflip-capture 1\n"       # of the same kind, or it would not be replaced

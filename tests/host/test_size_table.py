@@ -4,11 +4,12 @@ import re
 from pathlib import Path
 
 import pytest
-from bench import size
+
+from tests.studies.bench import size
 
 ROOT = Path(__file__).resolve().parents[2]
 ROW = re.compile(r"\| `([^`]+)` \| (\d+) \| (\d+) \| (\d+|-) \|")
-WRITE = "python tests/bench/size.py --write"
+WRITE = "python -m tests.studies.bench.size --write"
 
 
 @pytest.fixture(scope="module")

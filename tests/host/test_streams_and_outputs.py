@@ -7,11 +7,11 @@ import sys
 import time
 from pathlib import Path
 
-import hostile_sessions
 import pytest
 
 from sixflip_host.capture import capture_file
 from sixflip_host.cli import main
+from tests.worlds import hostile_sessions
 
 TOOL = [sys.executable, "-m", "sixflip_host"]
 

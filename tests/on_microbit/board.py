@@ -9,7 +9,8 @@ import re
 import time
 
 import serial
-from on_qemu.board import QemuBoard
+
+from tests.on_qemu.board import QemuBoard
 
 FIRMWARE = "/usr/share/firmware-microbit-micropython/firmware.hex"
 AT_ONCE = 16  # bytes on their way

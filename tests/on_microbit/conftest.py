@@ -4,7 +4,8 @@ import os
 import shutil
 
 import pytest
-from debian_tier import Unavailable, install, without
+
+from tests.debian_tier import Unavailable, install, without
 
 from .board import FIRMWARE, Microbit
 

@@ -7,10 +7,10 @@ import ast
 
 import numpy as np
 import pytest
-from on_qemu.simulated_sums import session_sums, vector_error_mg
 
 from sixflip.poses.placement import Placement
 from sixflip_host.calibrate import reference
+from tests.on_qemu.simulated_sums import session_sums, vector_error_mg
 
 from .pieces import SHARED, of_module, of_modules
 

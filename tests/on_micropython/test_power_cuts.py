@@ -1,5 +1,5 @@
 """Power cuts while a record and a capture are written, on real littlefs and FAT. Records are cut
-everywhere, captures at a part of their operations: tests/bench/power_cuts.py does all."""
+everywhere, captures at a part of their operations: tests/studies/bench/power_cuts.py does all."""
 
 import json
 

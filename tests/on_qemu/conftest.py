@@ -1,7 +1,8 @@
 """One emulated board for all tests of this folder, or one line why not."""
 
 import pytest
-from debian_tier import Unavailable, without
+
+from tests.debian_tier import Unavailable, without
 
 from .board import QemuBoard, cortex_m3
 from .firmware import build

@@ -13,15 +13,14 @@ import sys
 import tempfile
 from pathlib import Path
 
-from debian_tier import Unavailable, alone, install
-from on_micropython import session_tape
-
 from sixflip_host.atomic_write import write_bytes
 from sixflip_host.board.board_files import board_files
 from sixflip_host.board.compiled_firmware import FORMAT, for_board
 from sixflip_host.errors import SixflipError
 from sixflip_host.virtual.debian_packages import KEYRING, apt_get, cache_dir, debian_mirror
 from sixflip_host.virtual.micropython_fetch import SUITE
+from tests.debian_tier import Unavailable, alone, install
+from tests.on_micropython import session_tape
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("qemu-system-arm", "gcc-arm-none-eabi", "libnewlib-arm-none-eabi")

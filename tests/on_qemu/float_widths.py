@@ -1,18 +1,13 @@
 """What differs between single and double precision, session by session, from the same integers."""
 
 import ast
-import sys
-from pathlib import Path
 
 import numpy as np
 
-HERE = Path(__file__).resolve().parent
-sys.path += [str(HERE / "on_board"), str(HERE.parent / "shared")]
+from tests.on_qemu.on_board.solved_quantities import quantities
+from tests.shared.flipped_box import gravities, gyro_session, placements
 
-from flipped_box import gravities, gyro_session, placements  # noqa: E402
-from solved_quantities import quantities  # noqa: E402
-
-from .simulated_sums import vector_error_mg  # noqa: E402
+from .simulated_sums import vector_error_mg
 
 LIMIT_MG = 0.01
 SHOW = "from solved_quantities import show\nshow(*%r)"

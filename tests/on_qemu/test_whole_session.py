@@ -8,8 +8,6 @@ import os
 
 import numpy as np
 import pytest
-from on_micropython.test_term_memory import ALL, with_terms
-from taped_board import TapedBoard
 
 from sixflip.chips import catalogue
 from sixflip.record import correction_record
@@ -17,6 +15,8 @@ from sixflip_device import power_up, settings
 from sixflip_host import record_terms
 from sixflip_sim.tape import open_tape
 from sixflip_sim.worlds import SEEN
+from tests.on_micropython.test_term_memory import ALL, with_terms
+from tests.on_qemu.on_board.taped_board import TapedBoard
 
 from .firmware import ALL_CHIPS, POSE_SAMPLES, tape_bursts
 from .simulated_sums import vector_error_mg

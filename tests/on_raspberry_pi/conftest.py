@@ -1,7 +1,8 @@
 """umockdev, or one line why not."""
 
 import pytest
-from debian_tier import Unavailable, without
+
+from tests.debian_tier import Unavailable, without
 
 from .device_node import provide
 

@@ -7,7 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from debian_tier import Unavailable, install
+from tests.debian_tier import Unavailable, install
 
 HERE = Path(__file__).resolve().parent
 PACKAGES = ("umockdev", "gir1.2-umockdev-1.0", "python3-gi")

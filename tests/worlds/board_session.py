@@ -3,7 +3,6 @@
 import json
 
 import numpy as np
-from hand_session import Sensor, session, six_faces
 
 from sixflip.accelerometer import solver as accelerometer
 from sixflip.accelerometer import verdict
@@ -12,6 +11,7 @@ from sixflip.capture.writer import BlockWriter
 from sixflip.gyro import solver as gyroscope
 from sixflip.poses.session import COMPLETE, POSE, REFUSED, Session
 from sixflip.record import correction_record
+from tests.worlds.hand_session import Sensor, session, six_faces
 
 SESSION = 0x5EED
 

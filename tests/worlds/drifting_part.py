@@ -4,12 +4,12 @@ the world it is used in afterwards. For the test of the whole way and for the be
 import csv
 
 import numpy as np
-from board_session import make_record, run_board
 
 from sixflip.record import correction_record
 from sixflip_host.capture import capture_file
 from sixflip_host.planning import plan_file, protocols
 from sixflip_host.simulation import scenario, simulated_session
+from tests.worlds.board_session import make_record, run_board
 
 TERMS = [{"effect": "thermal_bias", "sensor": "accel", "z": -1.8},
          {"effect": "thermal_bias", "sensor": "gyro", "y": 0.15},

@@ -1,9 +1,9 @@
 """Recordings of a vehicle that stands still, or should: the sensor of board_session's captures."""
 
 import numpy as np
-from hand_session import Sensor
 
 from sixflip_host.capture.capture_file import Capture
+from tests.worlds.hand_session import Sensor
 
 
 def rest(meta, force=(0.0, 0.0, 1.0), n=600, rate_dps=(0.0, 0.0, 0.0), shake_mg=0.0, sway_mg=0.0,

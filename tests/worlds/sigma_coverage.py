@@ -1,9 +1,9 @@
 """How often the truth lies within the standard errors that a solve gives."""
 
-import hostile_sessions as hostile
 import numpy as np
 
 from sixflip_host.calibrate import solution
+from tests.worlds import hostile_sessions as hostile
 
 
 def coverage(sensor, seeds, scatter_deg):

@@ -1,10 +1,10 @@
 """Every fault of hostile_sessions through `solve --flips 180`, as a new board would solve it,
 and what the verdict made of it."""
 
-import hostile_sessions as hostile
 import numpy as np
 
 from sixflip_host.calibrate import solution
+from tests.worlds import hostile_sessions as hostile
 
 WRONG_MG = 3.0      # a correction this far off, RMS over all directions, must not be called good
 MOST_TILT_DEG = 5.0

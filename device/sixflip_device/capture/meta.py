@@ -53,7 +53,8 @@ def columns(imu):
 
 def expected_bytes(samples, mask):
     """What so many samples take on the flash, as steps and with a quarter to spare: 9.5 bytes
-    were measured of seven columns that take 16 when they are whole (tests/bench/capture_size.py).
+    were measured of seven columns that take 16 when they are whole (the bench
+    capture_size).
     """
     return samples * (2 + 2 * len(capture_blocks.places(mask))) * 3 // 4
 

@@ -25,7 +25,7 @@ from .stream_reader import decode_piece
 SYNC_S = 1.0            # so much may be lost where this computer loses its power
 WAITING = 2000          # pieces kept while the header has not come: ten minutes
 ASK_EVERY = 20          # pieces from one question for the header to the next
-# Bytes on the wire, as tests/bench/capture_size.py prints them.
+# Bytes on the wire, as tests/studies/bench/capture_size.py prints them.
 UART_BYTES = 11520      # a second at 115200 baud, of a board without USB of its own
 SHAKEN_BYTES = 33       # a sample of seven columns that jump by more than a byte, in base64
 EVENTS_BYTES = 1000     # a second that a session's events take: three states of 300 bytes

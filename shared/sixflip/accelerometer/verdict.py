@@ -16,7 +16,7 @@ SCALE_OFF = 0.2
 # Opposite faces that are parallel, but not square to the others, show nowhere else.
 OFF_SQUARE_DEG = (3.5, 6.0)
 # Of a corrected vector, RMS over all directions. Sessions on tables tilted by up to 5 degrees,
-# placed to 0.05 degrees and flipped to 0.4, stay below it in 99 of 100: tests/bench/mistakes.py.
+# placed to 0.05 degrees and flipped to 0.4, stay below it in 99 of 100: bench mistakes.
 UNCERTAIN_MG = 2.5
 
 

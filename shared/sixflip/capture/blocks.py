@@ -13,7 +13,7 @@ block   type u8, 0 u8, length u16, payload, CRC32 of all of it
   END        samples u32, flags u8 (COMPLETE, SUMS_ONLY)
 A cut-off file is readable up to its last whole block. Version 1 had neither STEPS nor 7.
 With STEPS a session takes 9 to 10 bytes a sample of seven columns instead of 16.6,
-and no more time in the sampling loop: tests/bench/capture_size.py.
+and no more time in the sampling loop: tests/studies/bench/capture_size.py.
 
 The samples in a block of a capture, one after the other: whole counts, or steps of them.
 """

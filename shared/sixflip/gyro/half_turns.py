@@ -16,7 +16,7 @@ from sixflip.poses.faces import face_of_code
 from sixflip.poses.placement import COARSE, FINE, has_gap
 
 # A move's gravity is met no better than this: windows of a quarter of a second, a hand that
-# wobbles by 10 degrees. Measured over healthy sessions by tests/bench/mistakes.py.
+# wobbles by 10 degrees. Measured over healthy sessions by tests/studies/bench/mistakes.py.
 MOVE = math.radians(0.3)
 
 

@@ -7,12 +7,12 @@ import threading
 import tty
 
 import pytest
-from micropython_tier import STILL
 
 from sixflip_host.board import board_link
 from sixflip_host.board.board_link import MpremoteLink, NoSpace, safe_name
 from sixflip_host.errors import NoBoard, SixflipError
 from sixflip_host.virtual.virtual_board import VirtualBoard
+from tests.worlds.micropython_tier import STILL
 
 
 @pytest.fixture

@@ -4,7 +4,6 @@ import io
 import json
 
 import pytest
-from micropython_tier import SESSION
 
 from sixflip_host import cli
 from sixflip_host.board import console, pulled_files
@@ -13,6 +12,7 @@ from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.capture import capture_file
 from sixflip_host.errors import NoBoard
 from sixflip_host.virtual.virtual_board import VirtualBoard
+from tests.worlds.micropython_tier import SESSION
 
 
 @pytest.fixture

@@ -5,16 +5,16 @@ import re
 from pathlib import Path
 
 import pytest
-from board_session import leave_files, unlabelled
-from hand_session import Sensor
-from micropython_tier import SESSION, STILL
-from resting import rest
 
 from sixflip_host import cli
 from sixflip_host.board import check_words
 from sixflip_host.capture import capture_file
 from sixflip_host.verbs import check
 from sixflip_host.virtual.virtual_board import VirtualBoard
+from tests.worlds.board_session import leave_files, unlabelled
+from tests.worlds.hand_session import Sensor
+from tests.worlds.micropython_tier import SESSION, STILL
+from tests.worlds.resting import rest
 
 DEVICE = Path(__file__).resolve().parents[3] / "device" / "sixflip_device"
 

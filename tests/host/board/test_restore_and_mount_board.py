@@ -3,7 +3,6 @@
 import json
 
 import pytest
-from board_session import leave_files, unlabelled
 
 from sixflip.record import correction_record
 from sixflip_host import cli
@@ -12,6 +11,7 @@ from sixflip_host.board.board_files import board_files
 from sixflip_host.board.local_link import LocalLink
 from sixflip_host.mounting import mount_board
 from sixflip_host.virtual.virtual_board import VirtualBoard
+from tests.worlds.board_session import leave_files, unlabelled
 
 WORLD = {"sensor": "mpu6050", "seed": 3, "order": [], "ideal": True, "tilt_deg": 10.0,
          "accel_noise_mg": 3.0}

@@ -3,7 +3,6 @@
 import json
 from pathlib import Path
 
-import drifting_part
 import numpy as np
 import pytest
 
@@ -13,6 +12,7 @@ from sixflip_host.board.board_files import board_files
 from sixflip_host.board.local_link import LocalLink
 from sixflip_host.capture import capture_file
 from sixflip_host.diagnosis import diagnosis
+from tests.worlds import drifting_part
 
 NAMES = ["accel_thermal_bias", "gyro_thermal_bias", "g_sensitivity"]
 

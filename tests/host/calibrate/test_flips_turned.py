@@ -3,15 +3,15 @@
 import functools
 import json
 
-import hand_session
 import numpy as np
 import pytest
-from hand_session import G, Sensor, session, six_faces
 
 from sixflip.poses.faces import FACES, face_of_code
 from sixflip_host.calibrate import flips_turned, solution
 from sixflip_host.capture import capture_file
 from sixflip_host.cli import main
+from tests.worlds import hand_session
+from tests.worlds.hand_session import G, Sensor, session, six_faces
 
 SESSIONS = 20
 

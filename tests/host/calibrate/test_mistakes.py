@@ -1,7 +1,8 @@
-"""Nothing wrong is called good, whatever goes wrong; tests/bench/mistakes.py runs more."""
+"""Nothing wrong is called good, whatever goes wrong; tests/studies/bench/mistakes.py runs more."""
 
-import mistaken_sessions as mistaken
 import pytest
+
+from tests.worlds import mistaken_sessions as mistaken
 
 SEEDS = {"nothing": range(1000, 1040), "all flips alike by a wrong angle": range(1000, 1030)}
 

@@ -1,15 +1,14 @@
 """Rests and moves together: what comes back from a known sensor, and from the Xsens recording."""
 
-import hand_session
 import numpy as np
 import pytest
-import xsens_recording
-from hand_session import RAD
 
 from sixflip.accelerometer import solver as accelerometer
 from sixflip_host.calibrate import gyro_rests, joint_refinement, refinement, refinement_answer
 from sixflip_host.calibrate.rests_and_moves import RestsAndMoves
 from sixflip_host.capture import rests
+from tests.worlds import hand_session, xsens_recording
+from tests.worlds.hand_session import RAD
 
 PULL = np.array([[0.1, 0.02, 0.0], [-0.15, 0.05, 0.1], [0.0, -0.1, 0.05]])  # deg/s a g
 

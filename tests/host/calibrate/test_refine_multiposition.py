@@ -1,13 +1,12 @@
 """|a| = g in free poses: imu_tk's problem to its optimum, and what it cannot tell."""
 
-import hand_session
 import numpy as np
 import pytest
-import xsens_recording
 
 from sixflip_host.calibrate import multiposition
 from sixflip_host.capture import rests
 from sixflip_host.planning import observability
+from tests.worlds import hand_session, xsens_recording
 
 
 @pytest.fixture(scope="module")

@@ -5,10 +5,8 @@ import contextlib
 import io
 import json
 
-import hand_session
 import numpy as np
 import pytest
-from hand_session import RAD, G
 
 from sixflip.record import correction_record
 from sixflip_host import record_terms
@@ -16,6 +14,8 @@ from sixflip_host.calibrate import refinement, refinement_record, refinement_rep
 from sixflip_host.capture import capture_file
 from sixflip_host.errors import SixflipError
 from sixflip_host.verbs import refine
+from tests.worlds import hand_session
+from tests.worlds.hand_session import RAD, G
 
 
 @pytest.fixture(scope="module")

@@ -4,14 +4,14 @@ import json
 
 import numpy as np
 import pytest
-from board_session import unlabelled
-from hand_session import G, Sensor, session, six_faces
 
 from sixflip.accelerometer import solver as accelerometer
 from sixflip.poses.faces import pose_code
 from sixflip_host.calibrate import reference
 from sixflip_host.capture import capture_file
 from sixflip_host.cli import main
+from tests.worlds.board_session import unlabelled
+from tests.worlds.hand_session import G, Sensor, session, six_faces
 
 
 def labelled(seed=1, tilt_deg=2.0, gyro=False, **scene):

@@ -4,10 +4,10 @@ import json
 
 import numpy as np
 import pytest
-from hand_session import Sensor, session, six_faces
 
 from sixflip_host.capture import capture_file
 from sixflip_host.cli import main
+from tests.worlds.hand_session import Sensor, session, six_faces
 
 
 def labelled(seed=4, gyro=True, wobble_deg=0.5):

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-from written_records import TERMS, with_terms
 
 from sixflip.record.correction import correction_of
 from sixflip.record.mounting import compensation
 from sixflip_host import record_terms
 from sixflip_host.capture.capture_file import Capture
 from sixflip_host.export.corrected_rows import corrected_rows
+from tests.worlds.written_records import TERMS, with_terms
 
 T0, LOW, HIGH = 28.0, 15.0, 40.0
 

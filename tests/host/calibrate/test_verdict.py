@@ -1,9 +1,9 @@
-"""The verdict against sessions in which something goes wrong; tests/bench/verdict.py runs more."""
+"""The verdict against sessions in which something goes wrong; the bench verdict runs more."""
 
-import hostile_sessions as hostile
 import pytest
-import sigma_coverage
-import verdict_table
+
+from tests.worlds import hostile_sessions as hostile
+from tests.worlds import sigma_coverage, verdict_table
 
 RUNS = {"good": 60, "refused": 12, "never good": 12, "never wrong": 24, "by gyro": 24}
 # every pair of poses, every wrong label: one run each

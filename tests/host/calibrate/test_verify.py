@@ -5,10 +5,10 @@ import struct
 from binascii import crc32
 
 import pytest
-from board_session import leave_files, unlabelled
 
 from sixflip.record import correction_record
 from sixflip_host.cli import main
+from tests.worlds.board_session import leave_files, unlabelled
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,6 @@
 import copy
 
 import pytest
-from board_session import make_record, run_board, unlabelled
 
 from sixflip.record import correction_record
 from sixflip.record.correction_record import FIELDS
@@ -12,6 +11,7 @@ from sixflip_host.calibrate import unverifiable
 from sixflip_host.calibrate.verification import verify
 from sixflip_host.capture import capture_binary
 from sixflip_host.cli import main
+from tests.worlds.board_session import make_record, run_board, unlabelled
 
 HEADER = {"who_am_i": [0x68, 0], "accel_range_g": 2, "gyro_range_dps": 500, "float_bits": 64}
 HEAD = {"sequence": 9, "session": 1, "time": 5, "float_bits": 32, "chip": "other",

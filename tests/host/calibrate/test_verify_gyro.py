@@ -5,12 +5,12 @@ import struct
 
 import numpy as np
 import pytest
-from board_session import leave_files, unlabelled
 
 from sixflip.record import correction_record
 from sixflip_host.calibrate import reference_gyro
 from sixflip_host.capture import capture_binary, capture_file
 from sixflip_host.cli import main
+from tests.worlds.board_session import leave_files, unlabelled
 
 SESSION = dict(seed=4, wobble_deg=0.5)
 
@@ -46,7 +46,7 @@ def test_honest_board(pulled, capsys):
 
 def test_the_reference_finds_the_sensor(pulled):
     """Not only the same as the board: right."""
-    from hand_session import Sensor
+    from tests.worlds.hand_session import Sensor
     capture = capture_binary.decode((pulled[0] / "capture.bin").read_bytes())
     host = reference_gyro.solve(capture, capture.board_placements, pulled[1].accel["P"])
     sensor = Sensor(SESSION["seed"])
@@ -112,9 +112,8 @@ def test_sums_only_does_not_vouch_for_the_gyro(tmp_path, capsys):
 
 def test_an_axis_kept_from_the_record_before(tmp_path, capsys):
     """No good flip about x: its values are those of the older record, and are looked up there."""
-    from board_session import make_record, run_board
-
     from sixflip.gyro import solver as gyroscope
+    from tests.worlds.board_session import make_record, run_board
     capture = unlabelled(**SESSION)
     data, placements, moves = run_board(capture)
     old = [[1.01, 0.002, 0.0], [0.0, 0.99, 0.001], [0.003, 0.0, 1.02], [0.01, 0.02, -0.01]]

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-from board_session import unlabelled
-from hand_session import Rotation, Sensor, face_attitude, session, six_faces
 
 from sixflip.poses.faces import pose_name
 from sixflip_host.capture.attitude import heading_change
 from sixflip_host.capture.find_poses import find_poses
 from sixflip_host.capture.rests import rest
+from tests.worlds.board_session import unlabelled
+from tests.worlds.hand_session import Rotation, Sensor, face_attitude, session, six_faces
 
 LEVEL = Rotation.identity()
 

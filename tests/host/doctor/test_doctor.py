@@ -6,7 +6,6 @@ import pty
 from types import SimpleNamespace
 
 import pytest
-from written_records import make_record
 
 from sixflip.chips import probe
 from sixflip.record import correction_record
@@ -22,6 +21,7 @@ from sixflip_host.verbs import doctor
 from sixflip_host.virtual.virtual_board import VirtualBoard
 from sixflip_sim import worlds
 from sixflip_sim.spi import SimulatedSPI
+from tests.worlds.written_records import make_record
 
 STILL = {"sensor": "mpu6050", "seed": 3, "order": []}
 

@@ -6,13 +6,13 @@ import subprocess
 
 import numpy as np
 import pytest
-from written_records import make_record
 
 from sixflip.record import correction_record
 from sixflip.record.correction import Correction, correction_of
 from sixflip_host import record_terms
 from sixflip_host.cli import main
 from sixflip_host.record_terms import TERMS
+from tests.worlds.written_records import make_record
 
 COMPILERS = {"c99": ["gcc", "-std=c99", "-x", "c"], "c++": ["g++", "-std=c++11", "-x", "c++"]}
 ALL = tuple(name for _, name in TERMS)

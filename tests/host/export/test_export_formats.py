@@ -7,11 +7,11 @@ import imufusion
 import numpy as np
 import pytest
 import yaml
-from written_records import TERMS, make_record, with_terms
 
 from sixflip.record import correction_record
 from sixflip.record.correction import Correction, correction_of
 from sixflip_host.cli import main
+from tests.worlds.written_records import TERMS, make_record, with_terms
 
 G = 9.80665
 LSB, DPS = 8192.0, 65.5

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from board_session import unlabelled
 
 from sixflip_host import cli
 from sixflip_host.board.board_events import events
@@ -10,6 +9,7 @@ from sixflip_host.capture import capture_binary, capture_file
 from sixflip_host.errors import BadFile, UsageError
 from sixflip_host.guide import replay_chips
 from sixflip_host.guide.replay_link import ReplayLink
+from tests.worlds.board_session import unlabelled
 
 SIMULATED = """seed = 6
 sensor = "%s"

@@ -12,8 +12,6 @@ import time
 
 import pyte
 import pytest
-from board_session import unlabelled
-from micropython_tier import SESSION
 
 from sixflip_host.board import firmware_update
 from sixflip_host.board.board_link import MpremoteLink
@@ -22,6 +20,8 @@ from sixflip_host.guide import keys
 from sixflip_host.guide.session_state import State, after
 from sixflip_host.guide.terminal_guide import Guide
 from sixflip_host.virtual.virtual_board import VirtualBoard
+from tests.worlds.board_session import unlabelled
+from tests.worlds.micropython_tier import SESSION
 
 WAIT_S = 120
 HOME = b"\x1b[H"         # every picture of the screen begins with it

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from board_session import leave_files, make_record, unlabelled
 from PIL import Image
 
 from sixflip.record import correction_record
@@ -15,6 +14,7 @@ from sixflip_host.capture import capture_binary, capture_file
 from sixflip_host.cli import main
 from sixflip_host.history import drift, parameters, remember, store
 from sixflip_host.verbs import calibrate
+from tests.worlds.board_session import leave_files, make_record, unlabelled
 
 BOARD = "e6614c311b4c5a2f"
 DAY = 86400.0

@@ -5,8 +5,6 @@ import math
 
 import numpy as np
 import pytest
-from board_session import leave_files, unlabelled
-from resting import rest
 
 from sixflip.record import correction_record, mounting
 from sixflip_host import cli
@@ -14,6 +12,8 @@ from sixflip_host.capture import capture_file
 from sixflip_host.errors import CheckFailed, UsageError
 from sixflip_host.mounting import robot_axes
 from sixflip_host.verbs import mount
+from tests.worlds.board_session import leave_files, unlabelled
+from tests.worlds.resting import rest
 
 PAPER = (-0.2235, 0.4937, 0.8330)
 STRAIGHT = robot_axes.parse("rep103")

@@ -5,7 +5,6 @@ import gzip
 import json
 import os
 
-import debian_tier
 import numpy as np
 import pytest
 
@@ -22,6 +21,7 @@ from sixflip_host.papers.corridor import (
     rawlog,
     slam,
 )
+from tests import debian_tier
 
 SMALL = floor_plan.Corridor(12.0, 8.0)
 PLAIN, SAMPLING, GMAPPING = slam.LADDER

@@ -7,7 +7,6 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
-from board_session import leave_files, unlabelled
 from PIL import Image
 
 from sixflip.poses.faces import pose_name
@@ -17,6 +16,7 @@ from sixflip_host.cli import main
 from sixflip_host.history import remember, store
 from sixflip_host.present import calibration_pictures
 from sixflip_host.present.page import Page
+from tests.worlds.board_session import leave_files, unlabelled
 
 BOARD = "e6614c311b4c5a2f"
 

@@ -5,11 +5,11 @@ import json
 
 import numpy as np
 import pytest
-from board_session import leave_files, unlabelled
 
 from sixflip.record.correction import Correction
 from sixflip_host.capture import capture_file
 from sixflip_host.cli import main
+from tests.worlds.board_session import leave_files, unlabelled
 
 
 @pytest.fixture(scope="module")

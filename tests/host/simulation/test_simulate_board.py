@@ -1,11 +1,11 @@
 """The firmware's own session over simulated chips, against the pure numpy simulator."""
 import numpy as np
 import pytest
-from simulated_board import SHORT_WORLD, STOP_WHEN_READY, SimulatedBoard, power_on
 
 from sixflip_host.capture import capture_file
 from sixflip_host.simulation import simulator
 from sixflip_sim import worlds
+from tests.worlds.simulated_board import SHORT_WORLD, STOP_WHEN_READY, SimulatedBoard, power_on
 
 EFFECTS = [{"effect": "thermal_bias", "x": 0.5, "z": -0.9}, {"effect": "creep", "z": 2.0},
            {"effect": "quantisation", "x": 4, "y": 4, "z": 4}, {"effect": "quadratic", "z": 3.0},

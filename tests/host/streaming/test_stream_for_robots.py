@@ -9,9 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-import dds_loopback
 import pytest
-from written_records import of_a_gy85
 
 from sixflip.record import correction_record
 from sixflip_host import cli
@@ -21,6 +19,8 @@ from sixflip_host.errors import CheckFailed, NoBoard
 from sixflip_host.streaming import imu_message, publishing, ros2_publisher
 from sixflip_host.verbs import stream as verb
 from sixflip_sim.worlds import usual_noise
+from tests.worlds import dds_loopback
+from tests.worlds.written_records import of_a_gy85
 
 SAMPLES = 300
 G = 9.80665

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import chromium
 import pytest
-from board_session import unlabelled
 from selenium.common.exceptions import StaleElementReferenceException
 from served import ScriptedLink, Served, until
 
@@ -20,6 +19,7 @@ from sixflip_host.guide import box_drawings
 from sixflip_host.guide.replay_link import ReplayLink
 from sixflip_host.guide.session_state import SIX
 from sixflip_host.ui.bench import Bench
+from tests.worlds.board_session import unlabelled
 
 MALICE = "<img src=x onerror='document.title=9'>"
 REPORT = ("import sys; open(sys.argv[1], 'w').write('<h1>the gap</h1><script>"

@@ -9,12 +9,12 @@ import sys
 from http.client import HTTPConnection
 
 import pytest
-from board_session import unlabelled
 from served import Served, scripted, until
 
 from sixflip_host import cli
 from sixflip_host.capture import capture_file
 from sixflip_host.ui import guard
+from tests.worlds.board_session import unlabelled
 
 
 @pytest.fixture(scope="module")

@@ -8,12 +8,12 @@ import sys
 import time
 
 import pytest
-from micropython_tier import STILL
 
 from sixflip_host.board import board_link, firmware_update
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.errors import SixflipError
 from sixflip_host.virtual.virtual_board import VirtualBoard
+from tests.worlds.micropython_tier import STILL
 
 
 def mpremote(port, *words):

@@ -1,6 +1,6 @@
 """The same session as it is usually written: floats in lists, solved when they are all there.
 
-What tests/bench/instructions.py compares with: windows decide on rest by a fixed limit, the
+What the bench instructions compares with: windows decide on rest by a fixed limit, the
 tilt is solved in rounds. It does not look for saturated, stale or late samples, nor at the gyro
 to tell whether the box rests.
 """

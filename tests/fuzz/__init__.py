@@ -1,0 +1,1 @@
+"""Readers of bytes that somebody else wrote, fuzzed from a corpus."""

@@ -1,0 +1,1 @@
+"""The diagnosis on sealed cases of an independent generator: `make blind`."""

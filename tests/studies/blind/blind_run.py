@@ -1,0 +1,169 @@
+"""The blind check of `sixflip diagnose`: `make blind`.
+
+1. generate: cases are drawn, captures written, labels sealed (generator/, seal.py);
+2. diagnose: the product's verb on the files alone, its JSON kept;
+3. score: the seals are opened and the answers held against them (scoring.py, target_tables.py).
+
+Exit code 1 when something that must never happen happened, 0 otherwise.
+"""
+
+import argparse
+import contextlib
+import io
+import json
+import os
+import shutil
+import sys
+import time
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+from . import seal, suites
+from .baselines import beside
+from .generator.case import Case
+from .generator.held_out import HELD_OUT
+from .judged import judged
+
+COMPARED = ("null", "single", "pair", "stranger")    # what the baselines are put to
+DEFAULT_COUNT = 220     # about 25 minutes on two cores
+
+
+def generated(job):
+    """Worker of step 1: writes a case's files; returns (public, label)."""
+    name, suite, spec, folder, compare = job
+    case = Case(spec)
+    files = case.write(str(Path(folder) / name))
+    twin = case.write_twin(str(Path(folder) / (name + "-twin"))) if spec.twin else []
+    words = list(spec.options) + ["--certified-box"] * spec.certified
+    label = {"suite": suite, **case.label(), "judged": judged(case)}
+    return {"id": name, "files": [Path(f).name for f in files], "words": words,
+            "twin": [Path(f).name for f in twin], "compare": compare}, label
+
+
+def asked(paths, words):
+    """(exit code, answer or None, what was said on stderr) of the verb."""
+    from sixflip_host import cli
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        code = cli.main(["diagnose", *paths, *words, "--json", "--jobs", "1"])
+    try:
+        return code, json.loads(out.getvalue()), err.getvalue().strip()[:500]
+    except ValueError:
+        return code, None, err.getvalue().strip()[:500]
+
+
+def diagnosed(job):
+    """Worker of step 2: what the verb answers on the files; knows nothing else."""
+    public, folder, keep = job
+    paths, twin = ([str(Path(folder) / f) for f in public[which]] for which in ("files", "twin"))
+    begin, busy = time.perf_counter(), time.process_time()
+    code, answer, error = asked(paths, public["words"])
+    outcome = {"id": public["id"], "code": code, "answer": answer, "error": error,
+               "seconds": time.perf_counter() - begin, "cpu_s": time.process_time() - busy,
+               "twin": asked(twin, public["words"])[1] if twin else None, "baselines": None}
+    if public["compare"] and answer is not None:
+        outcome["baselines"] = beside.answers(paths)
+    if not keep:
+        for path in paths + twin:
+            os.remove(path)
+    return outcome
+
+
+def pooled(work, jobs, workers, what, minutes=0.0):
+    """Results in order, with a line of progress now and then on stderr; of as many jobs as fit
+    into these minutes, 0: of all."""
+    out, begin, shown = [], time.monotonic(), 0.0
+    with ProcessPoolExecutor(workers) as pool:
+        for future in [pool.submit(work, job) for job in jobs]:
+            if minutes and time.monotonic() - begin > 60.0 * minutes:
+                pool.shutdown(wait=False, cancel_futures=True)
+                break
+            out.append(future.result())
+            now = time.monotonic() - begin
+            if now - shown > 20 or len(out) == len(jobs):
+                shown = now
+                print("%s: %d of %d, %.0f s" % (what, len(out), len(jobs), now),
+                      file=sys.stderr, flush=True)
+    return out
+
+
+def make(specifications, folder, workers, compare=0):
+    """Step 1 into a folder: captures, manifest, sealed labels; `compare` cases of the suites
+    COMPARED, evenly, are put to the baselines too."""
+    captures = folder / "captures"
+    captures.mkdir(parents=True, exist_ok=True)
+    fair = [k for k, (suite, _) in enumerate(specifications) if suite in COMPARED]
+    chosen = set(fair[::max(1, len(fair) // compare)][:compare]) if compare else ()
+    jobs = [("case-%04d" % k, suite, spec, str(captures), k in chosen)
+            for k, (suite, spec) in enumerate(specifications)]
+    cases = pooled(generated, jobs, workers, "generated")
+    seal.write(folder, cases, sorted(HELD_OUT))
+
+
+def diagnose(folder, workers, keep, minutes=0.0):
+    """Step 2: answers.json from the manifest and the captures; minutes: as pooled has it."""
+    manifest = json.loads((folder / seal.MANIFEST).read_text())
+    jobs = [(public, str(folder / "captures"), keep) for public in manifest["cases"]]
+    answers = pooled(diagnosed, jobs, workers, "diagnosed", minutes)
+    (folder / "answers.json").write_text(json.dumps(answers))
+    return answers
+
+
+def score(folder):
+    """Step 3: open the seals, print the tables, draw the pictures; the exit code."""
+    from . import target_tables
+    from .scoring import scored
+    answers = json.loads((folder / "answers.json").read_text())
+    labels = seal.opened(folder)
+    results = [scored(labels[a["id"]], a) for a in answers]
+    (folder / "scores.json").write_text(json.dumps(results))
+    text, never = target_tables.report(results)
+    if len(answers) < len(labels):
+        text = "The first %d of %d cases (their order is random): no more fitted into the time " \
+               "given.\n\n\n" % (len(answers), len(labels)) + text
+    both = [a for a in answers if a["baselines"]]
+    if both:
+        text += "\n\n\nBaselines on the same cases\n\n" + beside.report(labels, both)
+    (folder / "tables.txt").write_text(text)
+    print(text)
+    from . import score_pictures
+    for path in score_pictures.draw(results, folder):
+        print("wrote", path)
+    return 1 if never else 0
+
+
+def arguments(argv):
+    parser = argparse.ArgumentParser(prog="make blind", description=__doc__.split("\n")[0])
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--count", type=int, default=DEFAULT_COUNT, help="cases in all")
+    parser.add_argument("--jobs", type=int, default=2, help="processes")
+    parser.add_argument("--suite", action="append", choices=list(suites.SUITES),
+                        help="only these (may be given again)")
+    parser.add_argument("--effect", help="only cases with this effect")
+    parser.add_argument("--compare", type=int, default=16, metavar="N",
+                        help="put N of the cases to the baselines too (half a minute each)")
+    parser.add_argument("--minutes", type=float, default=0.0, metavar="N",
+                        help="diagnose as many of the cases, in their random order, as fit into "
+                             "N minutes (0: all)")
+    parser.add_argument("-o", "--output", type=Path, default=Path("blind-output"))
+    parser.add_argument("--keep", action="store_true", help="keep the captures")
+    parser.add_argument("--score-only", action="store_true",
+                        help="score the answers of the last run again")
+    return parser.parse_args(argv)
+
+
+def main(argv=None):
+    args = arguments(argv)
+    if not args.score_only:
+        shutil.rmtree(args.output / "captures", ignore_errors=True)
+        chosen = suites.specifications(args.seed, args.count, args.suite or list(suites.SUITES))
+        if args.effect:
+            chosen = [(s, spec) for s, spec in chosen
+                      if any(name == args.effect for name, _, _ in spec.effects)]
+        make(chosen, args.output, args.jobs, args.compare)
+        diagnose(args.output, args.jobs, args.keep, args.minutes)
+    return score(args.output)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

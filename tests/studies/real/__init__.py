@@ -1,0 +1,1 @@
+"""Every claim on real recordings beside a plain computation: `make real`."""

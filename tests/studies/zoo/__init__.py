@@ -1,0 +1,1 @@
+"""Simulators' documented bugs on MuJoCo's motion, and whether they are named: `make zoo`."""

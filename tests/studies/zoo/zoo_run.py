@@ -1,0 +1,137 @@
+"""make zoo: every documented defect, same and different motion, several seeds, the real side with
+parameters of its own and one of five effects; a confusion table, and what simpler methods say."""
+import argparse
+import sys
+import time
+from collections import Counter
+
+from sixflip_host.capture import capture_file
+from sixflip_host.diagnosis.simulator import comparison, simulator_answer, traces
+
+from . import baselines, defects, engine
+
+IN_PARAMETERS = {"bandwidth": "smoothness", "noise": "noise_density"}
+NOTHING, ONE_OF, WRONG = "(nothing)", "(one of)", "wrong"
+
+
+def motions(kind, seeds, quick):
+    return [engine.rover(s, "arm", 60.0) if kind == "rover" else engine.box(s, "arm", quick)
+            for s in range(1, seeds + 2)]
+
+
+def case(name, real, sim, seed, healthy_equal=False):
+    """(Comparison, real and simulated (force, rate) for the simple methods)."""
+    effect = "" if healthy_equal else defects.EFFECTS[seed % 5]
+    own = not healthy_equal and defects.DEFECTS[name][3] != "parameters"
+    texts = defects.pair(name, real, sim, seed, effect if own else "", own)
+    logs = [capture_file.parse("log", text.encode()) for text in texts]
+    return comparison.compare([("real", logs[0])], "sim", logs[1]), logs
+
+
+def said(found, layer):
+    """The names said: conventions, or the parameters of a simulator that has no other defect."""
+    names = []
+    for c in found.conventions:
+        names.append(ONE_OF if c.one_of else c.name)
+    if layer == "parameters":
+        names += sorted({p.name for p in found.differs})
+    return names or [NOTHING]
+
+
+def outcome(name, found):
+    """right, one of, nothing or wrong."""
+    _, _, right, layer, _ = defects.DEFECTS[name]
+    right = {IN_PARAMETERS.get(n, n) for n in right}
+    names = said(found, layer)
+    if not right:
+        return "right" if names == [NOTHING] else WRONG
+    if set(names) & right and set(names) <= right | {ONE_OF}:
+        return "right"
+    if any(set(c.one_of) & right for c in found.conventions):
+        return ONE_OF
+    return NOTHING if names == [NOTHING] else WRONG
+
+
+def judged_simply(name, said_one):
+    """right, nothing or wrong: what a simple method says of a defect; of a healthy simulator
+    silence is right; a channel is no name."""
+    right = defects.DEFECTS[name][2]
+    said_one = "" if said_one.startswith("channel") else said_one
+    if said_one in right or not said_one and not right:
+        return "right"
+    return WRONG if said_one else NOTHING
+
+
+def simple(name, logs, found, tally):
+    """Put the methods of baselines to a pair of one motion; tally {method: Counter}."""
+    if not found.alignment.same:
+        return
+    pair = baselines.paired(*(traces.of("log", log) for log in logs), found.alignment)
+    for method, ask in baselines.METHODS.items():
+        answer = ask(pair)
+        if answer is not None:
+            tally.setdefault(method, Counter())[judged_simply(name, answer)] += 1
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--kinds", default="box,rover")
+    parser.add_argument("--quick", action="store_true", help="boxes of a minute")
+    parser.add_argument("--defects", default="")
+    args = parser.parse_args()
+    table, counts, healthy, started = {}, Counter(), Counter(), time.process_time()
+    names = args.defects.split(",") if args.defects else list(defects.DEFECTS)
+    simply = {}
+    for kind in args.kinds.split(","):
+        made = motions(kind, args.seeds, args.quick)
+        for seed in range(args.seeds):
+            for same in (True, False):
+                for name in names:
+                    real, sim = made[seed], made[seed if same else seed + 1]
+                    equal = name == "healthy"
+                    found, logs = case(name, real, sim, 100 * seed + len(name), equal)
+                    result = outcome(name, found)
+                    visible = same or (defects.DEFECTS[name][4] and kind == "box")
+                    row = table.setdefault((name, kind, "same" if same else "other"), Counter())
+                    row.update(said(found, defects.DEFECTS[name][3]))
+                    if equal:
+                        quiet = simulator_answer.verdict("no gap", [found]) == "no gap"
+                        healthy["no gap" if quiet else "a gap"] += 1
+                    else:
+                        counts["visible" if visible else "hidden", result] += 1
+                    if same and seed == 0:
+                        simple(name, logs, found, simply)
+    show(table, counts, healthy, simply, time.process_time() - started)
+    return 1 if counts["visible", WRONG] + counts["hidden", WRONG] else 0
+
+
+def show(table, counts, healthy, simply, seconds):
+    print("%-24s %-6s %-6s %s" % ("defect", "motion", "", "said"))
+    for (name, kind, same), row in table.items():
+        print("%-24s %-6s %-6s %s" % (name, kind, same, ", ".join(
+            "%s %d" % pair for pair in row.most_common())))
+    for part, words in (("visible", "that these logs can show"),
+                        ("hidden", "that another motion hides")):
+        total = sum(v for (p, _), v in counts.items() if p == part)
+        if total:
+            print("of %d defects %s: right %d (%.0f %%), one of several %d, nothing said %d, "
+                  "a wrong name %d" % (total, words, counts[part, "right"],
+                                       100.0 * counts[part, "right"] / total,
+                                       counts[part, ONE_OF], counts[part, NOTHING],
+                                       counts[part, WRONG]))
+    if healthy:
+        total = sum(healthy.values())
+        print("healthy simulators: no gap %d of %d" % (healthy["no gap"], total))
+    print("simpler methods on the pairs of one motion of the first seed, aligned for them "
+          "(silence is right of a healthy simulator only):")
+    for method in baselines.METHODS:
+        row = simply.get(method)
+        print("  %-22s %s" % (method, "not installed" if row is None else
+                              "right %d, nothing %d, wrong %d" % (
+                                  row["right"], row[NOTHING], row[WRONG])))
+    print("%.0f s of processor time" % seconds)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
