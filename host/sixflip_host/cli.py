@@ -42,6 +42,7 @@ VERBS = {
     "plan": "sixflip_host.verbs.plan",
     "simulate": "sixflip_host.verbs.simulate",
     "diagnose": "sixflip_host.verbs.diagnose",
+    "fleet": "sixflip_host.verbs.fleet",
     "reproduce": "sixflip_host.verbs.reproduce",
     "demo": "sixflip_host.verbs.demo",
     "virtual-board": "sixflip_host.verbs.virtual_board_verb",

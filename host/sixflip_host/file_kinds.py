@@ -31,6 +31,7 @@ SDF = "a sensor in SDF"
 KALIBR = "an imu.yaml of Kalibr"
 TABLE = "a table of noise and bias"
 DIAGNOSIS = "a diagnosis as JSON"
+FLEET = "a population of sixflip fleet"
 PUT_BACK = "a simulator's settings"
 JSON = "a JSON object"
 FLASH = "an image of a flash"
@@ -60,6 +61,7 @@ SIGNS = (
     (IMUCAL, b"{", b"formula of imucal"),
     (RECORD_JSON, b"{", b'"kind": "sixflip correction record"'),
     (PLAN, b"{", b'"sixflip_plan"'),
+    (FLEET, b"{", b'"kind": "sixflip fleet"'),
     (DIAGNOSIS, b"{", b'"causes": '),
     (JSON, b"{", b""),
     (WORLDS, b"[", b'"sensor"'),

@@ -30,6 +30,7 @@ OUTPUTS = {
     ("diagnose", "--output"): "diagnose a.csv --record READ -o WRITTEN",
     ("diagnose", "--report"): "diagnose READ --report FOLDER",
     ("diagnose", "--junit"): "diagnose READ --junit WRITTEN",
+    ("fleet", "--output"): "fleet READ -o FOLDER",
     ("plan", "--plot"): "plan --protocol READ --plot WRITTEN",
     ("plan", "--save"): "plan --protocol READ --save WRITTEN",
     ("history", "--plot"): "history e66 --plot WRITTEN",
@@ -63,6 +64,8 @@ def place_of(case, tmp_path):
     """The file that a case writes to."""
     if case == ("diagnose", "--report"):
         return tmp_path / "index.html"
+    if case == ("fleet", "--output"):
+        return tmp_path / "fleet.json"
     return tmp_path / ("taken.html" if case == ("report", "--output") else "taken")
 
 

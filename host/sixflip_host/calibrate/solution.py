@@ -37,19 +37,27 @@ def solve(capture, g=None, level=None, half_turns=False):
     g      m/s², None: what the capture says; level: as accelerometer.solve
     half_turns  take every flip for 180 degrees, whatever the gyro says
     """
-    out = Solution()
-    out.capture = capture
-    out.remarks = capture_remarks(capture)
+    remarks = capture_remarks(capture)
     labelled = capture.pose is not None
     if not labelled and not capture.sums_only:
         found = find_poses(capture)
         found.label(capture)
-        out.remarks += found.remarks()
-    placements = capture.placements()
-    out.flips = flips_turned.FlipsTurned("as asked for") if half_turns \
+        remarks += found.remarks()
+    flips = flips_turned.FlipsTurned("as asked for") if half_turns \
         else flips_turned.by_moves(capture, labelled)
-    judge(capture, placements, capture.g if g is None else g, level, labelled, out,
-          out.flips.angles)
+    return of_placements(capture, flips, labelled, g, level, remarks=remarks)
+
+
+def of_placements(capture, flips, labelled, g=None, level=None, halves=None, remarks=()):
+    """Solution from what a capture's placements and moves say, with no look at its samples.
+
+    flips  FlipsTurned; halves: as halves() gives them, None: they are taken from the samples
+    """
+    out = Solution()
+    out.capture, out.remarks, out.flips = capture, list(remarks), flips
+    placements = capture.placements()
+    judge(capture, placements, capture.g if g is None else g, level, labelled, out, flips.angles,
+          halves)
     out.moves = capture.moves() if not capture.sums_only else []
     out.gyro, out.no_gyro = solve_gyro(capture, placements, out.moves,
                                        out.accel and out.accel.P, flips=out.flips)
@@ -78,8 +86,9 @@ def tolerance(capture):
     return catalogue.driver(sensor).gyro_tolerance if sensor in known else None
 
 
-def judge(capture, placements, g, level=None, labelled=True, out=None, angles=None):
-    """Solve the accelerometer from placements and judge it; fills a Solution."""
+def judge(capture, placements, g, level=None, labelled=True, out=None, angles=None, moved=None):
+    """Solve the accelerometer from placements and judge it; fills a Solution. moved: what
+    halves() gives of the capture, None: it is asked."""
     out = out or Solution()
     out.capture = capture
     out.placements, out.g = placements, g
@@ -91,7 +100,8 @@ def judge(capture, placements, g, level=None, labelled=True, out=None, angles=No
         failure = str(error)
     missing = [] if level == "no flips" else unfinished(out.placements, labelled)
     out.verdict, out.reason = verdict.judge_accelerometer(
-        out.accel, out.placements, lsb, missing, failure, rail(capture), halves(capture, out))
+        out.accel, out.placements, lsb, missing, failure, rail(capture),
+        halves(capture, out) if moved is None else moved)
     return out
 
 

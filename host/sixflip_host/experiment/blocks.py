@@ -130,11 +130,7 @@ class Session:
         """(n, 3): where something that follows the attitude with a time constant stands when
         each block's placement begins; settled at the first."""
         starts = np.array([self.t_s[run[1]] for run in self.runs])
-        state = np.array(up[:len(starts)], float)
-        for k in range(1, len(starts)):
-            fade = np.exp(-(starts[k] - starts[k - 1]) / tau_s)
-            state[k] = up[k - 1] + (state[k - 1] - up[k - 1]) * fade
-        return state[self.placement]
+        return fading(starts, up, tau_s)[self.placement]
 
     def played(self, widths_g):
         """[(n, 3)] a width: how far a play operator of that width (g) lags behind the specific
@@ -170,16 +166,26 @@ class Session:
     def contradicted(self):
         """Names of labels that gravity contradicts: [(label, degrees off), ...]."""
         found = {}
-        for code, first, end in self.runs:
-            face = faces.face_of_code(code)
-            if face < 0:
+        for place, (code, _, _) in enumerate(self.runs):
+            face, mine = faces.face_of_code(code), self.placement == place
+            if face < 0 or not mine.any():
                 continue
-            mean = self.capture.accel[first:end].mean(axis=0)
+            mean = self.accel[mine].mean(axis=0)
             cosine = faces.SIGN[face] * mean[faces.AXIS[face]] / max(np.linalg.norm(mean), 1e-9)
             off = float(np.degrees(np.arccos(np.clip(cosine, -1, 1))))
             if off > FAR_OFF_DEG:
                 found[faces.pose_name(code)] = off
         return sorted(found.items())
+
+
+def fading(starts, up, tau_s):
+    """(placements, 3): where something that follows the attitude up (placements, 3) with a time
+    constant stands when each placement begins, starts (placements,) s; settled at the first."""
+    state = np.array(up[:len(starts)], float)
+    for k in range(1, len(starts)):
+        fade = np.exp(-(starts[k] - starts[k - 1]) / tau_s)
+        state[k] = up[k - 1] + (state[k - 1] - up[k - 1]) * fade
+    return state
 
 
 def of(name, capture):

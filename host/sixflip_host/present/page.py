@@ -1,6 +1,8 @@
-"""One HTML file that needs nothing else: no script, nothing to fetch, every text escaped."""
+"""One HTML file that needs nothing else: nothing to fetch, every text escaped, and no script but
+one of ours that the page names by its hash."""
 
 import base64
+import hashlib
 import html
 
 from ..terminal import plain
@@ -26,14 +28,18 @@ def text(value):
 
 
 class Page:
-    """A page grows from top to bottom; html() is what goes into the file."""
+    """A page grows from top to bottom; html() is what goes into the file. script: the one that a
+    browser may run, at the end of the page."""
 
-    def __init__(self, title, heading=None):
+    def __init__(self, title, heading=None, script=""):
+        self.script = script
+        policy = POLICY + "; script-src 'sha256-%s'" % base64.b64encode(
+            hashlib.sha256(script.encode()).digest()).decode() if script else POLICY
         self.parts = [
             "<!doctype html><html lang=en><meta charset=utf-8>"
             "<meta http-equiv=Content-Security-Policy content=\"%s\">"
             "<meta name=viewport content=\"width=device-width\"><title>%s</title>"
-            "<style>%s</style>" % (POLICY, text(title), STYLE),
+            "<style>%s</style>" % (policy, text(title), STYLE),
             "<h1>%s</h1>" % text(heading or title)]
 
     def heading(self, words, level=2):
@@ -63,7 +69,8 @@ class Page:
 
     def html(self):
         """The whole file."""
-        return "\n".join(self.parts) + "\n</html>\n"
+        script = ["<script>%s</script>" % self.script] if self.script else []
+        return "\n".join([*self.parts, *script]) + "\n</html>\n"
 
 
 def table(head, rows):

@@ -1,0 +1,1 @@
+"""Many boards of one kind: what their batch shares, told from what a single one has."""

@@ -1,0 +1,215 @@
+"""One board from its files to a row: solved, verified, and what its rests say of each effect.
+
+This is the task that workers run. Whatever is wrong with a board is in its row as a sentence; the
+other boards never hear of it.
+"""
+import hashlib
+import math
+import os
+import time
+
+import numpy as np
+
+from sixflip import __version__
+
+from ..calibrate import verification, verify_files
+from ..diagnosis import blas_threads  # noqa: F401 (before numpy's threads are asked for)
+from ..errors import BadFile, SixflipError, internal_error
+from ..value_kinds import LONGEST_TEXT
+from . import effects, parameters, sources, summary_file
+
+LAYOUT = 1  # of a row: with the version of sixflip, what makes an older row be done again
+VERSION = "%d, sixflip %s" % (LAYOUT, __version__)
+MOST_SESSIONS = 64
+
+
+def stamps(board):
+    """What tells that a board's files are as they were: a text; BadFile where one is missing."""
+    if board.calibrations:
+        found = hashlib.sha256()
+        for one in board.calibrations:
+            found.update(repr((one.at, one.verdict)).encode() + one.record)
+        return found.hexdigest()
+    return repr([(os.path.basename(path), *summary_file.stamp(path)) for path in _files(board)])
+
+
+def content(board):
+    """SHA-256 of the content of all of a board's files, hex."""
+    if board.calibrations:
+        return stamps(board)
+    found = hashlib.sha256()
+    for path in _files(board):
+        found.update(summary_file.content_hash(path).encode())
+    return found.hexdigest()
+
+
+def _files(board):
+    records = [os.path.join(board.folder, name) for name in sources.RECORDS] \
+        if board.folder else []
+    return [*board.captures, *board.summaries, *filter(os.path.exists, records)]
+
+
+def row(board, keep=True):
+    """dict of a board, see dataset.SCHEMA; failure is "" or the sentence on what is wrong.
+
+    keep  whether summaries are put beside the captures
+    """
+    found = {"board": board.board, "batch": board.batch, "version": VERSION, "failure": "",
+             "paths": [*board.captures, *board.summaries], "written": time.time(),
+             "stamps": "", "content": "", **_empty()}
+    started = time.process_time()
+    try:
+        found["stamps"], found["content"] = stamps(board), content(board)
+        found.update(_of_history(board) if board.calibrations else _of_files(board, keep))
+    except SixflipError as error:
+        found["failure"] = str(error)
+    except MemoryError:
+        found["failure"] = "there is not enough memory for this board"
+    except Exception as error:  # a bug of ours is one board's, too
+        found["failure"] = internal_error(error)
+    found["failure"] = found["failure"][:LONGEST_TEXT]
+    found["cpu_s"] = time.process_time() - started
+    return found
+
+
+def _empty():
+    return {"chip": "", "accel_range_g": math.nan, "gyro_range_dps": math.nan, "at": [],
+            "verdicts": [], "reasons": [], "values": [], "covariances": [], "verified": "",
+            "findings": [], "remarks": [], "cpu_s": 0.0,
+            **{"%s_%s" % (what, sensor): [] for sensor in effects.FORMS
+               for what in ("precision", "score")}}
+
+
+def _of_files(board, keep):
+    remarks, kept = [], []
+    if not board.captures and not board.summaries:
+        raise BadFile("no session")
+    for path in [*board.captures, *board.summaries][:MOST_SESSIONS]:
+        if path in board.summaries:
+            kept.append(summary_file.read(path))
+        else:
+            one, why = summary_file.of_capture(path, keep)
+            kept.append(one)
+            remarks += [why] if why else []
+    ids = {str(one.meta["device_id"]) for one in kept if one.meta.get("device_id")}
+    if len(ids) > 1:
+        raise BadFile("captures of %d boards in one place, ids %s: expected one board's" % (
+            len(ids), " ".join(sorted(ids))))
+    kinds = list(dict.fromkeys(_kind(one.meta) for one in kept))
+    if len(kinds) > 1:
+        remarks.append("sessions of another chip or range are left out: %s beside %s" % (
+            ", ".join(map(_spelled, kinds[1:])), _spelled(kinds[0])))
+        kept = [one for one in kept if _kind(one.meta) == kinds[0]]
+    hashes = [one.about.get("hash") for one in kept]
+    again = [k for k, one in enumerate(hashes) if one and one in hashes[:k]]
+    if again:
+        remarks.append("%d captures repeat one before them and are left out" % len(again))
+        kept = [one for k, one in enumerate(kept) if k not in again]
+    return dict(_judged(kept, remarks), verified=_verified(board, remarks))
+
+
+def _kind(meta):
+    return meta["sensor"], meta.get("accel_range_g", math.nan), meta.get("gyro_range_dps",
+                                                                         math.nan)
+
+
+def _spelled(kind):
+    return "%s ±%g g ±%g °/s" % kind
+
+
+def _judged(kept, remarks):
+    """What stands in the row of the summaries of one board's sessions."""
+    found = {"at": [], "verdicts": [], "reasons": [], "values": [], "covariances": []}
+    sessions = [one.session() for one in kept]
+    for number, (one, session) in enumerate(zip(kept, sessions)):
+        solved = one.solved()
+        made = one.meta.get("time")
+        _add(found, made if isinstance(made, (int, float)) else float(number), solved.verdict,
+             solved.reason, parameters.of_solution(solved, session))
+    chip, accel, gyro = _kind(kept[0].meta)
+    told, said = effects.of(sessions, chip)
+    for sensor, one in told.items():
+        found["precision_" + sensor] = one.precision[np.triu_indices(len(one.score))].tolist()
+        found["score_" + sensor] = one.score.tolist()
+    findings = [f["words"] and "the %s: %s" % (f["sensor"], f["words"]) or f["effect"]
+                for one in kept for f in one.about["samples"]["findings"]]
+    return dict(found, chip=chip, accel_range_g=accel, gyro_range_dps=gyro,
+                findings=list(dict.fromkeys(findings)),
+                remarks=list(dict.fromkeys([*remarks, *said])))
+
+
+def _add(found, at, verdict, reason, estimate):
+    found["at"].append(float(at))
+    found["verdicts"].append(verdict)
+    found["reasons"].append(reason)
+    found["values"].append(estimate.value.tolist())
+    found["covariances"].append(np.concatenate(
+        [estimate.covariance[block].ravel() for block in parameters.BLOCKS]).tolist())
+
+
+def _verified(board, remarks):
+    """holds or fails of the board's own record against its capture; "" where there is none."""
+    if not board.folder or not any(os.path.exists(os.path.join(board.folder, name))
+                                   for name in sources.RECORDS):
+        return ""
+    try:
+        path, capture, record_path, record = verify_files.find([board.folder])
+        before = verify_files.record_before(record_path, record)
+        if not (capture.board_placements or capture.placements()):
+            raise BadFile("%s: no placement in it" % path)
+        checks, _ = verification.verify(capture, record, before)
+    except SixflipError as error:
+        remarks.append("not verified: %s" % error)
+        return ""
+    failed = [check.name for check in checks if not check.ok]
+    if failed:
+        remarks.append("the board's arithmetic is not the host's: %s" % ", ".join(failed))
+    return "fails" if failed else "holds"
+
+
+def _of_history(board):
+    """What stands in the row of calibrations that a history kept."""
+    found = {"at": [], "verdicts": [], "reasons": [], "values": [], "covariances": []}
+    remarks, kinds = [], []
+    for one in board.calibrations[-MOST_SESSIONS:]:
+        try:
+            record = verify_files.decode_record("history, board %s" % board.board, one.record)
+        except BadFile as error:
+            remarks.append(str(error))
+            continue
+        kinds.append((record.chip, float(record.accel_range_g or math.nan),
+                      float(record.gyro_range_dps or math.nan)))
+        if kinds[-1] != kinds[0]:
+            remarks.append("a calibration of another chip or range is left out")
+            continue
+        _add(found, one.at, one.verdict, one.reason, parameters.of_record(record))
+    if not kinds:
+        raise BadFile("; ".join(remarks) or "no calibration in the history")
+    return dict(found, chip=kinds[0][0], accel_range_g=kinds[0][1], gyro_range_dps=kinds[0][2],
+                remarks=list(dict.fromkeys(remarks)))
+
+
+def estimates(found):
+    """[parameters.Estimate] of the sessions in a row."""
+    out = []
+    for values, flat in zip(found["values"], found["covariances"]):
+        covariance, start = {}, 0
+        flat = np.array(flat, float)
+        for block, names in parameters.BLOCKS.items():
+            k = len(names)
+            covariance[block] = flat[start:start + k * k].reshape(k, k)
+            start += k * k
+        out.append(parameters.Estimate(np.array(values, float), covariance))
+    return out
+
+
+def information(found, sensor):
+    """effects.Information of a sensor in a row."""
+    flat = found["precision_" + sensor]
+    if not flat:
+        return effects.nothing(sensor)
+    k = len(effects.NAMES[sensor])
+    precision = np.zeros((k, k))
+    precision[np.triu_indices(k)] = flat
+    precision += np.triu(precision, 1).T
+    return effects.Information(precision, np.array(found["score_" + sensor], float))

@@ -1,0 +1,226 @@
+"""Boards as tasks on Dask: a cluster of this computer's cores, or one that somebody runs.
+
+Tasks are few boards each, and never more of them under way than keep the workers busy: what is in
+memory does not grow with the fleet. A task whose worker dies is given to another; its rows come
+back once, so nothing is lost and nothing is there twice.
+"""
+import contextlib
+import logging
+import os
+import socket
+from dataclasses import dataclass
+from urllib.parse import urlparse
+
+from sixflip import __version__
+
+from .. import optional
+from ..errors import BadFile, CheckFailed, UsageError
+from . import analysis
+
+AHEAD = 3  # tasks a worker may have waiting: it never idles, and little is lost with it
+CHUNK = 4  # boards of a task
+WAIT_S = 20.0  # for a scheduler to answer
+NO_WORKER_S = 60.0  # without any worker of somebody else's cluster, before it is given up
+RETRIES = 5  # of a task whose worker died
+
+
+@dataclass(frozen=True)
+class Target:
+    """Where to run: scheduler, an address such as tcp://host:8786 or the path of a scheduler
+    file, None: a cluster of this computer; workers of that, 0: one a core."""
+
+    scheduler: str = None
+    workers: int = 0
+
+
+class SchedulerLost(CheckFailed):
+    """The scheduler is gone in the middle of the work."""
+
+
+def _dask():
+    return optional.need("sixflip fleet", "fleet", "distributed")
+
+
+@contextlib.contextmanager
+def connected(target):
+    """A distributed.Client; UsageError or CheckFailed in one sentence where none can be had."""
+    distributed = _dask()
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    if target.scheduler is None:
+        import dask
+        with dask.config.set({"distributed.admin.tick.limit": "60s"}), distributed.LocalCluster(
+                n_workers=target.workers or os.cpu_count() or 1, threads_per_worker=1,
+                dashboard_address=None, silence_logs=logging.CRITICAL) as cluster, \
+                distributed.Client(cluster) as client:
+            yield client
+        return
+    client = _client(distributed, target.scheduler)
+    try:
+        yield client
+    finally:
+        with contextlib.suppress(Exception):
+            client.close(timeout=2)
+
+
+def _client(distributed, scheduler):
+    """A Client of somebody else's scheduler, of the same versions as this program."""
+    how = {"scheduler_file": scheduler} if os.path.isfile(scheduler) else {"address": scheduler}
+    if "address" in how:
+        _reachable(scheduler)
+    try:
+        client = distributed.Client(timeout=WAIT_S, **how)
+        versions = client.get_versions()
+    except (OSError, ValueError, TypeError, KeyError, TimeoutError, RuntimeError,
+            ImportError) as error:
+        raise CheckFailed("--scheduler %s: no scheduler of Dask %s answers there (%s): expected "
+                          "one of the same version" % (
+                              scheduler, distributed.__version__, _short(error))) from None
+    _same_versions(distributed, scheduler, versions)
+    _same_sixflip(client, scheduler)
+    return client
+
+
+def _reachable(address):
+    """UsageError or CheckFailed for an address that is none, or where nobody listens: Dask itself
+    would try for half a minute."""
+    parts = urlparse(address)
+    try:
+        host, port = parts.hostname, parts.port
+    except ValueError:
+        host = port = None
+    if parts.scheme not in ("tcp", "tls", "ws", "wss", "ucx") or not host or not port:
+        raise UsageError("--scheduler %s: expected an address such as tcp://host:8786, or a "
+                         "scheduler file" % address)
+    try:
+        socket.create_connection((host, port), timeout=WAIT_S).close()
+    except OSError as error:
+        raise CheckFailed("--scheduler %s: nobody answers there: %s" % (
+            address, error.strerror or error)) from None
+
+
+def _same_versions(distributed, scheduler, versions):
+    """CheckFailed where the scheduler or a worker is of another Dask or Python."""
+    here = versions["client"]["packages"]
+    others = [("the scheduler", versions["scheduler"])] + [
+        ("a worker", one) for one in versions["workers"].values()]
+    for who, one in others:
+        for package in ("distributed", "dask", "python"):
+            there = (one or {}).get("packages", {}).get(package)
+            mine = here.get(package)
+            if package == "python":
+                there, mine = (".".join(str(v).split(".")[:2]) for v in (there, mine))
+            if there != mine:
+                raise CheckFailed("--scheduler %s: %s is of %s %s, this is %s: expected the same "
+                                  "version on both sides" % (scheduler, who, package, there, mine))
+
+
+def _same_sixflip(client, scheduler):
+    """CheckFailed where a worker has no sixflip, or another."""
+    try:
+        found = client.run(_own_version)
+    except Exception as error:  # whatever a worker without sixflip raises
+        raise CheckFailed("--scheduler %s: a worker has no sixflip %s (%s): install it there" % (
+            scheduler, __version__, _short(error))) from None
+    for worker, version in found.items():
+        if version != analysis.VERSION:
+            raise CheckFailed("--scheduler %s: the worker %s has row layout %s, this is %s: "
+                              "expected the same version on both sides" % (
+                                  scheduler, worker, version, analysis.VERSION))
+
+
+def _own_version():
+    return analysis.VERSION
+
+
+def _short(error):
+    return (str(error) or type(error).__name__).split("\n")[0][:120]
+
+
+def rows_of(boards, keep):
+    """What a task is: a row for each of a few boards."""
+    return [analysis.row(one, keep) for one in boards]
+
+
+def run(client, boards, take, target, keep=True, work=rows_of):
+    """Give every board to the workers; take(rows) is called here with what comes back, once for
+    each board. CheckFailed when the scheduler is lost or no worker is left."""
+    distributed = _dask()
+    chunks = iter([boards[k:k + CHUNK] for k in range(0, len(boards), CHUNK)])
+    done = 0
+    try:
+        pool = distributed.as_completed(loop=client.loop)
+        for chunk in _some(chunks, AHEAD * _workers(client, target)):
+            pool.add(client.submit(work, chunk, keep, pure=False, retries=RETRIES))
+        while pool.count():
+            future = _next(pool, client, target, done, len(boards))
+            rows = future.result()
+            future.release()
+            take(rows)
+            done += len(rows)
+            for chunk in _some(chunks, 1):
+                pool.add(client.submit(work, chunk, keep, pure=False, retries=RETRIES))
+    except (BadFile, CheckFailed):
+        raise
+    except (OSError, TimeoutError, distributed.CancelledError, RuntimeError) as error:
+        raise _lost(target, done, len(boards), error) from None
+
+
+def _next(pool, client, target, done, number):
+    """The next future that is finished; SchedulerLost where nothing can come any more."""
+    waited = 0.0
+    while True:
+        try:
+            return pool.next_batch_or_timeout(1.0) if hasattr(pool, "next_batch_or_timeout") \
+                else _timed(pool)
+        except TimeoutError:
+            waited += 1.0
+        if client.status not in ("running", "connecting"):
+            raise _lost(target, done, number, "the connection is closed")
+        if waited >= NO_WORKER_S and not _count(client):
+            raise SchedulerLost("%s has no worker any more: %d of %d boards are done and kept, "
+                                "the same command goes on from there" % (
+                                    _where(target), done, number))
+
+
+def _timed(pool):
+    """Next of as_completed within a second, or TimeoutError."""
+    import time
+    deadline = time.monotonic() + 1.0
+    while pool.queue.empty():
+        if time.monotonic() > deadline:
+            raise TimeoutError
+        time.sleep(0.005)
+    return next(pool)
+
+
+def _count(client):
+    try:
+        return len(client.scheduler_info()["workers"])
+    except Exception:
+        return 0
+
+
+def _workers(client, target):
+    try:
+        client.wait_for_workers(1, timeout=NO_WORKER_S)
+    except Exception:
+        raise CheckFailed("%s has no worker: start one with dask worker" % _where(target)) \
+            from None
+    return max(1, _count(client))
+
+
+def _some(chunks, number):
+    for _ in range(number):
+        chunk = next(chunks, None)
+        if chunk is None:
+            return
+        yield chunk
+
+
+def _where(target):
+    return "the scheduler at %s" % target.scheduler if target.scheduler else "the local cluster"
+
+
+def _lost(target, done, number, error):
+    return SchedulerLost("%s is lost (%s): %d of %d boards are done and kept, the same command "
+                         "goes on from there" % (_where(target), _short(error), done, number))

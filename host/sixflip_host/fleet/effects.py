@@ -1,0 +1,105 @@
+"""What a board's rests say of each effect's size, found or not: information instead of verdicts.
+
+A population cannot be made of what was found in single boards: what is too small there is
+missing, and what was found is too large. So every board gives, for the same columns, the precision
+Λ = S' C^-1 S and the score Λ θ = S' C^-1 z of the diagnosis' own linear model, summed over its
+sessions (experiment/linear_model.py; levels of placement and flicker by restricted likelihood with
+these columns in).
+"""
+from dataclasses import dataclass
+
+import numpy as np
+
+from sixflip_sim.effects.library import EFFECTS
+
+from ..diagnosis import hypotheses, usable_rests
+from ..experiment import linear_model, nominal_rows, terms
+
+# One form of each effect that rests can show, the likeliest cause first: where a protocol cannot
+# tell two, the population names the first and says which others it may be.
+FORMS = {
+    "accel": (("thermal_bias", ""), ("quadratic", ""), ("cubic", ""), ("thermal_scale", ""),
+              ("creep", "tau 60 s"), ("hysteresis", ""), ("warm_up", "tau 120 s")),
+    "gyro": (("thermal_bias", ""), ("g_sensitivity", ""), ("warm_up", "tau 120 s"),
+             ("hysteresis", ""))}
+MATRIX = tuple(a + b for a in "xyz" for b in "xyz")  # gyro axis, then accelerometer axis
+
+
+def _keys(effect):
+    return MATRIX if effect == "g_sensitivity" else tuple("xyz")
+
+
+NAMES = {sensor: tuple("%s.%s.%s" % (sensor, effect, key) for effect, _ in forms
+                       for key in _keys(effect)) for sensor, forms in FORMS.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class Information:
+    """precision (k, k) and score (k,) of the coefficients NAMES[sensor]; zero where a board's
+    sessions say nothing. levels: of placement and flicker, mg or deg/s, of each session."""
+
+    precision: np.ndarray
+    score: np.ndarray
+    levels: tuple = ()
+
+
+def nothing(sensor):
+    """Information of no session."""
+    k = len(NAMES[sensor])
+    return Information(np.zeros((k, k)), np.zeros(k))
+
+
+def unit(name):
+    """The library's unit of a coefficient, for people."""
+    sensor, effect, _ = name.split(".")
+    return EFFECTS[effect].units[sensor].replace("degC", "°C").replace("deg/s", "°/s")
+
+
+def of(sessions, chip):
+    """({sensor: Information}, remarks) of the blocks.Sessions of one board."""
+    found = {sensor: nothing(sensor) for sensor in FORMS}
+    rests = usable_rests.of(sessions, [], [])
+    if not rests.nominal:
+        return found, [*rests.remarks, "too few rests in known poses: no effects"]
+    agreed = terms.agreed(rests.sessions)
+    for sensor in FORMS:
+        if any(getattr(one, sensor) is None for one in agreed):
+            continue
+        found[sensor] = _of_sensor(sensor, agreed, rests, chip)
+    return found, list(rests.remarks)
+
+
+def _of_sensor(sensor, sessions, rests, chip):
+    units, names = [], None
+    for session, nominal in zip(sessions, rests.nominal):
+        designs = [d for d in terms.library(session, nominal.up, sensor, rests.reference_c, chip)
+                   if (d.effect, d.variant) in FORMS[sensor] and not d.record]
+        designs.sort(key=lambda d: FORMS[sensor].index((d.effect, d.variant)))
+        names = ["%s.%s.%s" % (sensor, d.effect, key) for d in designs for key in d.keys]
+        units.append(linear_model.unit(nominal_rows.rows(sensor, session, nominal), designs))
+    prior = hypotheses.TYPICAL * np.concatenate([d.prior for d in designs])
+    points = [likeliest(unit, prior) for unit in units]
+    place = [NAMES[sensor].index(name) for name in names]
+    out = nothing(sensor)
+    out.precision[np.ix_(place, place)] = sum(u.gram[k] for u, k in zip(units, points))
+    out.score[place] = sum(u.inner[k] for u, k in zip(units, points))
+    return Information(out.precision, out.score, tuple(
+        tuple(map(float, u.grid[k])) for u, k in zip(units, points)))
+
+
+def likeliest(unit, prior):
+    """The point of a linear_model.Unit's grid with the greatest restricted likelihood, all of its
+    columns in with a prior N(0, prior²): on the coarse grid, then around the best of that."""
+    first = unit.coarse
+    best = first[int(np.argmax(_likelihood(unit, first, prior)))]
+    near = unit.around(best)
+    return int(near[int(np.argmax(_likelihood(unit, near, prior)))])
+
+
+def _likelihood(unit, points, prior):
+    """Restricted log likelihood at points of the grid [Patterson & Thompson 1971]."""
+    full = unit.gram[points] + np.diag(prior ** -2.0)
+    inner = unit.inner[points]
+    taken = (inner * np.linalg.solve(full, inner[:, :, None])[:, :, 0]).sum(axis=1)
+    return (-0.5 * unit.quadratic[points] - unit.logdet[points] + 0.5 * taken
+            - 0.5 * np.linalg.slogdet(full)[1])

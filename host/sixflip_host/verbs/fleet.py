@@ -1,0 +1,70 @@
+"""sixflip fleet: the captures of many boards together; what their batch shares, what one has."""
+import json
+import os
+
+from .. import atomic_write, file_kinds, progress
+from ..errors import BadFile, UsageError
+from ..file_arguments import add_input, add_output
+
+HELP = "many boards together: what their batch shares, what single ones have, which stand out"
+EXAMPLE = ("sixflip fleet captures -o fleet-out --report\n"
+           "         sixflip fleet boards.csv -o fleet-out --scheduler tcp://10.0.0.5:8786")
+JSON_NAME, PAGE_NAME = "fleet.json", "fleet.html"
+
+
+def add_arguments(parser):
+    """The options of the verb."""
+    add = parser.add_argument
+    add_input(parser, "boards", metavar="DIR | MANIFEST.csv | HISTORY.sqlite",
+              help="captures in a folder for each board; a CSV with the columns board, capture "
+                   "and batch; or a history; or what an earlier run wrote")
+    add_output(parser, "-o", "--output", default="fleet-out", metavar="DIR", writes=files,
+               help="folder for fleet.json and the boards that are done (default: %(default)s)")
+    add_input(parser, "--scheduler", metavar="ADDRESS | FILE",
+              help="run on this Dask cluster (tcp://host:8786, or a scheduler file) instead of "
+                   "the cores of this computer")
+    add("--workers", type=int, default=0, metavar="N",
+        help="processes on this computer (default: one a core)")
+    add("--report", action="store_true", help="also write a page, fleet.html")
+    add("--no-summaries", action="store_true",
+        help="do not put a summary beside each capture; a later run reads them all again")
+    add("--json", action="store_true", help="what stands in fleet.json on stdout")
+
+
+def files(value, args):
+    """What is written into the folder, beside the data set."""
+    found = [(os.path.join(value, JSON_NAME), (file_kinds.FLEET,))]
+    if args.report:
+        found.append((os.path.join(value, PAGE_NAME), (file_kinds.PAGE,)))
+    return found
+
+
+def run(args):
+    """Do what is not done, then judge all; 0 whatever single boards are like."""
+    from ..fleet import answer, cluster, run_fleet
+    if args.workers < 0:
+        raise UsageError("--workers is %d, expected 1 or more" % args.workers)
+    if args.workers and args.scheduler:
+        raise UsageError("--workers and --scheduler: expected one of the two")
+    target = cluster.Target(args.scheduler, args.workers)
+    with progress.during("fleet"):
+        done = run_fleet.boards(args.boards, args.output, target, not args.no_summaries)
+        progress.doing("the population")
+        kinds = answer.judged(done.rows())
+    found = answer.of(kinds, done.failures, done.remarks)
+    os.makedirs(args.output, exist_ok=True)
+    atomic_write.write_text(os.path.join(args.output, JSON_NAME),
+                            json.dumps(found, indent=1, ensure_ascii=False) + "\n")
+    if args.report:
+        from ..present import fleet_page
+        progress.doing("drawing the page")
+        atomic_write.write_text(os.path.join(args.output, PAGE_NAME),
+                                fleet_page.html(kinds, done, args.output))
+    if args.json:
+        print(json.dumps(found, indent=1, ensure_ascii=False))
+    else:
+        from ..present import fleet_words
+        fleet_words.show(found, args.output, args.report and PAGE_NAME)
+    if not kinds:
+        raise BadFile("%s: no board of it could be solved" % args.boards)
+    return 0

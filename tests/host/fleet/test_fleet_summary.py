@@ -1,0 +1,102 @@
+"""A summary is its capture to the last digit, as far as solve and the rests' model look at it."""
+import io
+
+import numpy as np
+import pytest
+
+from sixflip_host.calibrate import solution
+from sixflip_host.capture import capture_file
+from sixflip_host.diagnosis import rest_model, settings
+from sixflip_host.errors import BadFile
+from sixflip_host.experiment import attitude_fit, blocks, terms
+from sixflip_host.fleet import effects, summary, summary_file
+from sixflip_host.simulation import scenario, simulated_session
+
+
+@pytest.fixture(scope="module")
+def captured(tmp_path_factory):
+    """(path, Capture, Summary) of a session of the paper's twelve poses."""
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "backward", "seed": 4, "effects": [
+        {"effect": "thermal_bias", "sensor": "accel", "z": -1.0}]})
+    path = str(tmp_path_factory.mktemp("board") / "s.csv")
+    capture_file.write(path, simulated_session.session(plan, 0))
+    capture = capture_file.read(path)
+    return path, capture, summary_file.of_capture(path)[0]
+
+
+def test_it_is_solved_as_the_capture_is(captured):
+    _, capture, one = captured
+    assert solution.to_json(one.solved()) == solution.to_json(solution.solve(capture))
+
+
+def test_the_rests_of_both_are_the_same_rows(captured):
+    _, capture, one = captured
+    units = []
+    for session in (blocks.of("s", capture), one.session()):
+        nominal = attitude_fit.fit(session)
+        model = rest_model.RestModel("gyro", "mpu6050", settings.Settings())
+        units.append(model.unit(terms.agreed([session])[0], nominal, False))
+        assert session.contradicted() == []
+    assert np.array_equal(units[0].quadratic, units[1].quadratic)
+    assert np.array_equal(units[0].inner, units[1].inner)
+
+
+def test_a_part_and_fewer_poses_are_those_of_the_capture(captured):
+    _, capture, one = captured
+    both = blocks.of("s", capture), one.session()
+    for change in (lambda s: s.part(range(3, 9)), lambda s: s.without_poses(["Z-a", "X+b"])):
+        mine, kept = (change(session) for session in both)
+        for name in blocks.OF_BLOCKS:
+            assert np.array_equal(getattr(mine, name), getattr(kept, name)), name
+        for a, b in zip(mine.played(terms.PLAY_G), kept.played(terms.PLAY_G)):
+            assert np.array_equal(a, b)
+        up = np.eye(3)[np.zeros(len(mine.runs), int)]
+        assert np.array_equal(mine.remembered(up, 60.0), kept.remembered(up, 60.0))
+
+
+def test_it_is_under_two_kilobytes_a_pose(captured):
+    _, _, one = captured
+    assert len(one.placements()) == 24
+    assert len(summary_file.encode(one)) < 2000 * len(one.placements())
+
+
+def test_the_kept_one_is_read_while_the_capture_is_the_same(captured, monkeypatch):
+    path, _, one = captured
+    monkeypatch.setattr(summary_file.open_recording, "read", lambda path: 1 / 0)
+    again, why = summary_file.of_capture(path)
+    assert again.about == one.about and why == ""
+    with open(path, "ab") as file:
+        file.write(b"1,2\n")
+    with pytest.raises(ZeroDivisionError):
+        summary_file.of_capture(path)
+
+
+def test_the_effect_of_the_capture_is_in_its_information(captured):
+    _, _, one = captured
+    found, _ = effects.of([one.session()], "mpu6050")
+    k = effects.NAMES["accel"].index("accel.thermal_bias.z")
+    precision, score = found["accel"].precision, found["accel"].score
+    sigma = 1.0 / np.sqrt(precision[k, k])
+    assert abs(score[k] / precision[k, k] + 1.0) < 4.0 * sigma + 0.2
+    assert abs(score[k]) * sigma > 5.0
+
+
+def test_a_damaged_one_is_one_sentence(captured):
+    _, _, one = captured
+    data = summary_file.encode(one)
+    for bad in (b"", data[:200], data[:-40], b"PK" + data[5:], data.replace(b"npy", b"npz"),
+                data[:900] + bytes(64) + data[964:]):
+        with pytest.raises(BadFile, match="summary"):
+            summary_file.decode("s", bad)
+
+
+def test_arrays_of_another_shape_are_refused(captured):
+    _, _, one = captured
+    for name in ("placement_sums", "move_of", "runs"):
+        changed = dict(one.arrays, **{name: np.zeros((2, 3, 1))})
+        with pytest.raises(BadFile, match="damaged"):
+            summary_file.decode("s", summary_file.encode(summary.Summary(one.about, changed)))
+    out = io.BytesIO()
+    np.savez(out, about=np.array([{"x": 1}], object))
+    with pytest.raises(BadFile, match="damaged"):
+        summary_file.decode("s", out.getvalue())
