@@ -7,13 +7,13 @@ pinned, used here alone, and every wait has an end.
 import base64
 import contextlib
 import hashlib
-import io
 import os
 import struct
 import time
 from pathlib import PurePosixPath
 
 import serial
+from mpremote import transport_serial
 from mpremote.transport import TransportError, TransportExecError
 from mpremote.transport_serial import SerialTransport
 
@@ -41,6 +41,9 @@ PATIENCE = "SIXFLIP_PATIENCE"
 BASE64 = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/=\r\n\x04"
 LOST = (serial.SerialException, serial.SerialTimeoutException, OSError, TransportError,
         struct.error)  # of mpremote: an answer of two bytes was cut short
+# mpremote prints what a board said in place of a raw REPL. Its module gets a print of its own:
+# sys.stdout is everybody's, and boards are linked to from several threads.
+transport_serial.print = lambda *words, **more: None
 
 
 def safe_name(name):
@@ -144,8 +147,7 @@ class MpremoteLink:
             # mpremote takes ten silent seconds for the end, unless a single read waits longer
             wire.timeout = 0.5 if self.patience == 1 else allowed
             try:
-                with contextlib.redirect_stdout(io.StringIO()):
-                    transport.enter_raw_repl(soft_reset=True, timeout_overall=allowed)
+                transport.enter_raw_repl(soft_reset=True, timeout_overall=allowed)
             except (TransportError, Endless):
                 return False
             finally:

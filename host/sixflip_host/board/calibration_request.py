@@ -14,13 +14,17 @@ JOIN_S = 3
 STOP_S = 10
 
 
+class NoFirmware(NoBoard):
+    """A board that answers, and is none of Sixflip's."""
+
+
 def ask_for_calibration(link, request=None):
     """Leave the flag on the flash, with what is asked for in it, and start the firmware.
 
     Returns the board's id: what the firmware says at once is lost while a USB port comes back.
     """
     if "main.py" not in link.files([]):
-        raise NoBoard("%s: the firmware is not on this board: sixflip provision" % link.port)
+        raise NoFirmware("%s: the firmware is not on this board: sixflip provision" % link.port)
     try:
         link.put(FLAG, json.dumps(request).encode() if request else b"")
         board = link.board_id()
@@ -62,8 +66,9 @@ def join(link, face):
     return True
 
 
-def stop(link):
-    """After Ctrl-C: end the session on the board; a sentence on what is kept."""
+def stop(link, again="sixflip calibrate --continue"):
+    """After Ctrl-C: end the session on the board; a sentence on what is kept. again: the command
+    that goes on with it."""
     kept = 0
     with contextlib.suppress(SixflipError, OSError):
         link.send("")  # what was being sent
@@ -76,6 +81,6 @@ def stop(link):
     if getattr(link, "thrown_away", False):
         return "stopped; of a replay nothing is kept"
     if kept:
-        return ("stopped; the %s samples so far stay on the board: sixflip calibrate --continue "
-                "goes on with them, sixflip pull fetches them" % kept)
+        return ("stopped; the %s samples so far stay on the board: %s goes on with them, "
+                "sixflip pull fetches them" % (kept, again))
     return "stopped; nothing on the board has changed"

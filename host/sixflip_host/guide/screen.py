@@ -150,12 +150,12 @@ def foot(state, asking):
     return Text(KEYS_OVER if state.stage == OVER else KEYS, "dim")
 
 
-def beside(left, right, rows):
-    """Two columns as one."""
+def beside(left, right, rows, columns=LEFT):
+    """Two columns as one; so many columns of the left one."""
     out = []
     for k in range(rows):
         line = left[k].copy() if k < len(left) else Text("")
-        line.append(" " * max(0, LEFT - len(line)))
+        line.append(" " * max(0, columns - len(line)))
         out.append(line + right[k] if k < len(right) else line)
     return out
 

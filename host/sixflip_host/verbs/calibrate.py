@@ -5,7 +5,8 @@ from ..board import calibration_request, typed_lines
 from ..board.board_events import events
 from ..board.console import Console
 from ..board.ending import Ending
-from ..board.ports import add_port, open_link
+from ..board.ports import HELP as PORT_HELP
+from ..board.ports import open_link
 from ..board.recording import Recording, RecordingLink
 from ..board.session_deadline import SessionDeadline
 from ..errors import Interrupted, UsageError
@@ -15,7 +16,8 @@ from ..planning import board_plan
 from ..terminal import plain
 
 HELP = "calibrate a board now, guided face by face"
-EXAMPLE = "sixflip calibrate\n         sixflip calibrate --replay capture.bin --speed 5"
+EXAMPLE = ("sixflip calibrate\n         sixflip calibrate --replay capture.bin --speed 5\n"
+           "         sixflip calibrate --all")
 FACES = ("Z+", "Z-", "X+", "X-", "Y+", "Y-")
 SILENCE_S = 30
 TOTAL_S = 4 * 3600     # whatever goes on: the longest plan takes an hour
@@ -23,9 +25,14 @@ TOTAL_S = 4 * 3600     # whatever goes on: the longest plan takes an hour
 
 def add_arguments(parser):
     where = parser.add_mutually_exclusive_group()
-    add_port(where)
+    where.add_argument("--port", metavar="PORT", action="append", help=PORT_HELP + "; with --all "
+                       "as often as there are boards (default: all of $SIXFLIP_PORT, or all that "
+                       "are plugged in)")
     add_input(where, "--replay", metavar="CAPTURE",
               help="no board: play a capture file through the firmware's own session")
+    parser.add_argument("--all", action="store_true", dest="tray",
+                        help="several boards in one jig, turned together, each with its own "
+                             "verdict")
     what = parser.add_mutually_exclusive_group()
     add_input(what, "--plan", metavar="FILE|NAME",
               help="a session of a plan (sixflip plan --save FILE), or paper, recommended")
@@ -117,6 +124,11 @@ def start(link, args, session, recorded=False):
 
 def checked(args):
     """The plan's session, None without; UsageError for what does not go together."""
+    if getattr(args, "tray", False):
+        alone(args)
+    elif isinstance(args.port, list) and len(args.port) > 1:
+        raise UsageError("--port %s: expected one, or --all for several boards in one jig"
+                         % " --port ".join(args.port))
     session = board_plan.session_of(args.plan, args.session) if args.plan else None
     if session is None and args.session != 1:
         raise UsageError("--session %d: only with --plan" % args.session)
@@ -132,10 +144,19 @@ def checked(args):
     return session
 
 
+def alone(args):
+    """UsageError for what --all does not go with: what is said of one board, and what is done in
+    one order, in which a board that misses a placement would hold up all others."""
+    for given, name in ((args.replay, "--replay"), (args.plan, "--plan"), (args.redo, "--redo"),
+                        (args.recording, "--record")):
+        if given:
+            raise UsageError("--all: not with %s, which is for one board" % name)
+
+
 def link_of(args, guided):
     """The board, or the replay in its place."""
     if not args.replay:
-        return open_link(args.port)
+        return open_link(args.port[0] if args.port else None)
     from ..guide.replay_link import ReplayLink
     return ReplayLink(args.replay, args.speed or (1.0 if guided else None))
 
@@ -178,6 +199,9 @@ def run(args):
     session = checked(args)
     from ..guide import terminal_guide
     guided = not args.plain and terminal_guide.possible()
+    if args.tray:
+        from ..tray import tray_guide
+        return tray_guide.run(args.port, {"continue": True} if args.go_on else None, guided)
     step = (lambda at: board_plan.step(session, at)) if session else None
     recording = recording_of(args, session)
     with link_of(args, guided) as link:

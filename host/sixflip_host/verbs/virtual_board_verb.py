@@ -1,5 +1,6 @@
 """sixflip virtual-board: a board to try the other commands on, without hardware."""
 
+import contextlib
 import json
 import time
 from pathlib import Path
@@ -12,6 +13,7 @@ from ..file_arguments import add_input, add_output
 from ..file_kinds import FLASH
 from ..virtual.micropython_fetch import cache_dir
 
+MOST_BOARDS = 64
 HELP = "run a virtual board and print its serial port"
 EXAMPLE = "sixflip virtual-board --sensor gy85"
 
@@ -31,6 +33,10 @@ def add_arguments(parser):
                    "--worlds` writes")
     parser.add_argument("--session", metavar="N", type=int, default=1,
                         help="which of the worlds in that file (default: the first)")
+    parser.add_argument("--boards", metavar="N", type=int, default=1,
+                        help="several in one jig, turned together, for sixflip calibrate --all; "
+                             "they lie in it as the jig does, upside down, a quarter turn on, on "
+                             "their edge, and so on")
     parser.add_argument("--json", action="store_true", help="the port and the flash, as JSON")
 
 
@@ -66,25 +72,57 @@ def more_of_it(given, session):
     return found[session - 1]
 
 
-def run(args):
+def boards_of(args, images, spec):
+    """The VirtualBoards of a command line: one that is asked, several in one jig, or one that
+    does as it was planned."""
     from ..virtual.asked_hand import AskedHand
+    from ..virtual.jig_hand import WAYS, JigHand
     from ..virtual.virtual_board import VirtualBoard
+    if len(images) == 1:
+        hand = None if spec["order"] else AskedHand()
+        return [VirtualBoard(spec, images[0], speed=args.speed, hand=hand)]
+    hand = JigHand({image: WAYS[k % len(WAYS)] for k, image in enumerate(images)})
+    return [VirtualBoard(dict(spec, seed=args.seed + k, **hand.first(image)), image,
+                         speed=args.speed, hand=hand.of(image)) for k, image in enumerate(images)]
+
+
+def say(args, boards):
+    """Where the boards are."""
+    rows = [{"port": board.port, "board": board.unique_id, "flash": str(board.image_path)}
+            for board in boards]
+    if args.json:
+        print(json.dumps({"format": 1, "kind": "sixflip virtual-board",
+                          **(rows[0] if len(rows) == 1 else {"boards": rows})}), flush=True)
+        return
+    for row in rows:
+        print("virtual board at %(port)s, flash in %(flash)s" % row)
+    if len(rows) == 1:
+        print("in another terminal: sixflip provision --port %s   (Ctrl-C here ends it)"
+              % rows[0]["port"], flush=True)
+        return
+    print("in another terminal   (Ctrl-C here ends it):\n"
+          "export SIXFLIP_PORT='%s'\n"
+          "for port in $SIXFLIP_PORT; do sixflip provision --port $port; done\n"
+          "sixflip calibrate --all" % " ".join(row["port"] for row in rows), flush=True)
+
+
+def run(args):
     if not args.speed > 0:
         raise UsageError("--speed %s: expected a number above 0" % args.speed)
+    if not 1 <= args.boards <= MOST_BOARDS:
+        raise UsageError("--boards %d: expected 1 to %d" % (args.boards, MOST_BOARDS))
     image = args.flash or cache_dir() / "virtual-board.flash"
     image.parent.mkdir(parents=True, exist_ok=True)
     spec = world_spec(args)
-    hand = None if spec["order"] else AskedHand()
-    with VirtualBoard(spec, image, speed=args.speed, hand=hand) as board:
-        if args.json:
-            print(json.dumps({"format": 1, "kind": "sixflip virtual-board", "port": board.port,
-                              "board": board.unique_id, "flash": str(image)}), flush=True)
-        else:
-            print("virtual board at %s, flash in %s" % (board.port, image))
-            print("in another terminal: sixflip provision --port %s   (Ctrl-C here ends it)"
-                  % board.port, flush=True)
+    if args.boards > 1 and spec["order"]:
+        raise UsageError("--boards: one hand turns the jig, not with an order in --world")
+    images = [image] + [image.with_name("%s-%d%s" % (image.stem, k, image.suffix))
+                        for k in range(2, args.boards + 1)]
+    with contextlib.ExitStack() as all_of_them:
+        boards = [all_of_them.enter_context(board) for board in boards_of(args, images, spec)]
+        say(args, boards)
         try:
-            while board.relay.is_alive():
+            while all(board.relay.is_alive() for board in boards):
                 time.sleep(0.2)
         except KeyboardInterrupt:
             pass

@@ -1,0 +1,1 @@
+"""Several boards in one jig, calibrated together: one guidance, each with its own verdict."""
