@@ -1,6 +1,7 @@
 """Every command in the README and in docs/ does what the page says: it is run, page by page,
 in an empty folder, against a virtual board where one is needed. Links lead somewhere."""
 
+import contextlib
 import os
 import re
 import subprocess
@@ -13,6 +14,7 @@ from sixflip.record import correction_record
 from sixflip_host import cli
 from sixflip_host.board import firmware_update
 from sixflip_host.board.board_link import MpremoteLink
+from sixflip_host.virtual.jig_hand import WAYS, JigHand
 from sixflip_host.virtual.virtual_board import VirtualBoard
 from tests.worlds.dds_loopback import LOOPBACK
 from tests.worlds.micropython_tier import SESSION
@@ -21,6 +23,7 @@ from tests.worlds.written_records import of_a_gy85
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = sorted((ROOT / "docs").glob("*.md"))
 NEEDS_A_BOARD = {"first-calibration.md"}
+NEEDS_A_TRAY = {"tray.md"}
 NEEDS_A_RECORD = {"robot-localization.md", "slam-toolbox.md"}
 
 
@@ -56,6 +59,16 @@ def test_the_commands_of_a_page(page, micropython, tmp_path, monkeypatch):
             board.power_cycle()
             for line in commands(page):
                 run(line, tmp_path, board.port)
+        return
+    if page.name in NEEDS_A_TRAY:
+        hand = JigHand({name: WAYS[number] for number, name in enumerate(("one", "two"))})
+        with contextlib.ExitStack() as jig:
+            boards = [jig.enter_context(VirtualBoard(
+                dict(SESSION, **hand.first(name)), tmp_path / (name + ".img"),
+                micropython=micropython, speed=50, hand=hand.of(name)))
+                for name in hand.mountings]
+            for line in commands(page):
+                run(line, tmp_path, " ".join(board.port for board in boards))
         return
     if page.name not in NEEDS_A_BOARD:
         for line in commands(page):

@@ -37,10 +37,11 @@ def tick(now_tray, now):
         return now_tray, []
     if awaited:
         now_tray = missing(now_tray, awaited)
-    halves = [member for member in now_tray.running if member.placements(now_tray.face) == 1]
+    halves = tuple(member.port for member in now_tray.running
+                   if member.placements(now_tray.face) == 1)
     if now_tray.letter == "a" and halves:
         had = now_tray.first_at is not None
-        now_tray = afresh(replace(now_tray, letter="b"))
+        now_tray = afresh(replace(now_tray, letter="b", flips=halves))
         return say(now_tray, "%s; %s" % (count(now_tray, 1), instruction(now_tray))) \
             if had else now_tray, []
     return whole(now_tray)
@@ -103,15 +104,19 @@ def onward(now_tray):
     if not wanted:
         return replace(now_tray, here={}, last=now_tray.face), []
     face = min(wanted, key=lambda one: (now_tray.visits.get(one, 0), ROUND.index(one)))
-    lies = now_tray.up() == face and face in now_tray.visits
+    lies = now_tray.up() == face and now_tray.visits.get(face)
     again = [member for member in running if member.own(face) and (
         member.placements(face) == 1 or lies and not member.placements(face))]
     return asked_again(turned(now_tray, face), face, again)
 
 
 def turned(now_tray, face):
-    """The jig is to be laid, or lies, with a face up."""
-    visits = {**now_tray.visits, face: now_tray.visits.get(face, 0) + 1}
+    """The jig is to be laid, or lies, with a face up. One that nobody took anything on is as if
+    it had not been asked for."""
+    visits = dict(now_tray.visits)
+    if now_tray.face and not now_tray.here and now_tray.letter == "a":
+        visits[now_tray.face] -= 1
+    visits[face] = visits.get(face, 0) + 1
     return afresh(replace(now_tray, face=face, letter="a", here={}, visits=visits,
                           last=now_tray.face if now_tray.here else now_tray.last))
 

@@ -101,9 +101,6 @@ def left(now_tray, port, sentence, now):
 def taken(now_tray, member, own):
     """A board took a placement on its face own: so the jig lies, and so the board sits in it."""
     face = lying(now_tray, member, own)
-    if member.mounting.get(own, face) != face:
-        now_tray = say(now_tray, "%s does not turn with the others: is it loose in the jig?"
-                       % member.name)
     if face != now_tray.face:
         now_tray = turned(now_tray, face)
     now_tray = sits(now_tray, now_tray.member(member.port), own, face)
@@ -132,4 +129,7 @@ def lying(now_tray, member, own):
 
 def sits(now_tray, member, own, face):
     """So a board sits in the jig: with its face own up when the jig's face is."""
+    if member.mounting.get(own, face) != face:
+        now_tray = say(now_tray, "%s does not turn with the others: is it loose in the jig?"
+                       % member.name)
     return put(now_tray, replace(member, mounting=jig.learned(member.mounting, own, face)))

@@ -16,6 +16,7 @@ class Tray:
     face, letter  the jig's face that is to be up, "" before the first, and "a" for its first
                  placement, "b" after half a turn
     here         {port: its own face} of the boards that took something on this face since
+    flips        ports of the boards that the half turn is for
     first_at     second at which the first of them took this placement, None before
     visits       {face: how often the person was led to it}; last: the face before
     reference    port of the board whose axes are the jig's
@@ -28,6 +29,7 @@ class Tray:
     face: str = ""
     letter: str = "a"
     here: dict = None
+    flips: tuple = ()
     first_at: float = None
     visits: dict = None
     last: str = ""
@@ -52,8 +54,10 @@ class Tray:
         """The boards that this placement is for: those that lack it and can still take it."""
         if not self.face:
             return []
-        before = "ab".index(self.letter)
-        return [one for one in self.running if one.placements(self.face) == before]
+        if self.letter == "a":
+            return [one for one in self.running if not one.placements(self.face)]
+        return [one for one in self.running
+                if one.port in self.flips and one.placements(self.face) == 1]
 
     def up(self):
         """The jig's face that is up, by most of its boards; "" where nobody knows."""

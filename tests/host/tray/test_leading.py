@@ -1,0 +1,156 @@
+"""A tray by its events: what the person is asked for, and who holds up whom (nobody anybody)."""
+
+import itertools
+
+import pytest
+
+from sixflip_host.board.console import GUIDED_ORDER
+from sixflip_host.tray import leading
+from sixflip_host.tray.jig import AS_THE_JIG, FACES, across, jig_to_own, learned
+from sixflip_host.virtual.jig_hand import WAYS
+from tests.worlds.tray_rig import Rig, ScriptedBoard
+
+UPSIDE_DOWN = WAYS[1]
+
+
+def verdicts(rig):
+    return {member.port: member.state.verdict for member in rig.tray.members if not member.gone}
+
+
+def all_ways():
+    """The 24 ways in which a board can lie in a jig, by where its Z+ and X+ are."""
+    for z, x in itertools.permutations(FACES, 2):
+        if z[0] != x[0]:
+            yield learned(learned({}, "Z+", z), "X+", x)
+
+
+def test_two_rests_tell_how_a_board_lies_in_the_jig():
+    ways = list(all_ways())
+    assert len({tuple(sorted(way.items())) for way in ways}) == 24
+    for way in ways:
+        assert sorted(way) == sorted(way.values()) == sorted(FACES)
+        assert way[across("Z+", "X+")] == across(way["Z+"], way["X+"])
+    assert learned(AS_THE_JIG, "Z+", "X+") == {"Z+": "X+", "Z-": "X-"}     # it came loose
+
+
+def test_eight_boards_in_eight_ways_are_led_together_through_one_round():
+    ways = [AS_THE_JIG, *list(all_ways())[::3][:7]]
+    rig = Rig({"p%d" % k: ScriptedBoard(way) for k, way in enumerate(ways)}).play()
+    assert rig.laid == GUIDED_ORDER
+    assert set(verdicts(rig).values()) == {"good"} and len(verdicts(rig)) == 8
+    assert [member.mounting for member in rig.tray.members] == ways
+    assert not rig.told
+
+
+@pytest.mark.parametrize("missed, again", [(2, "X+a X+b"), (3, "X+a X+b"), (0, "Z+a Z+b"),
+                                           (11, "Y-a")])        # as it lies, and turned
+def test_who_misses_a_pose_is_asked_for_its_face_at_the_end(missed, again):
+    rig = Rig({"p": ScriptedBoard(), "q": ScriptedBoard(UPSIDE_DOWN, misses=[missed]),
+               "r": ScriptedBoard(WAYS[2])}).play()
+    assert set(verdicts(rig).values()) == {"good"} and len(verdicts(rig)) == 3
+    assert rig.laid == GUIDED_ORDER + again.split()
+    face = jig_to_own(UPSIDE_DOWN)[again[:2]]
+    assert rig.told == [("q", {"cmd": "redo", "face": face})]
+    line = next(line for line in rig.tray.log if "not taken" in line)
+    assert line.startswith("2 (idq): %s" % again[:2]) and "at the end" in line
+
+
+def test_a_board_that_is_unplugged_leaves_and_the_others_go_on():
+    rig = Rig({"p": ScriptedBoard(lost_at=5), "q": ScriptedBoard(UPSIDE_DOWN),
+               "r": ScriptedBoard()}).play()
+    assert rig.laid == GUIDED_ORDER and verdicts(rig) == {"q": "good", "r": "good"}
+    assert rig.member("p").gone == "the board went away"
+    assert "1 (idp) leaves the tray: the board went away" in rig.tray.log
+
+
+@pytest.mark.parametrize("stuck_from", [0, 2, 5])
+def test_a_stuck_board_leaves_after_three_faces_and_holds_nobody_up(stuck_from):
+    """Even where it is the one that names the jig's faces."""
+    rig = Rig({"p": ScriptedBoard(stuck_from=stuck_from), "q": ScriptedBoard(UPSIDE_DOWN),
+               "r": ScriptedBoard(WAYS[3])}).play()
+    assert rig.laid == GUIDED_ORDER and verdicts(rig) == {"q": "good", "r": "good"}
+    assert "the readings do not change" in rig.member("p").gone
+    assert rig.told == [("p", {"cmd": "stop"})]
+
+
+def test_those_who_have_it_wait_for_a_capture_under_way_but_not_for_a_stuck_chip():
+    rig = Rig({port: ScriptedBoard() for port in "pqr"})
+    rig.hear("p", rig.boards["p"].lay(0, "Z+a"))
+    rig.hear("q", rig.boards["q"].lay(0, "Z+a")[:2])        # it captures
+    rig.boards["r"].stuck_from = 0
+    rig.hear("r", rig.boards["r"].lay(0, "Z+a"))
+    rig.take(leading.tick(rig.tray, leading.PATIENCE_S - 1))
+    assert rig.tray.letter == "a"
+    rig.hear("q", [{"event": "pose", "pose": "Z+a", "missing": rig.boards["q"].missing}])
+    assert rig.tray.letter == "b"
+
+
+def test_another_firmware_leaves_the_tray_and_is_told_to_stop():
+    rig = Rig({"p": ScriptedBoard(firmware="0.0.1"), "q": ScriptedBoard()}).play()
+    assert rig.laid == GUIDED_ORDER and verdicts(rig) == {"q": "good"}
+    assert rig.member("p").gone.startswith("its firmware is 0.0.1, expected ")
+    assert rig.told == [("p", {"cmd": "stop"})]
+
+
+@pytest.mark.parametrize("event, says", [
+    ({"event": "misfit", "of": "pose", "why": "pose: pose is 3"}, "firmware of this version"),
+    ({"event": "error", "what": "no usable sensor: nothing answers", "expected": "an MPU6050"},
+     "expected an MPU6050"),
+    ({"event": "ready"}, "no session began")])
+def test_a_board_without_a_session_leaves(event, says):
+    rig = Rig({"p": ScriptedBoard(says=[event]), "q": ScriptedBoard()})
+    assert says in rig.member("p").gone
+    assert verdicts(rig.play()) == {"q": "good"}
+
+
+def test_a_board_that_does_not_begin_holds_the_others_up_for_a_while_only():
+    rig = Rig({"p": ScriptedBoard(says=[]), "q": ScriptedBoard()})
+    assert not rig.tray.face and not rig.tray.over
+    rig.take(leading.tick(rig.tray, leading.START_S - 1))
+    assert not rig.tray.face
+    rig.take(leading.tick(rig.tray, leading.START_S + 1))
+    assert rig.tray.face == "Z+"
+
+
+def test_the_person_may_lay_the_jig_in_another_order():
+    """What is asked for follows; the first rest tells where the jig's Z+ is."""
+    rig = Rig({"p": ScriptedBoard(), "q": ScriptedBoard(UPSIDE_DOWN)})
+    for pose in ("Y-a", "Y-b", "X-a", "X-b"):
+        rig.lay(pose)
+    assert rig.tray.face == "Z+"
+    rig.play()
+    assert len(rig.laid) == 12 and set(verdicts(rig).values()) == {"good"}
+
+
+def test_a_face_again_for_all_by_each_ones_own_name():
+    rig = Rig({"p": ScriptedBoard(), "q": ScriptedBoard(UPSIDE_DOWN)})
+    for pose in GUIDED_ORDER[:5]:
+        rig.lay(pose)
+    rig.take(leading.redo(rig.tray, "Z+", rig.now))
+    assert rig.told == [("p", {"cmd": "redo", "face": "Z+"}), ("q", {"cmd": "redo", "face": "Z-"})]
+    assert rig.asked() == "Z+a" and rig.tray.log[-1] == "next: lay the jig down with Z+ up"
+    rig.lay("Z+a")
+    rig.take(leading.undo(rig.tray, rig.now))       # of what was laid last, as it lies
+    assert rig.tray.log[-2] == "next: Z+ again, as the jig lies"
+    rig.play()
+    assert set(verdicts(rig).values()) == {"good"}
+
+
+def test_boards_go_on_with_what_they_have():
+    rest = [pose for pose in GUIDED_ORDER if pose[0] == "Y"]
+    rig = Rig({"p": ScriptedBoard(missing=rest), "q": ScriptedBoard(UPSIDE_DOWN, missing=rest),
+               "r": ScriptedBoard(missing=["Y-b"])}).play()
+    assert len(verdicts(rig)) == 3 and set(verdicts(rig).values()) == {"good"}
+    assert rig.told == [("r", {"cmd": "redo", "face": "Y-"})]
+    assert len(rig.laid) <= 6
+
+
+def test_a_board_that_does_not_turn_with_the_jig_is_named():
+    rig = Rig({port: ScriptedBoard() for port in "pqr"})
+    for pose in GUIDED_ORDER[:4]:
+        rig.lay(pose)
+    rig.boards["r"].mounting = WAYS[2]
+    rig.lay("Y+a")
+    assert "3 (idr) does not turn with the others: is it loose in the jig?" in rig.tray.log
+    rig.play()
+    assert verdicts(rig)["p"] == verdicts(rig)["q"] == "good"
