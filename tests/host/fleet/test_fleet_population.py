@@ -1,10 +1,10 @@
 """What a batch shares and what single boards have, on fleets made by another code."""
 import numpy as np
 import pytest
-import simulated_fleet
-from simulated_fleet import drawn, row_of
 
 from sixflip_host.fleet import answer, hierarchy, judgement, members
+from tests.worlds import simulated_fleet
+from tests.worlds.simulated_fleet import drawn, row_of
 
 N = 24
 

@@ -3,12 +3,12 @@ import random
 import sqlite3
 
 import pytest
-from written_records import of_a_gy85
 
 from sixflip.record import correction_record
 from sixflip_host.errors import BadFile, UsageError
 from sixflip_host.fleet import analysis, manifest, sources
 from sixflip_host.history import store
+from tests.worlds.written_records import of_a_gy85
 
 HEAD = b"board,capture,batch\n"
 
