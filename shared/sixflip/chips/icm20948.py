@@ -1,7 +1,8 @@
 """TDK InvenSense ICM-20948: accelerometer, gyro and thermometer (its magnetometer is not used).
 
 Source: datasheet DS-000189 rev. 1.3, sections 7 to 10 (banks 0 to 2), tables 1, 2, 16 and 18;
-register numbers and bandwidths read beside SparkFun's ICM-20948 library.
+register numbers and bandwidths read beside SparkFun's ICM-20948 library, the FIFO's beside
+ICM20948_WE.
 """
 
 from sixflip.chips.banked import Banked

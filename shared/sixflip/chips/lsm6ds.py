@@ -3,7 +3,7 @@
 Sources: as in lsm6.py; LSM6DSOX DS12814 rev. 4, table 2, and LSM6DS3TR-C DocID030071 rev. 3,
 table 3: sensitivities; the LSM6DS3TR-C's filters as in tables 68 and 73 of DocID028475, the
 LSM6DSL, whose chain it is; the LSM6DSOX's gyro filter is table 53 of the ASM330LHH's datasheet,
-whose chain it is.
+whose chain it is. The LSM6DS3TR-C's FIFO read beside STMicroelectronics' lsm6ds3tr-c-pid.
 """
 
 from sixflip.chips.lsm6 import CTRL3, LSM6

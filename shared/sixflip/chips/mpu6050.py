@@ -2,7 +2,8 @@
 
 Source: MPU-6000/6050 register map RM-MPU-6000A-00 rev. 4.2; the relatives' temperature,
 accelerometer filter and offsets: MPU-6500 register map RM-MPU-6500A-00 rev. 2.1; the MPU6050's
-offsets: InvenSense application note "MPU Hardware Offset Registers" rev. 1.0.
+offsets: InvenSense application note "MPU Hardware Offset Registers" rev. 1.0. The FIFO read
+beside LibDriver's mpu6050.
 """
 
 from sixflip.chips.registers import filter_code, rate_divider
