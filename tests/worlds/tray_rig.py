@@ -16,10 +16,11 @@ class ScriptedBoard:
     first events, in place of those of a session that begins."""
 
     def __init__(self, mounting=AS_THE_JIG, misses=(), stuck_from=99, lost_at=99,
-                 firmware=__version__, missing=TWELVE, says=None):
+                 firmware=__version__, missing=TWELVE, says=None,
+                 gyro=True):
         self.mounting, self.misses = mounting, set(misses)
         self.stuck_from, self.lost_at = stuck_from, lost_at
-        self.firmware, self.says = firmware, says
+        self.firmware, self.says, self.gyro = firmware, says, gyro
         self.missing = list(missing)
         self.last = self.jig = ""
         self.rested = self.stopped = False
@@ -42,7 +43,7 @@ class ScriptedBoard:
         if not self.missing or self.stopped:
             return []
         state = {"event": "state", "state": "moving", "missing": list(self.missing),
-                 "live": [1000 * v for v in vector(own)], "reason": ""}
+                 "live": [1000 * v for v in vector(own)] + [0] * 3 * self.gyro, "reason": ""}
         if number >= self.stuck_from:
             return [dict(state, reason="stale")]
         if number in self.misses:
@@ -58,7 +59,8 @@ class ScriptedBoard:
         self.last, self.rested = free[0], True
         self.missing = [pose for pose in self.missing if pose != self.last]
         found = [state, dict(state, state="capturing", pose=self.last, left_s=4),
-                 {"event": "pose", "pose": self.last, "n": 400, "missing": list(self.missing)}]
+                 {"event": "pose", "pose": self.last, "n": 400, "missing": list(self.missing)},
+                 dict(state, missing=list(self.missing))]
         if not self.missing:
             found += [{"event": "capture", "samples": 5000},
                       {"event": "solved", "verdict": "good", "reason": "tilt 2.0 degrees"},

@@ -70,9 +70,11 @@ class Member:
         return "" if self.stuck else self.mounting.get(face_up(self.state), "")
 
     def without(self, face):
-        """The Member as it will be once it has obeyed a redo of the jig's face."""
+        """The Member as it will be once it has obeyed a redo of the jig's face; one that is over
+        waits for its session."""
         own = self.own(face)
         back = tuple(own + letter for letter in "ab")
         kept = {pose: n for pose, n in self.state.taken.items() if pose not in back}
         missing = back + tuple(pose for pose in self.state.missing if pose not in back)
-        return replace(self, state=replace(self.state, taken=kept, missing=missing))
+        stage = WAITING if self.state.stage == OVER else self.state.stage
+        return replace(self, state=replace(self.state, taken=kept, missing=missing, stage=stage))

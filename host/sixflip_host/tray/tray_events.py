@@ -20,6 +20,7 @@ from .tray_value import put, say
 from .tray_words import outcome
 
 CAPTURES = 3        # of one board on one placement that the others wait for
+CAPTURE_S = 60      # longest of them; the most samples that can be set, 5000, take 50 s at 100 Hz
 INFO = {"cmd": "info"}
 DONE = "already done"    # of a placement on a face that the board has whole
 ESSENTIAL = ("calibrating", "pose", "solved")   # events without which there is no calibration
@@ -67,7 +68,7 @@ def introduced(now_tray, member, event):
 
 def begins(member, now, patience):
     """The Member as it begins a capture: the others wait for it, but not for ever."""
-    until = now + (member.state.left_s + 1) * patience
+    until = now + (min(member.state.left_s, CAPTURE_S) + 1) * patience
     return replace(member, captures=member.captures + 1,
                    patient=until if member.captures < CAPTURES else member.patient)
 

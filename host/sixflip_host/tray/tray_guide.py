@@ -8,7 +8,7 @@ from ..board.console import Console
 from ..board.ports import VARIABLE
 from ..errors import Interrupted, NoBoard
 from ..guide import terminal_guide
-from ..terminal import console, plain, table, verdict_text
+from ..terminal import console, plain, say, table, verdict_text
 from . import tray_screen
 from .tray_session import TraySession
 from .tray_words import COLUMNS, results
@@ -91,8 +91,7 @@ def follow(session, guided):
             quit_early = in_lines(session)
         else:
             quit_early = TrayGuide(session).run()
-            for line in session.tray.log:
-                print(plain(line))
+            say(session.tray.log)
     except KeyboardInterrupt:
         quit_early = True
     session.end()

@@ -60,7 +60,7 @@ def marks(member, face):
 def row(tray, member):
     """Number, id, faces and what it does, in WIDTH columns."""
     awaited = member in tray.awaited()
-    line = Text("%s%2d %-9s" % ("▶" if awaited else " ", member.number,
+    line = Text("%s%2d %-8s" % ("▶" if awaited else " ", member.number,
                                 member.state.board[:SHORT]), "dim" if member.gone else "")
     for face in ROUND:
         line.append(marks(member, face))

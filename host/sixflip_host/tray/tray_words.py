@@ -41,7 +41,9 @@ def instruction(now_tray):
     if not now_tray.face:
         return "waiting for the boards to begin"
     if now_tray.letter == "b":
-        return "half a turn, flat on the table, %s stays up" % now_tray.face
+        lift = any(member.state.vector and not member.state.rate for member in now_tray.running)
+        return "half a turn, %s, %s stays up" % (
+            "lifted and put down again" if lift else "flat on the table", now_tray.face)
     for_all = len(now_tray.awaited()) == len(now_tray.running)
     whom = "" if for_all else " (for %s)" % ", ".join(
         str(member.number) for member in now_tray.awaited())

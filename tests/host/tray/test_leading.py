@@ -154,3 +154,30 @@ def test_a_board_that_does_not_turn_with_the_jig_is_named():
     assert "3 (idr) does not turn with the others: is it loose in the jig?" in rig.tray.log
     rig.play()
     assert verdicts(rig)["p"] == verdicts(rig)["q"] == "good"
+
+
+def test_a_face_again_when_all_are_done():
+    rig = Rig({"p": ScriptedBoard(), "q": ScriptedBoard(UPSIDE_DOWN)}).play()
+    rig.take(leading.redo(rig.tray, "X+", rig.now))
+    assert rig.told == [("p", {"cmd": "redo", "face": "X+"}), ("q", {"cmd": "redo", "face": "X+"})]
+    assert not rig.tray.over and rig.tray.face == "X+"
+    for port in rig.boards:
+        rig.hear(port, [{"event": "calibrating", "missing": ["X+a", "X+b"]}])
+    rig.play()
+    assert rig.laid == GUIDED_ORDER + ["X+a", "X+b"]
+    assert verdicts(rig) == {"p": "good", "q": "good"}
+
+
+def test_boards_without_a_gyro_are_lifted_for_the_half_turn():
+    rig = Rig({"p": ScriptedBoard(), "q": ScriptedBoard(gyro=False)})
+    rig.lay("Z+a")
+    assert rig.tray.log[-1].endswith("half a turn, lifted and put down again, Z+ stays up")
+
+
+def test_a_capture_that_says_it_takes_for_ever_is_not_waited_for():
+    rig = Rig({"p": ScriptedBoard(), "q": ScriptedBoard()})
+    rig.hear("p", rig.boards["p"].lay(0, "Z+a"))
+    for state in ("capturing", "moving") * 5:
+        rig.hear("q", [{"event": "state", "state": state, "left_s": 1e6}])
+    rig.take(leading.tick(rig.tray, 62))
+    assert rig.tray.letter == "b"
