@@ -21,7 +21,8 @@ FEWEST = 20  # innovations of a session
 # Standard deviations of a kurtosis that chance reaches once in 30,000; how much one axis' noise
 # may be above another's in a chip as it is [ADXL345 rev. E, table 1: Z 1.1 LSB, X and Y 0.75].
 KURTOSIS_SIGMAS, UNLIKE = 4.0, 1.5
-DOUBTFUL_P, DOUBTFUL_RATIO = 1e-3, 1.3  # white noise itself is known to some 5 %
+# Both sensors, turns, tails and axes share odds.CHANCE; covariances are true to some 15 %.
+DOUBTFUL_P, DOUBTFUL_RATIO = 1e-3, 1.3
 
 
 def usual(sensor, kind):
@@ -68,14 +69,23 @@ def of(units, statistics, scored, shaken=()):
         parts.append((chi2, max(freedom, 1.0)))
         before += float(one[0][point, 0]) - unit.freedom
     chi2, freedom = (sum(part[k] for part in parts) for k in (0, 1))
-    p = float(special.chdtrc(freedom, chi2))
-    worst = min(float(special.chdtrc(*part[::-1])) for part in parts)
+    known = [unit.rows.known for unit in units]
+    p = _by_chance(chi2, freedom, sum(k for k, u in zip(known, units) if not u.between))
+    worst = min(_by_chance(*part, k) for part, k in zip(parts, known))
     largest = max([chi2 / freedom] + [c / f for c, f in parts])
-    ok = not (min(p, 0.5 * worst) < DOUBTFUL_P and largest > DOUBTFUL_RATIO)
+    looks = len(parts) + 1  # at each of them, and at all together [Bonferroni]
+    ok = not (looks * min(p, worst) < DOUBTFUL_P and largest > DOUBTFUL_RATIO)
     odd, chance = _odd(units, scored, theta, shaken)
-    p = min(p, 0.5 * worst if not ok else 1.0, chance if odd else 1.0)
+    p = min(p, looks * worst if not ok else 1.0, chance if odd else 1.0)
     return Adequacy(ok and not odd, chi2 / freedom, p, tuple(index), chi2 - freedom, before,
                     tuple(parts), odd)
+
+
+def _by_chance(chi2, freedom, known):
+    """Probability of a larger chi2, the noise itself known with so many degrees of freedom."""
+    if not np.isfinite(known):
+        return float(special.chdtrc(freedom, chi2))
+    return float(special.fdtrc(freedom, known, chi2 / freedom))
 
 
 def _odd(units, scored, theta, shaken):

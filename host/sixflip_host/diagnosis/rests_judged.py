@@ -3,7 +3,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 from .. import progress
-from . import localisation, motion_model, odds, turn_model
+from . import localisation, motion_model, odds, stray_turns, turn_model
 from .detect.detection import present
 from .rest_model import RestModel
 
@@ -67,7 +67,8 @@ def of(rests, findings, settings, conditions):
 def _astray(turns):
     """[(Place, sentence)] of turns that end far from where gravity says: samples lost under a
     steady clock."""
-    nats, number = turn_model.astray(turns)
+    nats, number = stray_turns.nats([stray_turns.ends(
+        unit, turns.chosen, turn_model.ATTITUDE_DEG) for unit in turns.units])
     if not present(nats):
         return []
     return [(localisation.Place("gyro", None, "motion", 1.0, odds.chance(nats)),

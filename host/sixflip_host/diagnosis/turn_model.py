@@ -7,25 +7,22 @@ from sixflip_sim.effects import typical
 from sixflip_sim.effects.moment import Moment
 
 from ..experiment import covariance, linear_model, noise_arrays, nominal_rows, terms, turns
+from . import stray_turns
 from .detect import axis_order, wrong_scale
 from .detect.detection import Finding, present
 from .evidence import Levels
 from .rest_model import RestModel
 
 EFFECTS = ("asymmetry", "quadratic", "cubic", "thermal_scale")
-LEVELS_DEG = tuple(0.03 * 1.35 ** k for k in range(18))
 ATTITUDE_DEG = 0.03  # of gravity's direction at rest
-FLIP_DEG = 0.6  # of half a turn by hand; 0.4 is usual (METHOD section 2)
+FLIPS_DEG = (0.2, 0.4, 0.8, 1.6, 3.2)  # of half a turn by hand: a level of its own
+FLIP_DEG = 0.4  # what is usual (METHOD section 2)
 FEWEST_MOVES = 6
 WRONG_DEG = 25.0  # of a turn's end: as of a label that gravity contradicts (blocks.FAR_OFF_DEG)
 OFF_DEG = 6.0  # of a turn's end by a gyro not yet calibrated: a few percent of a half turn
 ORDERS = 48  # signed permutations
-LATE_S = 0.1  # the longest delay of the library's filter_lag
 BANDS_DPS = (1.0, 4.0)  # widths over which a dead band bends the rates beyond it
 TIMES = (1.0, 10.0)  # the usual width of a dead band: no data sheet gives one
-ROUNDS = 6  # of weighting turns by how far they are off
-FAR_DEG, FAR_TIMES = (5.0, 15.0, 45.0), 5.0  # a tenth of a second that is lost, and more
-SHARES = (0.01, 0.03, 0.1, 0.3)  # tried, of turns that are far off
 USUAL_DEG = 0.25  # of a move from rest to rest, beside white noise
 
 
@@ -44,7 +41,8 @@ def design(name, chosen, reference_c, chip):
 
 
 class TurnModel(RestModel):
-    """The gyro in motion: no flicker, and no bias between the sessions."""
+    """The gyro in motion: no bias between the sessions, and in flicker's place how far half a turn
+    by hand is off."""
 
     drifts = False
     form = 0.06  # turns are linear in an effect only while it is small: a quarter of its size
@@ -62,62 +60,23 @@ class TurnModel(RestModel):
             reference = self.conditions.reference_c
             designs.append(nameless(chosen, "thermal_orientation",
                                     lambda turn: _of_temperature(turn, reference)))
-        bases = [np.diag(([ATTITUDE_DEG] * 2 + [FLIP_DEG] * t.flip) / np.array(t.seconds)) ** 2
+        bases = [np.diag(([ATTITUDE_DEG] * 2 + [0.0] * t.flip) / np.array(t.seconds)) ** 2
                  + wandering for t, wandering in zip(chosen, turns.wandering(chosen))]
+        by_hand = [np.diag([0.0, 0.0] + [t.seconds ** -2.0] * t.flip) for t in chosen]
         groups = covariance.apart(bases, [np.eye(len(b)) / t.seconds
-                                          for b, t in zip(bases, chosen)])
-        rows = nominal_rows.Rows(y, groups, turns.nuisance(chosen), (LEVELS_DEG, (0.0,)))
+                                          for b, t in zip(bases, chosen)], by_hand)
+        flips = FLIPS_DEG if any(t.flip for t in chosen) else (FLIP_DEG,)
+        rows = nominal_rows.Rows(y, groups, turns.nuisance(chosen),
+                                 (stray_turns.LEVELS_DEG, flips))
         return linear_model.unit(
             rows, designs, wanted, turns=chosen,
             signature=("turns", tuple((t.flip, round(t.turned, -1)) for t in chosen)))
 
     def usual(self):
-        return Levels(USUAL_DEG, 1.0, 1.0)
+        return Levels(USUAL_DEG, FLIP_DEG, 1.0)
 
     def between(self, units, nominal):
         return []
-
-
-def astray(gap):
-    """(nats, turns) of some turns being off by far more than the others, as where samples
-    were lost in them, against all being alike: what is left across gravity of each turn in
-    degrees, beside what its bias may be off normal of one size, or of one and of a far
-    larger one for a share of the turns."""
-    left, known = (np.concatenate(v) for v in zip(*(_left(gap, unit) for unit in gap.units)))
-    levels = np.array(LEVELS_DEG + FAR_DEG)
-    variances = known[None] + levels[:, None, None] ** 2
-    each = -0.5 * (left ** 2 / variances + np.log(variances)).sum(axis=2)  # (levels, turns)
-    alike, tried = float(each.sum(axis=1).max()), []
-    for k, level in enumerate(levels):
-        for far in np.flatnonzero(levels >= max(FAR_TIMES * level, FAR_DEG[0])):
-            for share in SHARES:
-                near, off = np.log1p(-share) + each[k], np.log(share) + each[far]
-                both = np.logaddexp(near, off)
-                tried.append((float(both.sum()), float(np.exp(off - both).sum())))
-    best, number = max(tried)
-    return best - alike - np.log(len(SHARES) * len(FAR_DEG)), number
-
-
-def _left(gap, unit):
-    """(turns, 2) degrees that scale, misalignment, bias and the effects found leave of each
-    turn across gravity, turns far off counting little in the fit; (turns, 2) deg^2 that the
-    bias and gravity's direction may make of it."""
-    y, columns, chosen = unit.rows.y, unit.rows.nuisance, unit.turns
-    for form in gap.chosen:
-        columns = np.hstack([columns, unit.raw(form.columns)])
-    seconds = np.array([t.seconds for t in chosen])
-    first = np.cumsum([0] + [3 if t.flip else 2 for t in chosen])[:-1]
-    rows = np.stack([first, first + 1], 1)
-    wander = np.array([np.diag(block)[:2] for block in turns.wandering(chosen)])
-    known = wander * seconds[:, None] ** 2 + ATTITUDE_DEG ** 2
-    y, columns, weights = y[rows.ravel()], columns[rows.ravel()], np.ones(len(chosen))
-    for _ in range(ROUNDS):
-        w = np.repeat(np.sqrt(weights) * seconds, 2)
-        theta = np.linalg.lstsq(columns * w[:, None], y * w, rcond=1e-9)[0]
-        left = ((y - columns @ theta) * np.repeat(seconds, 2)).reshape(-1, 2)
-        squares = (left ** 2 / known).sum(axis=1)
-        weights = 1.0 / (1.0 + squares / max(2.0 * np.median(squares), 1e-12))
-    return left, known
 
 
 def _bends(turn):

@@ -41,6 +41,14 @@ def white(counts, first, end, rate):
     return np.maximum(np.sqrt(squares / number / 2.0 * m / rate), floor)
 
 
+def freedom(first, end, rate):
+    """Degrees of freedom with which white() knows the noise of three axes together: squares of
+    differences of neighbours, of which a mean over N has a relative variance of 3 / N [von
+    Neumann et al., Ann. Math. Stat. 12 (1941) 153]."""
+    number = ((end - first) // max(1, int(SUBMEAN_S * rate)) - 1).clip(min=0).sum()
+    return max(2.0 * float(number), 1.0)
+
+
 def vibration(capture, first, end):
     """mg rms above the quietest tenth of the blocks; zero where nothing stands out."""
     if not len(first):

@@ -42,12 +42,13 @@ def alone(base, lateral, kernel):
     return [Group(slice(0, n), base, lateral, kernel, none, none, np.zeros(0), np.eye(n))]
 
 
-def apart(bases, laterals):
-    """[Group] of groups that have no flicker: base (r, r) and lateral (r, q) of each."""
+def apart(bases, laterals, kernels):
+    """[Group] of groups that leave nothing to those after them: base (r, r), lateral (r, q) and
+    kernel (r, r) of each, the last with a level of its own."""
     found, start = [], 0
-    for base, lateral in zip(bases, laterals):
+    for base, lateral, kernel in zip(bases, laterals, kernels):
         n, none = len(base), np.zeros((len(base), 0))
-        found.append(Group(slice(start, start + n), base, lateral, np.zeros((n, n)), none, none,
+        found.append(Group(slice(start, start + n), base, lateral, kernel, none, none,
                            np.zeros(0), np.eye(n)))
         start += n
     return found

@@ -5,11 +5,11 @@ box; with a certified box only what changes sign with the flip); two free angles
 placement. Of the gyro: a bias and the Earth's vertical rate. Their covariance is white / n +
 placement + flicker.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from . import covariance
+from . import block_noise, covariance
 from .attitude_fit import face_axes
 from .projection import lateral_basis
 
@@ -121,7 +121,8 @@ def _groups(session, values, noise, rounding, directions):
 class Rows:
     """Readings of one session before projection: y (n,), groups (list of covariance.Group),
     nuisance (n, p), bias: which of its columns are the sensor's, levels (of placement, of
-    flicker), common (n, c): columns whose coefficients have a standard deviation of 1."""
+    flicker), common (n, c): columns whose coefficients have a standard deviation of 1, known:
+    degrees of freedom with which the size of its noise is known."""
 
     y: np.ndarray
     groups: list
@@ -129,6 +130,7 @@ class Rows:
     levels: tuple
     bias: tuple = ()
     common: np.ndarray | None = None
+    known: float = np.inf
 
     def loosened(self):
         """The same rows where every placement is free across its lateral directions."""
@@ -136,8 +138,7 @@ class Rows:
             g.rows, g.base, np.zeros((len(g.base), 0)), g.kernel, g.from_before, g.to_later,
             g.decay, covariance.across(g.lateral) if g.lateral.shape[1] else g.basis)
             for g in self.groups]
-        return Rows(self.y, groups, self.nuisance, (self.levels[0][:1], self.levels[1]),
-                    self.bias, self.common)
+        return replace(self, groups=groups, levels=(self.levels[0][:1], self.levels[1]))
 
 
 def rows(kind, session, nominal, certified=False):
@@ -152,7 +153,7 @@ def rows(kind, session, nominal, certified=False):
     groups = _groups(session, session.accel, session.noise_accel, session.rounding_accel,
                      directions)
     return Rows(accel_rows(session, nominal), groups, accel_nuisance(session, nominal, certified),
-                (PLACEMENT_MG, FLICKER_MG), (0, 4, 8))
+                (PLACEMENT_MG, FLICKER_MG), (0, 4, 8), None, _known(session))
 
 
 def _gyro_rows(session, nominal):
@@ -161,7 +162,12 @@ def _gyro_rows(session, nominal):
     groups = _groups(session, session.gyro, session.noise_gyro, session.rounding_gyro,
                      lambda place, placement: (lateral_basis(nominal.up[placement]), None))
     return Rows(session.gyro.reshape(-1), groups, np.kron(np.ones((session.n, 1)), np.eye(3)),
-                (EARTH_DPS, FLICKER_DPS), (0, 1, 2), EARTH_UP_DPS * up.reshape(-1, 1))
+                (EARTH_DPS, FLICKER_DPS), (0, 1, 2), EARTH_UP_DPS * up.reshape(-1, 1),
+                _known(session))
+
+
+def _known(session):
+    return block_noise.freedom(session.first, session.end, session.rate)
 
 
 def signature(session):
