@@ -9,6 +9,7 @@ makes all samples likelier than the same jumps do without a name.
 import math
 
 import numpy as np
+from scipy import ndimage
 
 from ...capture import registers
 from .. import odds
@@ -20,6 +21,7 @@ FEWEST = 50  # samples before the noise of a column is known
 SHARES = tuple(10.0 ** np.arange(-5.0, -0.49, 0.25))  # tried, of torn samples and of jumps
 FREEDOM = (5.0, 15.0, 200.0)  # of Student's t: how heavy the tails of the noise are
 CALM = 8.0  # standard deviations that the neighbours of a sample at rest may span
+LONG = 25  # samples on each side: their median errs by a sixth of the noise
 LOUD = (2.0, 3.0, 5.0)  # times the noise, of samples that are louder without a name
 NEAR = 2.0  # standard deviations within which a sample's chance of a jump is small
 LEAST = 1e-200  # of a density: what a float still divides by
@@ -148,11 +150,12 @@ def tabled(column, banded):
     beside = around[:, [0, 1, 2, 4, 5, 6]]
     noise = 1.4826 / np.sqrt(2.0) * float(np.median(np.abs(np.diff(column))))
     calm = np.ptp(beside, axis=1) < CALM * max(noise, 1.0)
-    level = np.where(calm, np.median(beside, axis=1),
+    long, same = _long(column, noise)
+    level = np.where(calm, np.where(same, long, np.median(beside, axis=1)),
                      (4.0 * (around[:, 2] + around[:, 4]) - around[:, 1] - around[:, 5]) / 6.0)
     off = around[:, 3] - level
     sigma = np.ones(len(off))
-    for mask in (calm, ~calm):
+    for mask in (calm & same, calm & ~same, ~calm):
         if mask.any():
             sigma[mask] = max(1.4826 * float(np.median(np.abs(off[mask]))), 1.0)
     keep = sigma < BLURRED
@@ -168,6 +171,17 @@ def tabled(column, banded):
         same = around[:, neighbour] // PAGE == around[:, 3] // PAGE
         out += [same, ~same]
     return np.array(out, float)
+
+
+def _long(column, noise):
+    """((n,) median of many samples around, whether it is the same before and after). A page's
+    edge stands still while a level known by few neighbours moves: which page a sample is likely
+    to have had would be told from how far that level is off."""
+    level = ndimage.median_filter(column, 2 * LONG + 1, mode="nearest").astype(float)
+    change = np.abs(level[2 * LONG:] - level[:-2 * LONG])
+    same = np.zeros(len(column), bool)
+    same[LONG:-LONG] = change < max(noise, 1.0)
+    return level[3:-3], same[3:-3]
 
 
 def student(z, freedom):
