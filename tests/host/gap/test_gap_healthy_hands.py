@@ -1,4 +1,4 @@
-"""What hands do and how far noise is known is no gap: it is in the model, with levels of its own."""
+"""What hands do, and how far noise is known, is in the model with levels of its own: no gap."""
 import numpy as np
 import pytest
 
