@@ -1,7 +1,7 @@
 """Turns that end far from where gravity says while the others do not, as where samples were lost.
 
-What is left across gravity of each turn, degrees, is either of one kind, normal or with the heavier
-tails of a hand (Student's t), or of that kind and of a far larger one for a share of the turns.
+What is left across gravity of each turn, degrees, is either of one kind, normal or with the
+heavier tails of a hand (Student's t), or of that kind and of a far larger one for a share of them.
 Each is judged by its likelihood with scale, misalignment and bias integrated out [Laplace's
 method; Kass & Raftery, J. Am. Stat. Assoc. 90 (1995) 773]: in a session with few turns these bend
 to most of them, and the turn that they do not bend to is not far off for that.
