@@ -72,7 +72,7 @@ def missing(now_tray, awaited):
     for member in awaited:
         now_tray = say(now_tray, "%s: %s%s not taken: %s; it comes again at the end" % (
             member.name, now_tray.face, " after its half turn" if now_tray.letter == "b" else "",
-            why_not(member)))
+            why_not(member, now_tray.now)))
     return now_tray
 
 
@@ -86,7 +86,7 @@ def whole(now_tray):
         now_tray = put(now_tray, member)
         if lacks and member.missed >= MISSES:
             now_tray = leaves(now_tray, member, "%d faces in a row not taken: %s" % (
-                MISSES, why_not(member)))
+                MISSES, why_not(member, now_tray.now)))
             commands.append((member.port, STOP))
     now_tray, more = onward(now_tray)
     return now_tray, commands + more

@@ -5,6 +5,7 @@ from ..guide.board_values import text
 from ..guide.next_step import why_it_waits
 from ..guide.session_state import CALIBRATING, SOLVING, WAITING
 
+SILENT_S = 3
 COLUMNS = ("board", "port", "verdict", "saved", "why")
 
 
@@ -23,9 +24,12 @@ def why_none(member):
     return member.gone or member.state.error or "its session ended without one"
 
 
-def why_not(member):
+def why_not(member, now):
     """Why a board takes nothing."""
-    return why_it_waits(member.state) or member.state.refusal or "it does not say why"
+    if now - member.state.now > SILENT_S:   # a live state comes four times a second
+        return "it has said nothing for %d s" % (now - member.state.now)
+    state = member.state
+    return why_it_waits(state) or state.refusal or state.box or "it does not say why"
 
 
 def count(now_tray, placements):
@@ -89,7 +93,7 @@ def status(now_tray, member):
         return "captured %d %%" % (100 * state.progress / max(1, state.total))
     if member not in now_tray.awaited():
         return "has it"
-    return why_it_waits(state) or state.box
+    return why_not(member, now_tray.now)
 
 
 def results(now_tray, passed):

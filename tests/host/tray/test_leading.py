@@ -181,3 +181,14 @@ def test_a_capture_that_says_it_takes_for_ever_is_not_waited_for():
         rig.hear("q", [{"event": "state", "state": state, "left_s": 1e6}])
     rig.take(leading.tick(rig.tray, 62))
     assert rig.tray.letter == "b"
+
+
+def test_a_board_that_hangs_is_said_to_be_silent():
+    rig = Rig({"p": ScriptedBoard(), "q": ScriptedBoard()})
+    rig.lay("Z+a")
+    rig.lay("Z+b")
+    rig.now += 10
+    rig.hear("p", rig.boards["p"].lay(2, "X+a"))
+    rig.take(leading.tick(rig.tray, rig.now + leading.PATIENCE_S))
+    assert any(line.startswith("2 (idq): X+ not taken: it has said nothing for ")
+               for line in rig.tray.log)

@@ -7,7 +7,7 @@ from hypothesis import strategies as some
 from sixflip_host.board import board_schema
 from sixflip_host.board.console import GUIDED_ORDER
 from sixflip_host.tray import leading, tray_events, tray_screen
-from sixflip_host.tray.tray_guide import TrayGuide
+from sixflip_host.tray.tray_guide import TrayGuide, obey
 from sixflip_host.tray.tray_value import tray
 from sixflip_host.tray.tray_words import COLUMNS, results
 from tests.worlds.tray_rig import Rig, ScriptedBoard
@@ -108,3 +108,12 @@ def test_what_keys_mean(laid, pressed, asked, leave, quits):
         guide.press(key)
         assert len(guide.lines()) == 24
     assert (guide.session.asked, guide.leave, guide.quit) == (asked, leave, quits)
+
+
+@pytest.mark.parametrize("line, asked, quits, says", [
+    ("redo x+", ["X+"], False, 0), ("undo", ["undo"], False, 0), ("quit", [], True, 0),
+    ("redo L1", [], False, 1)])
+def test_what_typed_lines_mean(line, asked, quits, says):
+    session, said = Session(3), []
+    assert obey(session, line, said.append) == quits
+    assert (session.asked, len(said)) == (asked, says)
