@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 export SIXFLIP_CACHE ?= $(CURDIR)/.cache
 
-.PHONY: help setup micropython demo test test-qemu test-pico size check bench bench-accuracy fidelity real blind \
+.PHONY: help setup micropython demo test test-qemu test-pico size check bench bench-accuracy bench-fleet fidelity real blind \
 	blind-studies zoo reproduce pictures box package.json clean
 
 help:
@@ -17,7 +17,8 @@ help:
 	@echo "make size            flash and heap of every module of the firmware, and what its start takes"
 	@echo "make check           ruff"
 	@echo "make bench-accuracy  vector error against imucal, imu_calib and the theoretical bound"
-	@echo "make bench           that, and every other benchmark"
+	@echo "make bench-fleet     sixflip fleet: boards a second, memory, workers and schedulers that die"
+	@echo "make bench           all but that: every other benchmark"
 	@echo "make fidelity        the simulator against real recordings"
 	@echo "make real            every claim on real recordings beside a plain computation"
 	@echo "make blind           the diagnosis on sealed cases of an independent generator"
@@ -59,8 +60,13 @@ check: setup
 bench-accuracy: setup
 	@$(BIN)/python -m tests.studies.bench.accuracy
 
+# BOARDS="100 1000" boards; FLEETS=10 fleets of 200 for what the batch has and single boards have
+bench-fleet: setup
+	@$(BIN)/python -m tests.studies.bench.fleet --boards $(or $(BOARDS),100 1000)
+	@$(BIN)/python -m tests.studies.bench.fleet_population --fleets $(or $(FLEETS),10)
+
 bench: bench-accuracy
-	@for each in $(filter-out __init__ accuracy,$(basename $(notdir $(wildcard tests/studies/bench/*.py)))); do \
+	@for each in $(filter-out __init__ accuracy fleet fleet_population,$(basename $(notdir $(wildcard tests/studies/bench/*.py)))); do \
 		echo; echo "== $$each"; $(BIN)/python -m tests.studies.bench.$$each || exit 1; done
 
 fidelity: setup

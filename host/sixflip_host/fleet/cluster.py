@@ -45,7 +45,7 @@ def _dask():
 def connected(target):
     """A distributed.Client; UsageError or CheckFailed in one sentence where none can be had."""
     distributed = _dask()
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    _quiet()
     if target.scheduler is None:
         import dask
         with dask.config.set({"distributed.admin.tick.limit": "60s"}), distributed.LocalCluster(
@@ -60,6 +60,13 @@ def connected(target):
     finally:
         with contextlib.suppress(Exception):
             client.close(timeout=2)
+
+
+def _quiet():
+    """Dask's loggers have a level each; what they would say is said in one sentence here."""
+    for name in list(logging.root.manager.loggerDict):
+        if name.split(".")[0] in ("distributed", "tornado", "asyncio"):
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)
 
 
 def _client(distributed, scheduler):
@@ -133,7 +140,8 @@ def _own_version():
 
 
 def _short(error):
-    return (str(error) or type(error).__name__).split("\n")[0][:120]
+    words = (str(error) or type(error).__name__).split("\n")[0]
+    return words.rpartition("cancelled for reason: ")[2].rstrip(".")[:120]
 
 
 def rows_of(boards, keep):
