@@ -31,6 +31,7 @@ SDF = "a sensor in SDF"
 KALIBR = "an imu.yaml of Kalibr"
 TABLE = "a table of noise and bias"
 DIAGNOSIS = "a diagnosis as JSON"
+RANDOMISATION = "a randomisation of sixflip fleet"
 FLEET = "a population of sixflip fleet"
 PUT_BACK = "a simulator's settings"
 JSON = "a JSON object"
@@ -50,6 +51,7 @@ SIGNS = (
     (PNG, b"\x89PNG", b""),
     (PAGE, b"<!doctype html><html lang=en><meta charset=utf-8><meta http-equiv", b""),
     (JUNIT, b"<?xml", b'<testsuite name="sixflip'),
+    (RANDOMISATION, b'"""', b"sixflip fleet --randomise"),
     (PUT_BACK, b"", b"put back by sixflip export"),
     (SDF, b"<?xml", b"stddev = N sqrt(rate)"),
     (SCENARIO, b"#", b"`sixflip diagnose` found"),

@@ -91,6 +91,10 @@ def _key(units, forms, levels, points):
         h.update(repr((unit.signature, unit.freedom, point)).encode())
     h.update(repr((levels, sorted(
         (f.effect, f.variant, str(f.axis), f.record, len(f.shared)) for f in forms))).encode())
+    for form in forms:
+        if form.of_fleet:  # of data sheets the sizes belong to the program
+            h.update(repr((form.effect, form.variant, str(form.axis), [
+                "%.2g" % x for x in form.shared.prior])).encode())
     return h.hexdigest()[:24]
 
 

@@ -8,20 +8,22 @@ from .detect import byte_faults
 from .settings import Settings
 
 
-def diagnose(captures, simulator=(), reference=(), certified_box=False, without=(), jobs=0):
+def diagnose(captures, simulator=(), reference=(), certified_box=False, without=(), jobs=0,
+             prior=None):
     """The diagnosis.Diagnosis of captures.
 
     captures, simulator   [(name, Capture)], one a session
     reference  [(name, Capture)] of one capture at rest, to know the noise by, or empty
     certified_box  the box is known to be square; without: effects left out of the library
     jobs       threads, 0: one a core
+    prior      fleet_prior.FleetPrior of boards of this kind, None: the data sheets' sizes
     """
     captures, damages = byte_faults.repaired(captures)
     sessions = [blocks.of(name, capture) for name, capture in captures]
     noise = {}
     for name, capture in reference:
         noise = noise_reference.levels(capture, name)
-    settings = Settings(certified_box, tuple(without), noise, jobs)
+    settings = Settings(certified_box, tuple(without), noise, jobs, prior=prior)
     own, comparisons = None, []
     if simulator:
         from .simulator import against_simulator, comparison, put_right

@@ -22,7 +22,7 @@ class Form:
     each session takes one for its own (index: all columns that are in them); free, names of
     levels that may be anything. effect, variant, axis, keys, axes, powers, record, columns and
     prior are those of the design behind it; discrepancy: columns of the strangers of its own
-    variable are beside those, with the power BESIDE."""
+    variable are beside those, with the power BESIDE; of_fleet: the prior is a population's."""
 
     effect: str
     variant: str = ""
@@ -36,6 +36,7 @@ class Form:
     powers: tuple = ()
     record: bool = False
     discrepancy: bool = False
+    of_fleet: bool = False
 
     @property
     def generic(self):
@@ -103,6 +104,24 @@ def of(units, without=(), drift=True):
     for name, (level, _) in FREE.items():
         if drift and name not in without:
             found.append(Form(name, free=frozenset([level])))
+    return found
+
+
+def by_fleet(forms, sensor, prior):
+    """The forms with the standard deviations of a FleetPrior where it has them; None: as they
+    are. Bends beside a slope keep their own."""
+    if prior is None:
+        return forms
+    found = []
+    for form in forms:
+        told = [None if power != 1 else prior.deviation(sensor, form.effect, key, usual)
+                for key, power, usual in zip(form.keys, form.powers, form.shared.prior)]
+        if form.generic or not any(told):
+            found.append(form)
+            continue
+        own = np.array([usual if one is None else one
+                        for one, usual in zip(told, form.shared.prior)])
+        found.append(replace(form, shared=Columns(form.shared.index, own), of_fleet=True))
     return found
 
 

@@ -136,7 +136,8 @@ class RestModel:
         units = [self.unit(*part, self.settings.certified) for part in parts]
         units += self.between(units, nominal)
         data = coefficient_fits.Data(units)
-        options = hypotheses.of(units, self.settings.without, self.drifts)
+        options = hypotheses.by_fleet(hypotheses.of(units, self.settings.without, self.drifts),
+                                      self.kind, self.settings.prior)
         noise = self.usual()
         # A square beside a slope is for the board's record; here a discrepancy stands for it.
         forms = [f for f in options if not f.record]

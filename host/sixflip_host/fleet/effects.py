@@ -3,8 +3,7 @@
 A population cannot be made of what was found in single boards: what is too small there is
 missing, and what was found is too large. So every board gives, for the same columns, the precision
 Λ = S' C^-1 S and the score Λ θ = S' C^-1 z of the diagnosis' own linear model, summed over its
-sessions (experiment/linear_model.py; levels of placement and flicker by restricted likelihood with
-these columns in).
+sessions (experiment/linear_model.py), over the levels of placement and flicker that it may have.
 """
 from dataclasses import dataclass
 
@@ -12,7 +11,7 @@ import numpy as np
 
 from sixflip_sim.effects.library import EFFECTS
 
-from ..diagnosis import hypotheses, usable_rests
+from ..diagnosis import adequacy, evidence, hypotheses, usable_rests
 from ..experiment import linear_model, nominal_rows, terms
 
 # One form of each effect that rests can show, the likeliest cause first: where a protocol cannot
@@ -22,6 +21,8 @@ FORMS = {
               ("creep", "tau 60 s"), ("hysteresis", ""), ("warm_up", "tau 120 s")),
     "gyro": (("thermal_bias", ""), ("g_sensitivity", ""), ("warm_up", "tau 120 s"),
              ("hysteresis", ""))}
+NEGLIGIBLE = 7.0  # nats: of levels that are a thousand times less likely than the best
+FLOOR = 1000.0  # times its prior: what a column that shows nothing is known to
 MATRIX = tuple(a + b for a in "xyz" for b in "xyz")  # gyro axis, then accelerometer axis
 
 
@@ -36,11 +37,10 @@ NAMES = {sensor: tuple("%s.%s.%s" % (sensor, effect, key) for effect, _ in forms
 @dataclass(frozen=True, eq=False)
 class Information:
     """precision (k, k) and score (k,) of the coefficients NAMES[sensor]; zero where a board's
-    sessions say nothing. levels: of placement and flicker, mg or deg/s, of each session."""
+    sessions say nothing."""
 
     precision: np.ndarray
     score: np.ndarray
-    levels: tuple = ()
 
 
 def nothing(sensor):
@@ -78,28 +78,48 @@ def _of_sensor(sensor, sessions, rests, chip):
         names = ["%s.%s.%s" % (sensor, d.effect, key) for d in designs for key in d.keys]
         units.append(linear_model.unit(nominal_rows.rows(sensor, session, nominal), designs))
     prior = hypotheses.TYPICAL * np.concatenate([d.prior for d in designs])
-    points = [likeliest(unit, prior) for unit in units]
     place = [NAMES[sensor].index(name) for name in names]
     out = nothing(sensor)
-    out.precision[np.ix_(place, place)] = sum(u.gram[k] for u, k in zip(units, points))
-    out.score[place] = sum(u.inner[k] for u, k in zip(units, points))
-    return Information(out.precision, out.score, tuple(
-        tuple(map(float, u.grid[k])) for u, k in zip(units, points)))
+    for unit in units:
+        precision, score = averaged(unit, prior, adequacy.levels(chip, sensor).flicker)
+        out.precision[np.ix_(place, place)] += precision
+        out.score[place] += score
+    return out
 
 
-def likeliest(unit, prior):
-    """The point of a linear_model.Unit's grid with the greatest restricted likelihood, all of its
-    columns in with a prior N(0, prior²): on the coarse grid, then around the best of that."""
+def averaged(unit, prior, usual):
+    """(precision (k, k), score (k,)) of a linear_model.Unit's columns, over the levels of
+    placement and flicker that it may have: a session of ten minutes does not tell slow noise
+    well, and the likeliest level alone would make its estimates too sure. usual: of flicker, for
+    the chip; its logarithm's standard deviation is evidence.USUAL_FACTOR's.
+
+    Estimates and covariances at the points of the coarse grid and around its best one are
+    averaged by their restricted likelihood, what they differ by among themselves is added.
+    """
     first = unit.coarse
-    best = first[int(np.argmax(_likelihood(unit, first, prior)))]
-    near = unit.around(best)
-    return int(near[int(np.argmax(_likelihood(unit, near, prior)))])
+    best = first[int(np.argmax(_likelihood(unit, first, prior, usual)))]
+    points = np.union1d(first, unit.around(best))
+    likelihood = _likelihood(unit, points, prior, usual)
+    points = points[likelihood > likelihood.max() - NEGLIGIBLE]
+    weight = np.exp(_likelihood(unit, points, prior, usual) - likelihood.max())
+    weight /= weight.sum()
+    floor = np.diag((FLOOR * prior) ** -2.0)
+    spread = np.linalg.inv(unit.gram[points] + floor)
+    each = (spread @ unit.inner[points][:, :, None])[:, :, 0]
+    mean = weight @ each
+    away = each - mean
+    whole = np.einsum("g,gij->ij", weight, spread) + np.einsum("g,gi,gj->ij", weight, away, away)
+    precision = np.linalg.inv(whole)
+    return precision - floor, precision @ mean
 
 
-def _likelihood(unit, points, prior):
-    """Restricted log likelihood at points of the grid [Patterson & Thompson 1971]."""
+def _likelihood(unit, points, prior, usual):
+    """Restricted log likelihood at points of the grid [Patterson & Thompson 1971], and the prior
+    of the flicker."""
+    flicker = np.array([unit.grid[k][1] for k in points])
+    known = -0.5 * (np.log(flicker / usual) / np.log(evidence.USUAL_FACTOR["flicker"])) ** 2
     full = unit.gram[points] + np.diag(prior ** -2.0)
     inner = unit.inner[points]
     taken = (inner * np.linalg.solve(full, inner[:, :, None])[:, :, 0]).sum(axis=1)
-    return (-0.5 * unit.quadratic[points] - unit.logdet[points] + 0.5 * taken
+    return (known - 0.5 * unit.quadratic[points] - unit.logdet[points] + 0.5 * taken
             - 0.5 * np.linalg.slogdet(full)[1])

@@ -20,17 +20,18 @@ def counts(protocol):
 
 
 def planned(protocol, sensor="mpu6050", certified_box=False, rate_hz=100.0, minutes=None,
-            ranges=(None, None)):
+            ranges=(None, None), prior=None):
     """The answer as a dictionary: what this Protocol tells apart, and what could be added.
 
     minutes: how much longer it may become, None: whatever helps; rate_hz: of the samples;
-    ranges: full scales in g and deg/s, None: the chip's usual ones.
+    ranges: full scales in g and deg/s, None: the chip's usual ones; prior: FleetPrior, whose
+    sizes stand for the data sheets'.
     """
     progress.doing("what the capture shows")
-    findings = Findings(protocol, sensor, certified_box, rate_hz, ranges)
+    findings = Findings(protocol, sensor, certified_box, rate_hz, ranges, prior)
     progress.doing("what could be added")
     additions = plan_additions.ranked(protocol, findings, sensor, certified_box, rate_hz, minutes,
-                                      ranges)
+                                      ranges, prior)
     answer = as_dict(protocol, sensor, certified_box, findings, additions)
     answer.update(rate_hz=rate_hz, noise={
         kind: [rounded(sigma) for sigma in typical.noise_of(sensor, kind, rate_hz, full_scale)]

@@ -45,7 +45,7 @@ class Findings:
     """All of a protocol: .list of Finding, .matrices {sensor: (names, A)} for a square box."""
 
     def __init__(self, protocol, sensor="mpu6050", certified_box=False, rate_hz=100.0,
-                 ranges=(None, None)):
+                 ranges=(None, None), prior=None):
         self.list, self.matrices = [], {}
         blocks = 3 if sum(len(s.rests) for s in protocol.sessions) <= 40 else 2
         rows = rows_of(protocol, blocks)
@@ -57,6 +57,10 @@ class Findings:
         self.list += [found for name in NAMES
                       for found in events_seen.findings(name, protocol, sensor, rate_hz,
                                                         Finding, ranges)]
+        for found in self.list if prior else ():
+            size = prior.size(found.sensor, found.effect)
+            if size is not None:
+                found.typical, found.source = size, prior.source
         self.list.sort(key=lambda f: (NAMES.index(f.effect), f.sensor))
 
     def _of_rests(self, design, sensor, kind, rate_hz, full_scale):

@@ -26,6 +26,9 @@ def add_arguments(parser):
               help="one capture or more, a session each")
     add_input(parser, "--reference", metavar="NOISE",
               help="a capture at rest, to know the noise by")
+    add_input(parser, "--prior", metavar="FLEET.json",
+              help="what boards of this kind are like, from sixflip fleet, instead of the sizes "
+                   "of data sheets")
     add_input(parser, "--sim", action="append", default=[], metavar="SIM.csv",
               help="compare with this capture of your own simulator instead of the nominal one")
     add("--add", action="append", default=[], metavar="EFFECT",
@@ -94,7 +97,7 @@ def answered(args, without, record):
         of_this_part(captures, record, args)
     found = diagnose(captures, list(read(args.sim, gravity=False)),
                      list(read([args.reference] if args.reference else [])),
-                     args.certified_box, without, args.jobs)
+                     args.certified_box, without, args.jobs, fleet_of(args.prior, captures))
     loops = closed(found, args)
     result = answer.of(found)
     if loops:
@@ -108,6 +111,12 @@ def answered(args, without, record):
         progress.doing("drawing the report")
         gap_report.write(args.report, found, result, loops)
     return result, terms
+
+
+def fleet_of(path, captures):
+    """FleetPrior of the captures' chip, None where no fleet was given."""
+    from ..experiment import fleet_prior
+    return fleet_prior.read(path, captures[0][1].meta["sensor"]) if path else None
 
 
 def closed(found, args):

@@ -26,6 +26,9 @@ def add_arguments(parser):
     add("--workers", type=int, default=0, metavar="N",
         help="processes on this computer (default: one a core)")
     add("--report", action="store_true", help="also write a page, fleet.html")
+    add("--randomise", action="store_true",
+        help="also write the population as a simulator's randomisation: imu_numpy.py, "
+             "imu_mujoco.py and imu_isaaclab.py")
     add("--no-summaries", action="store_true",
         help="do not put a summary beside each capture; a later run reads them all again")
     add("--json", action="store_true", help="what stands in fleet.json on stdout")
@@ -36,6 +39,10 @@ def files(value, args):
     found = [(os.path.join(value, JSON_NAME), (file_kinds.FLEET,))]
     if args.report:
         found.append((os.path.join(value, PAGE_NAME), (file_kinds.PAGE,)))
+    if args.randomise:
+        from ..fleet import randomisation
+        found += [(os.path.join(value, name), (file_kinds.RANDOMISATION,))
+                  for name in randomisation.NAMES.values()]
     return found
 
 
@@ -55,6 +62,10 @@ def run(args):
     os.makedirs(args.output, exist_ok=True)
     atomic_write.write_text(os.path.join(args.output, JSON_NAME),
                             json.dumps(found, indent=1, ensure_ascii=False) + "\n")
+    if args.randomise and kinds:
+        from ..fleet import randomisation
+        for name, text in randomisation.files(*kinds[0][:2]).items():
+            atomic_write.write_text(os.path.join(args.output, name), text)
     if args.report:
         from ..present import fleet_page
         progress.doing("drawing the page")

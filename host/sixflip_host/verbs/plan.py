@@ -8,6 +8,7 @@ from .. import file_kinds, progress
 from ..board import chip_options
 from ..did_you_mean import instead
 from ..errors import UsageError
+from ..experiment import fleet_prior
 from ..file_arguments import add_input, add_output
 from ..planning import plan_answer, plan_file, protocols
 from ..terminal import plain
@@ -30,6 +31,9 @@ def add_arguments(parser):
     parser.add_argument("--range", metavar="8g,2000dps",
                         help="full scales of accelerometer and gyro, one or both (default: the "
                              "chip's usual ones, 2 g and 500 deg/s where it has them)")
+    add_input(parser, "--prior", metavar="FLEET.json",
+              help="how large effects are in boards of this kind, from sixflip fleet, instead of "
+                   "the sizes of data sheets")
     parser.add_argument("--minutes", type=float, metavar="N",
                         help="propose only what keeps the whole capture within N minutes")
     parser.add_argument("--json", action="store_true", help="the answer as JSON")
@@ -57,7 +61,9 @@ def run(args):
         answer, findings = plan_answer.planned(protocol, args.sensor, args.certified_box,
                                                args.rate, args.minutes,
                                                (wanted.get("accel_range_g"),
-                                                wanted.get("gyro_range_dps")))
+                                                wanted.get("gyro_range_dps")),
+                                               fleet_prior.read(args.prior, args.sensor)
+                                               if args.prior else None)
     if args.plot:
         from ..present.alias_picture import draw
         draw(findings.matrices, args.plot, protocol.name)
