@@ -73,6 +73,42 @@ def test_bytes_put_together_wrongly_are_named_and_put_right(sound, name):
     assert integrity.findings([session]) == []
 
 
+WIDE = {"white": lambda g: 300 * g.standard_normal(2000),
+        "a hand's motion between rests": lambda g: np.repeat([5, 1500], 1000) * np.sin(
+            np.arange(2000) / 40) + np.repeat([3, 90], 1000) * g.standard_normal(2000),
+        "a walk": lambda g: (3000 * np.sin(np.arange(2000) / 300)
+                             + np.cumsum(60 * g.standard_normal(2000)))}
+WIDE_RULES = ("15 bits without their sign", "low byte signed and added", "sign and magnitude")
+
+
+@pytest.mark.parametrize("name", WIDE_RULES)
+@pytest.mark.parametrize("course", WIDE)
+def test_bytes_are_put_right_in_noise_that_is_wider_than_a_page(name, course):
+    column = np.rint(WIDE[course](np.random.default_rng(2))).astype(np.int64)
+    assert byte_faults.of_column(column) is None
+    rule, kind = RULES[name][2:]
+    read = rule(column)
+    found = byte_faults.of_column(read)
+    assert found is not None and found[0] == kind
+    assert (found[2](read) == column).all()
+
+
+@pytest.mark.parametrize("noise, level, right", [(30, 5000, 0.99), (40, 5050, 0.97)])
+def test_a_wiped_high_byte_is_the_one_of_the_level_around(noise, level, right):
+    column = np.rint(level + noise * np.random.default_rng(3).standard_normal(3000)).astype(int)
+    read = low_or(column)
+    found = byte_faults.of_column(read)
+    assert "wipes" in found[1]
+    assert (found[2](read) == column).mean() > right
+
+
+def test_rests_whose_moves_were_cut_out_have_no_fault():
+    """From one face to the opposite one in a sample is a step of 2 g: 2^15 counts."""
+    faces = np.repeat([1, -1, 0, 0, 1, -1, 1, 0, -1], 100)
+    column = np.rint(8150 * faces + 20 * np.random.default_rng(4).standard_normal(900))
+    assert byte_faults.of_column(column.astype(np.int64)) is None
+
+
 @pytest.mark.parametrize("times", [2, 3])
 @pytest.mark.parametrize("sensor", ["accel", "gyro"])
 def test_values_of_one_sensor_that_are_held(sound, sensor, times):

@@ -2,28 +2,28 @@
 bytes in the other order.
 
 Each fault is a rule that takes true counts to those that were read, and has one that takes them
-back. What moves goes on from one sample to the next; read wrongly it leaps wherever the rule
-does. The likelihood is that of the steps between neighbouring samples after they were taken
-back, against the steps as they are, where leaps of any size and share have no name.
+back. Counts that were taken back rightly are told by those before them: they go on from them, or
+stay about one level. The likelihood is that of what remains unforeseen, a Student's t of its own
+width with leaps of any size and share; counts taken back have it in the same family of foresights
+as the counts as they were read (course_likelihood.py).
 """
 import copy
 import math
 
 import numpy as np
+from scipy import ndimage
 
 from ...capture.registers import RAIL
+from . import course_likelihood
 from .damage import Damage
 from .detection import present
-from .torn_reads import student
 
 FEWEST = 50  # samples
-LEAP = 12.0  # times the usual step, and at least LEAST_LEAP counts: what a rule may take back
-LEAST_LEAP, FEWEST_LEAPS = 48, 3
+FEWEST_CHANGED = 3  # steps that a rule must change: a recording that was cut has a leap or two
+HOPELESS = 0.05  # nats a sample that no finer foresight makes up for
 LONGEST = 200_000  # samples that are looked at
-FREEDOM = (1.0, 3.0, 200.0)  # of Student's t: how heavy the tails of steps are
-SHARES = tuple(10.0 ** np.arange(-5.0, -0.29, 0.5))  # tried, of leaps
-WIDER = (5.0, 20.0, 100.0, 500.0)  # times the usual step: leaps of a size of their own
 WIDTHS = range(8, 16)  # bits of a reading whose sign may be lost
+AROUND = (3, 9, 33)  # samples around one, whose level tells its lost high byte
 WORDS = {"accel": "accelerometer", "gyro": "gyro"}
 
 
@@ -39,7 +39,7 @@ def _unsigned(bits):
 def _folded(bits):
     """Numbers cut to so many bits with a sign: they go on at the other end."""
     def back(y):
-        return _unfolded(y, 1 << bits)
+        return _likeliest([_unfolded(y, 1 << bits), _about_level(y, 1 << bits)], y)
     half = 1 << (bits - 1)
     return ("sign_extension", "what exceeds %d goes on at %d: readings are cut to %d bits" % (
         half - 1, -half, bits), back, lambda y: y.min() >= -half and y.max() < half)
@@ -52,29 +52,56 @@ def _low_added(y):
 
 def _low_or(y):
     """The low byte had a sign when the high one was or-ed to it: where it is 128 or more, the
-    high one is lost; it is the one that goes on from the nearest sample that has it."""
-    known = np.flatnonzero(y & 255 < 128)
-    if not len(known):
+    high one is lost; it is the one that goes on from the samples around."""
+    lost = _low_lost(y)
+    if lost.all():
         return y
+    tried = [_carried(y, lost)]
+    for width in AROUND:
+        level = _level_of_low(y, lost, width)
+        tried.append(np.where(lost, y + 256 * np.rint((level - y) / 256.0).astype(np.int64), y))
+    return _likeliest(tried, y)
+
+
+def _level_of_low(y, lost, width):
+    """Level (n,) around each sample: within a page as the low bytes tell, which all samples have;
+    the page as the high bytes do that were not lost."""
+    turn = 2.0 * np.pi / 256.0
+    inside = np.arctan2(*(ndimage.uniform_filter1d(part(turn * (y & 255)), width)
+                          for part in (np.sin, np.cos))) / turn
+    known = np.flatnonzero(~lost)
+    pages = np.rint((y[known] - inside[known]) / 256.0)
+    # From one known sample to the next the level goes on, over the edge of a page where it must.
+    low = np.interp(np.arange(len(y)), known, inside[known] + 256.0 * ndimage.median_filter(
+        pages, min(width, len(known)), mode="nearest"))
+    return inside + 256.0 * np.rint((low - inside) / 256.0)
+
+
+def _low_lost(y):
+    return y & 255 >= 128
+
+
+def _carried(y, lost):
+    """y with the lost high bytes that bring each sample nearest to the one before, or after where
+    one that has them is nearer there."""
+    known = np.flatnonzero(~lost)
     after = np.minimum(np.searchsorted(known, np.arange(len(y))), len(known) - 1)
-    before = np.maximum(after - 1, 0)
-    far = known[after] - np.arange(len(y)) > np.arange(len(y)) - known[before]
-    forward, backward = _carried(y), _carried(y[::-1])[::-1]
-    return np.where(far, forward, backward)
+    far = np.abs(known[after] - np.arange(len(y))) > np.abs(
+        np.arange(len(y)) - known[np.maximum(after - 1, 0)])
+    return np.where(far, _onward(y, lost), _onward(y[::-1], lost[::-1])[::-1])
 
 
-def _carried(y):
-    """y with the lost high bytes that bring each sample nearest to the one before."""
+def _onward(y, lost):
     out, level = y.tolist(), 0
-    for k, lost in enumerate((y & 255 >= 128).tolist()):
-        if lost:
+    for k, alone in enumerate(lost.tolist()):
+        if alone:
             out[k] += 256 * round((level - out[k]) / 256)
         level = out[k]
     return np.array(out, np.int64)
 
 
 def _or_ed(y):
-    lost = y[(y & 255) >= 128]
+    lost = y[_low_lost(y)]
     return len(lost) > 0 and lost.min() >= -128 and lost.max() < 0 and np.ptp(y) > 256
 
 
@@ -90,8 +117,24 @@ def _magnitude(y):
 
 
 def _unfolded(y, size):
+    """y that goes on from each sample to the next by less than half of `size`."""
     step = np.diff(y)
     return y + size * np.concatenate([[0], np.cumsum(-np.rint(step / size))]).astype(np.int64)
+
+
+def _about_level(y, size):
+    """y within half of `size` of one level, that which most are near on the circle."""
+    turn = 2.0 * np.pi / size
+    level = np.angle(np.exp(1j * turn * y).mean()) / turn
+    return y + size * np.rint((level - y) / size).astype(np.int64)
+
+
+def _likeliest(tried, y):
+    """Of columns that y may have been, the likeliest; y where all of them are y."""
+    tried = [x for x in tried if (x != y).any()]
+    if len(tried) < 2:
+        return tried[0] if tried else y
+    return max(tried, key=lambda x: course_likelihood.of_samples(x).sum())
 
 
 RULES = [
@@ -139,54 +182,22 @@ def of_column(counts):
     if len(y) < FEWEST:
         return None
     rails = np.abs(y) >= RAIL - 3
-    open_ = ~(rails[1:] & rails[:-1])  # from one rail to the other is no rule of bytes
-    steps = np.diff(y)[open_]
-    before, usual, best = _leaps(steps), _usual(steps), None
+    seen = np.concatenate([[True], ~(rails[1:] & rails[:-1])])  # rail to rail is no rule of bytes
+    best, least = None, course_likelihood.coarse(y) - HOPELESS * len(y)
     for kind, words, back, possible in RULES:
         if not possible(y):
             continue
-        again = np.diff(back(y))[open_]
-        fewer = before >= FEWEST_LEAPS and _leaps(again, usual) <= 0.5 * before
-        if not fewer and _usual(again) > 0.5 * usual:
+        x = back(y)
+        moved = np.count_nonzero((np.abs(np.diff(x)) != np.abs(np.diff(y)))[seen[1:]])
+        if moved < FEWEST_CHANGED:
             continue
-        nats = likelihood(again)
-        if best is None or nats > best[3]:
-            best = kind, words, back, nats
+        if back is not _low_or and course_likelihood.coarse(x) < least:
+            continue
+        nats = course_likelihood.of_samples(x, seen, _low_lost(y) if back is _low_or else None)
+        if best is None or nats.sum() > best[3].sum():
+            best = kind, words, back, nats, moved
     if best is None:
         return None
-    score = best[3] - max(likelihood(steps), _levels(y)) - math.log(len(RULES))
+    gain = best[3] - course_likelihood.of_samples(y, seen)
+    score = course_likelihood.score(gain, best[4]) - math.log(len(RULES))
     return (*best[:3], score) if present(score) else None
-
-
-def _usual(steps):
-    return max(float(np.median(np.abs(steps))) / 0.6745, 0.7) if len(steps) else 0.7
-
-
-def _leaps(steps, usual=None):
-    """Number of steps far larger than is usual."""
-    usual = _usual(steps) if usual is None else usual
-    return int((np.abs(steps) > max(LEAP * min(usual, 1e4), LEAST_LEAP)).sum())
-
-
-def likelihood(steps):
-    """Largest log likelihood of steps (n,): Student's t of their own width, and a share of leaps
-    that are evenly spread, or of another t far wider."""
-    width, best = _usual(steps), -math.inf
-    for freedom in FREEDOM:
-        sound = student(steps / width, freedom) / width
-        others = [np.full(len(steps), 1.0 / 131072.0)]
-        others += [student(steps / (times * width), 5.0) / (times * width)
-                   for times in WIDER]
-        for other in others:
-            best = max(best, *(float(np.log((1.0 - share) * sound + share * other).sum())
-                               for share in SHARES))
-    return best
-
-
-def _levels(y):
-    """Log likelihood of readings that are no course in time: about one level, or anywhere."""
-    anywhere = -len(y) * math.log(float(np.ptp(y)) + 1.0)
-    width = max(float(np.std(y)), 0.5)
-    about = -0.5 * float((((y - np.mean(y)) / width) ** 2).sum()) - len(y) * math.log(
-        width * math.sqrt(2.0 * math.pi))
-    return max(anywhere, about, likelihood(y - np.median(y)))
