@@ -76,7 +76,7 @@ def test_bytes_put_together_wrongly_are_named_and_put_right(sound, name):
 WIDE = {"white": lambda g: 300 * g.standard_normal(2000),
         "a hand's motion between rests": lambda g: np.repeat([5, 1500], 1000) * np.sin(
             np.arange(2000) / 40) + np.repeat([3, 90], 1000) * g.standard_normal(2000),
-        "a walk": lambda g: (3000 * np.sin(np.arange(2000) / 300)
+        "a walk": lambda g: (3000 * np.sin(np.arange(2000) / 60)
                              + np.cumsum(60 * g.standard_normal(2000)))}
 WIDE_RULES = ("15 bits without their sign", "low byte signed and added", "sign and magnitude")
 

@@ -29,6 +29,9 @@ def test_rests_cut_off_at_a_rail_tell_of_the_rail_only():
     assert [(f.effect, f.sensor) for f in found.findings] == [("saturation", "accel")]
     assert found.causes == []
     assert any("rests on a rail were left out" in remark for remark in found.remarks)
+    one = found.findings[0]
+    assert one.unit == "counts" and set(one.value.values()) == {16330}
+    assert "cut off at 16330 counts (0.9967 g), below the rail of 2 g" in one.words
 
 
 def test_coarse_steps_are_no_bend():

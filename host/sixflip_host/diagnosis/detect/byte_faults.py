@@ -19,7 +19,7 @@ from .damage import Damage
 from .detection import present
 
 FEWEST = 50  # samples
-FEWEST_CHANGED = 3  # steps that a rule must change: a recording that was cut has a leap or two
+FEWEST_CHANGED = 8  # steps that a rule must change: a recording whose moves were cut out leaps
 HOPELESS = 0.05  # nats a sample that no finer foresight makes up for
 LONGEST = 200_000  # samples that are looked at
 WIDTHS = range(8, 16)  # bits of a reading whose sign may be lost

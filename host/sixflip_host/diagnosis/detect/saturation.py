@@ -16,7 +16,7 @@ SPREAD_SHARE = 0.02  # of the span of the readings, just inside their largest on
 
 def saturation(sessions, sensor, columns):
     """Samples on a rail, or many that share the largest value and few near it."""
-    value, words, score, ends = {}, "", 0.0, []
+    value, words, score, ends = {}, {}, 0.0, []
     for i in range(3):
         for session, counts in zip(sessions, columns):
             x = counts[:, i].astype(np.int64)
@@ -24,20 +24,35 @@ def saturation(sessions, sensor, columns):
             if on_rail.any():
                 level = np.abs(x), on_rail
                 nats = level_nats(*level, RAIL_CODES)
-                said = "%d samples sit on the rail" % on_rail.sum()
+                said = "%d samples of the %s axis sit on the rail" % (on_rail.sum(), "xyz"[i])
+                size = int(np.abs(x).max())
             else:
                 nats, level = max(((cut_off_nats(y), (y, y == y.max())) for y in (x, -x)),
                                   key=lambda pair: pair[0])
-                said = "peaks are cut off at %d counts" % int(np.abs(x).max())
+                size = int(np.abs(level[0].max()))
+                said = _below(session, sensor, "xyz"[i], level[0].max())
             if present(nats):
-                value["xyz"[i]] = 1
+                value["xyz"[i]] = max(value.get("xyz"[i], 0), size)
                 ends.append(peaks(*level))
-                score, words = score + nats, said
+                score += nats
+                words.setdefault("xyz"[i], said)
     if not value:
         return []
-    return [Finding("saturation", sensor, sorted(value), value, "1", score, "amplitude", words,
+    return [Finding("saturation", sensor, sorted(value), value, "counts", score, "amplitude",
+                    "; ".join(words[axis] for axis in sorted(words)),
                     {k: (v, v) for k, v in value.items()},
                     share=float(np.sum(ends, axis=0)[0] / np.sum(ends)), number=int(np.sum(ends)))]
+
+
+def _below(session, sensor, axis, level):
+    """What is said of peaks that end below the rail: no limit of the chip's numbers."""
+    meta = session.capture.meta
+    lsb, unit = ((meta["accel_lsb_per_g"], "g") if sensor == "accel"
+                 else (meta["gyro_lsb_per_dps"], "deg/s"))
+    return ("peaks of the %s axis are cut off at %d counts (%.4g %s), below the rail of %.4g %s: "
+            "a range that was set otherwise, a filter's or a simulator's limit" % (
+                axis, abs(level), abs(level) / lsb, unit,
+                (_range_rail(session, sensor) + RAIL_CODES) / lsb, unit))
 
 
 def railed(session, sensor="accel"):
