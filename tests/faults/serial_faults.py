@@ -33,7 +33,7 @@ CALIBRATING = tuple('"event": "%s"' % name for name in (
     '"event": "pose", "pose": "%s"' % pose for pose in POSES) + tuple(
     '"event": "%s"' % name for name in ("capture", "solved", "saved", "ready"))
 ENDS = (0, 1, 3, 4)     # exit codes of errors in one line
-QUICK = {"ANSWER_S": 2.0, "HANDSHAKE_S": 3.0, "REOPEN_S": 3.0}
+QUICK = {"ANSWER_S": 2.0, "FILES_S": 5.0, "HANDSHAKE_S": 3.0, "REOPEN_S": 3.0}
 
 
 @contextlib.contextmanager

@@ -26,6 +26,7 @@ from .buffered_serial import BufferedSerial, Endless
 from .on_board_scripts import STAGED, UPDATE, script
 
 ANSWER_S = 10.0  # of silence; a board hashes 100 KB in about two seconds
+FILES_S = 60.0  # of silence while it hashes every file it has, or moves them
 WHOLE_S = 60.0  # of an answer from first to last byte, however it drips: all but a file
 LONGEST_S = 300.0  # a full flash read through a UART at 115200 Bd takes two minutes
 SLOWEST = 2000  # bytes of a file a second, of which a UART at 115200 Bd carries four times as many
@@ -227,7 +228,7 @@ class MpremoteLink:
         """
         wanted = None if hashed is None else set(hashed)
         out = self.run(script("list_files", wanted=wanted, staged=STAGED, alone=alone),
-                       "listing its files", timeout=60)
+                       "listing its files", timeout=FILES_S)
         found = {}
         for line in out.splitlines():
             name, size, digest = parse(self.port, line, ANSWERS["file"])
@@ -283,7 +284,8 @@ class MpremoteLink:
 
     def finish(self):
         """Go on with a commit that was cut off."""
-        self.run("exec(open(%r).read())" % UPDATE, "putting the files in their places", timeout=60)
+        self.run("exec(open(%r).read())" % UPDATE, "putting the files in their places",
+                 timeout=FILES_S)
 
     def write(self, fresh, name, data, progress=None):
         """Write the file `fresh`, for NAME, and compare its hash on the board."""
