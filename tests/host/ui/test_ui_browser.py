@@ -119,19 +119,19 @@ def test_a_session_from_start_to_report(browser, capture, tmp_path):
                                    capture=str(capture))) as served:
         browser.get(served.server.url)
         until(lambda: text(browser, "head") == "ready to begin")
-        assert "#" not in browser.current_url       # the key is not left in the address
+        until(lambda: "#" not in browser.current_url)   # the key is not left in the address
         browser.execute_script(WATCH)
         click(browser, "start", 20)
         until(lambda: shown(browser, r"half a turn, Z\+ stays up"))
         shot(browser, "flip")
         until(lambda: shown(browser, "keep still ") and shown(browser, r"Z\+.*✓\d+ %"))
-        assert painted(browser, "now") > 3 and painted(browser, "accel") > 2
+        until(lambda: painted(browser, "now") > 3 and painted(browser, "accel") > 2)
         until(lambda: marks(browser)["Z+"] == ("✓", "✓"))
-        assert browser.find_element("id", "now").get_dom_attribute("data-face") in FACES
+        until(lambda: browser.find_element("id", "now").get_dom_attribute("data-face") in FACES)
 
         browser.refresh()                                           # nothing is lost
         until(lambda: marks(browser) and marks(browser)["Z+"] == ("✓", "✓"))
-        assert painted(browser, "accel") > 2                        # the trail came with it
+        until(lambda: painted(browser, "accel") > 2)                # the trail came with it
         first = browser.current_window_handle
         browser.switch_to.new_window("tab")                         # nor by a second tab
         browser.get("http://127.0.0.1:%d/" % served.server.port)
@@ -144,15 +144,16 @@ def test_a_session_from_start_to_report(browser, capture, tmp_path):
         until(lambda: marks(browser)["Z+"] == ("·", "·"))
         click(browser, "stop", 5)
         until(lambda: text(browser, "verdict") == "refused")
-        assert "stopped by the host" in text(browser, "reason")
-        assert marks(browser)["Z+"] == ("·", "·")
+        until(lambda: "stopped by the host" in text(browser, "reason"))
+        until(lambda: marks(browser)["Z+"] == ("·", "·"))
         assert len(links) == 1 and served.server.bench.number == 1
-        assert MALICE in text(browser, "board")
+        until(lambda: MALICE in text(browser, "board"))
 
         links[0].speed = 40.0
         click(browser, "start")
         until(lambda: text(browser, "verdict") == "good")
-        assert "scale x y z" in text(browser, "numbers") and painted(browser, "residuals") > 2
+        until(lambda: "scale x y z" in text(browser, "numbers"))
+        until(lambda: painted(browser, "residuals") > 2)
         shot(browser, "result")
         served.server.bench.report_command = lambda what, path: [
             sys.executable, "-c", REPORT, str(path)]
@@ -207,19 +208,21 @@ def test_what_counts_is_seen_without_scrolling(window, tmp_path, size):
         resized(window, *size)
         window.get(served.server.url)
         until(lambda: "Plug the board into this computer" in seen(window, "detail"))
-        assert seen(window, "start") == "Start" and not seen(window, "continue")
+        until(lambda: seen(window, "start") == "Start" and not seen(window, "continue"))
         shot(window, "begin-%d" % size[0])
         boards.append(link)
         until(lambda: "board found at scripted" in text(window, "link"))
-        assert "Plug" not in seen(window, "detail")
+        until(lambda: "Plug" not in seen(window, "detail"))
         click(window, "start")
         until(lambda: link.resets)
         link.say("calibrating", missing=list(SIX), plan=False)
         link.say("state", state="moving", reason="moving", value=9, limit=2, unit="x noise",
                  live=[20, 0, 1001, 5, 4, 12])
         until(lambda: "lay the box down with Z+ up" in seen(window, "head"))
-        assert "not at rest yet" in seen(window, "waits") and seen(window, "next")
-        assert seen(window, "capture") and seen(window, "stop") and fits(window)
+        until(lambda: "not at rest yet" in seen(window, "waits"))
+        for name in ("next", "capture", "stop"):
+            until(lambda name=name: seen(window, name))
+        until(lambda: fits(window))
         shot(window, "during-%d" % size[0])
         for k, pose in enumerate(SIX):
             link.say("pose", pose=pose, n=400, missing=list(SIX[k + 1:]))
@@ -228,9 +231,9 @@ def test_what_counts_is_seen_without_scrolling(window, tmp_path, size):
                  tilt_spread_deg=0.9, residual_mg_rms=3.1)
         link.say("saved", slot="a", sequence=3)
         until(lambda: seen(window, "verdict") == "doubtful")
-        assert "the faces disagree" in seen(window, "reason")
-        assert "Next: take the face" in seen(window, "next-do") and seen(window, "pull")
-        assert "-56.19 -1.02 -1.00 mg" in text(window, "numbers") and fits(window)
+        until(lambda: "the faces disagree" in seen(window, "reason"))
+        until(lambda: "Next: take the face" in seen(window, "next-do") and seen(window, "pull"))
+        until(lambda: "-56.19 -1.02 -1.00 mg" in text(window, "numbers") and fits(window))
         assert window.execute_script("return scrollY") == 0
         shot(window, "end-%d" % size[0])
 
@@ -248,14 +251,14 @@ def test_continue_is_there_only_where_something_is_unfinished(browser, tmp_path)
         link.say("calibrating", missing=list(SIX), plan=False)
         link.say("ready")                               # stopped with nothing taken
         until(lambda: "start again" in text(browser, "next-do"))
-        assert not browser.find_element("id", "continue").is_displayed()
+        until(lambda: not browser.find_element("id", "continue").is_displayed())
         click(browser, "start")
         until(lambda: link.resets == 2)
         link.say("calibrating", missing=list(SIX), plan=False)
         link.say("pose", pose="Z+a", n=400, missing=list(SIX[1:]))
         link.say("ready")
         until(lambda: browser.find_element("id", "continue").is_displayed())
-        assert "Next: continue the unfinished" in text(browser, "next-do")
+        until(lambda: "Next: continue the unfinished" in text(browser, "next-do"))
 
 
 def test_what_a_board_says_is_text_and_nothing_else(browser, tmp_path):
@@ -277,7 +280,7 @@ def test_what_a_board_says_is_text_and_nothing_else(browser, tmp_path):
         link.say("saved", slot="a", sequence=2)
         until(lambda: text(browser, "verdict") == "good")
         until(lambda: MALICE in text(browser, "log"))
-        assert text(browser, "chip") == "<b>chip</b>" and MALICE in text(browser, "reason")
+        until(lambda: text(browser, "chip") == "<b>chip</b>" and MALICE in text(browser, "reason"))
         assert not browser.find_elements("css selector", "img, b, i, script:not([src])")
         assert browser.title == "Sixflip" and quiet(browser)
 
