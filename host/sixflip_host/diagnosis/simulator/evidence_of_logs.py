@@ -85,7 +85,7 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
     n = len(measured)
     delay, k = 0.0, h.columns.shape[2]
     target = measured / unit
-    for _ in range(3):
+    for last in (False, False, True):
         shift = shifted(h.signal, delay * grid_hz)
         signal = shift @ axes.T
         slope = -np.gradient(signal, axis=0) * grid_hz
@@ -104,7 +104,8 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
             own.append(real_own[0])
             own_sd.append(real_own[1])
         result = regression(target - signal, np.concatenate(own, 1), np.concatenate(own_sd),
-                            columns, mean, sd, inflation, live, rows)
+                            columns, mean, sd, inflation, live, rows,
+                            residuals=last)
         delay += float(np.clip(result[2][k], -0.05, 0.05))
     log, beta, shared, sigma, left, beta_sigma = result
     log += 0.5 * n / inflation * np.minimum(0.0, np.log(gains(h, beta, shared, unit)))[live].sum()
@@ -131,19 +132,20 @@ def gains(h, beta, shared, unit):
 
 
 def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,
-               covariance=False):
+               covariance=False, residuals=True):
     """Linear regression of y (n, 3) = own (n, p) · beta of each channel + columns (n, 3, k) ·
     shared, with priors own_sd (p,) about 0 and sd (k,) about mean (k,).
 
     Returns (log evidence, own coefficients (3, p), shared (k,), its sigma (k,), residuals (n, 3),
     sigma of the own coefficients (3, p)); with covariance also that of the shared ones (k, k).
+    Without residuals these are None, and what they cost on every row is saved.
     """
     n, p = own.shape
     k = columns.shape[2]
-    y = y - columns @ mean
     weight = np.ones(n) if rows is None else 1.0 / rows
     raw, k_rows = (y, own, columns), max(1, n // MOST_ROWS)
     weight, y, own, columns = (x[::k_rows] for x in (weight, y, own, columns))
+    y = y - columns @ mean
     y, own, columns = y * weight[:, None], own * weight[:, None], columns * weight[:, None, None]
     size = 3 * p + k
     prior = np.concatenate([np.tile(own_sd, 3), sd])
@@ -177,8 +179,11 @@ def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,
     log -= 0.5 * np.linalg.slogdet(gram * np.outer(prior, prior))[1]
     inverse = np.linalg.inv(gram)
     sigma = np.sqrt(np.maximum(np.diag(inverse), 0.0))
-    y, own, columns = raw
-    out = (log, beta, shared + mean, sigma[3 * p:], y - own @ beta.T - columns @ shared,
+    shared = shared + mean
+    if residuals:
+        y, own, columns = raw
+        left = y - own @ beta.T - columns @ shared
+    out = (log, beta, shared, sigma[3 * p:], left if residuals else None,
            sigma[:3 * p].reshape(3, p))
     return out + (inverse[3 * p:, 3 * p:],) if covariance else out
 
