@@ -3,7 +3,9 @@
 For a user a missing one is a skip with one clear line; in CI (CI=true) every skip is a failure.
 """
 
+import fcntl
 import gc
+import json
 import os
 from pathlib import Path
 
@@ -44,17 +46,38 @@ def pytest_make_collect_report():
     fail_in_ci((yield).get_result())
 
 
+def of_this_run(tmp_path_factory):
+    """The folder that all workers of this run share."""
+    folder = tmp_path_factory.getbasetemp()
+    return folder.parent if "PYTEST_XDIST_WORKER" in os.environ else folder
+
+
 @pytest.fixture(scope="session", autouse=True)
 def cutoffs_of_this_run(tmp_path_factory):
     """What a diagnosis simulates of a protocol before it judges is simulated by today's code, and
     by one test for all others: its cache is one folder of this run, for every worker."""
     from sixflip_host.diagnosis import cutoffs
-    folder = tmp_path_factory.getbasetemp()
-    if "PYTEST_XDIST_WORKER" in os.environ:
-        folder = folder.parent
+    folder = of_this_run(tmp_path_factory)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(cutoffs, "folder", lambda: folder / "cutoffs")
         yield
+
+
+@pytest.fixture(scope="session")
+def once(tmp_path_factory):
+    """once(name, make): what make() returns, of JSON, worked out once a run: by the first of the
+    workers that asks for it, while the others wait."""
+    folder = of_this_run(tmp_path_factory) / "once"
+    folder.mkdir(exist_ok=True)
+
+    def value(name, make):
+        path = folder / (name + ".json")
+        with open(path.with_suffix(".lock"), "w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not path.exists():
+                path.write_text(json.dumps(make()))
+        return json.loads(path.read_text())
+    return value
 
 
 @pytest.fixture(scope="session")

@@ -16,6 +16,7 @@ from .refinement_residuals import N_ACCEL, N_GYRO, SCATTER, Equations
 RAD = np.pi / 180.0
 FREE_FLIP = 30.0 * RAD  # spread of the flips' angles in the first pass
 STEADIEST_HAND = 0.05 * RAD
+MOST_STEPS = 100  # of a pass; where the equations agree it takes about five
 
 ACCEL_NAMES = ["accelerometer %s%s" % (a, b) for a in "xyz" for b in "xyz"]
 ACCEL_NAMES = [n.replace("xx", "x scale").replace("yy", "y scale").replace("zz", "z scale")
@@ -114,6 +115,7 @@ def one_pass(equations, start, centre, typical, free):
     fit = least_squares(
         lambda q: evaluate(q)["r"].copy(), (start - centre)[columns] / typical[columns],
         lambda q: evaluate(q)["J"].copy(), method="lm", xtol=1e-10, ftol=1e-10, gtol=1e-10,
+        max_nfev=MOST_STEPS,
     )
     at = evaluate(fit.x)
     out = Refinement()

@@ -8,23 +8,23 @@ SHORT = [one for one in real_recordings.RECORDINGS if one.short]
 
 
 @pytest.fixture(scope="module")
-def judged(tmp_path_factory):
-    """Function of a recording and the folder of all: real_run.judged, once each."""
-    known = {}
-
+def judged(tmp_path_factory, once):
+    """Function of a recording and the folder of all: (answer, [(claim, figure, right)]) of
+    real_run.judged, once each."""
     def of(recording, recordings):
-        if recording.name not in known:
-            known[recording.name] = real_run.judged(recording, recordings,
-                                                    tmp_path_factory.mktemp("real"))
-        return known[recording.name]
+        def make():
+            answer, rows = real_run.judged(recording, recordings, tmp_path_factory.mktemp("real"))
+            return answer, [(row.claim, row.figure, None if row.right is None else bool(row.right))
+                            for row in rows]
+        return once(recording.name, make)
     return of
 
 
 @pytest.mark.parametrize("recording", SHORT, ids=[one.name for one in SHORT])
 def test_every_claim_stands_beside_a_plain_figure(recording, recordings, judged):
-    _, rows = judged(recording, recordings)
-    wrong = ["%s | %s" % (row.claim, row.figure) for row in rows
-             if row.right is not None and not row.right]
+    answer, rows = judged(recording, recordings)
+    wrong = ["%s | %s" % (claim, figure) for claim, figure, right in rows if right is False]
+    assert answer["verdict"]
     assert not wrong, "\n".join(wrong)
 
 
