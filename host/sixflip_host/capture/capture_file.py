@@ -118,8 +118,8 @@ def read(path, gyro_alone=False):
 def with_accelerometer(path, capture):
     """The same capture; BadFile where it is a gyro's alone."""
     if capture.accel is None:
-        raise BadFile("%s: it holds a gyro alone, expected ax ay az as well: only sixflip show "
-                      "and diagnose do without" % path)
+        raise BadFile("%s: it holds a gyro alone, expected ax ay az as well: only sixflip show, "
+                      "diagnose and exports of noise do without" % path)
     return capture
 
 

@@ -76,8 +76,8 @@ def of(capture):
     table = {"mean": np.zeros((count, axes)), "variance": np.zeros((count, axes)),
              "step": np.ones((count, 2), np.int32), "saturated": np.zeros((count, 2), np.int32),
              "stale": np.zeros(count, bool), "jumped": np.zeros(count, bool)}
-    triads = [_Triad(counts, rail) for counts, rail in zip((capture.accel, capture.gyro), rails)
-              if counts is not None]
+    triads = [_Triad(counts, rail, _span(capture.meta, sensor)) for counts, rail, sensor in zip(
+        (capture.accel, capture.gyro), rails, ("accel", "gyro")) if counts is not None]
     for first in steps(range(0, count, AT_A_TIME), "looking for rests"):
         some = slice(first, min(first + AT_A_TIME, count))
         for which, triad in enumerate(triads):
@@ -87,12 +87,18 @@ def of(capture):
     return StillWindows(length, rails, lsb, **table)
 
 
+def _span(meta, sensor):
+    """How far a reading may be from the first of its window: what the board's sums hold; of an
+    import's own counts, which are as fine as 16 bits allow, noise alone may go further."""
+    return 2 * RAIL + 1 if meta.get(sensor + "_values") == "float" else SPAN
+
+
 class _Triad:
     """One sensor's columns of the table, some windows after the other; what the board's window
     carries over its border: the last reading, how long it has been the same, the bits seen."""
 
-    def __init__(self, counts, rail):
-        self.counts, self.rail = counts, rail
+    def __init__(self, counts, rail, span):
+        self.counts, self.rail, self.span = counts, rail, span
         self.last, self.same, self.bits = np.zeros(3, np.int64), 1, 0
 
     def fill(self, table, which, some, length):
@@ -103,8 +109,8 @@ class _Triad:
         off = cut - cut[:, :1]
         total = off.sum(axis=1)
         table["mean"][some, own] = cut[:, 0] + total / length
-        far = np.abs(off) > SPAN
-        squares = (np.where(far, SPAN, off) ** 2).sum(axis=1)
+        far = np.abs(off) > self.span
+        squares = (np.where(far, self.span, off) ** 2).sum(axis=1)
         spread = np.maximum(length * squares - total * total, 0)
         table["variance"][some, own] = spread / (length * (length - 1))
         table["jumped"][some] |= far.any(axis=(1, 2))

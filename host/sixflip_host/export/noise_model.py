@@ -6,6 +6,7 @@ rest of a minute or more. A capture that calibrates the board says what it reads
 acts; a log of one long rest says that of the gyro, and of the accelerometer how it is noisy and
 no more.
 """
+import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,6 +54,8 @@ def measure(capture):
     if not still:
         raise CheckFailed("no rest of %g s or more in the capture: noise cannot be measured"
                           % max(SHORTEST_S, FEWEST_SAMPLES / rate))
+    if capture.accel is None:
+        return {"gyro": _gyro(capture, still)}
     solved = solve(capture)
     matrix = bias = None
     if solved.accel is not None and solved.verdict != "refused":
@@ -63,22 +66,30 @@ def measure(capture):
     found = {"accel": _triad(capture, capture.accel, still,
                              capture.meta["accel_lsb_per_g"] / solved.g, "m/s2", matrix, bias)}
     if capture.gyro is not None:
-        lsb = capture.meta["gyro_lsb_per_dps"] * 180.0 / np.pi
-        matrix, bias = None, np.concatenate([capture.gyro[a:b] for a, b in still]).mean(
-            axis=0) / lsb
-        if found["accel"].matrix is not None and solved.gyro is not None \
-                and not solved.gyro.missing:
-            _, _, v, inverse = scale_form(solved.gyro.P)
-            matrix, bias = np.array(inverse), -np.array(v)
-        found["gyro"] = _triad(capture, capture.gyro, still, lsb, "rad/s", matrix, bias)
+        turned = found["accel"].matrix is not None and solved.gyro is not None \
+            and not solved.gyro.missing
+        found["gyro"] = _gyro(capture, still, solved.gyro.P if turned else None)
     return found
+
+
+def _gyro(capture, still, P=None):
+    """Triad of the gyro; P: its calibration by turns, where there is one."""
+    lsb = capture.meta["gyro_lsb_per_dps"] * 180.0 / np.pi
+    matrix, bias = None, np.concatenate([capture.gyro[a:b] for a, b in still]).mean(axis=0) / lsb
+    if P is not None:
+        _, _, v, inverse = scale_form(P)
+        matrix, bias = np.array(inverse), -np.array(v)
+    return _triad(capture, capture.gyro, still, lsb, "rad/s", matrix, bias)
 
 
 def _rests(capture):
     """[(first, end)] of the capture's rests; of a log that nobody labelled, those found in it.
     What a hand steadied is none."""
     if capture.pose is None or not (capture.pose > 0).any():
-        find_poses(capture).label(capture)
+        if capture.accel is None:
+            capture = rests.label_still_gyro(copy.copy(capture))
+        else:
+            find_poses(capture).label(capture)
     held = {pose_code(name) for name in capture.meta.get(HELD_BY_HAND, ())}
     return [(run.first, run.end) for run in rests.labelled(capture.pose) if run.code not in held]
 

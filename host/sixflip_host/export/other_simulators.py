@@ -18,21 +18,26 @@ NAMES = {"accel": "linear_acceleration", "gyro": "angular_velocity"}
 
 def capture_sdf(path, output):
     """Write a <sensor type="imu"> for Gazebo."""
-    capture = capture_file.read_samples(path)
+    capture = _read(path)
     atomic_write.write_text(output, sdf(measure(capture), capture.meta))
 
 
 def capture_kalibr(path, output):
     """Write an imu.yaml."""
-    capture = capture_file.read_samples(path)
+    capture = _read(path)
     atomic_write.write_text(output, kalibr(measure(capture), capture.meta))
 
 
 def capture_table(path, output):
     """Write the plain table."""
-    capture = capture_file.read_samples(path)
+    capture = _read(path)
     effects = capture.meta.get("effects", [])
     atomic_write.write_text(output, plain_table(measure(capture), capture.meta, effects))
+
+
+def _read(path):
+    """The capture with all its samples; a gyro alone will do."""
+    return capture_file.with_samples(path, capture_file.read(path, gyro_alone=True))
 
 
 def sdf(found, meta):
@@ -48,8 +53,10 @@ def sdf(found, meta):
              "  <update_rate>%g</update_rate>" % meta["rate_hz"], "  <imu>"]
     for kind, triad in found.items():
         lines.append("   <%s>" % NAMES[kind])
+        counted = meta.get(kind + "_values") != "float"  # else counts are the import's own
         for i, axis in enumerate("xyz"):
-            lines += ["    <%s>" % axis, '     <noise type="gaussian_quantized">',
+            lines += ["    <%s>" % axis, '     <noise type="%s">' % (
+                          "gaussian_quantized" if counted else "gaussian"),
                       *_mean(triad, i),
                       "      <stddev>%.6g</stddev>" % (triad.density[i]
                                                        * np.sqrt(meta["rate_hz"])),
@@ -61,8 +68,9 @@ def sdf(found, meta):
                           % triad.walk[i],
                           "      <dynamic_bias_correlation_time>%g"
                           "</dynamic_bias_correlation_time>" % CORRELATION_S]
-            lines += ["      <precision>%.6g</precision>" % triad.step[i], "     </noise>",
-                      "    </%s>" % axis]
+            if counted:
+                lines.append("      <precision>%.6g</precision>" % triad.step[i])
+            lines += ["     </noise>", "    </%s>" % axis]
         lines.append("   </%s>" % NAMES[kind])
     return "\n".join(lines + ["  </imu>", " </sensor>", "</sdf>", ""])
 

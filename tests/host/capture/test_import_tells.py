@@ -50,6 +50,28 @@ def table(times, head="t", accel=COUNTS, gyro=None, form="%d"):
 SECONDS = np.arange(ROWS) / 100
 
 
+@pytest.mark.parametrize("name, sensor, unit", [
+    ("gyr_x_mdps", column_names.GYRO, "mdps"), ("ax_g", column_names.ACCEL, "g"),
+    ("acc_x_ms2", column_names.ACCEL, "m/s2"), ("ax_m_s2", column_names.ACCEL, "m/s2"),
+    ("w_x_deg_s", column_names.GYRO, "dps"), ("gx_dps", column_names.GYRO, "dps"),
+    ("gyro_g_x", column_names.GYRO, ""), ("gx", column_names.GYRO, "")])
+def test_a_unit_among_the_words_of_a_name(name, sensor, unit):
+    found = column_names.column(name)
+    assert (found.sensor, found.axis, found.unit) == (sensor, "x", unit)
+
+
+def test_a_rest_is_found_in_decimals_whose_counts_are_finer_than_their_noise(tmp_path):
+    """Scaled to 16 bits by the largest rate there is, noise alone spans a thousand counts."""
+    noise = np.random.default_rng(3).standard_normal((3000, 6))
+    values = np.array([0, 0, G, 0.01, -0.005, 0.002]) + noise * ([0.02] * 3 + [0.001] * 3)
+    (tmp_path / "in.csv").write_text(table(["%.2f" % (k / 100) for k in range(3000)],
+                                           accel=values[:, :3], gyro=values[:, 3:], form="%.9f"))
+    assert main(["import", str(tmp_path / "in.csv"), "-o", str(tmp_path / "out.csv")]) == 0
+    capture = capture_file.read(tmp_path / "out.csv")
+    assert capture.meta["gyro_values"] == "float"
+    assert (capture.pose > 0).sum() > 2500
+
+
 @pytest.mark.parametrize("head, times", [
     ("t", ["%.3f" % t for t in SECONDS]), ("time", ["%d" % round(1e3 * t) for t in SECONDS]),
     ("timestamp", ["%d" % round(1e6 * t) for t in SECONDS]),

@@ -57,6 +57,29 @@ def test_kalibr_yaml_is_read_back(capture):
     assert "accelerometer_random_walk" not in content  # no rest of a minute
 
 
+@pytest.mark.parametrize("alone, other", [("gyro", "accel"), ("accel", "gyro")])
+def test_one_sensor_alone_is_written(capture, tmp_path, alone, other):
+    meta = dict(capture.meta, **{alone + "_values": "float"})
+    counts = {"accel": None, "gyro": None, alone: getattr(capture, alone)}
+    for key in [key for key in meta if key.startswith(other + "_")]:
+        del meta[key]
+    path, yml, sdf = (str(tmp_path / name) for name in ("one.csv", "one.yaml", "one.sdf"))
+    capture_file.write(path, Capture(meta, capture.t_us, counts["accel"], gyro=counts["gyro"],
+                                     pose=None if alone == "gyro" else capture.pose))
+    other_simulators.capture_kalibr(path, yml)
+    other_simulators.capture_sdf(path, sdf)
+    with open(yml) as text:
+        content = yaml.safe_load(text)
+    density = {"gyro": ("gyroscope_noise_density", np.radians(0.06) / 10),
+               "accel": ("accelerometer_noise_density", 4e-4 * 9.80665)}
+    assert content[density[alone][0]] == pytest.approx(density[alone][1], rel=0.08)
+    assert density[other][0] not in content
+    noise = list(ElementTree.parse(sdf).iter("noise"))
+    assert len(noise) == 3  # an import's own counts are no step of the sensor
+    assert {one.get("type") for one in noise} == {"gaussian"}
+    assert all(one.find("precision") is None for one in noise)
+
+
 def test_random_walk_from_a_long_rest():
     effects = [{"effect": "drift", "slope": 0.5, "seed": 4, "x": 0.03, "y": 0.03, "z": 0.03}]
     plan = scenario.from_dict({"world": dict(WORLD, dwell_s=4.0, first_rest_s=600.0), "seed": 3,

@@ -22,7 +22,7 @@ DERIVED = {"covariance", "cov", "orientation", "quaternion", "quat", "bias", "of
            "calibrated", "corrected", "integral", "peak", "max", "min", "mean"}
 FILLERS = {"raw", "lsb", "counts", "count", "b", "body", "imu", "field", "data", "readings",
            "reading", "values", "value", "sensor", "measured", "meas", "x", "y", "z", "chip",
-           "mps2", "ms2", "radps", "rps", "dps", "mg",
+           "mps2", "ms2", "radps", "rps", "dps", "mdps", "mg",
            "rs", "s"}       # the last two: a_RS_S_x of EuRoC and its followers
 TIMES = {"t", "ts", "time", "times", "timestamp", "timestamps", "stamp", "seconds", "millis",
          "micros", "tick", "ticks", "clock", "datetime", "date", "utc"}
@@ -36,6 +36,7 @@ UNIT = {"m/s2": "m/s2", "m/s^2": "m/s2", "m/s²": "m/s2", "m/s/s": "m/s2", "ms-2
         "g": "g", "mg": "mg", "rad/s": "rad/s", "rad/sec": "rad/s", "rads": "rad/s",
         "rad": "rad/s", "deg/s": "dps", "°/s": "dps", "deg/sec": "dps", "dps": "dps",
         "rad s^-1": "rad/s", "m s^-2": "m/s2", "mdps": "mdps",
+        "radps": "rad/s", "m/s 2": "m/s2",
         "lsb": "counts", "counts": "counts", "raw": "counts"}
 KINDS = {ACCEL: ("g", "mg", "m/s2", "counts"), GYRO: ("rad/s", "dps", "mdps", "counts")}
 
@@ -83,14 +84,19 @@ def _words(name):
 def _unit(unit, words, sensor):
     """The unit of a reading, from its brackets or from the words of the name."""
     given = UNIT.get(unit.lower() if unit != "G" else "g", "")
-    if not given:
-        said = "_".join(words)
-        given = next((meant for part, meant in (
-            ("m_s2", "m/s2"), ("mps2", "m/s2"), ("m_s_2", "m/s2"), ("rad_s", "rad/s"),
-            ("_rad_", "rad/s"), ("_rads", "rad/s"), ("_radps", "rad/s"),
-            ("deg_s", "dps"), ("_dps", "dps"),
-            ("_mg", "mg")) if part in said), "g" if words[-1] == "g" and len(words) > 2 else "")
+    runs = [words[first:first + length] for length in (3, 2, 1)
+            for first in range(1, len(words) - length + 1)]
+    for run in runs if not given else ():
+        meant = UNIT_IN_WORDS.get(tuple(run), "")
+        # A g alone is the unit where it stands last, behind the axis: acc_x_g, ax_g.
+        if meant and (run != ["g"] or words[-1] == "g" and words[-2][-1] in "xyz"):
+            given = meant
+            break
     return given if given in KINDS.get(sensor, ()) else ""
+
+
+UNIT_IN_WORDS = {tuple(_words(name)): unit for name, unit in UNIT.items() if unit != "counts"}
+BESIDE = FILLERS.union(*UNIT_IN_WORDS)  # words that may stand beside a sensor of one letter
 
 
 def _is_temperature(words):
@@ -107,7 +113,7 @@ def _fused(words):
                 known = match.group(1) in names
                 single = len(match.group(1)) == 1
                 rest = set(words) - {word}
-                if known and (not single or rest <= FILLERS or number == len(words) - 1):
+                if known and (not single or rest <= BESIDE or number == len(words) - 1):
                     return sensor, match.group(2), " ".join(
                         words[:number] + [match.group(1)] + words[number + 1:])
         if word in ("gfx", "gfy", "gfz"):       # g-force
@@ -135,7 +141,7 @@ def _apart(words):
     for sensor in (ACCEL, GYRO, MAG):
         long = {word for word in WORDS[sensor] if len(word) > 1}
         if set(stems) & long or (stems and stems[0] in WORDS[sensor]
-                                 and set(stems[1:]) <= FILLERS) or any(
+                                 and set(stems[1:]) <= BESIDE) or any(
                 stem.startswith(("accel", "gyro", "magneto")) and sensor == stem[0]
                 for stem in stems):
             return sensor, words[place], " ".join(rest)
