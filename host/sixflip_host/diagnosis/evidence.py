@@ -172,17 +172,39 @@ def fit(unit, statistics, shared, private, level, points=EVERY, elimination=None
     else:
         r = elimination.reduced(shared.index, chosen)
     level = level[chosen]
-    likelihood = -0.5 * r.quadratic - (r.logdet - level)[:, None]
+    left, logdet = r.quadratic, 0.0
     if len(shared):
-        full = r.gram + np.diag(shared.prior ** -2.0)
-        solved = np.linalg.solve(full, r.inner)
-        likelihood = likelihood + 0.5 * (r.inner * solved).sum(axis=1)
-        likelihood = likelihood - (0.5 * np.linalg.slogdet(full)[1]
-                                   + np.log(shared.prior).sum())[:, None]
+        left, logdet = known(r.gram + np.diag(shared.prior ** -2.0), r.inner, r.quadratic)
+        logdet = logdet + np.log(shared.prior).sum()
+    likelihood = -0.5 * left - (r.logdet - level + logdet)[:, None]
     index = likelihood.argmax(axis=0)
     every = np.arange(r.quadratic.shape[1])
     return Fit(chosen[index], r.quadratic[index, every], r.inner[index, :, every], r.gram[index],
                r.logdet[index], level[index], likelihood[index, every])
+
+
+def known(gram, inner, quadratic):
+    """(quadratic (G, R) less what coefficients of that gram (G, k, k) and inner (G, k, R) explain,
+    half the log determinant of the gram (G,)).
+
+    One data set, as in a search, takes one factor: of the gram bordered by inner and quadratic,
+    whose last corner squared is what is left [Bjorck, Numerical Methods for Least Squares
+    Problems (1996), section 2.2.2].
+    """
+    points, k, number = inner.shape
+    if number == 1:
+        bordered = np.empty((points, k + 1, k + 1))  # the lower triangle is all that is read
+        bordered[:, :k, :k], bordered[:, k, :k] = gram, inner[:, :, 0]
+        bordered[:, k, k] = quadratic[:, 0] + 1.0  # so that rounding leaves it positive
+        try:
+            factor = np.linalg.cholesky(bordered)
+        except np.linalg.LinAlgError:
+            pass
+        else:
+            corners = np.diagonal(factor, axis1=1, axis2=2)
+            return corners[:, k:] ** 2 - 1.0, np.log(corners[:, :k]).sum(axis=1)
+    solved = np.linalg.solve(gram, inner)
+    return quadratic - (inner * solved).sum(axis=1), 0.5 * np.linalg.slogdet(gram)[1]
 
 
 def coefficients(fits, shared):

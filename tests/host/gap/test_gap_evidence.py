@@ -124,3 +124,16 @@ def test_a_level_of_noise_beyond_the_usual_costs_unless_it_may_be_anything():
     usual, free = USUAL.prior(one, ()), USUAL.prior(one, {"flicker"})
     assert one.grid[1][1] == 1.0 and usual[1] < -10.0 and usual[0] == 0.0
     assert not free.any()
+
+
+def test_what_coefficients_explain_is_the_same_by_one_factor_and_by_two():
+    """One data set is worked out from the bordered matrix, several by solving for each."""
+    generator = np.random.default_rng(8)
+    columns = generator.standard_normal((5, 30, 4)) * np.array([1e-4, 1.0, 30.0, 1e3])
+    y = generator.standard_normal((5, 30, 1)) * 1e3
+    gram = columns.transpose(0, 2, 1) @ columns + np.diag([1.0, 1.0, 2.0, 3.0])
+    inner, quadratic = columns.transpose(0, 2, 1) @ y, (y ** 2).sum(axis=1)
+    left, logdet = evidence.known(gram, inner, quadratic)
+    twice, same = evidence.known(gram, np.repeat(inner, 2, 2), np.repeat(quadratic, 2, 1))
+    assert twice[:, :1] == pytest.approx(left, rel=1e-12)
+    assert same == pytest.approx(logdet, rel=1e-12)
