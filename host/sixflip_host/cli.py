@@ -1,4 +1,8 @@
-"""The command `sixflip`: a table of verbs, one module each, loaded when asked for."""
+"""The command `sixflip`: the verbs of verb_table.py, one module each, loaded when asked for.
+
+A verb's module has EXAMPLE, add_arguments(parser) and run(args) -> exit code, and more() where its
+help ends in a text.
+"""
 
 import argparse
 import contextlib
@@ -15,39 +19,7 @@ from .did_you_mean import closest, instead
 from .errors import SixflipError, UsageError, internal_error
 from .narration import log, narrated
 from .terminal import plain
-
-# A verb's module has HELP (one line), EXAMPLE, add_arguments(parser) and run(args) -> exit code,
-# and more() where its help ends in a text.
-VERBS = {
-    "boards": "sixflip_host.verbs.boards",
-    "provision": "sixflip_host.verbs.provision",
-    "calibrate": "sixflip_host.verbs.calibrate",
-    "ui": "sixflip_host.verbs.ui",
-    "pull": "sixflip_host.verbs.pull",
-    "verify": "sixflip_host.verbs.verify",
-    "solve": "sixflip_host.verbs.solve",
-    "refine": "sixflip_host.verbs.refine",
-    "restore": "sixflip_host.verbs.restore",
-    "check": "sixflip_host.verbs.check",
-    "mount": "sixflip_host.verbs.mount",
-    "stream": "sixflip_host.verbs.stream",
-    "record": "sixflip_host.verbs.record",
-    "show": "sixflip_host.verbs.show",
-    "import": "sixflip_host.verbs.import_recording",
-    "export": "sixflip_host.verbs.export",
-    "apply": "sixflip_host.verbs.apply",
-    "history": "sixflip_host.verbs.history",
-    "report": "sixflip_host.verbs.report",
-    "doctor": "sixflip_host.verbs.doctor",
-    "plan": "sixflip_host.verbs.plan",
-    "simulate": "sixflip_host.verbs.simulate",
-    "diagnose": "sixflip_host.verbs.diagnose",
-    "fleet": "sixflip_host.verbs.fleet",
-    "reproduce": "sixflip_host.verbs.reproduce",
-    "demo": "sixflip_host.verbs.demo",
-    "virtual-board": "sixflip_host.verbs.virtual_board_verb",
-    "completion": "sixflip_host.completion",
-}
+from .verb_table import VERBS
 
 # For every verb, and wherever they stand on the command line.
 GLOBAL = {
@@ -106,7 +78,7 @@ def overview():
     lines = ["usage: sixflip VERB [options]", "",
              "On-board calibration of an inertial sensor, and its check on the host.", ""]
     for verb in VERBS:
-        lines.append("  %-14s %s" % (verb, load(verb).HELP))
+        lines.append("  %-14s %s" % (verb, VERBS[verb][1]))
     lines += ["", "sixflip VERB --help says more about one of them. With every verb:"]
     lines += ["  %-14s %s" % item for item in GLOBAL.items()]
     lines += ["", EXIT_CODES]
@@ -115,13 +87,13 @@ def overview():
 
 def load(verb):
     """The module behind a verb."""
-    return importlib.import_module(VERBS[verb])
+    return importlib.import_module(VERBS[verb][0])
 
 
 def parser_for(verb):
     """The argument parser of one verb."""
     module = load(verb)
-    parser = Parser(prog="sixflip " + verb, description=module.HELP, allow_abbrev=False,
+    parser = Parser(prog="sixflip " + verb, description=VERBS[verb][1], allow_abbrev=False,
                     epilog="example: %s\n\n%s%s" % (
                         module.EXAMPLE, module.more() if hasattr(module, "more") else "",
                         EXIT_CODES),

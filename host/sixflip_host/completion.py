@@ -4,7 +4,6 @@ import argparse
 
 import shtab
 
-HELP = "print what makes a shell complete sixflip's command lines"
 EXAMPLE = ("sixflip completion bash > ~/.local/share/bash-completion/completions/sixflip\n"
            "         sixflip completion zsh > ~/.zfunc/_sixflip\n"
            "         sixflip completion fish > ~/.config/fish/completions/sixflip.fish")
@@ -24,13 +23,14 @@ def run(args):
 
 def whole_parser():
     """One parser of all verbs, made of theirs."""
-    from .cli import VERBS, add_global, load
+    from .cli import add_global, load
+    from .verb_table import VERBS
     root = argparse.ArgumentParser(prog="sixflip")
     root.add_argument("--version", action="store_true", help="of sixflip")
     verbs = root.add_subparsers(dest="verb")
     for verb in VERBS:
         module = load(verb)
-        parser = verbs.add_parser(verb, help=module.HELP)
+        parser = verbs.add_parser(verb, help=VERBS[verb][1])
         add_global(parser)
         module.add_arguments(parser)
         for action in parser._actions:      # argparse has no other way to ask

@@ -8,7 +8,6 @@ from ..errors import BadFile
 from ..export.corrected_rows import corrected
 from ..file_arguments import add_input, add_output
 
-HELP = "correct a capture with a record: CSV, Parquet, NPZ or MCAP in m/s² and rad/s"
 EXAMPLE = ("sixflip apply record_a.bin capture.csv -o corrected.csv\n"
            "         sixflip apply record_a.bin capture.csv -o corrected.mcap")
 

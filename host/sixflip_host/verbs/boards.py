@@ -6,7 +6,6 @@ from ..board import serial_ports
 from ..errors import NoBoard, SixflipError
 from ..terminal import plain
 
-HELP = "list the boards that are plugged in"
 EXAMPLE = "sixflip boards --ask"
 
 

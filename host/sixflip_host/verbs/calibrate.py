@@ -15,7 +15,6 @@ from ..history import remember
 from ..planning import board_plan
 from ..terminal import plain
 
-HELP = "calibrate a board now, guided face by face"
 EXAMPLE = ("sixflip calibrate\n         sixflip calibrate --replay capture.bin --speed 5\n"
            "         sixflip calibrate --all")
 FACES = ("Z+", "Z-", "X+", "X-", "Y+", "Y-")

@@ -16,7 +16,6 @@ from ..history import remember
 from ..terminal import say
 from .solve import local_gravity
 
-HELP = "is the calibration still valid? some seconds of rest against the record"
 EXAMPLE = ("sixflip check\n"
            "         sixflip check rest.csv --record record_a.bin")
 # The board's own limits (check_at_rest.py of the firmware; a test compares them): what ageing, a

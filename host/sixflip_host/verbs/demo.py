@@ -27,7 +27,6 @@ from ..terminal import plain
 from ..virtual import demo_truth, micropython_fetch
 from . import calibrate
 
-HELP = "watch a virtual board calibrate itself, and check its arithmetic"
 EXAMPLE = "sixflip demo --keep demo-output"
 WITH_GYRO = tuple(name for name in SENSORS if driver(name).has_gyro)
 TILT_DEG = 2.0

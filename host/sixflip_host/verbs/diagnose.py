@@ -15,7 +15,6 @@ from ..did_you_mean import instead
 from ..errors import CheckFailed, UsageError
 from ..file_arguments import add_input, add_output
 
-HELP = "find what the simulated sensor lacks: where the gap lies, which effect, how far it shrinks"
 EXAMPLE = "sixflip diagnose warming.csv cooling.csv --report gap"
 VERDICTS = ("no gap", "explained", "partly explained", "unexplained", "cannot tell")
 

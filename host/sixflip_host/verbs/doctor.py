@@ -18,7 +18,6 @@ from ..doctor.finding import FAULT, OK, WARNING, fault
 from ..errors import BadFile, CheckFailed, NoBoard, SixflipError
 from ..terminal import plain, styled
 
-HELP = "find out what is wrong: port, MicroPython, wiring, chips, ranges, clock"
 EXAMPLE = "sixflip doctor --port /dev/ttyACM0"
 SCRIPT = Path(__file__).resolve().parents[1] / "doctor" / "on_board" / "look_at_bus.py"
 ANSWER_S = 60               # a stuck bus lets every transfer wait

@@ -23,7 +23,6 @@ from ..export import (
 )
 from ..file_arguments import add_input, add_output
 
-HELP = "a capture or a record in another format"
 EXAMPLE = ("sixflip export record_a.bin --format imu_calib -o imu_calib.yaml\n"
            "         sixflip export record_a.bin -o sixflip_correction.h")
 

@@ -6,7 +6,6 @@ from .. import atomic_write, file_kinds, progress
 from ..errors import BadFile, UsageError
 from ..file_arguments import add_input, add_output
 
-HELP = "many boards together: what their batch shares, what single ones have, which stand out"
 EXAMPLE = ("sixflip fleet captures -o fleet-out --report\n"
            "         sixflip fleet boards.csv -o fleet-out --scheduler tcp://10.0.0.5:8786")
 JSON_NAME, PAGE_NAME = "fleet.json", "fleet.html"

@@ -8,7 +8,6 @@ from ..history import drift, parameters, store, tables
 from ..json_numbers import finite
 from ..terminal import console, plain, table
 
-HELP = "every calibration and check of a board so far, and how its parameters drift"
 EXAMPLE = ("sixflip history\n"
            "         sixflip history e6614c311b4c5a2f --plot drift.png")
 

@@ -14,8 +14,6 @@ from ..capture.imports.column_names import TIME_UNITS
 from ..file_arguments import add_input, add_output
 from ..terminal import plain, say
 
-HELP = ("make a capture file from somebody else's recording (CSV, ROS, PX4, MATLAB and others), "
-        "finding the poses by itself")
 EXAMPLE = ("sixflip import log.csv -o capture.csv\n"
            "         sixflip import session.csv.gz -o capture.csv --units si,dps --rate 102.4\n"
            "         sixflip import log.csv -o capture.csv --columns ax,ay,az,-,gx,gy,gz "

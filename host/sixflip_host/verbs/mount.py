@@ -20,7 +20,6 @@ from ..file_arguments import add_input, add_output
 from ..mounting import mount_board, mount_words, robot_axes
 from ..terminal import say
 
-HELP = "roll and pitch of an installed sensor, from a rest on a level vehicle"
 EXAMPLE = ("sixflip mount rest.csv --record record_a.bin --axes x=-y,y=x,z=z -o mounted.bin\n"
            "         sixflip mount --vector -0.2235 0.4937 0.8330 --both\n"
            "         sixflip mount --port /dev/ttyACM0 --axes ned")

@@ -13,7 +13,6 @@ from ..file_arguments import add_input, add_output
 from ..planning import plan_answer, plan_file, protocols
 from ..terminal import plain
 
-HELP = "say what a capture can tell apart, what it cannot, and what to add; no capture needed"
 EXAMPLE = "sixflip plan --protocol recommended --sensor mpu6050 --save session.json"
 SENSORS = (*catalogue.SENSORS, "itg3205")
 MOST_PLACEMENTS = 120  # dense algebra: the time grows with the cube

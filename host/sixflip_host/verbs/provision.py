@@ -10,7 +10,6 @@ from ..board.ports import add_port, open_link
 from ..errors import UsageError
 from ..terminal import plain
 
-HELP = "copy the firmware onto a board and test its sensor"
 EXAMPLE = ("sixflip provision --sensor gy85 --pins sda=4,scl=5\n"
            "         sixflip provision --sensor lsm6dsox --range 8g,2000dps --rate 200")
 BOARDS = ("pico", "esp32", "pyboard", "raspberry_pi")

@@ -8,7 +8,6 @@ from ..file_arguments import add_output
 from ..history import remember
 from ..terminal import plain
 
-HELP = "fetch the raw capture and the correction records from a board"
 EXAMPLE = "sixflip pull -o captures"
 
 

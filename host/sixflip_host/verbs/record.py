@@ -14,7 +14,6 @@ from ..errors import CheckFailed, Interrupted, NoBoard, UsageError
 from ..file_arguments import add_output
 from ..terminal import plain
 
-HELP = "write a board's raw samples down for minutes or hours, without a session"
 EXAMPLE = "sixflip record --hours 8 -o night.bin"
 SILENCE_S = 5
 LOOK_S = 8              # what is missing is said every few seconds; a board that powers up, later

@@ -11,7 +11,6 @@ from ..file_arguments import add_input, add_output
 from ..history import remember
 from ..terminal import say
 
-HELP = "refine a calibration from all rests and moves of a capture, with uncertainties"
 EXAMPLE = ("sixflip refine capture.csv -o refined.bin\n"
            "         sixflip refine hand_held.csv --free\n"
            "         sixflip refine on_the_floor.csv --record record.bin -o updated.bin")

@@ -11,7 +11,6 @@ from ..errors import BadFile, UsageError
 from ..file_arguments import add_input, add_output
 from ..terminal import plain
 
-HELP = "one HTML page with pictures: calibration, verification, history and gap of a board"
 EXAMPLE = ("sixflip report pulled/e6614c311b4c5a2f -o report.html\n"
            "         sixflip report warming.csv cooling.csv --gap -o gap.html")
 

@@ -12,7 +12,6 @@ from ..papers.corridor.claims import claim
 from ..terminal import console, plain, styled, table
 from . import reproduce_map
 
-HELP = "the paper's tables and its map as simulated experiments, and whether the claims hold"
 EXAMPLE = "sixflip reproduce --sessions 100"
 SESSIONS = 60
 FEWEST = 10

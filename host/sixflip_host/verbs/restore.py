@@ -10,7 +10,6 @@ from ..calibrate.verify_files import decode_record
 from ..errors import CheckFailed
 from ..file_arguments import add_input
 
-HELP = "go back to the correction before the present one, or put one from a file into force"
 EXAMPLE = ("sixflip restore\n"
            "         sixflip restore --from mounted.bin")
 OFFERED = "offered.bin"     # where the firmware looks for it at its next power-up

@@ -20,7 +20,6 @@ from ..file_arguments import add_input
 from ..json_numbers import finite
 from ..terminal import console, plain, table, verdict_text
 
-HELP = "what is in a record or a capture, or in the flash of a board, in words"
 EXAMPLE = "sixflip show capture.csv"
 
 

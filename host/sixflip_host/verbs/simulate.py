@@ -10,7 +10,6 @@ from ..errors import BadFile, UsageError
 from ..file_arguments import add_input, add_output
 from ..simulation import scenario, simulated_session
 
-HELP = "simulate captures: noise, table, hand and any of the known effects, from a scenario file"
 EXAMPLE = "sixflip simulate scenario.toml -o warming.csv cooling.csv"
 
 

@@ -14,7 +14,6 @@ from ..json_numbers import finite
 from ..present import solve_words
 from ..terminal import say
 
-HELP = "solve a capture file with the code that runs on the board"
 EXAMPLE = "sixflip solve capture.csv --lat 48.1 --height 520"
 
 

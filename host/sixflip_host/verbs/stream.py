@@ -19,7 +19,6 @@ from ..file_arguments import add_output
 from ..streaming import publishing
 from ..terminal import plain
 
-HELP = "raw counts, corrected samples or the heading of a board, live"
 EXAMPLE = "sixflip stream --heading --hz 20"
 
 COLUMNS = {

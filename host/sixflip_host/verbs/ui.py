@@ -17,7 +17,6 @@ from ..planning import board_plan
 from ..terminal import plain
 from . import calibrate
 
-HELP = "the guided calibration in a browser, with the box in 3-D, plots and reports"
 EXAMPLE = "sixflip ui"
 
 

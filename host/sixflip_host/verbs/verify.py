@@ -9,7 +9,6 @@ from ..history import remember
 from ..json_numbers import finite
 from ..terminal import console, plain, styled, table
 
-HELP = "recompute everything from the raw capture and compare with the board's record"
 EXAMPLE = "sixflip verify pulled/e6614c311b4c5a2f"
 
 

@@ -14,7 +14,6 @@ from ..file_kinds import FLASH
 from ..virtual.micropython_fetch import cache_dir
 
 MOST_BOARDS = 64
-HELP = "run a virtual board and print its serial port"
 EXAMPLE = "sixflip virtual-board --sensor gy85"
 
 
