@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from sixflip.poses import faces
-from sixflip_host.fleet import analysis, parameters, summary
+from sixflip_host.fleet import analysis, parameters, summary, summary_file
 from sixflip_host.planning import protocols
 
 ACCEL_LSB, GYRO_LSB, RATE = 16384.0, 65.5, 100.0
@@ -96,7 +96,8 @@ def summary_of(part, plan, rng, name, number=0, board=None):
     if board:
         meta["device_id"] = board
     return summary.Summary({
-        "format": 1, "name": name, "labelled": True, "found_labelled": True, "gyro": True,
+        "format": summary_file.FORMAT, "name": name, "labelled": True, "found_labelled": True,
+        "gyro": True,
         "meta": meta, "remarks": [], "bounds": [0.0, end], "stamp": None, "hash": name,
         "flips": {"reason": "made without samples", "angles": [], "measured": []},
         "samples": {"findings": [], "nameless": [], "scaled": False, "remarks": []}}, arrays)

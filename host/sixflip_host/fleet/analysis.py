@@ -4,9 +4,11 @@ This is the task that workers run. Whatever is wrong with a board is in its row 
 other boards never hear of it.
 """
 import hashlib
+import json
 import math
 import os
 import time
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,13 +16,28 @@ from sixflip import __version__
 
 from ..calibrate import verification, verify_files
 from ..diagnosis import blas_threads  # noqa: F401 (before numpy's threads are asked for)
+from ..diagnosis.samples_judged import SENSOR
 from ..errors import BadFile, SixflipError, internal_error
 from ..value_kinds import LONGEST_TEXT
-from . import effects, parameters, sources, summary_file
+from . import diagnosed, effects, parameters, sources, summary_file
 
 LAYOUT = 1  # of a row: with the version of sixflip, what makes an older row be done again
 VERSION = "%d, sixflip %s" % (LAYOUT, __version__)
 MOST_SESSIONS = 64
+
+
+@dataclass(frozen=True)
+class Options:
+    """summaries: whether one is put beside each capture; diagnose: whether every board is
+    diagnosed by itself, which takes seconds of it."""
+
+    summaries: bool = True
+    diagnose: bool = False
+
+    @property
+    def version(self):
+        """Of the rows that are made so."""
+        return VERSION + (", diagnosed" if self.diagnose else "")
 
 
 def stamps(board):
@@ -49,18 +66,17 @@ def _files(board):
     return [*board.captures, *board.summaries, *filter(os.path.exists, records)]
 
 
-def row(board, keep=True):
-    """dict of a board, see dataset.SCHEMA; failure is "" or the sentence on what is wrong.
-
-    keep  whether summaries are put beside the captures
-    """
-    found = {"board": board.board, "batch": board.batch, "version": VERSION, "failure": "",
+def row(board, options=None):
+    """dict of a board, see dataset.schema(); failure is "" or the sentence on what is wrong."""
+    options = options or Options()
+    found = {"board": board.board, "batch": board.batch, "version": options.version, "failure": "",
              "paths": [*board.captures, *board.summaries], "written": time.time(),
              "stamps": "", "content": "", **_empty()}
     started = time.process_time()
     try:
         found["stamps"], found["content"] = stamps(board), content(board)
-        found.update(_of_history(board) if board.calibrations else _of_files(board, keep))
+        found.update(_of_history(board) if board.calibrations
+                     else _of_files(board, options))
     except SixflipError as error:
         found["failure"] = str(error)
     except MemoryError:
@@ -75,12 +91,12 @@ def row(board, keep=True):
 def _empty():
     return {"chip": "", "accel_range_g": math.nan, "gyro_range_dps": math.nan, "at": [],
             "verdicts": [], "reasons": [], "values": [], "covariances": [], "verified": "",
-            "findings": [], "remarks": [], "cpu_s": 0.0,
+            "findings": [], "remarks": [], "gap": "", "cpu_s": 0.0,
             **{"%s_%s" % (what, sensor): [] for sensor in effects.FORMS
                for what in ("precision", "score")}}
 
 
-def _of_files(board, keep):
+def _of_files(board, options):
     remarks, kept = [], []
     if not board.captures and not board.summaries:
         raise BadFile("no session")
@@ -88,7 +104,7 @@ def _of_files(board, keep):
         if path in board.summaries:
             kept.append(summary_file.read(path))
         else:
-            one, why = summary_file.of_capture(path, keep)
+            one, why = summary_file.of_capture(path, options.summaries)
             kept.append(one)
             remarks += [why] if why else []
     ids = {str(one.meta["device_id"]) for one in kept if one.meta.get("device_id")}
@@ -105,7 +121,7 @@ def _of_files(board, keep):
     if again:
         remarks.append("%d captures repeat one before them and are left out" % len(again))
         kept = [one for k, one in enumerate(kept) if k not in again]
-    return dict(_judged(kept, remarks), verified=_verified(board, remarks))
+    return dict(_judged(kept, remarks, options), verified=_verified(board, remarks))
 
 
 def _kind(meta):
@@ -117,7 +133,7 @@ def _spelled(kind):
     return "%s ±%g g ±%g °/s" % kind
 
 
-def _judged(kept, remarks):
+def _judged(kept, remarks, options=None):
     """What stands in the row of the summaries of one board's sessions."""
     found = {"at": [], "verdicts": [], "reasons": [], "values": [], "covariances": []}
     sessions = [one.session() for one in kept]
@@ -131,8 +147,10 @@ def _judged(kept, remarks):
     for sensor, one in told.items():
         found["precision_" + sensor] = one.precision[np.triu_indices(len(one.score))].tolist()
         found["score_" + sensor] = one.score.tolist()
-    findings = [f["words"] and "the %s: %s" % (f["sensor"], f["words"]) or f["effect"]
+    findings = ["the %s: %s" % (SENSOR.get(f["sensor"], f["sensor"]), f["words"] or f["effect"])
                 for one in kept for f in one.about["samples"]["findings"]]
+    if options and options.diagnose:
+        found["gap"] = json.dumps(diagnosed.of(kept, sessions), allow_nan=False)
     return dict(found, chip=chip, accel_range_g=accel, gyro_range_dps=gyro,
                 findings=list(dict.fromkeys(findings)),
                 remarks=list(dict.fromkeys([*remarks, *said])))

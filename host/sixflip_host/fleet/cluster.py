@@ -144,12 +144,12 @@ def _short(error):
     return words.rpartition("cancelled for reason: ")[2].rstrip(".")[:120]
 
 
-def rows_of(boards, keep):
+def rows_of(boards, options):
     """What a task is: a row for each of a few boards."""
-    return [analysis.row(one, keep) for one in boards]
+    return [analysis.row(one, options) for one in boards]
 
 
-def run(client, boards, take, target, keep=True, work=rows_of):
+def run(client, boards, take, target, options=None, work=rows_of):
     """Give every board to the workers; take(rows) is called here with what comes back, once for
     each board. CheckFailed when the scheduler is lost or no worker is left."""
     distributed = _dask()
@@ -158,7 +158,7 @@ def run(client, boards, take, target, keep=True, work=rows_of):
     try:
         pool = distributed.as_completed(loop=client.loop)
         for chunk in _some(chunks, AHEAD * _workers(client, target)):
-            pool.add(client.submit(work, chunk, keep, pure=False, retries=RETRIES))
+            pool.add(client.submit(work, chunk, options, pure=False, retries=RETRIES))
         while pool.count():
             future = _next(pool, client, target, done, len(boards))
             rows = future.result()
@@ -166,7 +166,7 @@ def run(client, boards, take, target, keep=True, work=rows_of):
             take(rows)
             done += len(rows)
             for chunk in _some(chunks, 1):
-                pool.add(client.submit(work, chunk, keep, pure=False, retries=RETRIES))
+                pool.add(client.submit(work, chunk, options, pure=False, retries=RETRIES))
     except (BadFile, CheckFailed):
         raise
     except (OSError, TimeoutError, distributed.CancelledError, RuntimeError) as error:

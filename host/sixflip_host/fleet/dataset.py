@@ -17,7 +17,7 @@ from . import analysis, effects
 
 FOLDER = "boards"
 TEXTS, LISTS_OF_TEXT = ("board", "batch", "version", "failure", "stamps", "content", "chip",
-                        "verified"), ("paths", "verdicts", "reasons", "findings", "remarks")
+                        "verified", "gap"), ("paths", "verdicts", "reasons", "findings", "remarks")
 NUMBERS = ("written", "accel_range_g", "gyro_range_dps", "cpu_s")
 LISTS = ("at", *("%s_%s" % (what, sensor) for sensor in effects.FORMS
                  for what in ("precision", "score")))

@@ -48,23 +48,24 @@ class _Writer:
             self.data.write(rows)
 
 
-def boards(path, output, target, keep=True, work=cluster.rows_of):
+def boards(path, output, target, options=None, work=cluster.rows_of):
     """Run of what stands on the command line; the data set below `output` grows by it."""
+    options = options or analysis.Options()
     if os.path.isdir(path) and dataset.in_folder(path):
         return _taken_over(path)
     found = sources.of(path)
     data = dataset.DataSet(output)
-    known, damaged = data.done(analysis.VERSION)
+    known, damaged = data.done(options.version)
     left = dataset.to_do(found.boards, known)
     if left:
         progress.doing("the cluster")
         writer = _Writer(data, len(left))
         with cluster.connected(target) as client:
             try:
-                cluster.run(client, left, writer.take, target, keep, work)
+                cluster.run(client, left, writer.take, target, options, work)
             finally:
                 writer.flush()
-        known, damaged = data.done(analysis.VERSION)
+        known, damaged = data.done(options.version)
     names = {(one.batch, one.board) for one in found.boards}
     wanted = {key: one for key, one in known.items() if key in names}
     failures = [*found.failures, *((board, one.failure) for (_, board), one in wanted.items()
@@ -75,7 +76,9 @@ def boards(path, output, target, keep=True, work=cluster.rows_of):
 def _taken_over(path):
     """Run of the data set that an earlier run left in a folder."""
     data = dataset.DataSet(path)
-    known, damaged = data.done(analysis.VERSION)
+    known, damaged = data.done(analysis.Options(diagnose=True).version)
+    plain, _ = data.done(analysis.VERSION)
+    known = {**plain, **known}
     if not known:
         raise BadFile("%s: its boards were done by another version of sixflip, expected %s: run "
                       "sixflip fleet on their captures again" % (path, analysis.VERSION))

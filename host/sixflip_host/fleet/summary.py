@@ -204,7 +204,9 @@ def _verdict(judged):
         "sensor": f.sensor, "effect": f.effect, "axes": list(f.axes), "domain": f.domain,
         "score_nats": float(f.score), "words": f.words,
         "value": {k: float(v) for k, v in f.value.items()}, "unit": f.unit,
-        "probability": float(f.named), "plausible": bool(f.plausible)} for f in judged.findings],
+        "plausible": bool(f.plausible), "share": None if f.share is None else float(f.share),
+        "number": float(f.number), "place": {k: float(v) for k, v in f.place.items()}}
+        for f in judged.findings],
         "nameless": [{"sensor": p.sensor, "axis": p.axis, "domain": p.domain, "p": p.p}
                      for p in judged.nameless],
         "scaled": judged.scaled, "remarks": list(judged.remarks)}

@@ -19,7 +19,7 @@ from ..diagnosis import cutoffs
 from ..errors import BadFile
 from . import summary
 
-FORMAT = 1
+FORMAT = 2
 SUFFIX = ".summary.npz"
 PIECE = 1 << 20
 ARRAYS = {  # columns of each array, None: any number of dimensions

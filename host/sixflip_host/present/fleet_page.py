@@ -1,18 +1,20 @@
 """The page of a fleet: one file, with a table of its boards that sorts itself, and beside it a
 page for every board with its own values against the batch."""
 import html as markup
+import json
 import os
 import re
 
 import numpy as np
 
 from .. import atomic_write
+from ..fleet import diagnosed
 from . import fleet_pictures, fleet_words
 from .page import Page, text
 
 FOLDER = "reports"
 COLUMNS = ("board", "batch", "written", "failure", "verdicts", "reasons", "verified", "findings",
-           "remarks", "paths")
+           "remarks", "paths", "gap")
 # A click on a heading sorts the table's rows by that column, numbers as numbers.
 SORTING = """document.querySelectorAll("table.sortable th").forEach(function (th) {
   th.tabIndex = 0;
@@ -103,7 +105,7 @@ def _boards(page, them, batches, about, output):
             rows.append((abs(worst[1]), [
                 "<a href=\"%s\">%s</a>" % (markup.escape(link), text(board)),
                 text(batch_of[board]), "%.1f" % abs(worst[1]), text(worst[0]),
-                text("; ".join([*named, *(own.get("findings") or [])])),
+                text("; ".join([*named, *_said(own)])),
                 "<span class=%s>%s</span>" % (verdict or "none", text(verdict)),
                 text(own.get("verified") or "")]))
     rows.sort(key=lambda row: -row[0])
@@ -112,6 +114,13 @@ def _boards(page, them, batches, about, output):
                    for _, cells in rows)
     page.parts.append("<div class=scroll><table class=sortable><thead><tr>%s</tr></thead><tbody>%s"
                       "</tbody></table></div>" % (head, body))
+
+
+def _said(own):
+    """Sentences of a board's diagnosis, or of what its samples show where it has none."""
+    if own.get("gap"):
+        return [diagnosed.words(json.loads(own["gap"]))]
+    return own.get("findings") or []
 
 
 def distances(batch, number):
@@ -140,7 +149,7 @@ def _board(board, batch, them, standing, named, own):
         page.verdict(verdict, reason)
     if own.get("verified"):
         page.verdict(own["verified"], "the board's record against its capture")
-    for sentence in [*named, *(own.get("findings") or []), *(own.get("remarks") or [])]:
+    for sentence in [*named, *_said(own), *(own.get("remarks") or [])]:
         page.paragraph(sentence)
     page.heading("Against its batch")
     page.table(["parameter", "value", "sigma", "sigmas from the batch"], [

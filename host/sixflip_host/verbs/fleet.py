@@ -28,6 +28,8 @@ def add_arguments(parser):
     add("--randomise", action="store_true",
         help="also write the population as a simulator's randomisation: imu_numpy.py, "
              "imu_mujoco.py and imu_isaaclab.py")
+    add("--diagnose", action="store_true",
+        help="also diagnose every board by itself, from the rests (takes seconds for each)")
     add("--no-summaries", action="store_true",
         help="do not put a summary beside each capture; a later run reads them all again")
     add("--json", action="store_true", help="what stands in fleet.json on stdout")
@@ -47,14 +49,15 @@ def files(value, args):
 
 def run(args):
     """Do what is not done, then judge all; 0 whatever single boards are like."""
-    from ..fleet import answer, cluster, run_fleet
+    from ..fleet import analysis, answer, cluster, run_fleet
     if args.workers < 0:
         raise UsageError("--workers is %d, expected 1 or more" % args.workers)
     if args.workers and args.scheduler:
         raise UsageError("--workers and --scheduler: expected one of the two")
     target = cluster.Target(args.scheduler, args.workers)
     with progress.during("fleet"):
-        done = run_fleet.boards(args.boards, args.output, target, not args.no_summaries)
+        done = run_fleet.boards(args.boards, args.output, target, analysis.Options(
+            not args.no_summaries, args.diagnose))
         progress.doing("the population")
         kinds = answer.judged(done.rows())
     found = answer.of(kinds, done.failures, done.remarks)

@@ -39,34 +39,34 @@ def fleet_of(folder, n=9):
 
 def counted(rows):
     """A task that leaves a mark for each board that it does."""
-    def work(boards, keep):
+    def work(boards, options):
         out = []
         for one in boards:
             with open(rows, "a") as file:
                 file.write(one.board + "\n")
-            out.append(dict(analysis.row(one, keep), failure="", values=[]))
+            out.append(dict(analysis.row(one, options), failure="", values=[]))
         return out
     return work
 
 
 def test_every_board_is_done_once_and_not_again(tmp_path, inside):
     folder, marks = fleet_of(tmp_path / "in"), tmp_path / "marks"
-    first = run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, True, counted(str(marks)))
+    first = run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, None, counted(str(marks)))
     assert first.fresh == 9 and len(list(first.rows())) == 9
     assert sorted(marks.read_text().split()) == ["b%d" % k for k in range(9)]
-    again = run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, True, counted(str(marks)))
+    again = run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, None, counted(str(marks)))
     assert again.fresh == 0 and len(list(again.rows())) == 9
     (folder / "b4" / "s.csv").write_text("another\n")
-    third = run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, True, counted(str(marks)))
+    third = run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, None, counted(str(marks)))
     assert third.fresh == 1 and len(list(third.rows())) == 9
     assert len(marks.read_text().split()) == 10
 
 
 def test_rows_of_another_version_are_done_again(tmp_path, inside, monkeypatch):
     folder, marks = fleet_of(tmp_path / "in", 2), str(tmp_path / "marks")
-    run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, True, counted(marks))
+    run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, None, counted(marks))
     monkeypatch.setattr(analysis, "VERSION", "another")
-    again = run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, True, counted(marks))
+    again = run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, None, counted(marks))
     assert again.fresh == 2 and len(list(again.rows())) == 2
 
 
@@ -83,7 +83,7 @@ def test_damaged_files_are_sentences_and_stop_nobody(tmp_path, inside, capsys):
 
 def test_what_a_task_raises_is_its_boards_sentence(tmp_path, monkeypatch):
     folder = fleet_of(tmp_path / "in", 1)
-    monkeypatch.setattr(analysis, "_of_files", lambda board, keep: 1 / 0)
+    monkeypatch.setattr(analysis, "_of_files", lambda board, options: 1 / 0)
     row = analysis.row(sources.of(folder).boards[0])
     assert row["failure"].startswith("internal error: ZeroDivisionError")
 
@@ -102,24 +102,24 @@ def test_a_full_disk_ends_clearly_and_what_was_done_stays(tmp_path, inside, monk
     with monkeypatch.context() as patch:
         patch.setattr(dataset.atomic_write, "write_bytes", full)
         with pytest.raises(BadFile, match="No space left on device; what was done before is kept"):
-            run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, True, counted(marks))
-    again = run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, True, counted(marks))
+            run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, None, counted(marks))
+    again = run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, None, counted(marks))
     assert again.fresh == 5 and len(list(again.rows())) == 9
 
 
 def test_a_damaged_part_is_said_and_its_boards_are_done_again(tmp_path, inside):
     folder, marks = fleet_of(tmp_path / "in", 4), str(tmp_path / "marks")
-    run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, True, counted(marks))
+    run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, None, counted(marks))
     part, = dataset.DataSet(tmp_path / "out").parts()
     with open(part, "r+b") as file:
         file.truncate(os.path.getsize(part) // 2)
-    again = run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, True, counted(marks))
+    again = run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, None, counted(marks))
     assert again.fresh == 4 and any("is damaged" in said for said in again.remarks)
 
 
 def test_what_a_run_left_is_a_source_itself(tmp_path, inside):
     folder, marks = fleet_of(tmp_path / "in", 3), str(tmp_path / "marks")
-    run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, True, counted(marks))
+    run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, None, counted(marks))
     taken = run_fleet.boards(str(tmp_path / "out"), str(tmp_path / "new"), HERE)
     assert taken.fresh == 0 and len(list(taken.rows())) == 3
 

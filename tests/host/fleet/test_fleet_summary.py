@@ -9,7 +9,7 @@ from sixflip_host.capture import capture_file
 from sixflip_host.diagnosis import rest_model, settings
 from sixflip_host.errors import BadFile
 from sixflip_host.experiment import attitude_fit, blocks, terms
-from sixflip_host.fleet import effects, summary, summary_file
+from sixflip_host.fleet import diagnosed, effects, summary, summary_file
 from sixflip_host.simulation import scenario, simulated_session
 
 
@@ -79,6 +79,28 @@ def test_the_effect_of_the_capture_is_in_its_information(captured):
     sigma = 1.0 / np.sqrt(precision[k, k])
     assert abs(score[k] / precision[k, k] + 1.0) < 4.0 * sigma + 0.2
     assert abs(score[k]) * sigma > 5.0
+
+
+def test_a_board_is_diagnosed_from_its_summary(captured):
+    _, _, one = captured
+    found = diagnosed.of([one], [one.session()])
+    cause, = (c for c in found["causes"] if c["sensor"] == "accel")
+    assert "thermal_bias" in cause["class"] and cause["axes"] == ["z"]
+    assert found["gap"]["accel"]["before"] > 0.0 and "gyro" in found["gap"]
+    assert "of the accelerometer z" in diagnosed.words(found)
+
+
+def test_what_only_samples_show_is_in_the_diagnosis_as_it_was_found(captured):
+    _, _, one = captured
+    seen = {"sensor": "accel", "effect": "vibration", "axes": ["x"], "domain": "frequency",
+            "score_nats": 60.0, "words": "at 20 Hz", "value": {"x": 5.0}, "unit": "mg",
+            "plausible": True, "share": 0.9, "number": 10.0, "place": {"vibration": 0.999}}
+    samples = dict(one.about["samples"], findings=[seen])
+    few = one.session().part(range(3))._of_runs(())    # nothing but what the samples say
+    told = summary.Summary(dict(one.about, samples=samples), one.arrays)
+    found = diagnosed.of([told], [few])
+    assert [c["effect"] for c in found["causes"]] == ["vibration"]
+    assert found["verdict"] == "cannot tell"
 
 
 def test_a_damaged_one_is_one_sentence(captured):
