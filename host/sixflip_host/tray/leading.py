@@ -15,6 +15,7 @@ from dataclasses import replace
 
 from ..board.console import ROUND
 from . import jig
+from .lying import sits
 from .tray_value import put, say
 from .tray_words import count, instruction, why_not
 
@@ -64,7 +65,19 @@ def begun(now_tray):
         return now_tray, []
     reference = next((member for member in running if not member.stuck), running[0])
     now_tray = put(now_tray, replace(reference, mounting=jig.AS_THE_JIG))
-    return onward(replace(now_tray, reference=reference.port))
+    now_tray = replace(now_tray, reference=reference.port)
+    early = {member.port: member.taken_last for member in running if member.taken_last}
+    return as_it_lies(now_tray, early) if early else onward(now_tray)
+
+
+def as_it_lies(now_tray, early):
+    """The first face is the one that some boards, {port: their face}, have taken already."""
+    face = now_tray.up() or early.get(now_tray.reference) or ROUND[0]
+    now_tray = turned(now_tray, face)
+    for port, own in early.items():
+        now_tray = sits(now_tray, now_tray.member(port), own, face)
+    now_tray = replace(now_tray, here=early, first_at=now_tray.now)
+    return say(now_tray, "next: " + instruction(now_tray)), []
 
 
 def missing(now_tray, awaited):
@@ -146,7 +159,8 @@ def redo(now_tray, face, now):
     """A face again, by all boards that have anything of it, those that are over included."""
     members = [member for member in now_tray.members if member.own(face) and not member.gone
                and (member.running or member.over)]
-    return asked_again(turned(replace(now_tray, now=now), face), face, members)
+    now_tray = replace(now_tray, now=now, redone=now_tray.redone + 1)
+    return asked_again(turned(now_tray, face), face, members)
 
 
 def undo(now_tray, now):

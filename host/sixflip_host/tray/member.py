@@ -56,6 +56,11 @@ class Member:
         """Number and the id's beginning, as far as it is known."""
         return "%d%s" % (self.number, self.state.board and " (%s)" % self.state.board[:SHORT])
 
+    @property
+    def taken_last(self):
+        """Its face of the last placement that it took in this session, "" before the first."""
+        return list(self.state.taken)[-1][:2] if self.state.paces and self.state.taken else ""
+
     def own(self, face):
         """Its own face that is up when that of the jig is; "" while that is not known."""
         return jig_to_own(self.mounting).get(face, "")

@@ -8,19 +8,19 @@ from dataclasses import replace
 from sixflip import __version__
 
 from ..board.board_events import unusable
-from ..board.console import ROUND
 from ..board.firmware_update import NO_SENSOR
 from ..guide import session_state
 from ..guide.board_values import text
 from ..guide.session_state import OVER
-from . import jig
 from .jig import FACES
-from .leading import STOP, leaves, tick, turned
+from .leading import PATIENCE_S, START_S, STOP, leaves, tick, turned
+from .lying import lying, sits
 from .tray_value import put, say
 from .tray_words import outcome
 
 CAPTURES = 3        # of one board on one placement that the others wait for
 CAPTURE_S = 60      # longest of them; the most samples that can be set, 5000, take 50 s at 100 Hz
+NOISE = "measuring noise"    # as a session begins
 INFO = {"cmd": "info"}
 DONE = "already done"    # of a placement on a face that the board has whole
 ESSENTIAL = ("calibrating", "pose", "solved")   # events without which there is no calibration
@@ -45,12 +45,18 @@ def after(now_tray, port, event, now):
     if event["event"] == "info" and not member.state.chip:
         now_tray = introduced(now_tray, member, event)
     own = text(event.get("pose"), 8)[:2]
-    if event["event"] == "pose" and own in FACES:
+    if own not in FACES or not now_tray.face:
+        own = ""        # what is taken before all have begun, begun() looks at
+    if event["event"] == "pose" and own:
         now_tray = taken(now_tray, member, own)
-    elif event["event"] == "refused" and event.get("reason") == DONE and own in FACES:
+    elif event["event"] == "refused" and event.get("reason") == DONE and own:
         now_tray = sits(now_tray, member, own, lying(now_tray, member, own))
     elif event["event"] == "state" and member.state.box == "capturing" != before.box:
         now_tray = put(now_tray, begins(member, now, now_tray.patience))
+    elif member.state.box == NOISE and now_tray.since is not None:
+        until = min(now + PATIENCE_S * now_tray.patience,
+                    now_tray.since + START_S * now_tray.patience)
+        now_tray = put(now_tray, replace(member, patient=until))
     if member.state.stage == OVER != before.stage:
         now_tray = say(now_tray, outcome(member))
     now_tray, commands = tick(now_tray, now)
@@ -110,27 +116,3 @@ def taken(now_tray, member, own):
             now_tray.member(member.port).placements(face) > "ab".index(now_tray.letter):
         now_tray = replace(now_tray, first_at=now_tray.now)
     return now_tray
-
-
-def lying(now_tray, member, own):
-    """The face on which the jig lies when a board says that it lies on its face own.
-
-    As that board sits in the jig, if that is what was asked for; else what most boards say; else
-    what was asked for, or the next face that agrees with what is known of the board.
-    """
-    known = member.mounting.get(own, "")
-    up = now_tray.up()
-    if known and known in (now_tray.face, up) or known and not up:
-        return known
-    if known:
-        return up
-    return next(face for face in (up, now_tray.face, *ROUND)
-                if face and jig.fits(member.mounting, own, face))
-
-
-def sits(now_tray, member, own, face):
-    """So a board sits in the jig: with its face own up when the jig's face is."""
-    if member.mounting.get(own, face) != face:
-        now_tray = say(now_tray, "%s does not turn with the others: is it loose in the jig?"
-                       % member.name)
-    return put(now_tray, replace(member, mounting=jig.learned(member.mounting, own, face)))

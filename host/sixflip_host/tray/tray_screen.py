@@ -78,14 +78,18 @@ def heading(tray):
     return line
 
 
+def drawn(tray):
+    """The kind of drawing, of next_step's kinds."""
+    if not tray.running or not tray.face:
+        return WAIT
+    if keeps_still(tray):
+        return HOLD
+    return FLIP if tray.letter == "b" else PLACE
+
+
 def drawing(tray):
     """The jig as it is to be laid."""
-    if not tray.running or not tray.face:
-        kind = WAIT
-    elif keeps_still(tray):
-        kind = HOLD
-    else:
-        kind = FLIP if tray.letter == "b" else PLACE
+    kind = drawn(tray)
     if kind == WAIT:
         return []
     pose = tray.face + (tray.letter if kind == HOLD else "")
@@ -111,12 +115,12 @@ def screen(tray, asking="", note="", ascii_only=False, height=HEIGHT):
         room = max(0, height - 6)       # without title, rules, headline, heading and foot
         if len(boards) > room:
             boards = boards[:room - 1] + [Text("   and %d more" % (len(boards) - room + 1))]
-        drawn = room - len(boards)
-        picture = drawing(tray) if drawn >= DRAWN - 1 else []
+        rows = room - len(boards)
+        picture = drawing(tray) if rows >= DRAWN - 1 else []
         lines.append(Text(fit(note or headline(tray), WIDTH),
                           "bold yellow" if note else "bold cyan"))
         left = LEFT if picture else 1
-        lines += beside(picture, told(tray, drawn, WIDTH - left), drawn, left)
+        lines += beside(picture, told(tray, rows, WIDTH - left), rows, left)
         lines += [rule, heading(tray), *boards]
     lines += [Text("")] * (height - 1 - len(lines))
     lines = [*lines[:height - 1], foot(tray, asking)]

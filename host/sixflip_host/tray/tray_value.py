@@ -18,7 +18,8 @@ class Tray:
     here         {port: its own face} of the boards that took something on this face since
     flips        ports of the boards that the half turn is for
     first_at     second at which the first of them took this placement, None before
-    visits       {face: how often the person was led to it}; last: the face before
+    visits       {face: how often the person was led to it}; last: the face before;
+                 redone: how often a person took a face back
     reference    port of the board whose axes are the jig's
     now, since   seconds of the caller's clock: last event, first board's session
     patience     every wait is so many times longer, see board_link
@@ -33,6 +34,7 @@ class Tray:
     first_at: float = None
     visits: dict = None
     last: str = ""
+    redone: int = 0
     reference: str = ""
     now: float = 0.0
     since: float = None

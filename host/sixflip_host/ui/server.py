@@ -14,9 +14,8 @@ from . import guard
 from .bench import ACTIONS
 
 STATIC = Path(__file__).resolve().parent / "static"
-FILES = {"/": ("index.html", "text/html"), "/style.css": ("style.css", "text/css"),
-         "/app.js": ("app.js", "text/javascript"), "/box.js": ("box.js", "text/javascript"),
-         "/plots.js": ("plots.js", "text/javascript")}
+FILES = {"/style.css": "text/css", **{
+    "/%s.js" % name: "text/javascript" for name in ("page", "app", "tray", "box", "plots")}}
 # aiohttp's own words on requests that are none: who sent them has had his answer.
 QUIET = logging.Logger("requests")  # noqa: LOG001  beside the tree of loggers: it is heard nowhere
 QUIET.disabled = True
@@ -25,9 +24,11 @@ SLOWEST_S = 2.0
 
 
 class Server:
-    """make(told) -> Bench, which calls told() from its thread when something changed."""
+    """make(told) -> Bench, which calls told() from its thread when something changed; page: the
+    file that is shown for it."""
 
-    def __init__(self, make, port=0):
+    def __init__(self, make, port=0, page="index.html"):
+        self.page = page
         self.token = secrets.token_urlsafe(24)
         self.report_name = secrets.token_urlsafe(24)
         self.wanted_port = port
@@ -55,7 +56,7 @@ class Server:
     def app(self):
         app = web.Application(client_max_size=4096,
                               middlewares=[guard.middleware(lambda: self.port, self.token)])
-        for path in FILES:
+        for path in ("/", *FILES):
             app.router.add_get(path, self.file)
         app.router.add_get("/api/states", self.states)
         app.router.add_get("/api/report", self.report_path)
@@ -78,8 +79,9 @@ class Server:
         await self.runner.cleanup()
 
     async def file(self, request):
-        name, kind = FILES[request.path]
-        return web.Response(body=(STATIC / name).read_bytes(), content_type=kind, charset="utf-8")
+        name = request.path[1:] or self.page
+        return web.Response(body=(STATIC / name).read_bytes(), charset="utf-8",
+                            content_type=FILES.get(request.path, "text/html"))
 
     async def states(self, request):
         """One JSON object a line for as long as the browser listens; the first has the trail."""

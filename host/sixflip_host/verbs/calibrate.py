@@ -24,14 +24,10 @@ TOTAL_S = 4 * 3600     # whatever goes on: the longest plan takes an hour
 
 def add_arguments(parser):
     where = parser.add_mutually_exclusive_group()
-    where.add_argument("--port", metavar="PORT", action="append", help=PORT_HELP + "; with --all "
-                       "as often as there are boards (default: all of $SIXFLIP_PORT, or all that "
-                       "are plugged in)")
+    add_ports(where)
     add_input(where, "--replay", metavar="CAPTURE",
               help="no board: play a capture file through the firmware's own session")
-    parser.add_argument("--all", action="store_true", dest="tray",
-                        help="several boards in one jig, turned together, each with its own "
-                             "verdict")
+    add_all(parser)
     what = parser.add_mutually_exclusive_group()
     add_input(what, "--plan", metavar="FILE|NAME",
               help="a session of a plan (sixflip plan --save FILE), or paper, recommended")
@@ -58,6 +54,18 @@ def add_arguments(parser):
 
 
 
+
+
+def add_ports(parser):
+    parser.add_argument("--port", metavar="PORT", action="append", help=PORT_HELP + "; with --all "
+                        "as often as there are boards (default: all of $SIXFLIP_PORT, or all that "
+                        "are plugged in)")
+
+
+def add_all(parser):
+    parser.add_argument("--all", action="store_true", dest="tray",
+                        help="several boards in one jig, turned together, each with its own "
+                             "verdict")
 
 
 def follow(link, show, typed=None, say=print, board=None):
@@ -146,9 +154,9 @@ def checked(args):
 def alone(args):
     """UsageError for what --all does not go with: what is said of one board, and what is done in
     one order, in which a board that misses a placement would hold up all others."""
-    for given, name in ((args.replay, "--replay"), (args.plan, "--plan"), (args.redo, "--redo"),
-                        (args.recording, "--record")):
-        if given:
+    for name in ("replay", "plan", "redo", "recording"):
+        if getattr(args, name, None):
+            name = "--" + ("record" if name == "recording" else name)
             raise UsageError("--all: not with %s, which is for one board" % name)
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from .. import optional
 from ..board import calibration_request
-from ..board.ports import add_port, open_link
+from ..board.ports import open_link
 from ..errors import SixflipError, UsageError
 from ..file_arguments import add_input, add_output
 from ..planning import board_plan
@@ -22,9 +22,10 @@ EXAMPLE = "sixflip ui"
 
 def add_arguments(parser):
     where = parser.add_mutually_exclusive_group()
-    add_port(where)
+    calibrate.add_ports(where)
     add_input(where, "--replay", metavar="CAPTURE",
               help="no board: play a capture file through the firmware's own session")
+    calibrate.add_all(parser)
     parser.add_argument("--speed", metavar="N", type=float,
                         help="of --replay: seconds of the capture a second (default: 1)")
     add_input(parser, "--plan", metavar="FILE|NAME",
@@ -42,7 +43,7 @@ def add_arguments(parser):
 def board_of(args):
     """open_link() for the bench; a capture that cannot be replayed is refused here at once."""
     if not args.replay:
-        return lambda: open_link(args.port)
+        return lambda: open_link(args.port[0] if args.port else None)
     from ..guide.replay_link import ReplayLink, checked
     checked(args.replay)
     return lambda: ReplayLink(args.replay, args.speed or 1.0)
@@ -57,13 +58,8 @@ def run(args):
     session = calibrate.checked(args)
     if not 0 <= args.listen <= 65535:
         raise UsageError("--listen %d: expected a port, 1 to 65535" % args.listen)
-    from ..ui.bench import Bench
-    link = board_of(args)
-    more = {} if session is None else {
-        "request": lambda link: board_plan.request(session, calibration_request.rate_of(link)),
-        "step": lambda at: board_plan.step(session, at)}
-    server = Server(lambda told: Bench(link, args.output, told, keep=not args.replay,
-                                       capture=args.replay, **more), args.listen)
+    make = tray_bench(args) if args.tray else board_bench(args, session)
+    server = Server(make, args.listen, "tray.html" if args.tray else "index.html")
     try:
         asyncio.run(serve(server, args))
     except OSError as error:
@@ -75,6 +71,24 @@ def run(args):
         if said:
             print(plain(said))
     return 0
+
+
+def tray_bench(args):
+    """make(told) of the bench of several boards in one jig."""
+    from ..tray.tray_guide import ports_of
+    from ..ui.tray_bench import TrayBench
+    return lambda told: TrayBench(lambda: ports_of(args.port), told)
+
+
+def board_bench(args, session):
+    """make(told) of the bench of one board, or of a capture; session: of a plan, None without."""
+    from ..ui.bench import Bench
+    link = board_of(args)
+    more = {} if session is None else {
+        "request": lambda link: board_plan.request(session, calibration_request.rate_of(link)),
+        "step": lambda at: board_plan.step(session, at)}
+    return lambda told: Bench(link, args.output, told, keep=not args.replay,
+                              capture=args.replay, **more)
 
 
 async def serve(server, args):

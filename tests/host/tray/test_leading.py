@@ -192,3 +192,28 @@ def test_a_board_that_hangs_is_said_to_be_silent():
     rig.take(leading.tick(rig.tray, rig.now + leading.PATIENCE_S))
     assert any(line.startswith("2 (idq): X+ not taken: it has said nothing for ")
                for line in rig.tray.log)
+
+
+@pytest.mark.parametrize("face", ["Z+", "Y-"])
+def test_a_board_that_takes_its_first_pose_before_another_has_begun(face):
+    """The others have their time to begin; then the jig's first face is the one it lies on."""
+    rig = Rig({"p": ScriptedBoard(), "q": ScriptedBoard(UPSIDE_DOWN, says=[])})
+    rig.hear("p", rig.boards["p"].lay(0, face + "a"))
+    assert not rig.tray.face and not rig.tray.reference
+    rig.boards["q"].says = None
+    rig.hear("q", rig.boards["q"].hello("q"))
+    assert (rig.tray.face, rig.tray.letter, rig.tray.reference) == (face, "a", "p")
+    rig.hear("q", rig.boards["q"].lay(0, face + "a"))
+    assert (rig.tray.face, rig.tray.letter) == (face, "b")
+    rig.laid.append(face + "a")
+    rig.play()
+    assert len(rig.laid) == 12 and verdicts(rig) == {"p": "good", "q": "good"}
+    assert rig.member("q").mounting == UPSIDE_DOWN
+
+
+def test_a_board_that_still_learns_its_noise_is_waited_for():
+    rig = Rig({"p": ScriptedBoard(), "q": ScriptedBoard()})
+    rig.hear("p", rig.boards["p"].lay(0, "Z+a"))
+    for rig.now in range(1, 30):
+        rig.hear("q", [{"event": "state", "state": "measuring noise"}])
+        assert (rig.tray.letter == "a") == (rig.now < leading.START_S)

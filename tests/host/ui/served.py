@@ -14,10 +14,10 @@ WAIT_S = 120
 
 
 class Served:
-    """Context manager: a Server that runs; bench(told) makes its Bench."""
+    """Context manager: a Server that runs; bench(told) makes its Bench; more: of the Server."""
 
-    def __init__(self, bench):
-        self.server = Server(bench)
+    def __init__(self, bench, **more):
+        self.server = Server(bench, **more)
         self.loop = asyncio.new_event_loop()
         self.thread = threading.Thread(target=self.run, daemon=True)
         self.ready = threading.Event()

@@ -2,10 +2,9 @@
 // server's; whatever comes from a board is set as text, never as markup.
 
 import { Attitude, AXES, draw, lying, product, about } from "/box.js";
+import { element, headers, listen, problem, say, send, showLog } from "/page.js";
 import { bars, lines } from "/plots.js";
 
-const element = (id) => document.getElementById(id);
-const KEY = "sixflip-token";
 const KEPT_S = 60;
 const LOOK_MS = 4000;
 const STANDARD_G = 9.80665;
@@ -15,60 +14,6 @@ const LAY = "Lay the box on a table that does not shake, then start.";
 const PLAYED = "A capture is played; no board is needed. Start when you like.";
 let view = null, trail = [], shownAt = performance.now(), reportShown = false;
 const attitude = new Attitude();
-
-// -- the key to the server: behind the # of the address, which no server ever sees
-
-function token() {
-  if (location.hash.length > 1) {
-    localStorage.setItem(KEY, location.hash.slice(1));
-    history.replaceState(null, "", "/");
-  }
-  return localStorage.getItem(KEY) || "";
-}
-const SECRET = token();
-const headers = { "X-Sixflip-Token": SECRET };
-
-// -- what the server says
-
-// A browser keeps few connections to one server: a tab that nobody sees lets go of its own.
-const seen = () => new Promise((done) => {
-  if (!document.hidden) done();
-  else document.addEventListener("visibilitychange", () => seen().then(done), { once: true });
-});
-
-async function listen() {
-  for (;;) {
-    await seen();
-    const stop = new AbortController(), hide = () => stop.abort();
-    document.addEventListener("visibilitychange", hide, { once: true });
-    try {
-      const answer = await fetch("/api/states", { headers, signal: stop.signal });
-      if (answer.status === 403) {
-        problem((await answer.json()).error);
-        say("link", "refused");
-        return;
-      }
-      await read(answer.body.getReader());
-    } catch { /* the server has gone, or nobody looks; it is asked again */ }
-    document.removeEventListener("visibilitychange", hide);
-    if (stop.signal.aborted) continue;
-    say("link", "the server does not answer; is sixflip ui still running?");
-    await new Promise((done) => setTimeout(done, 1000));
-  }
-}
-
-async function read(reader) {
-  const decoder = new TextDecoder();
-  let text = "";
-  for (;;) {
-    const { done, value } = await reader.read();
-    if (done) return;
-    text += decoder.decode(value, { stream: true });
-    const rows = text.split("\n");
-    text = rows.pop();
-    for (const row of rows) if (row) heard(JSON.parse(row));
-  }
-}
 
 function heard(now) {
   if (now.trail) trail = now.trail;
@@ -95,14 +40,6 @@ function offset() {
 
 // -- what is shown
 
-function say(id, text) {
-  const where = element(id);
-  if (where.textContent !== text) where.textContent = text;
-}
-function problem(text) {
-  element("problem").hidden = !text;
-  say("problem", text || "");
-}
 const clock = (s) => Math.floor(s / 60) + ":" + String(Math.floor(s % 60)).padStart(2, "0");
 const signed = (v, n) => (v < 0 ? "" : "+") + v.toFixed(n);
 
@@ -239,20 +176,6 @@ function afterwards(v) {
     "Next: fetch capture and record, and look at the report; or unplug the board and use it.");
 }
 
-let logged = "";
-function showLog(log) {
-  const text = log.slice(-60).join("\n");
-  if (text === logged) return;
-  logged = text;
-  const list = element("log"), items = log.slice(-60).map((line) => {
-    const item = document.createElement("li");
-    item.textContent = line;
-    return item;
-  });
-  list.replaceChildren(...items);
-  list.scrollTop = list.scrollHeight;
-}
-
 async function showReport() {
   const answer = await fetch("/api/report", { headers });
   if (!answer.ok) return;
@@ -264,16 +187,7 @@ async function showReport() {
 // -- what is asked for: with the number of the session that was seen, so that a second click,
 //    a stale tab or a page loaded again changes nothing that is done already
 
-async function ask(action, what = "") {
-  if (!view) return;
-  try {
-    const answer = await fetch("/api/do", { method: "POST", body: JSON.stringify(
-      { action, number: view.number, what }), headers: { ...headers, "Content-Type": "application/json" } });
-    if (!answer.ok) problem((await answer.json()).error);
-  } catch {
-    problem("the server does not answer; is sixflip ui still running?");
-  }
-}
+const ask = (action, what = "") => view && send(action, view.number, what);
 let looked = -LOOK_MS;
 function look() {       // is a board there by now, and does it hold an unfinished session?
   if (view.number || view.busy || view.found || view.replay) return;
@@ -312,4 +226,4 @@ function animate(now) {
 }
 
 requestAnimationFrame(animate);
-listen();
+listen(heard);
