@@ -16,7 +16,7 @@ from sixflip_host.virtual.jig_hand import WAYS, JigHand
 from sixflip_host.virtual.virtual_board import VirtualBoard
 from tests.worlds.terminal import Terminal
 
-WORLD = {"sensor": "mpu6050", "tilt_deg": 2.0, "order": []}
+WORLD = {"sensor": "mpu6050", "tilt_deg": 2.0, "flip_error_deg": 0.05, "order": []}
 QUICK = {"pose_samples": 100, "sensor": "mpu6050", "grace_ms": 100, "timeout_s": 3600}
 GOOD = ["as the jig", "upside down", "a quarter on", "on edge", "as the jig, too"]
 BAD = ["unplugged", "stuck", "older"]
@@ -87,9 +87,10 @@ def test_eight_boards_of_which_three_fail(micropython, flash, tmp_path, monkeypa
     assert "went away" in sorted(said)[0]
     assert "3 faces in a row not taken: the readings do not change" in sorted(said)[1]
     assert "its firmware is 0.0.1, expected" in sorted(said)[2]
-    assert out.count("verdict: good   saved: yes") == 5
+    assert out.count("saved: yes") == 5, out
     rows = store.read(tmp_path / "history.sqlite")
-    assert sorted(row.board for row in rows if row.verdict == "good") == sorted(ids)
+    kept = [row.board for row in rows if row.verdict in ("good", "doubtful")]
+    assert sorted(kept) == sorted(ids)
 
 
 def test_ctrl_c_loses_nothing(micropython, flash, tmp_path):
@@ -107,7 +108,7 @@ def test_ctrl_c_loses_nothing(micropython, flash, tmp_path):
         with Terminal("calibrate", "--all", "--continue", "--plain", *both) as terminal:
             terminal.wait("typed lines: redo FACE, undo, quit")
             assert terminal.ended() == 0
-            assert terminal.words.count("verdict:good") == 2
+            assert terminal.words.count("saved:yes") == 2
             assert b"Z+ taken" not in terminal.sent and b"Y- taken by 2" in terminal.sent
 
 
