@@ -4,6 +4,7 @@ What fuzzing found lies beside it under names that say what it was.
 """
 
 import io
+import json
 import struct
 from pathlib import Path
 
@@ -18,7 +19,7 @@ from sixflip_host import record_terms
 from sixflip_host.capture import capture_binary, capture_file
 from tests.host.capture import test_import_presets
 from tests.shared.test_term_correction import fields_of
-from tests.worlds import hostile_sessions
+from tests.worlds import hostile_sessions, simulated_fleet
 
 CORPUS = Path(__file__).resolve().parent / "corpus"
 
@@ -96,6 +97,24 @@ PLAN = (b'{"sixflip_plan": 1, "name": "p", "sessions": [{"state": "warming", "st
         b'"poses": ["Z+a", {"pose": "L1", "up": [0, 1, 1], "dwell_s": 5, "turn": "left"}]}]}')
 
 
+MANIFEST = (b'board,capture,batch\ne661,a/warming.csv,lot 7\n"e6,62", b.csv ,\n,c.csv,\n'
+            b'e663,a/warming.csv,lot 8\ne664,d.csv,lot,more\n')
+POPULATION = json.dumps({
+    "format": 1, "kind": "sixflip fleet", "groups": [{"chip": "mpu6050", "batches": [{
+        "batch": "", "boards": 9, "blocks": [{
+            "block": "accel.thermal_bias", "names": ["accel.thermal_bias.z"], "rare": 0.01}],
+        "parameters": [{"name": "accel.thermal_bias.z", "mean": -1.0, "error": 0.1,
+                        "spread": 0.2}]}]}]}).encode()
+
+
+def about_a_session():
+    """The JSON of a summary."""
+    rng = np.random.default_rng(1)
+    one = simulated_fleet.summary_of(simulated_fleet.drawn(rng), simulated_fleet.THERMAL[0], rng,
+                                     "s")
+    return json.dumps(one.about).encode()
+
+
 def foreign_files():
     """A few rows in each of the formats that import tells by their content."""
     table = np.arange(24.0).reshape(8, 3) % 5
@@ -125,7 +144,9 @@ def main():
              "somebodys_csv": [CSV, b"\3" + b"1 2 3 0.01 4 5 6\n" * 5],
              "foreign_file": foreign_files(),
              "sections": [b'{"x_p": {"start": 5, "end": 90}, "z_a": {"start": 100, "end": 200}}'],
-             "scenario_file": [TOML], "plan": [PLAN, b'["Z+a", "Z+b"]']}
+             "scenario_file": [TOML], "plan": [PLAN, b'["Z+a", "Z+b"]'],
+             "fleet_manifest": [MANIFEST], "fleet_summary": [about_a_session()],
+             "fleet_population": [POPULATION]}
     for name, contents in seeds.items():
         folder = CORPUS / name
         folder.mkdir(parents=True, exist_ok=True)

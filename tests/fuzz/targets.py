@@ -13,6 +13,9 @@ import json
 import os
 import struct
 import tempfile
+from dataclasses import replace
+
+import numpy as np
 
 from sixflip.capture import blocks as capture_blocks
 from sixflip.capture import reader as capture_reader
@@ -27,6 +30,8 @@ from sixflip_host.board.recording import Recording
 from sixflip_host.calibrate import solution
 from sixflip_host.capture import capture_binary, capture_file, open_recording
 from sixflip_host.errors import SixflipError
+from sixflip_host.experiment import fleet_prior
+from sixflip_host.fleet import manifest, summary_file
 from sixflip_host.planning import plan_file
 from sixflip_host.simulation import scenario
 
@@ -249,6 +254,47 @@ def plan(data):
     plan_file.from_plan(json.loads(json.dumps(plan_file.to_plan(protocol), allow_nan=False)))
 
 
+def fleet_manifest(data):
+    """A manifest of a fleet: boards, and sentences on its wrong lines."""
+    try:
+        found, wrong = manifest.parse("fuzz.csv", data)
+    except SixflipError as error:
+        said_plainly(cli.plain(str(error)))
+        return
+    assert all(one.board and one.capture and said_plainly(one.board) is None for one in found
+               if one.board.isprintable())
+    assert all(why for _, why in wrong)
+
+
+def fleet_summary(data):
+    """A summary's JSON, its arrays those of a good one: taken and solved, or one sentence."""
+    try:
+        about = json.loads(data)
+    except (ValueError, RecursionError):
+        return
+    from tests.worlds import simulated_fleet
+    rng = np.random.default_rng(1)
+    good = simulated_fleet.summary_of(simulated_fleet.drawn(rng), simulated_fleet.THERMAL[0], rng,
+                                      "s")
+    try:
+        encoded = summary_file.encode(replace(good, about=about))
+        one = summary_file.decode("fuzz.npz", encoded)
+    except (SixflipError, ValueError):
+        return
+    one.solved()
+
+
+def fleet_population(data):
+    """A fleet.json as prior of plan and diagnose."""
+    try:
+        found = fleet_prior.read(kept("fleet.json", data), "mpu6050")
+    except SixflipError as error:
+        said_plainly(cli.plain(str(error)))
+        return
+    assert all(found.deviation(*at, 1.0) >= 0.0 for at in found.second)
+
+
 TARGETS = {one.__name__: one for one in (
     capture_text, capture_of_a_board, recorded_pieces, record, lines_of_a_board, settings,
-    host_line, somebodys_csv, foreign_file, sections, scenario_file, plan)}
+    host_line, somebodys_csv, foreign_file, sections, scenario_file, plan,
+    fleet_manifest, fleet_summary, fleet_population)}

@@ -13,7 +13,8 @@ FILES = sorted(path for path in (HERE / "corpus").rglob("*") if path.is_file())
 # Runs that take a second or two: a target that goes through a whole verb is slower.
 RUNS = {"capture_text": 300, "capture_of_a_board": 25, "recorded_pieces": 100, "record": 40,
         "somebodys_csv": 150, "foreign_file": 60,
-        "sections": 80, "scenario_file": 300, "settings": 300, "plan": 500}
+        "sections": 80, "scenario_file": 300, "settings": 300, "plan": 500,
+        "fleet_manifest": 1000, "fleet_summary": 40, "fleet_population": 500}
 A_FEW = 2000
 
 

@@ -7,7 +7,9 @@ import hashlib
 import io
 import json
 import os
+import struct
 import zipfile
+import zlib
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,12 +19,12 @@ from .. import atomic_write
 from ..capture import open_recording
 from ..diagnosis import cutoffs
 from ..errors import BadFile
-from . import summary
+from . import summary, summary_checks
 
 FORMAT = 2
 SUFFIX = ".summary.npz"
 PIECE = 1 << 20
-ARRAYS = {  # columns of each array, None: any number of dimensions
+ARRAYS = {  # columns of each table
     "placement_of": 4, "placement_sums": 7, "placement_noise": 6, "move_of": 14 + summary.PATH,
     "halves": 3, "runs": 3}
 
@@ -65,13 +67,12 @@ def decode(path, data):
         if about["format"] != FORMAT:
             raise BadFile("%s: is a summary of layout %s, expected %d: delete it, it is made "
                           "again" % (path, about["format"], FORMAT))
-        for name, columns in ARRAYS.items():
-            if arrays[name].ndim != 2 or arrays[name].shape[1] != columns:
-                raise ValueError(name)
-        one = summary.Summary(about, arrays)
+        summary_checks.arrays(arrays, ARRAYS)
+        one = summary.Summary(summary_checks.about(about), arrays)
         one.session()
     except (OSError, ValueError, TypeError, KeyError, IndexError, EOFError, RecursionError,
-            MemoryError, zipfile.BadZipFile, NotImplementedError) as error:
+            MemoryError, AttributeError, zipfile.BadZipFile, zlib.error, NotImplementedError,
+            struct.error) as error:
         raise BadFile("%s: is no summary or a damaged one (%s), expected one that sixflip fleet "
                       "wrote" % (path, str(error)[:80].replace("\n", " "))) from None
     return one
@@ -98,7 +99,7 @@ def of_capture(path, keep=True):
         if found.about.get("hash") == digest:
             return found, ""
     digest = digest or content_hash(path)
-    made = summary.of(os.path.basename(path), open_recording.read(path))
+    made = summary.of(os.path.basename(path), open_recording.read_samples(path))
     made = replace(made, about=dict(made.about, format=FORMAT, hash=digest, stamp=now))
     return made, _kept(path, made) if keep else ""
 

@@ -62,7 +62,7 @@ def test_it_is_under_two_kilobytes_a_pose(captured):
 
 def test_the_kept_one_is_read_while_the_capture_is_the_same(captured, monkeypatch):
     path, _, one = captured
-    monkeypatch.setattr(summary_file.open_recording, "read", lambda path: 1 / 0)
+    monkeypatch.setattr(summary_file.open_recording, "read_samples", lambda path: 1 / 0)
     again, why = summary_file.of_capture(path)
     assert again.about == one.about and why == ""
     with open(path, "ab") as file:
@@ -122,3 +122,20 @@ def test_arrays_of_another_shape_are_refused(captured):
     np.savez(out, about=np.array([{"x": 1}], object))
     with pytest.raises(BadFile, match="damaged"):
         summary_file.decode("s", out.getvalue())
+
+
+def test_numbers_out_of_range_are_refused_one_by_one(captured):
+    _, _, one = captured
+    changes = {
+        "placement_of": (0, 0, 9999), "placement_sums": (0, 2, 1 << 40),
+        "placement_noise": (1, 1, -1.0), "move_of": (0, 1, 99), "runs": (0, 0, 0),
+        "block_placement": (0, None, 50), "block_t": (3, None, 1e6),
+        "block_seconds": (0, None, 0.0), "block_accel": (0, 0, np.nan),
+        "block_noise_accel": (0, None, 0.0), "thermometer": (2, None, np.inf)}
+    for name, (row, column, value) in changes.items():
+        array = np.array(one.arrays[name])
+        array[(row,) if column is None else (row, column)] = value
+        changed = summary.Summary(one.about, dict(one.arrays, **{name: array}))
+        with pytest.raises(BadFile, match="damaged"):
+            summary_file.decode("s", summary_file.encode(changed))
+    assert summary_file.decode("s", summary_file.encode(one)).solved().verdict
