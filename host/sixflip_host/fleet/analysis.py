@@ -107,6 +107,9 @@ def _of_files(board, options):
             one, why = summary_file.of_capture(path, options.summaries)
             kept.append(one)
             remarks += [why] if why else []
+    if not any(one.placements() for one in kept):
+        raise BadFile("no session: nothing lies still in a pose that is known, in %s" % ", ".join(
+            map(os.path.basename, [*board.captures, *board.summaries])))
     ids = {str(one.meta["device_id"]) for one in kept if one.meta.get("device_id")}
     if len(ids) > 1:
         raise BadFile("captures of %d boards in one place, ids %s: expected one board's" % (

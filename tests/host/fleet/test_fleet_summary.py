@@ -9,7 +9,7 @@ from sixflip_host.capture import capture_file
 from sixflip_host.diagnosis import rest_model, settings
 from sixflip_host.errors import BadFile
 from sixflip_host.experiment import attitude_fit, blocks, terms
-from sixflip_host.fleet import diagnosed, effects, summary, summary_file
+from sixflip_host.fleet import analysis, diagnosed, effects, sources, summary, summary_file
 from sixflip_host.simulation import scenario, simulated_session
 
 
@@ -101,6 +101,16 @@ def test_what_only_samples_show_is_in_the_diagnosis_as_it_was_found(captured):
     found = diagnosed.of([told], [few])
     assert [c["effect"] for c in found["causes"]] == ["vibration"]
     assert found["verdict"] == "cannot tell"
+
+
+def test_a_capture_without_a_pose_is_no_session(captured, tmp_path):
+    _, capture, _ = captured
+    moving = capture_file.Capture(capture.meta, capture.t_us[:500], capture.accel[:500], pose=np.zeros(
+                                      500, np.int16))
+    path = str(tmp_path / "m.csv")
+    capture_file.write(path, moving)
+    row = analysis.row(sources.Board("m", "", (path,)))
+    assert row["failure"] == "no session: nothing lies still in a pose that is known, in m.csv"
 
 
 def test_a_damaged_one_is_one_sentence(captured):
