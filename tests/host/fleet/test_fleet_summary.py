@@ -105,8 +105,8 @@ def test_what_only_samples_show_is_in_the_diagnosis_as_it_was_found(captured):
 
 def test_a_capture_without_a_pose_is_no_session(captured, tmp_path):
     _, capture, _ = captured
-    moving = capture_file.Capture(capture.meta, capture.t_us[:500], capture.accel[:500], pose=np.zeros(
-                                      500, np.int16))
+    moving = capture_file.Capture(capture.meta, capture.t_us[:500], capture.accel[:500],
+                                  pose=np.zeros(500, np.int16))
     path = str(tmp_path / "m.csv")
     capture_file.write(path, moving)
     row = analysis.row(sources.Board("m", "", (path,)))
