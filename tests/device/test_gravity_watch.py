@@ -63,7 +63,7 @@ class GravityWatch(unittest.TestCase):
     def test_the_check_that_follows_says_so_too(self):
         board = streamed([(1, 1.06), (25, None)], (("gravity", {"cmd": "check"}, 1),))
         self.assertEqual(board.only("check")["verdict"], "doubtful")
-        self.assertIn("mg off, expected less than 5", board.only("check")["words"][0])
+        self.assertIn("mg off, 5 is the limit", board.only("check")["words"][0])
 
     def test_a_box_that_is_turned_over_by_hand_is_not_spoken_of(self):
         turned = {"order": ["Z+a", "X+a", "Y-b", "Z-a"], "dwell_s": 12.0, "tremor_mg": 30.0}

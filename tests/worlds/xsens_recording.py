@@ -9,6 +9,7 @@ import gzip
 
 import numpy as np
 
+from sixflip_host.calibrate import multiposition
 from sixflip_host.capture.capture_file import Capture
 
 G = 9.81744
@@ -36,3 +37,13 @@ def read(recordings):
 def measured(capture):
     """Accelerometer of the capture in m/s² by the nominal scale, (n, 3)."""
     return capture.accel / ACCEL_LSB
+
+
+def leave_one_out(means, start):
+    """|a| - g of every pose by the fit of all the others, shape (n,), m/s². means (n, 3) m/s²;
+    start: the parameters that every fit begins at."""
+    left = np.empty(len(means))
+    for k in range(len(means)):
+        fit = multiposition.solve(np.delete(means, k, axis=0), G, start)
+        left[k] = -multiposition.norm_residual(fit.parameters, means[k : k + 1], G)[0]
+    return left

@@ -2,13 +2,14 @@
 |a|, noise and temperature are held against the record.
 """
 
-from .active_record import activate
+from sixflip.record.still_valid import (
+    NOISE_TIMES,
+    against,
+    drift_is_corrected,
+    length_error_mg,
+)
 
-# |a| at rest in any attitude: what ageing, a knock or warming by 20 K may well do to a sensor
-# that was calibrated, and what they do not.
-GOOD_MG = 5.0
-NOISE_TIMES = 3.0
-WARMER_C = 15.0
+from .active_record import activate
 
 
 def _noise_mg(rest, imu):
@@ -24,12 +25,6 @@ def shaken(firmware, rest):
     return "" if noise_mg <= limit else "shaken: %.1f mg of noise, limit %.1f" % (noise_mg, limit)
 
 
-def _known(correction, temp_c):
-    """Whether the accelerometer's drift is taken out at this temperature, by a term."""
-    between = getattr(correction, "range_c", None)
-    return between is not None and between[0] <= temp_c <= between[1]
-
-
 def compare(firmware, rest):
     """What a Rest says of the record, as a dict for an event: a_error_mg by which |a| is off,
     noise_mg, temp_c, verdict "good", "doubtful" or "none", and words (a list of sentences)."""
@@ -40,30 +35,17 @@ def compare(firmware, rest):
         words.append("no rest: %s" % rest.reason)
         return facts
     imu = firmware.sensor.imu
-    out = firmware.correction.apply(rest.means, [0.0] * 6)
-    length = (out[0] * out[0] + out[1] * out[1] + out[2] * out[2]) ** 0.5
-    g = firmware.settings["g"]
-    error_mg = (length / g - 1) * 1000
+    error_mg = length_error_mg(firmware.correction, rest.means, firmware.settings["g"])
     noise_mg = _noise_mg(rest, imu)
+    temp_c = rest.means[6] / imu.temp_lsb_per_c + imu.temp_offset_c if imu.has_temp else None
     facts["a_error_mg"] = error_mg
     facts["noise_mg"] = noise_mg
-    if imu.has_temp:
-        facts["temp_c"] = rest.means[6] / imu.temp_lsb_per_c + imu.temp_offset_c
-    record = firmware.record
-    if record is None:
+    facts["temp_c"] = temp_c
+    if firmware.record is None:
         words.append("no record: these are the data sheet's scales")
         return facts
-    if abs(error_mg) > GOOD_MG:
-        words.append("|a| is %.1f mg off, expected less than %.0f: calibrate again"
-                     % (error_mg, GOOD_MG))
-    noise_then = record.accel["noise_g"]
-    if noise_then and noise_mg > NOISE_TIMES * noise_then * 1000:
-        words.append("the noise is %.1f mg, at the calibration it was %.1f"
-                     % (noise_mg, noise_then * 1000))
-    now, then = facts["temp_c"], record.temp_c
-    if now is not None and then is not None and abs(now - then) > WARMER_C \
-            and not _known(firmware.correction, now):
-        words.append("it is %.0f degrees C, at the calibration it was %.0f" % (now, then))
+    words.extend(against(error_mg, noise_mg, temp_c, firmware.record,
+                         drift_is_corrected(firmware.correction, temp_c)))
     facts["verdict"] = "doubtful" if words else "good"
     if not words:
         words.append("|a| is right within %.1f mg (length only: it says nothing of directions)"

@@ -1,12 +1,12 @@
 """While samples are streamed: is the corrected reading at rest still as long as gravity?
 
-The rest at power-up says so once (check_at_rest.py), with its limits; a register that strays or a
-sensor that is knocked later is seen here. Sample by sample only the window's integers are summed.
+The rest at power-up says so once, with the same limits (sixflip/record/still_valid.py); a register
+that strays or a sensor that is knocked later is seen here. Sample by sample only the window's
+integers are summed.
 """
 
 from sixflip.poses.still_window import StillWindow, window_length
-
-from ..record.check_at_rest import GOOD_MG, NOISE_TIMES
+from sixflip.record.still_valid import GOOD_MG, NOISE_TIMES
 
 WINDOWS = 20  # still ones in a row, 5 s: nothing that drives speeds up evenly for so long
 NOISE_G = 0.005  # of a record that does not know its noise; most sensors have half of it or less

@@ -121,12 +121,3 @@ def search(measured, g, first_rest=None, samples_a_rest=100):
             % (most, samples_a_rest, FEWEST_RESTS)
         )
     return best
-
-
-def leave_one_out(means, g, start):
-    """|a| - g of every pose by the fit of all the others, shape (n,), m/s^2."""
-    left = np.empty(len(means))
-    for k in range(len(means)):
-        fit = solve(np.delete(means, k, axis=0), g, start)
-        left[k] = -norm_residual(fit.parameters, means[k : k + 1], g)[0]
-    return left

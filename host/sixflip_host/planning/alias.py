@@ -136,13 +136,3 @@ def even_contrasts(rows):
                       for face in range(len(faces.FACES))])
     space = PlannedModel(rows, certified_box=True, tilt=False).space
     return rank(without(space, free), free)
-
-
-def norm_only_rank(rows):
-    """Rank and number of parameters of a calibration that knows |a| = g alone: the lower
-    triangle of the matrix and three biases (turning the box changes no norm)."""
-    f = np.stack(rows.at.f, 1)
-    columns = [f[:, i] * f[:, j] for i in range(3) for j in range(i + 1)]
-    columns += [f[:, i] for i in range(3)]
-    jacobian = np.stack(columns, 1)
-    return int(np.linalg.matrix_rank(jacobian, tol=1e-9)), jacobian.shape[1]

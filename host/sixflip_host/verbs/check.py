@@ -1,8 +1,8 @@
 """sixflip check: does the calibration still hold? One rest of some seconds against the record."""
 
 import json
-import math
 
+from sixflip.record import still_valid
 from sixflip.record.correction import correction_of
 
 from ..board import check_words
@@ -18,11 +18,6 @@ from .solve import local_gravity
 
 EXAMPLE = ("sixflip check\n"
            "         sixflip check rest.csv --record record_a.bin")
-# The board's own limits (check_at_rest.py of the firmware; a test compares them): what ageing, a
-# knock or warming by 15 K may well do to a calibrated sensor, and what they do not.
-GOOD_MG = 5.0
-NOISE_TIMES = 3.0
-WARMER_C = 15.0
 # A bias that wandered is no fault, it is taken anew at every power-up; so much is another gyro.
 BIAS_DPS = 5.0
 
@@ -72,28 +67,22 @@ def compare(capture, record, g=None):
     if rest.reason:
         raise CheckFailed("not checked, there is no rest: %s" % rest.reason)
     correction = correction_of(record)
-    a = correction.apply(rest.means, [0.0] * 6)[:3]
     g = g or capture.meta.get("g", record.g)
     temp_c = _celsius(capture, rest)
+    error_mg = still_valid.length_error_mg(correction, rest.means, g)
+    noise_mg = rest.noise_mg(record.accel_lsb_per_g)[0]
+    drift_known = still_valid.drift_is_corrected(correction, temp_c)
     found = {
-        "a_error_mg": 1e3 * (math.sqrt(sum(x * x for x in a)) / g - 1.0),
-        "noise_mg": rest.noise_mg(record.accel_lsb_per_g)[0],
+        "a_error_mg": error_mg, "noise_mg": noise_mg,
         "noise_then_mg": 1e3 * record.accel["noise_g"] if record.accel["noise_g"] else None,
-        "temp_c": temp_c, "temp_then_c": record.temp_c,
-        "drift_known": _drift_known(correction, temp_c),
+        "temp_c": temp_c, "temp_then_c": record.temp_c, "drift_known": drift_known,
         "bias_dps": None, "bias_then_dps": None, "seconds": rest.n / capture.meta["rate_hz"],
         "record_verdict": record.accel["verdict"], "record_reason": record.accel["reason"]}
     if capture.gyro is not None:
         found["bias_dps"] = [x / capture.meta["gyro_lsb_per_dps"] for x in rest.means[3:6]]
         if record.gyro_bias:
             found["bias_then_dps"] = list(record.gyro_bias["bias_dps"])
-    return judged(found)
-
-
-def _drift_known(correction, temp_c):
-    """Whether a term takes the accelerometer's drift out at this temperature."""
-    between = getattr(correction, "range_c", None)
-    return temp_c is not None and between is not None and between[0] <= temp_c <= between[1]
+    return judged(found, still_valid.against(error_mg, noise_mg, temp_c, record, drift_known))
 
 
 def _celsius(capture, rest):
@@ -102,22 +91,11 @@ def _celsius(capture, rest):
     return rest.means[6] / capture.meta["temp_lsb_per_c"] + capture.meta["temp_offset_c"]
 
 
-def judged(found):
-    """The answer with `against`, a list of sentences, and `valid`."""
-    against = []
+def judged(found, against):
+    """The answer with `against`, what speaks against the calibration, and `valid`."""
+    against = list(against)
     if found["record_verdict"] == "refused":
-        against.append("the record itself was refused")
-    if not abs(found["a_error_mg"]) <= GOOD_MG:
-        against.append("|a| is %+.1f mg off, %.0f is the limit: calibrate again"
-                       % (found["a_error_mg"], GOOD_MG))
-    if found["noise_then_mg"] and not found["noise_mg"] <= NOISE_TIMES * found["noise_then_mg"]:
-        against.append("the noise is %.1f mg, at the calibration it was %.1f: the sensor is "
-                       "shaken or damaged" % (found["noise_mg"], found["noise_then_mg"]))
-    now, then = found["temp_c"], found["temp_then_c"]
-    if now is not None and then is not None and not abs(now - then) <= WARMER_C \
-            and not found["drift_known"]:
-        against.append("it is %.1f °C, at the calibration it was %.1f: biases move with "
-                       "temperature" % (now, then))
+        against.insert(0, "the record itself was refused")
     if found["bias_dps"] and found["bias_then_dps"]:
         moved = max(abs(x - y) for x, y in zip(found["bias_dps"], found["bias_then_dps"]))
         if not moved <= BIAS_DPS:

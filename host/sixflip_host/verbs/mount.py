@@ -9,6 +9,7 @@ from sixflip.chips.catalogue import SENSORS
 from sixflip.record import correction_record, mounting
 from sixflip.record.correction import correction_of
 from sixflip.record.record import following
+from sixflip.record.still_valid import NOISE_TIMES
 from sixflip_sim.worlds import usual_noise
 
 from .. import atomic_write, file_kinds
@@ -25,7 +26,6 @@ EXAMPLE = ("sixflip mount rest.csv --record record_a.bin --axes x=-y,y=x,z=z -o 
            "         sixflip mount --port /dev/ttyACM0 --axes ned")
 CALIBRATED_OFF = 0.02   # g: |a| of a calibrated sensor at rest
 RAW_OFF = 0.15          # g: what an uncalibrated one may show (ADXL345: 40 mg an axis, 4 %)
-NOISE_TIMES = 3.0       # the noise of the record, or of such a sensor at rest
 TURNING_DPS = 5.0       # a bias changes by less from one switching-on to the next
 LARGEST_BIAS_DPS = 40.0     # ITG3205 data sheet, zero-rate output
 

@@ -2,7 +2,6 @@
 
 import json
 import re
-from pathlib import Path
 
 import pytest
 
@@ -15,8 +14,6 @@ from tests.worlds.board_session import leave_files, unlabelled
 from tests.worlds.hand_session import Sensor
 from tests.worlds.micropython_tier import SESSION, STILL
 from tests.worlds.resting import rest
-
-DEVICE = Path(__file__).resolve().parents[3] / "device" / "sixflip_device"
 
 
 @pytest.fixture(scope="module")
@@ -74,13 +71,6 @@ def test_a_recording_that_is_no_rest_is_not_judged(tmp_path, capsys, calibrated)
     code, out, err = run(tmp_path, capsys, calibrated, sway_mg=60)
     assert (code, out) == (1, "")
     assert "there is no rest: it moves" in err
-
-
-def test_limits_are_those_of_the_firmware():
-    source = (DEVICE / "record" / "check_at_rest.py").read_text()
-    for name in ("GOOD_MG", "NOISE_TIMES", "WARMER_C"):
-        board = float(re.search(r"^%s = ([\d.]+)$" % name, source, re.M).group(1))
-        assert board == getattr(check, name)
 
 
 @pytest.mark.parametrize("words", [["rest.csv"], ["--record", "a.bin"],
@@ -165,7 +155,7 @@ def test_a_boards_numbers_beside_its_record(monkeypatch, capsys):
 
 
 def test_a_board_that_no_longer_holds_is_exit_1(monkeypatch, capsys):
-    words = ["|a| is 65.8 mg off, expected less than 5: calibrate again"]
+    words = ["|a| is +65.8 mg off, 5 is the limit: calibrate again"]
     code, out, _, _ = ask(monkeypatch, capsys, "ready", dict(CHECK, verdict="doubtful",
                                                              words=words))
     assert code == 1

@@ -26,7 +26,7 @@ def test_imu_tk_own_problem_reaches_its_optimum(xsens):
     means = np.array([xsens[f : f + 100].mean(axis=0) for _, f, _ in fit.rests])
     off = multiposition.norm_residual(fit.parameters, means, xsens_recording.G)
     assert round(1e3 * rms(off) / xsens_recording.G, 3) == 0.153
-    left = multiposition.leave_one_out(means, xsens_recording.G, fit.parameters)
+    left = xsens_recording.leave_one_out(means, fit.parameters)
     assert round(1e3 * rms(left) / xsens_recording.G, 3) == 0.207
 
 

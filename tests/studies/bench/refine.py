@@ -40,7 +40,7 @@ def xsens(folder):
     seconds = time.perf_counter() - began
     means = np.array([measured[f : f + 100].mean(axis=0) for _, f, _ in fit.rests])
     off = multiposition.norm_residual(fit.parameters, means, g)
-    left = multiposition.leave_one_out(means, g, fit.parameters)
+    left = xsens_recording.leave_one_out(means, fit.parameters)
     print("Xsens recording, imu_tk's own problem      imu_tk      ours")
     print("  cost                                  %9.6f %9.6f" % (0.120131, fit.cost))
     print("  | |a|-g | per pose, mg rms            %9.3f %9.3f" % (0.153, 1e3 * rms(off) / g))
