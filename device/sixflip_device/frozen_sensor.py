@@ -25,9 +25,9 @@ class FrozenSensor:
 
     def seen(self, sample):
         """Whether the sample repeats too many before it, and is not to be used."""
-        most = self._count(sample, 0)
+        most = self._repeats(sample, 0)
         if self._sensor.imu.has_gyro:
-            most = max(most, self._count(sample, 1))
+            most = max(most, self._repeats(sample, 1))
         if most < SAME:
             self._due = SAME
             return False
@@ -39,12 +39,13 @@ class FrozenSensor:
             self._sensor.hangs()
         return True
 
-    def _count(self, sample, which):
+    def _repeats(self, sample, sensor):
+        """How many times accelerometer (sensor 0) or gyro (1) has read the same in a row."""
         last = self._last
         same = True
-        for i in range(3 * which, 3 * which + 3):
+        for i in range(3 * sensor, 3 * sensor + 3):
             if sample[i] != last[i]:
                 last[i] = sample[i]
                 same = False
-        self._same[which] = self._same[which] + 1 if same else 1
-        return self._same[which]
+        self._same[sensor] = self._same[sensor] + 1 if same else 1
+        return self._same[sensor]

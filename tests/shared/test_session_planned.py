@@ -5,7 +5,7 @@ from synthetic_operator import Operator
 
 from sixflip.poses.faces import face_of_code, pose_code, pose_name
 from sixflip.poses.placement import has_gap
-from sixflip.poses.planned_session import PlannedSession, resume
+from sixflip.poses.planned_session import PlannedSession, continue_from
 
 
 class Planned(unittest.TestCase):
@@ -121,7 +121,7 @@ class Planned(unittest.TestCase):
             hands.rest(6)
         self.assertEqual(len(before.placements), 6)
         session, hands = make()
-        resume(session, before.placements, before.samples)
+        continue_from(session, before.placements, before.samples)
         self.assertEqual(session.redo(2), [5, 6])
         for face in (2, 3, 4, 5):
             hands.place(face)
@@ -138,7 +138,8 @@ class Planned(unittest.TestCase):
         before, hands = make()
         hands.six_faces(order=(0, 1))
         session, hands = make()
-        resume(session, before.placements, before.samples, before.moves + [before._log.open])
+        continue_from(session, before.placements, before.samples,
+                      before.moves + [before._log.open])
         hands.six_faces(order=(2, 3, 4, 5))
         self.assertEqual(session.state, "done")
         self.assertEqual([has_gap(m) for m in session.moves], [False] * 4 + [True] + [False] * 7)

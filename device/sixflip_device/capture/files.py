@@ -94,9 +94,9 @@ def file_cut_short(root):
     that nobody asked for (a board without a record begins a session at each power-up) none that
     has more; one without a sample is nothing. OSError when it cannot be renamed.
     """
-    poses, samples, asked = _look(root + NEW)
+    poses, samples, by_request = _look(root + NEW)
     before = _look(root + REFUSED)[0]
-    if poses + samples <= 0 or poses < (min(before, 1) if asked else before):
+    if poses + samples <= 0 or poses < (min(before, 1) if by_request else before):
         remove(root + NEW)
     else:
         refuse(root)

@@ -51,8 +51,9 @@ def new_session(firmware, request):
     session = Session(*chip, pose_samples=settings["pose_samples"],
                       timeout_s=settings["timeout_s"])
     if request.before is not None:
-        from sixflip.poses.planned_session import resume
-        resume(session, request.before.placements, request.before.samples, request.before.moves)
+        from sixflip.poses.planned_session import continue_from
+        before = request.before
+        continue_from(session, before.placements, before.samples, before.moves)
     return session
 
 

@@ -76,12 +76,12 @@ def run(firmware):
     recording, firmware.recording = firmware.recording, False
     try:
         request = request or _flag(firmware.board.root)
-        asked = parse(request, firmware.settings["pose_samples"])
+        wanted = parse(request, firmware.settings["pose_samples"])
     except (ValueError, RuntimeError) as e:  # RuntimeError: JSON that is nested too deep
         firmware.events.error(
             "no calibration: what was asked for cannot be understood: %s" % e,
             "%s empty, or a plan or a face as sixflip calibrate writes it" % FLAG)
         return None
     if recording and not request:  # a host that writes down the stream gets the session as well
-        asked.record = True
-    return asked
+        wanted.record = True
+    return wanted

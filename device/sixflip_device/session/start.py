@@ -115,7 +115,7 @@ def _self_test(firmware):
     firmware.events.emit("selftest", who_am_i=firmware.sensor.imu.who_am_i, **answer)
 
 
-def _asked_for(firmware):
+def _button_or_flag(firmware):
     """A held button or the flag file asks for a calibration."""
     if firmware.board.button():
         return True
@@ -131,7 +131,7 @@ def _grace(firmware):
     ms = firmware.settings["grace_ms"]
     firmware.events.emit("grace", ms=ms)
     _wait(firmware, ms * 1000, led.MEASURING)
-    if firmware.request is None and _asked_for(firmware):
+    if firmware.request is None and _button_or_flag(firmware):
         firmware.request = {}
 
 

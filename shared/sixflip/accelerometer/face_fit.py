@@ -10,53 +10,11 @@ import math
 from sixflip.accelerometer.sigma import PLACING, face_residuals, influence, residual_variance
 from sixflip.poses.faces import AXIS, FACES, face_of_code, pose_name
 
-CROOKED_DEG = 1.0
+SQUARENESS_DEG = 1.0    # that a face may be off square to the others
 # Other people's six faces, steadied by hand, are off by up to 5 degrees: doubtful, not useless.
-CROOKED_NO_FLIPS_DEG = 6.0
-
-
-def describe(r, face, size):
-    """("doubtful" | "refused", sentence); size: what is left across the axis of face, g."""
-    flips = r.level != "no flips"
-    crooked = math.degrees(3.0 * size)
-    limit = CROOKED_DEG if flips else CROOKED_NO_FLIPS_DEG
-    face = _crooked_one(r, face)
-    # Little crooked, the chip's own misalignment hides which of the two it is.
-    name = FACES[face] + (" (or %s)" % FACES[face ^ 1] if crooked < 3.0 else "")
-    return ("refused" if not crooked <= limit else "doubtful",
-            "face %s is crooked by about %.2f degrees, %.1f is the limit (%.1f mg left over): it "
-            "is not square to the others, something lies under it%s"
-            % (name, crooked, limit, 1000.0 * size,
-               ", or its flip was not 180 degrees" if flips else " or the table tilts"))
-
-
-def _crooked_one(r, face):
-    """Of the two opposite faces the one whose gravity is farther off the chip's axis."""
-    pair = (face & 6, face | 1)
-    off = []
-    for f in pair:
-        k = AXIS[f]
-        rows = [m for m, p in zip(r.means, r.poses) if face_of_code(p) == f]
-        # Offsets from the four other faces, whose axes are not this one's.
-        s = 0.0
-        for j in range(3):
-            if j != k:
-                zero = _middle_of_others(r, k, j)
-                x = sum([m[j] for m in rows]) / len(rows) - zero
-                s += x * x
-        off.append(s)
-    return pair[0] if off[0] > off[1] else pair[1]
-
-
-def _middle_of_others(r, k, j):
-    """Zero of axis j from the two faces of the third axis, neither k nor j."""
-    rows = [m[j] for m, p in zip(r.means, r.poses) if AXIS[face_of_code(p)] == 3 - k - j]
-    return sum(rows) / len(rows)
-
-
+SQUARENESS_NO_FLIPS_DEG = 6.0
 # chi2 of three numbers: 1 good session in 2000 lies beyond on one of three pairs of faces.
 DOUBT = 19.0
-CROOKED_DEG = 1.0
 FLIP_ERROR = math.radians(0.4)
 # What a bias wanders between captures minutes apart, g: flicker of an ordinary MEMS part.
 WANDER = 2e-4
@@ -91,8 +49,8 @@ def _judge_spread(r):
     face = max(r.tilts, key=lambda f: abs(r.tilts[f] - middle))
     off = abs(r.tilts[face] - middle)
     # A capture that leans by x shifts the face's tilt by x/2.
-    crooked = 2.0 * off if off == off else 180.0
-    return ("refused" if not crooked <= CROOKED_DEG else "doubtful",
+    off_deg = 2.0 * off if off == off else 180.0
+    return ("refused" if not off_deg <= SQUARENESS_DEG else "doubtful",
             "face %s does not lie like the others: its tilt is off by %.2f degrees, the faces "
             "may differ by %.2f; one capture is crooked or moved" % (FACES[face], off, limit))
 
@@ -100,7 +58,7 @@ def _judge_spread(r):
 def _judge_squareness(r):
     """Even residuals: what a and b of a face have in common and the model cannot take.
 
-    Opposite faces share it: a crooked X+ and an equally crooked X- cannot be told apart by
+    Opposite faces share it: an X+ off square and an X- equally so cannot be told apart by
     the fit. A third of a single face's angle is left as its residual.
     """
     tilt = math.radians(r.tilt_deg or 0.0)
@@ -128,7 +86,46 @@ def _judge_squareness(r):
                 "faces %s and %s leave %.1f mg along their axis that noise does not explain: the "
                 "sensor is not linear, or its temperature changed"
                 % (FACES[along[1] & 6], FACES[along[1] | 1], along[0] * 1000.0))
-    return describe(r, face, size)
+    return _off_square(r, face, size)
+
+
+def _off_square(r, face, size):
+    """("doubtful" | "refused", sentence); size: what is left across the axis of face, g."""
+    flips = r.level != "no flips"
+    off_deg = math.degrees(3.0 * size)
+    limit = SQUARENESS_DEG if flips else SQUARENESS_NO_FLIPS_DEG
+    face = _face_off_square(r, face)
+    # Little crooked, the chip's own misalignment hides which of the two it is.
+    name = FACES[face] + (" (or %s)" % FACES[face ^ 1] if off_deg < 3.0 else "")
+    return ("refused" if not off_deg <= limit else "doubtful",
+            "face %s is crooked by about %.2f degrees, %.1f is the limit (%.1f mg left over): it "
+            "is not square to the others, something lies under it%s"
+            % (name, off_deg, limit, 1000.0 * size,
+               ", or its flip was not 180 degrees" if flips else " or the table tilts"))
+
+
+def _face_off_square(r, face):
+    """Of the two opposite faces the one whose gravity is farther off the chip's axis."""
+    pair = (face & 6, face | 1)
+    off = []
+    for f in pair:
+        k = AXIS[f]
+        rows = [m for m, p in zip(r.means, r.poses) if face_of_code(p) == f]
+        # Offsets from the four other faces, whose axes are not this one's.
+        s = 0.0
+        for j in range(3):
+            if j != k:
+                zero = _middle_of_others(r, k, j)
+                x = sum([m[j] for m in rows]) / len(rows) - zero
+                s += x * x
+        off.append(s)
+    return pair[0] if off[0] > off[1] else pair[1]
+
+
+def _middle_of_others(r, k, j):
+    """Zero of axis j from the two faces of the third axis, neither k nor j."""
+    rows = [m[j] for m, p in zip(r.means, r.poses) if AXIS[face_of_code(p)] == 3 - k - j]
+    return sum(rows) / len(rows)
 
 
 def _judge_along(r):

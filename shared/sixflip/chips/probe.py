@@ -241,10 +241,10 @@ def _where(name, found, strangers, report):
 def _make(driver, name, i2c, where, sleep_ms, ranges, report):
     """The driver's object, at the full scales that hold what is wanted."""
     got = []
-    for wanted, offered, unit in zip(ranges, (driver.ACCEL_RANGES, driver.GYRO_RANGES),
+    for wanted, available, unit in zip(ranges, (driver.ACCEL_RANGES, driver.GYRO_RANGES),
                                      ("g", "deg/s")):
-        if wanted is not None and offered:
-            scales = sorted([row[0] for row in offered])
+        if wanted is not None and available:
+            scales = sorted([row[0] for row in available])
             fits = ([g for g in scales if g >= wanted] or scales[-1:])[0]
             if fits != wanted:
                 report.append("a full scale of %s %s is not one of the %s's (%s): %s is used" % (

@@ -31,9 +31,9 @@ def judge_gyroscope(r):
     out = ["%s (%s)" % (face, r.flips[face]["reason"]) for face in sorted(r.flips)
                 if not r.flips[face]["used"]]
     more = "; left out: " + ", ".join(out) if out else ""
-    unseen = ["xyz"[k] for k in range(3) if k not in r.signs_seen]
-    if unseen:
-        more += "; sign of %s not seen, no quarter turn about it" % " and ".join(unseen)
+    without_sign = ["xyz"[k] for k in range(3) if k not in r.signs_seen]
+    if without_sign:
+        more += "; sign of %s not seen, no quarter turn about it" % " and ".join(without_sign)
     if len(r.missing) == 3:
         return "refused", "no usable flip about any axis" + more
     if r.missing:
@@ -48,11 +48,11 @@ def judge_gyroscope(r):
         return "doubtful", ("the flips of an axis disagree: one of them turned by %.1f degrees "
                             "about another axis, %.1f is the limit" % (r.across_deg, ACROSS_DEG))
     # One flip is right or wrong by itself: late or repeated samples may have shortened it.
-    unseen = [k for k in "XYZ" if len([1 for face in r.flips if face[0] == k
-                                       and r.flips[face]["used"]]) < 2]
-    if unseen:
+    single = [k for k in "XYZ" if len([1 for face in r.flips if face[0] == k
+                                          and r.flips[face]["used"]]) < 2]
+    if single:
         return "doubtful", ("one flip alone about %s, nothing to hold its angle against"
-                            % " and ".join(unseen).lower()) + more
+                            % " and ".join(single).lower()) + more
     scale = max([r.sigma[k][k] for k in range(3)])
     if not scale <= 0.01:
         return "doubtful", "the scale is known to %.1f %% only, 1 is the limit" % (100 * scale)
@@ -82,7 +82,7 @@ def not_half_turns(r):
     return found
 
 
-def _which(found, r):
+def _off_half_turn(found, r):
     """"every flip was short by 6.0 degrees", or those about one axis or two."""
     worst = max(found, key=lambda k: abs(found[k]))
     axes = [k for k in sorted(found)
@@ -114,7 +114,7 @@ def scale_doubt(r, tolerance):
         found = not_half_turns(r)
         if found:
             return ("%s, by the moves between the faces: its scale is off by %.1f %%"
-                    % (_which(found, r), max([abs(found[k]) for k in found]) / 1.8))
+                    % (_off_half_turn(found, r), max([abs(found[k]) for k in found]) / 1.8))
         known = max([0.0] + [r.excess[1][k] for k in range(3) if k not in r.missing])
         if not known <= HELD:
             return ("the moves between the faces tell by how much the flips turned to %.1f "
@@ -173,7 +173,7 @@ def accelerometer_doubt(r, tolerance, tilt_deg, known=()):
         mg = error_mg(tilt_deg, max([0.0] + [abs(short[k]) for k in short]))
         if mg > MATTERS_MG:
             return ("%s, by the moves between the faces: about %.1f mg at %.1f degrees of tilt"
-                    % (_which(short, r), mg, tilt_deg))
+                    % (_off_half_turn(short, r), mg, tilt_deg))
         return ""
     off = scale_off(r, tolerance)
     if off and error_mg(tilt_deg, abs(off[1])) > MATTERS_MG:

@@ -9,7 +9,7 @@ from sixflip.poses.session import COMPLETE, POSE, WINDOW, Session
 PAUSE_US = 60000000  # between the two sessions; its true length is unknown
 
 
-def resume(session, placements, samples, moves=None):
+def continue_from(session, placements, samples, moves=None):
     """Take over the placements and moves of an earlier session of so many samples.
 
     moves   to each of them and the one under way at its end (capture/scan.py); None: nothing

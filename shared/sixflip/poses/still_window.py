@@ -81,20 +81,20 @@ class StillWindow:
                 self.gyro_saturated = peak
         return self.n == self.length
 
-    def _triple(self, sample, which, rail):
-        """Sum accelerometer (which 0) or gyro (1); answers a saturated count, or 0."""
+    def _triple(self, sample, sensor, rail):
+        """Sums accelerometer (sensor 0) or gyro (1); a saturated count, or 0."""
         s = self.s
         last = self.last
         same = True
         peak = 0
-        for i in range(3 * which, 3 * which + 3):
+        for i in range(3 * sensor, 3 * sensor + 3):
             v = sample[i]
             if v != last[i]:
                 last[i] = v
                 same = False
             if v >= rail or v <= -rail:
                 peak = v
-            self.bits[which] |= v
+            self.bits[sensor] |= v
             d = v - self.ref[i]
             s[i] += d
             if d > SPAN or d < -SPAN:
@@ -102,10 +102,10 @@ class StillWindow:
                 d = SPAN
             self.q[i] += d * d
         if not same:
-            self.same[which] = 1
-        elif self.same[which] < SAME:
-            self.same[which] += 1
-        if self.same[which] >= SAME:
+            self.same[sensor] = 1
+        elif self.same[sensor] < SAME:
+            self.same[sensor] += 1
+        if self.same[sensor] >= SAME:
             self.stale = SAME
         return peak
 
@@ -128,9 +128,10 @@ class StillWindow:
         """Counts squared, unbiased."""
         return self.spread(i) / (self.n * (self.n - 1))
 
-    def step(self, which):
-        """The step of the counts (1, 2, 4 ...): some chips deliver multiples of 4 only."""
-        bits = self.bits[which]
+    def step(self, sensor):
+        """The step of the counts (1, 2, 4 ...) of accelerometer (0) or gyro (1): some chips
+        deliver multiples of 4 only."""
+        bits = self.bits[sensor]
         if bits == 0:
             return 1
         return bits & -bits
