@@ -2,6 +2,7 @@
 
 import errno
 
+from sixflip import RAIL
 from sixflip_sim import noise
 from sixflip_sim.faults import Faults
 
@@ -155,7 +156,7 @@ class SimulatedI2C:
             word = buf[i + high] << 8 | buf[i + 1 - high]
             off = noise.gauss(_SHAKEN, 16 * self.transactions + i)
             word = (word ^ 0x8000) - 0x8000 + int(self.faults.noise * off)
-            word = max(-32768, min(32767, word))
+            word = max(-RAIL - 1, min(RAIL, word))
             buf[i + high] = word >> 8 & 0xFF
             buf[i + 1 - high] = word & 0xFF
 

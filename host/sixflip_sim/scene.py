@@ -8,6 +8,7 @@ same formulas on the same segments sees the same world.
 
 import math
 
+from sixflip import STANDARD_G
 from sixflip_sim import rotation
 
 REST = 0
@@ -52,7 +53,7 @@ class Scene:
     Temperature: temperature_c - warm_c·exp(-t/warm_tau_s), °C.
     """
 
-    def __init__(self, attitude=rotation.IDENTITY, g=9.80665, lever_arm=None,
+    def __init__(self, attitude=rotation.IDENTITY, g=STANDARD_G, lever_arm=None,
                  temperature_c=25.0, warm_c=0.0, warm_tau_s=300.0, tremor=0.0):
         self.g = g
         self.tremor = tremor

@@ -35,9 +35,9 @@ keeps no state between samples: history comes from the Moment.
 
 import math
 
+from sixflip import RAIL, STANDARD_G
 from sixflip_sim import noise
 
-STANDARD_G = 9.80665            # what counts per g of a datasheet mean
 _DEGREE = math.pi / 180.0
 
 
@@ -128,7 +128,7 @@ class SensorModel:
         m = self._look(k, t_us)
         x = m.temp + self.temp_sigma * noise.gauss(self._temp_key, k)
         count = math.floor((x - offset_c) * lsb_per_c + 0.5)
-        counts[6] = max(-32768, min(32767, count))
+        counts[6] = max(-RAIL - 1, min(RAIL, count))
         self._finish(m, counts, 6)
 
     def _finish(self, m, counts, first):

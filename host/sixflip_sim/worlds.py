@@ -8,12 +8,13 @@ plain JSON. An unknown key is a ValueError.
 
 import math
 
+from sixflip import STANDARD_G
 from sixflip.chips import catalogue
 from sixflip_sim import noise
 from sixflip_sim.bus import SimulatedI2C
 from sixflip_sim.clock import VirtualClock
 from sixflip_sim.operator import PAPER_ORDER, Operator
-from sixflip_sim.sensor_model import STANDARD_G, SensorModel, Triad, typical_truth
+from sixflip_sim.sensor_model import SensorModel, Triad, typical_truth
 
 _DEGREE = math.pi / 180.0
 

@@ -12,11 +12,11 @@ from pathlib import Path
 
 import numpy as np
 
+from sixflip import STANDARD_G
 from sixflip.chips import catalogue
 from sixflip.record import correction_record
 from sixflip_device import power_up, settings
 from sixflip_sim import worlds
-from sixflip_sim.sensor_model import STANDARD_G
 from tests.faults.reacting_hand import ReactingHand
 from tests.worlds.simulated_board import SimulatedBoard, TooLong
 

@@ -8,6 +8,7 @@ USUAL_SPI = {"bus": 2, "sck": 18, "mosi": 23, "miso": 19, "cs": 5}
 
 
 def make(settings):
+    """The Board, on its usual pins where the settings name no others."""
     bus = choose(settings, "i2c", 0)
     scl = choose(settings, "scl", 22)
     sda = choose(settings, "sda", 21)

@@ -8,6 +8,7 @@ USUAL_SPI = {"bus": 0, "sck": 18, "mosi": 19, "miso": 16, "cs": 17}
 
 
 def make(settings):
+    """The Board, on its usual pins where the settings name no others."""
     bus = choose(settings, "i2c", 0)
     scl = choose(settings, "scl", 5)
     sda = choose(settings, "sda", 4)

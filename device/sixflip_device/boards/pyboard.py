@@ -12,6 +12,7 @@ USUAL_SPI = {"bus": 1, "cs": "X5"}     # SCK X6, MISO X7, MOSI X8
 
 
 def make(settings):
+    """The Board, on its usual pins where the settings name no others."""
     bus = choose(settings, "i2c", 1)
     freq = settings["freq"]
 

@@ -117,6 +117,7 @@ def open_spi(spi):
 
 
 def make(settings):
+    """The Board, on its usual pins where the settings name no others."""
     if settings["spi"] is not None:
         return LinuxBoard(lambda: open_spi(settings["spi"]), folder())
     from smbus2 import SMBus

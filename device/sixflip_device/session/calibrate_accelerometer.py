@@ -7,10 +7,10 @@ session's own gyro it would be circular, for its scale is to come from these fli
 import math
 from array import array
 
+from sixflip import RAIL
 from sixflip.accelerometer.solver import solve
 from sixflip.accelerometer.verdict import judge_accelerometer
 from sixflip.poses.faces import AXIS, FACES, pose_name
-from sixflip.poses.still_window import RAIL
 
 from ..record.active_record import blank_record
 from .session_values import Calibration

@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 
+from sixflip import RAIL
 from sixflip.poses.faces import AXIS, face_of_code
 from sixflip.poses.placement import GAP_US, LATE_US
 
@@ -35,7 +36,7 @@ class Interval:
         late, bridge = _late(capture, first, end) if moving else (0.0, np.zeros(3))
         self.turned = np.radians((gyro.mean(axis=0) * (self.T - late) + bridge)
                                  / capture.meta["gyro_lsb_per_dps"])
-        rail = min(32767.0, capture.meta.get("gyro_range_dps", np.inf)
+        rail = min(RAIL, capture.meta.get("gyro_range_dps", np.inf)
                    * capture.meta["gyro_lsb_per_dps"])
         self.saturated = bool((np.abs(gyro) >= rail - 1).any())
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from sixflip import RAIL
 from sixflip.poses.faces import AXIS, LEANING, SIGN, face_of_code, is_b, pose_name
 from sixflip.poses.placement import GAP_US
 
-from ..capture import still_windows
 from ..errors import BadFile, CheckFailed
 from .gyro_moves import GyroMoves
 
@@ -66,7 +66,7 @@ class RestsAndMoves:
         steps = np.diff(capture.t_us)
         usual = float(np.median(steps))
         rail = capture.meta.get("gyro_range_dps", np.inf) * capture.meta["gyro_lsb_per_dps"]
-        rail = min(still_windows.RAIL, rail) - 1
+        rail = min(RAIL, rail) - 1
         spans = []
         for k in range(len(runs) - 1):
             first, last = runs[k][2] - 1, runs[k + 1][1]
@@ -134,7 +134,7 @@ class RestsAndMoves:
             if all("saturated" in line for line in self.left_out):
                 raise CheckFailed(
                     "the gyro is saturated in every move, expected turns slower than %g deg/s"
-                    % capture.meta.get("gyro_range_dps", 32767 / capture.meta["gyro_lsb_per_dps"])
+                    % capture.meta.get("gyro_range_dps", RAIL / capture.meta["gyro_lsb_per_dps"])
                 )
             raise CheckFailed(
                 "no move can be integrated (%s), expected even timestamps and rates below full "

@@ -2,13 +2,13 @@
 
 import numpy as np
 
+from sixflip import RAIL
 from sixflip.accelerometer import solver as accelerometer
 from sixflip.accelerometer import verdict
 from sixflip.chips import catalogue
 from sixflip.gyro import solver as gyroscope
 from sixflip.gyro import verdict as gyro_verdict
 from sixflip.poses.faces import FACES, face_of_code, pose_name
-from sixflip.poses.still_window import RAIL
 
 from ..capture import clock
 from ..capture.capture_binary import write_pauses

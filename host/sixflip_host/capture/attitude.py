@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from sixflip import RAIL
 from sixflip.poses.placement import GAP_US
 
 AT_A_TIME = 10_000      # samples whose rotations are there at once: each takes 300 bytes
@@ -17,7 +18,7 @@ def heading_change(capture, rests, bias, axis, sign):
     first, last = rests[0].end, rests[-1].first
     gyro = capture.gyro[first - 1:last]
     gaps = np.diff(capture.t_us[first - 1:last]) / 1e6
-    if len(gaps) and (max(int(gyro.max()), -int(gyro.min())) >= 32767
+    if len(gaps) and (max(int(gyro.max()), -int(gyro.min())) >= RAIL
                       or gaps.max() - np.median(gaps) > 1e-6 * GAP_US):
         return None
     attitude = np.eye(3)            # body -> frame of the first rest

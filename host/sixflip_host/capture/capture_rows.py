@@ -9,13 +9,14 @@ import re
 
 import numpy as np
 
+from sixflip import RAIL
 from sixflip.poses.faces import pose_code, pose_name
 
 from ..errors import BadFile
 from .growing import Growing
 from .unpack import whole_lines
 
-INT16 = (-32768, 32767)
+INT16 = (-RAIL - 1, RAIL)
 TIMES = (-(1 << 62), (1 << 62) - 1)      # differences still fit into 64 bits
 LONGEST_ROW = 1 << 16       # bytes
 GROUPS = (("t_us",), ("ax", "ay", "az"), ("gx", "gy", "gz"), ("temp",), ("mx", "my", "mz"),

@@ -1,7 +1,7 @@
 """Columns of counts: steps, a band that reads nothing, bits and columns that stick."""
 import numpy as np
 
-from sixflip.poses.still_window import RAIL
+from sixflip import RAIL
 
 FEWEST_VALUES = 12  # distinct counts before a common divisor means anything
 FEWEST_SAMPLES = 50

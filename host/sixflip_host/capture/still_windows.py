@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
+from sixflip import RAIL
 from sixflip.poses.noise_floor import CAP, ENTER, LEAVE, WINDOWS, NoiseFloor
-from sixflip.poses.still_window import RAIL, SAME, SPAN, window_length
+from sixflip.poses.still_window import SAME, SPAN, window_length
 
 from ..progress import steps
 

@@ -9,11 +9,12 @@ import math
 
 import numpy as np
 
+from sixflip import RAIL, STANDARD_G
 from sixflip_sim.effects import make as make_chain
 from sixflip_sim.effects.effect import BadEffect
 from sixflip_sim.effects.library import EFFECTS
 from sixflip_sim.effects.library import make as make_effect
-from sixflip_sim.sensor_model import STANDARD_G, SensorModel, Triad
+from sixflip_sim.sensor_model import SensorModel, Triad
 
 from ..capture.capture_file import Capture
 from ..experiment import attitude_fit, blocks, nominal_rows
@@ -120,7 +121,7 @@ def simulated(session, nominal, level, effects, seed):
 
 
 def _int16(counts):
-    return np.clip(counts, -32768, 32767).astype(np.int16)
+    return np.clip(counts, -RAIL - 1, RAIL).astype(np.int16)
 
 
 def _checked(spec):

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sixflip import STANDARD_G
 from sixflip_sim.effects import typical
 from sixflip_sim.effects.library import EFFECTS
 from sixflip_sim.effects.moment import Moment
@@ -36,7 +37,7 @@ BENDS = 39  # columns of what bends with the attitude, or remembers the one befo
 PRIOR_METRES, PRIOR_CM, PRIOR_MG = 0.1, 10.0, 5.0
 BIAS_MG, STRANGE_BIAS_MG = 10.0, 60.0  # a session calibrated by its own poses, or by others'
 HAND_CM, WHEELS_CM = 0.3, 0.03  # how well the same hand, the same axle hold their centre
-MG_PER_METRE_S2 = 1000.0 / 9.80665
+MG_PER_METRE_S2 = 1000.0 / STANDARD_G
 SMALL_DEG = 10.0  # of turning: less has no axis of its own
 
 

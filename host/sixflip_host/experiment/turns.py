@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sixflip.poses.still_window import RAIL
+from sixflip import RAIL
 
 from ..capture.attitude import _rotation, carried
 from .projection import cross, lateral_basis

@@ -5,6 +5,8 @@ import math
 
 import numpy as np
 
+from sixflip import STANDARD_G
+
 from ..errors import BadFile
 from .affine_correction import AffineCorrection
 
@@ -55,7 +57,7 @@ def _fusion_parts(found):
     """Name, (A, o), counts per unit in, factors (of A, of o) to Fusion's units."""
     record = found.record
     g = 1 / record.g
-    parts = [("accelerometer", found.accel, record.accel_lsb_per_g, (9.80665 * g, g))]
+    parts = [("accelerometer", found.accel, record.accel_lsb_per_g, (STANDARD_G * g, g))]
     if found.gyro:
         parts.append(("gyroscope", found.gyro, record.gyro_lsb_per_dps, (1.0, 1.0)))
     return parts

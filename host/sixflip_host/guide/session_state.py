@@ -8,6 +8,7 @@ import math
 from dataclasses import dataclass, field, replace
 from statistics import median
 
+from sixflip import STANDARD_G
 from sixflip.poses.faces import FACES
 
 from ..board.console import lasting
@@ -166,7 +167,7 @@ def _trailed(state, vector, rate):
 
 def _sample(state, event):
     """A corrected sample, once the board streams again."""
-    vector = three(event.get("a"), 1 / 9.80665)
+    vector = three(event.get("a"), 1 / STANDARD_G)
     if vector is None:
         return state
     return _trailed(state, vector, three(event.get("w"), math.degrees(1.0)))

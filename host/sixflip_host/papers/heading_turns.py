@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from sixflip import STANDARD_G
 from sixflip.accelerometer import solver as accelerometer
 from sixflip.gyro import solver as gyroscope
 from sixflip.gyro.heading import Heading
@@ -61,7 +62,7 @@ def floor(truth, seed, turned_deg):
     world = worlds.make({
         "sensor": SENSOR, "seed": seed + 500000, "order": [], "first_rest_s": 0.0,
         "accel_matrix": truth.accel_matrix, "gyro_matrix": truth.gyro_matrix,
-        "accel_bias_mg": [1e3 * b / 9.80665 for b in truth.accel_bias], "gyro_bias_dps": bias})
+        "accel_bias_mg": [1e3 * b / STANDARD_G for b in truth.accel_bias], "gyro_bias_dps": bias})
     spans = []
     for turn in turned_deg:
         world.scene.rest(int(REST_S * 1e6))

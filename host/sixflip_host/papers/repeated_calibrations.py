@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from sixflip import STANDARD_G
 from sixflip.accelerometer import solver as accelerometer
 from sixflip_sim import worlds
 
@@ -21,7 +22,7 @@ def experiment(seed, placing_deg):
     for number in range(CALIBRATIONS):
         world = worlds.make({
             "sensor": "gy85", "accel_matrix": A.tolist(),
-            "accel_bias_mg": (1e3 / 9.80665 * b).tolist(), "seed": 1000 * seed + number,
+            "accel_bias_mg": (1e3 / STANDARD_G * b).tolist(), "seed": 1000 * seed + number,
             "tilt_deg": TILT_DEG, "tilt_dir_deg": 36.0 * number, "flip_error_deg": HAND_DEG,
             "placement_scatter_deg": placing_deg})
         session = capture(world)

@@ -5,7 +5,7 @@ Vibration, rail hits and thermal slope: MPU6050 on a tree.
 """
 import numpy as np
 
-from sixflip_sim.sensor_model import STANDARD_G
+from sixflip import STANDARD_G
 
 from ..calibrate import multiposition
 from ..capture import recordings

@@ -4,7 +4,7 @@ Each has the fields of sixflip_sim.scene.Scene that scene_arrays needs, and fill
 """
 import numpy as np
 
-from sixflip_sim.sensor_model import STANDARD_G
+from sixflip import STANDARD_G
 
 
 class MovingScene:

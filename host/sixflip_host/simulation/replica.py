@@ -1,9 +1,9 @@
 """A simulated sensor fitted to a recording at rest, and what it counts in the same time."""
 import numpy as np
 
-from sixflip.poses.still_window import RAIL
+from sixflip import RAIL, STANDARD_G
 from sixflip_sim.effects import make
-from sixflip_sim.sensor_model import STANDARD_G, SensorModel, Triad
+from sixflip_sim.sensor_model import SensorModel, Triad
 
 from ..experiment import signal_measures
 from . import simulator

@@ -21,12 +21,12 @@ Each session becomes one description of a world, plain JSON, which the virtual b
 """
 import math
 
+from sixflip import STANDARD_G
 from sixflip.chips import catalogue
 from sixflip_sim import worlds
 from sixflip_sim.effects import typical
 from sixflip_sim.effects.library import NAMES
 from sixflip_sim.effects.library import make as make_effect
-from sixflip_sim.sensor_model import STANDARD_G
 
 from ..did_you_mean import instead
 from ..errors import BadFile

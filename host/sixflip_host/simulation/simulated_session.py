@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from sixflip import STANDARD_G
 from sixflip.chips import probe
 from sixflip.poses import faces
 from sixflip_sim import noise, worlds
@@ -34,7 +35,7 @@ def session(plan, number):
         if kind != "temp":
             _not_saturated(found[kind], output, kind)
     meta = dict(imu.metadata())
-    meta["g"] = spec.get("g", 9.80665)
+    meta["g"] = spec.get("g", STANDARD_G)
     meta["simulated"] = {"seed": plan.seed, "session": number, "scene": plan.scene,
                          "effects": plan.effects}
     pose = labels(world, look_us, bool(plan.moving))

@@ -7,6 +7,7 @@ noted in scene_arrays (the exponential of the temperature may differ in its last
 """
 import numpy as np
 
+from sixflip import RAIL
 from sixflip_sim.effects.moment import Moment as View
 from sixflip_sim.sensor_model import _DEGREE, STANDARD_G
 
@@ -117,7 +118,7 @@ def _temperature(model, output, m, k):
     noise = noise_arrays.gauss(model._temp_key, k)
     x = m.temp + model.temp_sigma * noise
     count = np.floor((x - output.rail) * output.per_unit + 0.5).astype(np.int64)
-    return np.clip(count, -32768, 32767)[None]
+    return np.clip(count, -RAIL - 1, RAIL)[None]
 
 
 def polled(output, polls_us):

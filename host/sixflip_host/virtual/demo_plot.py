@@ -1,5 +1,7 @@
 """The demo's picture: errors of the vectors before and after the correction, face by face."""
 
+from sixflip import STANDARD_G
+
 from ..figures import canvas, save
 from .demo_truth import error_mg
 
@@ -22,7 +24,7 @@ def draw(path, rows):
     for index, (which, colour, marker) in enumerate(
             (("raw", "#b5651d", "o"), ("corrected", "#2a6f97", "x"))):
         for axis in range(3):
-            errors = [1000 / 9.80665 * (row[2 + index][axis] - row[1][axis]) for row in rows]
+            errors = [1000 / STANDARD_G * (row[2 + index][axis] - row[1][axis]) for row in rows]
             axes.plot([p + 0.15 * (axis - 1) for p in places], errors, marker, color=colour,
                       label=which if axis == 0 else None, alpha=0.5 + 0.25 * axis)
     axes.axhline(0, color="0.6", lw=0.8)

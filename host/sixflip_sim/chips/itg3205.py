@@ -2,6 +2,7 @@
 
 import math
 
+from sixflip import RAIL
 from sixflip.chips import itg3205 as chip
 from sixflip_sim.chips.fifo import words
 from sixflip_sim.chips.register_chip import RegisterChip
@@ -88,7 +89,7 @@ class SimulatedITG3205(RegisterChip):
         bandwidth = chip.BANDWIDTH_HZ[code] if code < 7 else chip.BANDWIDTH_HZ[0]
         louder = math.sqrt(bandwidth / NOMINAL_BANDWIDTH_HZ)
         counts = self.counts
-        self.model.gyro_counts(k, t_us, lsb, chip.RAIL, louder, counts)
+        self.model.gyro_counts(k, t_us, lsb, RAIL, louder, counts)
         self.model.temp_counts(k, t_us, chip.TEMPERATURE[0], chip.TEMPERATURE[1], counts)
         data = words(counts, self.columns, 0)
         self.registers[chip.TEMP_OUT_H:chip.TEMP_OUT_H + len(data)] = data

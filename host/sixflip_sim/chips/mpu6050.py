@@ -1,7 +1,7 @@
 """Simulated MPU6050 or relative, by the driver's own tables."""
 
+from sixflip import RAIL
 from sixflip.chips import mpu6050 as chip
-from sixflip.chips.six_axis import RAIL
 from sixflip_sim.chips.six_axis import SimulatedSixAxis, range_of
 
 _AWAKE_AFTER_RESET = (0x70, 0x71, 0x73)     # their PWR_MGMT_1 is 0x01 after a reset

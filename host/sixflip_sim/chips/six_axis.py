@@ -2,7 +2,8 @@
 
 import math
 
-from sixflip.chips.six_axis import BURST, RAIL
+from sixflip import RAIL
+from sixflip.chips.six_axis import BURST
 from sixflip_sim.chips.fifo import Memory, words
 from sixflip_sim.chips.register_chip import RegisterChip
 

@@ -5,12 +5,12 @@ deg/s. Only the stages that some effect needs exist as methods, so the rest cost
 """
 import math
 
+from sixflip import STANDARD_G
 from sixflip.poses.faces import AXIS, SIGN
 from sixflip_sim import noise
 from sixflip_sim.effects.effect import REGISTER, WORLD
 from sixflip_sim.effects.moment import Moment
 
-STANDARD_G = 9.80665
 DEGREE = math.pi / 180.0
 FLAT = 0.966  # cosine of 15 deg: as far off a face is leaning
 _CHANNEL = 0x300  # of the noise: chances of register effects

@@ -1,10 +1,11 @@
 """Effects of what is around the sensor: the box, the table, gravity, vibration, the lever arm."""
+from sixflip import STANDARD_G
 from sixflip.poses.faces import AXIS, FACES
 from sixflip_sim.effects.effect import AXES, WORLD, Effect, per_axis
 
 MG_PER_DEG = 17.453292519943295  # 1 g turned by one degree, small angles
-_MG_PER_CM = 0.01 / 9.80665 * 1000.0 * 0.0003046174197867086  # (deg/s)2 at 1 cm, in mg
-_MG_PER_CM_RATE = 0.01 / 9.80665 * 1000.0 * 0.017453292519943295  # deg/s2 at 1 cm, in mg
+_MG_PER_CM = 0.01 / STANDARD_G * 1000.0 * 0.0003046174197867086  # (deg/s)2 at 1 cm, in mg
+_MG_PER_CM_RATE = 0.01 / STANDARD_G * 1000.0 * 0.017453292519943295  # deg/s2 at 1 cm, in mg
 _TWO_PI = 6.283185307179586
 
 

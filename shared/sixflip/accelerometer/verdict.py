@@ -7,9 +7,9 @@ is written so that NaN fails it.
 
 import math
 
+from sixflip import RAIL
 from sixflip.accelerometer.face_fit import judge_fit
 from sixflip.poses.pose_check import judge_session
-from sixflip.poses.still_window import RAIL
 
 SCALE_OFF = 0.2
 # Cross-axis sensitivity is 2 % per axis at most in the data sheets (MPU6050 3.4, table 6.2).

@@ -43,6 +43,8 @@ FILTERS = ((2, 0.405), (1, 0.2025), (0, 0.10125))
 
 
 class BMI160(SixAxis):
+    """Its samples and its temperature in one burst; a command switches each sensor on."""
+
     sensor = "bmi160"
     ACCEL_RANGES = ACCEL_RANGES
     GYRO_RANGES = GYRO_RANGES

@@ -53,6 +53,8 @@ WIDER = 1.025
 
 
 class ICM20948(Banked):
+    """Its rates are divided from 1125 Hz."""
+
     sensor = "icm20948"
     ACCEL_RANGES = ACCEL_RANGES
     GYRO_RANGES = GYRO_RANGES

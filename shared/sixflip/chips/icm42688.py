@@ -52,6 +52,8 @@ FILTERS = ((0, (24.7, 49.3, 98.7, 246.7, 493.3)), (1, (92.3, 92.3, 92.3, 115.3, 
 
 
 class ICM42688(Banked):
+    """Its set-up is in bank 0, the offsets that a user may write in bank 4."""
+
     sensor = "icm42688"
     ACCEL_RANGES = ACCEL_RANGES
     GYRO_RANGES = GYRO_RANGES

@@ -26,7 +26,6 @@ COLUMNS = (6, 3, 4, 5)
 
 LSB_PER_DPS = 14.375
 RANGE_DPS = const(2000)
-RAIL = const(32767)
 BANDWIDTH_HZ = (256, 188, 98, 42, 20, 10, 5)
 # °C = counts / 280 + 82.142857: -13200 counts at 35 °C (section 3.3).
 TEMPERATURE = (280.0, 82.142857)

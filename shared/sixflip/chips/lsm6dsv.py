@@ -39,6 +39,8 @@ GYRO_LPF1 = ((0, (24.6, 49.4, 96, 175, 241, 273, 280)), (2, (24.6, 49.4, 96, 131
 
 
 class LSM6DSV(LSM6):
+    """Also the LSM6DSV16X, which answers with the same identification."""
+
     sensor = "lsm6dsv"
     ACCEL_RANGES = ACCEL_RANGES
     GYRO_RANGES = GYRO_RANGES

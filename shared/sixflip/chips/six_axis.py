@@ -1,8 +1,8 @@
 """Accelerometer, gyro and thermometer behind one burst: what such chips share."""
 
+from sixflip import RAIL
 from sixflip.chips.registers import Registers, in_range, row_of_range, words_into
 
-RAIL = 32767
 BURST = 14
 
 

@@ -1,7 +1,7 @@
 """Is every capture what its label says: still, alive, in range, on that face?"""
 
+from sixflip import RAIL
 from sixflip.poses.faces import FACES, face_of_code, nearest_face, pose_name
-from sixflip.poses.still_window import RAIL
 
 # A pose this much noisier than the middle one was not at rest.
 NOISIER = 3.0

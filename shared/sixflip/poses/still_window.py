@@ -7,7 +7,6 @@ is clamped. The plain sums stay exact.
 
 from sixflip.poses.placement import LATE_US
 
-RAIL = 32767  # |count| of a 16-bit reading at full scale: saturated, whatever the chip's range
 SPAN = 4096
 MOST = 64  # samples in a window: MOST * SPAN**2 = 2**30, and equal deviations never all reach it
 SAME = 32  # readings of a triple identical so many times over: the chip is stuck

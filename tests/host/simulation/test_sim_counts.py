@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from sixflip import STANDARD_G
 from sixflip.chips import adxl345, itg3205, six_axis
 from sixflip_sim import noise, worlds
 from sixflip_sim.scene import REST, TURN
-from sixflip_sim.sensor_model import STANDARD_G
 
 DEGREE = np.pi / 180
 

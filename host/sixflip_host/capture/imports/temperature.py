@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sixflip import RAIL
 from sixflip.chips import catalogue
 
 from ...errors import BadFile, UsageError
@@ -39,7 +40,7 @@ def counts(path, options, column, values):
     if kind == "counts" and options.sensor not in OF_CHIP:
         raise UsageError("--temp-units counts needs --sensor %s" % " or ".join(OF_CHIP))
     whole = np.rint((values.astype(float) - offset) * lsb if kind == "c" else values)
-    if np.abs(whole).max() > 32767:
+    if np.abs(whole).max() > RAIL:
         raise BadFile("%s: the temperature reaches %g, expected %s" % (
             path, values[np.argmax(np.abs(whole))],
             "°C" if kind == "c" else "16 bit counts (or --temp-units c)"))

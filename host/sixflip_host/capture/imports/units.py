@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sixflip.poses.still_window import RAIL
+from sixflip import RAIL
 
 from ...errors import BadFile
 from ..capture_header import STANDARD_G

@@ -4,6 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sixflip import STANDARD_G
+
 from . import (
     alignment,
     conventions,
@@ -21,7 +23,7 @@ from . import (
 
 FOLD_S = 5.0
 RAILED = 0.5  # of a log: what is left of it is no motion any more
-MG, DEG = 1000.0 / 9.80665, 180.0 / np.pi
+MG, DEG = 1000.0 / STANDARD_G, 180.0 / np.pi
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sixflip import STANDARD_G
+
 from .hypotheses import BIAS, DEAD, DEG, DELAY_S, FREE, SHAPE, SIGNED, SMOOTH_S2
 
 ROUNDS = 4
@@ -66,7 +68,7 @@ def candidates(hypothesis, measured, kind, live):
         psi = np.arctan2(free[1, 0] - free[0, 1], free[0, 0] + free[1, 1])
         c, s = np.cos(psi), np.sin(psi)
         return [(np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]), 1.0)]
-    units = (1.0, DEG, 1.0 / DEG) if kind == "gyro" else (1.0, 9.80665, 1.0 / 9.80665)
+    units = (1.0, DEG, 1.0 / DEG) if kind == "gyro" else (1.0, STANDARD_G, 1.0 / STANDARD_G)
     free[~live] = 0.0
     out = [(np.eye(3), unit) for unit in (units if hypothesis.name else units[:1])]
     if hypothesis.name:

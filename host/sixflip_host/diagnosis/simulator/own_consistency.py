@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sixflip import STANDARD_G
+
 from ...capture.attitude import _rotation
 from . import conventions, traces
 from .hypotheses import DEG, SIGNED
@@ -97,8 +99,8 @@ def by_norm(norms):
 
     logs = {"healthy": log(1.0) + np.log(conventions.PRIOR_HEALTHY),
             "none": log(0.0) + np.log(conventions.PRIOR_EACH),
-            1.0 / 9.80665: log(1.0 / 9.80665) + np.log(conventions.PRIOR_EACH),
-            9.80665: log(9.80665) + np.log(conventions.PRIOR_EACH)}
+            1.0 / STANDARD_G: log(1.0 / STANDARD_G) + np.log(conventions.PRIOR_EACH),
+            STANDARD_G: log(STANDARD_G) + np.log(conventions.PRIOR_EACH)}
     # A tenth of g at rest is both nothing and one in m/s2: then what moves it says which.
     spread = norms.std() if len(norms) > 1 else 0.0
     if norms.mean() > 0.07 and norms.mean() < 0.13 and spread < 0.02:

@@ -8,13 +8,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sixflip import STANDARD_G
+
 from . import conventions, single_log, traces
 
 Z90 = 1.645
 # Some thirty numbers are compared: at this many standard errors one log pair in 500 shows a
 # difference that is none (Bonferroni, normal).
 DIFFERS = 4.0
-MG, DEG = 1000.0 / 9.80665, 180.0 / np.pi
+MG, DEG = 1000.0 / STANDARD_G, 180.0 / np.pi
 SETTING = 0.2  # how far a noise that was set by hand may be off, natural logarithm
 ANY = 2.0
 LIKELY = 0.95  # probability from which on a noise is said to be the density's number

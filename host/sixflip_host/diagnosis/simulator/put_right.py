@@ -7,6 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from sixflip import RAIL
+
 # After these a simulator's numbers are not those of a sensor any more.
 SPOILED = ("no_gravity", "gravity_sign", "gravity_after_rotation", "constant_channel",
            "world_frame_forces", "world_frame_rates", "unknown")
@@ -46,7 +48,7 @@ def _counts(counts, matrix):
     if np.array_equal(matrix, np.eye(3)):
         return counts
     turned = np.asarray(counts, dtype=np.int64) @ matrix.astype(np.int64)
-    return np.clip(turned, -32768, 32767).astype(counts.dtype)
+    return np.clip(turned, -RAIL - 1, RAIL).astype(counts.dtype)
 
 
 def _matrix(found, kind):

@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from sixflip import STANDARD_G
 from sixflip.gyro.heading import Heading
 from sixflip.record.correction import Correction
 from sixflip_sim import noise, worlds
@@ -138,7 +139,7 @@ def _readings(route, truth, seed):
     world = worlds.make({
         "sensor": heading_turns.SENSOR, "seed": seed + 700000, "order": [], "first_rest_s": 0.0,
         "accel_matrix": truth.accel_matrix, "gyro_matrix": truth.gyro_matrix,
-        "accel_bias_mg": [1e3 * b / 9.80665 for b in truth.accel_bias], "gyro_bias_dps": bias,
+        "accel_bias_mg": [1e3 * b / STANDARD_G for b in truth.accel_bias], "gyro_bias_dps": bias,
         "effects": [{"effect": "drift", "sensor": "gyro", "x": floor, "y": floor, "z": floor,
                      "seed": seed}]})
     for kind, seconds, size in route.pieces():
