@@ -2,12 +2,13 @@
 
 import numpy as np
 
+from sixflip import RAIL
 from sixflip.poses.placement import LATE_US, Move, Placement
 from sixflip.poses.placement_log import PlacementLog
 from sixflip.poses.still_window import window_length
 
 from . import rests
-from .still_windows import POSE_SAMPLES, RAIL
+from .still_windows import POSE_SAMPLES
 
 AT_A_TIME = 1000        # windows as floats, which take four times the room of counts
 

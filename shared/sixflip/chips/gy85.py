@@ -1,5 +1,6 @@
 """GY-85: a board with an ADXL345 and an ITG3205 (and a magnetometer, see magnetometers.py)."""
 
+from sixflip import RAIL
 from sixflip.chips import itg3205
 from sixflip.chips.adxl345 import ADXL345
 from sixflip.chips.itg3205 import ITG3205
@@ -24,7 +25,7 @@ class GY85:
     accel_lsb_per_g = ADXL345.accel_lsb_per_g
     gyro_lsb_per_dps = itg3205.LSB_PER_DPS
     gyro_range_dps = itg3205.RANGE_DPS
-    gyro_rail = itg3205.RAIL
+    gyro_rail = RAIL
     temp_lsb_per_c, temp_offset_c = itg3205.TEMPERATURE
     metadata = Registers.metadata
 

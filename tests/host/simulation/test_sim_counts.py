@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from sixflip import STANDARD_G
-from sixflip.chips import adxl345, itg3205, six_axis
+from sixflip import RAIL, STANDARD_G
+from sixflip.chips import adxl345, itg3205
 from sixflip_sim import noise, worlds
 from sixflip_sim.scene import REST, TURN
 
@@ -71,9 +71,9 @@ def test_counts_of_a_session(spec):
     k = np.arange(0, world.end_us // 5000, 13, dtype=np.int64)      # 200 Hz
     force, rate = motion(world.scene, k * 5000)
     if spec["sensor"] == "mpu6050":
-        scale = (16384, six_axis.RAIL, 65.5, six_axis.RAIL)
+        scale = (16384, RAIL, 65.5, RAIL)
     else:
-        scale = (adxl345.LSB_PER_G, 4095, itg3205.LSB_PER_DPS, itg3205.RAIL)
+        scale = (adxl345.LSB_PER_G, 4095, itg3205.LSB_PER_DPS, RAIL)
     accel = counts(world.model.accel, force, k, scale[0] / STANDARD_G, scale[1])
     gyro = counts(world.model.gyro, rate, k, scale[2] / DEGREE, scale[3])
     out = [0] * 7
