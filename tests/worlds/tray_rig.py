@@ -11,18 +11,19 @@ LIE_S = 6.0
 
 
 class ScriptedBoard:
-    """misses: numbers of the jig's layings (from 0) that it does not take; stuck_from, lost_at:
-    the laying from which its readings are the same, or before which it is unplugged; says: its
-    first events, in place of those of a session that begins."""
+    """misses: numbers of the jig's layings (from 0) that it does not take; never: faces of its own
+    that it never takes; stuck_from, lost_at: the laying from which its readings are the same, or
+    before which it is unplugged; says: its first events, in place of a session's."""
 
     def __init__(self, mounting=AS_THE_JIG, misses=(), stuck_from=99, lost_at=99,
                  firmware=__version__, missing=TWELVE, says=None,
-                 gyro=True):
+                 gyro=True, never=()):
         self.mounting, self.misses = mounting, set(misses)
         self.stuck_from, self.lost_at = stuck_from, lost_at
         self.firmware, self.says, self.gyro = firmware, says, gyro
         self.missing = list(missing)
         self.last = self.jig = ""
+        self.never = never
         self.rested = self.stopped = False
 
     def hello(self, port):
@@ -46,8 +47,8 @@ class ScriptedBoard:
                  "live": [1000 * v for v in vector(own)] + [0] * 3 * self.gyro, "reason": ""}
         if number >= self.stuck_from:
             return [dict(state, reason="stale")]
-        if number in self.misses:
-            self.misses.remove(number)
+        if number in self.misses or own in self.never:
+            self.misses.discard(number)
             return [dict(state, reason="noisy", value=9.0, limit=4.0, unit="x noise"),
                     {"event": "refused", "pose": own + "a", "reason": "noisy", "value": 9.0,
                      "limit": 4.0, "unit": "x noise"}]

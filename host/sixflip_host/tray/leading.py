@@ -130,7 +130,7 @@ def turned(now_tray, face):
     if now_tray.face and not now_tray.here and now_tray.letter == "a":
         visits[now_tray.face] -= 1
     visits[face] = visits.get(face, 0) + 1
-    return afresh(replace(now_tray, face=face, letter="a", here={}, visits=visits,
+    return afresh(replace(now_tray, face=face, letter="a", here={}, said={}, visits=visits,
                           last=now_tray.face if now_tray.here else now_tray.last))
 
 

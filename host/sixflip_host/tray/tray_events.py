@@ -50,7 +50,7 @@ def after(now_tray, port, event, now):
     if event["event"] == "pose" and own:
         now_tray = taken(now_tray, member, own)
     elif event["event"] == "refused" and event.get("reason") == DONE and own:
-        now_tray = sits(now_tray, member, own, lying(now_tray, member, own))
+        now_tray = had(now_tray, member, own)
     elif event["event"] == "state" and member.state.box == "capturing" != before.box:
         now_tray = put(now_tray, begins(member, now, now_tray.patience))
     elif member.state.box == NOISE and now_tray.since is not None:
@@ -103,6 +103,20 @@ def left(now_tray, port, sentence, now):
     if member.over:
         return now_tray, []
     return tick(leaves(now_tray, member, sentence), now)
+
+
+def had(now_tray, member, own):
+    """A board has its face own whole already: so the jig lies, and who lacks this face, if it is
+    the one asked for, has no longer to take it than if another had taken it now."""
+    face = lying(now_tray, member, own)
+    now_tray = sits(now_tray, member, own, face)
+    if face != now_tray.face:
+        return now_tray
+    said = now_tray.said.get(member.port, 0) + 1    # once a rest, before the half turn and after
+    now_tray = replace(now_tray, said={**now_tray.said, member.port: said})
+    if now_tray.first_at is None and said > "ab".index(now_tray.letter):
+        now_tray = replace(now_tray, first_at=now_tray.now)
+    return now_tray
 
 
 def taken(now_tray, member, own):

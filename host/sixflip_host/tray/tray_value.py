@@ -16,6 +16,7 @@ class Tray:
     face, letter  the jig's face that is to be up, "" before the first, and "a" for its first
                  placement, "b" after half a turn
     here         {port: its own face} of the boards that took something on this face since
+    said         {port: how often it said on this face that it has it whole}
     flips        ports of the boards that the half turn is for
     first_at     second at which the first of them took this placement, None before
     visits       {face: how often the person was led to it}; last: the face before;
@@ -30,6 +31,7 @@ class Tray:
     face: str = ""
     letter: str = "a"
     here: dict = None
+    said: dict = None
     flips: tuple = ()
     first_at: float = None
     visits: dict = None
@@ -74,7 +76,7 @@ def tray(boards, patience=1.0):
     """The Tray of boards, {port: id or None}, numbered from 1; nothing is heard of them yet."""
     return Tray(tuple(Member(port, number, State(board=text(boards[port], 40)))
                       for number, port in enumerate(boards, 1)),
-                here={}, visits={}, patience=patience)
+                here={}, said={}, visits={}, patience=patience)
 
 
 def put(now_tray, member):

@@ -217,3 +217,11 @@ def test_a_board_that_still_learns_its_noise_is_waited_for():
     for rig.now in range(1, 30):
         rig.hear("q", [{"event": "state", "state": "measuring noise"}])
         assert (rig.tray.letter == "a") == (rig.now < leading.START_S)
+
+
+def test_who_never_takes_a_face_does_not_keep_the_others_from_theirs():
+    rig = Rig({"p": ScriptedBoard(misses=[2]), "q": ScriptedBoard(never=["Z+"])})
+    while not rig.member("p").over:
+        assert len(rig.laid) < 20, rig.tray.log
+        rig.lay(rig.asked())
+    assert rig.member("p").state.verdict == "good" and rig.laid[-2:] == ["X+a", "X+b"]

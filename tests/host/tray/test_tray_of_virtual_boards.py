@@ -16,7 +16,7 @@ from sixflip_host.virtual.jig_hand import WAYS, JigHand
 from sixflip_host.virtual.virtual_board import VirtualBoard
 from tests.worlds.terminal import Terminal
 
-WORLD = {"sensor": "mpu6050", "tilt_deg": 2.0, "flip_error_deg": 0.05, "order": []}
+WORLD = {"sensor": "mpu6050", "tilt_deg": 2.0, "order": []}
 QUICK = {"pose_samples": 100, "sensor": "mpu6050", "grace_ms": 100, "timeout_s": 3600}
 GOOD = ["as the jig", "upside down", "a quarter on", "on edge", "as the jig, too"]
 BAD = ["unplugged", "stuck", "older"]
