@@ -11,7 +11,7 @@ import pytest
 
 from sixflip_host.board import calibration_request
 from sixflip_host.board.board_events import wait_for
-from sixflip_host.board.console import GUIDED_ORDER
+from sixflip_host.board.event_words import GUIDED_ORDER
 from sixflip_host.emulated import firmware_image
 from sixflip_host.errors import NoBoard
 from sixflip_host.verbs import calibrate

@@ -11,7 +11,7 @@ from sixflip_host import cli  # noqa: E402
 from sixflip_host.board import board_link, pulled_files
 from sixflip_host.board.board_events import events, wait_for  # noqa: E402
 from sixflip_host.board.board_link import MpremoteLink  # noqa: E402
-from sixflip_host.board.console import GUIDED_ORDER  # noqa: E402
+from sixflip_host.board.event_words import GUIDED_ORDER  # noqa: E402
 from sixflip_host.emulated.emulated_pico import PATIENCE, PicoBoard  # noqa: E402
 from sixflip_host.verbs import calibrate, demo  # noqa: E402
 from sixflip_host.virtual import demo_truth  # noqa: E402

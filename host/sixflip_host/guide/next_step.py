@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ..board.console import ROUND, measured, why
+from ..board.event_words import ROUND, measured, why
 from .session_state import CALIBRATING, OVER, SOLVING, WAITING
 
 PLACE, FLIP, HOLD, REST, LEAN, WAIT, DONE = "place", "flip", "hold", "rest", "lean", "wait", "done"

@@ -2,7 +2,7 @@
 
 from rich.text import Text
 
-from ..board.console import ROUND, saved
+from ..board.event_words import ROUND, saved
 from . import box_drawings
 from .gauges import bar, measured
 from .next_step import HOLD, next_step, why_it_waits

@@ -11,7 +11,7 @@ from statistics import median
 from sixflip import STANDARD_G
 from sixflip.poses.faces import FACES
 
-from ..board.console import lasting
+from ..board.event_words import lasting
 from .board_values import TEXT, cleaned, number, poses, text, three, whole
 
 LOG = 200               # lines kept

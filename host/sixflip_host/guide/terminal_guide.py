@@ -4,7 +4,7 @@ import os
 import shutil
 import sys
 
-from ..board.console import ROUND
+from ..board.event_words import ROUND
 from ..errors import SixflipError
 from ..terminal import console
 from . import keys, screen

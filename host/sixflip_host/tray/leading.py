@@ -13,7 +13,7 @@ tick(), redo() and undo() answer (Tray, commands), a command being (port, dict f
 
 from dataclasses import replace
 
-from ..board.console import ROUND
+from ..board.event_words import ROUND
 from . import jig
 from .lying import sits
 from .tray_value import put, say

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from ..board.console import ROUND
+from ..board.event_words import ROUND
 from . import jig
 from .tray_value import put, say
 

@@ -2,7 +2,7 @@
 
 from rich.text import Text
 
-from ..board.console import ROUND
+from ..board.event_words import ROUND
 from ..guide import box_drawings
 from ..guide.next_step import FLIP, HOLD, PLACE, WAIT
 from ..guide.screen import HEIGHT, QUIT, REDO, VERDICT, WIDTH, beside, fit, in_ascii, wrapped

@@ -1,6 +1,6 @@
 """A tray in words: what the person does now, and what came of each board."""
 
-from ..board.console import saved
+from ..board.event_words import saved
 from ..guide.board_values import text
 from ..guide.next_step import why_it_waits
 from ..guide.session_state import CALIBRATING, SOLVING, WAITING

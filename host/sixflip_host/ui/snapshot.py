@@ -1,6 +1,6 @@
 """What the page shows, as JSON: a State and what is to be done next, all texts escaped."""
 
-from ..board.console import ROUND
+from ..board.event_words import ROUND
 from ..guide.next_step import following, next_step, noise_share, why_it_waits
 from ..guide.session_state import CALIBRATING
 

@@ -6,7 +6,7 @@ What a browser asks for holds for the session that it saw; what is done already 
 import queue
 import threading
 
-from ..board.console import ROUND
+from ..board.event_words import ROUND
 from ..errors import SixflipError, internal_error
 from ..narration import log
 from ..terminal import plain

@@ -19,7 +19,8 @@ from ..board import firmware_update, pulled_files
 from ..board.board_events import events, wait_for
 from ..board.board_files import shared_dir
 from ..board.board_link import MpremoteLink
-from ..board.console import GUIDED_ORDER, Console
+from ..board.console import Console
+from ..board.event_words import GUIDED_ORDER
 from ..errors import CheckFailed, SixflipError, UsageError
 from ..file_arguments import add_output
 from ..history import remember, store

@@ -10,7 +10,7 @@ import math
 import sys
 
 from .. import file_kinds
-from ..board.console import words
+from ..board.event_words import words
 from ..board.ports import add_port, open_link
 from ..board.stream_session import SLOWEST_HZ, StreamSession
 from ..calibrate.verify_files import read_record

@@ -6,7 +6,7 @@ import json
 import pytest
 
 from sixflip_host import cli
-from sixflip_host.board import console, pulled_files
+from sixflip_host.board import console, event_words, pulled_files
 from sixflip_host.board.board_events import parse
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.capture import capture_file
@@ -90,20 +90,20 @@ def test_event_behind_a_line_cut_off_by_a_reset():
 def test_words_show_reason_number_and_limit():
     event = {"event": "refused", "pose": "X+", "reason": "crooked", "value": 8.04, "limit": 5,
              "unit": "deg"}
-    assert console.words(event) == ("X+ not taken: the box does not lie flat on this face "
+    assert event_words.words(event) == ("X+ not taken: the box does not lie flat on this face "
                                     "(8.04 deg, limit 5 deg)")
 
 
 def test_next_step_asks_for_the_flip_first():
-    assert "half a turn" in console.next_step(["Z+b", "X+a", "X+b"])
-    assert console.next_step(["X+a", "X+b", "Y-b", "Y-a"]) == (
+    assert "half a turn" in event_words.next_step(["Z+b", "X+a", "X+b"])
+    assert event_words.next_step(["X+a", "X+b", "Y-b", "Y-a"]) == (
         "next: X+ up; left: X+ and its flip, Y- and its flip")
-    assert console.next_step([]) == "all six faces done"
+    assert event_words.next_step([]) == "all six faces done"
 
 
 def test_the_round_of_faces_turns_a_quarter_about_every_axis():
     """Gravity before and after such moves shows the sign of a gyro axis."""
-    axis = ["XYZ".index(face[0]) for face in console.ROUND]
+    axis = ["XYZ".index(face[0]) for face in event_words.ROUND]
     about = [3 - a - b for a, b in zip(axis, axis[1:]) if a != b]
     assert len(about) == 5 and set(about) == {0, 1, 2}
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from sixflip_host import cli
-from sixflip_host.board import console, firmware_update, typed_lines
+from sixflip_host.board import console, event_words, firmware_update, typed_lines
 from sixflip_host.board.local_link import LocalLink
 from sixflip_host.capture import capture_file
 from sixflip_host.errors import UsageError
@@ -248,7 +248,7 @@ def test_typed_lines():
 def test_the_wrong_face_says_which():
     event = {"event": "refused", "pose": "Y-", "reason": "wrong face", "value": 5, "limit": 2,
              "unit": "face"}
-    assert console.words(event) == "Y- not taken: this is Y-, the plan wants X+ up"
+    assert event_words.words(event) == "Y- not taken: this is Y-, the plan wants X+ up"
 
 
 def test_what_is_typed_stands_behind_the_live_state():

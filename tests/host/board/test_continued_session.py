@@ -8,7 +8,7 @@ from sixflip_host import cli
 from sixflip_host.board import calibration_request, firmware_update, pulled_files
 from sixflip_host.board.board_events import wait_for
 from sixflip_host.board.board_link import MpremoteLink
-from sixflip_host.board.console import GUIDED_ORDER
+from sixflip_host.board.event_words import GUIDED_ORDER
 from sixflip_host.verbs import calibrate, demo
 from sixflip_host.virtual.virtual_board import VirtualBoard
 

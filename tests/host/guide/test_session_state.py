@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sixflip_host.board.board_events import parse
-from sixflip_host.board.console import lasting
+from sixflip_host.board.event_words import lasting
 from sixflip_host.guide import next_step as steps
 from sixflip_host.guide.session_state import CALIBRATING, OVER, SIX, SOLVING, State, after
 

@@ -4,7 +4,7 @@ import itertools
 
 import pytest
 
-from sixflip_host.board.console import GUIDED_ORDER
+from sixflip_host.board.event_words import GUIDED_ORDER
 from sixflip_host.tray import leading
 from sixflip_host.tray.jig import AS_THE_JIG, FACES, across, jig_to_own, learned
 from sixflip_host.virtual.jig_hand import WAYS

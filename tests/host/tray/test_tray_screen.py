@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 
 from sixflip_host.board import board_schema
-from sixflip_host.board.console import GUIDED_ORDER
+from sixflip_host.board.event_words import GUIDED_ORDER
 from sixflip_host.tray import leading, tray_events, tray_screen
 from sixflip_host.tray.tray_guide import TrayGuide, obey
 from sixflip_host.tray.tray_value import tray

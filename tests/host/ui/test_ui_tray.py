@@ -11,7 +11,7 @@ from served import Served, until
 
 from sixflip_host.board import firmware_update
 from sixflip_host.board.board_link import MpremoteLink
-from sixflip_host.board.console import GUIDED_ORDER
+from sixflip_host.board.event_words import GUIDED_ORDER
 from sixflip_host.errors import NoBoard
 from sixflip_host.tray import leading
 from sixflip_host.ui import tray_bench
