@@ -50,6 +50,14 @@ def table(times, head="t", accel=COUNTS, gyro=None, form="%d"):
 SECONDS = np.arange(ROWS) / 100
 
 
+def test_matlabs_writetable_has_the_months_name_in_its_times(tmp_path, capsys):
+    texts = [table(["31-%s-2024 12:00:%06.3f" % (month, t) for t in SECONDS], "Timestamp")
+             for month in ("Feb", "May")]
+    assert "31-Feb-2024" in refused(tmp_path, capsys, texts[0], "--accel-lsb", "16384")
+    capture, _ = imported(tmp_path, capsys, texts[1], "--accel-lsb", "16384")
+    assert capture.t_us[-1] - capture.t_us[0] == pytest.approx(3_990_000, abs=1)
+
+
 @pytest.mark.parametrize("name, sensor, unit", [
     ("gyr_x_mdps", column_names.GYRO, "mdps"), ("ax_g", column_names.ACCEL, "g"),
     ("acc_x_ms2", column_names.ACCEL, "m/s2"), ("ax_m_s2", column_names.ACCEL, "m/s2"),

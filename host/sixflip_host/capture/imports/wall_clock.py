@@ -1,15 +1,17 @@
 """Stamps that are written as dates and times of day, made seconds.
 
-ISO 8601, with T or a blank between, fractions behind a point or a comma, and a zone or none; or
-the time of day alone. A date with slashes says day or month first, nobody knows which, and is
-refused.
+ISO 8601, with T or a blank between, fractions behind a point or a comma, and a zone or none; the
+month by its English name, as MATLAB writes it (31-May-2024); or the time of day alone. A date
+with slashes says day or month first, nobody knows which, and is refused.
 """
 
 import datetime
 import functools
 import re
 
-STAMP = re.compile(r"(?:(\d{4})-(\d\d)-(\d\d)[T ])?(\d\d):(\d\d):(\d\d)(?:[.,](\d{1,12}))?"
+MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
+STAMP = re.compile(r"(?:(?:(\d{4})-(\d\d)-(\d\d)|(\d\d)-(" + "|".join(MONTHS) + r")-(\d{4}))"
+                   r"[T ])?(\d\d):(\d\d):(\d\d)(?:[.,](\d{1,12}))?"
                    r"\s?(Z|UTC|GMT|[+-]\d\d:?\d\d)?\Z", re.IGNORECASE)
 AMBIGUOUS = re.compile(r"\d{1,4}[/.]\d{1,2}[/.]\d{1,4}(\D|\Z)")
 EXPECTED = "ISO 8601, such as 2024-05-31T12:00:00.250"
@@ -31,7 +33,10 @@ def seconds(cell):
     match = STAMP.match(cell)
     if match is None:
         raise ValueError(cell)
-    year, month, day, hours, minutes, whole, part, zone = match.groups()
+    year, month, day, named_day, name, named_year, *time = match.groups()
+    hours, minutes, whole, part, zone = time
+    if name:
+        year, month, day = named_year, MONTHS.index(name.lower()) + 1, named_day
     total = int(hours) * 3600 + int(minutes) * 60 + int(whole) - _ahead(zone or "")
     if int(hours) > 23 or int(minutes) > 59 or int(whole) > 60:
         raise ValueError(cell)
