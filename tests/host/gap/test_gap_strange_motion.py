@@ -31,7 +31,7 @@ def diagnosed(captures, change):
             capture.accel, capture.gyro = accel, gyro
 
 
-@pytest.mark.parametrize("delay_ms", [10.0, 40.0, 80.0])
+@pytest.mark.parametrize("delay_ms", [10.0, 80.0])
 def test_a_late_gyro_is_late_and_nothing_else(captures, delay_ms):
     def late(t, accel, gyro):
         return accel, np.stack([np.interp(t - 1e-3 * delay_ms, t, x) for x in gyro.T], 1)
