@@ -93,8 +93,10 @@ def _boards(page, them, batches, about, output):
         for number, board in enumerate(batch.boards):
             own = about.get((batch_of[board], board), {})
             standing = distances(batch, number)
-            worst = max(standing, key=lambda one: abs(one[1]), default=("", 0.0, 0.0, 0.0))
-            named = [fleet_words.reason(vars(o)) for o in batch.outliers if o.board == board]
+            its = [o for o in batch.outliers if o.board == board]
+            worst = max([*standing, *((o.parameter, o.sigmas) for o in its)],
+                        key=lambda one: abs(one[1]), default=("", 0.0))
+            named = [fleet_words.reason(vars(o)) for o in its]
             link = "%s/%s" % (FOLDER, file_name(batch_of[board], board))
             atomic = os.path.join(output, FOLDER)
             os.makedirs(atomic, exist_ok=True)
