@@ -79,12 +79,8 @@ def calibrate(firmware):
     calibration = None
     if session.how == "complete":
         calibration = phase("session.calibrate_accelerometer", firmware, session)
-        gc.collect()
-        calibration.defragment()
         if firmware.sensor.imu.has_gyro:
             calibration = phase("session.calibrate_gyro", firmware, session, calibration)
-            gc.collect()
-            calibration.defragment()
     phase("record.saving", firmware, session, calibration)
     if session.how == "bus lost":
         raise BusLost(session.ended)

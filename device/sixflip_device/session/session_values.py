@@ -4,8 +4,6 @@ They are in a module of their own because an object keeps the module of its clas
 the code of a session is to leave it before the solver comes.
 """
 
-from array import array
-
 
 class SessionRequest:
     """What session.sampling is to do; the six faces in any order unless it says otherwise.
@@ -89,25 +87,3 @@ class Calibration:
         self.reason = reason
         self.facts = facts
         self.angles = angles
-
-    def defragment(self):
-        """Its numbers copied to the front of the heap, once the solver has left it.
-
-        MicroPython moves nothing, and on most boards every float is an object: where they were
-        made they would leave no kilobyte in one piece of 40 KB that are free.
-        """
-        for name in ("accel", "gyro", "gyro_bias", "flips"):
-            setattr(self.record, name, _copied(getattr(self.record, name)))
-        self.facts = _copied(self.facts)
-        self.angles = _copied(self.angles)
-
-
-def _copied(x):
-    """A deep copy of numbers in lists, tuples, dicts and arrays; text stays where it is."""
-    if isinstance(x, float):
-        return x + 0.0
-    if isinstance(x, (list, tuple)):
-        return type(x)([_copied(v) for v in x])
-    if isinstance(x, dict):
-        return {k: _copied(x[k]) for k in x}
-    return x[:] if isinstance(x, array) else x
