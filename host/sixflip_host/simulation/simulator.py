@@ -7,9 +7,9 @@ noted in scene_arrays (the exponential of the temperature may differ in its last
 """
 import numpy as np
 
-from sixflip import RAIL
+from sixflip import RAIL, STANDARD_G
 from sixflip_sim.effects.moment import Moment as View
-from sixflip_sim.sensor_model import _DEGREE, STANDARD_G
+from sixflip_sim.sensor_model import _DEGREE
 
 from ..experiment import noise_arrays
 from .scene_arrays import moment
