@@ -170,12 +170,23 @@ VARIABLE = {"thermal_scale": ("thermal_orientation",),
             "amplitude": ("amplitude",)}
 
 
+def _variable(effect):
+    return VARIABLE.get(effect) or VARIABLE.get(domain(effect), ())
+
+
+def alike(form, other):
+    """Whether two named effects are functions of one variable, on an axis that both have: another
+    form of the one is then some of the other."""
+    return bool(set(_variable(form.effect)) & set(_variable(other.effect))
+                and set(form.axes) & set(other.axes))
+
+
 def with_discrepancy(model, forms, scored, form):
     """The form with a discrepancy in its own variable beside it, whose standard deviation is
     RELATIVE of the size that the form has in a Scored set; None where there is none."""
     if form.generic or not len(form.shared) or form.discrepancy:
         return None
-    wanted = VARIABLE.get(form.effect) or VARIABLE.get(domain(form.effect), ())
+    wanted = _variable(form.effect)
     free = list({f.effect: f for f in forms if f.effect in wanted and f.axis is None}.values())
     if not free:
         return None

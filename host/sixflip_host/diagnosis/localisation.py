@@ -1,5 +1,7 @@
 """Stage 2: where the gap lies. A share of the excess and a test per domain and axis, false
 discoveries controlled [Benjamini & Hochberg, JRSS B 57 (1995) 289]."""
+from dataclasses import dataclass, replace
+
 import numpy as np
 from scipy import special
 
@@ -11,14 +13,20 @@ LEAST_SHARE = 0.01  # of the excess: less is no place to look at
 BROAD = ("along_gravity", "across_gravity")
 
 
+@dataclass(frozen=True)
 class Place:
-    """sensor, axis ("x" ... or None), domain, share, p; named: of a cause found."""
+    """sensor, axis ("x" ... or None), domain, share (0 to 1), p; named: of a cause found."""
 
-    named = False
+    sensor: str
+    axis: str | None
+    domain: str
+    share: float
+    p: float
+    named: bool = False
 
-    def __init__(self, sensor, axis, domain, share, p):
-        self.sensor, self.axis, self.domain = sensor, axis, domain
-        self.share, self.p = float(np.clip(share, 0.0, 1.0)), float(p)
+    def __post_init__(self):
+        object.__setattr__(self, "share", float(np.clip(self.share, 0.0, 1.0)))
+        object.__setattr__(self, "p", max(float(self.p), odds.SMALLEST))
 
 
 def places(gap):
@@ -37,8 +45,7 @@ def places(gap):
     if "drift" in gap.found.best.names:
         gain = gap.found.gains["drift"]
         named.append(Place(gap.kind, None, "time", 1.0, odds.chance(gain)))
-    for place in named:
-        place.named = True
+    named = [replace(place, named=True) for place in named]
     known = {(p.axis, p.domain) for p in named}
     return sorted(named + [t for t in tested if (t.axis, t.domain) not in known
                            and t.share >= LEAST_SHARE], key=order)

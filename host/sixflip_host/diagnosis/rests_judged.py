@@ -37,7 +37,8 @@ def of(rests, findings, settings, conditions):
                 s.with_gyro_axes(swapped.read) for s in sessions]
             model = RestModel("gyro", chip, settings, conditions)
             jobs["gyro"] = pool.submit(model.fit, put_right, nominal)
-            bent = any(f.sensor == "gyro" and f.effect == "dead_band" for f in findings)
+            bent = any(f.sensor == "gyro" and f.effect in ("dead_band", "saturation")
+                       for f in findings)
             if swapped is None and not bent and all(
                     turn_model.usable(s, m) for s, m in zip(sessions, nominal)):
                 turns = turn_model.TurnModel("gyro", chip, settings, conditions).fit(

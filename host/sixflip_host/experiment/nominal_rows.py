@@ -19,6 +19,7 @@ EARTH_DPS = (0.0005, 0.003)  # the Earth's horizontal rate, the box at an unknow
 FLICKER_DPS = (0.0002, 0.0007, 0.0014, 0.002, 0.003, 0.0045, 0.008, 0.016, 0.03, 0.1)
 EARTH_UP_DPS = 0.003
 FEWEST_PAIRS, MOST_UNLIKE = 12, 2.0  # of blocks; an axis' flicker against all, at most
+STILL = 1e-6  # of an axis that does not wander at all
 COARSE_MG = 0.5  # of what rounding leaves in the mean of a rest
 
 
@@ -89,7 +90,11 @@ def axis_shares(session, values, noise):
     over = (1.0 / session.seconds[same] + 1.0 / session.seconds[same + 1]).mean()
     excess = np.maximum(squares - over * noise ** 2, 0.0)
     doubt = 2.0 * over * (noise ** 2).mean() * np.sqrt(2.0 / len(same))
-    return np.clip((excess + doubt) / (excess.mean() + doubt), 1.0 / MOST_UNLIKE, MOST_UNLIKE)
+    alive = values.std(axis=0) > 0.0  # what always reads the same says nothing of the others
+    if not alive.any():
+        return np.ones(3)
+    shares = (excess + doubt) / (excess[alive].mean() + doubt)
+    return np.where(alive, np.clip(shares, 1.0 / MOST_UNLIKE, MOST_UNLIKE), STILL)
 
 
 def _placements(session):

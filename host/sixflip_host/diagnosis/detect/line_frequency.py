@@ -56,7 +56,7 @@ def peak(power, k):
         return float(k)
     a, b, c = np.log(np.maximum(power[k - 1:k + 2], 1e-300))
     below = a - 2.0 * b + c
-    return float(k + (0.5 * (a - c) / below if below < 0 else 0.0))
+    return float(k + (np.clip(0.5 * (a - c) / below, -0.5, 0.5) if below < 0 else 0.0))
 
 
 def refined(line, sessions, sensor):

@@ -24,6 +24,7 @@ LEAST_STEPS = 0.5  # of the counts: rounding makes lines as large as that
 # Bins to each side; a line has that share of the power in them in its own lobe. A hand that
 # steadies the box, or a motor under load, has a wider bump.
 BESIDE, NARROW = 10, 0.6
+SWEPT, FALLS = 2, 0.5  # the lowest bins hold the straight line taken off; of a line's power
 LEAST_SHARE = 0.25  # of the standard deviation of the noise: smaller is no matter
 # A bench or a table sways at its own frequencies, by chance: from stretch to stretch the power
 # there scatters as much as its mean (noise through a resonance is exponential). Something that
@@ -150,8 +151,12 @@ def strongest(sessions, sensor, axis):
     width = max(9, int(MEDIAN_SHARE * len(band)) | 1)
     median_of_mean = special.gammaincinv(number, 0.5) / number
     floor = ndimage.median_filter(band, size=width, mode="reflect") / median_of_mean
-    ratio = band / np.maximum(floor, 1e-12)
+    # Towards lower frequencies a spectrum falls below a line; that of what drifts rises on.
+    below_it = np.minimum.accumulate(mean[SWEPT:-1])[first - SWEPT - 1:-1]
+    ratio = np.where(below_it < FALLS * band, band / np.maximum(floor, 1e-12), 0.0)
     k = int(ratio.argmax())
+    if not ratio[k] > 0.0:
+        return None
     doubt = 1.0 + 2.0 * 1.25 / math.sqrt(width * number)  # the floor is a median itself
     nats = -(log_beyond(ratio[k] * number / doubt, number) + math.log(3.0 * len(band)))
     if nats < -math.log(CHANCE):

@@ -151,6 +151,7 @@ def tabled(column, banded):
     noise = 1.4826 / np.sqrt(2.0) * float(np.median(np.abs(np.diff(column))))
     calm = np.ptp(beside, axis=1) < CALM * max(noise, 1.0)
     long, same = _long(column, noise)
+    same &= np.abs(long - np.median(beside, axis=1)) < 2.0 * max(noise, 1.0)
     level = np.where(calm, np.where(same, long, np.median(beside, axis=1)),
                      (4.0 * (around[:, 2] + around[:, 4]) - around[:, 1] - around[:, 5]) / 6.0)
     off = around[:, 3] - level
@@ -174,14 +175,13 @@ def tabled(column, banded):
 
 
 def _long(column, noise):
-    """((n,) median of many samples around, whether it is the same before and after). A page's
+    """((n,) median of many samples around, whether it is the same all the while). A page's
     edge stands still while a level known by few neighbours moves: which page a sample is likely
     to have had would be told from how far that level is off."""
     level = ndimage.median_filter(column, 2 * LONG + 1, mode="nearest").astype(float)
-    change = np.abs(level[2 * LONG:] - level[:-2 * LONG])
-    same = np.zeros(len(column), bool)
-    same[LONG:-LONG] = change < max(noise, 1.0)
-    return level[3:-3], same[3:-3]
+    change = ndimage.maximum_filter1d(level, 2 * LONG + 1) \
+        - ndimage.minimum_filter1d(level, 2 * LONG + 1)
+    return level[3:-3], change[3:-3] < max(noise, 1.0)
 
 
 def student(z, freedom):

@@ -4,6 +4,8 @@ SIM.csv is diagnosed like a real capture. What it models is taken off the real s
 own poses, times and temperatures, so scenes need not be the same; what both have in their
 registers, timing or spectrum is no gap. What it has and the real sensor lacks is a gap as well.
 """
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...experiment import blocks
@@ -15,34 +17,18 @@ APART = 3.0  # standard errors between two sizes from which on they are two effe
 RAW = 0.1  # of a size without an interval: how well two logs repeat a line, a step or a clock
 
 
+@dataclass(frozen=True, eq=False)
 class Simulator:
-    """known: {sensor: [(effect, variant, key, coefficient)]}; findings of the simulator;
-    noise: {sensor: (3,) of a second}; remarks."""
+    """found: the Diagnosis of its captures; known: {sensor: [(effect, variant, key,
+    coefficient)]}; remarks: tuple of sentences."""
 
-    def __init__(self, sessions, settings):
-        self.found = stages.of(sessions, settings)
-        self.known, self.remarks = {}, []
-        self.reference_c = self.found.conditions.reference_c
-        for kind, gap in self.found.gaps.items():
-            if not gap.chosen:
-                continue
-            columns = np.concatenate([c.columns for c in gap.chosen])
-            prior = np.concatenate([c.prior for c in gap.chosen])
-            theta = coefficient_fits.coefficients(
-                coefficient_fits.fits(gap.data, columns, prior), prior)[0][0]
-            every = [(d.effect, d.variant, key) for d in gap.units[0].designs for key in d.keys]
-            self.known[kind] = [(*every[column], float(t)) for column, t in zip(columns, theta)]
-        if not self.found.gaps:
-            self.remarks.append("the simulator's capture holds too few poses: of the effects, "
-                                "only steps, lines and timing are compared")
-        names = sorted({c.effect for _, c in self.found.causes})
-        if names:
-            self.remarks.append("the simulator already has: " + ", ".join(names))
-        self.remarks += ["the simulator's log: " + said for said in self.found.remarks]
-        silent = sorted({u["effect"] for u in detectability.listed(self.found)})
-        if silent and self.found.gaps:
-            self.remarks.append("effects that the simulator's log cannot show: "
-                                + ", ".join(silent))
+    found: stages.Diagnosis
+    known: dict
+    remarks: tuple
+
+    @property
+    def reference_c(self):
+        return self.found.conditions.reference_c
 
     def new(self, finding):
         """True when the simulator lacks a Finding of the real sensor, or has another size."""
@@ -72,4 +58,30 @@ def _size(finding, key):
 
 def read(captures, paths, settings):
     """Simulator from captures."""
-    return Simulator([blocks.of(p, c) for p, c in zip(paths, captures)], settings)
+    found = stages.of([blocks.of(p, c) for p, c in zip(paths, captures)], settings)
+    known = {kind: _known(gap) for kind, gap in found.gaps.items() if gap.chosen}
+    return Simulator(found, known, tuple(_remarks(found)))
+
+
+def _known(gap):
+    """[(effect, variant, key, coefficient)] of what a SensorGap has with a name."""
+    columns = np.concatenate([c.columns for c in gap.chosen])
+    prior = np.concatenate([c.prior for c in gap.chosen])
+    theta = coefficient_fits.coefficients(
+        coefficient_fits.fits(gap.data, columns, prior), prior)[0][0]
+    every = [(d.effect, d.variant, key) for d in gap.units[0].designs for key in d.keys]
+    return [(*every[column], float(t)) for column, t in zip(columns, theta)]
+
+
+def _remarks(found):
+    """Sentences on what the simulator's Diagnosis shows, and cannot show."""
+    remarks = [] if found.gaps else ["the simulator's capture holds too few poses: of the "
+                                     "effects, only steps, lines and timing are compared"]
+    names = sorted({c.effect for _, c in found.causes})
+    if names:
+        remarks.append("the simulator already has: " + ", ".join(names))
+    remarks += ["the simulator's log: " + said for said in found.remarks]
+    silent = sorted({u["effect"] for u in detectability.listed(found)})
+    if silent and found.gaps:
+        remarks.append("effects that the simulator's log cannot show: " + ", ".join(silent))
+    return remarks
