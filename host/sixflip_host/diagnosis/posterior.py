@@ -224,15 +224,12 @@ def _pruned(model, best, cost):
     while best.forms:
         gains = _gains(model, best)
         alone = {f: max(gains[f], _alone(model, f)) for f in best.forms}
-        energy = _energies(model, best)
-
-        def taken(form, other):
-            if other.generic or form.effect == "drift":
-                return alone[other]
-            return max(gains[other], energy[other] if hypotheses.alike(form, other) else 0.0)
+        energy = {f: max(gains[f], nats) for f, nats in _energies(best).items()}
         needed = {form: cost.member + PRESENT + max(
-            [_unknown(form, f, cost) * taken(form, f) for f in best.forms if f is not form],
-            default=0.0) for form in best.forms}
+            [_unknown(form, f, cost) * (
+                alone if f.generic or form.effect == "drift"
+                else energy if hypotheses.alike(form, f) else gains)[f]
+             for f in best.forms if f is not form], default=0.0) for form in best.forms}
         weakest = min(best.forms, key=lambda f: gains[f] - needed[f])
         if gains[weakest] >= needed[weakest]:
             break
@@ -261,21 +258,21 @@ def _gains(model, best):
             for form in best.forms}
 
 
-def _energies(model, best):
-    """{Form: half of the chi2, nats, of what it adds at the levels of noise found}. Without it
-    more noise would be taken for usual, so what it gains grows as a logarithm of its size only,
-    and what is left of it by its form with the square."""
+def _energies(best):
+    """{Form: nats lost without it at the levels of noise found, by its coefficients and their
+    covariance [Wald, Trans. AMS 54 (1943) 426]}. Without it more noise would be taken for usual,
+    so what it gains grows as a logarithm of its size only, and what its form leaves with the
+    square."""
     shared = best.shared
     if not len(shared):
         return dict.fromkeys(best.forms, 0.0)
-    theta = evidence.coefficients(best.fits, shared)[0][0]
+    theta, covariance = (v[0] for v in evidence.coefficients(best.fits, shared))
     found = {}
     for form in best.forms:
-        mine = np.isin(shared.index, form.columns)
-        columns, own = shared.index[mine], theta[mine]
-        found[form] = 0.5 * sum(
-            float(own @ unit.gram[int(fit.index[0])][np.ix_(columns, columns)] @ own)
-            for unit, fit in zip(model.units, best.fits) if not unit.between)
+        mine = np.flatnonzero(np.isin(shared.index, form.columns))
+        block = covariance[np.ix_(mine, mine)]
+        found[form] = 0.5 * float(theta[mine] @ np.linalg.solve(block, theta[mine])) \
+            if len(mine) else 0.0
     return found
 
 

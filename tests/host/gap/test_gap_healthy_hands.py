@@ -1,11 +1,14 @@
 """What hands do, and how far noise is known, is in the model with levels of its own: no gap."""
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from sixflip_host.diagnosis import diagnosis, stray_turns, turn_model
-from sixflip_host.diagnosis.detect import torn_reads
+from sixflip_host.capture.capture_file import Capture
+from sixflip_host.diagnosis import diagnosis, hypotheses, stray_turns, turn_model
+from sixflip_host.diagnosis.detect import spectral_lines, torn_reads
 from sixflip_host.diagnosis.detect.detection import present
-from sixflip_host.experiment import attitude_fit, block_noise, blocks
+from sixflip_host.experiment import attitude_fit, block_noise, blocks, nominal_rows
 from sixflip_host.simulation import scenario, simulated_session
 
 KNOWN_DEG = 0.03
@@ -62,3 +65,51 @@ def test_white_noise_is_known_as_well_as_its_degrees_of_freedom_say():
                                         100.0) for _ in range(60)])
     scatter = (100.0 * found ** 2).mean(axis=1).var()
     assert 2.0 / scatter == pytest.approx(block_noise.freedom(first, first + 250, 100.0), rel=0.5)
+
+
+def test_an_axis_that_never_changes_says_nothing_of_how_the_others_wander():
+    """Counted as an axis without any noise it made that of the others unusual."""
+    generator = np.random.default_rng(6)
+    placement = np.repeat(np.arange(30), 2)
+    session = SimpleNamespace(placement=placement, seconds=np.full(60, 2.5))
+    values = 0.1 * generator.standard_normal((60, 3))
+    values[:, 2] = 0.0
+    shares = nominal_rows.axis_shares(session, values, np.full(3, 0.01))
+    assert shares[:2] == pytest.approx(1.0, abs=0.5) and shares[:2].mean() == pytest.approx(
+        1.0, abs=0.05) and shares[2] < 1e-3
+
+
+def flicker(seed, n=20000):
+    """(n, 3) counts whose spectrum falls with the frequency."""
+    generator, hz = np.random.default_rng(seed), np.fft.rfftfreq(n, 0.01)
+    hz[0] = np.inf
+    slow = np.fft.irfft(hz[:, None] ** -0.5 * np.fft.rfft(generator.standard_normal((n, 3)),
+                                                          axis=0), n, axis=0)
+    return 10.0 * slow / slow.std(axis=0) + 2.0 * generator.standard_normal((n, 3))
+
+
+def at_rest(gyro):
+    n = len(gyro)
+    accel = [0.0, 0.0, 16384.0] + 46.0 * np.random.default_rng(1).standard_normal((n, 3))
+    meta = {"sensor": "mpu6050", "accel_lsb_per_g": 16384.0, "gyro_lsb_per_dps": 65.5,
+            "rate_hz": 100.0}
+    return blocks.of("s", Capture(meta, 10_000 * np.arange(n), np.rint(accel).astype(np.int16),
+                                  np.rint(gyro).astype(np.int16), pose=np.ones(n, np.int16)))
+
+
+def test_what_only_falls_with_frequency_is_drift_and_no_line():
+    for seed in range(3):
+        assert spectral_lines.findings([at_rest(flicker(seed))]) == []
+    sine = 20.0 * np.sin(2.0 * np.pi * 0.014 * np.arange(20000))[:, None]
+    line = spectral_lines.findings([at_rest(flicker(0) + sine)])[0].lines[0]
+    assert line.hz == pytest.approx(1.4, abs=0.01) and line.steady
+
+
+def test_another_form_of_an_effect_may_look_like_one_of_the_same_variable_only():
+    def form(effect, axes):
+        return hypotheses.Form(effect, axes=axes)
+    bias = form("thermal_bias", (0, 1))
+    assert hypotheses.alike(form("thermal_rate", (1,)), bias)
+    assert not hypotheses.alike(form("thermal_rate", (2,)), bias)
+    assert not hypotheses.alike(form("g_sensitivity", (1,)), bias)
+    assert hypotheses.alike(form("dead_band", (1,)), form("asymmetry", (1,)))
