@@ -152,7 +152,8 @@ def strongest(sessions, sensor, axis):
     median_of_mean = special.gammaincinv(number, 0.5) / number
     floor = ndimage.median_filter(band, size=width, mode="reflect") / median_of_mean
     # Towards lower frequencies a spectrum falls below a line; that of what drifts rises on.
-    below_it = np.minimum.accumulate(mean[SWEPT:-1])[first - SWEPT - 1:-1]
+    lowest = min(SWEPT, first - 1)
+    below_it = np.minimum.accumulate(mean[lowest:-1])[first - lowest - 1:-1]
     ratio = np.where(below_it < FALLS * band, band / np.maximum(floor, 1e-12), 0.0)
     k = int(ratio.argmax())
     if not ratio[k] > 0.0:
