@@ -66,12 +66,18 @@ def _files(board):
     return [*board.captures, *board.summaries, *filter(os.path.exists, records)]
 
 
+def failed(board, options, why=""):
+    """The row of a board before anything is known of it, or where a worker died of it."""
+    return {"board": board.board, "batch": board.batch,
+            "version": (options or Options()).version, "failure": why[:LONGEST_TEXT],
+            "paths": [*board.captures, *board.summaries], "written": time.time(),
+            "stamps": "", "content": "", **_empty()}
+
+
 def row(board, options=None):
     """dict of a board, see dataset.schema(); failure is "" or the sentence on what is wrong."""
     options = options or Options()
-    found = {"board": board.board, "batch": board.batch, "version": options.version, "failure": "",
-             "paths": [*board.captures, *board.summaries], "written": time.time(),
-             "stamps": "", "content": "", **_empty()}
+    found = failed(board, options)
     started = time.process_time()
     try:
         found["stamps"], found["content"] = stamps(board), content(board)

@@ -50,7 +50,7 @@ def connected(target):
         import dask
         with dask.config.set({"distributed.admin.tick.limit": "60s"}), distributed.LocalCluster(
                 n_workers=target.workers or os.cpu_count() or 1, threads_per_worker=1,
-                dashboard_address=None, silence_logs=logging.CRITICAL) as cluster, \
+                dashboard_address="127.0.0.1:0", silence_logs=logging.CRITICAL) as cluster, \
                 distributed.Client(cluster) as client:
             yield client
         return
@@ -154,23 +154,38 @@ def run(client, boards, take, target, options=None, work=rows_of):
     each board. CheckFailed when the scheduler is lost or no worker is left."""
     distributed = _dask()
     chunks = iter([boards[k:k + CHUNK] for k in range(0, len(boards), CHUNK)])
-    done = 0
+    done, given = 0, {}
+
+    def give(number):
+        for chunk in _some(chunks, number):
+            future = client.submit(work, chunk, options, pure=False, retries=RETRIES)
+            given[future.key] = chunk
+            pool.add(future)
     try:
         pool = distributed.as_completed(loop=client.loop)
-        for chunk in _some(chunks, AHEAD * _workers(client, target)):
-            pool.add(client.submit(work, chunk, options, pure=False, retries=RETRIES))
+        give(AHEAD * _workers(client, target))
         while pool.count():
             future = _next(pool, client, target, done, len(boards))
-            rows = future.result()
+            rows = _result(future, given.pop(future.key), options)
             future.release()
             take(rows)
             done += len(rows)
-            for chunk in _some(chunks, 1):
-                pool.add(client.submit(work, chunk, options, pure=False, retries=RETRIES))
+            give(1)
     except (BadFile, CheckFailed):
         raise
     except (OSError, TimeoutError, distributed.CancelledError, RuntimeError) as error:
         raise _lost(target, done, len(boards), error) from None
+
+
+def _result(future, boards, options):
+    """The rows of a task; where workers died of it again and again, rows that say so."""
+    try:
+        return future.result()
+    except (OSError, TimeoutError, _dask().CancelledError):
+        raise
+    except Exception as error:
+        return [analysis.failed(one, options, "not done, its task failed on %d workers (%s)" % (
+            RETRIES + 1, _short(error))) for one in boards]
 
 
 def _next(pool, client, target, done, number):
@@ -178,8 +193,7 @@ def _next(pool, client, target, done, number):
     waited = 0.0
     while True:
         try:
-            return pool.next_batch_or_timeout(1.0) if hasattr(pool, "next_batch_or_timeout") \
-                else _timed(pool)
+            return _timed(pool)
         except TimeoutError:
             waited += 1.0
         if client.status not in ("running", "connecting"):

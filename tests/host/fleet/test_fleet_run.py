@@ -128,15 +128,27 @@ def test_a_lost_connection_is_a_clear_end_that_keeps_what_is_done(tmp_path, clie
     boards = sources.of(fleet_of(tmp_path / "in", 40)).boards
     taken = []
 
-    class Lost(Exception):
-        pass
-
     def take(rows):
         taken.extend(rows)
         raise distributed.CancelledError("scheduler-closed")
     with pytest.raises(cluster.SchedulerLost, match="the same command goes on"):
         cluster.run(client, boards, take, HERE)
     assert taken
+
+
+def test_boards_that_workers_die_of_are_sentences_and_are_tried_again(tmp_path, inside):
+    folder = fleet_of(tmp_path / "in", 6)
+
+    def deadly(boards, options):
+        if any(one.board == "b5" for one in boards):
+            raise distributed.KilledWorker("task", None, 3)
+        return [dict(analysis.row(one, options), failure="") for one in boards]
+    done = run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, None, deadly)
+    assert len(list(done.rows())) == 6
+    assert {board for board, why in done.failures if "its task failed" in why} == {"b4", "b5"}
+    again = run_fleet.boards(str(folder), str(tmp_path / "out"), HERE, None,
+                             counted(str(tmp_path / "marks")))
+    assert again.fresh == 2 and not again.failures
 
 
 def test_nobody_there_and_no_address_are_one_sentence():
