@@ -1,39 +1,26 @@
 """The gyro bench: its claims hold on a few sessions, and it can say no."""
 
-import importlib.util
 import math
-from pathlib import Path
-
-import pytest
 
 from sixflip_host.simulation.simulated_capture import capture
 from sixflip_sim import worlds
-
-BENCH = Path(__file__).resolve().parents[2] / "bench" / "gyro.py"
-
-
-@pytest.fixture(scope="module")
-def bench():
-    spec = importlib.util.spec_from_file_location("gyro_bench", BENCH)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+from tests.studies.bench import gyro as bench
 
 
-def test_claims_hold_on_a_few_sessions(bench, monkeypatch, capsys):
+def test_claims_hold_on_a_few_sessions(monkeypatch, capsys):
     monkeypatch.setattr("sys.argv", ["gyro.py", "--trials", "10"])
     assert bench.main() == 0
     assert "gy85     bias error" in capsys.readouterr().out
 
 
-def test_a_claim_that_does_not_hold_is_exit_1(bench, monkeypatch, capsys):
+def test_a_claim_that_does_not_hold_is_exit_1(monkeypatch, capsys):
     monkeypatch.setattr("sys.argv", ["gyro.py", "--trials", "3"])
     monkeypatch.setattr(bench, "MATRIX_95", 1e-5)
     assert bench.main() == 1
     assert "claim does not hold: mpu6050: matrix error, 95 %" in capsys.readouterr().out
 
 
-def test_the_bound_is_what_two_flips_an_axis_leave(bench):
+def test_the_bound_is_what_two_flips_an_axis_leave():
     taken = capture(worlds.make({"seed": 4, "tilt_deg": 1.0}))
     scale, bias = bench.bound(taken.placements(), taken.moves(), taken.meta["gyro_lsb_per_dps"])
     for one in scale:
