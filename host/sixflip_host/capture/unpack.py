@@ -117,11 +117,12 @@ def _readable_part(member, data):
     return out
 
 
-def whole_lines(path, pieces, first_line, longest):
+def whole_lines(path, pieces, first_line, longest, head=0):
     """(number of the first line, whole lines) of pieces of text, \\r\\n made \\n.
 
     The last one has no newline at its end where the text has none. BadFile for a line of more
-    than `longest` bytes; lines count against the limit of samples.
+    than `longest` bytes; lines count against the limit of samples, all
+    but the first `head`.
     """
     rest, line = b"", first_line
     for piece in pieces:
@@ -135,7 +136,7 @@ def whole_lines(path, pieces, first_line, longest):
         _check_length(path, line, block[:block.find(b"\n")], longest)
         yield line, block
         line += block.count(b"\n")
-        sample_limit.check_samples(path, line - first_line)
+        sample_limit.check_samples(path, line - first_line - head)
     if rest:
         _check_length(path, line, rest, longest)
         yield line, rest

@@ -127,6 +127,17 @@ def test_mapping_units_and_delimiter(tmp_path, capsys):
     assert capture.accel[0].tolist() == [950, 50, 0]
 
 
+def test_a_head_is_no_sample_of_the_limit(tmp_path, capsys):
+    source = tmp_path / "in.csv"
+    words = source, "--units", "si", "--time-column", "time", "--time-unit", "s", "--no-poses"
+    source.write_text(TABLE)
+    assert len(imported(tmp_path, capsys, *words, "--limit", 2)[0]) == 2
+    (tmp_path / "out.csv").unlink()
+    source.write_text(TABLE + "0.02;0.5;-1.0;10.0;c\n")
+    code, line = refused(tmp_path, capsys, *words, "--limit", 2)
+    assert code == 4 and "more than 2 rows" in line
+
+
 @pytest.mark.parametrize("change,words,code,line", [
     (("0.5;9.5", "x;9.5"), (), 4, 'line 2: acc_y is "x", expected a number'),
     (("0.5;9.5", "nan;9.5"), (), 4, 'line 2: acc_y is "nan", expected a finite number'),

@@ -13,7 +13,7 @@ COMMENT = ("#", "//")
 def first_lines(path, source, wanted):
     """The first lines of a file, some more than are wanted where there are as many."""
     lines = [""]
-    for _, text in text_lines.texts(path, source):
+    for _, text in text_lines.texts(path, source, head=wanted):
         more = text.replace("\0", "").split("\n")
         lines = [*lines[:-1], lines[-1] + more[0], *more[1:]]
         if len(lines) > wanted:

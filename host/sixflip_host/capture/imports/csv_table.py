@@ -111,7 +111,8 @@ class Table:
 
     def _texts(self):
         """(number of the first line, text) of the file, without NULs, with decimal points."""
-        for line, text in text_lines.texts(self.path, self._source, self.said):
+        for line, text in text_lines.texts(self.path, self._source, self.said,
+                                           self._first):
             if "\0" in text:
                 self._pass_over("NUL bytes",
                                 sum("\0" in one for one in text.split("\n")))

@@ -16,11 +16,13 @@ MOST_LATIN = 0.05       # of the bytes: a text with more is no table of numbers
 UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
-def texts(path, source, said=None):
+def texts(path, source, said=None, head=0):
     """(number of the first line, text of whole lines), blocks of a file; said: a dictionary
-    whose keys become what nobody said of the bytes. BadFile for bytes that are no text."""
+    whose keys become what nobody said of the bytes; head: lines that are no samples. BadFile
+    for bytes that are no text."""
     latin = False
-    for line, block in whole_lines(path, _narrow(source.pieces(), said), 1, LONGEST_LINE):
+    for line, block in whole_lines(path, _narrow(source.pieces(), said), 1, LONGEST_LINE,
+                                   head):
         if not latin:
             try:
                 yield line, block.decode("utf-8-sig" if line == 1 else "utf-8")
