@@ -137,6 +137,7 @@ def run(program, engine, odometry, scans, t_s, aperture=2.0 * math.pi, reach_m=8
     with tempfile.TemporaryDirectory(prefix="sixflip-map-") as work:
         work = Path(work)
         if keep:
+            keep = keep.resolve()       # the engine runs in a folder of its own
             keep.mkdir(parents=True, exist_ok=True)
         log, output = (keep or work) / "drive.rawlog", work / "out"
         settings = (keep or work) / "rbpf-slam.ini"
