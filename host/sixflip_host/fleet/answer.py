@@ -59,10 +59,10 @@ def _outlier(o):
             "chance": digits(o.chance), "why": o.why}
 
 
-def judged(rows):
-    """[(Members, [Batch], [LotDifference])] of the rows of a data set."""
+def judged(rows, keys=None):
+    """[(Members, [Batch], [LotDifference])] of the rows of a data set: see members.of()."""
     found = []
-    for them in members.of(rows):
+    for them in members.of(rows, keys):
         batches = judgement.batches(them)
         found.append((them, batches, judgement.lots(batches)))
     return found

@@ -7,6 +7,7 @@ was written last counts.
 import os
 import re
 import secrets
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote
@@ -40,7 +41,7 @@ def schema():
                       *((name, pa.list_(number)) for name in TABLES)])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Done:
     """What is known of a board that was done: path and row of its part; stamps, content and
     failure as in the row."""
@@ -95,7 +96,7 @@ class DataSet:
             for one in rows:
                 if version is not None and one["version"] != version:
                     continue
-                key = one["batch"], one["board"]
+                key = sys.intern(one["batch"]), one["board"]
                 if key not in found or found[key].written < one["written"]:
                     found[key] = Done(part, one["stamps"], one["content"], one["failure"],
                                       one["written"])

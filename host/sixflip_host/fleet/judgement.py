@@ -70,12 +70,13 @@ class LotDifference:
 
 @dataclass(frozen=True, eq=False)
 class Batch:
-    """name; boards (n,); populations: {block: (members.Block of these boards, Population)};
-    parameters: [Parameter]; outliers: [Outlier], the farthest first; cutoff: sigmas from which a
-    board is named."""
+    """name; boards (n,) and their own batches, lots (n,); populations: {block: (members.Block of
+    these boards, Population)}; parameters: [Parameter]; outliers: [Outlier], the farthest first;
+    cutoff: sigmas from which a board is named."""
 
     name: str
     boards: tuple
+    lots: tuple
     populations: dict
     parameters: list
     outliers: list
@@ -96,13 +97,13 @@ def batches(members):
 def _batch(members, name, index):
     populations = {}
     for block in members.blocks:
-        own = type(block)(block.name, block.names, block.y[index], block.R[index], block.usual,
-                          block.aliases)
-        found = hierarchy.fit(own.y, own.R)
+        own = block.of(index)
+        found = hierarchy.fit(own.y[:], own.R)
         if found is not None:
             populations[block.name] = own, found
     tests = _tests(populations)
-    return Batch(name, tuple(members.boards[i] for i in index), populations,
+    return Batch(name, tuple(members.boards[i] for i in index),
+                 tuple(members.batches[i] for i in index), populations,
                  _judged(tests, members.repeats), *_standing_out(members, index, populations))
 
 
@@ -110,14 +111,15 @@ def _tests(populations):
     """[(Block, Population, column, p of the mean, p of the spread, I²)]"""
     out = []
     for block, one in populations.values():
+        y, variance = block.y[:], block.variance()
         for j, name in enumerate(block.names):
-            use = np.isfinite(block.y[:, j])
+            use = np.isfinite(y[:, j])
             nominal = 0.0 if block.usual is not None else parameters.nominal(name)
             p_mean = np.nan
             if nominal is not None and use.sum() >= hierarchy.FEWEST:
                 z = (one.mean[j] - nominal) / np.sqrt(one.error[j, j])
                 p_mean = float(2.0 * stats.t.sf(abs(z), max(one.freedom, 1)))
-            p_spread, i2 = _heterogeneity(block.y[use, j], block.R[use, j, j],
+            p_spread, i2 = _heterogeneity(y[use, j], variance[use, j],
                                           one.belongs[use] > 0.5)
             out.append((block, one, j, p_mean, p_spread, i2, nominal))
     return out
@@ -184,15 +186,15 @@ def _standing_out(members, index, populations):
     limit = threshold(number)
     found, freedom = [], max(len(index) - 1, 1)
     for block, one in populations.values():
-        sigma = np.sqrt(one.total)
-        away = (block.y - one.mean) / sigma
+        y, sigma = block.y[:], one.sigma(block.variance())
+        away = (y - one.mean) / sigma
         chance = 2.0 * stats.t.sf(np.abs(away), max(one.freedom, 1))
-        for b, j in np.argwhere(np.isfinite(block.y) & (chance < limit)):
-            found.append(Outlier(members.boards[index[b]], block.names[j], float(block.y[b, j]),
+        for b, j in np.argwhere(np.isfinite(y) & (chance < limit)):
+            found.append(Outlier(members.boards[index[b]], block.names[j], float(y[b, j]),
                                  float(one.mean[j]), float(sigma[b, j]), float(away[b, j]),
                                  float(chance[b, j]), "differs"))
     for one in changes:
-        change, sigma = one.change[index], np.sqrt(one.variance[index])
+        change, sigma = one.change[index] - one.common, np.sqrt(one.variance[index])
         away = change / sigma
         chance = 2.0 * stats.t.sf(np.abs(away), freedom)
         for b, j in np.argwhere(np.isfinite(away) & (chance < limit)):

@@ -6,13 +6,13 @@ and no difference between boards. Its variance comes from boards with several se
 that all of them share (the second session was the cooling one) left out.
 """
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from sixflip_sim.effects import typical
 
-from . import analysis, effects, parameters
+from . import analysis, effects, hierarchy, parameters, store
 
 FEWEST_PAIRS = 8  # boards with two sessions that a repeatability is taken from
 MEDIAN_OF_CHI2 = 0.4549  # of one degree of freedom
@@ -22,9 +22,10 @@ TIMES_TYPICAL = 1000.0  # of an effect's size: what is not seen at all is known 
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """Estimates of one block: names (k,); y (n, k), nan unknown; R (n, k, k). usual (k,): sizes
-    that are typical of an effect, None of a parameter of the calibration. aliases: other effects
-    that this protocol cannot tell from this one."""
+    """Estimates of one block: names (k,); y (n, k), nan unknown; R (n, k, k), both arrays or what
+    store.py has in their place. usual (k,): sizes that are typical of an effect, None of a
+    parameter of the calibration. aliases: other effects that this protocol cannot tell from this
+    one."""
 
     name: str
     names: tuple
@@ -33,15 +34,26 @@ class Block:
     usual: np.ndarray | None = None
     aliases: tuple = ()
 
+    def variance(self):
+        """(n, k): the diagonals of R."""
+        return np.concatenate([np.einsum("nii->ni", self.R[cut])
+                               for cut in hierarchy.cuts(len(self.R))])
+
+    def of(self, index):
+        """Block of some of the boards."""
+        return replace(self, y=store.Picked(self.y, index), R=store.Picked(self.R, index))
+
 
 @dataclass(frozen=True, eq=False)
 class Change:
     """How each board differs from its own history: change (n, k) of the last session against the
-    mean of those before, nan with one session, less what all boards changed; variance (n, k)."""
+    mean of those before, nan with one session; common (k,): what all boards changed by; variance
+    (n, k)."""
 
     names: tuple
     change: np.ndarray
     variance: np.ndarray
+    common: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,80 +80,129 @@ class Members:
         return " ".join([self.chip, *ranges])
 
 
-COLUMNS = ("board", "batch", "written", "failure", "chip", "accel_range_g", "gyro_range_dps", "at",
-           "values", "covariances", *("%s_%s" % (what, s) for s in effects.FORMS
-                                      for what in ("precision", "score")))
+KEYS = "board", "batch", "written", "failure", "chip", "accel_range_g", "gyro_range_dps", "at"
+COLUMNS = (*KEYS, "values", "covariances", *("%s_%s" % (what, s) for s in effects.FORMS
+                                             for what in ("precision", "score")))
 
 
-def of(rows):
-    """[Members], the most boards first, of an iterable of rows; those that failed are left out."""
+def of(rows, keys=None):
+    """[Members], the most boards first, of rows that can be gone over again and again; those that
+    failed are left out. keys: the same rows with the columns KEYS, which are read faster. What is
+    in memory of a board is its name: once over the rows, what all boards tell together is summed,
+    once more, and each board's estimates are put into their place."""
     kinds = {}
-    for row in rows:
-        if row["failure"] or not row["values"]:
-            continue
-        key = row["chip"], *(None if math.isnan(row[name]) else row[name]
-                             for name in ("accel_range_g", "gyro_range_dps"))
-        order = np.argsort(row["at"], kind="stable")
-        made = analysis.estimates(row)
-        kinds.setdefault(key, []).append((
-            row["board"], row["batch"], [made[k] for k in order],
-            {sensor: analysis.information(row, sensor) for sensor in effects.FORMS}))
-    found = [_members(key, sorted(its, key=lambda one: one[:2])) for key, its in kinds.items()]
-    return sorted(found, key=lambda one: -len(one.boards))
+    for row in rows if keys is None else keys:
+        if _solved(row):
+            kinds.setdefault(_kind(row), []).append((row["batch"], row["board"]))
+    kinds = {kind: _Kind(kind, sorted(names)) for kind, names in kinds.items()}
+    for step in (_Kind.look, _Kind.take):
+        for row in rows:
+            if _solved(row):
+                step(kinds[_kind(row)], row)
+    return sorted((one.members() for one in kinds.values()), key=lambda one: -len(one.boards))
 
 
-def _members(key, its):
-    blocks, changes, repeats, unseen = [], [], {}, []
-    for name in parameters.BLOCKS:
-        block, change, widths = _repeated(name, [estimates for _, _, estimates, _ in its])
-        if np.isfinite(block.y).any():
-            blocks.append(block)
-            repeats.update(zip(block.names, widths))
-        if np.isfinite(change.change).any():
-            changes.append(change)
-    for sensor in effects.FORMS:
-        seen, missing = _effects(sensor, key[0], [one[3][sensor] for one in its])
-        blocks += seen
-        unseen += missing
-    ranges = [math.nan if value is None else value for value in key[1:]]
-    return Members(key[0], *ranges, tuple(one[0] for one in its), tuple(one[1] for one in its),
-                   blocks, changes, repeats, tuple(unseen))
+def _solved(row):
+    return not row["failure"] and len(row["at"]) > 0
 
 
-def _repeated(name, boards):
-    """(Block, Change, repeatability (k,)) of a block of the calibration's parameters; boards:
-    [[Estimate] in the order of time]."""
-    names = parameters.BLOCKS[name]
-    k = len(names)
-    sessions = [[one.of(name) for one in estimates] for estimates in boards]
-    later = [(its[-1][0] - its[-2][0], np.diag(its[-1][1] + its[-2][1]))
-             for its in sessions if len(its) > 1]
-    own = np.zeros(k)
-    if len(later) >= FEWEST_PAIRS:
-        steps, noise = (np.array(part) for part in zip(*later))
-        for j in range(k):
-            use = np.isfinite(steps[:, j]) & np.isfinite(noise[:, j])
-            if use.sum() >= FEWEST_PAIRS:
-                away = steps[use, j] - np.median(steps[use, j])
-                own[j] = max(0.0, 0.5 * (np.median(away ** 2) / MEDIAN_OF_CHI2
-                                         - np.median(noise[use, j])))
-    wandering = np.diag(own)
-    y, R = np.full((len(boards), k), np.nan), np.full((len(boards), k, k), np.nan)
-    change, variance = np.full((len(boards), k), np.nan), np.full((len(boards), k), np.nan)
-    for b, its in enumerate(sessions):
-        y[b], R[b] = _pooled([(value, R_s + wandering) for value, R_s in its])
-        if len(its) > 1:
-            before, spread = _pooled([(value, R_s + wandering) for value, R_s in its[:-1]])
-            change[b] = its[-1][0] - before
-            variance[b] = np.diag(spread + its[-1][1] + wandering)
-    if len(later) >= FEWEST_PAIRS:
-        with np.errstate(all="ignore"):
-            middle = [np.median(c[np.isfinite(c)]) if np.isfinite(c).any() else 0.0
-                      for c in change.T]
-        change = change - middle
-    else:
-        change[:] = np.nan  # without a repeatability nobody knows what is a drift
-    return Block(name, names, y, R), Change(names, change, variance), np.sqrt(own)
+def _kind(row):
+    return row["chip"], *(None if math.isnan(row[name]) else row[name]
+                          for name in ("accel_range_g", "gyro_range_dps"))
+
+
+def _sessions(row):
+    """[Estimate] of a row in the order of time."""
+    made = analysis.estimates(row)
+    return [made[k] for k in np.argsort(row["at"], kind="stable")]
+
+
+class _Kind:
+    """The boards of one chip and range while their rows go by."""
+
+    def __init__(self, kind, names):
+        self.kind, self.names = kind, names
+        self.place = {name: k for k, name in enumerate(names)}
+        n = len(names)
+        self.steps = {block: store.Stored(n, (2, len(own)))
+                      for block, own in parameters.BLOCKS.items()}
+        self.total = {sensor: effects.nothing(sensor).precision for sensor in effects.FORMS}
+        self.seen = None
+
+    def look(self, row):
+        """First time over: steps from session to session, and what the rests tell in all."""
+        number, sessions = self.place[row["batch"], row["board"]], _sessions(row)
+        if len(sessions) > 1:
+            for name, steps in self.steps.items():
+                (before, R), (last, S) = (one.of(name) for one in sessions[-2:])
+                steps.put(number, [last - before, np.diag(R + S)])
+        for sensor, total in self.total.items():
+            total += analysis.information(row, sensor).precision
+
+    def take(self, row):
+        """Second time over: the board's estimates."""
+        if self.seen is None:
+            self._prepare()
+        number, sessions = self.place[row["batch"], row["board"]], _sessions(row)
+        for name, (block, change) in self.calibration.items():
+            its = [one.of(name) for one in sessions]
+            wandering = np.diag(self.repeats[name] ** 2)
+            y, R = _pooled([(value, R_s + wandering) for value, R_s in its])
+            block.y.put(number, y)
+            block.R.put(number, R)
+            self.any[name] |= bool(np.isfinite(y).any())
+            if len(its) > 1 and self.enough[name]:
+                before, spread = _pooled([(value, R_s + wandering) for value, R_s in its[:-1]])
+                change.change.put(number, its[-1][0] - before)
+                change.variance.put(number, np.diag(spread + its[-1][1] + wandering))
+        for sensor, seen in self.seen.items():
+            seen.put(number, analysis.information(row, sensor))
+
+    def _prepare(self):
+        n = len(self.names)
+        self.repeats, self.enough, self.calibration = {}, {}, {}
+        for name, own in parameters.BLOCKS.items():
+            self.repeats[name], self.enough[name] = _repeatability(self.steps.pop(name)[:])
+            k = len(own)
+            self.calibration[name] = (
+                Block(name, own, store.Stored(n, (k,)), store.Stored(n, (k, k))),
+                Change(own, store.Stored(n, (k,)), store.Stored(n, (k,)), np.zeros(k)))
+        self.any = dict.fromkeys(self.calibration, False)
+        self.seen = {sensor: _Effects(sensor, self.kind[0], total, n)
+                     for sensor, total in self.total.items()}
+
+    def members(self):
+        """Members of what went by."""
+        blocks, changes, repeats, unseen = [], [], {}, []
+        for name, (block, change) in self.calibration.items():
+            if self.any[name]:
+                blocks.append(block)
+                repeats.update(zip(block.names, self.repeats[name]))
+            if self.enough[name]:
+                changes.append(replace(change, common=np.array([
+                    np.median(c[np.isfinite(c)]) if np.isfinite(c).any() else 0.0
+                    for c in change.change[:].T])))
+        for seen in self.seen.values():
+            blocks += seen.blocks
+            unseen += seen.unseen
+        ranges = [math.nan if value is None else value for value in self.kind[1:]]
+        return Members(self.kind[0], *ranges, tuple(board for _, board in self.names),
+                       tuple(batch for batch, _ in self.names), blocks, changes, repeats,
+                       tuple(unseen))
+
+
+def _repeatability(steps):
+    """((k,) standard deviation from session to session, whether there are enough boards to say)
+    of the last step of each board and its variance (n, 2, k), nan with one session."""
+    own = np.zeros(steps.shape[2])
+    there = np.isfinite(steps).any(axis=(1, 2)).sum() >= FEWEST_PAIRS
+    for j in range(len(own)):
+        use = np.isfinite(steps[:, :, j]).all(axis=1)
+        if use.sum() >= FEWEST_PAIRS:
+            step, noise = steps[use, :, j].T
+            away = step - np.median(step)
+            own[j] = max(0.0, 0.5 * (np.median(away ** 2) / MEDIAN_OF_CHI2 - np.median(noise)))
+    return np.sqrt(own), bool(there)
 
 
 def _pooled(sessions):
@@ -155,40 +216,46 @@ def _pooled(sessions):
     return R @ sum(w @ y for w, (y, _) in zip(weights, whole)), R
 
 
-def _effects(sensor, chip, informations):
-    """([Block] of each effect that the boards' rests can tell, [names] of those they cannot)."""
-    names = effects.NAMES[sensor]
-    total = sum(one.precision for one in informations)
-    usual = np.array([abs(typical.size(n.split(".")[1], chip, sensor, n.split(".")[2])[0] or
-                          typical.size(n.split(".")[1], chip, sensor)[0] or 1.0) for n in names])
-    floor = (TIMES_TYPICAL * usual) ** -2.0
-    kept, aliases, unseen = [], {}, []
-    for effect in dict.fromkeys(n.split(".")[1] for n in names):
-        mine = [k for k, n in enumerate(names) if n.split(".")[1] == effect]
-        left, rival = _left(total, mine, kept, floor, names)
-        if left >= TOLD_APART and _seen(total, mine, usual, len(informations)):
-            kept += mine
-        elif left < TOLD_APART and rival:
-            aliases.setdefault(rival, []).append(effect)
-        else:
-            unseen.append("%s of the %s" % (effect, sensor))
-    if not kept:
-        return [], unseen
-    y = np.full((len(informations), len(kept)), np.nan)
-    R = np.full((len(informations), len(kept), len(kept)), np.nan)
-    for b, one in enumerate(informations):
-        precision = one.precision[np.ix_(kept, kept)]
+class _Effects:
+    """Blocks of each effect that the rests of n boards can tell, and the names of those they
+    cannot; total: the boards' information together."""
+
+    def __init__(self, sensor, chip, total, n):
+        names = effects.NAMES[sensor]
+        usual = np.array([abs(typical.size(e, chip, sensor, key)[0] or
+                              typical.size(e, chip, sensor)[0] or 1.0)
+                          for e, key in (name.split(".")[1:] for name in names)])
+        self.floor = (TIMES_TYPICAL * usual) ** -2.0
+        self.kept, self.unseen, aliases = [], [], {}
+        for effect in dict.fromkeys(name.split(".")[1] for name in names):
+            mine = [k for k, name in enumerate(names) if name.split(".")[1] == effect]
+            left, rival = _left(total, mine, self.kept, self.floor, names)
+            if left >= TOLD_APART and _seen(total, mine, usual, n):
+                self.kept += mine
+            elif left < TOLD_APART and rival:
+                aliases.setdefault(rival, []).append(effect)
+            else:
+                self.unseen.append("%s of the %s" % (effect, sensor))
+        self.blocks, self.places = [], []
+        for effect in dict.fromkeys(names[k].split(".")[1] for k in self.kept):
+            at = [i for i, k in enumerate(self.kept) if names[k].split(".")[1] == effect]
+            own = [self.kept[i] for i in at]
+            self.blocks.append(Block(
+                "%s.%s" % (sensor, effect), tuple(names[k] for k in own),
+                store.Stored(n, (len(at),)), store.Stored(n, (len(at), len(at))), usual[own],
+                tuple(aliases.get(effect, ()))))
+            self.places.append(at)
+
+    def put(self, number, information):
+        """Take what a board's rests tell."""
+        precision = information.precision[np.ix_(self.kept, self.kept)]
         if not precision.any():
-            continue
-        R[b] = np.linalg.inv(precision + np.diag(floor[kept]))
-        y[b] = R[b] @ one.score[kept]
-    blocks = []
-    for effect in dict.fromkeys(names[k].split(".")[1] for k in kept):
-        at = [i for i, k in enumerate(kept) if names[k].split(".")[1] == effect]
-        own = [kept[i] for i in at]
-        blocks.append(Block("%s.%s" % (sensor, effect), tuple(names[k] for k in own), y[:, at],
-                            R[:, at][:, :, at], usual[own], tuple(aliases.get(effect, ()))))
-    return blocks, unseen
+            return
+        R = np.linalg.inv(precision + np.diag(self.floor[self.kept]))
+        y = R @ information.score[self.kept]
+        for block, at in zip(self.blocks, self.places):
+            block.y.put(number, y[at])
+            block.R.put(number, R[np.ix_(at, at)])
 
 
 def _left(total, mine, kept, floor, names):

@@ -22,8 +22,21 @@ class Run:
     fresh: int
 
     def rows(self, columns=members.COLUMNS):
-        """The rows of the boards wanted, a part at a time."""
-        return self.data.rows(self.wanted, columns)
+        """Rows of the boards wanted."""
+        return Rows(self.data, self.wanted, columns)
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The rows of the boards wanted, as often as they are asked for, a part in memory at a
+    time."""
+
+    data: dataset.DataSet
+    wanted: dict
+    columns: tuple
+
+    def __iter__(self):
+        return self.data.rows(self.wanted, self.columns)
 
 
 class _Writer:

@@ -129,8 +129,10 @@ def distances(batch, number):
     """[(parameter, sigmas from the batch, value, sigma)] of a board of a judgement.Batch."""
     found = []
     for block, one in batch.populations.values():
+        values, = block.y[[number]]
+        sigmas, = one.sigma(np.einsum("nii->ni", block.R[[number]]))
         for j, name in enumerate(block.names):
-            value, sigma = block.y[number, j], float(np.sqrt(one.total[number, j]))
+            value, sigma = values[j], float(sigmas[j])
             if np.isfinite(value):
                 found.append((name, float((value - one.mean[j]) / sigma), float(value), sigma))
     return found

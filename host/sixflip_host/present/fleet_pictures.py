@@ -22,7 +22,7 @@ def distributions(members, batches):
     for row, name in enumerate(names):
         for j in range(3):
             ax = axes[row, j]
-            values = [b.populations[name][0].y[:, j] for b in batches if name in b.populations]
+            values = [b.populations[name][0].y[:][:, j] for b in batches if name in b.populations]
             values = [v[np.isfinite(v)] for v in values]
             every = np.concatenate([*values, np.zeros(0)])
             if not len(every):
@@ -55,8 +55,8 @@ def _edges(values):
 
 def _curve(ax, pair, j, edges, number, colour):
     """The population with the usual error of an estimate, as a line."""
-    _, one = pair
-    sigma = np.sqrt(np.median(one.total[:, j]))
+    block, one = pair
+    sigma = np.median(one.sigma(block.variance())[:, j])
     x = np.linspace(edges[0], edges[-1], 200)
     y = np.exp(-0.5 * ((x - one.mean[j]) / sigma) ** 2) / (sigma * np.sqrt(2.0 * np.pi))
     ax.plot(x, number * (edges[1] - edges[0]) * y, color=colour, lw=1.2)
@@ -103,7 +103,7 @@ def _chart(ax, batches, name, j):
             continue
         block, one = batch.populations[name]
         x = start + np.arange(len(batch.boards))
-        y, sigma = block.y[:, j], np.sqrt(one.total[:, j])
+        y, sigma = block.y[:][:, j], one.sigma(block.variance())[:, j]
         middle = one.mean[j]
         ax.plot(x, y, ".", color=COLOURS[j], ms=2.5)
         ax.plot(x, np.full(len(x), middle), color="0.4", lw=0.8)

@@ -49,7 +49,7 @@ def files(value, args):
 
 def run(args):
     """Do what is not done, then judge all; 0 whatever single boards are like."""
-    from ..fleet import analysis, answer, cluster, run_fleet
+    from ..fleet import analysis, answer, board_estimates, cluster, members, run_fleet
     if args.workers < 0:
         raise UsageError("--workers is %d, expected 1 or more" % args.workers)
     if args.workers and args.scheduler:
@@ -59,11 +59,12 @@ def run(args):
         done = run_fleet.boards(args.boards, args.output, target, analysis.Options(
             not args.no_summaries, args.diagnose))
         progress.doing("the population")
-        kinds = answer.judged(done.rows())
+        kinds = answer.judged(done.rows(), done.rows(members.KEYS))
     found = answer.of(kinds, done.failures, done.remarks)
     os.makedirs(args.output, exist_ok=True)
     atomic_write.write_text(os.path.join(args.output, JSON_NAME),
                             json.dumps(found, indent=1, ensure_ascii=False) + "\n")
+    board_estimates.write(args.output, kinds)
     if args.randomise and kinds:
         from ..fleet import randomisation
         for name, text in randomisation.files(*kinds[0][:2]).items():

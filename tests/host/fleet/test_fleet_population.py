@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from sixflip_host.fleet import answer, hierarchy, judgement, members
+from sixflip_host.fleet import answer, hierarchy, judgement, members, store
 from tests.worlds import simulated_fleet
 from tests.worlds.simulated_fleet import drawn, row_of
 
@@ -82,7 +82,7 @@ def test_mean_and_spread_are_those_drawn_and_boards_shrink():
     one = hierarchy.fit(y, R)
     assert np.all(np.abs(one.mean - (1.0, 0.0, -2.0)) < 4.0 * np.sqrt(np.diag(one.error)))
     assert np.allclose(np.sqrt(np.diag(one.spread)), 0.5, rtol=0.2)
-    shrunk = (one.shrunk - one.mean).std() / (y - one.mean).std()
+    shrunk = (one.shrunk(y, R, one.belongs)[0] - one.mean).std() / (y - one.mean).std()
     assert 0.4 < shrunk < 0.6 and one.rare < 0.02
 
 
@@ -94,7 +94,24 @@ def test_some_broken_boards_move_neither_mean_nor_spread():
     assert np.allclose(one.mean, (1.0, 0.0, -2.0), atol=0.2)
     assert np.allclose(np.sqrt(np.diag(one.spread)), 0.5, rtol=0.25)
     assert (one.belongs[:8] < 0.01).all() and one.belongs[8:].mean() > 0.95
-    assert np.allclose(one.shrunk[:8], y[:8], atol=0.5)     # not drawn to a batch they are not of
+    shrunk, _ = one.shrunk(y, R, one.belongs)
+    assert np.allclose(shrunk[:8], y[:8], atol=0.5)     # not drawn to a batch they are not of
+
+
+def test_more_boards_than_are_in_memory_at_a_time_give_the_same(monkeypatch):
+    rng = np.random.default_rng(12)
+    y, R = normal_boards(rng, 50, 0.5, 0.3)
+    y[7] += 20.0
+    y[9, 1] = np.nan
+    stored = store.Stored(50, (3, 3))
+    for k in (*range(25, 50), *range(25)):
+        stored.put(k, R[k])
+    whole = hierarchy.fit(y, R)
+    monkeypatch.setattr(hierarchy, "PIECE", 16)
+    assert np.array_equal(store.Picked(stored, [3, 4, 9])[1:], R[[4, 9]])
+    pieces = hierarchy.fit(y, stored)
+    for name in ("mean", "spread", "error", "belongs"):
+        assert np.allclose(getattr(pieces, name), getattr(whole, name)), name
 
 
 def test_missing_values_are_no_boards():
