@@ -53,7 +53,7 @@ class Change:
     names: tuple
     change: np.ndarray
     variance: np.ndarray
-    common: np.ndarray
+    common: np.ndarray | float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

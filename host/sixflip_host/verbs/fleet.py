@@ -37,7 +37,9 @@ def add_arguments(parser):
 
 def files(value, args):
     """What is written into the folder, beside the data set."""
-    found = [(os.path.join(value, JSON_NAME), (file_kinds.FLEET,))]
+    from ..fleet import board_estimates
+    found = [(os.path.join(value, JSON_NAME), (file_kinds.FLEET,)),
+             (os.path.join(value, board_estimates.NAME), (file_kinds.PARQUET,))]
     if args.report:
         found.append((os.path.join(value, PAGE_NAME), (file_kinds.PAGE,)))
     if args.randomise:

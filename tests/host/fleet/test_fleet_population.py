@@ -1,8 +1,9 @@
 """What a batch shares and what single boards have, on fleets made by another code."""
 import numpy as np
+import pyarrow.parquet
 import pytest
 
-from sixflip_host.fleet import answer, hierarchy, judgement, members, store
+from sixflip_host.fleet import answer, board_estimates, hierarchy, judgement, members, store
 from tests.worlds import simulated_fleet
 from tests.worlds.simulated_fleet import drawn, row_of
 
@@ -53,6 +54,18 @@ def test_an_answer_is_json_with_everything_in_it(found):
     names = {p["name"] for p in said["groups"][0]["batches"][0]["parameters"]}
     assert {"accel_scale_x", "gyro_bias_z_dps", "accel.thermal_bias.z"} <= names
     assert said["failures"] == [{"board": "x", "why": "why"}]
+
+
+def test_every_board_has_its_shrunk_estimates_in_a_file(found, tmp_path):
+    them, batch = found
+    board_estimates.write(tmp_path, [(them, [batch], [])])
+    rows = {row["board"]: row for row in pyarrow.parquet.read_table(
+        tmp_path / board_estimates.NAME).to_pylist()}
+    assert len(rows) == N
+    slopes = np.array([row["accel.thermal_bias.z"] for row in rows.values()])
+    block, one = batch.populations["accel.thermal_bias"]
+    assert slopes.std() < block.y[:][:, 2].std() and abs(slopes.mean() - one.mean[2]) < 0.1
+    assert rows["b03"]["accel_bias_y_mg"] > 150.0 and rows["b03"]["accel_bias_y_mg_sigma"] < 5.0
 
 
 def test_estimates_are_as_far_off_as_they_say():
