@@ -63,33 +63,36 @@ bench-accuracy: setup
 # BOARDS="100 1000" boards; FLEETS=10 fleets of 200 for what the batch has and single boards have
 bench-fleet: setup
 	@$(BIN)/python -m tests.studies.bench.fleet --boards $(or $(BOARDS),100 1000)
-	@$(BIN)/python -m tests.studies.bench.fleet_population --fleets $(or $(FLEETS),10)
+	@$(BIN)/python -m tests.studies.bench.fleet_population --fleets $(or $(FLEETS),40)
+	@$(BIN)/python -m tests.studies.bench.fleet_memory
 
 bench: bench-accuracy
-	@for each in $(filter-out __init__ accuracy fleet fleet_population,$(basename $(notdir $(wildcard tests/studies/bench/*.py)))); do \
+	@for each in $(filter-out __init__ accuracy fleet fleet_population fleet_memory,$(basename $(notdir $(wildcard tests/studies/bench/*.py)))); do \
 		echo; echo "== $$each"; $(BIN)/python -m tests.studies.bench.$$each || exit 1; done
 
 fidelity: setup
 	@$(BIN)/python -m sixflip_host.simulation.fidelity
 
-# COUNT=220 cases, SEED=1, JOBS=2; the result is in blind-output/
+# COUNT=220 cases, SEED=1, JOBS=2 or SCHEDULER=tcp://host:8786; the result is in blind-output/
+CLUSTER = $(if $(SCHEDULER),--scheduler $(SCHEDULER),--jobs $(or $(JOBS),2))
 blind: setup
 	@$(BIN)/python -m tests.studies.blind.blind_run --count $(or $(COUNT),220) --seed $(or $(SEED),1) \
-		--jobs $(or $(JOBS),2)
+		$(CLUSTER)
 
-# every study to its end, whatever the others say; JOBS=2
+# every study to its end, whatever the others say; JOBS=2 or SCHEDULER=tcp://host:8786
 blind-studies: setup
 	@failed=0; for each in unattended null_study left_out resolved; do \
 		echo; echo "== $$each"; $(BIN)/python -m tests.studies.robustness.$$each \
-		$$([ $$each = unattended ] || echo --jobs $(or $(JOBS),2)) || failed=1; done; exit $$failed
+		$$([ $$each = unattended ] || echo $(CLUSTER)) || failed=1; done; exit $$failed
 
-# SEEDS=3 of each defect, KINDS=box,rover; the printed table is the result
+# SEEDS=3 of each defect, KINDS=box,rover, JOBS=2 or SCHEDULER=…; the printed table is the result
 zoo: setup
-	@$(BIN)/python -m tests.studies.zoo.zoo_run --seeds $(or $(SEEDS),3) --kinds $(or $(KINDS),box,rover)
+	@$(BIN)/python -m tests.studies.zoo.zoo_run --seeds $(or $(SEEDS),3) --kinds $(or $(KINDS),box,rover) \
+		$(CLUSTER)
 
 # every claim on the recordings of ../shared/data beside a plain computation; ONLY=name
 real: setup
-	@$(BIN)/python -m tests.studies.real.real_run --only "$(ONLY)"
+	@$(BIN)/python -m tests.studies.real.real_run --only "$(ONLY)" $(CLUSTER)
 
 reproduce: setup
 	@$(BIN)/sixflip reproduce

@@ -4,7 +4,8 @@ The errors have the covariance, all parameters of both sessions and all effects 
 which the estimates of one and the same part scatter over sessions that simulated_fleet.py makes;
 each board claims the covariances that one of those sessions claimed. So what is judged is the
 population's model on estimates as wrong as they are, not as wrong as they say. Left out are errors
-that are not normal, and that depend on the part.
+that are not normal, errors that depend on the part, and a mean error too small to be told from
+that of so few sessions (SURE standard errors).
 """
 import numpy as np
 
@@ -18,12 +19,13 @@ SPREAD = {"accel_scale": 0.006, "accel_misalignment": 0.35, "accel_bias": 15.0,
 WIDTH = np.concatenate([np.full(len(names), SPREAD.get(block, 0.0))
                         for block, names in parameters.BLOCKS.items()])
 SENSORS = ("accel", "gyro")
+SURE = 4.0
 
 
 class Errors:
     """How the estimates of a part scatter; number: of boards that are made for it."""
 
-    def __init__(self, rng, number=120):
+    def __init__(self, rng, number=400):
         self.part = drawn(rng)
         self.rows = [row_of(self.part, rng, "") for _ in range(number)]
         values = np.array([one["values"] for one in self.rows])
@@ -33,8 +35,7 @@ class Errors:
         self.told = {s: [analysis.information(one, s) for one in self.rows] for s in SENSORS}
         white = {s: np.array([np.linalg.solve(_root(one.precision), one.score) for one in told])
                  for s, told in self.told.items()}
-        self.white = {s: (one.mean(axis=0), (one - one.mean(axis=0)) / root)
-                      for s, one in white.items()}
+        self.white = {s: (_sure(one), (one - one.mean(axis=0)) / root) for s, one in white.items()}
         self._plain = row_of(self.part, np.random.default_rng(0), "")
 
     def slope(self, part):
@@ -59,6 +60,13 @@ class Errors:
                     values = values + otherwise
             found["score_" + sensor] = score.tolist()
         return dict(found, values=values.tolist())
+
+
+def _sure(values):
+    """(k,) mean of (n, k), 0 where its standard error leaves that open."""
+    middle = values.mean(axis=0)
+    error = values.std(axis=0, ddof=1) / np.sqrt(len(values))
+    return np.where(np.abs(middle) > SURE * error, middle, 0.0)
 
 
 def _root(precision):

@@ -1,10 +1,12 @@
-"""Boards as tasks on Dask: a cluster of this computer's cores, or one that somebody runs.
+"""Jobs as tasks on Dask: a cluster of this computer's cores, or one that somebody runs. The jobs
+are the boards of a fleet, or the cases of a study.
 
-Tasks are few boards each, and never more of them under way than keep the workers busy: what is in
-memory does not grow with the fleet. A task whose worker dies is given to another; its rows come
+Tasks are few jobs each, and never more of them under way than keep the workers busy: what is in
+memory does not grow with their number. A task whose worker dies is given to another; its rows come
 back once, so nothing is lost and nothing is there twice.
 """
 import contextlib
+import itertools
 import logging
 import os
 import socket
@@ -18,7 +20,6 @@ from ..errors import BadFile, CheckFailed, UsageError
 from . import analysis
 
 AHEAD = 3  # tasks a worker may have waiting: it never idles, and little is lost with it
-CHUNK = 4  # boards of a task
 WAIT_S = 20.0  # for a scheduler to answer
 NO_WORKER_S = 60.0  # without any worker of somebody else's cluster, before it is given up
 RETRIES = 5  # of a task whose worker died
@@ -31,6 +32,19 @@ class Target:
 
     scheduler: str = None
     workers: int = 0
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is done with each job. work(jobs, settings): a list with a result of each of a few
+    jobs, on a worker; failed(job, settings, why): what stands in its place where workers died of
+    it, here; each: jobs of a task; kind: their name in sentences."""
+
+    work: object
+    failed: object
+    settings: object = None
+    each: int = 4
+    kind: str = "boards"
 
 
 class SchedulerLost(CheckFailed):
@@ -145,50 +159,57 @@ def _short(error):
 
 
 def rows_of(boards, options):
-    """What a task is: a row for each of a few boards."""
+    """The work of a fleet: a row for each of a few boards."""
     return [analysis.row(one, options) for one in boards]
 
 
-def run(client, boards, take, target, options=None, work=rows_of):
-    """Give every board to the workers; take(rows) is called here with what comes back, once for
-    each board. CheckFailed when the scheduler is lost or no worker is left."""
+def run(client, jobs, take, target, task, number=None):
+    """Give every job to the workers; take(results) is called here with what comes back, once for
+    each job. jobs is asked for the next ones when workers have time for them; number: how many
+    there are. CheckFailed when the scheduler is lost or no worker is left."""
     distributed = _dask()
-    chunks = iter([boards[k:k + CHUNK] for k in range(0, len(boards), CHUNK)])
+    jobs, number = iter(jobs), len(jobs) if number is None else number
     done, given = 0, {}
 
-    def give(number):
-        for chunk in _some(chunks, number):
-            future = client.submit(work, chunk, options, pure=False, retries=RETRIES)
-            given[future.key] = chunk
+    def give(tasks):
+        for _ in range(tasks):
+            some = list(itertools.islice(jobs, task.each))
+            if not some:
+                return
+            future = client.submit(task.work, some, task.settings, pure=False, retries=RETRIES)
+            given[future.key] = some
             pool.add(future)
+
+    def so_far():
+        return "%d of %d %s are done and kept" % (done, number, task.kind)
     try:
         pool = distributed.as_completed(loop=client.loop)
         give(AHEAD * _workers(client, target))
         while pool.count():
-            future = _next(pool, client, target, done, len(boards))
-            rows = _result(future, given.pop(future.key), options)
+            future = _next(pool, client, target, so_far)
+            results = _result(future, given.pop(future.key), task)
             future.release()
-            take(rows)
-            done += len(rows)
+            take(results)
+            done += len(results)
             give(1)
     except (BadFile, CheckFailed):
         raise
     except (OSError, TimeoutError, distributed.CancelledError, RuntimeError) as error:
-        raise _lost(target, done, len(boards), error) from None
+        raise _lost(target, so_far, error) from None
 
 
-def _result(future, boards, options):
-    """The rows of a task; where workers died of it again and again, rows that say so."""
+def _result(future, jobs, task):
+    """The results of a task; where workers died of it again and again, what says so."""
     try:
         return future.result()
     except (OSError, TimeoutError, _dask().CancelledError):
         raise
     except Exception as error:
-        return [analysis.failed(one, options, "not done, its task failed on %d workers (%s)" % (
-            RETRIES + 1, _short(error))) for one in boards]
+        return [task.failed(one, task.settings, "not done, its task failed on %d workers (%s)" % (
+            RETRIES + 1, _short(error))) for one in jobs]
 
 
-def _next(pool, client, target, done, number):
+def _next(pool, client, target, so_far):
     """The next future that is finished; SchedulerLost where nothing can come any more."""
     waited = 0.0
     while True:
@@ -197,11 +218,10 @@ def _next(pool, client, target, done, number):
         except TimeoutError:
             waited += 1.0
         if client.status not in ("running", "connecting"):
-            raise _lost(target, done, number, "the connection is closed")
+            raise _lost(target, so_far, "the connection is closed")
         if waited >= NO_WORKER_S and not _count(client):
-            raise SchedulerLost("%s has no worker any more: %d of %d boards are done and kept, "
-                                "the same command goes on from there" % (
-                                    _where(target), done, number))
+            raise SchedulerLost("%s has no worker any more: %s, the same command goes on from "
+                                "there" % (_where(target), so_far()))
 
 
 def _timed(pool):
@@ -231,18 +251,10 @@ def _workers(client, target):
     return max(1, _count(client))
 
 
-def _some(chunks, number):
-    for _ in range(number):
-        chunk = next(chunks, None)
-        if chunk is None:
-            return
-        yield chunk
-
-
 def _where(target):
     return "the scheduler at %s" % target.scheduler if target.scheduler else "the local cluster"
 
 
-def _lost(target, done, number, error):
-    return SchedulerLost("%s is lost (%s): %d of %d boards are done and kept, the same command "
-                         "goes on from there" % (_where(target), _short(error), done, number))
+def _lost(target, so_far, error):
+    return SchedulerLost("%s is lost (%s): %s, the same command goes on from there" % (
+        _where(target), _short(error), so_far()))

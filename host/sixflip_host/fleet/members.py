@@ -17,6 +17,10 @@ from . import analysis, effects, hierarchy, parameters, store
 FEWEST_PAIRS = 8  # boards with two sessions that a repeatability is taken from
 MEDIAN_OF_CHI2 = 0.4549  # of one degree of freedom
 TOLD_APART = 0.1  # share of an effect's information that those before it must leave, as aliases
+# Boards over which errors average out. What a protocol's own approximations leave, such as the
+# second order of a leaning table, is the same in all of them: in 10,000 simulated boards
+# (`make bench-fleet BOARDS=10000`) it was four standard deviations of a single one's cubic.
+AVERAGED = 200
 TIMES_TYPICAL = 1000.0  # of an effect's size: what is not seen at all is known no better
 
 
@@ -277,7 +281,8 @@ def _left(total, mine, kept, floor, names):
 
 
 def _seen(total, mine, usual, number):
-    """Whether a mean over the boards can tell an effect of its typical size."""
-    own = np.diag(total)[mine]
+    """Whether a mean over the boards can tell an effect of its typical size, AVERAGED of them at
+    most."""
+    own = np.diag(total)[mine] * min(1.0, AVERAGED / max(number, 1))
     return bool((own > 0.0).any() and (1.0 / np.sqrt(own[own > 0.0])
-                                       < usual[mine][own > 0.0]).any() and number)
+                                       < usual[mine][own > 0.0]).any())

@@ -75,7 +75,8 @@ def boards(path, output, target, options=None, work=cluster.rows_of):
         writer = _Writer(data, len(left))
         with cluster.connected(target) as client:
             try:
-                cluster.run(client, left, writer.take, target, options, work)
+                cluster.run(client, left, writer.take, target,
+                            cluster.Task(work, analysis.failed, options))
             finally:
                 writer.flush()
         known, damaged = data.done(options.version)

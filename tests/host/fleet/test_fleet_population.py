@@ -3,7 +3,15 @@ import numpy as np
 import pyarrow.parquet
 import pytest
 
-from sixflip_host.fleet import answer, board_estimates, hierarchy, judgement, members, store
+from sixflip_host.fleet import (
+    answer,
+    board_estimates,
+    effects,
+    hierarchy,
+    judgement,
+    members,
+    store,
+)
 from tests.worlds import simulated_fleet
 from tests.worlds.simulated_fleet import drawn, row_of
 
@@ -134,6 +142,17 @@ def test_missing_values_are_no_boards():
     one = hierarchy.fit(y, R)
     assert np.allclose(one.mean, (1.0, 0.0, -2.0), atol=0.4)
     assert hierarchy.fit(y[:2], R[:2]) is None
+
+
+def test_many_boards_do_not_make_seen_what_none_of_them_tells():
+    names = effects.NAMES["accel"]
+    for number in (200, 100_000):
+        typical = members._Effects("accel", "mpu6050", np.eye(len(names)), 1)
+        told = np.where([".cubic." in name for name in names], 1.0 / 50.0, 1.0 / 5.0)
+        total = number * np.diag(told ** 2 * typical.floor * members.TIMES_TYPICAL ** 2)
+        seen = members._Effects("accel", "mpu6050", total, number)
+        assert "cubic of the accel" in seen.unseen
+        assert "accel.thermal_bias" in [block.name for block in seen.blocks]
 
 
 def test_a_batch_without_spread_has_none():

@@ -132,7 +132,7 @@ def test_a_lost_connection_is_a_clear_end_that_keeps_what_is_done(tmp_path, clie
         taken.extend(rows)
         raise distributed.CancelledError("scheduler-closed")
     with pytest.raises(cluster.SchedulerLost, match="the same command goes on"):
-        cluster.run(client, boards, take, HERE)
+        cluster.run(client, boards, take, HERE, cluster.Task(cluster.rows_of, analysis.failed))
     assert taken
 
 

@@ -1,13 +1,16 @@
 """A small blind run: sealed cases of the independent generator, diagnosed and scored."""
 
+import contextlib
 import json
 
 import pytest
 
+from sixflip_host.fleet import cluster
 from tests.studies.blind import blind_run, seal, target_tables
 from tests.studies.blind.generator.case import Specification
 from tests.studies.blind.scoring import scored
 
+HERE = cluster.Target(None, 1)
 SQUARE = {"box_tilt_deg": 0.0}
 CASES = {
     "null": ("null", Specification(11, habits=SQUARE)),
@@ -25,10 +28,12 @@ CASES = {
 def run(tmp_path_factory):
     """{name: scored result} of the cases above, after a whole run through files and seals."""
     folder = tmp_path_factory.mktemp("blind")
-    blind_run.make(list(CASES.values()), folder, workers=1)
-    manifest = (folder / seal.MANIFEST).read_text()
-    assert "thermal" not in manifest and "null" not in manifest
-    answers = blind_run.diagnose(folder, workers=1, keep=False)
+    with cluster.connected(HERE) as client, pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cluster, "connected", lambda target: contextlib.nullcontext(client))
+        blind_run.make(list(CASES.values()), folder, HERE)
+        manifest = (folder / seal.MANIFEST).read_text()
+        assert "thermal" not in manifest and "null" not in manifest
+        answers = blind_run.diagnose(folder, HERE, keep=False)
     labels = seal.opened(folder)
     return dict(zip(CASES, (scored(labels[a["id"]], a) for a in answers)))
 

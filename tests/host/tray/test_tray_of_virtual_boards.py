@@ -34,9 +34,9 @@ def flash(micropython, tmp_path_factory):
 
 
 @contextlib.contextmanager
-def jig(names, folder, flash, micropython, **worlds):
+def jig(names, folder, flash, micropython, kind=JigHand, **worlds):
     """{name: VirtualBoard} of boards in one jig, in the ways in which they can lie in it."""
-    hand = JigHand({name: WAYS[k % len(WAYS)] for k, name in enumerate(names)})
+    hand = kind({name: WAYS[k % len(WAYS)] for k, name in enumerate(names)})
     with contextlib.ExitStack() as all_of_them:
         boards = {}
         for seed, name in enumerate(names):
@@ -50,6 +50,17 @@ def jig(names, folder, flash, micropython, **worlds):
 
 def ports(boards):
     return [word for board in boards for word in ("--port", board.port)]
+
+
+class Waiting(JigHand):
+    """Leaves the jig as it lies when the half turn on a face is wanted, until let go."""
+
+    waits_on = "X+"
+
+    def pose(self):
+        if (self.tray.face, self.tray.letter) == (self.waits_on, "b"):
+            return self.lies
+        return super().pose()
 
 
 class Puller:
@@ -95,7 +106,7 @@ def test_eight_boards_of_which_three_fail(micropython, flash, tmp_path, monkeypa
 
 def test_ctrl_c_loses_nothing(micropython, flash, tmp_path):
     """On the screen; afterwards both boards go on where they were, in lines."""
-    with jig(["one", "two"], tmp_path, flash, micropython) as boards:
+    with jig(["one", "two"], tmp_path, flash, micropython, Waiting) as boards:
         both = ports(boards.values())
         with Terminal("calibrate", "--all", *both) as terminal:
             terminal.wait("2 of 2 boards in the tray   X Y Z as on board 1",
@@ -105,6 +116,7 @@ def test_ctrl_c_loses_nothing(micropython, flash, tmp_path):
             terminal.press("\x03")
             assert terminal.ended() == 130
             assert terminal.words.count("sixflipcalibrate--all--continuegoeson") == 3
+        boards["one"].hand_asked.hand.waits_on = None
         with Terminal("calibrate", "--all", "--continue", "--plain", *both) as terminal:
             terminal.wait("typed lines: redo FACE, undo, quit")
             assert terminal.ended() == 0

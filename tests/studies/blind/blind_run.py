@@ -15,9 +15,9 @@ import os
 import shutil
 import sys
 import time
-from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
+from .. import cases
 from . import seal, suites
 from .baselines import beside
 from .generator.case import Case
@@ -25,6 +25,7 @@ from .generator.held_out import HELD_OUT
 from .judged import judged
 
 COMPARED = ("null", "single", "pair", "stranger")    # what the baselines are put to
+PART = "answers.part"
 DEFAULT_COUNT = 220     # about 25 minutes on two cores
 
 
@@ -69,44 +70,43 @@ def diagnosed(job):
     return outcome
 
 
-def pooled(work, jobs, workers, what, minutes=0.0):
-    """Results in order, with a line of progress now and then on stderr; of as many jobs as fit
-    into these minutes, 0: of all."""
-    out, begin, shown = [], time.monotonic(), 0.0
-    with ProcessPoolExecutor(workers) as pool:
-        for future in [pool.submit(work, job) for job in jobs]:
-            if minutes and time.monotonic() - begin > 60.0 * minutes:
-                pool.shutdown(wait=False, cancel_futures=True)
-                break
-            out.append(future.result())
-            now = time.monotonic() - begin
-            if now - shown > 20 or len(out) == len(jobs):
-                shown = now
-                print("%s: %d of %d, %.0f s" % (what, len(out), len(jobs), now),
-                      file=sys.stderr, flush=True)
-    return out
-
-
-def make(specifications, folder, workers, compare=0):
-    """Step 1 into a folder: captures, manifest, sealed labels; `compare` cases of the suites
-    COMPARED, evenly, are put to the baselines too."""
+def make(specifications, folder, where, compare=0):
+    """Step 1 into a folder: captures, manifest, sealed labels; where: cluster.Target; `compare`
+    cases of the suites COMPARED, evenly, are put to the baselines too."""
     captures = folder / "captures"
     captures.mkdir(parents=True, exist_ok=True)
     fair = [k for k, (suite, _) in enumerate(specifications) if suite in COMPARED]
     chosen = set(fair[::max(1, len(fair) // compare)][:compare]) if compare else ()
     jobs = [("case-%04d" % k, suite, spec, str(captures), k in chosen)
             for k, (suite, spec) in enumerate(specifications)]
-    cases = pooled(generated, jobs, workers, "generated")
-    seal.write(folder, cases, sorted(HELD_OUT))
+    seal.write(folder, cases.done(generated, jobs, where, "generated"), sorted(HELD_OUT))
 
 
-def diagnose(folder, workers, keep, minutes=0.0):
-    """Step 2: answers.json from the manifest and the captures; minutes: as pooled has it."""
-    manifest = json.loads((folder / seal.MANIFEST).read_text())
-    jobs = [(public, str(folder / "captures"), keep) for public in manifest["cases"]]
-    answers = pooled(diagnosed, jobs, workers, "diagnosed", minutes)
+def diagnose(folder, where, keep, minutes=0.0):
+    """Step 2: answers.json from the manifest and the captures; minutes: as cases.done() has it.
+    Each answer is kept in a line of answers.part when it comes, and not asked for again."""
+    order = json.loads((folder / seal.MANIFEST).read_text())["cases"]
+    part = folder / PART
+    answers = {one["id"]: one for one in _whole_lines(part)}
+    jobs = [(public, str(folder / "captures"), keep) for public in order
+            if public["id"] not in answers]
+    with open(part, "a") as file:
+        def kept(answer):
+            print(json.dumps(answer), file=file, flush=True)
+        for one in cases.done(diagnosed, jobs, where, "diagnosed", minutes, kept):
+            answers[one["id"]] = one
+    answers = [answers[public["id"]] for public in order if public["id"] in answers]
     (folder / "answers.json").write_text(json.dumps(answers))
+    part.unlink()
     return answers
+
+
+def _whole_lines(path):
+    """The answers in a file to which the last was perhaps not written to its end."""
+    if path.exists():
+        *lines, cut = path.read_text().split("\n")
+        path.write_text("".join(line + "\n" for line in lines))
+        yield from map(json.loads, lines)
 
 
 def score(folder):
@@ -136,7 +136,7 @@ def arguments(argv):
     parser = argparse.ArgumentParser(prog="make blind", description=__doc__.split("\n")[0])
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--count", type=int, default=DEFAULT_COUNT, help="cases in all")
-    parser.add_argument("--jobs", type=int, default=2, help="processes")
+    cases.add_arguments(parser)
     parser.add_argument("--suite", action="append", choices=list(suites.SUITES),
                         help="only these (may be given again)")
     parser.add_argument("--effect", help="only cases with this effect")
@@ -147,6 +147,8 @@ def arguments(argv):
                              "N minutes (0: all)")
     parser.add_argument("-o", "--output", type=Path, default=Path("blind-output"))
     parser.add_argument("--keep", action="store_true", help="keep the captures")
+    parser.add_argument("--go-on", action="store_true",
+                        help="diagnose what the last run, which was interrupted, left")
     parser.add_argument("--score-only", action="store_true",
                         help="score the answers of the last run again")
     return parser.parse_args(argv)
@@ -154,14 +156,17 @@ def arguments(argv):
 
 def main(argv=None):
     args = arguments(argv)
-    if not args.score_only:
+    where = cases.target(args)
+    if not (args.score_only or args.go_on):
+        (args.output / PART).unlink(missing_ok=True)
         shutil.rmtree(args.output / "captures", ignore_errors=True)
         chosen = suites.specifications(args.seed, args.count, args.suite or list(suites.SUITES))
         if args.effect:
             chosen = [(s, spec) for s, spec in chosen
                       if any(name == args.effect for name, _, _ in spec.effects)]
-        make(chosen, args.output, args.jobs, args.compare)
-        diagnose(args.output, args.jobs, args.keep, args.minutes)
+        make(chosen, args.output, where, args.compare)
+    if not args.score_only:
+        diagnose(args.output, where, args.keep, args.minutes)
     return score(args.output)
 
 

@@ -16,6 +16,7 @@ from pathlib import Path
 from sixflip_host import cli
 from sixflip_host.capture import capture_file, recordings
 
+from .. import cases
 from . import claims, real_recordings
 
 BY_NAME = {one.name: one for one in real_recordings.RECORDINGS}
@@ -38,7 +39,7 @@ def captured(recording, place, folder):
         source, options = decoded(recording, source, folder)
     code, said = sixflip("import", source, "-o", path, *options)
     if code:
-        raise SystemExit("import of %s: exit %d: %s" % (recording.name, code, said))
+        raise RuntimeError("import of %s: exit %d: %s" % (recording.name, code, said))
     if recording.rows:
         cut(path, *recording.rows)
     return path
@@ -82,7 +83,7 @@ def judged(recording, place, folder):
         found.append(claims.Row("solve", said.strip().splitlines()[-1], False))
     code, said = sixflip("diagnose", *paths, "--json")
     if code:
-        raise SystemExit("diagnose of %s: exit %d: %s" % (recording.name, code, said))
+        raise RuntimeError("diagnose of %s: exit %d: %s" % (recording.name, code, said))
     answer = json.loads(said)
     others = [BY_NAME[name].read(place / BY_NAME[name].file) for name in recording.others]
     return answer, found + claims.rows(plain, answer, others)
@@ -101,18 +102,25 @@ def show(recording, answer, rows):
     return sum(row.right is not None and not row.right for row in rows)
 
 
+def answered(name):
+    """What a worker does: judged() of the recording of a name."""
+    with tempfile.TemporaryDirectory() as folder:
+        return judged(BY_NAME[name], recordings.folder(), Path(folder))
+
+
 def main(argv=None):
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--only", default="", help="recordings whose name contains this")
     parser.add_argument("--short", action="store_true", help="those of `make test` only")
+    cases.add_arguments(parser)
     args = parser.parse_args(argv)
-    place, wrong, number = recordings.folder(), 0, 0
-    for one in real_recordings.RECORDINGS:
-        if args.only in one.name and (one.short or not args.short):
-            with tempfile.TemporaryDirectory() as folder:
-                answer, rows = judged(one, place, Path(folder))
-            wrong += show(one, answer, rows)
-            number += len(rows)
+    wanted = [one for one in real_recordings.RECORDINGS
+              if args.only in one.name and (one.short or not args.short)]
+    wrong, number = 0, 0
+    for one, (answer, rows) in zip(wanted, cases.done(
+            answered, [one.name for one in wanted], cases.target(args), "recordings")):
+        wrong += show(one, answer, rows)
+        number += len(rows)
     print("\n%d of %d rows do not hold" % (wrong, number))
     return 1 if wrong else 0
 

@@ -11,9 +11,9 @@ theory. Wrong is any other single name. Exits with 1 if there is one.
 import argparse
 import sys
 import tempfile
-from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
+from .. import cases
 from ..blind.generator.case import Case, Specification
 from ..blind.generator.library import KNOWN
 from ..blind.judged import judged
@@ -75,17 +75,15 @@ def main():
     parser.add_argument("--sizes", type=float, nargs="+", default=[1.0, 3.0],
                         help="of the typical size")
     parser.add_argument("--seeds", type=int, default=2)
-    parser.add_argument("--jobs", type=int, default=2, help="processes")
+    cases.add_arguments(parser)
     args = parser.parse_args()
     jobs = [(*thing, times, 9000 + 100 * number + seed) for number, thing in enumerate(things())
             for times in args.sizes for seed in range(args.seeds)]
-    with ProcessPoolExecutor(args.jobs) as pool:
-        rows = []
-        for row in pool.map(asked, jobs):
-            rows.append(row)
-            if row[5]:
-                print("%s %s %gx, seed %d: %s beside %s" % (
-                    row[1], row[0], row[2], row[3], row[6], ", ".join(row[5])), flush=True)
+    rows = cases.done(asked, jobs, cases.target(args), "left out")
+    for row in rows:
+        if row[5]:
+            print("%s %s %gx, seed %d: %s beside %s" % (
+                row[1], row[0], row[2], row[3], row[6], ", ".join(row[5])))
     print("%-24s %-7s" % ("taken out", "sensor") + "".join("%8s" % k for k in KINDS))
     for thing in things():
         mine = [row[4] for row in rows if row[:2] == thing]

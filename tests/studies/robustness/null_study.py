@@ -11,12 +11,12 @@ there is a gap; a box that is crooked may be called so. Exits with 1 when there 
 import argparse
 import sys
 import tempfile
-from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import numpy as np
 from scipy import stats
 
+from .. import cases
 from ..blind.generator.case import Case, Specification
 from . import ask, real_noise
 
@@ -62,15 +62,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--runs", type=int, default=120)
     parser.add_argument("--first", type=int, default=1, help="seed of the first")
-    parser.add_argument("--jobs", type=int, default=2, help="processes")
+    cases.add_arguments(parser)
     args = parser.parse_args()
-    rows = []
-    with ProcessPoolExecutor(args.jobs) as pool:
-        for row in pool.map(judged, nulls(recordings.folder(), args.runs, args.first)):
-            rows.append(row)
-            if row[5]:
-                print("seed %d, noise of %s, %s: %s; %s" % (
-                    row[2], row[0], row[1], row[3], "; ".join(row[4])), flush=True)
+    rows = cases.done(judged, nulls(recordings.folder(), args.runs, args.first),
+                      cases.target(args), "nulls")
+    for row in rows:
+        if row[5]:
+            print("seed %d, noise of %s, %s: %s; %s" % (
+                row[2], row[0], row[1], row[3], "; ".join(row[4])))
     print("%-10s %-12s %5s %13s %12s" % ("noise of", "protocol", "runs", "false alarms",
                                         "cannot tell"))
     for key in sorted({row[:2] for row in rows}):

@@ -11,11 +11,11 @@ any of the rivals that the capture was to tell apart. Exits with 1 below 90 %.
 import argparse
 import sys
 import tempfile
-from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import numpy as np
 
+from .. import cases
 from ..blind.generator import protocols
 from ..blind.generator.case import Case, Specification
 from ..blind.generator.hand import FACES
@@ -168,18 +168,15 @@ def tried(job):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--seeds", type=int, default=6)
-    parser.add_argument("--jobs", type=int, default=2, help="processes")
+    cases.add_arguments(parser)
     args = parser.parse_args()
     jobs = [(*thing, 7000 + 100 * number + seed) for number, thing in enumerate(AMBIGUOUS)
             for seed in range(args.seeds)]
-    rows = []
-    with ProcessPoolExecutor(args.jobs) as pool:
-        for row in pool.map(tried, jobs):
-            rows.append(row)
-            if row[3] not in (None, "resolved"):
-                print("%s %s %gx, %s, seed %d: %s; asked for %s: %s" % (
-                    row[0][1], row[0][0], *row[0][2:], " or ".join(row[1]), row[2], row[3]),
-                    flush=True)
+    rows = cases.done(tried, jobs, cases.target(args), "resolved")
+    for row in rows:
+        if row[3] not in (None, "resolved"):
+            print("%s %s %gx, %s, seed %d: %s; asked for %s: %s" % (
+                row[0][1], row[0][0], *row[0][2:], " or ".join(row[1]), row[2], row[3]))
     print("%-14s %-6s %-12s %5s %5s %9s" % ("effect", "sensor", "protocol", "runs", "open",
                                            "resolved"))
     for thing in AMBIGUOUS:

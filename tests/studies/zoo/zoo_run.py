@@ -1,22 +1,50 @@
 """make zoo: every documented defect, same and different motion, several seeds, the real side with
 parameters of its own and one of five effects; a confusion table, and what simpler methods say."""
 import argparse
+import functools
 import sys
 import time
 from collections import Counter
+from dataclasses import dataclass
 
 from sixflip_host.capture import capture_file
 from sixflip_host.diagnosis.simulator import comparison, simulator_answer, traces
 
+from .. import cases
 from . import baselines, defects, engine
 
 IN_PARAMETERS = {"bandwidth": "smoothness", "noise": "noise_density"}
 NOTHING, ONE_OF, WRONG = "(nothing)", "(one of)", "wrong"
 
 
-def motions(kind, seeds, quick):
-    return [engine.rover(s, "arm", 60.0) if kind == "rover" else engine.box(s, "arm", quick)
-            for s in range(1, seeds + 2)]
+@functools.cache
+def motion(kind, seed, quick):
+    """A run of an engine; made once in each worker."""
+    return engine.rover(seed, "arm", 60.0) if kind == "rover" else engine.box(seed, "arm", quick)
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A defect, the engine's kind of motion, its seed, whether real and simulated motion are the
+    same, and whether the boxes are those of a minute."""
+
+    name: str
+    kind: str
+    seed: int
+    same: bool
+    quick: bool
+
+
+def answered(pair):
+    """{outcome, said, quiet, simple} of a Pair: what a worker does. simple: {method of baselines:
+    right, nothing or wrong}, of the first seed and one motion."""
+    name, first = pair.name, pair.seed + 1
+    real = motion(pair.kind, first, pair.quick)
+    sim = real if pair.same else motion(pair.kind, first + 1, pair.quick)
+    found, logs = case(name, real, sim, 100 * pair.seed + len(name), name == "healthy")
+    return {"outcome": outcome(name, found), "said": said(found, defects.DEFECTS[name][3]),
+            "quiet": simulator_answer.verdict("no gap", [found]) == "no gap",
+            "simple": simple(name, logs, found) if pair.same and not pair.seed else {}}
 
 
 def case(name, real, sim, seed, healthy_equal=False):
@@ -62,15 +90,14 @@ def judged_simply(name, said_one):
     return WRONG if said_one else NOTHING
 
 
-def simple(name, logs, found, tally):
-    """Put the methods of baselines to a pair of one motion; tally {method: Counter}."""
+def simple(name, logs, found):
+    """{method of baselines: what it is worth} on a pair of one motion."""
     if not found.alignment.same:
-        return
+        return {}
     pair = baselines.paired(*(traces.of("log", log) for log in logs), found.alignment)
-    for method, ask in baselines.METHODS.items():
-        answer = ask(pair)
-        if answer is not None:
-            tally.setdefault(method, Counter())[judged_simply(name, answer)] += 1
+    told = {method: ask(pair) for method, ask in baselines.METHODS.items()}
+    return {method: judged_simply(name, answer) for method, answer in told.items()
+            if answer is not None}
 
 
 def main():
@@ -79,30 +106,24 @@ def main():
     parser.add_argument("--kinds", default="box,rover")
     parser.add_argument("--quick", action="store_true", help="boxes of a minute")
     parser.add_argument("--defects", default="")
+    cases.add_arguments(parser)
     args = parser.parse_args()
-    table, counts, healthy, started = {}, Counter(), Counter(), time.process_time()
     names = args.defects.split(",") if args.defects else list(defects.DEFECTS)
-    simply = {}
-    for kind in args.kinds.split(","):
-        made = motions(kind, args.seeds, args.quick)
-        for seed in range(args.seeds):
-            for same in (True, False):
-                for name in names:
-                    real, sim = made[seed], made[seed if same else seed + 1]
-                    equal = name == "healthy"
-                    found, logs = case(name, real, sim, 100 * seed + len(name), equal)
-                    result = outcome(name, found)
-                    visible = same or (defects.DEFECTS[name][4] and kind == "box")
-                    row = table.setdefault((name, kind, "same" if same else "other"), Counter())
-                    row.update(said(found, defects.DEFECTS[name][3]))
-                    if equal:
-                        quiet = simulator_answer.verdict("no gap", [found]) == "no gap"
-                        healthy["no gap" if quiet else "a gap"] += 1
-                    else:
-                        counts["visible" if visible else "hidden", result] += 1
-                    if same and seed == 0:
-                        simple(name, logs, found, simply)
-    show(table, counts, healthy, simply, time.process_time() - started)
+    pairs = [Pair(name, kind, seed, same, args.quick) for kind in args.kinds.split(",")
+             for seed in range(args.seeds) for same in (True, False) for name in names]
+    started = time.monotonic()
+    table, counts, healthy, simply = {}, Counter(), Counter(), {}
+    for pair, one in zip(pairs, cases.done(answered, pairs, cases.target(args), "zoo")):
+        row = table.setdefault((pair.name, pair.kind, "same" if pair.same else "other"), Counter())
+        row.update(one["said"])
+        if pair.name == "healthy":
+            healthy["no gap" if one["quiet"] else "a gap"] += 1
+        else:
+            visible = pair.same or (defects.DEFECTS[pair.name][4] and pair.kind == "box")
+            counts["visible" if visible else "hidden", one["outcome"]] += 1
+        for method, worth in one["simple"].items():
+            simply.setdefault(method, Counter())[worth] += 1
+    show(table, counts, healthy, simply, time.monotonic() - started)
     return 1 if counts["visible", WRONG] + counts["hidden", WRONG] else 0
 
 
@@ -130,7 +151,7 @@ def show(table, counts, healthy, simply, seconds):
         print("  %-22s %s" % (method, "not installed" if row is None else
                               "right %d, nothing %d, wrong %d" % (
                                   row["right"], row[NOTHING], row[WRONG])))
-    print("%.0f s of processor time" % seconds)
+    print("%.0f s" % seconds)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@ right and wrong once the seals are open. By hand, on a run that kept its capture
 
 import json
 import sys
-from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 from . import BASELINES
@@ -112,15 +111,18 @@ def report(labels, outcomes):
 
 
 def main():
+    from sixflip_host.fleet import cluster
+
+    from ... import cases
     from .. import seal
     folder = Path(sys.argv[1])
     outcomes = json.loads((folder / "answers.json").read_text())
     files = {case["id"]: [str(folder / "captures" / f) for f in case["files"]]
              for case in json.loads((folder / seal.MANIFEST).read_text())["cases"]}
-    with ProcessPoolExecutor(2) as pool:
-        found = pool.map(answers, [files[o["id"]] for o in outcomes])
-        for outcome, one in zip(outcomes, found):
-            outcome["baselines"] = one
+    found = cases.done(answers, [files[o["id"]] for o in outcomes], cluster.Target(None, 2),
+                       "baselines")
+    for outcome, one in zip(outcomes, found):
+        outcome["baselines"] = one
     print(report(seal.opened(folder), outcomes))
     return 0
 
