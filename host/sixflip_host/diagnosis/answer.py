@@ -100,6 +100,8 @@ def _finding(f):
                    f.interval or {}, f.plausible, f.share)
     if f.share_interval:
         found["share_interval_90"] = [number(v) for v in f.share_interval]
+    if f.limits:
+        found["cut_off_at"] = f.limits
     if f.hz:
         found["hz"] = {key: number(hz, 7) for key, hz in f.hz.items()}
     if f.lines:

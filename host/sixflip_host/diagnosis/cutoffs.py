@@ -10,7 +10,7 @@ import hashlib
 import json
 import math
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +23,7 @@ from .odds import CHANCE
 RUNS = 160  # of which the upper tenth, 16, tell the scale of the tail to a quarter
 UPPER = 0.1
 TIMES_USUAL = 1.6  # of the usual levels, that a null has at most
+SMALLEST_SCALE = 1e-6  # nats: all nulls gain the same
 MARGIN_NATS = 1.0  # noise is not quite what it is simulated as
 LEAST_NATS = 4.0  # GAP: 95 % of the prototype's nulls in one search with the noise known exactly
 FORMAT = 9
@@ -36,11 +37,20 @@ LEAST_SHARE, MOST_SHARE = 0.02, 0.5  # a form is never known better; beyond half
 class Cutoffs:
     """member: nats that a member of a set must gain; beside: share of what a stranger in the set
     gains that another member must gain as well; form: the same of what a named member gains,
-    whose form a part has not exactly: a seventh of its size, squared."""
+    whose form a part has not exactly: a seventh of its size, squared; own: {Form: nats} of those
+    forms whose cost is not the member's."""
 
     member: float
     beside: float
     form: float = 0.02
+    own: dict = field(default_factory=dict)
+
+    def of(self, form):
+        """Nats that this member of a set must gain. What takes a stranger's columns in, as a
+        discrepancy beside its own, gains by chance what that does."""
+        return max((nats for one, nats in self.own.items() if one == form or
+                    form.discrepancy and np.isin(one.columns, form.columns).any()),
+                   default=self.member)
 
 
 def folder():
@@ -99,17 +109,33 @@ def _key(units, forms, levels, points):
 
 
 def simulated(units, forms, levels, points):
-    """The cost from RUNS simulated data sets."""
+    """One cost for all forms, from RUNS simulated data sets."""
+    start, scale = _tail(_by_chance(units, forms, levels, points).max(axis=0))
+    return _cost(start + scale * math.log(UPPER / CHANCE))
+
+
+def of_each(units, forms, levels, points):
+    """{Form: cost}, from RUNS simulated data sets. What a form gains by chance is counted in the
+    scale of its own upper tail, and the cost is where the largest of all forms lies in CHANCE of
+    the nulls: the search is in it, and no form's tail hides another [Westfall and Young,
+    Resampling-Based Multiple Testing (1993), section 2.3]."""
+    gains = _by_chance(units, forms, levels, points)
+    tails = [_tail(row) for row in gains]
+    largest = np.max([(row - start) / scale for row, (start, scale) in zip(gains, tails)], axis=0)
+    start, scale = _tail(largest)
+    beyond = start + scale * math.log(UPPER / CHANCE)
+    return {form: _cost(own + width * beyond) for form, (own, width) in zip(forms, tails)}
+
+
+def _by_chance(units, forms, levels, points):
+    """(forms, RUNS) nats that each form gains alone in nulls."""
     generator = np.random.default_rng(20190919)
     statistics = [u.statistics(u.draw(k, generator, RUNS)) for u, k in zip(units, points)]
     prior = [levels.prior(u, ()) for u in units]
     base = [evidence.fit(u, s, NONE, NONE, p) for u, s, p in zip(units, statistics, prior)]
     nothing = evidence.score(base, NONE)
-    largest = np.full(RUNS, -np.inf)
-    for form in progress.steps(forms, "what chance alone shows"):
-        gain = _gain(form, units, statistics, prior, levels, base) - nothing
-        largest = np.maximum(largest, gain)
-    return _quantile(largest)
+    return np.array([_gain(form, units, statistics, prior, levels, base) - nothing
+                     for form in progress.steps(forms, "what chance alone shows")])
 
 
 def _gain(form, units, statistics, prior, levels, base):
@@ -187,9 +213,13 @@ def _strange(units, nameless, points, generator):
     return [np.stack(found, axis=1) for found in every]
 
 
-def _quantile(scores):
-    """Gain that a null data set exceeds with probability CHANCE: the tail of a largest log
-    likelihood ratio is exponential, its scale is taken from the upper tenth of the runs."""
-    start = float(np.quantile(scores, 1.0 - UPPER))
-    scale = float(np.mean(scores[scores > start] - start)) if (scores > start).any() else 0.0
-    return max(LEAST_NATS, start + scale * math.log(UPPER / CHANCE) + MARGIN_NATS)
+def _tail(gains):
+    """(start, scale) of the upper tenth of what nulls gain: the tail of a log likelihood ratio
+    is exponential."""
+    start = float(np.quantile(gains, 1.0 - UPPER))
+    above = gains[gains > start]
+    return start, max(float(np.mean(above - start)) if len(above) else 0.0, SMALLEST_SCALE)
+
+
+def _cost(quantile):
+    return max(LEAST_NATS, quantile + MARGIN_NATS)

@@ -154,8 +154,11 @@ def _searched(fit, without):
     forms = [f for f in hypotheses.of(units, without, drift=False)
              if not f.generic or f.axis is None or f.variant == "speed"]
     model = posterior.Model(units, [u.statistics() for u in units], moves_unit.NO_LEVELS)
-    cost = cutoffs.simulated(units, forms, moves_unit.NO_LEVELS, [0] * len(units))
-    found = posterior.search(model, forms, cutoffs.Cutoffs(max(cost, LEAST_NATS), STRANGE_SHARE))
+    # Each at its own cost: few moves of a hand carry most of what it adds, and a form that those
+    # few mimic gains ten times in nulls what another does.
+    own = {form: max(nats, LEAST_NATS) for form, nats in cutoffs.of_each(
+        units, forms, moves_unit.NO_LEVELS, [0] * len(units)).items()}
+    found = posterior.search(model, forms, cutoffs.Cutoffs(LEAST_NATS, STRANGE_SHARE, own=own))
     alone = model.scored(())
     return found, {f.effect: model.scored((f,)).score - alone.score for f in forms}
 

@@ -168,22 +168,25 @@ class Posterior:
 
 def search(model, forms, cost, most=MOST):
     """Posterior over sets of Forms; cost: cutoffs.Cutoffs."""
+    def worth(scored):
+        return _worth(scored, cost)
     empty = model.scored(())
     beam, reached = [empty], [empty]
     for _ in range(most):
         found = {}
         for base in beam:
             for _, one in model.best(base, _free(forms, base)):
-                if one.names not in found or one.score > found[one.names].score:
+                if one.names not in found or worth(one) > worth(found[one.names]):
                     found[one.names] = one
-        ordered = sorted(found.values(), key=lambda s: -s.score)
-        grown = sorted((_with_discrepancy(model, forms, one) for one in ordered[:BEAM]),
-                       key=lambda s: -s.score)
-        if not grown or grown[0].score < beam[0].score + LEAST_GAIN:
+        ordered = sorted(found.values(), key=worth, reverse=True)
+        grown = sorted((_with_discrepancy(model, forms, one, cost) for one in ordered[:BEAM]),
+                       key=worth, reverse=True)
+        if max((s.score for s in grown), default=-np.inf) < LEAST_GAIN + max(
+                s.score for s in beam):
             break
         beam = grown
         reached += grown
-    best = max((_pruned(model, one, cost) for one in reached), key=lambda s: _worth(s, cost))
+    best = max((_pruned(model, one, cost) for one in reached), key=worth)
     best = _refined(model, forms, best, cost)
     places, gains = {}, {}
     for form in best.forms:
@@ -199,7 +202,7 @@ def _free(forms, scored):
 
 def _worth(scored, cost):
     """Score less what the members cost, nats."""
-    return scored.score - (cost.member + PRESENT) * len(scored.forms)
+    return scored.score - sum(cost.of(form) + PRESENT for form in scored.forms)
 
 
 def _refined(model, forms, best, cost):
@@ -210,9 +213,10 @@ def _refined(model, forms, best, cost):
         best, changed = _pruned(model, best, cost), False
         for form in best.forms:
             fewer = model.scored(tuple(f for f in best.forms if f is not form))
-            _, better = model.best(fewer, _free(forms, fewer))[0]
-            if better.score > best.score + 1e-3:
-                best, changed = _with_discrepancy(model, forms, better), True
+            better = max((one for _, one in model.best(fewer, _free(forms, fewer))),
+                         key=lambda s: _worth(s, cost))
+            if _worth(better, cost) > _worth(best, cost) + 1e-3:
+                best, changed = _with_discrepancy(model, forms, better, cost), True
                 break
     return best
 
@@ -225,7 +229,7 @@ def _pruned(model, best, cost):
         gains = _gains(model, best)
         alone = {f: max(gains[f], _alone(model, f)) for f in best.forms}
         energy = {f: max(gains[f], nats) for f, nats in _energies(best).items()}
-        needed = {form: cost.member + PRESENT + max(
+        needed = {form: cost.of(form) + PRESENT + max(
             [_unknown(form, f, cost) * (
                 alone if f.generic or form.effect == "drift"
                 else energy if hypotheses.alike(form, f) else gains)[f]
@@ -280,14 +284,14 @@ def _place(model, forms, best, form, cost):
     """({effect or "": probability}, gain in nats) of one member's place."""
     others = tuple(f for f in best.forms if f is not form)
     empty = model.scored(others)
-    scores = {"": empty.score + cost.member}
-    scores[form.effect] = best.score
+    scores = {"": empty.score, form.effect: best.score - cost.of(form)}
     for rival, one in model.best(empty, _free(forms, empty)):
-        scores[rival.effect] = max(one.score, scores.get(rival.effect, -np.inf))
+        scores[rival.effect] = max(one.score - cost.of(rival),
+                                   scores.get(rival.effect, -np.inf))
     return odds.shares(scores), best.score - empty.score
 
 
-def _with_discrepancy(model, forms, scored):
+def _with_discrepancy(model, forms, scored, cost):
     """The set with a discrepancy beside those named members that are likelier with one: another
     functional form of the same cause is neither a second name nor a stranger."""
     for place, form in enumerate(scored.forms):
@@ -300,7 +304,7 @@ def _with_discrepancy(model, forms, scored):
             if wider is None:
                 break
             found = model.scored((*others, wider))
-            if found.score > scored.score + FORM_COST:
+            if _worth(found, cost) > _worth(scored, cost) + FORM_COST:
                 scored = found
     return scored
 
@@ -329,7 +333,7 @@ def axes_of(model, found, form):
     most = max(gains.values(), default=0.0)
     share = found.cost.beside if form.generic else found.cost.form
     return [(axis, gain) for axis, gain in gains.items()
-            if gain == most or gain > found.cost.member + share * most]
+            if gain == most or gain > found.cost.of(form) + share * most]
 
 
 def domains_left(posterior):

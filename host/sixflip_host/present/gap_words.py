@@ -83,7 +83,10 @@ def _clause(cause):
 
 
 def _does(cause):
-    """What a part with this effect does; what shakes it has a frequency or has none."""
+    """What a part with this effect does; what shakes it has a frequency or has none; what cuts
+    its readings off is the chip's limit or another one."""
+    if _cut_below(cause):
+        return "is cut off below its range"
     if cause["effect"] != "vibration":
         return DOES.get(cause["effect"], cause["effect"])
     if not cause.get("hz"):
@@ -95,6 +98,10 @@ def _does(cause):
         lines.setdefault("%.6g Hz" % hz, []).append(axis.upper())
     return "is shaken at a steady frequency, " + ", ".join(
         hz + (" on " + " and ".join(axes) if len(lines) > 1 else "") for hz, axes in lines.items())
+
+
+def _cut_below(cause):
+    return "below_range" in cause.get("cut_off_at", {}).values()
 
 
 def _size(cause):
@@ -159,6 +166,8 @@ def row(c):
     """Effect, sensor, probability, share and every size with its interval, as text."""
     name = c["effect"] or " or ".join("%s %s" % (effect, percent(p)) for effect, p in
                                       c["class_probabilities"].items())
+    if _cut_below(c):
+        name += " (below the range)"
     if not c["plausible"]:
         name += " (numerically helpful, physically implausible)"
     sizes = []

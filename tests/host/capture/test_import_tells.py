@@ -354,3 +354,48 @@ def test_a_columns_name(name, sensor, axis, unit):
     "motionUserAccelerationX(G)", "axisP[0]", "debug[0]", "status", "max"])
 def test_a_name_that_is_no_reading(name):
     assert column_names.column(name) is None
+
+
+def of_day(k):
+    return "12:00:%02d.%03d -> " % divmod(10 * k, 1000)
+
+
+@pytest.mark.parametrize("label,between", [("%s:%d", ","), ("%s=%d", " "), ("%s: %d", "\t")])
+def test_values_with_their_names_before_them_as_a_plotter_wants_them(
+        tmp_path, capsys, label, between):
+    rows = [between.join(label % pair for pair in zip(NAMES.split(","), (*a, *w)))
+            for a, w in zip(COUNTS, GYRO)]
+    capture, said = imported(tmp_path, capsys, "MPU6050 found\n" + "\n".join(rows) + "\n",
+                             "--rate", "100", "--gyro-lsb", "131")
+    assert (capture.accel == COUNTS).all() and (capture.gyro == GYRO).all()
+    assert "each value has its name before it" in said
+
+
+@pytest.mark.parametrize("head", ["", of_day(0) + NAMES + "\n"])
+def test_the_time_of_day_of_a_serial_monitor_is_the_time(tmp_path, capsys, head):
+    rows = [of_day(k) + one for k, one in enumerate(lines(np.hstack([COUNTS, GYRO])))]
+    capture, said = imported(tmp_path, capsys, head + "\n".join(rows) + "\n",
+                             "--gyro-lsb", "131", *(() if head else ("--columns", NAMES)))
+    assert (capture.accel == COUNTS).all()
+    assert capture.meta["rate_hz"] == pytest.approx(100.0)
+    assert "each line begins with the time of day" in said
+
+
+def test_the_boards_own_time_is_better_than_when_its_line_came(tmp_path, capsys):
+    rows = [of_day(k // 50 * 50) + "t_ms:%d ax:%d ay:%d az:%d" % (20 * k, *a)
+            for k, a in enumerate(COUNTS)]
+    capture, _ = imported(tmp_path, capsys, "\n".join(rows) + "\n")
+    assert capture.meta["rate_hz"] == pytest.approx(50.0)
+
+
+def test_a_line_of_labels_that_is_not_like_the_others_is_refused(tmp_path, capsys):
+    rows = ["ax:%d,ay:%d,az:%d" % tuple(a) for a in COUNTS]
+    rows[300] = "ax:5,az:7"
+    said = refused(tmp_path, capsys, "\n".join(rows), "--rate", "100")
+    assert "in.csv line 301: 2 values, expected 3" in said
+
+
+def test_a_time_that_is_none_is_refused_with_what_was_expected(tmp_path, capsys):
+    rows = ["12h%03d,%s" % (k, one) for k, one in enumerate(lines(COUNTS))]
+    said = refused(tmp_path, capsys, "time,ax,ay,az\n" + "\n".join(rows) + "\n")
+    assert "the column time begins with \"12h000\", expected a number or ISO 8601" in said

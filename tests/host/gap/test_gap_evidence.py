@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 from scipy import linalg, stats
 
-from sixflip_host.diagnosis import cutoffs, evidence, hypotheses, posterior
+from sixflip_host.diagnosis import cutoffs, evidence, hypotheses, moves_unit, posterior
 from sixflip_host.diagnosis.evidence import NONE, Columns, Levels
 from sixflip_host.experiment import covariance, linear_model
 from sixflip_host.experiment.nominal_rows import Rows
@@ -137,3 +137,52 @@ def test_what_coefficients_explain_is_the_same_by_one_factor_and_by_two():
     twice, same = evidence.known(gram, np.repeat(inner, 2, 2), np.repeat(quadratic, 2, 1))
     assert twice[:, :1] == pytest.approx(left, rel=1e-12)
     assert same == pytest.approx(logdet, rel=1e-12)
+
+
+def moves(generator, lag):
+    """Two sessions of 12 moves. A lag changes the first column by `lag` in each move, beside
+    noise of 1; in two moves something large follows the second column, a rate, by chance."""
+    units = []
+    for _ in range(2):
+        inner = generator.standard_normal((12, 2))
+        inner[:2, 1] += 25.0 * generator.choice([-1.0, 1.0], 2)
+        left = inner.copy()
+        inner[:, 0] += lag
+        prior = np.array([30.0, 30.0])
+        designs = [Design(*names, [key], (0,), np.zeros((0, 1)), prior[:1]) for *names, key in (
+            ("filter_lag", "", "tau"), ("motion", "rates", "x0"))]
+        units.append(moves_unit.MovesUnit(
+            np.tile(np.eye(2), (12, 1, 1)), inner, left, np.arange(2), np.zeros(0, int), prior,
+            np.ones(2), designs))
+    return units
+
+
+def costs_of_moves(units):
+    forms = hypotheses.of(units, drift=False)
+    return forms, cutoffs.Cutoffs(0.0, 0.06, own=cutoffs.of_each(
+        units, forms, moves_unit.NO_LEVELS, [0, 0]))
+
+
+def test_what_one_form_gains_by_chance_does_not_hide_another():
+    units = moves(np.random.default_rng(3), 1.5)
+    forms, cost = costs_of_moves(units)
+    model = posterior.Model(units, [u.statistics() for u in units], moves_unit.NO_LEVELS)
+    lag, rate = (cost.own[f] for f in forms)
+    assert lag < 15.0 < 4.0 * lag < rate
+    assert cutoffs.simulated(units, forms, moves_unit.NO_LEVELS, [0, 0]) > 4.0 * lag
+    found = posterior.search(model, forms, cost)
+    assert found.best.names == {"filter_lag"}
+    assert found.places["filter_lag"]["filter_lag"] > 0.99
+
+
+def test_costs_of_each_form_keep_the_chance_of_any():
+    """The signs are drawn by a generator that the costs have not seen."""
+    units = moves(np.random.default_rng(3), 1.5)
+    forms, cost = costs_of_moves(units)
+    generator = np.random.default_rng(99)
+    wrong = 0
+    for _ in range(200):
+        drawn = [u.statistics(u.draw(0, generator, 1)) for u in units]
+        model = posterior.Model(units, drawn, moves_unit.NO_LEVELS)
+        wrong += bool(posterior.search(model, forms, cost).best.forms)
+    assert wrong <= 4  # a chance of 0.5 % each

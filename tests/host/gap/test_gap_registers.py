@@ -4,9 +4,10 @@ import pytest
 
 from sixflip_host.capture import capture_file
 from sixflip_host.capture import registers as counts
-from sixflip_host.diagnosis import diagnosis
-from sixflip_host.diagnosis.detect import integrity, noise_bursts, torn_reads
+from sixflip_host.diagnosis import answer, diagnosis
+from sixflip_host.diagnosis.detect import integrity, noise_bursts, saturation, torn_reads
 from sixflip_host.experiment import blocks
+from sixflip_host.present import gap_words
 from sixflip_host.simulation import scenario, simulated_session
 
 
@@ -32,6 +33,20 @@ def test_rests_cut_off_at_a_rail_tell_of_the_rail_only():
     one = found.findings[0]
     assert one.unit == "counts" and set(one.value.values()) == {16330}
     assert "cut off at 16330 counts (0.9967 g), below the rail of 2 g" in one.words
+    said = answer.of(found)
+    cause, = said["causes"]
+    assert cause["effect"] == "saturation"  # the library's name of any level that cuts off
+    assert cause["cut_off_at"] == dict.fromkeys(cause["axes"], "below_range")
+    assert "is cut off below its range" in gap_words.sentence(said)
+
+
+def test_a_rail_of_the_chip_is_its_range():
+    two = captures()
+    for capture in two:
+        capture.accel = np.clip(capture.accel.astype(int) * 2, -32768, 32767).astype(np.int16)
+    found, = saturation.saturation([blocks.of(str(k), c) for k, c in enumerate(two)], "accel",
+                                   [c.accel for c in two])
+    assert set(found.limits.values()) == {"range"}
 
 
 def test_coarse_steps_are_no_bend():

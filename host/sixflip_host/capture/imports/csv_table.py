@@ -14,7 +14,7 @@ import numpy as np
 from ...errors import BadFile
 from ..capture_rows import quoted
 from ..unpack import Source
-from . import csv_head, text_lines, wall_clock
+from . import csv_head, serial_monitor, text_lines, wall_clock
 from .csv_head import COMMENT, all_numbers, cells_of
 
 DECIMAL_COMMA = re.compile(r"(^|[;\t ])[+-]?\d+,\d+([eE][+-]?\d+)?($|[;\t ])")
@@ -41,7 +41,8 @@ class Table:
 
     units = {}
 
-    def __init__(self, path, source, names, width, separator, first, preamble=(), comma=False):
+    def __init__(self, path, source, names, width, separator, first, preamble=(), comma=False,
+                 dress=None):
         self.path = path
         self.names = names
         self.width = width
@@ -51,6 +52,7 @@ class Table:
         self._separator = separator
         self._first = first             # lines before the rows
         self._comma = comma             # decimals are behind a comma
+        self._dress = dress             # serial_monitor.Dress, or None
 
     def index(self, column):
         """Position of a column given by name or, counted from 1, by number."""
@@ -117,6 +119,9 @@ class Table:
                 self._pass_over("NUL bytes",
                                 sum("\0" in one for one in text.split("\n")))
                 text = text.replace("\0", "")
+            if self._dress is not None:
+                text = self._dress.plain(text)
+                self.said.update(dict.fromkeys(self._dress.said, True))
             yield line, self._decimal(text)
 
     def _decimal(self, text):
@@ -217,6 +222,13 @@ def read_table(path, delimiter="auto", skip=None, names=None, is_header=None):
     """
     source = Source(path)
     lines = csv_head.first_lines(path, source, (skip or 0) + csv_head.SEARCH)
+    dress = serial_monitor.told(lines[skip or 0:])
+    if dress is not None:
+        lines = dress.plain("\n".join(lines)).split("\n")
+        names = dress.columns(names)
+        delimiter = dress.separator if dress.separator != " " else "blank"
+        if dress.names:
+            skip = (skip or 0) + dress.first
     head, first, separator = csv_head.find(path, lines, delimiter, skip, is_header)
     found = None if head is None else cells_of(lines[head].lstrip("#"), separator)
     names = names or found
@@ -224,4 +236,4 @@ def read_table(path, delimiter="auto", skip=None, names=None, is_header=None):
                 and not text.startswith(COMMENT)), "")
     width = len(names) if names else len(cells_of(row, separator))
     comma = separator != "," and bool(DECIMAL_COMMA.search(row))
-    return Table(path, source, names, width, separator, first, lines[:head or 0], comma)
+    return Table(path, source, names, width, separator, first, lines[:head or 0], comma, dress)

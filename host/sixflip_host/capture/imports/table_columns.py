@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 from ...errors import BadFile, UsageError
 from ..capture_header import ACCEL, GYRO, MAG
-from . import column_names, csv_mapping
+from ..capture_rows import quoted
+from . import column_names, csv_mapping, wall_clock
 
 
 class Readings(NamedTuple):
@@ -66,8 +67,9 @@ def _no_column(table, absent):
 
 
 def times(options, table, taken):
-    """Times of a table; taken: the columns of its readings. UsageError where there are none and
-    nobody says a rate."""
+    """Times of a table; taken: the columns of its readings. Where nobody says a rate, UsageError
+    where there is no column of that name, BadFile where what is in it is no time."""
+    unread = []
     if options.time_column:
         table.index(options.time_column)
         return Times((options.time_column,), _unit_of_stamps(options, table, options.time_column),
@@ -83,10 +85,15 @@ def times(options, table, taken):
             if options.rate is not None and options.time_unit is None and not unit:
                 return Times(None, unit, None, ())      # the rate was said, and no more
             return Times(pair, unit, None, ("times are in the column %s" % " and ".join(pair),))
+        unread += [one for one in pair if not table.holds_numbers(one)]
     stated = getattr(table, "rate_hz", None)
     if options.rate is None and stated is not None:
         return Times(None, "", stated, ("%g Hz, as the file says" % stated,))
     if options.rate is None:
+        if unread:
+            raise BadFile("%s: the column %s begins with %s, expected a number or %s; or --rate HZ"
+                          % (table.path, unread[0], quoted(table.first_cell(unread[0])),
+                             wall_clock.EXPECTED))
         raise UsageError("%s: no column of times was recognised, expected --rate HZ, or "
                          "--time-column with one of %s" % (table.path, " ".join(
                              table.names or ["1 to %d" % table.width])))

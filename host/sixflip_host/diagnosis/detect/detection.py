@@ -10,6 +10,8 @@ from scipy import special
 
 from .. import odds
 
+RANGE, BELOW = "range", "below_range"  # where readings are cut off: at the chip's limit or not
+
 
 @dataclass(frozen=True, eq=False)
 class Finding:
@@ -20,7 +22,7 @@ class Finding:
     tell how well the share is known; place: {name: probability} of what stands here, "" nothing,
     by the score where it is not given; hz: {axis: frequency of a steady line};
     lines: the line_frequency.Line of each axis; read (3, 3): what is true as swapped axes read
-    it."""
+    it; limits: {axis: RANGE or BELOW} of what is cut off."""
 
     effect: str
     sensor: str
@@ -39,6 +41,7 @@ class Finding:
     hz: dict = field(default_factory=dict)
     lines: tuple = ()
     read: object = None
+    limits: dict = field(default_factory=dict)
 
     def __post_init__(self):
         if self.place is None:

@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from ...capture.registers import RAIL, steps
-from .detection import Finding, present
+from .detection import BELOW, RANGE, Finding, present
 
 RAIL_CODES = 4  # the last codes of a range: scales that are rounded end a few short of 2^15
 SPREAD_SHARE = 0.02  # of the span of the readings, just inside their largest one
@@ -16,7 +16,7 @@ SPREAD_SHARE = 0.02  # of the span of the readings, just inside their largest on
 
 def saturation(sessions, sensor, columns):
     """Samples on a rail, or many that share the largest value and few near it."""
-    value, words, score, ends = {}, {}, 0.0, []
+    value, words, limits, score, ends = {}, {}, {}, 0.0, []
     for i in range(3):
         for session, counts in zip(sessions, columns):
             x = counts[:, i].astype(np.int64)
@@ -36,12 +36,14 @@ def saturation(sessions, sensor, columns):
                 ends.append(peaks(*level))
                 score += nats
                 words.setdefault("xyz"[i], said)
+                limits.setdefault("xyz"[i], RANGE if on_rail.any() else BELOW)
     if not value:
         return []
     return [Finding("saturation", sensor, sorted(value), value, "counts", score, "amplitude",
                     "; ".join(words[axis] for axis in sorted(words)),
                     {k: (v, v) for k, v in value.items()},
-                    share=float(np.sum(ends, axis=0)[0] / np.sum(ends)), number=int(np.sum(ends)))]
+                    share=float(np.sum(ends, axis=0)[0] / np.sum(ends)), number=int(np.sum(ends)),
+                    limits=limits)]
 
 
 def _below(session, sensor, axis, level):
