@@ -32,12 +32,15 @@ UNIT_OF_TIME = {"s": "s", "sec": "s", "secs": "s", "second": "s", "seconds": "s"
                 "usec": "us", "micros": "us", "microseconds": "us", "ns": "ns", "nsec": "ns",
                 "nanos": "ns", "nanoseconds": "ns"}
 UNIT = {"m/s2": "m/s2", "m/s^2": "m/s2", "m/s²": "m/s2", "m/s/s": "m/s2", "ms-2": "m/s2",
+        "m/(s^2)": "m/s2",
         "m/sec2": "m/s2", "m/sec^2": "m/s2", "mps2": "m/s2", "m_s2": "m/s2", "ms2": "m/s2",
         "g": "g", "mg": "mg", "rad/s": "rad/s", "rad/sec": "rad/s", "rads": "rad/s",
         "rad": "rad/s", "deg/s": "dps", "°/s": "dps", "deg/sec": "dps", "dps": "dps",
         "rad s^-1": "rad/s", "m s^-2": "m/s2", "mdps": "mdps",
         "radps": "rad/s", "m/s 2": "m/s2",
         "lsb": "counts", "counts": "counts", "raw": "counts"}
+DEGREES = {"c": ("c", "°c", "degc", "deg c", "celsius", "centigrade"),
+           "f": ("f", "°f", "degf", "deg f", "fahrenheit"), "k": ("k", "kelvin")}
 KINDS = {ACCEL: ("g", "mg", "m/s2", "counts"), GYRO: ("rad/s", "dps", "mdps", "counts")}
 
 
@@ -59,7 +62,9 @@ def column(name):
     if not words or set(words) & DERIVED:
         return None
     if _is_temperature(words):
-        return Column(TEMP, "", "c" if words[-1] in ("c", "degc", "celsius") else unit, "")
+        said = unit.lower() or (words[-1] if len(words) > 1 else "")
+        return Column(TEMP, "", next((one for one, names in DEGREES.items() if said in names), ""),
+                      "")
     found = _fused(words) or _apart(words)
     if found is None:
         return None
@@ -198,10 +203,20 @@ def _axes(axes):
     return None
 
 
+def with_units(names, below):
+    """names with the units that stand in the line below them, or None where those are none."""
+    known = {*UNIT, *UNIT_OF_TIME, *(one for some in DEGREES.values() for one in some)}
+    units = [cell.strip().lower() for cell in below]
+    if len(below) != len(names) or sum(unit in known for unit in units) < 3:
+        return None
+    return [name if not unit or _without_unit(name)[1] else "%s [%s]" % (name, unit)
+            for name, unit in zip(names, units)]
+
+
 def looks_like_header(names):
     """True for a line of names that has all three axes of an accelerometer or a gyro."""
     found = readings(names)[0]
-    return "ax" in found or "gx" in found
+    return any({sensor + axis for axis in "xyz"} <= set(found) for sensor in (ACCEL, GYRO))
 
 
 def times(names):
@@ -216,7 +231,8 @@ def times(names):
         said = [UNIT_OF_TIME[word] for word in words if word in UNIT_OF_TIME]
         if set(words) & TIMES:
             unit = unit or (said[-1] if said and words[-1] in UNIT_OF_TIME else "")
-            rank = 0 if "stamp" in words and "header" in words else 3 if "date" in words else 1
+            rank = 0 if "stamp" in words and "header" in words else 3 if "date" in words \
+                else 4 if bare == "T" else 1  # a T alone is as often a temperature
             found.append((rank, name, unit))
         elif words[0] in UNIT_OF_TIME and len(words) == 1 and len(words[0]) > 1:
             found.append((2, name, UNIT_OF_TIME[words[0]]))

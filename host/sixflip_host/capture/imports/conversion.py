@@ -69,7 +69,6 @@ class Conversion:
         self._sizes = {group: units.Sizes() for group in (ACCEL, GYRO) if group in groups}
         times = Growing(float)
         self._lines, self._label_number, self._label_of = [], Growing(np.int32), {}
-        last = -np.inf
         rows = 0
         for block in self.table.blocks(names, self.options.label_column):
             at = 0
@@ -85,9 +84,6 @@ class Conversion:
                 stamps = block.values[:, at]
                 if len(self.time) == 2:     # seconds and nanoseconds
                     stamps = self._whole_seconds(stamps) + 1e-9 * block.values[:, at + 1]
-                if not self.options.sort:
-                    self._forwards(block.lines, stamps, last)
-                last = stamps[-1]
                 times.add(stamps)
             if block.labels is not None:
                 self._label_number.add([self._label_of.setdefault(one, len(self._label_of))
@@ -111,13 +107,14 @@ class Conversion:
                 self.table.path, _what(group), np.abs(values).max(), units.LARGEST))
         return values
 
-    def _forwards(self, lines, times, last):
+    def _forwards(self, times):
         """BadFile for the first time that is before the one before it."""
-        steps = np.diff(times, prepend=last)
-        if (steps < 0).any():
-            row = int(np.argmax(steps < 0))
-            raise BadFile.at(self.table.path, lines[row], "%s runs backwards, from %.17g to %.17g"
-                             % (" and ".join(self.time), times[row] - steps[row], times[row]),
+        back = np.diff(times) < 0
+        if back.any():
+            row = int(np.argmax(back)) + 1
+            raise BadFile.at(self.table.path, self.line_of(row),
+                             "%s runs backwards, from %.17g to %.17g" % (
+                                 " and ".join(self.time), times[row - 1], times[row]),
                              "increasing times (or --sort)")
 
     def line_of(self, row):
@@ -138,7 +135,13 @@ class Conversion:
             return np.rint(np.arange(self.rows) * (1e6 / options.rate)).astype(np.int64), None
         name = " and ".join(self.time)
         order = None
-        if options.sort:
+        times, anew, size = time_stamps.unwrapped(times)
+        if len(anew):
+            self.assumed.append("%s begins anew at %.10g, first in line %d: it goes on there" % (
+                name, size, self.line_of(int(anew[0]))))
+        if not options.sort:
+            self._forwards(times)
+        else:
             order, moved, farthest = time_stamps.sorted_order(times)
             if order is not None:
                 times = times[order]
@@ -147,6 +150,8 @@ class Conversion:
         unit = options.time_unit or ("s" if len(self.time) == 2 else self._named_time_unit)
         if not unit:
             unit, words = time_stamps.unit_of(self.table.path, name, times, celsius)
+            time_stamps.check_stated(self.table.path, words, times, unit,
+                                     getattr(self.table, "rate_hz", None))
             self.assumed.append(words)
         scale = 1e6 / options.rate if unit == "samples" else column_names.TIME_UNITS[unit]
         time_stamps.check_stretch(

@@ -14,7 +14,7 @@ import numpy as np
 from ...errors import BadFile
 from ..capture_rows import quoted
 from ..unpack import Source
-from . import csv_head, serial_monitor, text_lines, wall_clock
+from . import column_names, csv_head, serial_monitor, text_lines, wall_clock
 from .csv_head import COMMENT, all_numbers, cells_of
 
 DECIMAL_COMMA = re.compile(r"(^|[;\t ])[+-]?\d+,\d+([eE][+-]?\d+)?($|[;\t ])")
@@ -231,6 +231,10 @@ def read_table(path, delimiter="auto", skip=None, names=None, is_header=None):
             skip = (skip or 0) + dress.first
     head, first, separator = csv_head.find(path, lines, delimiter, skip, is_header)
     found = None if head is None else cells_of(lines[head].lstrip("#"), separator)
+    told = head is not None and first < len(lines) and column_names.with_units(
+        found, cells_of(lines[first], separator))
+    if told:
+        found, first = told, first + 1
     names = names or found
     row = next((text for text in lines[first:] if text.strip()
                 and not text.startswith(COMMENT)), "")

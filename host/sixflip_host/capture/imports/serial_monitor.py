@@ -1,7 +1,8 @@
 """What a serial monitor and a plotter put around a board's numbers, taken off again.
 
 Arduino's monitor writes the time of day a line came at before it (`12:00:00.000 -> 1,2,3`); its
-plotter wants a name before each value (`ax:4,ay:-4`), and others print `ax=4 ay=-4`.
+plotter wants a name before each value (`ax:4,ay:-4`); others print `ax=4 ay=-4`, or a line of
+JSON with such pairs.
 """
 
 import collections
@@ -11,7 +12,8 @@ from dataclasses import dataclass
 STAMPED = re.compile(r"\s*(\d\d:\d\d:\d\d(?:[.,]\d+)?)\s*->\s?")
 NAME = r"[A-Za-z_°][\w °/²^.()\[\]]*?"
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-LABELLED = re.compile(r"\s*(%s)\s*[:=]\s*(%s)\s*(?:[,;\t ]\s*|\Z)" % (NAME, NUMBER))
+LABELLED = re.compile(r"\s*\"?(%s)\"?\s*[:=]\s*(%s)\s*(?:[,;\t ]\s*|\Z)" % (NAME, NUMBER))
+JSON = re.compile(r"\s*\{(.*)\}\s*\Z")
 NUMBER_FIRST = re.compile(r"\s*\"?%s\s*\"?(?:[,;\t ]|\Z)" % NUMBER)
 ARRIVED = "arrival_date"  # the column of the monitor's times: a board's own are better
 
@@ -91,6 +93,7 @@ def _separator(rests):
 
 def _labelled(text):
     """[(name, value)] of a line of labelled values, [] of any other."""
+    text = JSON.sub(r"\1", text)
     found, place, end = [], 0, len(text.rstrip())
     while place < end:
         match = LABELLED.match(text, place)

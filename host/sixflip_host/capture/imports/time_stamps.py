@@ -13,6 +13,9 @@ POSSIBLE_HZ = (0.5, 8000.0)
 MOST_C_PER_S = 10.0             # no chip's temperature changes faster
 LATEST_US = 1e16                # three centuries: what times in the wrong unit pass
 FAR_ROWS = 3                    # so few rows behind a gap that is longer than all the rest
+COUNTERS = (2.0 ** 16, 2.0 ** 24, 2.0 ** 32, 86400.0)  # of 16 to 32 bits; seconds of a day
+LONGEST_STEPS = 50.0            # usual intervals that may be missing where a counter begins anew
+TIMES_STATED = 2.0              # a rate that was set may be that far off, rows left out
 SPAN = 20                       # rows over which intervals are averaged
 
 
@@ -48,6 +51,15 @@ def unit_of(path, column, times, celsius=None):
     return likely[0], "%s taken as %s: %.4g Hz" % (column, likely[0], rates[likely[0]])
 
 
+def check_stated(path, words, times, unit, stated):
+    """BadFile where the rate in a unit that was told is far from the one that the file states
+    (Hz, or None)."""
+    rate = 1e6 / (_usual(times) * TIME_UNITS[unit])
+    if stated is not None and not _within(rate / stated, 1.0 / TIMES_STATED, TIMES_STATED):
+        raise BadFile("%s: %s, but the file says %.6g Hz, expected --time-unit, or --rate HZ" % (
+            path, words, stated))
+
+
 def _within(value, low, high):
     return low <= value <= high
 
@@ -65,6 +77,24 @@ def _warming(times, celsius, unit):
     edges = np.linspace(0, len(times) - 1, 11).astype(int)
     seconds = np.diff(times[edges]) * TIME_UNITS[unit] / 1e6
     return float(np.max(np.abs(np.diff(celsius[edges])) / np.maximum(seconds, 1e-12)))
+
+
+def unwrapped(times):
+    """(times that go on where a counter began anew, numbers of the rows that it did at, its size
+    or 0). A counter is as wide as its values say, or a day of seconds long: it begins anew where
+    one step back is no longer than usual once its size is added."""
+    back = np.flatnonzero(np.diff(times) < 0.0) + 1
+    usual = _usual(times)
+    if not len(back) or not usual > 0.0:
+        return times, back[:0], 0.0
+    for size in COUNTERS:
+        steps = times[back] - times[back - 1] + size
+        if times.min() >= 0.0 and times.max() < size and (
+                (steps >= 0.0) & (steps <= LONGEST_STEPS * usual)).all():
+            turns = np.zeros(len(times))
+            turns[back] = size
+            return times + np.cumsum(turns), back, size
+    return times, back[:0], 0.0
 
 
 def sorted_order(times):
