@@ -23,7 +23,8 @@ PRESETS = {
     "phyphox": "a CSV of phyphox",
 }
 STATED_RATE = re.compile(
-    r"[#/%\"\s]*(fs|sample[ _]?rate|sampling[ _]rate|update[ _]rate|rate|odr)( ?[\[(]?hz[\])]?)?\"?"
+    r"[#/%\"\s]*(fs|sample[ _]?rate|sampling[ _]rate|update[ _]rate|rate|odr)"
+    r"( ?[\[(]?hz[\])]?)?\"?"
     r"\s*[,:=;]\s*\"?(\d+(\.\d+)?)( ?hz)?\"?\s*\Z", re.IGNORECASE)
 BETAFLIGHT = re.compile(r"gyroADC\[0\]|gyroUnfilt\[0\]")
 SI = {"a": "m/s2", "g": "rad/s"}
