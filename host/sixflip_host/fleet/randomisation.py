@@ -11,6 +11,8 @@ from . import parameters
 
 NAMES = {"numpy": "imu_numpy.py", "mujoco": "imu_mujoco.py", "isaaclab": "imu_isaaclab.py"}
 EFFECTS = ("accel.thermal_bias", "gyro.thermal_bias", "gyro.g_sensitivity")
+# What a form has no place for: Isaac Lab's noise models see no temperature.
+NO_PLACE = {"isaaclab": ("accel.thermal_bias", "gyro.thermal_bias")}
 
 CORE = '''"""%(title)s
 %(about)s
@@ -19,6 +21,7 @@ import json
 
 import numpy as np
 
+CANNOT_EXPRESS = %(cannot)s
 G = 9.80665
 REFERENCE_C = 25.0
 # Of each block the names of its parameters, their mean and covariance over the batch.
@@ -99,14 +102,16 @@ class Imu:
 
 MUJOCO = '''
 
-def apply(imu, model, data, dt, accelerometer="imu_accelerometer", gyro="imu_gyro"):
+def apply(imu, model, data, dt, accelerometer="imu_accelerometer", gyro="imu_gyro",
+          temperature=REFERENCE_C):
     """Put what a part reads into data.sensordata, after mj_step: sensors by their names in the
-    model; imu: an Imu(1), redrawn at each reset."""
+    model; imu: an Imu(1), redrawn at each reset; temperature: of the sensor, degC."""
     places = []
     for name in (accelerometer, gyro):
         first = int(model.sensor(name).adr[0])
         places.append(slice(first, first + 3))
-    read = imu.read(data.sensordata[places[0]], data.sensordata[places[1]], dt)
+    read = imu.read(data.sensordata[places[0]], data.sensordata[places[1]], dt,
+                    temperature)
     for place, values in zip(places, read):
         data.sensordata[place] = values[0]
 '''
@@ -163,10 +168,27 @@ def files(members, batches):
     batch = pooled(batches)
     about = "%s, %d boards. Drawn are %s." % (
         members.spelled(), len(members.boards), ", ".join(sorted(batch)))
-    core = CORE % {"title": "Parts of a batch, drawn: written by sixflip fleet --randomise.",
-                   "about": "\n" + about, "batch": json.dumps(batch, indent=1)}
-    return {NAMES["numpy"]: core, NAMES["mujoco"]: core + MUJOCO,
-            NAMES["isaaclab"]: core + ISAACLAB}
+    missing = cannot_express(batches)
+    ends = {"numpy": "", "mujoco": MUJOCO, "isaaclab": ISAACLAB}
+    found = {}
+    for form, name in NAMES.items():
+        without = "\nThis form cannot express: %s." % ", ".join(missing[name])
+        found[name] = CORE % {
+            "title": "Parts of a batch, drawn: written by sixflip fleet --randomise.",
+            "about": "\n" + about + (without if missing[name] else ""),
+            "cannot": json.dumps(missing[name]), "batch": json.dumps(batch, indent=1)} + ends[form]
+    return found
+
+
+def cannot_express(batches):
+    """{name of the file: [effect in words]}: what the boards have, all of them or each its own,
+    and a form does not apply."""
+    has = dict.fromkeys(p.name.rpartition(".")[0] for b in batches for p in b.parameters
+                        if "." in p.name and p.kind != "neither")
+    return {name: ["%s of the %s" % (effect, sensor)
+                   for sensor, effect in (one.split(".") for one in has
+                                          if one not in EFFECTS or one in NO_PLACE.get(form, ()))]
+            for form, name in NAMES.items()}
 
 
 def pooled(batches):

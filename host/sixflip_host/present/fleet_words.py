@@ -21,6 +21,13 @@ def show(found, output, page):
                               ", " + os.path.join(output, page) if page else "")))
 
 
+def cannot_express(missing):
+    """What each form of the randomisation leaves out: {file: [effect]}."""
+    for name, effects in missing.items():
+        if effects:
+            console().print(plain("%s cannot express: %s" % (name, ", ".join(effects))))
+
+
 def kind_of(group):
     """Chip and ranges in words."""
     words = [group["chip"]]

@@ -81,6 +81,8 @@ def run(args):
     else:
         from ..present import fleet_words
         fleet_words.show(found, args.output, args.report and PAGE_NAME)
+        if args.randomise and kinds:
+            fleet_words.cannot_express(randomisation.cannot_express(kinds[0][1]))
     if not kinds:
         raise BadFile("%s: no board of it could be solved" % args.boards)
     return 0

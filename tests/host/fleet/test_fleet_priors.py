@@ -1,5 +1,6 @@
 """The population as what plan and diagnose expect of the next board, and as simulated parts."""
 import json
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -168,3 +169,16 @@ def test_isaac_lab_s_form_redraws_the_environments_that_are_reset(batch, monkeyp
     assert np.array_equal(pull[[0, 2]], imu.imu.pull[[0, 2]])
     assert np.array_equal(np.any(before != after, axis=1), [False, True, False, True])
     assert imu.gyro(still, still).shape == (4, 3)
+
+
+def test_what_a_form_cannot_express_is_in_its_list(batch):
+    _, batches = batch
+    files = randomisation.files(*batch)
+    missing = {name: run(text)["CANNOT_EXPRESS"] for name, text in files.items()}
+    assert missing["imu_isaaclab.py"] == ["thermal_bias of the accel", "thermal_bias of the gyro"]
+    assert missing["imu_numpy.py"] == missing["imu_mujoco.py"] == []
+    assert "This form cannot express: thermal_bias of the accel, " in files["imu_isaaclab.py"]
+    first, = batches
+    creeping = replace(first, parameters=[
+        *first.parameters, replace(first.parameters[-1], name="accel.creep.x", kind="batch")])
+    assert randomisation.cannot_express([creeping])["imu_numpy.py"] == ["creep of the accel"]
