@@ -1,5 +1,6 @@
 """The cases of a study through the scheduler of `sixflip fleet`: on the cores of this computer, or
 on a Dask cluster that somebody runs, whose workers were started in this folder too."""
+import importlib
 import sys
 import time
 import traceback
@@ -56,6 +57,12 @@ def done(work, cases, where, what, minutes=0.0, take=None):
         cluster.run(client, given(), taken, where, cluster.Task(_asked, _failed, work, 1, "cases"),
                     len(cases))
     return [found[number] for number in sorted(found)]
+
+
+def main_of(name):
+    """main() of a study that was started by its name: of the module that workers import, too,
+    which __main__ is not."""
+    return importlib.import_module(name).main()
 
 
 class CaseFailed(Exception):

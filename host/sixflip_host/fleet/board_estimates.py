@@ -1,5 +1,6 @@
 """What the batch and a board's own captures say of each board together, as a Parquet file: a row
 a board, of every parameter the shrunk estimate and its standard deviation (`NAME_sigma`)."""
+import contextlib
 import os
 
 import numpy as np
@@ -31,7 +32,10 @@ def write(folder, kinds):
                             _columns(them, batch, cut, names), schema=schema))
         os.replace(path + ".part", path)
     except OSError as error:
-        raise BadFile("%s: cannot be written: %s" % (path, error.strerror or error)) from None
+        with contextlib.suppress(OSError):
+            os.unlink(path + ".part")
+        why = os.strerror(error.errno) if error.errno else str(error)  # Arrow says it at length
+        raise BadFile("%s: cannot be written: %s" % (path, why)) from None
 
 
 def _columns(them, batch, cut, names):

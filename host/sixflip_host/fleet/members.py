@@ -18,8 +18,8 @@ FEWEST_PAIRS = 8  # boards with two sessions that a repeatability is taken from
 MEDIAN_OF_CHI2 = 0.4549  # of one degree of freedom
 TOLD_APART = 0.1  # share of an effect's information that those before it must leave, as aliases
 # Boards over which errors average out. What a protocol's own approximations leave, such as the
-# second order of a leaning table, is the same in all of them: in 10,000 simulated boards
-# (`make bench-fleet BOARDS=10000`) it was four standard deviations of a single one's cubic.
+# second order of a leaning table, is the same in all of them: in 10,000 boards of
+# tests/worlds/simulated_fleet.py it was four standard deviations of a single one's cubic.
 AVERAGED = 200
 TIMES_TYPICAL = 1000.0  # of an effect's size: what is not seen at all is known no better
 

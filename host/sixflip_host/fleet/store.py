@@ -72,6 +72,6 @@ class _one_sentence:
 
     def __exit__(self, kind, error, trace):
         if isinstance(error, OSError):
-            raise BadFile("%s: cannot be written: %s; the population needs about 6 kB a board "
+            raise BadFile("%s: cannot be written: %s; the population needs about 4 kB a board "
                           "there, TMPDIR names another folder" % (
                               tempfile.gettempdir(), error.strerror)) from None

@@ -42,12 +42,14 @@ def _group(out, group):
         kind_of(group), group["boards"], "" if group["boards"] == 1 else "s")), "bold"))
     for batch in group["batches"]:
         name = "batch %s, " % batch["batch"] if batch["batch"] else ""
+        if not batch["parameters"]:
+            out.print(plain("%stoo few boards for a population: %d, expected three at least" % (
+                name, batch["boards"])))
+            continue
         rows = [[p["name"], number(p["mean"]) + " ± " + number(p["error"]), number(p["spread"]),
                  p["unit"], word(p)] for p in batch["parameters"] if told(p)]
         out.print(table("%s%d boards: mean, and spread between boards" % (name, batch["boards"]),
                         ["parameter", "mean", "spread", "", "it is"], rows))
-        if not batch["parameters"]:
-            out.print(plain("too few boards for a population: three at least"))
         loud = {p["name"].rpartition(".")[0] for p in batch["parameters"] if told(p)}
         quiet = dict.fromkeys(p["name"].rpartition(".")[0] for p in batch["parameters"]
                               if p["name"].rpartition(".")[0] not in loud)

@@ -130,7 +130,7 @@ def main():
     parser.add_argument("--raw", action="store_true", help="solve every board from its sessions")
     args = parser.parse_args()
     errors = None if args.raw else drawn_fleet.Errors(np.random.default_rng((args.seed, 10 ** 6)))
-    right = found = false = 0
+    right = found = false = several = 0
     for k in range(args.fleets):
         one = fleet(np.random.default_rng((args.seed, k)), args.boards, errors)
         good, wrong, named = judged(one.rows, one.truth)
@@ -138,13 +138,14 @@ def main():
         found += one.bad in named
         others = [name for name in named if name != one.bad]
         false += len(others)
+        several += len(others) > 1
         print("fleet %2d: %s; bad board (%s) %s, %d sound ones named" % (
             k, "right" if good else "; ".join(wrong), one.defect,
             "found" if one.bad in named else "missed", len(others)), flush=True)
     print("batch told from individual in %s fleets of %d boards" % (
         share(right, args.fleets), args.boards))
-    print("the bad board found in %s; %.2f sound boards named a fleet" % (
-        share(found, args.fleets), false / args.fleets))
+    print("the bad board found in %s; %.2f sound boards named a fleet, more than one in %d" % (
+        share(found, args.fleets), false / args.fleets, several))
 
 
 if __name__ == "__main__":

@@ -155,4 +155,4 @@ def show(table, counts, healthy, simply, seconds):
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(cases.main_of(__spec__.name))

@@ -11,6 +11,7 @@ import json
 import sys
 from pathlib import Path
 
+from ... import cases
 from . import BASELINES
 
 PRODUCT = "sixflip diagnose"
@@ -113,7 +114,6 @@ def report(labels, outcomes):
 def main():
     from sixflip_host.fleet import cluster
 
-    from ... import cases
     from .. import seal
     folder = Path(sys.argv[1])
     outcomes = json.loads((folder / "answers.json").read_text())
@@ -128,4 +128,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(cases.main_of(__spec__.name))
