@@ -140,7 +140,7 @@ def obey_in_session(command, firmware, session, store, teller):
     elif cmd == "undo":
         firmware.events.error("nothing to undo", "an accepted pose")
     elif cmd == "record" and store.recorded:
-        store.header_again()
+        store.resend_header()
     else:
         obey(firmware, command, True)
 

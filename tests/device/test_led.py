@@ -24,7 +24,7 @@ class TestLamp(unittest.TestCase):
     def test_pattern_repeats(self):
         bulb = Bulb()
         lamp = led.Lamp(bulb, 8)
-        lamp.show(led.TAKEN)
+        lamp.show(led.ACCEPTED)
         self.assertEqual(self.shown(lamp, bulb, 32), "1010100000000000" * 2)
 
     def test_one_step_lasts_an_eighth_of_a_second(self):
@@ -43,7 +43,7 @@ class TestLamp(unittest.TestCase):
         self.assertEqual(self.shown(lamp, bulb, 32), "1010101010000000" + "1000000000000000")
 
     def test_patterns_differ(self):
-        patterns = [led.MEASURING, led.WAITING, led.SETTLING, led.CAPTURING, led.TAKEN,
+        patterns = [led.MEASURING, led.WAITING, led.SETTLING, led.CAPTURING, led.ACCEPTED,
                     led.REFUSED, led.CALIBRATED, led.RAW, led.NO_CHIP]
         self.assertEqual(len(set(patterns)), len(patterns))
         for pattern in patterns:

@@ -105,7 +105,6 @@ def test_simulator_plan_and_prior_have_one_and_the_same_figure(sensor):
                 datasheets.source(sensor, kind))
         sigma = worlds.usual_noise(sensor)[kind == "gyro"]
         assert typical.NOISE[chip][0] == (sigma,) * 3
-        assert typical.DENSITY[chip][0] == datasheets.figures(sensor, kind, "density")
         for effect in typical.SIZES:
             if kind in ("accel", "gyro") and "mpu6050-" + kind in typical.SIZES[effect]:
                 size, source = typical.size(effect, sensor, kind)

@@ -24,36 +24,47 @@ class Board:
     scl_pulse = None
 
     def reopen_i2c(self):
+        """A new bus object after the pins were driven by hand, kept as i2c too."""
         return self.i2c
 
     def stop_condition(self):
+        """SDA rises while SCL is high, after the pulses; nothing where pins are out of reach."""
         pass
 
     def led(self, on):
+        """Switches the LED; nothing without one."""
         pass
 
     def button(self):
+        """Whether the button is pressed; False without one."""
         return False
 
     def ticks_us(self):
+        """A clock in µs that may wrap around; only ticks_diff compares two of its readings."""
         return time.ticks_us()
 
     def ticks_diff(self, a, b):
+        """µs from b to a, across a wrap."""
         return time.ticks_diff(a, b)
 
     def sleep_us(self, us):
+        """Waits so many µs."""
         time.sleep_us(us)
 
     def read_line(self):
-        return None
+        """The host's next whole line without its newline, or None; never waits."""
+        return
 
     def write_line(self, text):
+        """Sends a line of text to the host."""
         print(text)
 
     def write_bytes(self, data):
+        """Sends bytes to the host as they are."""
         sys.stdout.buffer.write(data)
 
     def reset(self):
+        """Starts the board anew; a board that cannot goes on."""
         pass
 
 
@@ -71,6 +82,7 @@ class LineReader:
         self._overlong = False
 
     def feed(self, ch):
+        """The line that this character ends, or None."""
         if ch == "\n" or ch == "\r":
             line = None if self._overlong or not self._chars else "".join(self._chars)
             self._chars = []

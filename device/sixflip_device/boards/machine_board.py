@@ -43,6 +43,7 @@ class MachineBoard(Board):
             self.scl_pulse = None  # an STM32 board with other names for its pins
 
     def reopen_i2c(self):
+        """A new machine.I2C on the same pins."""
         # pins that were driven by hand have lost their I2C function
         self.i2c = self._make_i2c()
         return self.i2c
@@ -72,13 +73,16 @@ class MachineBoard(Board):
         self.sleep_us(HALF_CLOCK_US)
 
     def led(self, on):
+        """Switches the LED, whichever level lights it."""
         if self._led is not None:
             self._led.value(self._led_on if on else 1 - self._led_on)
 
     def button(self):
+        """Whether the level of the pin is that of a pressed button."""
         return self._button is not None and self._button.value() == self._pressed
 
     def read_line(self):
+        """A whole line from stdin, or None where what has arrived ends none."""
         while self._poll.poll(0):
             ch = sys.stdin.read(1)
             if not ch:
@@ -89,6 +93,7 @@ class MachineBoard(Board):
         return None
 
     def reset(self):
+        """A reset of the processor; does not return."""
         machine.reset()
 
 
@@ -109,3 +114,21 @@ def choose(settings, name, default):
     """The setting, or the board's own default where it is not given."""
     value = settings[name]
     return default if value is None else value
+
+
+def pinned_bus(settings, usual_i2c, usual_spi):
+    """(make, scl, sda): make() -> a new bus on the settings' pins; on SPI there is no scl and sda.
+
+    usual_i2c   (number of the bus, scl, sda) where the settings name no others
+    usual_spi   the same of SPI, {key: value}
+    """
+    if settings["spi"] is not None:
+        from .spi_bus import machine_spi
+        return machine_spi(settings["spi"], usual_spi), None, None
+    bus, scl, sda = [choose(settings, name, usual)
+                     for name, usual in zip(("i2c", "scl", "sda"), usual_i2c)]
+
+    def make():
+        return machine.I2C(bus, scl=machine.Pin(scl), sda=machine.Pin(sda),
+                           freq=settings["freq"])
+    return make, scl, sda

@@ -56,20 +56,25 @@ class LinuxBoard(Board):
         self.i2c = open_bus()
 
     def reopen_i2c(self):
+        """The same bus, closed and opened anew."""
         self.i2c.close()
         self.i2c = self._open_bus()
         return self.i2c
 
     def ticks_us(self):
+        """Python's monotonic clock, µs; it does not wrap."""
         return time.monotonic_ns() // 1000
 
     def ticks_diff(self, a, b):
+        """µs from b to a."""
         return a - b
 
     def sleep_us(self, us):
+        """Waits so many µs, as exactly as Linux does."""
         time.sleep(us / 1e6)
 
     def read_line(self):
+        """A whole line from the file descriptor, or None; after its end always None."""
         while True:
             while self._pending:
                 ch = chr(self._pending[0])
@@ -85,14 +90,17 @@ class LinuxBoard(Board):
                 return None
 
     def write_line(self, text):
+        """Sends a line to the host at once."""
         self._out.write(text + "\n")
         self._out.flush()
 
     def write_bytes(self, data):
+        """Sends bytes to the host at once, without a newline."""
         self._out.buffer.write(data)
         self._out.flush()
 
     def reset(self):
+        """Raises Stopped, which ends the process."""
         raise Stopped(0)
 
 

@@ -40,32 +40,38 @@ class SMBusI2C:
         return bytes([memaddr])
 
     def readfrom_mem_into(self, addr, memaddr, buf, addrsize=8):
+        """Fills buf from register memaddr on, of the chip at addr."""
         self._check(len(buf))
         read = i2c_msg.read(addr, len(buf))
         self._transfer(i2c_msg.write(addr, self._register(memaddr, addrsize)), read)
         buf[:] = bytes(read)
 
     def readfrom_mem(self, addr, memaddr, nbytes, addrsize=8):
+        """nbytes from register memaddr on, as bytes."""
         buf = bytearray(nbytes)
         self.readfrom_mem_into(addr, memaddr, buf, addrsize=addrsize)
         return bytes(buf)
 
     def writeto_mem(self, addr, memaddr, buf, addrsize=8):
+        """Writes buf to register memaddr on."""
         self._check(len(buf))
         self._transfer(i2c_msg.write(addr, self._register(memaddr, addrsize) + bytes(buf)))
 
     def readfrom_into(self, addr, buf, stop=True):
+        """Fills buf with what the chip at addr sends by itself."""
         self._check(len(buf))
         read = i2c_msg.read(addr, len(buf))
         self._transfer(read)
         buf[:] = bytes(read)
 
     def readfrom(self, addr, nbytes, stop=True):
+        """nbytes that the chip at addr sends by itself, as bytes."""
         buf = bytearray(nbytes)
         self.readfrom_into(addr, buf)
         return bytes(buf)
 
     def writeto(self, addr, buf, stop=True):
+        """Writes buf to the chip at addr; returns how many bytes it took."""
         self._check(len(buf))
         self._transfer(i2c_msg.write(addr, bytes(buf)))
         return len(buf)
@@ -82,4 +88,5 @@ class SMBusI2C:
         return found
 
     def close(self):
+        """Closes Linux's bus device."""
         self._bus.close()

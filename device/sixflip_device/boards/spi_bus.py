@@ -33,21 +33,25 @@ class SPIBus:
         self._port.write(self._head)
 
     def readfrom_mem_into(self, address, register, buf):
+        """Fills buf from a register on; OSError (ENODEV) at any address but ADDRESS."""
         self._begin(address, register | READ)
         self._port.readinto(buf)
         self._port.select(1)
 
     def readfrom_mem(self, address, register, n):
+        """n bytes from a register on."""
         buf = bytearray(n)
         self.readfrom_mem_into(address, register, buf)
         return bytes(buf)
 
     def writeto_mem(self, address, register, data):
+        """Writes data to a register on."""
         self._begin(address, register & 0x7F)
         self._port.write(data)
         self._port.select(1)
 
     def scan(self):
+        """No address: on SPI nobody acknowledges."""
         return []
 
     def close(self):

@@ -14,7 +14,7 @@ from .store import CaptureStore
 class RecordedStore(CaptureStore):
     """A CaptureStore that sends every block to the host, whatever the flash has room for.
 
-    header_again() sends the header to a host that missed it.
+    resend_header() sends the header to a host that missed it.
     """
 
     recorded = True
@@ -42,7 +42,7 @@ class RecordedStore(CaptureStore):
         if not self.sums_only:
             self.kept += 1
 
-    def header_again(self):
+    def resend_header(self):
         """Sends the header to a host that has missed it."""
         meta = self._meta or meta_of(self._root)
         if meta is not None:

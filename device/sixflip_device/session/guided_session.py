@@ -32,7 +32,7 @@ class Teller:
 
     def pose(self, placement):
         """A Placement was accepted."""
-        self._lamp.flash(led.TAKEN)
+        self._lamp.flash(led.ACCEPTED)
         n = placement.n
         self._events.emit("pose", pose=pose_name(placement.pose), n=n,
                           mean=[s / n for s in placement.sums], noise=placement.noise,

@@ -49,7 +49,7 @@ def self_test(board, sensor, rate_hz):
             "temperature_c": temp_c, "bus_errors": sensor.errors}
 
 
-LOOK_AGAIN_US = 2000000
+SEARCH_PERIOD_US = 2000000  # from one search for the sensor to the next
 STEP_US = 20000
 
 
@@ -102,7 +102,7 @@ def _find_sensor(firmware):
             if report != said:
                 said = report
                 _no_sensor(firmware, report)
-            _wait(firmware, LOOK_AGAIN_US, led.NO_CHIP)
+            _wait(firmware, SEARCH_PERIOD_US, led.NO_CHIP)
             continue
         firmware.sensor = Sensor(firmware.board, imu, firmware.settings, firmware.events)
         _hello(firmware, imu, report)
@@ -145,4 +145,4 @@ def run(firmware):
             return
         except BusLost as e:
             firmware.events.error(str(e), "the sensor that was there a moment ago")
-            _wait(firmware, LOOK_AGAIN_US, led.NO_CHIP)
+            _wait(firmware, SEARCH_PERIOD_US, led.NO_CHIP)

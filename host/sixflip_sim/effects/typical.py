@@ -18,7 +18,6 @@ _SEEN = "not stated in the data sheet: seen on recorded units"
 _JUDGED = "not stated in the data sheet: judged from the range of published units"
 
 NOISE = {}      # standard deviation a sample at 100 Hz, (x, y, z), mg or deg/s; and its source
-DENSITY = {}    # of white noise, mg or deg/s per sqrt(Hz), likewise
 # Slow noise is in no sheet: as on recorded units of these four, of the others as much less as
 # their white noise is.
 FLICKER = {  # level of each of the exponentials of 10...1000 s, mg or deg/s
@@ -179,7 +178,6 @@ def _add(sensor):
         like = chip if chip in FLICKER else "mpu6050-" + kind
         density = datasheets.figures(sensor, kind, "density")
         NOISE[chip] = (sigma,) * 3, "recorded units; " * seen + source
-        DENSITY[chip] = density, source
         quieter = max(density) / datasheets.figure("mpu6050", kind, "density")
         FLICKER.setdefault(chip, quieter * FLICKER[like])
         FLOOR.setdefault(chip, quieter * FLOOR[like])

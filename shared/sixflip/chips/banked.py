@@ -33,6 +33,7 @@ class Banked(SixAxis):
         SixAxis._store(self, register & 0xFF, buf)
 
     def answers(self, i2c):
+        """As any chip's, whichever bank was left selected."""
         self._bank = -1
         return SixAxis.answers(self, i2c)
 
@@ -42,6 +43,7 @@ class Banked(SixAxis):
         return SixAxis.awake(self) and self._read(self.ID_REGISTER) == self.who_am_i[0]
 
     def read_into(self, sample):
+        """A sample, from bank 0."""
         if self._bank:
             self._turn_to(0)
         return SixAxis.read_into(self, sample)

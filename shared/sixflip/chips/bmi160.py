@@ -84,10 +84,12 @@ class BMI160(SixAxis):
             self._sleep_ms(100)         # filters settling
 
     def fifo_start(self):
+        """Accelerometer and gyro without headers, emptied."""
         self._set(FIFO_CONFIG_1, BOTH_IN_FIFO)
         self._write(CMD, FIFO_FLUSH)
 
     def fifo_level(self):
+        """Samples waiting, or -1 when some were lost."""
         self._read_temperature(TEMPERATURE_0)
         self._fetch(FIFO_LENGTH, self._two)
         level = self._two[0] | (self._two[1] & 0x07) << 8

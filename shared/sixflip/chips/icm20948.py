@@ -110,6 +110,7 @@ class ICM20948(Banked):
         self._set(USER_CTRL, on | FIFO_ON)
 
     def fifo_level(self):
+        """Samples waiting, or -1 when some were lost."""
         self._fetch(FIFO_COUNTH, self._two)
         if self._read(INT_STATUS_2) & ALL_IN_FIFO:
             return -1

@@ -96,12 +96,14 @@ class ICM42688(Banked):
         self._started(rate_hz, hz, filter_hz)
 
     def fifo_start(self):
+        """Packets of both sensors, emptied; full, the oldest ones are lost."""
         self._set(FIFO_CONFIG, 0)
         self._write(SIGNAL_PATH_RESET, FLUSH)
         self._set(FIFO_CONFIG1, ALL_IN_FIFO)
         self._set(FIFO_CONFIG, STREAM)
 
     def fifo_level(self):
+        """Samples waiting, or -1 when some were lost."""
         self._fetch(FIFO_COUNTH, self._two)
         level = self._two[0] << 8 | self._two[1]
         return -1 if self._read(INT_STATUS) & FULL or level >= FIFO_BYTES else level // 16

@@ -122,6 +122,7 @@ class ICM45686(SixAxis):
         self._set(FIFO_CONFIG3, BOTH_IN_FIFO | FIFO_ON)
 
     def fifo_level(self):
+        """Samples waiting, or -1 when some were lost."""
         two = self._two
         self._fetch(FIFO_COUNT_0, two)
         self._fetch(FIFO_COUNT_0, two)

@@ -55,12 +55,14 @@ class LSM6(SixAxis):
         self._set(CTRL3, BDU | IF_INC)
 
     def fifo_start(self):
+        """Emptied and filled at the output's rate; full, it loses the oldest words."""
         code = self._output_code    # the FIFO's rates have the codes of the output's
         self._set(FIFO_CTRL4, 0)
         self._set(FIFO_CTRL3, code << 4 | code)
         self._set(FIFO_CTRL4, STREAM)
 
     def fifo_level(self):
+        """Samples waiting, or -1 when some were lost; the temperature is read beside."""
         self._read_temperature(OUT_TEMP_L)
         two = self._two
         self._fetch(self.FIFO_STATUS, two)

@@ -116,11 +116,14 @@ class LSM6DS3TRC(LSM6DS):
         return 2, LPF1_BW_QUARTER, 0x00, hz / 4
 
     def fifo_start(self):
+        """Emptied and filled at the output's rate; full, it loses the oldest."""
         self._set(FIFO_CTRL5_3TRC, 0)
         self._set(FIFO_CTRL3_3TRC, 0x09)
         self._set(FIFO_CTRL5_3TRC, self._output_code << 3 | 0x06)
 
     def fifo_level(self):
+        """Samples waiting, or -1 when some were lost or the level is in the midst of one; the
+        temperature is read beside."""
         self._read_temperature(self.DATA)
         four = self._four
         self._fetch(FIFO_STATUS1, four)

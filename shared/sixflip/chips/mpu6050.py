@@ -113,6 +113,7 @@ class MPU6050(SixAxis):
         self._set(USER_CTRL, on | FIFO_ON)
 
     def fifo_level(self):
+        """Samples waiting, or -1 when some were lost."""
         self._fetch(FIFO_COUNT_H, self._two)
         if self._read(INT_STATUS) & OVERFLOW:
             return -1

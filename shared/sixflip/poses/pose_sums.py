@@ -19,7 +19,7 @@ class PoseSums:
     def __init__(self, pose, first, windows):
         self.pose = pose
         self.windows = windows
-        self.taken = 0
+        self.added = 0
         self.sums = [0] * 7
         self.half = None
         self.squares = array("d", [0.0] * 6)
@@ -27,15 +27,15 @@ class PoseSums:
 
     def add(self, window, noise):
         """Take a window that was found still; "" or the reason why the pose moved."""
-        if self.taken and noise.wander(self.means(), self.taken, window.n):
+        if self.added and noise.wander(self.means(), self.added, window.n):
             return noise.reason
         add_window(self.span, window)
         for i in range(7):
             self.sums[i] += window.total(i)
         for i in range(6):
             self.squares[i] += window.variance(i)
-        self.taken += 1
-        if self.taken == self.windows // 2:
+        self.added += 1
+        if self.added == self.windows // 2:
             self.half = self.sums[:3]
         if self.full() and self.half:
             return self._drift(window, noise)
@@ -43,7 +43,7 @@ class PoseSums:
 
     def full(self):
         """Whether all windows are taken."""
-        return self.taken == self.windows
+        return self.added == self.windows
 
     def means(self):
         """Six means in counts, one float each."""
@@ -67,7 +67,7 @@ class PoseSums:
 
     def placement(self):
         """The Placement of the windows taken."""
-        noise = array("f", [math.sqrt(v / self.taken) for v in self.squares])
+        noise = array("f", [math.sqrt(v / self.added) for v in self.squares])
         span = self.span
         made = Placement(self.pose, span.first, span.n, self.sums, noise, span.duration_us)
         if span.late[3]:

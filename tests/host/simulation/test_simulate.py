@@ -15,7 +15,7 @@ from sixflip_host.simulation import motion_scenes, scenario, simulator
 from sixflip_host.verbs import simulate
 from sixflip_sim import worlds
 from sixflip_sim.chips.adxl345 import SimulatedADXL345
-from sixflip_sim.effects import typical
+from sixflip_sim.effects import datasheets, typical
 
 EVERYTHING = [
     {"effect": "thermal_bias", "x": 5.0, "z2": 0.1}, {"effect": "thermal_scale", "y": 0.02},
@@ -138,7 +138,7 @@ def test_allan_deviation_of_a_soak_matches_the_datasheet(tmp_path, sensor, kind)
         else capture.meta["gyro_lsb_per_dps"]
     data = getattr(capture, kind) / lsb
     chip = typical.chip_of(sensor, kind)
-    density = np.mean(typical.DENSITY[chip][0])
+    density = np.mean(datasheets.figures(sensor, kind, "density"))
     # 0.1 s: white; 100 s: the floor, with what the white noise still gives
     found = signal_measures.allan(data, 10).mean()
     assert 0.3 < found * np.sqrt(0.1) / density < 1.5
