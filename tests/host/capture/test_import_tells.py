@@ -371,10 +371,12 @@ def test_values_with_their_names_before_them_as_a_plotter_wants_them(
     assert "each value has its name before it" in said
 
 
-@pytest.mark.parametrize("head", ["", of_day(0) + NAMES + "\n"])
-def test_the_time_of_day_of_a_serial_monitor_is_the_time(tmp_path, capsys, head):
-    rows = [of_day(k) + one for k, one in enumerate(lines(np.hstack([COUNTS, GYRO])))]
-    capture, said = imported(tmp_path, capsys, head + "\n".join(rows) + "\n",
+@pytest.mark.parametrize("form", ["%s -> ", "[%s] "])
+@pytest.mark.parametrize("head", ["", NAMES])
+def test_the_time_of_day_of_a_serial_monitor_is_the_time(tmp_path, capsys, head, form):
+    rows = lines(np.hstack([COUNTS, GYRO]))
+    rows = [form % of_day(k)[:12] + one for k, one in enumerate([head] * bool(head) + rows)]
+    capture, said = imported(tmp_path, capsys, "\n".join(rows) + "\n",
                              "--gyro-lsb", "131", *(() if head else ("--columns", NAMES)))
     assert (capture.accel == COUNTS).all()
     assert capture.meta["rate_hz"] == pytest.approx(100.0)
@@ -415,7 +417,8 @@ def test_a_temperature_in_the_unit_that_its_name_says(tmp_path, capsys, name, va
 
 
 @pytest.mark.parametrize("name,size,step", [
-    ("micros", 2 ** 32, 10_000), ("millis", 2 ** 32, 10), ("t_ms", 2 ** 16, 10)])
+    ("micros", 2 ** 32, 10_000), ("millis", 2 ** 32, 10), ("t_ms", 2 ** 16, 10),
+    ("utc_ns", 10 ** 9, 10_000_000)])
 @pytest.mark.parametrize("sort", [(), ("--sort",)])
 def test_a_clock_that_begins_anew_goes_on(tmp_path, capsys, name, size, step, sort):
     rows = ["%d,%s" % ((size + (k - 150) * step) % size, one)
@@ -423,7 +426,29 @@ def test_a_clock_that_begins_anew_goes_on(tmp_path, capsys, name, size, step, so
     capture, said = imported(tmp_path, capsys, name + ",ax,ay,az\n" + "\n".join(rows) + "\n",
                              *sort)
     assert (np.diff(capture.t_us) == 10_000).all() and (capture.accel == COUNTS).all()
-    assert "%s begins anew at %d, first in line 152: it goes on there" % (name, size) in said
+    assert "%s begins anew at %.10g, first in line" % (name, size) in said
+
+
+def test_a_counter_with_a_sign_begins_anew_below_0(tmp_path, capsys):
+    rows = ["%d,%s" % ((2 ** 31 + (k - 150) * 10_000 + 2 ** 31) % 2 ** 32 - 2 ** 31, one)
+            for k, one in enumerate(lines(COUNTS))]
+    capture, _ = imported(tmp_path, capsys, "micros,ax,ay,az\n" + "\n".join(rows) + "\n")
+    assert (np.diff(capture.t_us) == 10_000).all()
+
+
+@pytest.mark.parametrize("name,seconds", [("time (min)", 60.0), ("time_h", 3600.0)])
+def test_minutes_and_hours_by_their_name(tmp_path, capsys, name, seconds):
+    rows = ["%.9f,%s" % (0.01 * k / seconds, one) for k, one in enumerate(lines(COUNTS))]
+    capture, _ = imported(tmp_path, capsys, name + ",ax,ay,az\n" + "\n".join(rows) + "\n")
+    assert capture.meta["rate_hz"] == pytest.approx(100.0, rel=1e-3)
+
+
+def test_an_axis_alone_is_of_the_sensor_whose_unit_it_has():
+    names = ["Time[s]", "x[mg]", "y[mg]", "z[mg]", "gx[mdps]", "gy[mdps]", "gz[mdps]"]
+    found, units, _ = column_names.readings(names)
+    assert [found[key] for key in ("ax", "ay", "az", "gz")] == [*names[1:4], "gz[mdps]"]
+    assert units == {"a": "mg", "g": "mdps"}
+    assert column_names.column("x-axis (g)")[:3] == ("a", "x", "g")
 
 
 def test_a_log_goes_on_over_midnight(tmp_path, capsys):

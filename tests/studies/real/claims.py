@@ -174,8 +174,12 @@ def _gravity(plain, cause, rest):
 
 def _lag(plain, cause, rest):
     seen = figures.lag_ms(plain)
-    value = next(iter(cause["value"].values()))
-    return "gyro %.1f ms late" % seen, abs(value - seen) < 5.0 + 0.3 * abs(seen)
+    if seen is None:
+        return "too few moves", None
+    value = cause["value"]["tau"] * (-1.0 if cause["sensor"] == "accel" else 1.0)
+    low, high = cause["interval_90"]["tau"]
+    return "gyro %.1f ± %.1f ms late" % seen, bool(
+        seen[0] * value > 0.0 and abs(value - seen[0]) < AGREES * seen[1] + (high - low))
 
 
 def _rate_of_temperature(plain, cause, rest):
@@ -265,18 +269,16 @@ def _unsaid(plain, answer, rest):
 
 
 def _late(plain, answer):
-    """A gyro that is behind, where its parts agree on it and nothing says why it is not seen."""
+    """A gyro that is behind by five standard errors, where nothing says why it is not seen."""
     number = len(figures.rests(plain, 2.0)) if plain.gyro is not None else 0
     if number < 12 or any(u["effect"] == "filter_lag" and u["sensor"] == "gyro"
                           for u in answer["unseen"]):
         return []
-    cut = np.linspace(0, len(plain.t), 5).astype(int)
-    parts = [figures.lag_ms(plain.part(a, b)) for a, b in zip(cut, cut[1:])]
-    parts = [one for one in parts if one is not None]
-    if len(parts) < 3:
+    seen = figures.lag_ms(plain)
+    if seen is None:
         return []
-    mean, error = np.mean(parts), np.std(parts, ddof=1) / np.sqrt(len(parts))
-    if abs(mean) < max(FIVE * error, 5.0) or _said(answer, "gyro", ("filter_lag",)) or _said(
+    mean, error = seen
+    if abs(mean) < FIVE * error or _said(answer, "gyro", ("filter_lag",)) or _said(
             answer, "accel", ("filter_lag",)):
         return []
     return [Row("NOT SAID: filter_lag", "%.1f ± %.1f ms" % (mean, error), False)]

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import signal, stats
+from scipy.spatial.transform import Rotation
 
 WINDOW_S, STILL_TIMES, STILL_MG = 0.4, 2.5, 40.0
 CREEPS_MG, CREEPS_DPS = 3.0, 0.2  # from window to window, which no motion is as slow as
@@ -286,26 +287,40 @@ def g_sensitivity(plain):
 
 
 def lag_ms(plain):
-    """Milliseconds that the gyro is behind the accelerometer: the delay with which the turning
-    of gravity that the gyro foretells fits the accelerometer best, over slow parts of moves."""
-    rate, a = plain.rate, plain.accel / 1000.0
-    low = signal.butter(2, min(5.0, rate / 5.0), fs=rate, output="sos")
-    quiet = rests(plain, 2.0)
-    bias = plain.gyro[quiet[0][0]:quiet[0][1]].mean(axis=0) if quiet else 0.0
-    f = signal.sosfiltfilt(low, a, axis=0)
-    w = signal.sosfiltfilt(low, np.radians(plain.gyro - bias), axis=0)
-    turn = np.gradient(f, axis=0) * rate
-    foretold = -np.cross(w, f)
-    moving = np.linalg.norm(w, axis=1) > 0.2
-    moving &= np.abs(np.linalg.norm(f, axis=1) - 1.0) < 0.1
-    span = int(0.2 * rate)
-    index = np.flatnonzero(moving)
-    index = index[(index > span) & (index < len(a) - span)]
-    if len(index) < 50:
+    """(milliseconds that the gyro is behind the accelerometer, standard error), or None.
+
+    In each move gravity is carried by the gyro from the rest before and turned so that it ends
+    at the rest behind. Where the gyro is late, what is carried is late, and what the
+    accelerometer reads beside it follows the change of gravity; the hand's own acceleration does
+    not, from move to move, which is what the error comes from.
+    """
+    stops, f, cross, square = sorted(rests(plain, 2.0)), plain.accel / 1000.0, [], []
+    for (first, start), (stop, last) in zip(stops, stops[1:]):
+        edge = int(0.3 * plain.rate)
+        part = slice(max(start - edge, first), min(stop + edge, last))
+        bias = 0.5 * (plain.gyro[first:start].mean(axis=0) + plain.gyro[stop:last].mean(axis=0))
+        w = np.radians(plain.gyro[part] - bias)
+        turns = Rotation.from_rotvec(0.5 * (w[:-1] + w[1:]) / plain.rate)
+        whole = [Rotation.identity()]
+        for one in turns:
+            whole.append(whole[-1] * one)   # of the box, in the axes that it had at first
+        whole = Rotation.concatenate(whole)
+        means = f[first:start].mean(axis=0), f[stop:last].mean(axis=0)
+        up, at_last = (v / np.linalg.norm(v) for v in means)
+        end = whole[-1].apply(at_last)      # what it would have been at first
+        off = np.cross(up, end)
+        if not 0.3 < np.abs(w).max() or np.linalg.norm(off) > 0.3:
+            continue
+        angle = np.concatenate([[0.0], np.cumsum(np.linalg.norm(w[:-1], axis=1))])
+        along = (angle / angle[-1])[:, None]
+        carried = whole.inv().apply(Rotation.from_rotvec(off * along).apply(up))
+        change = -np.cross(w, carried)
+        left = f[part] - carried - (means[0] - up) * (1.0 - along) - (means[1] - at_last) * along
+        cross.append(float((change * left).sum()))
+        square.append(float((change ** 2).sum()))
+    if len(cross) < 5:
         return None
-    match = np.array([(turn[index] * foretold[index + k]).sum() for k in range(-span, span + 1)])
-    k = int(match.argmax())
-    if not 0 < k < 2 * span:
-        return None
-    left, middle, right = match[k - 1:k + 2]
-    return float((k - span + 0.5 * (left - right) / (left - 2 * middle + right)) / rate * 1e3)
+    cross, square = np.array(cross), np.array(square)
+    lag = cross.sum() / square.sum()
+    error = np.sqrt(((cross - lag * square) ** 2).sum()) / square.sum()
+    return 1e3 * float(lag), 1e3 * float(error)

@@ -27,10 +27,12 @@ FILLERS = {"raw", "lsb", "counts", "count", "b", "body", "imu", "field", "data",
 TIMES = {"t", "ts", "time", "times", "timestamp", "timestamps", "stamp", "seconds", "millis",
          "micros", "tick", "ticks", "clock", "datetime", "date", "utc"}
 TIME_UNITS = {"ns": 1e-3, "us": 1.0, "ms": 1e3, "s": 1e6}     # microseconds
+LONG_UNITS = {"min": 6e7, "h": 3.6e9}       # of times whose name says so, and of no others
 UNIT_OF_TIME = {"s": "s", "sec": "s", "secs": "s", "second": "s", "seconds": "s", "ms": "ms",
                 "msec": "ms", "millis": "ms", "milliseconds": "ms", "us": "us", "µs": "us",
                 "usec": "us", "micros": "us", "microseconds": "us", "ns": "ns", "nsec": "ns",
-                "nanos": "ns", "nanoseconds": "ns"}
+                "nanos": "ns", "nanoseconds": "ns", "min": "min", "mins": "min",
+                "minutes": "min", "h": "h", "hr": "h", "hrs": "h", "hours": "h"}
 UNIT = {"m/s2": "m/s2", "m/s^2": "m/s2", "m/s²": "m/s2", "m/s/s": "m/s2", "ms-2": "m/s2",
         "m/(s^2)": "m/s2",
         "m/sec2": "m/s2", "m/sec^2": "m/s2", "mps2": "m/s2", "m_s2": "m/s2", "ms2": "m/s2",
@@ -65,7 +67,7 @@ def column(name):
         said = unit.lower() or (words[-1] if len(words) > 1 else "")
         return Column(TEMP, "", next((one for one, names in DEGREES.items() if said in names), ""),
                       "")
-    found = _fused(words) or _apart(words)
+    found = _fused(words) or _apart(words) or _by_unit(words, unit)
     if found is None:
         return None
     sensor, axis, group = found
@@ -153,6 +155,16 @@ def _apart(words):
     return None
 
 
+def _by_unit(words, unit):
+    """(sensor, axis, group) of an axis alone whose unit only one sensor has: x [mg], or None."""
+    axis = [word for word in words if word != "axis"]
+    if len(axis) == 1 and axis[0] in ("x", "y", "z"):
+        for sensor in (ACCEL, GYRO):
+            if _unit(unit, words, sensor) not in ("", "counts"):
+                return sensor, axis[0], "axis"
+    return None
+
+
 def readings(names, file_name=""):
     """({ax … gz, mx … mz, temp: column name}, {ACCEL, GYRO: unit}, remarks) of a table's columns.
 
@@ -234,7 +246,8 @@ def times(names):
             rank = 0 if "stamp" in words and "header" in words else 3 if "date" in words \
                 else 4 if bare == "T" else 1  # a T alone is as often a temperature
             found.append((rank, name, unit))
-        elif words[0] in UNIT_OF_TIME and len(words) == 1 and len(words[0]) > 1:
+        elif len(words) == 1 and len(words[0]) > 1 \
+                and UNIT_OF_TIME.get(words[0]) in TIME_UNITS:
             found.append((2, name, UNIT_OF_TIME[words[0]]))
     pairs = _second_pairs(names)
     chosen = [(pair, "s") for pair in pairs]

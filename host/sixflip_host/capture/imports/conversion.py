@@ -153,7 +153,8 @@ class Conversion:
             time_stamps.check_stated(self.table.path, words, times, unit,
                                      getattr(self.table, "rate_hz", None))
             self.assumed.append(words)
-        scale = 1e6 / options.rate if unit == "samples" else column_names.TIME_UNITS[unit]
+        scale = 1e6 / options.rate if unit == "samples" else {
+            **column_names.TIME_UNITS, **column_names.LONG_UNITS}[unit]
         time_stamps.check_stretch(
             self.table.path, name, times, scale,
             lambda row: self.line_of(int(row if order is None else order[row])))

@@ -1,15 +1,16 @@
 """What a serial monitor and a plotter put around a board's numbers, taken off again.
 
-Arduino's monitor writes the time of day a line came at before it (`12:00:00.000 -> 1,2,3`); its
-plotter wants a name before each value (`ax:4,ay:-4`); others print `ax=4 ay=-4`, or a line of
-JSON with such pairs.
+Arduino's monitor writes the time of day a line came at before it (`12:00:00.000 -> 1,2,3`), others
+in brackets (`[12:00:00.000] 1,2,3`). Its plotter wants a name before each value (`ax:4,ay:-4`);
+others print `ax=4 ay=-4`, or a line of JSON with such pairs.
 """
 
 import collections
 import re
 from dataclasses import dataclass
 
-STAMPED = re.compile(r"\s*(\d\d:\d\d:\d\d(?:[.,]\d+)?)\s*->\s?")
+TIME = r"(\d\d:\d\d:\d\d(?:[.,]\d+)?)"
+STAMPED = re.compile(r"\s*(?:%s\s*->|\[%s\])\s?" % (TIME, TIME))
 NAME = r"[A-Za-z_°][\w °/²^.()\[\]]*?"
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 LABELLED = re.compile(r"\s*\"?(%s)\"?\s*[:=]\s*(%s)\s*(?:[,;\t ]\s*|\Z)" % (NAME, NUMBER))
@@ -80,7 +81,7 @@ def told(lines):
 def _stamp_of(text):
     """(time of day that a line begins with or None, what is behind it)."""
     match = STAMPED.match(text)
-    return (None, text) if match is None else (match[1], text[match.end():])
+    return (None, text) if match is None else (match[1] or match[2], text[match.end():])
 
 
 def _separator(rests):

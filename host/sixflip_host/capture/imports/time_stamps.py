@@ -13,7 +13,8 @@ POSSIBLE_HZ = (0.5, 8000.0)
 MOST_C_PER_S = 10.0             # no chip's temperature changes faster
 LATEST_US = 1e16                # three centuries: what times in the wrong unit pass
 FAR_ROWS = 3                    # so few rows behind a gap that is longer than all the rest
-COUNTERS = (2.0 ** 16, 2.0 ** 24, 2.0 ** 32, 86400.0)  # of 16 to 32 bits; seconds of a day
+# Where counters begin anew: at 16 to 32 bits, after the second of a fraction, after a day.
+COUNTERS = (2.0 ** 16, 2.0 ** 24, 2.0 ** 32, 1e3, 1e6, 1e9, 86400.0)
 LONGEST_STEPS = 50.0            # usual intervals that may be missing where a counter begins anew
 TIMES_STATED = 2.0              # a rate that was set may be that far off, rows left out
 SPAN = 20                       # rows over which intervals are averaged
@@ -89,7 +90,8 @@ def unwrapped(times):
         return times, back[:0], 0.0
     for size in COUNTERS:
         steps = times[back] - times[back - 1] + size
-        if times.min() >= 0.0 and times.max() < size and (
+        first = -size / 2.0 if times.min() < 0.0 else 0.0   # with a sign, or without one
+        if first <= times.min() and times.max() < first + size and (
                 (steps >= 0.0) & (steps <= LONGEST_STEPS * usual)).all():
             turns = np.zeros(len(times))
             turns[back] = size
