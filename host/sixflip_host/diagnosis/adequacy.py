@@ -170,8 +170,14 @@ def share(units, statistics, index, without, including):
 def share_of_drift(units, statistics, chosen, index, levels):
     """share() of noise that wanders more than usual, beside the Forms chosen: of the excess over
     noise with no more flicker than evidence.Levels say."""
-    quiet = [_usual(unit, point, levels) for unit, point in zip(units, index)]
+    quiet = usual_levels(units, index, levels)
     return share(units, statistics, quiet, (chosen, quiet), (chosen, index))
+
+
+def usual_levels(units, index, levels):
+    """Indices of the grids' points with no more flicker than evidence.Levels say is usual, and
+    the placement levels of the points `index`."""
+    return [_usual(unit, point, levels) for unit, point in zip(units, index)]
 
 
 def _usual(unit, point, levels):

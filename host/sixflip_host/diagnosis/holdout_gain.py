@@ -1,10 +1,15 @@
-"""Stage 6: how far the gap shrinks on the session held out.
+"""Stage 6: how far the gap shrinks on the session held out, in one unit.
 
-With whitened contrasts z = mu + noise of the session held out (m of them) and the prediction d
-of the causes, whose coefficients come from the other sessions, the explainable gap is
-|mu|^2 = z'z - m and what is closed of it 2 d'z - d'd. Both are sums with known variances, so
-their ratio has a Fieller interval [Fieller, JRSS B 16 (1954) 175]; unbounded means that the gap
-is too small to measure.
+Of the contrasts z = mu + noise of the session held out and the prediction d of the causes, whose
+coefficients come from the other sessions, all figures are weighted root mean squares with the
+weights Q of the fit (Unit.weight): before^2 = z'Qz / tr Q, after^2 = (z - d)'Q(z - d) / tr Q and
+floor^2, the same of noise alone. A contrast that a hand scatters counts as little as it does for
+the sizes. The share is that of these figures, (before^2 - after^2) / (before^2 - floor^2): what is
+closed, 2 d'Qz - d'Qd, of the gap z'Qz - m (m: degrees of freedom). Both are sums with known
+variances, so their ratio has a Fieller interval [Fieller, JRSS B 16 (1954) 175]; unbounded means
+that the gap is too small to measure. Levels of noise found in these very contrasts make z'Qz of
+noise alone vary by no more than the chi-squared of as many; `python -m
+tests.studies.robustness.shares` prints how often the intervals hold what is true.
 """
 import math
 from dataclasses import dataclass
@@ -14,12 +19,11 @@ import numpy as np
 from . import coefficient_fits
 
 Z_90 = 1.6448536269514722
-FLOOR = 0.05  # of the noise's variance, standard deviation: it is estimated, too
 
 
 @dataclass(frozen=True)
 class Shrinkage:
-    """before, after, floor (RMS a contrast, mg or deg/s); share, interval (or None)."""
+    """before, after, floor (weighted RMS a contrast, mg or deg/s); share, interval (or None)."""
 
     before: float
     after: float
@@ -28,43 +32,63 @@ class Shrinkage:
     interval: tuple | None
 
 
+@dataclass(frozen=True)
+class Sums:
+    """Weighted squares of what was held out before, after and of noise alone; weight: sum of the
+    weights; spread: variances of the gap's and of the closed part's estimates, and the covariance
+    of both."""
+
+    before: float
+    after: float
+    floor: float
+    weight: float
+    spread: tuple
+
+    def __add__(self, other):
+        return Sums(self.before + other.before, self.after + other.after,
+                    self.floor + other.floor, self.weight + other.weight,
+                    tuple(a + b for a, b in zip(self.spread, other.spread)))
+
+    def shrinkage(self, found):
+        """Shrinkage; found: something was named that can be foretold."""
+        rms = [math.sqrt(max(v, 0.0) / self.weight) if self.weight > 0.0 else 0.0
+               for v in (self.before, self.after, self.floor)]
+        if not found:
+            return Shrinkage(*rms, None, None)
+        return Shrinkage(*rms, *fieller(self.before - self.floor, self.before - self.after,
+                                        *self.spread))
+
+
+NOTHING = Sums(0.0, 0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
+
+
 def of(data, chosen, index):
     """Shrinkage of all sessions, each held out in turn; index: into each unit's grid, the levels
     that count as noise."""
     columns = np.concatenate([c.columns for c in chosen] + [np.zeros(0, dtype=int)])
     prior = np.concatenate([c.prior for c in chosen] + [np.zeros(0)])
     found = coefficient_fits.fits(data, columns, prior) if len(columns) else None
-    before = after = floor = closed = gap = number = 0.0
-    strength = along = 0.0
+    total = NOTHING
     for held, (unit, point) in enumerate(zip(data.units, index)):
         if unit.between:
             continue
-        z, theta = unit.z, np.zeros(len(columns))
+        own = along = 0.0
         if found:
             others = found[:held] + found[held + 1:] or found
             theta = coefficient_fits.coefficients(others, prior)[0][0]
-        left = z - unit.columns[:, columns] @ theta
-        # Of whitened contrasts z and prediction d: d'd and d'z.
-        own = theta @ unit.gram[point][np.ix_(columns, columns)] @ theta
-        both = theta @ unit.inner[point][columns]
-        before += z @ z
-        after += left @ left
-        floor += unit.noise_energy(*unit.grid[point])
-        number += unit.freedom
-        gap += unit.quadratic[point] - unit.freedom
-        closed += 2.0 * both - own
-        strength += own
-        along += both
-    rms = [math.sqrt(max(v, 0.0) / max(number, 1)) for v in (before, after, floor)]
-    if not found:
-        return Shrinkage(*rms, None, None)
-    return Shrinkage(*rms, *fieller(gap, closed, number, strength, along))
+            # Of whitened contrasts z and prediction d: d'd and d'z.
+            own = float(theta @ unit.gram[point][np.ix_(columns, columns)] @ theta)
+            along = float(theta @ unit.inner[point][columns])
+        before, number = float(unit.quadratic[point]), float(unit.freedom)
+        total = total + Sums(before, before - 2.0 * along + own, number, unit.weight(point),
+                             (2.0 * number + 4.0 * max(before - number, 0.0), 4.0 * own,
+                              4.0 * along))
+    return total.shrinkage(bool(found))
 
 
-def fieller(gap, closed, number, strength, along):
-    """(share, (low, high)); (share or None, None) where the interval is unbounded."""
-    variance_gap = 2.0 * number + 4.0 * max(gap, 0.0) + (FLOOR * number) ** 2
-    variance_closed, both = 4.0 * strength, 4.0 * along
+def fieller(gap, closed, variance_gap, variance_closed, both):
+    """(share, (low, high)); (share or None, None) where the interval is unbounded. both: the
+    covariance."""
     z2 = Z_90 * Z_90
     a = gap * gap - z2 * variance_gap
     b = -2.0 * (gap * closed - z2 * both)

@@ -97,36 +97,9 @@ class RestCause:
 
 
 @dataclass(frozen=True)
-class Sums:
-    """Of the means held out: squares before, after and of the noise, their number; and what a
-    share's interval is made of, in units of the noise (holdout_gain.py)."""
-
-    before: float
-    after: float
-    floor: float
-    number: float
-    gap: float
-    closed: float
-    strength: float
-    along: float
-
-    def __add__(self, other):
-        return Sums(*(getattr(self, k) + getattr(other, k) for k in self.__dataclass_fields__))
-
-    def shrinkage(self, found):
-        """holdout_gain.Shrinkage; found: something was named."""
-        rms = [float(np.sqrt(max(v, 0.0) / max(self.number, 1.0)))
-               for v in (self.before, self.after, self.floor)]
-        if not found:
-            return holdout_gain.Shrinkage(*rms, None, None)
-        return holdout_gain.Shrinkage(*rms, *holdout_gain.fieller(
-            self.gap, self.closed, self.number, self.strength, self.along))
-
-
-@dataclass(frozen=True)
 class RestGap:
     """One sensor: kind, rest (LongRest), causes (tuple of RestCause), places (tuple of Place),
-    nameless (probabilities that something without a name is there), sums (one Sums an axis),
+    nameless (probabilities that something without a name is there), sums (one holdout_gain.Sums an axis),
     looked_at (names of effects)."""
 
     kind: str
@@ -300,37 +273,39 @@ def _drift(found, units, data, levels, kind, chosen, index):
 
 
 def _held_out(rest, unit, chosen, index, levels):
-    """Sums of one axis over the folds: pieces of the rest, every FOLDS-th of them foretold by
-    the others."""
+    """holdout_gain.Sums of one axis over the folds: pieces of the rest, every FOLDS-th of them
+    foretold by the others, all means with one weight. The floor is that of noise that wanders no
+    more than a chip may; what wanders more is a gap that nothing foretells."""
     y, group, (placement, flicker) = unit.rows.y, unit.rows.groups[0], unit.grid[index]
     noise = covariance.dense([group], placement, flicker)
     quiet = covariance.dense([group], 0.0, min(flicker, adequacy.TIMES_TYPICAL * levels.flicker))
-    centred = np.eye(rest.n) - 1.0 / rest.n
-    quiet = np.diag(centred @ quiet @ centred)
     columns = np.concatenate([f.columns for f in chosen] + [np.zeros(0, dtype=int)]).astype(int)
     prior = np.concatenate([f.prior for f in chosen] + [np.zeros(0)])
     x = unit.raw(columns)
     pieces = np.minimum(np.arange(rest.n) * PIECES // rest.n, PIECES - 1)
-    total = Sums(*np.zeros(8))
+    total = holdout_gain.NOTHING
     for fold in range(FOLDS):
         held = pieces % FOLDS == fold
-        plain = _foretold(y, x[:, :0], prior[:0], noise, held)
-        full = _foretold(y, x, prior, noise, held)
-        z, d = y[held] - plain, full - plain
-        white = np.linalg.solve(np.linalg.cholesky(noise[np.ix_(held, held)]),
-                                np.stack([z, d], 1))
-        z_w, d_w = white.T
-        total = total + Sums(z @ z, (z - d) @ (z - d), float(quiet[held].sum()), float(held.sum()),
-                             z_w @ z_w - len(z), 2.0 * d_w @ z_w - d_w @ d_w, d_w @ d_w,
-                             d_w @ z_w)
+        plain = _foretelling(x[:, :0], prior[:0], noise, held)
+        z = plain @ y
+        d = z - _foretelling(x, prior, noise, held) @ y
+        scatter = plain @ noise @ plain.T
+        own = float((scatter ** 2).sum())  # half the variance of the squares of noise alone
+        total = total + holdout_gain.Sums(
+            float(z @ z), float((z - d) @ (z - d)), float(np.trace(plain @ quiet @ plain.T)),
+            float(held.sum()),
+            (2.0 * own + 4.0 * max(float(z @ scatter @ z) - own, 0.0),
+             4.0 * float(d @ scatter @ d), 4.0 * float(d @ scatter @ z)))
     return total
 
 
-def _foretold(y, x, prior, noise, held):
-    """What the means not held out foretell of those that are: a constant and the columns x."""
+def _foretelling(x, prior, noise, held):
+    """(held, n): what it takes to make of all means those held out less what the others foretell
+    of them: a constant and the columns x."""
     train = ~held
-    design = np.hstack([np.ones((len(y), 1)), x])
-    solved = np.linalg.solve(noise[np.ix_(train, train)],
-                             np.column_stack([design[train], y[train]]))
-    gram = design[train].T @ solved[:, :-1] + np.diag(np.concatenate([[0.0], prior ** -2.0]))
-    return design[held] @ np.linalg.solve(gram, design[train].T @ solved[:, -1])
+    design = np.hstack([np.ones((len(x), 1)), x])
+    solved = np.linalg.solve(noise[np.ix_(train, train)], design[train])
+    gram = design[train].T @ solved + np.diag(np.concatenate([[0.0], prior ** -2.0]))
+    out = np.eye(len(x))[held]
+    out[:, train] -= design[held] @ np.linalg.solve(gram, solved.T)
+    return out

@@ -19,6 +19,7 @@ from . import covariance
 from .gram import Grams
 from .nominal_rows import Rows
 
+UNITS_AT_A_TIME = 256  # columns of a unit matrix that are there at once: memory, not time
 NOTHING = 1e-7  # share of its energy below which a column is silent
 
 
@@ -109,6 +110,22 @@ class Unit:
         metric[known, known] += 1.0
         taken = fixed.T @ data
         return float(data @ data - taken @ np.linalg.solve(metric, taken))
+
+    def weight(self, index):
+        """Trace of the metric Q that contrasts have at one point of the grid, z'Qz being chi2():
+        Q is the inverse of their covariance, across what is a nuisance."""
+        factor, fixed = self._factor(index), np.hstack([self.space, self._common()])
+        white = factor.whitened(fixed)[0]
+        metric = white.T @ white
+        known = np.arange(self.space.shape[1], len(metric))
+        metric[known, known] += 1.0
+        total = 0.0
+        for first in range(0, factor.n, UNITS_AT_A_TIME):
+            part = factor.whitened(np.eye(factor.n, min(UNITS_AT_A_TIME, factor.n - first),
+                                          -first))[0]
+            taken = white.T @ part
+            total += (part ** 2).sum() - (taken * np.linalg.solve(metric, taken)).sum()
+        return float(total)
 
     def _factor(self, index):
         """covariance.Factor at one point of the grid; the last one is kept."""

@@ -14,14 +14,14 @@ def test_fieller_covers_the_true_share_and_owns_up_to_too_small_a_gap():
         z = mean + generator.standard_normal(200)
         true = (2 * predicted @ mean - predicted @ predicted) / (mean @ mean)
         share, interval = holdout_gain.fieller(
-            z @ z - 200, 2 * predicted @ z - predicted @ predicted, 200,
-            predicted @ predicted, predicted @ z)
+            z @ z - 200, 2 * predicted @ z - predicted @ predicted,
+            2 * 200 + 4 * (z @ z - 200), 4 * predicted @ predicted, 4 * predicted @ z)
         if interval:
             number += 1
             covered += interval[0] <= true <= interval[1]
     assert number > 550
     assert 0.84 <= covered / number <= 0.97
-    assert holdout_gain.fieller(3.0, 2.0, 200, 1.0, 1.5) == (None, None)
+    assert holdout_gain.fieller(3.0, 2.0, 412.0, 4.0, 6.0) == (None, None)
 
 
 def test_false_discoveries_are_held_down():

@@ -79,6 +79,7 @@ def test_statistics_are_those_of_the_covariance_at_every_point(plain):
         assert projections[index] == pytest.approx(s.T @ inverse @ other)
         assert unit.noise_energy(*point) == pytest.approx(np.trace(c))
         assert unit.chi2(unit.z, index) == pytest.approx(z @ inverse @ z)
+        assert unit.weight(index) == pytest.approx(np.trace(inverse))
 
 
 def test_contrasts_have_the_size_of_what_the_nuisance_leaves(plain):

@@ -125,6 +125,16 @@ def test_every_coefficient_is_in_the_table_the_largest_too(found, capsys):
         assert "%s %s" % (key, "%.3g" % value) in " ".join(shown.split()), key
 
 
+def test_the_share_is_that_of_the_figures_printed(found):
+    """It was of whitened contrasts once, and the figures were not."""
+    for gap in answer.of(found)["gap"].values():
+        before, after, floor = (gap[k] ** 2 for k in ("before", "after", "floor"))
+        share = (before - after) / (before - floor)
+        assert min(share, 1.0) == pytest.approx(gap["explained_share"], abs=0.005)
+        assert gap["interval_90"][0] <= gap["explained_share"] <= gap["interval_90"][1]
+        assert gap["before"] > 1.5 * gap["floor"]
+
+
 def test_adding_an_effect_changes_nothing_that_was_found(found):
     before = json.dumps(answer.of(found))
     gap = found.gaps["accel"]
