@@ -170,21 +170,21 @@ def share(units, statistics, index, without, including):
 def share_of_drift(units, statistics, chosen, index, levels):
     """share() of noise that wanders more than usual, beside the Forms chosen: of the excess over
     noise with no more flicker than evidence.Levels say."""
-    quiet = usual_levels(units, index, levels)
+    quiet = usual_levels(units, index, levels.flicker)
     return share(units, statistics, quiet, (chosen, quiet), (chosen, index))
 
 
-def usual_levels(units, index, levels):
-    """Indices of the grids' points with no more flicker than evidence.Levels say is usual, and
-    the placement levels of the points `index`."""
-    return [_usual(unit, point, levels) for unit, point in zip(units, index)]
+def usual_levels(units, index, flicker):
+    """Indices of the grids' points with no more flicker than that (the least there is, if none),
+    and the placement levels of the points `index`."""
+    return [_usual(unit, point, flicker) for unit, point in zip(units, index)]
 
 
-def _usual(unit, point, levels):
-    """Index of the point of a unit's grid that has no more flicker than is usual."""
+def _usual(unit, point, most):
+    """Index of the point of a unit's grid that has no more flicker than that."""
     if unit.between:
         return point
     placement, flicker = unit.grid[point]
     low = [b for a, b in unit.grid if a == placement]
-    low = [b for b in low if b <= levels.flicker] or [min(low)]
+    low = [b for b in low if b <= most] or [min(low)]
     return unit.grid.index((placement, min(flicker, max(low))))

@@ -19,7 +19,8 @@ class Data:
 
 
 class Fit:
-    """Restricted maximum likelihood in one unit: index of the grid (R,), sums for pooling."""
+    """Restricted maximum likelihood in one unit: index of the grid (R,), course (G, R) of the log
+    likelihood over it, sums for pooling."""
 
     def __init__(self, unit, statistics, columns, prior):
         quadratic, projections = statistics
@@ -33,7 +34,7 @@ class Fit:
             solved = np.linalg.solve(full, inner)
             loglik = loglik + 0.5 * (inner * solved).sum(axis=1)
             loglik = loglik - 0.5 * np.linalg.slogdet(full)[1][:, None]
-        self.index = loglik.argmax(axis=0)
+        self.course, self.index = loglik, loglik.argmax(axis=0)
         self.loglik = loglik.max(axis=0)
         every = np.arange(quadratic.shape[1])
         self.quadratic = quadratic[self.index, every]

@@ -1,24 +1,26 @@
 """Stage 6: how far the gap shrinks on the session held out, in one unit.
 
 Of the contrasts z = mu + noise of the session held out and the prediction d of the causes, whose
-coefficients come from the other sessions, all figures are weighted root mean squares with the
-weights Q of the fit (Unit.weight): before^2 = z'Qz / tr Q, after^2 = (z - d)'Q(z - d) / tr Q and
-floor^2, the same of noise alone. A contrast that a hand scatters counts as little as it does for
-the sizes. The share is that of these figures, (before^2 - after^2) / (before^2 - floor^2): what is
-closed, 2 d'Qz - d'Qd, of the gap z'Qz - m (m: degrees of freedom). Both are sums with known
-variances, so their ratio has a Fieller interval [Fieller, JRSS B 16 (1954) 175]; unbounded means
-that the gap is too small to measure. Levels of noise found in these very contrasts make z'Qz of
-noise alone vary by no more than the chi-squared of as many; `python -m
-tests.studies.robustness.shares` prints how often the intervals hold what is true.
+coefficients come from the other sessions, all figures are weighted root mean squares: before^2 =
+z'Qz / tr Q, after^2 = (z - d)'Q(z - d) / tr Q and floor^2, the same of noise alone. The weights Q
+are those of the fit with flicker as it usually is: a contrast that a hand scatters counts little.
+The share is that of these figures, (before^2 - after^2) / (before^2 - floor^2): what is closed,
+2 d'Qz - d'Qd, of the gap. Both are sums whose variances follow from noise drawn at the levels
+that the contrasts show, each as often as it is likely, so their ratio has a Fieller interval
+[Fieller, JRSS B 16 (1954) 175]; unbounded means that the gap is too small to measure. Noise that
+wanders more than any part's counts as noise only where it is named: else what a session has
+beyond the prediction would be taken for it. `python -m tests.studies.robustness.shares` prints
+how often the intervals hold what is true.
 """
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from . import coefficient_fits
+from . import adequacy, coefficient_fits
 
 Z_90 = 1.6448536269514722
+DRAWN = 400  # of noise: their variance is known to 7 %, an interval's length to 4 %
 
 
 @dataclass(frozen=True)
@@ -62,28 +64,58 @@ class Sums:
 NOTHING = Sums(0.0, 0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
 
 
-def of(data, chosen, index):
-    """Shrinkage of all sessions, each held out in turn; index: into each unit's grid, the levels
-    that count as noise."""
+def of(data, chosen, index, usual, wanders=False):
+    """Shrinkage of all sessions, each held out in turn; index: into each unit's grid, the
+    likeliest levels of noise; usual: evidence.Levels; wanders: that it is more is named."""
     columns = np.concatenate([c.columns for c in chosen] + [np.zeros(0, dtype=int)])
     prior = np.concatenate([c.prior for c in chosen] + [np.zeros(0)])
-    found = coefficient_fits.fits(data, columns, prior) if len(columns) else None
-    total = NOTHING
-    for held, (unit, point) in enumerate(zip(data.units, index)):
+    fits = coefficient_fits.fits(data, columns, prior)
+    largest = usual.flicker * (math.inf if wanders else adequacy.TIMES_TYPICAL)
+    metrics = adequacy.usual_levels(data.units, index, usual.flicker)
+    total, generator = NOTHING, np.random.default_rng(20190919)
+    for held, (unit, point, metric) in enumerate(zip(data.units, index, metrics)):
         if unit.between:
             continue
-        own = along = 0.0
-        if found:
-            others = found[:held] + found[held + 1:] or found
-            theta = coefficient_fits.coefficients(others, prior)[0][0]
-            # Of whitened contrasts z and prediction d: d'd and d'z.
-            own = float(theta @ unit.gram[point][np.ix_(columns, columns)] @ theta)
-            along = float(theta @ unit.inner[point][columns])
-        before, number = float(unit.quadratic[point]), float(unit.freedom)
-        total = total + Sums(before, before - 2.0 * along + own, number, unit.weight(point),
-                             (2.0 * number + 4.0 * max(before - number, 0.0), 4.0 * own,
-                              4.0 * along))
-    return total.shrinkage(bool(found))
+        foretold = np.zeros(len(unit.z))
+        if len(columns):
+            others = fits[:held] + fits[held + 1:] or fits
+            foretold = unit.columns[:, columns] @ coefficient_fits.coefficients(
+                others, prior)[0][0]
+        noise = _drawn(unit, fits[held], point, largest, generator)
+        total = total + _sums(unit, metric, foretold, noise)
+    return total.shrinkage(bool(chosen))
+
+
+def _drawn(unit, fit, point, largest, generator):
+    """(m, DRAWN) noise with the levels around a point of the grid, each as often as it is likely;
+    none with more flicker than the largest."""
+    points = unit.around(point)
+    nats = fit.course[points, 0]
+    likely = np.exp(nats - nats.max())
+    numbers = generator.multinomial(DRAWN, likely / likely.sum())
+    levels = adequacy.usual_levels([unit] * len(points), points, largest)
+    return np.hstack([unit.draw(level, generator, number)
+                      for level, number in zip(levels, numbers) if number])
+
+
+def _sums(unit, metric, foretold, noise):
+    """Sums of one session, weighted as at a point of its grid."""
+    products = unit.products(np.column_stack([unit.z, foretold, noise]), metric)
+    squares = np.diagonal(products)
+    before, own, alone = squares[0], squares[1], squares[2:]
+    with_z, with_d = products[0, 2:], products[1, 2:]
+    return Sums(float(before), float(before - 2.0 * products[0, 1] + own), float(alone.mean()),
+                unit.weight(metric), spread(
+                    float(alone.var()), float((with_z ** 2).mean()),
+                    float((with_z * with_d).mean()), float((with_d ** 2).mean())))
+
+
+def spread(alone, of_z, both, of_d):
+    """Variances of the gap's and of the closed part's estimates and their covariance, of: the
+    variance of noise's own squares; z'QCQz, z'QCQd and d'QCQd with the noise's covariance C. What
+    the noise in z has in common with other noise is taken off z, in size."""
+    of_mean = max(of_z - 0.5 * alone, 0.0)
+    return alone + 4.0 * of_mean, 4.0 * of_d, 4.0 * both * math.sqrt(of_mean / max(of_z, 1e-300))
 
 
 def fieller(gap, closed, variance_gap, variance_closed, both):

@@ -99,8 +99,8 @@ class RestCause:
 @dataclass(frozen=True)
 class RestGap:
     """One sensor: kind, rest (LongRest), causes (tuple of RestCause), places (tuple of Place),
-    nameless (probabilities that something without a name is there), sums (one holdout_gain.Sums an axis),
-    looked_at (names of effects)."""
+    nameless (probabilities that something without a name is there), sums (one holdout_gain.Sums
+    an axis), looked_at (names of effects)."""
 
     kind: str
     rest: long_rest.LongRest
@@ -290,12 +290,11 @@ def _held_out(rest, unit, chosen, index, levels):
         z = plain @ y
         d = z - _foretelling(x, prior, noise, held) @ y
         scatter = plain @ noise @ plain.T
-        own = float((scatter ** 2).sum())  # half the variance of the squares of noise alone
         total = total + holdout_gain.Sums(
             float(z @ z), float((z - d) @ (z - d)), float(np.trace(plain @ quiet @ plain.T)),
-            float(held.sum()),
-            (2.0 * own + 4.0 * max(float(z @ scatter @ z) - own, 0.0),
-             4.0 * float(d @ scatter @ d), 4.0 * float(d @ scatter @ z)))
+            float(held.sum()), holdout_gain.spread(
+                2.0 * float((scatter ** 2).sum()), float(z @ scatter @ z),
+                float(d @ scatter @ z), float(d @ scatter @ d)))
     return total
 
 

@@ -88,6 +88,11 @@ class SensorGap:
     def same_session(self):
         return len(self.parts) == 1
 
+    @property
+    def wanders(self):
+        """Whether noise that wanders more than it usually does is among what was found."""
+        return "drift" in self.found.best.names
+
     def unit(self, part, nominal, certified, wanted=None):
         """linear_model.Unit of a session, or of a part of one, as the model makes it."""
         return self.model.unit(part, nominal, certified, wanted)
@@ -113,8 +118,8 @@ class SensorGap:
         model = posterior.Model(self.units, self.data.statistics, self.noise)
         best = max(mine, key=lambda form: model.scored((*self.found.best.forms, form)).score)
         chosen = [*self.chosen, best]
-        return replace(self, chosen=chosen, shrinkage=holdout_gain.of(self.data, chosen,
-                                                                      self.adequacy.index))
+        return replace(self, chosen=chosen, shrinkage=holdout_gain.of(
+            self.data, chosen, self.adequacy.index, self.noise, self.wanders))
 
 
 @dataclass(frozen=True)
@@ -191,7 +196,8 @@ class RestModel:
                 data = coefficient_fits.Data([self.unit(*part, certified, wanted)
                                               for part in parts])
                 index = gap.halved_levels(data)
-        return replace(gap, shrinkage=holdout_gain.of(data, gap.chosen, index))
+        return replace(gap, shrinkage=holdout_gain.of(
+            data, gap.chosen, index, gap.noise, gap.wanders))
 
     def usual(self):
         """evidence.Levels of this sensor."""

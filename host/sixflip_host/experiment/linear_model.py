@@ -19,7 +19,7 @@ from . import covariance
 from .gram import Grams
 from .nominal_rows import Rows
 
-UNITS_AT_A_TIME = 256  # columns of a unit matrix that are there at once: memory, not time
+AT_A_TIME = 256  # columns of a unit matrix that are there at once: memory, not time
 NOTHING = 1e-7  # share of its energy below which a column is silent
 
 
@@ -102,30 +102,26 @@ class Unit:
 
     def chi2(self, z, index):
         """Of contrasts z (m,) against noise with the levels of one point of the grid."""
-        white = self._factor(index).whitened(np.hstack(
-            [self.space, self._common(), z[:, None]]))
-        fixed, data = white[0, :, :-1], white[0, :, -1]
+        return float(self.products(z[:, None], index)[0, 0])
+
+    def products(self, z, index):
+        """(R, R) z'Qz of contrasts z (m, R), Q the inverse of their covariance at one point of
+        the grid, across what is a nuisance."""
+        white = self._factor(index).whitened(np.hstack([self.space, self._common(), z]))[0]
+        number = white.shape[1] - z.shape[1]
+        fixed, data = white[:, :number], white[:, number:]
         metric = fixed.T @ fixed
-        known = np.arange(self.space.shape[1], len(metric))
+        known = np.arange(self.space.shape[1], number)
         metric[known, known] += 1.0
         taken = fixed.T @ data
-        return float(data @ data - taken @ np.linalg.solve(metric, taken))
+        return data.T @ data - taken.T @ np.linalg.solve(metric, taken)
 
     def weight(self, index):
-        """Trace of the metric Q that contrasts have at one point of the grid, z'Qz being chi2():
-        Q is the inverse of their covariance, across what is a nuisance."""
-        factor, fixed = self._factor(index), np.hstack([self.space, self._common()])
-        white = factor.whitened(fixed)[0]
-        metric = white.T @ white
-        known = np.arange(self.space.shape[1], len(metric))
-        metric[known, known] += 1.0
-        total = 0.0
-        for first in range(0, factor.n, UNITS_AT_A_TIME):
-            part = factor.whitened(np.eye(factor.n, min(UNITS_AT_A_TIME, factor.n - first),
-                                          -first))[0]
-            taken = white.T @ part
-            total += (part ** 2).sum() - (taken * np.linalg.solve(metric, taken)).sum()
-        return float(total)
+        """Trace of the metric Q of products()."""
+        n = self.space.shape[0]
+        return sum(float(np.trace(self.products(np.eye(n, min(AT_A_TIME, n - first), -first),
+                                                index)))
+                   for first in range(0, n, AT_A_TIME))
 
     def _factor(self, index):
         """covariance.Factor at one point of the grid; the last one is kept."""
