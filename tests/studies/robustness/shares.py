@@ -76,7 +76,10 @@ def case(seed):
     scores = posterior.Model(whole, data.statistics, model.usual())
     form = max((f for f in forms if f.effect == name and f.axis is None and not f.record),
                key=lambda f: scores.scored((f,)).score)
-    set_ = posterior.with_discrepancy(scores, forms, scores.scored((form,)))
+    set_ = scores.scored((form,))
+    wider = hypotheses.with_discrepancy(scores, forms, set_, form)
+    if wider is not None and scores.scored((wider,)).score > set_.score + posterior.FORM_COST:
+        set_ = scores.scored((wider,))
     chosen = list(set_.forms)
     index = [int(fit.index[0]) for fit in set_.fits]
     shrinkage = holdout_gain.of(data, chosen, index, model.usual())
