@@ -1,8 +1,11 @@
 """What a batch shares and what single boards have, on fleets made by another code."""
+import errno
+
 import numpy as np
 import pyarrow.parquet
 import pytest
 
+from sixflip_host.errors import BadFile
 from sixflip_host.fleet import (
     answer,
     board_estimates,
@@ -194,3 +197,17 @@ def test_sound_fleets_name_hardly_a_board():
                                ("",) * 200, [block], [], {}, ())
         named += len(judgement.batches(them)[0].outliers)
     assert named <= 12      # a quarter of a board is expected in each fleet
+
+
+def test_a_full_disk_is_one_sentence(found, tmp_path, monkeypatch):
+    full = OSError(errno.ENOSPC, "No space left on device")
+
+    def no_space(*_):
+        raise full
+    monkeypatch.setattr(store.os, "pwrite", no_space)
+    with pytest.raises(BadFile, match="No space left on device.*TMPDIR names another folder"):
+        store.Stored(3, (2,))
+    monkeypatch.setattr(pyarrow.parquet.ParquetWriter, "write_table", no_space)
+    with pytest.raises(BadFile, match="estimates.parquet: cannot be written: No space left"):
+        board_estimates.write(tmp_path, [(*found[:1], [found[1]], [])])
+    assert list(tmp_path.iterdir()) == []
