@@ -6,8 +6,15 @@ What libFuzzer finds to be new is kept beside the corpus only with -keep: the co
 is small and chosen. A crash leaves its input as crash-* in the current folder: put it into
 tests/fuzz/corpus/TARGET, so that every test run replays it. Without atheris (it has no package
 for this Python or machine) the corpus is mutated blindly: -runs=N -seed=N.
+
+    python -m tests.fuzz.fuzz --each < LINES
+
+imports and instruments everything once, forks for each line of input, a JSON list of a target and
+its options and a file for what it says, and answers with a line, its exit code.
 """
 
+import json
+import os
 import random
 import sys
 from pathlib import Path
@@ -50,25 +57,52 @@ def blindly(target, seeds, options):
             raise
 
 
-def main():
-    """Guided: never returns, libFuzzer ends the process."""
-    name, options = sys.argv[1], sys.argv[2:]
-    folder = CORPUS / name
+def imported():
+    """(atheris or None, the targets' module, instrumented where there is an atheris)."""
     try:
         import atheris
     except ImportError:
         from tests.fuzz import targets
-        blindly(targets.TARGETS[name], [p.read_bytes() for p in sorted(folder.iterdir())], options)
-        return
+        return None, targets
     with atheris.instrument_imports(include=OURS):
         from tests.fuzz import targets
-    # A folder in front is where libFuzzer writes: one of this process, thrown away.
-    found = Path(targets.FOLDER) / "found"
+    return atheris, targets
+
+
+def run(atheris, targets, name, options):
+    """Guided: never returns, libFuzzer ends the process."""
+    folder = CORPUS / name
+    if atheris is None:
+        blindly(targets.TARGETS[name], [p.read_bytes() for p in sorted(folder.iterdir())], options)
+        return
+    # A folder in front is where libFuzzer writes: one of this run, thrown away.
+    found = Path(targets.FOLDER) / ("found-" + name)
     found.mkdir()
     folders = [str(folder)] if "-keep" in options else [str(found), str(folder)]
     options = [word for word in options if word != "-keep"]
     atheris.Setup([sys.argv[0], *options, *folders], targets.TARGETS[name])
     atheris.Fuzz()
+
+
+def each():
+    """A process for each line of stdin, forked from this one; its exit code on stdout."""
+    tools = imported()
+    for line in sys.stdin:
+        name, options, said = json.loads(line)
+        child = os.fork()
+        if not child:
+            for number in (1, 2):       # atheris tells an exception on stdout
+                os.dup2(os.open(said, os.O_WRONLY | os.O_CREAT | os.O_APPEND), number)
+            run(*tools, name, options)
+            sys.exit(0)
+        print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
+
+
+def main():
+    if sys.argv[1] == "--each":
+        each()
+    else:
+        run(*imported(), sys.argv[1], sys.argv[2:])
 
 
 if __name__ == "__main__":

@@ -1,5 +1,7 @@
 """Every corpus file through its target, and a bounded run of the fuzzer with a fixed seed."""
 
+import json
+import select
 import subprocess
 import sys
 from pathlib import Path
@@ -27,12 +29,25 @@ def test_every_target_has_a_corpus():
     assert {path.parent.name for path in FILES} == set(targets.TARGETS)
 
 
+@pytest.fixture(scope="module")
+def fuzzer():
+    """The process that forks for each target: what they import is instrumented once."""
+    with subprocess.Popen([sys.executable, "-m", "tests.fuzz.fuzz", "--each"], text=True,
+                          cwd=HERE.parents[1], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                          stderr=subprocess.DEVNULL) as process:
+        yield process
+        process.stdin.close()
+
+
 @pytest.mark.parametrize("name", targets.TARGETS)
-def test_some_runs(name, tmp_path):
-    done = subprocess.run(
-        [sys.executable, "-m", "tests.fuzz.fuzz", name, "-runs=%d" % RUNS.get(name, A_FEW),
-         "-seed=1", "-max_len=6000", "-rss_limit_mb=1500", "-timeout=60",
-         "-artifact_prefix=%s/" % tmp_path],
-        cwd=HERE.parents[1], capture_output=True, text=True, errors="replace", timeout=300)
-    kept = [path.read_bytes()[:2000] for path in tmp_path.iterdir()]
-    assert done.returncode == 0, "%s\n%s" % (kept, done.stderr[-3000:])
+def test_some_runs(fuzzer, name, tmp_path):
+    said = tmp_path / "said"
+    inputs = tmp_path / "inputs"
+    inputs.mkdir()
+    options = ["-runs=%d" % RUNS.get(name, A_FEW), "-seed=1", "-max_len=6000",
+               "-rss_limit_mb=1500", "-timeout=60", "-artifact_prefix=%s/" % inputs]
+    print(json.dumps([name, options, str(said)]), file=fuzzer.stdin, flush=True)
+    assert select.select([fuzzer.stdout], [], [], 300)[0], "no end of it in 300 s"
+    code = fuzzer.stdout.readline().strip()
+    kept = [path.read_bytes()[:2000] for path in inputs.iterdir()]
+    assert code == "0", "%s\n%s" % (kept, said.read_text(errors="replace")[-3000:])
