@@ -11,7 +11,7 @@ from sixflip.capture import reader as capture_reader
 from sixflip.capture.writer import BlockWriter
 from sixflip.record import correction_record
 from sixflip_host import cli
-from sixflip_host.board import board_link, firmware_update
+from sixflip_host.board import board_link, firmware_update, raw_repl
 from sixflip_host.board.board_events import events
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.errors import SixflipError
@@ -33,22 +33,23 @@ CALIBRATING = tuple('"event": "%s"' % name for name in (
     '"event": "pose", "pose": "%s"' % pose for pose in POSES) + tuple(
     '"event": "%s"' % name for name in ("capture", "solved", "saved", "ready"))
 ENDS = (0, 1, 3, 4)     # exit codes of errors in one line
-QUICK = {"ANSWER_S": 2.0, "FILES_S": 5.0, "HANDSHAKE_S": 3.0, "REOPEN_S": 3.0}
+QUICK = {"ANSWER_S": (raw_repl, 2.0), "FILES_S": (board_link, 5.0), "HANDSHAKE_S": (raw_repl, 3.0),
+         "REOPEN_S": (raw_repl, 3.0)}
 
 
 @contextlib.contextmanager
 def impatient():
     """The link's time-outs for a board that runs as fast as the processor."""
-    before = {name: getattr(board_link, name) for name in QUICK}
+    before = {name: getattr(module, name) for name, (module, _) in QUICK.items()}
     silence, calibrate.SILENCE_S = calibrate.SILENCE_S, 3
-    for name, value in QUICK.items():
-        setattr(board_link, name, value)
+    for name, (module, value) in QUICK.items():
+        setattr(module, name, value)
     try:
         yield
     finally:
         calibrate.SILENCE_S = silence
         for name, value in before.items():
-            setattr(board_link, name, value)
+            setattr(QUICK[name][0], name, value)
 
 
 def firmware(folder, version):

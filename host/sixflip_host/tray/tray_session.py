@@ -5,8 +5,8 @@ import queue
 import time
 
 from ..board import calibration_request
-from ..board.board_link import PATIENCE, patience_of
 from ..board.ending import Ending
+from ..board.raw_repl import PATIENCE, patience_of
 from ..history import remember
 from . import leading, tray_events
 from .board_thread import HEARD, JOINED, LEFT, BoardThread

@@ -8,7 +8,7 @@ import tty
 
 import pytest
 
-from sixflip_host.board import board_link
+from sixflip_host.board import raw_repl
 from sixflip_host.board.board_link import MpremoteLink, NoSpace, safe_name
 from sixflip_host.errors import NoBoard, SixflipError
 from sixflip_host.virtual.virtual_board import VirtualBoard
@@ -54,7 +54,7 @@ def test_second_terminal_is_told_so(board, link):
 
 
 def test_silent_port_is_no_board(silent_port, monkeypatch):
-    monkeypatch.setattr(board_link, "HANDSHAKE_S", 1.0)
+    monkeypatch.setattr(raw_repl, "HANDSHAKE_S", 1.0)
     with MpremoteLink(silent_port) as link, pytest.raises(NoBoard, match="raw REPL within 1 s"):
         link.files()
 
@@ -83,7 +83,7 @@ def test_a_board_that_hears_no_ctrl_c_while_it_starts():
 
 
 def test_port_that_never_stops_talking_is_no_board(silent_port, monkeypatch):
-    monkeypatch.setattr(board_link, "HANDSHAKE_S", 1.0)
+    monkeypatch.setattr(raw_repl, "HANDSHAKE_S", 1.0)
     with MpremoteLink(silent_port) as link:
         stop = threading.Event()
 

@@ -7,7 +7,7 @@ import threading
 import pytest
 
 from sixflip_host import cli
-from sixflip_host.board import board_link, firmware_update
+from sixflip_host.board import firmware_update, raw_repl
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.errors import NoBoard, UsageError
 from sixflip_host.history import store
@@ -78,7 +78,7 @@ class Puller:
 
 
 def test_eight_boards_of_which_three_fail(micropython, flash, tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(board_link, "REOPEN_S", 0.5)
+    monkeypatch.setattr(raw_repl, "REOPEN_S", 0.5)
     monkeypatch.setattr(leading, "PATIENCE_S", 2.0)
     monkeypatch.setenv("SIXFLIP_HISTORY", str(tmp_path / "history.sqlite"))
     stuck = {"faults": [{"kind": "frozen", "at_ms": 30000}]}

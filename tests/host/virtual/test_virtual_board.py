@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from sixflip_host.board import board_link, firmware_update
+from sixflip_host.board import firmware_update, raw_repl
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.errors import SixflipError
 from sixflip_host.virtual.virtual_board import VirtualBoard
@@ -111,7 +111,7 @@ def test_raw_paste_takes_a_source_of_many_windows(link):
 
 
 def test_power_cut_leaves_the_old_or_the_new_file(board, link, monkeypatch):
-    monkeypatch.setattr(board_link, "ANSWER_S", 0.5)
+    monkeypatch.setattr(raw_repl, "ANSWER_S", 0.5)
     old, new = b"o" * 3000, b"n" * 3000
     link.put("f", old)
     link.close()
