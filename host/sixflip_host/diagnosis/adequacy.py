@@ -18,6 +18,7 @@ PLACEMENT = {"accel": 0.87, "gyro": 0.003}  # 0.05 deg across gravity, mg; the E
 TIMES_TYPICAL = 4.0  # of flicker, that one rest may have: data sheets give no largest value
 ABSORBED = 0.6  # leverage above which a residual is mostly fitted away
 FEWEST = 20  # innovations of a session
+FROZEN = 1e-6  # of a standard deviation: rounding of a reading that never changes leaves less
 # Standard deviations of a kurtosis that chance reaches once in 30,000; how much one axis' noise
 # may be above another's in a chip as it is [ADXL345 rev. E, table 1: Z 1.1 LSB, X and Y 0.75].
 KURTOSIS_SIGMAS, UNLIKE = 4.0, 1.5
@@ -89,9 +90,8 @@ def _by_chance(chi2, freedom, known):
 
 
 def _odd(units, scored, theta, shaken):
-    """("" or how, p): how what is left differs from noise of the kinds in the model, which is
-    normal, of one size on all axes and independent between them: what jumps has heavy tails,
-    what is shared or on one axis alone has another cause than noise has."""
+    """oddity() of what is left in all sessions: what jumps has heavy tails, what is shared or on
+    one axis alone has another cause than noise has."""
     left = [innovations(u, u.grid[int(f.index[0])], private,
                         u.raw(scored.shared.index) @ theta)
             for u, f, private in zip(units, scored.fits, scored.private)
@@ -99,14 +99,20 @@ def _odd(units, scored, theta, shaken):
     left = [x for x in left if np.isfinite(x).all(axis=1).sum() >= FEWEST]
     if not left:
         return "", 1.0
-    x = np.concatenate([one[np.isfinite(one).all(axis=1)] for one in left])
+    return oddity(np.concatenate([one[np.isfinite(one).all(axis=1)] for one in left]), shaken)
+
+
+def oddity(x, shaken=()):
+    """("" or how, p): how innovations x (n, 3) differ from noise that is normal, of one size on
+    all axes and independent between them; shaken: axes that a line of the spectrum is on."""
     number = len(x)
+    spread = x.std(axis=0)
+    if spread.min() < FROZEN:  # an axis that always reads the same has no noise to compare
+        return "", 1.0
     tails = _kurtosis(x)
     if tails > KURTOSIS_SIGMAS * np.sqrt(24.0 / x.size) + 0.5:
         return "heavy tails", float(special.ndtr(-(tails - 0.5) / np.sqrt(24.0 / x.size)))
     size = (x ** 2).mean(axis=0)
-    if not size.min() > 0.0:  # an axis that always reads the same has no noise to compare
-        return "", 1.0
     size = np.delete(size, shaken) if len(shaken) < 2 else size[:1]  # a line is noise with a name
     if size.max() / size.min() > special.fdtri(
             number, number, 1.0 - DOUBTFUL_P / 3.0) * UNLIKE ** 2:

@@ -1,7 +1,9 @@
 """The statistics of the gap on small made-up problems whose answer is known."""
+import warnings
+
 import numpy as np
 
-from sixflip_host.diagnosis import holdout_gain, localisation
+from sixflip_host.diagnosis import adequacy, holdout_gain, localisation
 from sixflip_host.experiment import thermometer
 
 
@@ -43,3 +45,17 @@ def test_a_lag_is_a_lag_and_a_lead_undoes_it_to_first_order():
     assert np.abs(late - true)[150:].max() < 0.05
     again = thermometer.Thermometer(t, late).lagged(t, -20.0)
     assert np.abs(again - felt)[150:].max() < 0.08
+
+
+def test_an_axis_that_always_reads_the_same_is_no_noise_and_no_warning():
+    """Its spread once was a divisor of 0."""
+    noise = np.random.default_rng(5).standard_normal((200, 3))
+    frozen = noise.copy()
+    frozen[:, 1] = 0.3
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert adequacy.oddity(frozen) == ("", 1.0)
+    assert adequacy.oddity(noise) == ("", 1.0)
+    noise[:, 1] = noise[:, 0] + 0.1 * noise[:, 1]
+    how, p = adequacy.oddity(noise)
+    assert how == "axes move together" and p < 1e-6
