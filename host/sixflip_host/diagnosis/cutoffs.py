@@ -21,12 +21,12 @@ from .evidence import NONE
 from .odds import CHANCE
 
 RUNS = 160  # of which the upper tenth, 16, tell the scale of the tail to a quarter
-UPPER = 0.1
+UPPER = 0.1  # of them: a tail is exponential [Pickands, Annals of Statistics 3 (1975) 119]
 TIMES_USUAL = 1.6  # of the usual levels, that a null has at most
 SMALLEST_SCALE = 1e-6  # nats: all nulls gain the same
 MARGIN_NATS = 1.0  # noise is not quite what it is simulated as
 LEAST_NATS = 4.0  # GAP: 95 % of the prototype's nulls in one search with the noise known exactly
-FORMAT = 9
+FORMAT = 9  # of the cache: another one where what is kept, or how it is made, has changed
 STRANGERS = 3  # simulated for each nameless hypothesis
 STRANGE_CHI2 = 200.0  # of a simulated stranger: ten times what a cost amounts to
 SURE = 0.9  # share of the strangers beside which no name may be taken in

@@ -6,10 +6,9 @@ import numpy as np
 from sixflip_sim.effects.library import EFFECTS
 
 from ..experiment import terms
-from . import plausible
+from . import odds, plausible
 
 SIGNIFICANT = 3.0  # standard deviations at which an axis is said to have the effect
-Z_90 = 1.645
 FORM = 0.05  # of a size, standard deviation: parts do not have the library's very curves
 
 
@@ -20,7 +19,7 @@ def sized(cause, data, levels, chip, kind, share=None):
     axis_of = dict(zip(cause.keys, cause.axes))
     shown = [] if cause.effect == "box_tilt" else letters(cause, theta, sigma)
     value = {k: float(v) for k, v in theta.items() if not shown or "xyz"[axis_of[k]] in shown}
-    interval = {k: (float(v - Z_90 * sigma[k]), float(v + Z_90 * sigma[k]))
+    interval = {k: (float(v - odds.Z_90 * sigma[k]), float(v + odds.Z_90 * sigma[k]))
                 for k, v in value.items()}
     if shown:
         shown = sorted({*shown, *("xyz"[a] for a in cause.other_axes)})

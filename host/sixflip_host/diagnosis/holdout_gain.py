@@ -17,9 +17,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import adequacy, coefficient_fits
+from . import adequacy, coefficient_fits, odds
 
-Z_90 = 1.6448536269514722
 DRAWN = 400  # of noise: their variance is known to 7 %, an interval's length to 4 %
 
 
@@ -121,7 +120,7 @@ def spread(alone, of_z, both, of_d):
 def fieller(gap, closed, variance_gap, variance_closed, both):
     """(share, (low, high)); (share or None, None) where the interval is unbounded. both: the
     covariance."""
-    z2 = Z_90 * Z_90
+    z2 = odds.Z_90 ** 2
     a = gap * gap - z2 * variance_gap
     b = -2.0 * (gap * closed - z2 * both)
     c = closed * closed - z2 * variance_closed

@@ -32,7 +32,6 @@ STRANGE_SHARE = 0.06  # of what a stranger gains, that a name must gain beside i
 # the stranger's size, squared, is of another form than the strangers of motion have
 FOLLOWS = {"speed": "size of the rate", "rates": "rate", "squares": "products of the rates",
            "changes": "change of the rate", "scale": "size of the rate and gravity"}
-Z_90 = 1.645
 LEAST_LAG_MS = 0.5  # two sensors of one chip are not sampled at the same moment either
 TIMES_SIGMA = 4.5  # 80 % power at the threshold
 KNOWN_CM = 5.0  # standard deviation beyond which a direction of the arm is not known
@@ -277,8 +276,8 @@ def _finding(name, sizes, sigma, score, place):
     if name == "lever_arm":
         known = [i for i in range(3) if sigma[i] < KNOWN_CM]
         value = {"xyz"[i]: float(sizes[i]) for i in known}
-        interval = {"xyz"[i]: (float(sizes[i] - Z_90 * sigma[i]),
-                               float(sizes[i] + Z_90 * sigma[i])) for i in known}
+        interval = {"xyz"[i]: (float(sizes[i] - odds.Z_90 * sigma[i]),
+                               float(sizes[i] + odds.Z_90 * sigma[i])) for i in known}
         return Finding(name, "accel", [], value, EFFECTS[name].units["accel"], score, "motion",
                        "it sits %.1f cm off the point it is turned about"
                        % np.linalg.norm(list(value.values())), interval, place=place)
@@ -286,5 +285,5 @@ def _finding(name, sizes, sigma, score, place):
     return Finding(name, sensor, [], {"tau": float(tau)}, "ms", score, "motion",
                    "it is %.1f ms behind the other sensor; how late both are together shows "
                    "nowhere" % tau,
-                   {"tau": (float(tau - Z_90 * sigma[3]), float(tau + Z_90 * sigma[3]))},
+                   {"tau": (float(tau - odds.Z_90 * sigma[3]), float(tau + odds.Z_90 * sigma[3]))},
                    place=place)

@@ -11,7 +11,7 @@ from ..experiment import inertial_fit
 from . import handling_noise
 
 FEWEST_FLAT = 6  # turns on a table, if there is one session only
-SINGLE_FOLDS = 2
+SINGLE_FOLDS = 2  # of one session: every other move is foretold by those between
 ROUNDS, FREEDOM = 4, 4.0  # of weighting; Student's t
 BENT, WANDERED = (0.03, 0.1, 0.3, 1.0), (0.1, 0.3, 1.0)  # of the widest priors
 EFFECTS = {"lever_arm": np.arange(3), "filter_lag": np.array([3])}  # their columns

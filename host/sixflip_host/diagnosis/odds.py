@@ -5,6 +5,7 @@ Hypotheses for one place stand beside "", that nothing is there. Each but that o
 odds: how rare it is that chance alone gains so much in a search (cutoffs.py).
 """
 import math
+from statistics import NormalDist
 
 from ..experiment.terms import is_stranger
 
@@ -12,6 +13,7 @@ HOLDS = 0.95  # probability that a class of names must hold
 PRESENT = math.log(HOLDS / (1.0 - HOLDS))  # nats beyond its cost: more likely there than not
 CHANCE = 0.005  # two sensors, turns, moves, box, registers and spectra share 5 %, with room
 COST = -math.log(CHANCE)  # nats of a hypothesis over samples, whose chance is in its likelihood
+Z_90 = NormalDist().inv_cdf(0.95)  # standard deviations to either end of a 90 % interval
 SMALLEST = 1e-300  # of a probability: what a float holds
 
 

@@ -244,7 +244,7 @@ def _with_bent(cause, data, index):
     if not missing:
         return cause
     theta, sigma = effect_estimates.effective(cause, data, index)
-    half = {key: effect_estimates.Z_90 * sigma[key] for key in theta if key in missing}
+    half = {key: odds.Z_90 * sigma[key] for key in theta if key in missing}
     return replace(cause, value={**cause.value, **{key: float(theta[key]) for key in half}},
                    interval={**cause.interval, **{
                        key: (float(theta[key] - half[key]), float(theta[key] + half[key]))

@@ -9,12 +9,12 @@ import numpy as np
 
 from .. import progress
 from ..experiment import long_rest, noise_spectrum, signal_measures
+from . import odds
 
 WALK_S = 60.0  # a rest this long shows the random walk
 SHORTEST_S, FEWEST = 5.0, 64  # of a rest; samples in it
 PARTS = 12  # of a rest, whose means give the error of the bias
 A_DECADE = 4  # times of the Allan deviation
-Z_90 = 1.645
 NAMES = ("density", "instability", "walk")
 
 
@@ -70,7 +70,7 @@ def _bias(rests):
     off = parts - parts.mean(axis=0)
     power = np.maximum((off ** 2).sum(axis=0), 1e-300)
     r = np.clip((off[1:] * off[:-1]).sum(axis=0) / power, 0.0, 0.9)
-    half = Z_90 * np.sqrt(power / (len(parts) - 1) / len(parts) * (1 + r) / (1 - r))
+    half = odds.Z_90 * np.sqrt(power / (len(parts) - 1) / len(parts) * (1 + r) / (1 - r))
     return mean, np.array([mean - half, mean + half])
 
 

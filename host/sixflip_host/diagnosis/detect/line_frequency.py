@@ -13,7 +13,7 @@ from scipy import linalg, ndimage
 
 STEADY = 0.5  # of the power of short stretches that has to go on in phase over the whole
 PADDED = 4  # times its length: the transform in which a peak is looked for
-PAIRED = 1000
+PAIRED = 1000  # points, half a million pairs: their number grows with the square
 SHORT_BINS = 1.5  # bins of a short stretch within which the line lies
 SLOW_S = 40.0  # a rest that shows lines slower than LOWEST_HZ
 SLOWEST, FASTEST_HZ = 8.0, 1.0  # periods in the rest, and what short stretches see

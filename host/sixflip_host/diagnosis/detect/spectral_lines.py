@@ -11,6 +11,7 @@ import numpy as np
 from scipy import ndimage, special
 
 from ...capture.registers import steps
+from .. import odds
 from . import line_frequency
 from .detection import Finding
 from .line_frequency import Line
@@ -30,7 +31,6 @@ LEAST_SHARE = 0.25  # of the standard deviation of the noise: smaller is no matt
 # there scatters as much as its mean (noise through a resonance is exponential). Something that
 # runs is steadier. Only what is steady, or strong, is named.
 STEADY, STRONG_SHARE = 0.6, 0.4
-Z_90 = 1.645
 
 
 def findings(sessions):
@@ -60,8 +60,8 @@ def _told(lines, sensor, rate):
     """Finding of the lines of a sensor."""
     top = max(lines, key=lambda line: line.nats)
     value = {line.letter: float("%.3g" % line.amplitude) for line in lines}
-    interval = {line.letter: (line.amplitude * (1 - Z_90 * line.error),
-                              line.amplitude * (1 + Z_90 * line.error)) for line in lines}
+    interval = {line.letter: (line.amplitude * (1 - odds.Z_90 * line.error),
+                              line.amplitude * (1 + odds.Z_90 * line.error)) for line in lines}
     steady = [line for line in lines if line.steady]
     if steady:
         strong = max(steady, key=lambda line: line.nats)

@@ -9,10 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...experiment import blocks
-from .. import coefficient_fits, detectability
+from .. import coefficient_fits, detectability, odds
 from .. import diagnosis as stages
 
-Z90 = 1.645
 APART = 3.0  # standard errors between two sizes from which on they are two effects
 RAW = 0.1  # of a size without an interval: how well two logs repeat a line, a step or a clock
 
@@ -52,7 +51,7 @@ def _size(finding, key):
     value = finding.value.get(key, 0.0)
     interval = (finding.interval or {}).get(key)
     if interval is not None and interval[1] > interval[0]:
-        return value, (interval[1] - interval[0]) / 2.0 / Z90
+        return value, (interval[1] - interval[0]) / 2.0 / odds.Z_90
     return value, RAW * max(abs(v) for v in finding.value.values())
 
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from sixflip import STANDARD_G
 
+from .. import odds
 from . import conventions, single_log, traces
 
-Z90 = 1.645
 # Some thirty numbers are compared: at this many standard errors one log pair in 500 shows a
 # difference that is none (Bonferroni, normal).
 DIFFERS = 4.0
@@ -74,7 +74,7 @@ def _number(x):
 def _span(x, sigma):
     if x is None or not np.isfinite(x) or not np.isfinite(sigma):
         return None
-    return float(x - Z90 * sigma), float(x + Z90 * sigma)
+    return float(x - odds.Z_90 * sigma), float(x + odds.Z_90 * sigma)
 
 
 def shapes(real, sim, fits, usable):
@@ -168,15 +168,15 @@ def density_convention(kind, real, sim, rate_hz):
             for n, (m, s, p) in means.items()}
     top = max(logs.values())
     total = sum(np.exp(v - top) for v in logs.values())
-    odds = {n: float(np.exp(v - top) / total) for n, v in logs.items()}
-    probability = odds["too small"] + odds["too large"]
+    shares = {n: float(np.exp(v - top) / total) for n, v in logs.items()}
+    probability = shares["too small"] + shares["too large"]
     if probability < LIKELY:
         return []
-    factor = float(np.exp(ratio))
+    factor, half_of_90 = float(np.exp(ratio)), odds.Z_90 * sigma
     return [conventions.finding(
         "noise_per_sample", kind, probability, logs["too small" if ratio < 0 else "too large"]
         - logs["healthy"], value={"factor": factor}, unit="1",
-        interval_90={"factor": (factor * np.exp(-Z90 * sigma), factor * np.exp(Z90 * sigma))})]
+        interval_90={"factor": (factor * np.exp(-half_of_90), factor * np.exp(half_of_90))})]
 
 
 def merged_noise(found):
@@ -248,7 +248,7 @@ def bias_sign(parameters):
         own = [p for p in parameters if p.name == "bias" and p.sensor == kind]
         if len(own) < 3 or not any(p.differs for p in own):
             continue
-        sigma = [np.hypot(*[(s[1] - s[0]) / 2.0 / Z90 for s in (
+        sigma = [np.hypot(*[(s[1] - s[0]) / 2.0 / odds.Z_90 for s in (
             p.real_interval, p.simulated_interval)]) for p in own]
         large = [p for p, s in zip(own, sigma) if abs(p.real) > DIFFERS * s]
         turned = [p for p in large if p.differs and p.real * p.simulated < 0]
