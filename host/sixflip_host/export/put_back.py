@@ -100,6 +100,7 @@ def of(answer):
             first.append("%s: %s" % (c["words"], c["set"]))
         else:
             first.append("%s%s" % (c["words"], ": " + c["set"] if c["set"] else ""))
+    first += narrow(numbers)
     triads, coupling = {}, np.zeros((3, 3))
     effects = {"accel": {}, "gyro": {}}
     for cause in answer["causes"]:
@@ -118,6 +119,18 @@ def of(answer):
     return PutBack(triads["accel"], triads["gyro"], lever, coupling,
                    float(rate.get("real") or 100.0), float(simulator.get("reference_c") or 25.0),
                    tuple(first), tuple(left))
+
+
+def narrow(numbers):
+    """Sentences on ranges that nothing behind the simulator can take back."""
+    out = []
+    for kind, who in (("accel", "accelerometer"), ("gyro", "gyro")):
+        stops = [a for a, p in numbers.get(kind, {}).get("range", {}).items()
+                 if p["differs"] and p["simulator"] is not None and p["difference"] > 0]
+        if stops:
+            out.append("the simulator's %s stops short on %s, where the real one goes on: set its "
+                       "range" % (who, " and ".join(stops)))
+    return out
 
 
 def vector(values):
@@ -143,8 +156,9 @@ def triad(kind, named, effects, lag_s, delay_s, rate_hz):
     for i, axis in enumerate(AXES):
         for name, values in (("bias", bias), ("step", step), ("range", limit)):
             p = named.get(name, {}).get(axis)
-            if p and p["differs"]:
-                values[i] = unit * (p["difference"] if name == "bias" else p["real"])
+            wanted = p and p["differs"] and p["difference" if name == "bias" else "real"]
+            if wanted:
+                values[i] = unit * wanted
         p = named.get("noise_density", {}).get(axis)
         if p and p["differs"]:
             noise[i] = unit * np.sqrt(max(p["real"] ** 2 - p["simulator"] ** 2, 0.0))

@@ -16,6 +16,7 @@ from .hypotheses import BIAS, DEAD, DEG, DELAY_S, FREE, SHAPE, SIGNED, SMOOTH_S2
 ROUNDS = 4
 LEAST_LEFT = 1e-9
 MOST_ROWS = 4000  # of a log that a fit looks at; each stands for those around it
+STRETCHES = 20  # of a log, each of them one observation of what its coefficients are worth
 
 
 @dataclass(frozen=True)
@@ -183,11 +184,29 @@ def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,
     sigma = np.sqrt(np.maximum(np.diag(inverse), 0.0))
     shared = shared + mean
     if residuals:
+        sigma = np.maximum(sigma, scattered(inverse, left, own, columns, k_rows / (
+            variance * inflation), live))
         y, own, columns = raw
         left = y - own @ beta.T - columns @ shared
     out = (log, beta, shared, sigma[3 * p:], left if residuals else None,
            sigma[:3 * p].reshape(3, p))
     return out + (inverse[3 * p:, 3 * p:],) if covariance else out
+
+
+def scattered(inverse, left, own, columns, weights, live):
+    """Standard errors (3 p + k,) of the coefficients by how much stretches of the log disagree on
+    them: what a robot does besides is another thing in each of its moves, of no steady size
+    [Liang & Zeger, Biometrika 73 (1986), 13, equation 8]. weights (3,): of a channel's samples."""
+    n, p = own.shape
+    edges = np.linspace(0, n, STRETCHES, endpoint=False).astype(int)
+    parts = []
+    shared = 0.0
+    for c in range(3):
+        score = weights[c] * left[:, c:c + 1] * live[c]
+        parts.append(np.add.reduceat(own * score, edges, axis=0))
+        shared = shared + np.add.reduceat(columns[:, c] * score, edges, axis=0)
+    pulls = np.concatenate([*parts, shared], 1) @ inverse
+    return np.sqrt(STRETCHES / (STRETCHES - 1.0) * (pulls ** 2).sum(axis=0))
 
 
 def shifted(x, rows):

@@ -21,6 +21,7 @@ SETTING = 0.2  # how far a noise that was set by hand may be off, natural logari
 ANY = 2.0
 LIKELY = 0.95  # probability from which on a noise is said to be the density's number
 COARSE = 1.5  # times its noise: a step in which noise is not seen any more
+RANGE_APART = 1.01  # times the other's: a range that differs; full scales are twofold apart
 DROWNED = 0.3  # of a step: noise below it does not show
 
 
@@ -140,7 +141,8 @@ def noises(real, sim):
         for i, axis in enumerate("xyz"):
             if not np.ptp(values[1][:, i]):
                 continue  # a channel that says nothing is a convention
-            if single_log.step(values[0], floor[0])[i] > COARSE * b.per_sample[i] > 0:
+            if single_log.step(values[0], floor[0])[i] > COARSE * (
+                    a if silent else b).per_sample[i] > 0:
                 continue  # in steps that coarse the real one's noise does not show
             da, db = a.density[i] * scale, 0.0 if silent else b.density[i] * scale
             # Noise is known to a share of itself: it is the ratio that can be told from one.
@@ -206,14 +208,24 @@ def registers(real, sim):
                 out.append(Parameter("step", kind, axis, unit, steps[0], None, steps[1], None,
                                      steps[0] - steps[1], None, bool(coarse),
                                      steps[0] if coarse else None))
-            ends = [float(np.abs(v[:, i]).max()) * scale for v in (a, b)]
-            rail, theirs = traces.limit(a[:, i]), traces.limit(b[:, i])
-            if rail is not None and theirs is None and ends[1] > rail * scale * 1.01:
-                out.append(Parameter("range", kind, axis, unit, rail * scale, None, None, None,
-                                     rail * scale - ends[1], None, True, rail * scale))
+            out += ranges(kind, axis, unit, *(v[:, i] * scale for v in (a, b)))
     out.append(Parameter("rate", "device", "", "Hz", real.rate_hz, None, sim.rate_hz, None,
                          real.rate_hz - sim.rate_hz, None, False, None))
     return out
+
+
+def ranges(kind, axis, unit, real, sim):
+    """[Parameter] where one channel, real (n,) or sim (m,), stops and the other goes on."""
+    ends = [float(np.abs(x).max()) for x in (real, sim)]
+    stop, theirs = traces.limit(real), traces.limit(sim)
+    if stop is not None and ends[1] > stop * RANGE_APART:
+        return [Parameter("range", kind, axis, unit, stop, None, theirs, None, stop - ends[1],
+                          None, True, stop)]
+    if theirs is not None and ends[0] > theirs * RANGE_APART:
+        # Where the real one would stop is not known: it goes as far as this at least.
+        return [Parameter("range", kind, axis, unit, stop, None, theirs, None, ends[0] - theirs,
+                          None, True, stop)]
+    return []
 
 
 def timing(late, late_sigma, fits, alignment):

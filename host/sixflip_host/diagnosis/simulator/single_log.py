@@ -28,6 +28,9 @@ def live(trace):
 
 
 DEAD, ALIVE = 0.03, 0.15  # of the liveliest channel: what a channel that says nothing varies by
+# Of its power at rest: on its way a channel that says nothing has that and no more, and what moves
+# a robot moves its other channels.
+SAME, MORE = 1.3, 10.0
 
 
 def dead(real, sim):
@@ -40,7 +43,21 @@ def dead(real, sim):
         shares = [getattr(x, name).std(axis=0) / max(getattr(x, name).std(axis=0).max(), 1e-12)
                   for x in (real, sim)]
         out[kind] = (shares[1] < DEAD) & (shares[0] > ALIVE)
+        still = [at_rest(x, getattr(x, name), x.quantum[kind == "gyro"]) for x in (real, sim)]
+        if still[0] is not None and still[1] is not None:
+            ours, theirs = (getattr(x, name).var(axis=0) for x in (real, sim))
+            out[kind] |= (theirs < SAME * still[1]) & (theirs.max() > MORE * still[1]) & (
+                ours > MORE * np.maximum(*still))
     return out
+
+
+def at_rest(trace, values, quantum):
+    """(3,): power of values (n, 3) within the rests, a count's at least; None without a rest."""
+    rests = [values[a:b] for a, b in trace.rests]
+    if not rests:
+        return None
+    still = np.concatenate([x - x.mean(axis=0) for x in rests]).var(axis=0)
+    return np.maximum(still, quantum ** 2 / 12.0)
 
 
 def noise(trace, values):
