@@ -113,10 +113,10 @@ class Diagnosis:
         return detectability.visible_share(self) >= 0.5
 
 
-def of(sessions, settings=None, simulator=None, comparisons=(), damages=()):
+def of(sessions, settings=None, simulator=None, comparisons=(), damages=(), beside=False):
     """Diagnosis of blocks.Sessions; simulator: against_simulator.Simulator or None, what is in it
     as well is left out; comparisons: of the logs with its own; damages: what was put right in the
-    captures before."""
+    captures before; beside: these or others are held against a simulator, or are one's own."""
     settings = settings or Settings()
     sessions, remarks = accepted(sessions)
     clocks = sample_clock.clocks(sessions)
@@ -139,11 +139,19 @@ def of(sessions, settings=None, simulator=None, comparisons=(), damages=()):
     else:
         noise = rest_noise.of(sessions)
         progress.doing("the longest rest")
+        # Beside a simulator what a robot does by itself is motion: it shakes on its way, and
+        # settles in its rests, which a short one is full of.
+        moving = (beside or bool(comparisons)) and any(len(s.runs) > 1 for s in sessions)
         rest = rest_gap.of(sessions, settings, [
-            (f.sensor, "xyz".index(key), hz) for f in findings for key, hz in f.hz.items()])
+            (f.sensor, "xyz".index(key), hz) for f in findings for key, hz in f.hz.items()],
+            rest_gap.SETTLES_S if moving else 0.0)
+        if moving and not rest:
+            remarks.append("no rest of %g s: a robot that settles is not told from sensors that "
+                           "drift" % rest_gap.SETTLES_S)
         if not any(s.runs for s in sessions):
             remarks.append("no rest found: only what shows in motion can be judged")
-        if not any(f.effect == "vibration" and f.sensor == "accel" for f in findings):
+        if not moving and not any(
+                f.effect == "vibration" and f.sensor == "accel" for f in findings):
             findings += [f for f in shake_detector.findings(sessions)
                          if f.effect not in settings.without]
     if simulator:

@@ -36,6 +36,7 @@ FLICKERS = {"accel": (0.005, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 4.0, 12.0, 40.
 PIECES, FOLDS = 12, 4
 BENT = 4.0  # standard deviations of its square or cube at which an axis is bent
 MEANS = 12  # fewer say nothing of how a reading goes on
+SETTLES_S = 30.0  # so long tyres, springs and contacts of a robot that has stopped may still creep
 SETTLED = "session"  # the level by which one rest differs from the next
 
 
@@ -131,10 +132,10 @@ class RestGap:
         return rest_forms.limits(self.rest, self.kind, name) or "needs rests in several poses"
 
 
-def of(sessions, settings, lines=()):
+def of(sessions, settings, lines=(), least_s=0.0):
     """{sensor: RestGap} of blocks.Sessions, {} where nothing rests for long enough."""
     rest = long_rest.of(sessions, lines)
-    if rest is None or rest.n < MEANS:
+    if rest is None or rest.n < MEANS or rest.seconds.sum() < least_s:
         return {}
     chip = sessions[0].capture.meta["sensor"]
     return {kind: _sensor(rest, kind, chip, settings) for kind in rest.values}

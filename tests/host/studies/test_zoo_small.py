@@ -10,6 +10,7 @@ import pytest
 pytest.importorskip("mujoco", reason="the zoo needs MuJoCo: pip install 'sixflip[test]'")
 
 from sixflip_host.capture import capture_file  # noqa: E402
+from sixflip_host.diagnosis.diagnose import diagnose  # noqa: E402
 from sixflip_host.diagnosis.simulator import comparison, simulator_answer  # noqa: E402
 from tests.studies.zoo import (
     defects,  # noqa: E402
@@ -42,6 +43,26 @@ def test_a_healthy_simulator_has_no_finding(kind, same):
     assert not found.conventions and not found.differs
     assert simulator_answer.verdict("cannot tell" if kind == "rover" else "no gap",
                                     [found]) == "no gap"
+
+
+@pytest.mark.parametrize("same", [True, False])
+def test_a_robot_that_settles_in_its_rests_is_no_gap(same):
+    """Its short rests wander, and bumps shake it, in the simulator's log as in the real one."""
+    texts = defects.pair("healthy", motion("rover", 1), motion("rover", 1 if same else 2), 21,
+                         "", False)
+    logs = [capture_file.parse("log", text.encode()) for text in texts]
+    found = diagnose([("real.csv", logs[0])], [("sim.csv", logs[1])])
+    assert found.verdict == "no gap"
+    assert any("settles" in said for said in found.remarks)
+
+
+@pytest.mark.parametrize("name,wanted", [("constant", "constant_channel"),
+                                         ("no_noise", "noise_density"), ("no_range", "range")])
+def test_a_rover_on_another_way_shows_what_needs_no_motion(name, wanted):
+    found = compared(name, "rover", same=False, own=False)
+    assert {(n.name, n.sensor) for n in (*found.conventions, *found.differs)} <= {
+        (wanted, "accel"), (wanted, "gyro")}
+    assert (wanted, "accel") in {(n.name, n.sensor) for n in (*found.conventions, *found.differs)}
 
 
 NUMBERED = [n for n, d in defects.DEFECTS.items() if d[2]]

@@ -8,7 +8,8 @@ from collections import Counter
 from dataclasses import dataclass
 
 from sixflip_host.capture import capture_file
-from sixflip_host.diagnosis.simulator import comparison, simulator_answer, traces
+from sixflip_host.diagnosis.diagnose import diagnose
+from sixflip_host.diagnosis.simulator import comparison, traces
 
 from .. import cases
 from . import baselines, defects, engine
@@ -37,13 +38,15 @@ class Pair:
 
 def answered(pair):
     """{outcome, said, quiet, simple} of a Pair: what a worker does. simple: {method of baselines:
-    right, nothing or wrong}, of the first seed and one motion."""
+    right, nothing or wrong}, of the first seed and one motion; quiet: the whole diagnosis of a
+    healthy simulator says that there is no gap."""
     name, first = pair.name, pair.seed + 1
     real = motion(pair.kind, first, pair.quick)
     sim = real if pair.same else motion(pair.kind, first + 1, pair.quick)
     found, logs = case(name, real, sim, 100 * pair.seed + len(name), name == "healthy")
     return {"outcome": outcome(name, found), "said": said(found, defects.DEFECTS[name][3]),
-            "quiet": simulator_answer.verdict("no gap", [found]) == "no gap",
+            "quiet": name == "healthy" and diagnose(
+                [("real", logs[0])], [("sim", logs[1])]).verdict == "no gap",
             "simple": simple(name, logs, found) if pair.same and not pair.seed else {}}
 
 

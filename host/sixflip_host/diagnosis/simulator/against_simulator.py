@@ -57,7 +57,8 @@ def _size(finding, key):
 
 def read(captures, paths, settings):
     """Simulator from captures."""
-    found = stages.of([blocks.of(p, c) for p, c in zip(paths, captures)], settings)
+    found = stages.of([blocks.of(p, c) for p, c in zip(paths, captures)], settings,
+                      beside=True)
     known = {kind: _known(gap) for kind, gap in found.gaps.items() if gap.chosen}
     return Simulator(found, known, tuple(_remarks(found)))
 

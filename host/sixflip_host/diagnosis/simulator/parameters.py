@@ -100,6 +100,8 @@ def shapes(real, sim, fits, usable):
             if kind == "gyro":
                 pair = (None, None)  # at rest it is read directly
             out.append(compared("bias", kind, axis, unit, a, sa, b, sb, *pair))
+        if fit is None and not usable.get("accel"):
+            continue  # by its own moves a gyro is known by where the accelerometer finds gravity
         for i in range(3):
             for j in range(3):
                 size = 100.0 if i == j else DEG

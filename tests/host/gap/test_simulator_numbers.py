@@ -1,0 +1,40 @@
+"""Numbers of two logs side by side: ranges, and intervals that hold what stretches disagree on."""
+import numpy as np
+import pytest
+
+from sixflip_host.diagnosis.simulator import evidence_of_logs, parameters
+from sixflip_host.export import put_back
+
+
+def swung(limit, size=3.0):
+    return np.clip(size * np.sin(np.linspace(0.0, 20.0, 2000)), -limit, limit)
+
+
+@pytest.mark.parametrize("real,sim,differs,to_set", [
+    (2.0, 9.0, True, 2.0), (9.0, 2.0, True, None), (1.0, 2.0, True, 1.0), (2.0, 1.0, True, 2.0),
+    (2.0, 2.0, False, None), (9.0, 9.0, False, None)])
+def test_a_range_that_is_too_wide_or_too_narrow(real, sim, differs, to_set):
+    found = parameters.ranges("accel", "x", "mg", swung(real), swung(sim))
+    assert [p.differs for p in found] == ([True] if differs else [])
+    if differs:
+        assert found[0].set_to == to_set
+        assert np.sign(found[0].difference) == np.sign(min(real, 3.0) - min(sim, 3.0))
+
+
+def test_a_range_that_nothing_behind_the_simulator_can_widen_is_said_first():
+    numbers = {"accel": {"range": {"x": {"real": None, "simulator": 2000.0, "difference": 900.0,
+                                         "differs": True, "set": None}}}}
+    found = put_back.of({"simulator": {"parameters": numbers, "conventions": []}, "causes": []})
+    assert "stops short on x" in found.first[0]
+    assert np.isinf(found.accel.limit).all()
+
+
+def test_a_coefficient_is_as_uncertain_as_stretches_of_the_log_disagree_on_it():
+    rng = np.random.default_rng(1)
+    slopes = rng.normal(0.0, 0.1, 20)
+    x = rng.normal(size=(2000, 1))
+    y = np.repeat((x * np.repeat(slopes, 100)[:, None]), 3, 1) + 0.01 * rng.normal(size=(2000, 3))
+    result = evidence_of_logs.regression(y, x, np.array([10.0]), np.zeros((2000, 3, 0)),
+                                         np.zeros(0), np.zeros(0), 1.0, np.ones(3, bool))
+    sigma = result[5][:, 0]
+    assert sigma == pytest.approx(slopes.std() / np.sqrt(20.0), rel=0.4)
