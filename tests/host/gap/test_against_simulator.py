@@ -1,0 +1,49 @@
+"""What the simulator has as well is no gap: equality of two sizes by their intervals, and what the
+simulator's own log says and cannot say passed on."""
+from types import SimpleNamespace
+
+import pytest
+
+from sixflip_host.diagnosis.simulator import against_simulator
+
+
+def finding(value, half=None, effect="vibration", sensor="accel"):
+    interval = None if half is None else {k: (v - half, v + half) for k, v in value.items()}
+    return SimpleNamespace(effect=effect, sensor=sensor, value=value, interval=interval)
+
+
+def simulator(*findings):
+    return against_simulator.Simulator(SimpleNamespace(findings=list(findings)), {}, ())
+
+
+@pytest.mark.parametrize("value,half,new", [
+    ({"x": 10.0}, 1.0, False), ({"x": 12.0}, 1.0, False), ({"x": 12.0}, 0.1, True),
+    ({"x": 14.0}, 1.0, True), ({"x": 14.0}, 3.0, False),
+    ({"x": 10.0, "z": 6.0}, 1.0, True), ({"x": 10.0, "z": 1.0}, 1.0, False)])
+def test_two_sizes_are_equal_as_far_as_their_intervals_say(value, half, new):
+    own = simulator(finding({"x": 10.0}, half))
+    assert own.new(finding(value, half)) is new
+
+
+def test_another_sensor_or_effect_is_another_finding():
+    own = simulator(finding({"x": 10.0}, 1.0))
+    assert own.new(finding({"x": 10.0}, 1.0, sensor="gyro"))
+    assert own.new(finding({"x": 10.0}, 1.0, effect="quantisation"))
+
+
+def test_what_only_the_simulator_has_is_passed_on():
+    line, step = finding({"x": 10.0}), finding({"x": 4.0}, effect="quantisation")
+    assert simulator(line, step).only_simulated([finding({"x": 9.0})]) == [step]
+
+
+def test_the_simulators_remarks_and_silent_effects_are_passed_on(monkeypatch):
+    monkeypatch.setattr(against_simulator.detectability, "listed", lambda found: [
+        {"effect": "cubic"}, {"effect": "creep"}])
+    found = SimpleNamespace(gaps={"accel": None}, remarks=["its clock stands still"], causes=[
+        ("accel", SimpleNamespace(effect="thermal_bias"))])
+    assert against_simulator._remarks(found) == [
+        "the simulator already has: thermal_bias",
+        "the simulator's log: its clock stands still",
+        "effects that the simulator's log cannot show: creep, cubic"]
+    found.gaps = {}
+    assert "too few poses" in against_simulator._remarks(found)[0]
