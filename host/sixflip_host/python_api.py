@@ -131,11 +131,11 @@ def solve(capture, g=None, level=None):
     """
     import numpy as np
 
-    from .calibrate import solution
+    from .calibrate import solution, solution_json
     from .json_numbers import finite
     [(_, read)] = _named(capture)
     found = solution.solve(copy.copy(read), g, level)
-    said = finite(solution.to_json(found))
+    said = finite(solution_json.to_json(found))
 
     def matrix(result):
         if result is None:

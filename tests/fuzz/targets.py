@@ -27,7 +27,7 @@ from sixflip_host import cli, json_numbers
 from sixflip_host.board import board_answers, board_events, console
 from sixflip_host.board.board_schema import ANSWERS
 from sixflip_host.board.recording import Recording
-from sixflip_host.calibrate import solution
+from sixflip_host.calibrate import solution, solution_json
 from sixflip_host.capture import capture_binary, capture_file, open_recording
 from sixflip_host.errors import SixflipError
 from sixflip_host.experiment import fleet_prior
@@ -67,7 +67,7 @@ def kept(name, data):
 
 def use(capture):
     """What solve does with a capture, and a round trip through both formats."""
-    answer = json_numbers.finite(solution.to_json(solution.solve(capture)))
+    answer = json_numbers.finite(solution_json.to_json(solution.solve(capture)))
     json.dumps(answer, allow_nan=False)
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import least_squares
 
-from ..capture import rests
+from ..capture import rests_by_variance
 
 ROWS, COLUMNS = np.triu_indices(3)
 NAMES = tuple(
@@ -31,7 +31,7 @@ FEWEST_RESTS = 12
 @dataclass(frozen=True)
 class Multiposition:
     """parameters (9,); cost as imu_tk prints it; residual (n,) m/s^2; after a search the rests
-    (tuple of rests.Run) and the multiple of the variance at rest that found them. U (3, 3) and
+    (tuple of Run) and the multiple of the variance at rest that found them. U (3, 3) and
     offset (3,): corrected = U measured + offset."""
 
     parameters: np.ndarray
@@ -99,15 +99,15 @@ def solve(measured, g, start=None):
 def search(measured, g, first_rest=None, samples_a_rest=100):
     """Rest detection and fit together: the multiple with the lowest cost wins.
 
-    measured (n, 3) m/s^2 at an even rate; first_rest as rests.variance_at_rest;
+    measured (n, 3) m/s^2 at an even rate; first_rest as rests_by_variance.variance_at_rest;
     samples_a_rest: the first so many of every rest are fitted (imu_tk fits 100, each on its
     own). The answer carries .rests and .multiple.
     """
-    limit = rests.variance_at_rest(measured, first_rest)
+    limit = rests_by_variance.variance_at_rest(measured, first_rest)
     best = None
     most = 0
     for multiple in MULTIPLES:
-        found = rests.by_variance(measured, multiple * limit, shortest=samples_a_rest)
+        found = rests_by_variance.find(measured, multiple * limit, shortest=samples_a_rest)
         most = max(most, len(found))
         if len(found) < FEWEST_RESTS:
             continue

@@ -4,7 +4,7 @@ import numpy as np
 
 from sixflip.poses.faces import LEANING
 
-from ..capture import rests
+from ..capture import rests, rests_by_variance
 from ..errors import BadFile, CheckFailed
 from . import gyro_rests, joint_refinement, kept_parameters, multiposition
 from . import refinement_answer as answer
@@ -42,7 +42,7 @@ def rests_of(capture, free):
         return runs, LABELS
     if free:
         lsb = float(capture.meta["accel_lsb_per_g"])
-        if len(capture) < 2 * rests.WINDOW:
+        if len(capture) < 2 * rests_by_variance.WINDOW:
             raise BadFile("%d samples, expected a session of rests" % len(capture))
         try:
             fit = multiposition.search(capture.accel * (capture.g / lsb), capture.g)

@@ -8,7 +8,7 @@ from sixflip.accelerometer import verdict
 from sixflip.chips import catalogue
 from sixflip.gyro import solver as gyroscope
 from sixflip.gyro import verdict as gyro_verdict
-from sixflip.poses.faces import FACES, face_of_code, pose_name
+from sixflip.poses.faces import face_of_code, pose_name
 
 from ..capture import clock
 from ..capture.capture_binary import write_pauses
@@ -226,41 +226,3 @@ def flips_short(measured):
                     "180: its scale is off by %.1f %%; sixflip refine gives the right one"
                     % ("xyz"[axis], 180.0 + off, abs(off) / 1.8))
     return ""
-
-
-def to_json(solution):
-    """The answer of `solve --json`, as the capture format's description says."""
-    r = solution.accel
-    accel = {"P": None, "T": None, "scale": None, "v": None, "sigma": None, "residual_mg": {},
-             "tilt_deg": None, "tilt_spread_deg": None, "level": None}
-    if r:
-        accel = {
-            "P": r.P, "T": r.T, "scale": r.scale, "v": r.v,
-            "sigma": {"P": r.sigma_P, "scale": r.sigma_scale, "v": r.sigma_v},
-            "residual_mg": {pose_name(pose): [1e3 * x for x in left]
-                            for pose, left in sorted(r.residual.items())},
-            "tilt_deg": r.tilt_deg, "tilt_spread_deg": r.tilt_spread_deg, "level": r.level}
-    accel.update(verdict=solution.verdict, reason=solution.reason)
-    return {"format": 1, "sensor": solution.capture.meta["sensor"], "g": solution.g,
-            "accel": accel, **_gyro_json(solution), "flips": _flips_json(solution)}
-
-
-def _flips_json(solution):
-    flips = solution.flips
-    return {"taken_as": "measured" if flips.angles else "180 degrees", "reason": flips.reason,
-            "faces": {FACES[face]: {
-                "measured_deg": degrees, "sigma_deg": sigma,
-                "used_deg": float(np.degrees(flips.angles.get(face, np.pi)))}
-                for face, (degrees, sigma) in flips.measured.items()}}
-
-
-def _gyro_json(solution):
-    gyro = solution.gyro
-    if gyro is None:
-        return {"gyro": None, "gyro_reason": solution.no_gyro}
-    # Standard errors of what was measured: an axis that was not flipped has none.
-    sigma = [[None] * 3 if k in gyro.missing else row for k, row in enumerate(gyro.sigma)]
-    return {"gyro": {
-        "P": gyro.P, "bias_dps": gyro.bias_dps,
-        "sigma": {"P": sigma, "bias_dps": gyro.sigma_bias_dps},
-        "flips": gyro.flips, "verdict": gyro.verdict, "reason": gyro.reason}}

@@ -13,7 +13,7 @@ from sixflip.poses import faces
 from sixflip_sim.effects.moment import Moment
 
 from .. import progress
-from ..capture import rests
+from ..capture import rests, rests_by_variance
 from ..capture.capture_file import Capture
 from ..capture.find_poses import HELD_BY_HAND, find_poses
 from . import block_means, noise_arrays, thermometer
@@ -208,7 +208,7 @@ def _labelled(capture):
     found = copy.copy(capture)
     found.meta = dict(capture.meta)
     if capture.accel is None:
-        return rests.label_still_gyro(found)
+        return rests_by_variance.label_still_gyro(found)
     try:
         find_poses(capture).label(found)
     except (ValueError, IndexError, ZeroDivisionError):

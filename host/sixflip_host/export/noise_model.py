@@ -15,7 +15,7 @@ from sixflip.accelerometer.scale_form import scale_form
 from sixflip.poses.faces import pose_code
 
 from ..calibrate.solution import solve
-from ..capture import rests
+from ..capture import rests, rests_by_variance
 from ..capture.find_poses import HELD_BY_HAND, find_poses
 from ..errors import CheckFailed
 from ..experiment import long_rest, signal_measures
@@ -87,7 +87,7 @@ def _rests(capture):
     What a hand steadied is none."""
     if capture.pose is None or not (capture.pose > 0).any():
         if capture.accel is None:
-            capture = rests.label_still_gyro(copy.copy(capture))
+            capture = rests_by_variance.label_still_gyro(copy.copy(capture))
         else:
             find_poses(capture).label(capture)
     held = {pose_code(name) for name in capture.meta.get(HELD_BY_HAND, ())}

@@ -6,7 +6,7 @@ from sixflip.accelerometer.six_faces import LEVELS
 
 from .. import progress
 from ..calibrate import local_gravity as gravity
-from ..calibrate import solution
+from ..calibrate import solution, solution_json
 from ..capture import open_recording
 from ..errors import UsageError
 from ..file_arguments import add_input
@@ -39,7 +39,7 @@ def run(args):
         found = solution.solve(capture, g, args.level, args.flips == "180")
     if args.json:
         said = {"assumed": capture.assumed} if capture.assumed else {}
-        print(json.dumps(dict(finite(solution.to_json(found)), **said), ensure_ascii=False))
+        print(json.dumps(dict(finite(solution_json.to_json(found)), **said), ensure_ascii=False))
     else:
         say(capture.assumed)
         solve_words.show(found)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sixflip_host.calibrate import multiposition
-from sixflip_host.capture import rests
+from sixflip_host.capture import rests_by_variance
 from sixflip_host.planning import observability
 from tests.worlds import hand_session, xsens_recording
 
@@ -94,10 +94,10 @@ def test_rests_end_where_the_motion_begins():
     rng = np.random.default_rng(0)
     samples = rng.normal(0, 1.0, (2000, 3))
     samples[800:1000] += 50 * np.sin(np.arange(200) / 7)[:, None]
-    limit = 4 * rests.variance_at_rest(samples)
-    before, after = rests.by_variance(samples, limit)
-    assert before.end <= 800 < before.end + rests.WINDOW
-    assert 1000 <= after.first < 1000 + rests.WINDOW
+    limit = 4 * rests_by_variance.variance_at_rest(samples)
+    before, after = rests_by_variance.find(samples, limit)
+    assert before.end <= 800 < before.end + rests_by_variance.WINDOW
+    assert 1000 <= after.first < 1000 + rests_by_variance.WINDOW
 
 
 def test_no_rests_in_a_recording_that_never_rests():

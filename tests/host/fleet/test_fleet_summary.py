@@ -4,7 +4,7 @@ import io
 import numpy as np
 import pytest
 
-from sixflip_host.calibrate import solution
+from sixflip_host.calibrate import solution, solution_json
 from sixflip_host.capture import capture_file
 from sixflip_host.diagnosis import rest_model, settings
 from sixflip_host.errors import BadFile
@@ -26,7 +26,7 @@ def captured(tmp_path_factory):
 
 def test_it_is_solved_as_the_capture_is(captured):
     _, capture, one = captured
-    assert solution.to_json(one.solved()) == solution.to_json(solution.solve(capture))
+    assert solution_json.to_json(one.solved()) == solution_json.to_json(solution.solve(capture))
 
 
 def test_the_rests_of_both_are_the_same_rows(captured):

@@ -10,6 +10,7 @@ import numpy as np
 from sixflip.poses import faces
 
 from ...capture import rests as rest_finder
+from ...capture import rests_by_variance
 from ...capture.attitude import _between, _rotation
 
 SHORTEST_REST_S = 0.5
@@ -99,9 +100,9 @@ def still(capture, rate_hz):
         if counts is None or len(counts) <= 2 * window:
             continue
         counts = counts.astype(float)
-        level = max(rest_finder.variance_at_rest(counts), COUNT_VARIANCE)
+        level = max(rests_by_variance.variance_at_rest(counts), COUNT_VARIANCE)
         here = np.zeros(len(capture), bool)
-        for run in rest_finder.by_variance(counts, LOUDER ** 2 * level, window, 1):
+        for run in rests_by_variance.find(counts, LOUDER ** 2 * level, window, 1):
             here[run.first:run.end] = True
         mask &= here
     edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
