@@ -12,7 +12,7 @@ from rp2040py.device.load_flash import UF2_BLOCK_SIZE, decode_block
 from rp2040py.memory_map import FLASH_START_ADDRESS
 
 from sixflip_host.emulated.flash_chip import FLASH_BYTES
-from sixflip_host.verbs.demo import PACE
+from sixflip_host.virtual.demo_bench import PACE
 
 SPEC = {"sensor": "mpu6050", "seed": 3, "tilt_deg": 2.0, **PACE["pico"].hand}
 STILL = {"order": []}

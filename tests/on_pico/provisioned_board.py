@@ -7,8 +7,7 @@ from pico_flash import FILES_BYTES
 
 from sixflip_host.board import firmware_update
 from sixflip_host.board.board_link import MpremoteLink
-from sixflip_host.verbs import demo
-from sixflip_host.virtual import micropython_fetch
+from sixflip_host.virtual import demo_bench, micropython_fetch
 from sixflip_host.virtual.virtual_board import VirtualBoard
 
 
@@ -21,5 +20,5 @@ def provisioned(files, spec):
     with VirtualBoard(spec, files, micropython=micropython, flash_bytes=FILES_BYTES) as board, \
             MpremoteLink(board.port) as link:
         firmware_update.copy(link, {"sensor": spec["sensor"], "board": "pico",
-                              **demo.PACE["pico"].settings})
+                              **demo_bench.PACE["pico"].settings})
         yield link

@@ -10,7 +10,6 @@ import os
 import shutil
 import tempfile
 from pathlib import Path
-from typing import NamedTuple
 
 from sixflip.chips.catalogue import SENSORS, driver
 
@@ -18,46 +17,34 @@ from .. import cli
 from ..board import firmware_update, pulled_files
 from ..board.board_events import events, wait_for
 from ..board.board_files import shared_dir
-from ..board.board_link import MpremoteLink
 from ..board.console import Console
-from ..board.event_words import GUIDED_ORDER
-from ..errors import CheckFailed, SixflipError, UsageError
+from ..errors import CheckFailed, UsageError
 from ..file_arguments import add_output
 from ..history import remember, store
 from ..terminal import plain
-from ..virtual import demo_truth, micropython_fetch
+from ..virtual import demo_truth
+from ..virtual.demo_bench import (
+    FLIP_DEG,
+    PACE,
+    PLACEMENT_DEG,
+    TILT_DEG,
+    bench,
+    first_spec,
+    make_world,
+    second_spec,
+)
 from . import calibrate
 
 EXAMPLE = "sixflip demo --keep demo-output"
 WITH_GYRO = tuple(name for name in SENSORS if driver(name).has_gyro)
-TILT_DEG = 2.0
 EVENTS = "events.jsonl"    # what every demo leaves
 LIMIT_MG = 3.0  # a hand that places the box to 0.05 deg leaves about 1 mg across gravity
-
-PLACEMENT_DEG, FLIP_DEG = 0.05, 0.4  # how exactly a hand lays the box down, and turns it
 WHY_NOT_LESS = (
     "Most of that is the hand: laid down to %g degrees, which is %.1f mg, and turned by half a\n"
     "turn to %g degrees. The README's 0.20 mg is what the sensor's noise alone leaves where the\n"
     "box is laid down exactly, in the median of 100 calibrations (make bench-accuracy); this is\n"
     "the worst of the faces in one." % (PLACEMENT_DEG, 1e3 * math.radians(PLACEMENT_DEG),
                                         FLIP_DEG))
-
-
-class Pace(NamedTuple):
-    """What a board's speed asks for: settings of the firmware, the hand, poses and samples a
-    second of the stream after the power cycle."""
-
-    settings: dict
-    hand: dict
-    after: tuple
-    stream_hz: int
-
-
-USUAL = Pace({}, {}, ("Z+a", "Z-a", "X+a", "X-a", "Y+a", "Y-a"), demo_truth.STREAM_HZ)
-PACE = {"virtual": USUAL, "local": USUAL,
-        # a sample costs the emulated Pico a third of a second: few of them, and quick moves
-        "pico": Pace({"rate_hz": 25, "pose_samples": 50, "grace_ms": 100, "rest_s": 2},
-                     {"dwell_s": 4.2, "move_s": 1.0}, ("Z+a", "X-a", "Y+a"), 10)}
 
 
 def add_arguments(parser):
@@ -72,71 +59,6 @@ def add_arguments(parser):
 
 def step(text):
     print("\n== " + text, flush=True)
-
-
-def make_world(spec):
-    """The same world as on the board, to know the truth."""
-    from sixflip_sim import worlds
-    return worlds.make(spec)
-
-
-def first_spec(args):
-    """The sensor, and a person with a table that is not level."""
-    return {"sensor": args.sensor, "seed": args.seed, "tilt_deg": TILT_DEG,
-            "order": GUIDED_ORDER, **PACE[args.board].hand,
-            "flip_error_deg": FLIP_DEG, "placement_scatter_deg": PLACEMENT_DEG}
-
-
-def second_spec(args, first):
-    """The same sensor on a level table after the power cycle, other noise, faces once each."""
-    truth = make_world(first).truth
-    mg = [b / demo_truth.G * 1000 for b in truth.accel_bias]
-    dps = [b * 57.29577951308232 for b in truth.gyro_bias]
-    return {"sensor": args.sensor, "seed": args.seed + 1000, "tilt_deg": 0.0,
-            "accel_matrix": truth.accel_matrix, "accel_bias_mg": mg,
-            "gyro_matrix": truth.gyro_matrix, "gyro_bias_dps": dps,
-            "order": list(PACE[args.board].after), **PACE[args.board].hand, "first_rest_s": 12.0}
-
-
-@contextlib.contextmanager
-def virtual_bench(folder, spec, micropython):
-    """(link, power_cycle(world)) of a virtual board."""
-    from ..virtual.virtual_board import VirtualBoard
-    with VirtualBoard(spec, folder / "flash.img", micropython=micropython) as board:
-        print("virtual board at %s (%s)" % (board.port, micropython))
-        with MpremoteLink(board.port) as link:
-            yield link, board.power_cycle
-
-
-@contextlib.contextmanager
-def local_bench(folder, spec):
-    """(link, power_cycle(world)) of the firmware under CPython."""
-    from ..board.local_link import LocalLink
-    with LocalLink(folder / "flash", spec) as link:
-        yield link, link.power_cycle
-
-
-@contextlib.contextmanager
-def pico_bench(folder, spec):
-    """(link, power_cycle(world)) of an emulated Pico."""
-    from ..emulated.emulated_pico import PATIENCE, PicoBoard
-    with PicoBoard(spec, folder / "flash.img") as board:
-        print("emulated Pico at %s (%s); it takes most of an hour" % (board.port, board.uf2.name))
-        with MpremoteLink(board.port, PATIENCE) as link:
-            yield link, board.power_cycle
-
-
-def bench(args, folder, spec):
-    """The bench asked for, or the one that can be had."""
-    if args.board == "pico":
-        return pico_bench(folder, spec)
-    if args.board == "virtual":
-        try:
-            return virtual_bench(folder, spec, micropython_fetch.fetch())
-        except SixflipError as error:
-            print(plain("no MicroPython to be had: %s" % error))
-            print("running the same firmware under CPython instead")
-    return local_bench(folder, spec)
 
 
 class Log:
@@ -181,10 +103,10 @@ def stream(link, power_cycle, spec, raw, hz, log):
 
 
 def run_steps(args, folder, log):
-    spec = first_spec(args)
-    after = second_spec(args, spec)
+    spec = first_spec(args.board, args.sensor, args.seed)
+    after = second_spec(args.board, args.sensor, args.seed, spec)
     pace = PACE[args.board]
-    with bench(args, folder, spec) as (link, power_cycle):
+    with bench(args.board, folder, spec) as (link, power_cycle):
         step("provision: the firmware onto the board")
         firmware_update.copy(link, {"sensor": args.sensor, **pace.settings})
         step("power-up: no correction in flash, so it calibrates itself (table tilted %.0f deg)"

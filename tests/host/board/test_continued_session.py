@@ -9,10 +9,11 @@ from sixflip_host.board import calibration_request, firmware_update, pulled_file
 from sixflip_host.board.board_events import wait_for
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.board.event_words import GUIDED_ORDER
-from sixflip_host.verbs import calibrate, demo
+from sixflip_host.verbs import calibrate
+from sixflip_host.virtual import demo_bench
 from sixflip_host.virtual.virtual_board import VirtualBoard
 
-PACE = demo.PACE["pico"]  # the fewest samples a turn
+PACE = demo_bench.PACE["pico"]  # the fewest samples a turn
 
 
 @pytest.mark.parametrize("sensor, settings, hand, left", [
