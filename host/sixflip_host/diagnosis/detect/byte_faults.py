@@ -141,7 +141,8 @@ RULES = [
     ("sign_extension", "the low byte has a sign of its own: readings are 256 too small where it "
      "is 128 or more", _low_added, lambda y: True),
     ("sign_extension", "the low byte has a sign of its own and wipes the high one out where it "
-     "is 128 or more", _low_or, _or_ed),
+     "is 128 or more; it is put back by the samples around, and wrong by 256 where they leave it "
+     "open", _low_or, _or_ed),
     ("byte_order", "high and low byte are exchanged", _swapped, lambda y: True),
     ("sign_extension", "negative readings are a sign and a magnitude, and were read as two's "
      "complement", _magnitude, lambda y: y.min() < 0),
