@@ -79,8 +79,15 @@ def stuck_bits(sessions):
     return found
 
 
+def _others_tell(steps):
+    """Whether all axes that ever change do so from many samples to the next; steps (n, 3)."""
+    changes = (steps != 0).mean(axis=0)
+    return bool((changes[changes > 0.0] > 0.3).all())
+
+
 def stuck(sessions):
-    """Sentences on columns that never change."""
+    """Sentences on columns that never change while the sensor's others do: where their steps are
+    wider than the noise, an axis that nobody turned reads one value."""
     out = []
     for sensor, words in (("accel", "accelerometer"), ("gyro", "gyro")):
         columns = [getattr(s.capture, sensor) for s in sessions]
@@ -88,6 +95,6 @@ def stuck(sessions):
             continue
         for i in range(3):
             if any(len(c) >= FEWEST_SAMPLES and np.ptp(c[:, i].astype(int)) == 0
-                   for c in columns):
+                   and _others_tell(np.diff(c.astype(int), axis=0)) for c in columns):
                 out.append("the %s axis of the %s never changes: it is stuck" % ("xyz"[i], words))
     return out

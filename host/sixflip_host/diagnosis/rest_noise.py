@@ -23,7 +23,8 @@ class RestNoise:
     """unit: mg or deg/s; seconds at rest and of the longest rest; bias (3,), bias_90 (2, 3):
     mean reading with its interval, None of an accelerometer, which reads gravity as well;
     levels: {density (unit/sqrt(Hz)), instability (unit), walk (unit/s/sqrt(Hz)): three Level},
-    walk only where a rest is long enough; allan: ((seconds, (3,)), ...) of the longest rest."""
+    walk only where a rest is long enough, none where an axis reads one value throughout; allan:
+    ((seconds, (3,)), ...) of the longest rest."""
 
     unit: str
     seconds: float
@@ -51,7 +52,7 @@ def of(sessions):
         each = [noise_spectrum.levels([x[:, axis] for x in rests], rate, walks)
                 for axis in range(3)]
         levels = {name: tuple(one[k] for one in each) for k, name in enumerate(NAMES)
-                  if each[0][k] is not None}
+                  if all(one[k] is not None for one in each)}
         bias = _bias(rests) if sensor == "gyro" else (None, None)
         found[sensor] = RestNoise(unit, sum(map(len, rests)) / rate, len(longest) / rate, *bias,
                                   levels, _allan(longest, rate))
@@ -71,6 +72,12 @@ def _bias(rests):
     power = np.maximum((off ** 2).sum(axis=0), 1e-300)
     r = np.clip((off[1:] * off[:-1]).sum(axis=0) / power, 0.0, 0.9)
     half = odds.Z_90 * np.sqrt(power / (len(parts) - 1) / len(parts) * (1 + r) / (1 - r))
+    values = np.concatenate(rests)
+    one = np.ptp(values, axis=0) == 0   # it lies anywhere within half a step of the others
+    if one.any():
+        apart = np.abs(np.diff(values, axis=0))
+        half = np.where(one, 0.5 * apart[apart > 0].min(initial=np.inf), half)
+        half = np.where(np.isfinite(half), half, 0.0)
     return mean, np.array([mean - half, mean + half])
 
 

@@ -44,7 +44,12 @@ class Groups:
 
 def levels(rests, rate, walks):
     """(density, flicker, walk) as Levels of the rests, a list of (n,) readings of one axis;
-    walks: whether a random walk is looked for, else its Level is None."""
+    walks: whether a random walk is looked for, else its Level is None. A rest that reads one
+    value throughout says nothing, its noise is below the steps: where all do, no Level is known
+    and all are None."""
+    rests = [x for x in rests if np.ptp(x) > 0]
+    if not rests:
+        return None, None, None
     groups = [_grouped(*_power(x, rate), len(x), rate) for x in rests]
     f, power, shape = (np.concatenate([getattr(g, k) for g in groups])
                        for k in ("f", "power", "shape"))

@@ -108,6 +108,10 @@ def _triad(capture, counts, still, lsb, unit, matrix, bias):
     from ..experiment import noise_spectrum  # scipy takes its time
     found = [noise_spectrum.levels([x[:, axis] for x in parts], rate, longest >= WALK_S)
              for axis in range(3)]
+    constant = ["xyz"[axis] for axis, one in enumerate(found) if one[0] is None]
+    if constant:
+        raise CheckFailed("the %s axis reads one value throughout its rests, expected noise that "
+                          "is wider than its steps" % constant[0])
     values, intervals = {}, {}
     for k, name in enumerate(("density", "floor", "walk")):
         levels = [one[k] for one in found]

@@ -150,3 +150,13 @@ def test_bursts_of_noise_are_no_vibration():
     assert "vibration" not in [f.effect for f in found.findings]
     assert found.verdict in ("unexplained", "partly explained")
     assert ("accel", "noise") in [(w.sensor, w.domain) for w in found.where]
+
+
+@pytest.mark.parametrize("coarse, said", [
+    (False, ["the z axis of the accelerometer never changes: it is stuck"]), (True, [])])
+def test_an_axis_that_nobody_turned_in_coarse_steps_is_not_stuck(coarse, said):
+    session = resting(0.2 if coarse else 20.0)
+    session.capture.accel[:, 2] = 0
+    if coarse:
+        session.capture.accel[:, :2] = np.rint(session.capture.accel[:, :2] / 1000.0)
+    assert counts.stuck([session]) == said

@@ -76,6 +76,13 @@ def test_flicker_has_the_bias_instability_that_allantools_shows_as_its_floor():
     assert floor.value == pytest.approx(instability, rel=0.03)
 
 
+def test_a_rest_that_reads_one_value_says_nothing_of_the_noise():
+    x = readings(60.0, walk=0.0)
+    assert noise_spectrum.levels([np.ones(6000), x], RATE, False) == noise_spectrum.levels(
+        [x], RATE, False)
+    assert noise_spectrum.levels([np.ones(6000)], RATE, True) == (None, None, None)
+
+
 def test_a_line_is_no_noise():
     x = readings(600.0, walk=0.0)
     wave = 5e-3 * np.sin(2.0 * np.pi * 1.7 * np.arange(len(x)) / RATE)
