@@ -57,7 +57,7 @@ class Adequacy:
 
 
 def of(units, statistics, scored, shaken=()):
-    """Adequacy of a posterior.Scored; shaken: axes (0..2) that a line of the spectrum is on."""
+    """Adequacy of a scored_sets.Scored; shaken: axes (0..2) that a line of the spectrum is on."""
     shared = scored.shared
     theta = evidence.coefficients(scored.fits, shared)[0][0]
     index, parts, before = [], [], 0.0

@@ -7,7 +7,7 @@ its true form differs from the library's by would be called a crooked box (GAP 1
 import numpy as np
 
 from ..experiment import nominal_rows
-from . import aliases, coefficient_fits, cutoffs, hypotheses, odds, posterior
+from . import aliases, coefficient_fits, cutoffs, hypotheses, odds, scored_sets
 from .posterior import Posterior
 
 LEAST_DEG = 0.1  # below that a placement by hand is as crooked
@@ -42,7 +42,7 @@ def found(gap):
     mine = [f for f in forms if f.effect == "box_tilt"]
     if not mine:
         return [], data
-    model = posterior.Model(units, data.statistics, gap.noise)
+    model = scored_sets.Model(units, data.statistics, gap.noise)
     same = tuple(f for f in forms if any(
         (f.effect, f.variant, f.axis, f.record) == (c.effect, c.variant, None, c.record)
         for c in gap.found.best.forms))

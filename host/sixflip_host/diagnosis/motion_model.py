@@ -23,6 +23,7 @@ from . import (
     odds,
     plausible,
     posterior,
+    scored_sets,
 )
 from .detect.detection import Finding
 
@@ -152,7 +153,7 @@ def _searched(fit, without):
         everything[len(competing):], fit.prior, energy, designs) for f in np.unique(fit.folds)]
     forms = [f for f in hypotheses.of(units, without, drift=False)
              if not f.generic or f.axis is None or f.variant == "speed"]
-    model = posterior.Model(units, [u.statistics() for u in units], moves_unit.NO_LEVELS)
+    model = scored_sets.Model(units, [u.statistics() for u in units], moves_unit.NO_LEVELS)
     # Each at its own cost: few moves of a hand carry most of what it adds, and a form that those
     # few mimic gains ten times in nulls what another does.
     own = {form: max(nats, LEAST_NATS) for form, nats in cutoffs.of_each(

@@ -15,7 +15,7 @@ NO_LEVELS = Levels(1.0, 1.0, 1.0)  # of noise to choose from: the moves' own spe
 
 
 class MovesUnit:
-    """What posterior.Model asks of a unit, over the hypotheses' columns (K,): gram (1, K, K),
+    """What scored_sets.Model asks of a unit, over the hypotheses' columns (K,): gram (1, K, K),
     logdet (1,), silent (K,), energy (K,), designs; one point of a grid of levels."""
 
     between, turns, apart, within, rows = False, False, False, {}, None

@@ -2,8 +2,9 @@
 
 Sets of at most four are searched from the empty one, the best few of each size going on (a beam),
 then every member of the best set is held against every other hypothesis in its place. A set's
-log probability is its score (evidence.py) less a cost for each member, set once for each protocol
-by simulation (cutoffs.py). A class is the smallest set of names that holds 95 % in one place.
+log probability is its score (scored_sets.py) less a cost for each member, set once for each
+protocol by simulation (cutoffs.py). A class is the smallest set of names that holds 95 % in one
+place.
 """
 from dataclasses import dataclass
 
@@ -11,132 +12,14 @@ import numpy as np
 
 from ..experiment.terms import is_stranger
 from . import evidence, hypotheses, odds
-from .evidence import NONE
 from .odds import HOLDS, PRESENT
+from .scored_sets import Scored
 
 MOST, BEAM = 4, 3  # members of a set (GAP stage 3); sets that the search goes on with
 FORM_COST = 1.0  # nats
 AS_WELL = 3.0  # nats, GAP stage 4
 NOISE_FORM = 0.2  # of a name's gain, that its true form may leave to noise that wanders
-KEPT = 8  # eliminations of each unit that are kept
-NEAR = 14  # forms that are looked at with all levels of noise
 LEAST_GAIN = 2.0  # nats that one more member must gain for the search to go on
-
-
-@dataclass(frozen=True)
-class Scored:
-    """A tuple of Forms with its score (nats), Fit of each unit, private Columns of each unit;
-    chances: what choosing those cost, nats (in the score already)."""
-
-    forms: tuple
-    score: float
-    fits: tuple
-    private: tuple
-    chances: float
-
-    @property
-    def shared(self):
-        return _distinct(self.forms)
-
-    @property
-    def names(self):
-        return frozenset(f.effect for f in self.forms)
-
-
-class Model:
-    """Units of one sensor with the statistics of one data set; scores sets of Forms."""
-
-    def __init__(self, units, statistics, levels):
-        self.units, self.statistics, self.levels = units, statistics, levels
-        self._known, self._priors = {}, {}
-        self._eliminations = {}
-
-    def scored(self, forms):
-        """Scored of a tuple of Forms."""
-        found = self._extended(None, None, evidence.EVERY)
-        for form in forms:
-            found = self.extended(found, form)
-        return found
-
-    def extended(self, base, form, points=evidence.EVERY):
-        """Scored of a Scored set with one more Form; what is private in it stays as it is.
-        points: evidence.EVERY or COARSE, how finely the levels of noise are looked through."""
-        key = (frozenset((*base.forms, form)), points)
-        if key not in self._known:
-            self._known[key] = self._extended(base, form, points)
-        return self._known[key]
-
-    def best(self, base, forms):
-        """[(Form, Scored of a base with it)] of the Forms that come near to the best one, which
-        is first. Found with few levels of noise, then looked at with all of them."""
-        rough = sorted(((self.extended(base, form, evidence.COARSE).score, place)
-                        for place, form in enumerate(forms)), reverse=True)
-        near = [forms[place] for _, place in rough[:NEAR]]
-        return sorted(((form, self.extended(base, form)) for form in near),
-                      key=lambda pair: -pair[1].score)
-
-    def _extended(self, base, form, points):
-        forms = () if base is None else (*base.forms, form)
-        shared = _distinct(forms)
-        free = frozenset().union(*(f.free for f in forms)) if forms else frozenset()
-        fits, privates = [], []
-        chances = 0.0 if base is None else base.chances
-        for place, (unit, statistics) in enumerate(zip(self.units, self.statistics)):
-            level = self._prior(place, free)
-            private = NONE if base is None else base.private[place]
-            if form is not None and form.choices and not unit.between:
-                private, nats = self._chosen(place, shared, private, form, level)
-                chances += float(np.log(len(form.choices))) - nats
-            made = self._elimination(place, private)
-            fit = evidence.fit(unit, statistics, shared, private, level, evidence.COARSE, made)
-            if points == evidence.EVERY:
-                near = unit.around(int(fit.index[0]))
-                fit = evidence.fit(unit, statistics, shared, private, level, near, made)
-            fits.append(fit)
-            privates.append(private)
-        score = float(evidence.score(fits, shared, self.units[0].apart)[0])
-        return Scored(forms, score - chances, tuple(fits), tuple(privates), chances)
-
-    def _prior(self, place, free):
-        """(G,) log prior of one unit's grid, made once for what is free."""
-        if (place, free) not in self._priors:
-            self._priors[place, free] = self.levels.prior(self.units[place], free)
-        return self._priors[place, free]
-
-    def _elimination(self, place, private):
-        """evidence.Elimination of private columns from one unit, made once."""
-        if not len(private):
-            return None
-        key = (place, private.index.tobytes(), private.prior.tobytes())
-        if key not in self._eliminations:
-            while len(self._eliminations) >= KEPT * len(self.units):
-                del self._eliminations[next(iter(self._eliminations))]
-            self._eliminations[key] = evidence.Elimination(
-                self.units[place], self.statistics[place], private)
-        return self._eliminations[key]
-
-    def _chosen(self, place, shared, private, form, level):
-        """(private Columns with the likeliest choice of a form, nats that what the rests show
-        within themselves says for it)."""
-        unit, found = self.units[place], []
-        elimination = self._elimination(place, private)
-        for number, one in enumerate(form.choices):
-            within = unit.within.get((form.effect, number), 0.0)
-            # Integrated out by its prior a column is the same, shared or private.
-            likelihood = evidence.fit(unit, self.statistics[place], shared + one, private, level,
-                                      evidence.COARSE, elimination).evidence[0]
-            found.append((float(likelihood) + within, number, within))
-        _, number, within = max(found)
-        return private + form.choices[number], within
-
-
-def _distinct(forms):
-    """Shared Columns of all forms, each column once."""
-    shared = NONE
-    for form in forms:
-        new = ~np.isin(form.shared.index, shared.index)
-        shared = shared + evidence.Columns(form.shared.index[new], form.shared.prior[new])
-    return shared
 
 
 @dataclass(frozen=True)

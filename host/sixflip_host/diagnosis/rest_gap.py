@@ -1,16 +1,14 @@
 """What one long rest, or several in one attitude, say, on the one model.
 
-The hypotheses of rest_forms.py compete in the posterior that the poses are judged by; flicker
-and the change from one rest to the next are its levels. The figures are held out in time: the
-rest is cut into pieces, every fourth one is foretold from the others.
+The hypotheses of rest_forms.py compete in the posterior that the poses are judged by, on the
+units of rest_units.py, whose figures are held out in time.
 """
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .. import progress
-from ..experiment import covariance, linear_model, long_rest, nominal_rows, terms
-from ..experiment.flicker import flicker_kernel
+from ..experiment import long_rest, terms
 from . import (
     adequacy,
     aliases,
@@ -18,48 +16,20 @@ from . import (
     cutoffs,
     effect_estimates,
     evidence,
-    holdout_gain,
     hypotheses,
     odds,
     posterior,
     rest_forms,
+    rest_units,
+    scored_sets,
     session_offsets,
 )
 from .localisation import Place
 
-# From one rest to the next where nothing was moved, beyond flicker: the Allan floor of the parts
-# (typical.FLOOR); a gyro's is the Earth's rate, should the box have been put down again.
-OFFSET = {"accel": 0.1, "gyro": 0.003}
-OFFSETS = {"accel": (0.1, 0.3, 1.0, 3.0, 12.0), "gyro": (0.003, 0.01, 0.05, 0.3, 1.0)}
-FLICKERS = {"accel": (0.005, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 4.0, 12.0, 40.0),
-            "gyro": (0.0002, 0.001, 0.002, 0.004, 0.008, 0.016, 0.03, 0.1, 0.3, 1.0)}
-PIECES, FOLDS = 12, 4
 BENT = 4.0  # standard deviations of its square or cube at which an axis is bent
 MEANS = 12  # fewer say nothing of how a reading goes on
 SETTLES_S = 30.0  # so long tyres, springs and contacts of a robot that has stopped may still creep
 SETTLED = "session"  # the level by which one rest differs from the next
-
-
-@dataclass(frozen=True)
-class RestLevels:
-    """What is usual: placement (from one rest to the next) and flicker, mg or deg/s."""
-
-    placement: float
-    flicker: float
-    known: bool
-
-    def prior(self, unit, free):
-        """(G,) log prior of each point of a unit's grid; free: levels that may be anything. Less
-        than usual is as good as usual."""
-        grid = np.array(unit.grid)
-        factor = np.log(evidence.KNOWN_FACTOR if self.known else evidence.USUAL_FACTOR["flicker"])
-        total = np.zeros(len(grid))
-        for column, level, name in ((0, self.placement, "switch_on"), (1, self.flicker,
-                                                                       "flicker")):
-            if name not in free:
-                above = np.maximum(np.log(grid[:, column] / level), 0.0)
-                total -= 0.5 * (above / factor) ** 2
-        return total
 
 
 @dataclass(frozen=True)
@@ -141,42 +111,18 @@ def of(sessions, settings, lines=(), least_s=0.0):
     return {kind: _sensor(rest, kind, chip, settings) for kind in rest.values}
 
 
-def _units(rest, kind, chip, settings):
-    """[Unit] of the three axes, which share no coefficient: each has the columns of all, the
-    others' being zero."""
-    designs = rest_forms.designs(rest, kind, chip, settings)
-    number = int(rest.rest.max()) + 1
-    lateral = (rest.rest[:, None] == np.arange(number)[None]).astype(float)
-    if number == 1:
-        lateral = lateral[:, :0]
-    kernel = flicker_kernel(rest.t, rest.seconds) * (rest.session[:, None] == rest.session)
-    warming = 0 if rest.temperature is None else int(round(
-        float(rest.temperature[-1] - rest.temperature[0]) / 3.0))
-    found = []
-    for axis in range(3):
-        own = [replace(d, columns=d.columns * (np.array(d.axes) == axis)) for d in designs]
-        group = covariance.alone(np.diag(rest.noise[kind][:, axis] ** 2), lateral, kernel)
-        rows = nominal_rows.Rows(rest.values[kind][:, axis], group, np.ones((rest.n, 1)),
-                                 (OFFSETS[kind], FLICKERS[kind]), (0,))
-        signature = ("rest", axis, tuple(rest.rest.tolist()),
-                     tuple((rest.t - rest.t[0]).round().astype(int).tolist()), warming)
-        unit = linear_model.unit(rows, own, signature=signature, apart=True)
-        found.append(replace(unit, energy=unit.energy / 3.0))  # the rows are those of one axis
-    return found
-
-
 def _sensor(rest, kind, chip, settings):
     """RestGap: posterior, classes, adequacy, held-out figures."""
     progress.doing("the %s at rest" % ("gyro" if kind == "gyro" else "accelerometer"))
-    units = _units(rest, kind, chip, settings)
+    units = rest_units.of(rest, kind, chip, settings)
     data = coefficient_fits.Data(units)
     flicker, reference = adequacy.usual(chip, kind), settings.reference.get(kind)
-    levels = RestLevels(OFFSET[kind], flicker if reference is None
+    levels = rest_units.RestLevels(rest_units.OFFSET[kind], flicker if reference is None
                         else max(reference, flicker / 4.0), reference is not None)
     several = int(rest.rest.max()) > 0
     forms = [f for f in hypotheses.of(units, settings.without)
              if several or f.effect != SETTLED]
-    model = posterior.Model(units, data.statistics, levels)
+    model = scored_sets.Model(units, data.statistics, levels)
     found = posterior.search(model, forms, cutoffs.of(units, forms, levels))
     fits = adequacy.of(units, data.statistics, found.best)
     chosen = [f for f in found.best.forms if not f.generic and len(f.shared)]
@@ -199,7 +145,7 @@ def _sensor(rest, kind, chip, settings):
     return RestGap(kind, rest, tuple(told), tuple(places),
                    (*(1.0 - found.places[f.effect].get("", 0.0) for f, _ in strange),
                     *([] if fits.ok else [1.0 - fits.p])),
-                   tuple(_held_out(rest, unit, chosen, point, levels)
+                   tuple(rest_units.held_out(rest, unit, chosen, point, levels)
                          for unit, point in zip(units, fits.index)),
                    frozenset(f.effect for f in forms))
 
@@ -271,41 +217,3 @@ def _drift(found, units, data, levels, kind, chosen, index):
     share = adequacy.share_of_drift(units, data.statistics, chosen, index, levels)
     return [RestCause(("drift",), dict(found.places["drift"]), found.gains["drift"], value,
                       interval, "mg" if kind == "accel" else "deg/s", True, share, "time")]
-
-
-def _held_out(rest, unit, chosen, index, levels):
-    """holdout_gain.Sums of one axis over the folds: pieces of the rest, every FOLDS-th of them
-    foretold by the others, all means with one weight. The floor is that of noise that wanders no
-    more than a chip may; what wanders more is a gap that nothing foretells."""
-    y, group, (placement, flicker) = unit.rows.y, unit.rows.groups[0], unit.grid[index]
-    noise = covariance.dense([group], placement, flicker)
-    quiet = covariance.dense([group], 0.0, min(flicker, adequacy.TIMES_TYPICAL * levels.flicker))
-    columns = np.concatenate([f.columns for f in chosen] + [np.zeros(0, dtype=int)]).astype(int)
-    prior = np.concatenate([f.prior for f in chosen] + [np.zeros(0)])
-    x = unit.raw(columns)
-    pieces = np.minimum(np.arange(rest.n) * PIECES // rest.n, PIECES - 1)
-    total = holdout_gain.NOTHING
-    for fold in range(FOLDS):
-        held = pieces % FOLDS == fold
-        plain = _foretelling(x[:, :0], prior[:0], noise, held)
-        z = plain @ y
-        d = z - _foretelling(x, prior, noise, held) @ y
-        scatter = plain @ noise @ plain.T
-        total = total + holdout_gain.Sums(
-            float(z @ z), float((z - d) @ (z - d)), float(np.trace(plain @ quiet @ plain.T)),
-            float(held.sum()), holdout_gain.spread(
-                2.0 * float((scatter ** 2).sum()), float(z @ scatter @ z),
-                float(d @ scatter @ z), float(d @ scatter @ d)))
-    return total
-
-
-def _foretelling(x, prior, noise, held):
-    """(held, n): what it takes to make of all means those held out less what the others foretell
-    of them: a constant and the columns x."""
-    train = ~held
-    design = np.hstack([np.ones((len(x), 1)), x])
-    solved = np.linalg.solve(noise[np.ix_(train, train)], design[train])
-    gram = design[train].T @ solved + np.diag(np.concatenate([[0.0], prior ** -2.0]))
-    out = np.eye(len(x))[held]
-    out[:, train] -= design[held] @ np.linalg.solve(gram, solved.T)
-    return out

@@ -17,6 +17,7 @@ from . import (
     holdout_gain,
     hypotheses,
     posterior,
+    scored_sets,
     session_offsets,
     strangers,
     wandering,
@@ -115,7 +116,7 @@ class SensorGap:
         mine = [o for o in self.options if o.effect == name]
         if name in {c.effect for c in self.chosen} or not mine:
             return self
-        model = posterior.Model(self.units, self.data.statistics, self.noise)
+        model = scored_sets.Model(self.units, self.data.statistics, self.noise)
         best = max(mine, key=lambda form: model.scored((*self.found.best.forms, form)).score)
         chosen = [*self.chosen, best]
         return replace(self, chosen=chosen, shrinkage=holdout_gain.of(
@@ -147,7 +148,7 @@ class RestModel:
         # A square beside a slope is for the board's record; here a discrepancy stands for it.
         forms = [f for f in options if not f.record]
         cost = replace(cutoffs.of(units, forms, noise), form=self.form)
-        model = posterior.Model(units, data.statistics, noise)
+        model = scored_sets.Model(units, data.statistics, noise)
         progress.doing("what explains it best")
         found = posterior.search(model, forms, cost)
         best = found.best

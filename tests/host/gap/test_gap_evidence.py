@@ -3,7 +3,14 @@ import numpy as np
 import pytest
 from scipy import linalg, stats
 
-from sixflip_host.diagnosis import cutoffs, evidence, hypotheses, moves_unit, posterior
+from sixflip_host.diagnosis import (
+    cutoffs,
+    evidence,
+    hypotheses,
+    moves_unit,
+    posterior,
+    scored_sets,
+)
 from sixflip_host.diagnosis.evidence import NONE, Columns, Levels
 from sixflip_host.experiment import covariance, linear_model
 from sixflip_host.experiment.nominal_rows import Rows
@@ -40,7 +47,7 @@ def contrasts(unit, point):
 
 
 def model_of(units):
-    return posterior.Model(units, [u.statistics() for u in units], USUAL)
+    return scored_sets.Model(units, [u.statistics() for u in units], USUAL)
 
 
 def form(units, effect):
@@ -166,7 +173,7 @@ def costs_of_moves(units):
 def test_what_one_form_gains_by_chance_does_not_hide_another():
     units = moves(np.random.default_rng(3), 1.5)
     forms, cost = costs_of_moves(units)
-    model = posterior.Model(units, [u.statistics() for u in units], moves_unit.NO_LEVELS)
+    model = scored_sets.Model(units, [u.statistics() for u in units], moves_unit.NO_LEVELS)
     lag, rate = (cost.own[f] for f in forms)
     assert lag < 15.0 < 4.0 * lag < rate
     assert cutoffs.simulated(units, forms, moves_unit.NO_LEVELS, [0, 0]) > 4.0 * lag
@@ -183,6 +190,6 @@ def test_costs_of_each_form_keep_the_chance_of_any():
     wrong = 0
     for _ in range(200):
         drawn = [u.statistics(u.draw(0, generator, 1)) for u in units]
-        model = posterior.Model(units, drawn, moves_unit.NO_LEVELS)
+        model = scored_sets.Model(units, drawn, moves_unit.NO_LEVELS)
         wrong += bool(posterior.search(model, forms, cost).best.forms)
     assert wrong <= 4  # a chance of 0.5 % each

@@ -19,6 +19,7 @@ from sixflip_host.diagnosis import (
     holdout_gain,
     hypotheses,
     posterior,
+    scored_sets,
 )
 from sixflip_host.diagnosis.rest_model import RestModel
 from sixflip_host.diagnosis.settings import Settings
@@ -73,7 +74,7 @@ def case(seed):
     whole, without = units(model, seed, effects, scatter), units(model, seed, [{}, {}], scatter)
     data = coefficient_fits.Data(whole)
     forms = hypotheses.of(whole, (), True)
-    scores = posterior.Model(whole, data.statistics, model.usual())
+    scores = scored_sets.Model(whole, data.statistics, model.usual())
     form = max((f for f in forms if f.effect == name and f.axis is None and not f.record),
                key=lambda f: scores.scored((f,)).score)
     set_ = scores.scored((form,))
