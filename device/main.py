@@ -2,6 +2,7 @@
 
 
 def main():
+    """Finishes a provisioning that was cut off and starts the firmware."""
     try:  # noqa: SIM105 - MicroPython has no contextlib
         import sixflip_update  # noqa: F401 - a provisioning that was cut off, see provision.py
     except ImportError:

@@ -72,3 +72,24 @@ def test_a_study_is_found_by_its_package_and_changes_no_path():
     assert len(sources) > 50
     assert not [path.name for path in sources if "sys.path" in path.read_text()]
     assert not list(STUDIES.rglob("test_*.py"))
+
+
+def public(tree):
+    """Functions, classes and methods whose names begin with no underscore."""
+    for node in tree.body:
+        if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and not node.name.startswith("_"):
+            yield node
+        if isinstance(node, ast.ClassDef):
+            yield from public(node)
+
+
+def test_what_the_board_runs_says_what_it_does():
+    silent, seen = [], 0
+    for path in [*(ROOT / "device").rglob("*.py"), *(ROOT / "shared").rglob("*.py")]:
+        tree = ast.parse(path.read_text())
+        for node in [*([tree] if tree.body else []), *public(tree)]:
+            seen += 1
+            if not ast.get_docstring(node):
+                silent.append("%s: %s" % (path.name, getattr(node, "name", "the module")))
+    assert seen > 400
+    assert silent == []

@@ -20,7 +20,7 @@ import pytest
 from sixflip_host import atomic_write, cli, completion
 from sixflip_host.capture import capture_file
 from sixflip_host.cli import VERBS, main
-from sixflip_host.history import remember, store
+from sixflip_host.history import logbook, store
 from tests.worlds.board_session import leave_files, unlabelled
 
 COMMAND = [sys.executable, "-m", "sixflip_host"]
@@ -213,7 +213,7 @@ def test_the_history_fits_80_columns(pulled, tmp_path, monkeypatch):
     file = str(tmp_path / "history.sqlite")
     monkeypatch.setenv("SIXFLIP_HISTORY", file)
     for number in range(3):
-        remember.pulled(pulled, "e6614c311b4c5a2f")
+        logbook.pulled(pulled, "e6614c311b4c5a2f")
         store.add(file, [store.Happened("e6614c311b4c5a2f", "calibration", "calibrate",
                                         1.8e9 + number * 1e5, "doubtful", temp_c=-12.5 * number,
                                         answer={"scale": [1.0] * 3, "v": [-1.23456] * 3})])

@@ -55,6 +55,7 @@ class SPIBus:
         return []
 
     def close(self):
+        """Gives the port back, where it is one that can be."""
         if hasattr(self._port, "close"):
             self._port.close()
 
@@ -76,18 +77,22 @@ class SpidevPort:
         self._sent = []
 
     def select(self, level):
+        """The chip's select line, 0 or 1; at 1 what was written is sent."""
         if level and self._sent:
             self._device.xfer2(self._sent)
         self._sent = []
 
     def write(self, data):
+        """Bytes for the transfer that is sent at the next select or read."""
         self._sent.extend(data)
 
     def readinto(self, buf):
+        """Sends what was written and fills buf with the bytes that the chip answers after it."""
         sent, self._sent = self._sent, []
         buf[:] = bytes(self._device.xfer2(sent + [0] * len(buf)))[len(sent):]
 
     def close(self):
+        """Closes the device file."""
         self._device.close()
 
 

@@ -39,7 +39,7 @@ def checks(capture, record, placements, old=None):
     for i, j in np.ndindex(4, 3):
         out.append(close("gyro sigma P[%d][%d]" % (i, j), section["sigma_P"][i][j],
                          host.sigma[i, j], 1e-4 if double else 0.05, 1e-7))
-    again, why = _again(capture, placements, accel_P, old)
+    again, why = _solved_from_capture(capture, placements, accel_P, old)
     out.append(same("gyro verdict", section["verdict"],
                     again.verdict if again else "none: " + why))
     if again:
@@ -51,7 +51,7 @@ def _left_out(capture, record, placements, old):
     """A board leaves the gyro out where its own is refused, or there is none."""
     if capture.sums_only or capture.gyro is None:
         return []
-    again, _ = _again(capture, placements, record.accel["P"], old)
+    again, _ = _solved_from_capture(capture, placements, record.accel["P"], old)
     there = again is not None and again.verdict != "refused"
     return [Check("gyro", "not in the record", "verdict " + again.verdict if again else "none",
                   not there)]
@@ -65,7 +65,7 @@ def _remarks(section, old):
         "the matrix of the record before" if old else "the data sheet's scale")]
 
 
-def _again(capture, placements, accel_P, old):
+def _solved_from_capture(capture, placements, accel_P, old):
     """(GyroscopeResult, "") of the shared judge from the host's own sums, or (None, why not)."""
     return solution.solve_gyro(capture, placements, pose_sums.moves(capture, placements), accel_P,
                                old)

@@ -7,7 +7,7 @@ from ..board.board_events import events
 from ..board.ending import Ending
 from ..board.session_deadline import SessionDeadline
 from ..errors import NoBoard
-from ..history import remember
+from ..history import logbook
 from .session_state import CALIBRATING, State, after, logged
 
 SILENCE_S = 30
@@ -28,7 +28,7 @@ class BoardSession:
         self.state = State()
         self.ending = Ending()
         self.deadline = SessionDeadline(link)
-        self.witness = remember.Witness(board)
+        self.witness = logbook.Witness(board)
         self.heard_at = clock()
 
     def pump(self, wait_s):

@@ -120,7 +120,7 @@ def onward(now_tray):
     lies = now_tray.up() == face and now_tray.visits.get(face)
     again = [member for member in running if member.own(face) and (
         member.placements(face) == 1 or lies and not member.placements(face))]
-    return asked_again(turned(now_tray, face), face, again)
+    return repeat_face(turned(now_tray, face), face, again)
 
 
 def turned(now_tray, face):
@@ -140,7 +140,7 @@ def afresh(now_tray):
         replace(member, captures=0, patient=0.0) for member in now_tray.members))
 
 
-def asked_again(now_tray, face, members):
+def repeat_face(now_tray, face, members):
     """These take the face anew; the line that leads the person there."""
     commands = [(member.port, {"cmd": "redo", "face": member.own(face)}) for member in members]
     for member in members:
@@ -160,7 +160,7 @@ def redo(now_tray, face, now):
     members = [member for member in now_tray.members if member.own(face) and not member.gone
                and (member.running or member.over)]
     now_tray = replace(now_tray, now=now, redone=now_tray.redone + 1)
-    return asked_again(turned(now_tray, face), face, members)
+    return repeat_face(turned(now_tray, face), face, members)
 
 
 def undo(now_tray, now):

@@ -7,7 +7,7 @@ import time
 from ..board import calibration_request
 from ..board.ending import Ending
 from ..board.raw_repl import PATIENCE, patience_of
-from ..history import remember
+from ..history import logbook
 from . import leading, tray_events
 from .board_thread import HEARD, JOINED, LEFT, BoardThread
 from .tray_value import tray
@@ -55,7 +55,7 @@ class TraySession:
                 self.passed[port] = "%s: no answer within %d s" % (port, JOIN_S * self.patience)
         there = {port: joined[port] for port in self.ports if port in joined}
         self.tray = tray(there, self.patience)
-        self.witnesses = {port: remember.Witness(joined[port]) for port in there}
+        self.witnesses = {port: logbook.Witness(joined[port]) for port in there}
         self.endings = {port: Ending() for port in there}
         for told in early:
             self.take(told)

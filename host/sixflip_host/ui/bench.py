@@ -195,7 +195,7 @@ class Bench:
             self.session.redo(what)
             if state.stage == OVER:
                 self.count()    # it goes on as a session of its own
-        elif action == "undo" and what and what == snapshot.last_taken(state):
+        elif action == "undo" and what and what == snapshot.last_placement(state):
             self.session.undo()
         elif action == "stop" and state.stage == CALIBRATING:
             self.session.stop()

@@ -11,7 +11,7 @@ def faces(state):
             for face in ROUND]
 
 
-def last_taken(state):
+def last_placement(state):
     """The pose that an undo takes back, "" when there is none; of a plan its number."""
     if state.stage != CALIBRATING:
         return ""
@@ -37,7 +37,7 @@ def snapshot(state, step=None):
         if state.box == "capturing" else None,
         "vector": state.vector, "rate": state.rate,
         "gone_s": max(0.0, state.now - state.since) if state.stage == CALIBRATING else None,
-        "left_s": state.left(), "undo": last_taken(state),
+        "left_s": state.left(), "undo": last_placement(state),
         "verdict": state.verdict, "solved": state.solved, "saved": state.saved,
         "error": state.error, "log": list(state.log),
     }

@@ -11,7 +11,7 @@ from ..board.recording import Recording, RecordingLink
 from ..board.session_deadline import SessionDeadline
 from ..errors import Interrupted, UsageError
 from ..file_arguments import add_input, add_output
-from ..history import remember
+from ..history import logbook
 from ..planning import board_plan
 from ..terminal import plain
 
@@ -75,7 +75,7 @@ def follow(link, show, typed=None, say=print, board=None):
     lines are sent on. What came of it goes into the history, under the id the firmware says,
     or board where its first words were lost.
     """
-    witness = remember.Witness(board)
+    witness = logbook.Witness(board)
     try:
         return _follow(link, show, typed, say, witness)
     finally:
@@ -176,7 +176,7 @@ def in_lines(link, args, step, board):
             if typed.live:
                 console.say(typed_lines.HELP)
             if args.replay:
-                return _follow(link, console.show, typed, console.say, remember.Witness())
+                return _follow(link, console.show, typed, console.say, logbook.Witness())
             return follow(link, console.show, typed, console.say, board)
     finally:
         console.clear()

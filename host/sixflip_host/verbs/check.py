@@ -12,7 +12,7 @@ from ..calibrate import verify_files
 from ..capture import capture_file, rests
 from ..errors import CheckFailed, UsageError
 from ..file_arguments import add_input
-from ..history import remember
+from ..history import logbook
 from ..terminal import say
 from .solve import local_gravity
 
@@ -52,7 +52,7 @@ def run(args):
         found = compare(capture, verify_files.accelerometer_record(args.record), g)
     else:
         board, found = ask_board(args.port)
-    remember.checked(board, found)
+    logbook.checked(board, found)
     if args.json:
         print(json.dumps(found))
     else:

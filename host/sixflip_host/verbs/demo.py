@@ -20,7 +20,7 @@ from ..board.board_files import shared_dir
 from ..board.console import Console
 from ..errors import CheckFailed, UsageError
 from ..file_arguments import add_output
-from ..history import remember, store
+from ..history import logbook, store
 from ..terminal import plain
 from ..virtual import demo_truth
 from ..virtual.demo_bench import (
@@ -121,7 +121,7 @@ def run_steps(args, folder, log):
         step("pull: capture and record from the board")
         pulled = pulled_files.fetch(link, folder)
         pulled_files.convert(pulled)
-        remember.pulled(pulled, link.board_id())
+        logbook.pulled(pulled, link.board_id())
     step("verify: the host recomputes everything from the raw capture")
     if cli.run(["verify", str(pulled)]):
         raise CheckFailed("the host does not confirm the board's arithmetic")

@@ -5,7 +5,7 @@ from pathlib import Path
 from ..board import pulled_files
 from ..board.ports import add_port, open_link
 from ..file_arguments import add_output
-from ..history import remember
+from ..history import logbook
 from ..terminal import plain
 
 EXAMPLE = "sixflip pull -o captures"
@@ -37,7 +37,7 @@ def run(args):
         board = link.board_id()
         link.reset()
     unreadable = pulled_files.convert(folder, say)
-    remember.pulled(folder, board)
+    logbook.pulled(folder, board)
     if args.json:
         print(json.dumps({
             "format": 1, "kind": "sixflip pull", "board": board, "folder": str(folder),

@@ -8,7 +8,7 @@ from ..calibrate.verify_files import read_record
 from ..capture import open_recording
 from ..errors import CheckFailed, UsageError
 from ..file_arguments import add_input, add_output
-from ..history import remember
+from ..history import logbook
 from ..terminal import say
 
 EXAMPLE = ("sixflip refine capture.csv -o refined.bin\n"
@@ -44,7 +44,7 @@ def run(args):
         pull = "off"
     with progress.during("refine: all rests and moves together"):
         found = refinement.refine(capture, args.free, record, pull)
-    remember.refined(capture, found)
+    logbook.refined(capture, found)
     if args.json:
         said = {"assumed": capture.assumed} if capture.assumed else {}
         print(json.dumps(dict(found, **said), allow_nan=False))

@@ -5,7 +5,7 @@ from .. import progress
 from ..calibrate import unverifiable, verification, verify_files
 from ..errors import BadFile, UsageError
 from ..file_arguments import add_input
-from ..history import remember
+from ..history import logbook
 from ..json_numbers import finite
 from ..terminal import console, plain, styled, table
 
@@ -32,7 +32,7 @@ def run(args):
         checks, remarks = verification.verify(capture, record, before)
     others = unverifiable.fields(capture, record, before)
     failed = [check for check in checks if not check.ok]
-    remember.verified(capture, record, checks)
+    logbook.verified(capture, record, checks)
     if args.json:
         print(json.dumps(finite({
             "format": 1, "ok": not failed, "capture": str(capture_path),

@@ -131,6 +131,7 @@ class TaggedFifo(Fifo):
     FRAME = 14                  # two words
 
     def start(self):
+        """Empties and starts it; the first sample may have any count."""
         self._count = -1
         Fifo.start(self)
 

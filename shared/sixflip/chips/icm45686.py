@@ -51,6 +51,8 @@ OUTPUT_RATES = ((50, 10), (100, 9), (200, 8), (400, 7), (800, 6), (1600, 5), (32
 
 
 class ICM45686(SixAxis):
+    """Its registers above 0xFF are read and written through two that are below."""
+
     sensor = "icm45686"
     ACCEL_RANGES = ACCEL_RANGES
     GYRO_RANGES = GYRO_RANGES

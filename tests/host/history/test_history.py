@@ -12,7 +12,7 @@ from PIL import Image
 from sixflip.record import correction_record
 from sixflip_host.capture import capture_binary, capture_file
 from sixflip_host.cli import main
-from sixflip_host.history import drift, parameters, remember, store
+from sixflip_host.history import drift, logbook, parameters, store
 from sixflip_host.verbs import calibrate
 from tests.worlds.board_session import leave_files, make_record, unlabelled
 
@@ -51,8 +51,8 @@ def test_nothing_yet(file, capsys):
 
 def test_pull_verify_and_refine(file, pulled, capsys):
     folder, record = pulled
-    remember.pulled(folder, "not this one")
-    remember.pulled(folder, "not this one")     # the same record: one calibration
+    logbook.pulled(folder, "not this one")
+    logbook.pulled(folder, "not this one")     # the same record: one calibration
     assert main(["verify", str(folder)]) == 0
     assert main(["refine", str(folder / "capture.bin")]) == 0
     found = answer(capsys, BOARD[:5])
@@ -124,7 +124,7 @@ def test_a_calibration_is_completed_by_its_record(file, pulled, capsys):
     first, = answer(capsys, BOARD)["happened"]
     assert first["verb"] == "calibrate" and first["session"] is None
     assert first["parameters"]["accel_bias_z_mg"]["value"] == pytest.approx(300 / 9.80665)
-    remember.pulled(pulled[0], BOARD)
+    logbook.pulled(pulled[0], BOARD)
     only, = answer(capsys, BOARD)["happened"]
     assert only["unix_time"] == first["unix_time"] and only["time_is"] == "made"
     assert only["session"] == pulled[1].session and only["answer"]["tilt_deg"] == 2.0
@@ -214,7 +214,7 @@ def warmed(file, pulled):
         moved = 0.5e-3 * (record.temp_c - 20.0) + rng.normal(0, 1e-4)
         for j in range(3):      # true = A (measured - what it reads more)
             record.accel["P"][3][j] -= moved * record.g * record.accel["P"][0][j]
-        rows.append(remember._of_record(BOARD, "pull", record, correction_record.encode(record)))
+        rows.append(logbook._of_record(BOARD, "pull", record, correction_record.encode(record)))
     store.add(file, rows)
     return file
 

@@ -13,7 +13,7 @@ from sixflip.poses.faces import pose_name
 from sixflip_host.calibrate import solution
 from sixflip_host.capture import capture_binary, capture_file
 from sixflip_host.cli import main
-from sixflip_host.history import remember, store
+from sixflip_host.history import logbook, store
 from sixflip_host.present import calibration_pictures
 from sixflip_host.present.page import Page
 from tests.worlds.board_session import leave_files, unlabelled
@@ -65,7 +65,7 @@ def pulled(tmp_path_factory):
 def test_calibration_verification_and_history(pulled, tmp_path, monkeypatch):
     monkeypatch.setenv(store.VARIABLE, str(tmp_path / "history.sqlite"))
     folder, record = pulled
-    remember.pulled(folder, BOARD)
+    logbook.pulled(folder, BOARD)
     store.add(store.path(), [store.Happened(BOARD, "calibration", "calibrate", 1.7e9, "good",
                                             answer={"scale": [1.0] * 3, "v": [0.1] * 3})])
     seen = report(tmp_path, folder / "record_a.bin", folder / "capture.bin")
