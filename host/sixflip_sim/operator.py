@@ -77,10 +77,11 @@ class Operator:
         if t_us > self.scene.end_us():
             self.rest((t_us - self.scene.end_us()) * 1e-6)
 
-    def asked(self, now_us, pose, up=None):
+    def asked(self, now_us, pose, up=None, anew=True):
         """Somebody asks for a pose, over and over until it is taken. Nothing while the last move
-        goes on and the box has not lain for LOOKS_S; else it is brought there after REACTS_S."""
-        if now_us < self.scene.end_us() + LOOKS_S * 1e6:
+        goes on and the box has not lain for LOOKS_S; else it is brought there after REACTS_S,
+        one that lies so already only if it is to be placed anew."""
+        if now_us < self.scene.end_us() + LOOKS_S * 1e6 or (pose == self.pose and not anew):
             return
         self.rest_until(now_us + REACTS_S * 1e6)
         self.place(pose, up=up)

@@ -86,12 +86,16 @@ class JigHand:
 
 
 class JigHandOf:
-    """hear() every byte that one board sends, as asked_hand.AskedHand does."""
+    """hear() every byte that one board sends, as asked_hand.AskedHand does.
+
+    With every window that a board in its session tells of, its box is asked for into the pose
+    that the jig is to have now; whether it lies so already, or is to be left alone yet, its own
+    operator knows best (sixflip_sim.operator.Operator.asked).
+    """
 
     def __init__(self, hand, name):
         self.hand, self.name = hand, name
         self.line = b""
-        self.at = self.told = ""
 
     def hear(self, data):
         """The commands for the simulated operator, a line of JSON each."""
@@ -100,20 +104,8 @@ class JigHandOf:
         self.line = self.line[-LONGEST:]
         for line in lines:
             event = board_events.parse(line.decode("utf-8", "replace"))
-            if event and self.moves(event):
-                commands.append(json.dumps({"pose": self.told}).encode() + b"\n")
+            if event:
+                pose = self.hand.hear(self.name, event)
+                if event["event"] == "state":
+                    commands.append(json.dumps({"pose": pose, "anew": False}).encode() + b"\n")
         return commands
-
-    def moves(self, event):
-        """Whether the box is to be moved now, to self.told. It is asked for until the board says
-        that it moves: a box that has only just come to rest is left alone."""
-        pose = self.hand.hear(self.name, event)
-        if event["event"] == "hello":
-            self.at = self.told = self.hand.own(self.name, FIRST)
-        if event["event"] != "state" or pose == self.at:
-            return False
-        if event.get("reason") in ("moving", "noisy"):
-            self.at = self.told
-            return False
-        self.told = pose
-        return True
