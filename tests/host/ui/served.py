@@ -110,11 +110,11 @@ class ScriptedLink:
         self.closed += 1
 
 
-def until(holds):
-    """Wait for something that another thread does."""
+def until(holds, so_far=lambda: ""):
+    """Wait for something that another thread does; so_far() says what there is where it fails."""
     end = time.monotonic() + WAIT_S
     while not holds():
-        assert time.monotonic() < end, "it never came"
+        assert time.monotonic() < end, "it never came: %s" % so_far()
         time.sleep(0.01)
 
 

@@ -158,7 +158,8 @@ def test_two_boards_in_a_browser(micropython, tmp_path):
         until(lambda: "✓✓" in text("boards"))
         until(lambda: browser.find_element("id", "next").get_attribute("data-face"))
         shot(browser, "tray")
-        until(lambda: text("boards").count("; saved in slot a") == 2)
+        until(lambda: text("boards").count("; saved in slot a") == 2,
+              lambda: (served.server.bench.view(), hand.tray, hand.lies))
         shot(browser, "tray-over")
         assert text("head") == "done: the jig may be opened"
         assert text("boards").count("✓✓") == 12
