@@ -21,6 +21,7 @@ from sixflip_host.virtual.virtual_board import VirtualBoard
 from tests.worlds.tray_rig import Rig, ScriptedBoard
 
 WORLD = {"sensor": "mpu6050", "tilt_deg": 2.0, "order": [], "seed": 5}
+QUICK = {"sensor": "mpu6050", "pose_samples": 300}    # 100 leave the verdict to chance
 
 
 class Session:
@@ -138,7 +139,7 @@ def test_two_boards_in_a_browser(micropython, tmp_path):
     hand = JigHand({"one": WAYS[0], "two": WAYS[1]})
     with VirtualBoard(WORLD, tmp_path / "one", micropython=micropython) as board, \
             MpremoteLink(board.port) as link:
-        firmware_update.copy(link, {"sensor": "mpu6050", "pose_samples": 100}, lambda line: None)
+        firmware_update.copy(link, QUICK, lambda line: None)
     (tmp_path / "two").write_bytes((tmp_path / "one").read_bytes())
     with contextlib.ExitStack() as stack:
         boards = [stack.enter_context(VirtualBoard(
@@ -158,9 +159,9 @@ def test_two_boards_in_a_browser(micropython, tmp_path):
         until(lambda: "✓✓" in text("boards"))
         until(lambda: browser.find_element("id", "next").get_attribute("data-face"))
         shot(browser, "tray")
-        until(lambda: text("boards").count("; saved in slot a") == 2,
+        until(lambda: text("head") == "done: the jig may be opened",
               lambda: (served.server.bench.view(), hand.tray, hand.lies))
         shot(browser, "tray-over")
-        assert text("head") == "done: the jig may be opened"
         assert text("boards").count("✓✓") == 12
+        assert text("boards").count("; saved in slot a") == 2, text("boards")
         assert [entry for entry in browser.get_log("browser") if entry["level"] == "SEVERE"] == []
