@@ -49,7 +49,9 @@ def found(gap):
     without = model.scored(same)
     best = max((model.scored((*same, f)) for f in mine), key=lambda s: s.score)
     gain = best.score - without.score
-    cost = cutoffs.of(units, mine, gap.noise).member
+    # What gains less than any cost is spared the simulation of its own.
+    cost = cutoffs.LEAST_NATS if gain <= cutoffs.LEAST_NATS else cutoffs.of(
+        units, mine, gap.noise).member
     if gain <= cost:
         return [], data
     gains = dict.fromkeys((f.effect for f in best.forms), gain)

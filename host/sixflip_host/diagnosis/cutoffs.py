@@ -164,23 +164,23 @@ def left_to_names(units, forms, levels, points):
         return LEAST_SHARE
     generator = np.random.default_rng(20190920)
     data = _strange(units, nameless, points, generator)
-    statistics = [u.statistics(z) for u, z in zip(units, data)]
+    every = [u.statistics(z, u.coarse) for u, z in zip(units, data)]
     prior = [levels.prior(u, ()) for u in units]
 
-    def scored(shared, which):
-        fits = [evidence.fit(u, (q[:, which], p[:, :, which]), shared, NONE, one, evidence.COARSE)
-                for u, (q, p), one in zip(units, statistics, prior)]
+    def scored(shared, statistics=every):
+        fits = [evidence.fit(u, one, shared, NONE, level, evidence.COARSE)
+                for u, one, level in zip(units, statistics, prior)]
         return evidence.score(fits, shared)
-    every = np.arange(data[0].shape[1])
-    nothing = scored(NONE, every)
-    gains = np.array([scored(f.shared, every) for f in nameless]) - nothing
+    nothing = scored(NONE)
+    gains = np.array([scored(f.shared) for f in nameless]) - nothing
     best, shares = gains.argmax(axis=0), []
-    names = np.max([scored(f.shared, every) for f in named], axis=0) - nothing
+    names = np.max([scored(f.shared) for f in named], axis=0) - nothing
     strange = names < gains.max(axis=0)  # what a name explains better is no stranger
     for place in progress.steps(np.unique(best[strange]), "what strangers leave to names"):
         which = np.flatnonzero((best == place) & strange)
         alone = gains[place, which]
-        beside = np.max([scored(_together(nameless[place].shared, f.shared), which)
+        mine = [(quadratic[:, which], inner[:, :, which]) for quadratic, inner in every]
+        beside = np.max([scored(_together(nameless[place].shared, f.shared), mine)
                          for f in named], axis=0) - nothing[which] - alone
         shares += (np.maximum(beside, 0.0) / np.maximum(alone, LEAST_NATS)).tolist()
     return float(np.clip(np.quantile(shares or [0.0], SURE), LEAST_SHARE, MOST_SHARE))

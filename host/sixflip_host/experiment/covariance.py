@@ -8,6 +8,7 @@ Cholesky factor of such a (semiseparable) matrix needs a few small matrices a gr
 matrix of all readings [Foreman-Mackey et al., Astron. J. 154 (2017) 220, extended from single
 readings to groups].
 """
+import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -164,6 +165,31 @@ class Factor:
                 found, rows = [], 0
         if found:
             yield np.concatenate(found, axis=1)
+
+    def at(self, places):
+        """The Factor at some of its placement levels."""
+        chosen = copy.copy(self)
+        chosen.logdet = self.logdet[places]
+        chosen.inverses = [one[places] for one in self.inverses]
+        chosen.gains = [one[places] for one in self.gains]
+        return chosen
+
+    def whitened_back(self, white):
+        """(L, n, R): the transpose of the inverse of the factor times white (L, n, R), so that
+        of whitened readings comes the inverse of the covariance times the readings."""
+        out = np.empty_like(white)
+        state = np.zeros((len(self.logdet), len(self.groups[0].decay), white.shape[2]))
+        coupled = state.shape[1] > 0
+        for g, inverse, gain in zip(self.groups[::-1], self.inverses[::-1], self.gains[::-1]):
+            own = white[:, g.rows]
+            if coupled:
+                own = own + gain.transpose(0, 2, 1) @ state
+            own = inverse.transpose(0, 2, 1) @ own
+            if coupled:
+                state *= g.decay[:, None]
+                state -= g.from_before.T @ own
+            out[:, g.rows] = own
+        return out
 
     def coloured(self, white):
         """(n, R): the factor of the first level times white (n, R)."""

@@ -5,7 +5,10 @@ columns costs more than all else there: it is worked out where it is asked for, 
 """
 import numpy as np
 
+from ..progress import steps
 from . import covariance
+
+MOSTLY = 0.9  # share of columns that are not silent from which on none is left out
 
 
 class Grams:
@@ -16,13 +19,16 @@ class Grams:
         """grid: list of (placement level, flicker level); space (m, p) orthonormal, projected out;
         common (m, c), coefficients known to 1; columns (m, K)."""
         self.groups, self.grid = groups, grid
-        self.loud = np.flatnonzero((columns != 0.0).any(axis=0))  # the others stay zero
+        loud = (columns != 0.0).any(axis=0)  # what the others say is zero
+        most = np.count_nonzero(loud) >= MOSTLY * len(loud)
+        self.loud = slice(None) if most else np.flatnonzero(loud)
         self.fixed, self.known = space.shape[1] + common.shape[1], space.shape[1]
         self.space, self.common, self._columns = space, common, columns
         size = columns.shape[1]
         # Memory that is never written to is never taken.
         self._values = np.empty((len(grid), size, size))
         self._done = np.zeros(len(grid), bool)
+        self._factors = {}
 
     def __len__(self):
         return len(self.grid)
@@ -37,41 +43,73 @@ class Grams:
         """(G, k, k) of a few columns at every point; nothing is kept of it."""
         out = np.empty((len(self.grid), len(columns), len(columns)))
         out[self._done] = self._values[np.ix_(self._done, columns, columns)]
-        for points, white in self._whitened(np.flatnonzero(~self._done), columns):
-            out[points] = np.stack([self.left(one.T @ one) for one in white])
+        for points, left in self._left(np.flatnonzero(~self._done), columns):
+            out[points] = left
         return out
 
-    def put(self, point, products):
-        """Keep what a point has: products of the whitened space, common and loud columns."""
-        self._values[point] = 0.0
-        self._values[point][np.ix_(self.loud, self.loud)] = self.left(products)
-        self._done[point] = True
-
-    def metric(self, products):
-        """(f, f) lower factor of the whitened space and common columns' products, the coefficients
-        of the latter known to 1."""
-        f = self.fixed
-        return np.linalg.cholesky(products[:f, :f] + np.diag(np.arange(f) >= self.known))
-
-    def left(self, products):
-        """(k, k) products of whitened columns (f + k, f + k) with the first f taken out."""
-        f = self.fixed
-        own = np.linalg.solve(self.metric(products), products[:f, f:])
-        return products[f:, f:] - own.T @ own
+    def statistics(self, z, points=None):
+        """(quadratic (G, R), inner (G, K, R), logdet (G,)) of contrasts z (m, R), what is fixed
+        projected out in the metric of each point of the grid; points: which are asked for (None:
+        all), the others are NaN. z is whitened, and whitened back: the columns need not be."""
+        size, number = self._columns.shape[1], z.shape[1]
+        quadratic, logdet = np.empty((len(self), number)), np.empty(len(self))
+        inner = np.empty((len(self), size, number))
+        loud = self._columns[:, self.loud].T
+        given = np.hstack([self.space, self.common, z])
+        wanted = np.arange(len(self)) if points is None else points
+        for one in (quadratic, inner, logdet):
+            one[np.setdiff1d(np.arange(len(self)), wanted)] = np.nan
+        for chosen, factor in steps(self._of_flicker(wanted), "levels of noise"):
+            white = factor.whitened(given)
+            fixed, data = white[:, :, :self.fixed], white[:, :, self.fixed:]
+            metric = self._metric(fixed.transpose(0, 2, 1) @ fixed)
+            its = np.linalg.solve(metric, fixed.transpose(0, 2, 1) @ data)
+            quadratic[chosen] = (data ** 2).sum(axis=1) - (its ** 2).sum(axis=1)
+            logdet[chosen] = factor.logdet + np.log(
+                np.diagonal(metric, axis1=1, axis2=2)).sum(axis=1)
+            left = data - fixed @ np.linalg.solve(metric.transpose(0, 2, 1), its)
+            back = factor.whitened_back(left)
+            for point, one in zip(chosen, back):
+                inner[point] = 0.0
+                inner[point, self.loud] = loud @ one
+        return quadratic, inner, logdet
 
     def _fill(self, points):
-        missing = np.unique(points[~self._done[points]])
-        for chosen, white in self._whitened(missing, self.loud):
-            for point, one in zip(chosen, white):
-                self.put(point, one.T @ one)
+        for chosen, left in self._left(np.unique(points[~self._done[points]]), self.loud):
+            for point, one in zip(chosen, left):
+                if isinstance(self.loud, slice):
+                    self._values[point] = one
+                else:
+                    self._values[point] = 0.0
+                    self._values[point][np.ix_(self.loud, self.loud)] = one
+            self._done[chosen] = True
 
-    def _whitened(self, points, columns):
-        """Pairs of points of one flicker level and (points, m, f + k) whitened columns."""
-        if not len(points):
-            return
+    def _left(self, points, columns):
+        """Pairs of points of one flicker level and (points, k, k) products of these columns,
+        whitened, without space and common."""
         every = np.hstack([self.space, self.common, self._columns[:, columns]])
+        f = self.fixed
+        for chosen, factor in self._of_flicker(points):
+            products = 0.0
+            for white in factor.whitened_parts(every):
+                products = products + white.transpose(0, 2, 1) @ white
+            own = np.linalg.solve(self._metric(products[:, :f, :f]), products[:, :f, f:])
+            left = products[:, f:, f:]
+            left -= own.transpose(0, 2, 1) @ own
+            yield chosen, left
+
+    def _metric(self, products):
+        """Lower factors of the whitened space and common columns' products (points, f, f), the
+        coefficients of the latter known to 1."""
+        return np.linalg.cholesky(products + np.diag(np.arange(self.fixed) >= self.known))
+
+    def _of_flicker(self, points):
+        """Pairs of points of one flicker level and the covariance.Factor at them."""
+        placements = list(dict.fromkeys(a for a, _ in self.grid))
         flickers = np.array([self.grid[p][1] for p in points])
         for level in dict.fromkeys(flickers.tolist()):
             chosen = points[flickers == level]
-            factor = covariance.Factor(self.groups, [self.grid[p][0] for p in chosen], level)
-            yield chosen, factor.whitened(every)
+            if level not in self._factors:
+                self._factors[level] = covariance.Factor(self.groups, placements, level)
+            yield chosen, self._factors[level].at(
+                [placements.index(self.grid[p][0]) for p in chosen])

@@ -14,7 +14,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..progress import steps
 from . import covariance
 from .gram import Grams
 from .nominal_rows import Rows
@@ -62,7 +61,8 @@ class Unit:
 
     @property
     def coarse(self):
-        return _coarse(self.shape)
+        """Every other level of placement and of flicker, as indices of the grid."""
+        return np.arange(len(self.grid)).reshape(self.shape)[::2, ::2].ravel()
 
     def around(self, point):
         """Indices of a point of the grid and its neighbours."""
@@ -93,12 +93,12 @@ class Unit:
     def _common(self):
         return _common(self.rows)
 
-    def statistics(self, z=None):
-        """(quadratic (G, R), projections (G, K, R)) of contrasts z (m, R), default the data's."""
+    def statistics(self, z=None, points=None):
+        """(quadratic (G, R), projections (G, K, R)) of contrasts z (m, R), default the data's;
+        points: which of the grid are asked for, see gram.Grams."""
         if z is None:
             return self.quadratic[:, None], self.inner[:, :, None]
-        quadratic, inner, _ = _reduce(self.gram, self.columns, z)
-        return quadratic, inner
+        return self.gram.statistics(z, points)[:2]
 
     def chi2(self, z, index):
         """Of contrasts z (m,) against noise with the levels of one point of the grid."""
@@ -183,7 +183,7 @@ def unit(rows, designs, wanted=None, **about):
     grid = [(a, b) for a in placements for b in flickers]
     shape = len(placements), len(flickers)
     gram = Grams(groups, grid, space, _common(rows), columns)
-    quadratic, inner, logdet = _reduce(gram, columns, z, _coarse(shape))
+    quadratic, inner, logdet = gram.statistics(z)
     return Unit(rows, designs, grid, shape, groups, space, z[:, 0],
                 columns, len(z) - space.shape[1], 3.0 * (raw ** 2).mean(axis=0), silent, gram,
                 logdet, quadratic[:, 0], inner[:, :, 0], **about)
@@ -193,47 +193,3 @@ def _common(rows):
     if rows.common is None:
         return np.zeros((sum(g.basis.shape[1] for g in rows.groups), 0))
     return covariance.turned(rows.groups, rows.common)
-
-
-def _coarse(shape):
-    """Every other level of placement and of flicker, as indices of the grid."""
-    return np.arange(shape[0] * shape[1]).reshape(shape)[::2, ::2].ravel()
-
-
-def _reduce(gram, columns, z, kept=()):
-    """(quadratic (G, R), inner (G, K, R), logdet (G,)) of contrasts z (m, R) and columns (m, K)
-    with the space projected out in the metric of each point of the grid; of the points `kept` the
-    columns' gram.Grams are filled as well."""
-    placements = list(dict.fromkeys(a for a, _ in gram.grid))
-    flickers = list(dict.fromkeys(b for _, b in gram.grid))
-    loud, fixed, number = gram.loud, gram.fixed, z.shape[1]
-    every = np.hstack([gram.space, gram.common, columns[:, loud], z])
-    quadratic, logdet = np.empty((len(gram), number)), np.empty(len(gram))
-    inner = np.zeros((len(gram), columns.shape[1], number))
-    size = fixed + len(loud)
-    for b, level in enumerate(steps(flickers, "levels of noise")):
-        factor = covariance.Factor(gram.groups, placements, level)
-        index = np.arange(len(placements)) * len(flickers) + b
-        full = np.isin(index, kept)
-        products = np.zeros((len(placements), size, size))
-        right = np.zeros((len(placements), size, number))
-        squares = np.zeros((len(placements), number))
-        for white in factor.whitened_parts(every):
-            squares += (white[:, :, size:] ** 2).sum(axis=1)
-            for a, one in enumerate(white):
-                left = one[:, :size]
-                right[a] += left.T @ one[:, size:]
-                if full[a]:
-                    products[a] += left.T @ left
-                else:
-                    products[a, :fixed] += left[:, :fixed].T @ left
-        for a, point in enumerate(index):
-            metric = gram.metric(products[a])
-            own = np.linalg.solve(metric, products[a, :fixed, fixed:])
-            its = np.linalg.solve(metric, right[a, :fixed])
-            quadratic[point] = squares[a] - (its ** 2).sum(axis=0)
-            inner[point, loud] = right[a, fixed:] - own.T @ its
-            logdet[point] = factor.logdet[a] + np.log(np.diag(metric)).sum()
-            if full[a]:
-                gram.put(point, products[a])
-    return quadratic, inner, logdet

@@ -82,6 +82,16 @@ def test_statistics_are_those_of_the_covariance_at_every_point(plain):
         assert unit.weight(index) == pytest.approx(np.trace(inverse))
 
 
+def test_points_that_are_not_asked_for_say_so(plain):
+    unit, z = plain.unit, plain.unit.z[:, None]
+    quadratic, projections = unit.statistics(z, unit.coarse)
+    others = np.setdiff1d(np.arange(len(unit.grid)), unit.coarse)
+    assert 0 < len(others) < len(unit.grid)
+    assert np.isnan(quadratic[others]).all() and np.isnan(projections[others]).all()
+    assert quadratic[unit.coarse, 0] == pytest.approx(unit.quadratic[unit.coarse])
+    assert projections[unit.coarse, :, 0] == pytest.approx(unit.inner[unit.coarse])
+
+
 def test_contrasts_have_the_size_of_what_the_nuisance_leaves(plain):
     left = plain.across @ (plain.across.T @ plain.y)
     assert plain.unit.z @ plain.unit.z == pytest.approx(left @ left)
@@ -107,6 +117,10 @@ def test_the_factor_multiplied_out_is_the_covariance(plain):
     root = factor.coloured(np.eye(len(plain.y)))
     assert root == pytest.approx(np.linalg.cholesky(expected))
     assert factor.whitened(root)[0] == pytest.approx(np.eye(len(plain.y)), abs=1e-9)
+    both = covariance.Factor(groups, [0.1, 0.3], 1.0)
+    inverse = both.whitened_back(both.whitened(np.eye(len(plain.y))))
+    assert inverse[1] == pytest.approx(np.linalg.inv(expected))
+    assert both.at([1]).whitened(root) == pytest.approx(factor.whitened(root))
 
 
 def test_placements_that_are_loosened_say_nothing_across(plain):
