@@ -4,7 +4,7 @@ import math
 from sixflip_sim.effects.drift import FLOOR_OF_UNIT
 
 from ..planning import next_capture
-from . import detectability, rest_noise
+from . import detectability, odds, rest_noise
 from .detect import damage, line_frequency, sample_clock
 from .simulator import simulator_answer
 
@@ -23,6 +23,7 @@ def of(diagnosis):
     causes = [_finding(f) for f in diagnosis.findings]
     causes += [_cause(kind, c) for kind, c in diagnosis.causes]
     causes += [_drift(kind, gap) for kind, gap in diagnosis.gaps.items() if gap.drift]
+    causes = [_with_strangers(cause, diagnosis) for cause in causes]
     causes.sort(key=lambda c: -(c["share"] or 0.0) - 1e-3 * c["score_nats"])
     answer = {
         "format": 1, "verdict": diagnosis.verdict, "causes": causes,
@@ -88,6 +89,14 @@ def _entry(sensor, axes, probabilities, score, value, unit, interval, plausible,
             "score_nats": number(score), "value": _sizes(value),
             "unit": spelled(unit), "interval_90": _intervals(interval), "plausible": plausible,
             "share": number(share)}
+
+
+def _with_strangers(cause, diagnosis):
+    """A cause with its probabilities lessened by what only looks like it."""
+    def stated(found):
+        return number(odds.of_name(found, diagnosis.mimicked(cause["sensor"]), diagnosis.outside))
+    return {**cause, "probability": stated(cause["probability"]), "class_probabilities": {
+        name: stated(found) for name, found in cause["class_probabilities"].items()}}
 
 
 def _cause(kind, c):

@@ -4,7 +4,8 @@ Nulls: contrasts without any effect are drawn with the levels of placement and f
 data shows, and scored as the data is; the cost is a quantile of the largest gain of any
 hypothesis (so the search itself is in it). Strangers: contrasts with something nameless in them,
 of a form that no nameless hypothesis has either; what it leaves over beside the likeliest of
-those is taken up by names. A name beside a stranger must gain more than that share.
+those is taken up by names. A name beside a stranger must gain more than that share; and how many
+strangers a name explains better still says how often a name is given to a cause without one.
 """
 import hashlib
 import json
@@ -26,10 +27,11 @@ TIMES_USUAL = 1.6  # of the usual levels, that a null has at most
 SMALLEST_SCALE = 1e-6  # nats: all nulls gain the same
 MARGIN_NATS = 1.0  # noise is not quite what it is simulated as
 LEAST_NATS = 4.0  # GAP: 95 % of the prototype's nulls in one search with the noise known exactly
-FORMAT = 9  # of the cache: another one where what is kept, or how it is made, has changed
+FORMAT = 10  # of the cache: another one where what is kept, or how it is made, has changed
 STRANGERS = 3  # simulated for each nameless hypothesis
 STRANGE_CHI2 = 200.0  # of a simulated stranger: ten times what a cost amounts to
 SURE = 0.9  # share of the strangers beside which no name may be taken in
+MIMICKED = 0.2  # where none are simulated: of those in a recommended capture it is 0.1 to 0.3
 LEAST_SHARE, MOST_SHARE = 0.02, 0.5  # a form is never known better; beyond half it is no part
 
 
@@ -38,12 +40,14 @@ class Cutoffs:
     """member: nats that a member of a set must gain; beside: share of what a stranger in the set
     gains that another member must gain as well; form: the same of what a named member gains,
     whose form a part has not exactly: a seventh of its size, squared; own: {Form: nats} of those
-    forms whose cost is not the member's."""
+    forms whose cost is not the member's; mimicked: share of the strangers that some name explains
+    better than all that is nameless."""
 
     member: float
     beside: float
     form: float = 0.02
     own: dict = field(default_factory=dict)
+    mimicked: float = MIMICKED
 
     def of(self, form):
         """Nats that this member of a set must gain. What takes a stranger's columns in, as a
@@ -68,13 +72,14 @@ def of(units, forms, levels):
     name = folder() / ("%s.json" % _key(units, forms, levels, points))
     try:
         kept = json.loads(name.read_text())
-        return Cutoffs(float(kept["member"]), float(kept["beside"]))
+        return Cutoffs(float(kept["member"]), float(kept["beside"]),
+                       mimicked=float(kept["mimicked"]))
     except (OSError, ValueError, KeyError, TypeError):
-        found = Cutoffs(simulated(units, forms, levels, points),
-                        left_to_names(units, forms, levels, points))
+        beside, mimicked = left_to_names(units, forms, levels, points)
+        found = Cutoffs(simulated(units, forms, levels, points), beside, mimicked=mimicked)
     try:
         name.parent.mkdir(parents=True, exist_ok=True)
-        kept = {"member": found.member, "beside": found.beside}
+        kept = {"member": found.member, "beside": found.beside, "mimicked": found.mimicked}
         atomic_write.write_bytes(str(name), json.dumps(kept).encode())
     except OSError:
         pass  # a cache that cannot be written is no error
@@ -157,11 +162,13 @@ def _gain(form, units, statistics, prior, levels, base):
 
 
 def left_to_names(units, forms, levels, points):
-    """Share of a stranger's gain that names take up beside it, of strangers of another form."""
+    """Of strangers of another form: (share of a stranger's gain that names take up beside it;
+    share of them that a name explains better than all that is nameless, by Laplace's rule of
+    succession)."""
     nameless = [f for f in forms if f.generic and f.axis is None and len(f.shared)]
     named = [f for f in forms if not f.generic and f.axis is None and len(f.shared)]
     if not nameless or not named:
-        return LEAST_SHARE
+        return LEAST_SHARE, MIMICKED
     generator = np.random.default_rng(20190920)
     data = _strange(units, nameless, points, generator)
     every = [u.statistics(z, u.coarse) for u, z in zip(units, data)]
@@ -183,7 +190,8 @@ def left_to_names(units, forms, levels, points):
         beside = np.max([scored(_together(nameless[place].shared, f.shared), mine)
                          for f in named], axis=0) - nothing[which] - alone
         shares += (np.maximum(beside, 0.0) / np.maximum(alone, LEAST_NATS)).tolist()
-    return float(np.clip(np.quantile(shares or [0.0], SURE), LEAST_SHARE, MOST_SHARE))
+    return (float(np.clip(np.quantile(shares or [0.0], SURE), LEAST_SHARE, MOST_SHARE)),
+            float((np.sum(~strange) + 1.0) / (len(strange) + 2.0)))
 
 
 def _together(one, other):

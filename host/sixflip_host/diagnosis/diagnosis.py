@@ -6,6 +6,7 @@ from .. import progress
 from ..capture import registers
 from ..experiment import blocks, terms
 from . import (
+    cutoffs,
     detectability,
     localisation,
     odds,
@@ -90,6 +91,16 @@ class Diagnosis:
             for gap in [*self.judged, *self.rest.values()] for c in gap.causes if c.plausible]
         return claims + [verdict.Claim(g.found.places["drift"]["drift"], True)
                          for g in self.gaps.values() if g.drift]
+
+    @cached_property
+    def outside(self):
+        """Probability that something is there which no name of the library stands for."""
+        return verdict.any_of(self._nameless())
+
+    def mimicked(self, sensor):
+        """Share of a sensor's strangers that look like a name in these captures."""
+        gap = self.gaps.get(sensor)
+        return gap.found.cost.mimicked if gap else cutoffs.MIMICKED
 
     def _sized(self, finding):
         """Whether the interval of a Finding's share is known; in motion, that of the gap."""

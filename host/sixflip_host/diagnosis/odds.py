@@ -13,6 +13,7 @@ HOLDS = 0.95  # probability that a class of names must hold
 PRESENT = math.log(HOLDS / (1.0 - HOLDS))  # nats beyond its cost: more likely there than not
 CHANCE = 0.005  # two sensors, turns, moves, box, registers and spectra share 5 %, with room
 COST = -math.log(CHANCE)  # nats of a hypothesis over samples, whose chance is in its likelihood
+INSIDE = 2.0  # causes of the library for one that is not, in recordings made elsewhere
 Z_90 = NormalDist().inv_cdf(0.95)  # standard deviations to either end of a 90 % interval
 SMALLEST = 1e-300  # of a probability: what a float holds
 
@@ -28,6 +29,16 @@ def shares(scores):
 def nameless(place):
     """Probability that what stands in a place ({name: probability}) has no name."""
     return sum(p for name, p in place.items() if name and is_stranger(name))
+
+
+def of_name(found, mimicked, outside):
+    """Probability that a named cause is the one that is there. found: that among all hypotheses;
+    mimicked: share of the causes outside the library that look like one inside, so alike that no
+    likelihood tells them apart; outside: number of causes without a name in the same captures.
+    Of all causes INSIDE to 1 are in the library before anything is seen, and each one seen outside
+    counts as one [Laplace's rule of succession; Jaynes, Probability Theory (2003), section 18.6].
+    """
+    return found / (1.0 + (1.0 + outside) / INSIDE * mimicked)
 
 
 def probability(score, cost=COST):

@@ -47,7 +47,7 @@ def test_the_right_class_gains_with_the_size(captures):
     for times in (0.3, 1.0, 3.0):
         cause, = causes(captures, lambda t, warm, g, k=times: on_z(0.9 * k * warm))
         assert "thermal_bias" in cause["class"] and cause["axes"] == ["z"]
-        assert cause["probability"] > 0.95
+        assert cause["probability"] > 0.8
         assert set(cause["class_probabilities"]) == set(cause["class"])
         scores.append(cause["score_nats"])
     assert scores == sorted(scores) and scores[2] > 3.0 * scores[0]

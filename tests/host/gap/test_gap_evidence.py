@@ -8,6 +8,7 @@ from sixflip_host.diagnosis import (
     evidence,
     hypotheses,
     moves_unit,
+    odds,
     posterior,
     scored_sets,
 )
@@ -193,3 +194,32 @@ def test_costs_of_each_form_keep_the_chance_of_any():
         model = scored_sets.Model(units, drawn, moves_unit.NO_LEVELS)
         wrong += bool(posterior.search(model, forms, cost).best.forms)
     assert wrong <= 4  # a chance of 0.5 % each
+
+
+def smooth(named, n=40):
+    """A session with a named effect of a form (n,) on each axis, and something nameless that is
+    straight or bent."""
+    u = np.linspace(-1.0, 1.0, n)
+    each = np.eye(3)
+
+    def columns(*forms):
+        return np.concatenate([np.kron(form[:, None], each) for form in forms], axis=1)
+    ten = np.full(6, 10.0)
+    designs = [Design("thermal_bias", "", list("xyz"), [0, 1, 2], columns(named), ten[:3]),
+               Design("time", "", ["x0", "y0", "z0", "x1", "y1", "z1"], [0, 1, 2, 0, 1, 2],
+                      columns(u, u ** 2), ten)]
+    groups = covariance.alone(np.eye(3 * n), np.zeros((3 * n, 0)), np.eye(3 * n))
+    return linear_model.unit(Rows(np.zeros(3 * n), groups, np.kron(np.ones((n, 1)), each),
+                                  ((0.0,), (0.01, 1.0))), designs)
+
+
+def test_strangers_that_look_like_a_name_make_every_name_less_sure(monkeypatch):
+    monkeypatch.setattr(cutoffs, "STRANGERS", 30)
+    taken = {}
+    for name, form in (("alike", np.linspace(-1.0, 1.0, 40)), ("unlike", (-1.0) ** np.arange(40))):
+        units = [smooth(form), smooth(form)]
+        taken[name] = cutoffs.left_to_names(units, hypotheses.of(units), USUAL, [0, 0])[1]
+    assert taken["unlike"] < 0.1 < 0.2 < taken["alike"]
+    sure = [odds.of_name(0.99, mimicked, outside) for mimicked, outside in (
+        (0.0, 1.0), (taken["unlike"], 0.0), (taken["unlike"], 1.0), (taken["alike"], 1.0))]
+    assert sure[0] == 0.99 and sure == sorted(sure, reverse=True) and len(set(sure)) == 4

@@ -38,7 +38,7 @@ def test_a_late_gyro_is_late_and_nothing_else(captures, delay_ms):
     found = diagnosed(captures, late)
     assert [(c["sensor"], c["effect"]) for c in found["causes"]] == [("gyro", "filter_lag")]
     assert found["causes"][0]["value"]["tau"] == pytest.approx(delay_ms, rel=0.05)
-    assert found["causes"][0]["probability"] > 0.95
+    assert found["causes"][0]["probability"] > 0.8
     assert found["verdict"] == "explained"
 
 
