@@ -46,7 +46,7 @@ class FlipsTurned:
 def by_moves(capture, far_pairs=True):
     """The FlipsTurned of a labelled capture.
 
-    far_pairs  as RestsAndMoves: for labels, not for poses found
+    far_pairs  as rests_and_moves.of: for labels, not for poses found
     """
     if capture.sums_only:
         return FlipsTurned("no samples of the moves were kept")
@@ -55,9 +55,8 @@ def by_moves(capture, far_pairs=True):
     if capture.pose is None or not capture.pose.any():
         return FlipsTurned("no poses were found")
     from . import joint_refinement, refinement, refinement_answer
-    from .rests_and_moves import RestsAndMoves
     try:
-        session = RestsAndMoves(capture, refinement.rests_of(capture, False)[0], far_pairs)
+        session, _ = refinement.session_of(capture, far_pairs=far_pairs)
         turned = [flip for flip in session.flips if flip.move is not None]
         if not turned:
             return FlipsTurned("the gyro saw no flip")

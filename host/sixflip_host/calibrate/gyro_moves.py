@@ -7,9 +7,12 @@ quaternions (q0, q1, q2, q3) by doubling, so no Python loop runs over samples.
 Tedaldi et al. (ICRA 2014, eq. 13-18) do the same with Runge-Kutta, one sample after another.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 COLUMNS = 7
+RAD = np.pi / 180.0
 
 
 def multiply(p, q):
@@ -52,26 +55,25 @@ def cross_matrix(v):
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
+@dataclass(frozen=True, eq=False)
 class GyroMoves:
-    """All moves of a session, padded to one length.
+    """All moves of a session, padded to one length of n steps; arrays read only.
 
-    gyro (n, 3) rad/s by the nominal scale, force (n, 3) in g, t (n,) s;
-    spans: list of (first, last) sample of each move, both at rest, first < last.
+    dt (moves, n) s; before, after (moves, n, 7): x (see above) at both ends of each step.
     """
 
-    def __init__(self, gyro, force, t, spans):
-        longest = max([last - first for first, last in spans], default=0)
-        self.dt = np.zeros((len(spans), longest))
-        self.x0 = np.zeros((len(spans), longest, COLUMNS))
-        self.x1 = np.zeros((len(spans), longest, COLUMNS))
-        rows = np.hstack([gyro, np.ones((len(gyro), 1)), force])
-        for k, (first, last) in enumerate(spans):
-            n = last - first
-            self.dt[k, :n] = np.diff(t[first : last + 1])
-            self.x0[k, :n] = rows[first:last]
-            self.x1[k, :n] = rows[first + 1 : last + 1]
-        self.weighted = 0.5 * (self.x0 + self.x1) * self.dt[..., None]
-        self.seconds = self.dt.sum(axis=1)
+    dt: np.ndarray
+    before: np.ndarray
+    after: np.ndarray
+
+    def __post_init__(self):
+        for value in (self.dt, self.before, self.after):
+            value.setflags(write=False)
+
+    @property
+    def seconds(self):
+        """(moves,): how long each lasts."""
+        return self.dt.sum(axis=1)
 
     def __len__(self):
         return len(self.dt)
@@ -84,9 +86,10 @@ class GyroMoves:
         -dt^3 / 12 w'', which integrated by parts over a move that begins and ends at rest is
         dt^3 / 12 (w x w') once more. Together: fourth order on a smooth move.
         """
-        w0 = self.x0 @ W.T
-        w1 = self.x1 @ W.T
-        return self.weighted @ W.T + np.cross(w0, w1) * (self.dt**2 / 6.0)[..., None]
+        w0 = self.before @ W.T
+        w1 = self.after @ W.T
+        return 0.5 * (w0 + w1) * self.dt[..., None] + np.cross(w0, w1) * (
+            self.dt**2 / 6.0)[..., None]
 
     def rotate(self, W):
         """Total rotation (moves, 4) and its change with W, (moves, 3, 3, 7).
@@ -105,8 +108,31 @@ class GyroMoves:
         before = np.concatenate([np.broadcast_to([1.0, 0, 0, 0], q[:, :1].shape), q[:, :-1]], 1)
         middle = matrix(multiply(before, exponential(0.5 * steps)))
         carried = np.einsum("mba,mkbc->mkac", matrix(total), middle)
-        change = np.einsum("mkac,mkx->macx", carried, self.weighted, optimize=True)
+        weighted = 0.5 * (self.before + self.after) * self.dt[..., None]
+        change = np.einsum("mkac,mkx->macx", carried, weighted, optimize=True)
         return total, change
+
+
+def of(session, moves):
+    """GyroMoves of some of the moves (moves.Move) of a blocks.Session, by the nominal scale."""
+    meta = session.capture.meta
+    return of_samples(session.capture.gyro * (RAD / meta["gyro_lsb_per_dps"]),
+                      session.capture.accel / meta["accel_lsb_per_g"], session.t_s,
+                      [(move.first, move.end - 1) for move in moves])
+
+
+def of_samples(gyro, force, t, spans):
+    """GyroMoves of gyro (n, 3) rad/s and force (n, 3) g at t (n,) s; spans: list of (first, last)
+    sample of each move, both at rest, first < last."""
+    longest = max([last - first for first, last in spans], default=0)
+    dt = np.zeros((len(spans), longest))
+    before, after = np.zeros((2, len(spans), longest, COLUMNS))
+    for k, (first, last) in enumerate(spans):
+        x = np.hstack([gyro[first:last + 1], np.ones((last - first + 1, 1)),
+                       force[first:last + 1]])
+        dt[k, :last - first] = np.diff(t[first:last + 1])
+        before[k, :last - first], after[k, :last - first] = x[:-1], x[1:]
+    return GyroMoves(dt, before, after)
 
 
 def turn_about(q, axis):

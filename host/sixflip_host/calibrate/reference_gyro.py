@@ -8,10 +8,10 @@ import math
 
 import numpy as np
 
-from sixflip import RAIL
 from sixflip.poses.faces import AXIS, face_of_code
 from sixflip.poses.placement import GAP_US, LATE_US
 
+from ..capture import registers
 from ..errors import CheckFailed
 
 # Standard deviations of a hand (along the axis, across it), rad, and of the bias, rad/s.
@@ -36,9 +36,7 @@ class Interval:
         late, bridge = _late(capture, first, end) if moving else (0.0, np.zeros(3))
         self.turned = np.radians((gyro.mean(axis=0) * (self.T - late) + bridge)
                                  / capture.meta["gyro_lsb_per_dps"])
-        rail = min(RAIL, capture.meta.get("gyro_range_dps", np.inf)
-                   * capture.meta["gyro_lsb_per_dps"])
-        self.saturated = bool((np.abs(gyro) >= rail - 1).any())
+        self.saturated = registers.gyro_railed(capture, first, end)
 
 
 def _late(capture, first, end):

@@ -6,12 +6,11 @@ from sixflip.poses.faces import LEANING
 
 from ..capture import rests, rests_by_variance
 from ..errors import BadFile, CheckFailed
-from . import gyro_rests, joint_refinement, kept_parameters, multiposition
+from ..experiment import blocks
+from . import gyro_rests, joint_refinement, kept_parameters, multiposition, rests_and_moves
 from . import refinement_answer as answer
-from .rests_and_moves import RestsAndMoves
 
 LABELS = "labels"
-SHORTEST = 20  # samples of a labelled rest that count
 
 
 def refine(capture, free=False, record=None, g_sensitivity="auto"):
@@ -19,8 +18,7 @@ def refine(capture, free=False, record=None, g_sensitivity="auto"):
 
     record: a correction Record to keep the undetermined from.
     """
-    runs, source = rests_of(capture, free)
-    session = RestsAndMoves(capture, runs, far_pairs=source == LABELS)
+    session, source = session_of(capture, free)
     told, kept = None, None
     if record is not None:
         result, told, kept = kept_parameters.refine(session, record)
@@ -33,10 +31,18 @@ def refine(capture, free=False, record=None, g_sensitivity="auto"):
     return assemble(capture, session, result, source, told, kept)
 
 
+def session_of(capture, free=False, far_pairs=None):
+    """(RestsAndMoves of a capture, where its rests come from, in words). far_pairs as there;
+    default: where they are labelled."""
+    runs, source = rests_of(capture, free)
+    return rests_and_moves.of(blocks.of("the session", capture, runs),
+                              source == LABELS if far_pairs is None else far_pairs), source
+
+
 def rests_of(capture, free):
-    """[(pose code, first, end)] and where they come from, in words."""
+    """list of rests.Run and where they come from, in words."""
     if capture.pose is not None and capture.pose.any():
-        runs = rests.labelled(capture.pose, SHORTEST)
+        runs = blocks.runs_of(capture, by_hand=True)
         if free:
             return renamed([(f, e) for _, f, e in runs]), "labels, taken as free poses"
         return runs, LABELS
@@ -67,7 +73,7 @@ def assemble(capture, session, result, source, told, kept):
     out = {
         "format": 1, "sensor": capture.meta["sensor"], "g": capture.g,
         "rests": len(session.codes), "rests_from": source, "moves": len(session.ends),
-        "moves_left_out": session.left_out,
+        "moves_left_out": list(session.left_out),
         "accel": answer.accelerometer(result, capture.g),
         "norm_off_mg": dict(zip(session.names, off.tolist())),
         "norm_off_mg_rms": float(np.sqrt(np.mean(off**2))),

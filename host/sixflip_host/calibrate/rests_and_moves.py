@@ -1,170 +1,201 @@
 """A capture as the refinement sees it: rests with their means, moves with their rotations."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from sixflip import RAIL
-from sixflip.poses.faces import AXIS, LEANING, SIGN, face_of_code, is_b, pose_name
+from sixflip.poses.faces import AXIS, SIGN, face_of_code, is_b, pose_name
 from sixflip.poses.placement import GAP_US
 
 from ..errors import BadFile, CheckFailed
-from .gyro_moves import GyroMoves
+from ..experiment import blocks, moves
+from . import gyro_moves
 
 FLOOR_G = 5e-5  # standard error a mean is never better than: a chip's own flicker noise
 FLOOR_RATE = 2e-5  # rad/s, likewise (0.001 deg/s)
 MINIMUM_G = 0.5  # a rest reads between this and 2 g minus it, whatever its calibration
 FACE_COSINE = 0.7  # of the angle between a rest and the axis its label names
+LEAST_RAD = 1e-4  # of a move: what the integration itself may leave
 RAD = np.pi / 180.0
 
 
+@dataclass(frozen=True, eq=False)
 class Flip:
-    """Captures a and b of one face: indices of their rests, the move between or None.
+    """Poses a and b of one face (0..5): indices of their rests, index of the move between or None.
 
     forward: +1 when a was taken first, -1 when b was.
     """
 
-    def __init__(self, face, a, b, move, forward):
-        self.face, self.a, self.b, self.move, self.forward = face, a, b, move, forward
-        self.axis = np.zeros(3)
-        self.axis[AXIS[face]] = SIGN[face]
+    face: int
+    a: int
+    b: int
+    move: int | None
+    forward: int
+
+    @property
+    def axis(self):
+        """(3,): the face's axis, upwards."""
+        axis = np.zeros(3)
+        axis[AXIS[self.face]] = SIGN[self.face]
+        return axis
 
 
+@dataclass(frozen=True, eq=False)
 class RestsAndMoves:
-    """names [k]; codes (k,); force (k, 3) g and rate (k, 3) rad/s, means by the nominal scale;
-    force_error, rate_error (k,): standard errors of those means; ends: (before, after) of
-    every move kept; moves: GyroMoves; left_out: sentences; flips, alone (rests on a face that
-    was never flipped); has_gyro.
+    """The blocks of a session as k rests, and the moves that can be integrated; arrays read only.
+
+    session: blocks.Session; force (k, 3) g and rate (k, 3) rad/s, means by the nominal scale;
+    force_error, rate_error (k,): standard errors of those means; ends: (before, after) of every
+    move kept; moves: GyroMoves of them; move_error (moves,) rad: expected disagreement of the two
+    gravities of each, and of a flip's angle; left_out: sentences; flips; alone: rests on a face
+    that was never flipped. rate, rate_error, moves, move_error: None without a gyro.
     """
 
-    def __init__(self, capture, runs, far_pairs=True):
-        """runs: [(pose code, first, end)]. far_pairs: believe that a and b of a face belong to
-        one table though the box was elsewhere in between; for labels, not for poses found."""
-        if not runs:
-            raise BadFile("the capture has no rests, expected labelled poses or still stretches")
-        self.g = capture.g
-        self.codes = [code for code, _, _ in runs]
-        self.names = [pose_name(code) for code in self.codes]
-        self.samples = [end - first for _, first, end in runs]
-        force = capture.accel / float(capture.meta["accel_lsb_per_g"])
-        self.force, self.force_error = _means(force, runs, FLOOR_G)
-        self._refuse_contradictions(capture)
-        self.has_gyro = capture.gyro is not None
-        self.left_out = []
-        self.ends, spans = [], []
-        self.rate = self.rate_error = self.moves = None
-        if self.has_gyro:
-            rate = capture.gyro * (RAD / capture.meta["gyro_lsb_per_dps"])
-            self.rate, self.rate_error = _means(rate, runs, FLOOR_RATE)
-            spans = self._usable_moves(capture, runs)
-            t = capture.t_us * 1e-6
-            self.moves = GyroMoves(rate, force, t, spans)
-            self.move_error = self._move_error(rate, runs, t)
-        self.flips, self.alone = self._pair_flips(far_pairs)
-        self._refuse_unusable(capture)
+    session: blocks.Session
+    force: np.ndarray
+    force_error: np.ndarray
+    rate: np.ndarray | None
+    rate_error: np.ndarray | None
+    ends: tuple
+    moves: gyro_moves.GyroMoves | None
+    move_error: np.ndarray | None
+    left_out: tuple
+    flips: tuple
+    alone: tuple
 
-    def _usable_moves(self, capture, runs):
-        """Spans of the moves that can be integrated; the others with the reason."""
-        steps = np.diff(capture.t_us)
-        usual = float(np.median(steps))
-        rail = capture.meta.get("gyro_range_dps", np.inf) * capture.meta["gyro_lsb_per_dps"]
-        rail = min(RAIL, rail) - 1
-        spans = []
-        for k in range(len(runs) - 1):
-            first, last = runs[k][2] - 1, runs[k + 1][1]
-            name = "%s to %s" % (self.names[k], self.names[k + 1])
-            gap = float(steps[first:last].max())
-            peak = np.abs(capture.gyro[first : last + 1].astype(np.int32)).max()
-            if peak >= rail:
-                self.left_out.append("move %s: the gyro is saturated" % name)
-            elif usual <= 0:
-                self.left_out.append("move %s: the timestamps stand still" % name)
-            elif gap - usual > GAP_US:
-                self.left_out.append(
-                    "move %s: the timestamps jump by %.3f s" % (name, gap * 1e-6)
-                )
-            else:
-                spans.append((first, last))
-                self.ends.append((k, k + 1))
-        return spans
+    def __post_init__(self):
+        for value in self.__dict__.values():
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
 
-    def _move_error(self, rate, runs, t):
-        """Expected disagreement of the two gravities of each move, rad (and of a flip's angle)."""
-        white = np.median([np.std(np.diff(rate[f:e], axis=0)) for _, f, e in runs]) / np.sqrt(2)
-        walk = white * np.sqrt(np.median(np.diff(t)) * self.moves.seconds)
-        ends = np.array(self.ends, dtype=int).reshape(-1, 2)
-        gravity = np.hypot(self.force_error[ends[:, 0]], self.force_error[ends[:, 1]])
-        return np.sqrt(walk**2 + gravity**2 + 1e-8)
+    @property
+    def g(self):
+        return self.session.capture.g
 
-    def _pair_flips(self, far_pairs):
-        flips, alone = [], []
-        for face in range(6):
-            own = [k for k, code in enumerate(self.codes) if face_of_code(code) == face]
-            made = []
-            for k in own:
-                if k + 1 in own and is_b(self.codes[k]) != is_b(self.codes[k + 1]):
-                    move = self.ends.index((k, k + 1)) if (k, k + 1) in self.ends else None
-                    a_first = not is_b(self.codes[k])
-                    a, b = (k, k + 1) if a_first else (k + 1, k)
-                    made.append(Flip(face, a, b, move, 1 if a_first else -1))
-            if not made:
-                a = [k for k in own if not is_b(self.codes[k])]
-                b = [k for k in own if is_b(self.codes[k])]
-                if a and b and far_pairs:
-                    made.append(Flip(face, a[0], b[0], None, 1))
-                else:
-                    alone += own
-            flips += made
-        return flips, alone
+    @property
+    def codes(self):
+        return [run.code for run in self.session.runs]
 
-    def _refuse_contradictions(self, capture):
-        """Rests that gravity cannot explain, by name; a gyro that never moved."""
-        for name, code, force in zip(self.names, self.codes, self.force):
-            length = float(np.linalg.norm(force))
-            if not MINIMUM_G < length < 2.0 - MINIMUM_G:
-                raise CheckFailed("rest %s reads %.2f g, expected about 1 g" % (name, length))
-            face = face_of_code(code)
-            if face >= 0 and SIGN[face] * force[AXIS[face]] < FACE_COSINE * length:
-                raise CheckFailed("rest %s is labelled %s, but gravity there is %s g" % (
-                    name, name[:2], " ".join("%+.2f" % f for f in force)))
-        if capture.gyro is not None and not np.ptp(capture.gyro, axis=0).all():
-            raise CheckFailed("gyro %s reads the same in every sample, expected a live gyro"
-                              % "xyz"[int(np.argmin(np.ptp(capture.gyro, axis=0)))])
+    @property
+    def names(self):
+        return [pose_name(code) for code in self.codes]
 
-    def _refuse_unusable(self, capture):
-        if self.has_gyro and len(self.codes) > 1 and not self.ends:
-            if all("saturated" in line for line in self.left_out):
-                raise CheckFailed(
-                    "the gyro is saturated in every move, expected turns slower than %g deg/s"
-                    % capture.meta.get("gyro_range_dps", RAIL / capture.meta["gyro_lsb_per_dps"])
-                )
-            raise CheckFailed(
-                "no move can be integrated (%s), expected even timestamps and rates below full "
-                "scale" % self.left_out[0]
-            )
-        turned = [f for f in self.flips if f.move is not None]
-        lost = [line for line in self.left_out if "saturated" in line]
-        if self.has_gyro and self.flips and not turned and lost:
-            raise CheckFailed(
-                "the gyro is saturated in every flip (%s), expected flips slower than full scale"
-                % lost[0]
-            )
+    @property
+    def has_gyro(self):
+        return self.session.gyro is not None
 
     def on_faces(self):
         return bool(self.flips or self.alone)
 
-    def leaning(self):
-        return [k for k, code in enumerate(self.codes) if code > LEANING]
+
+def of(session, far_pairs=True):
+    """RestsAndMoves of a blocks.Session; BadFile or CheckFailed where nothing can be refined from
+    it. far_pairs: believe that a and b of a face belong to one table though the box was elsewhere
+    in between; for labels, not for poses found."""
+    if not session.runs:
+        raise BadFile("the capture has no rests, expected labelled poses or still stretches")
+    force = session.rest_means(session.accel) * 1e-3
+    _refuse_contradictions(session, force)
+    force_error = _error(session, session.noise_accel * 1e-3, FLOOR_G)
+    rate = rate_error = kept = move_error = None
+    ends, left_out = (), ()
+    if session.gyro is not None:
+        rate = session.rest_means(session.gyro) * RAD
+        rate_error = _error(session, session.noise_gyro * RAD, FLOOR_RATE)
+        usable, left_out = _usable(session)
+        ends = tuple((move.place, move.place + 1) for move in usable)
+        kept = gyro_moves.of(session, usable)
+        move_error = _move_error(session, kept, force_error, ends)
+    flips, alone = _paired(session, ends, far_pairs)
+    _refuse_unusable(session, ends, left_out, flips)
+    return RestsAndMoves(session, force, force_error, rate, rate_error, ends, kept, move_error,
+                         left_out, flips, alone)
 
 
-def _means(values, runs, floor):
-    """Means (k, 3) over the runs and the standard error (k,) of their components.
+def _error(session, noise, floor):
+    """(k,): standard error of a component of the rests' means; noise (3,) of one second's."""
+    seconds = np.bincount(session.placement, session.seconds, session.placements())
+    return np.sqrt(np.mean(noise ** 2) / seconds + floor ** 2)
 
-    White noise from differences of neighbours, so that a slow drift is not counted as noise.
-    """
-    means = np.array([values[f:e].mean(axis=0) for _, f, e in runs]).reshape(-1, 3)
-    white = np.array(
-        [np.sqrt(np.mean(np.diff(values[f:e], axis=0) ** 2) / 2) if e - f > 1 else np.nan
-         for _, f, e in runs]
-    )
-    white = np.where(np.isnan(white), np.nanmedian(white) if len(white) else 0.0, white)
-    n = np.array([e - f for _, f, e in runs])
-    return means, np.sqrt(white**2 / np.maximum(n, 1) + floor**2)
+
+def _usable(session):
+    """(tuple of moves.Move that can be integrated, tuple of sentences on the others)."""
+    usual = float(np.median(np.diff(session.t_s)))
+    found, left_out = [], []
+    for move in moves.of(session):
+        name = "%s to %s" % tuple(pose_name(run.code)
+                                  for run in session.runs[move.place:move.place + 2])
+        if move.railed:
+            left_out.append("move %s: the gyro is saturated" % name)
+        elif session.timeless or usual <= 0.0:
+            left_out.append("move %s: the timestamps stand still" % name)
+        elif move.longest_s - usual > GAP_US * 1e-6:
+            left_out.append("move %s: the timestamps jump by %.3f s" % (name, move.longest_s))
+        else:
+            found.append(move)
+    return tuple(found), tuple(left_out)
+
+
+def _move_error(session, kept, force_error, ends):
+    """(moves,) rad: the gyro's white noise summed over each move, gravity's error at both ends."""
+    walk = np.sqrt(np.mean(session.noise_gyro ** 2) * kept.seconds) * RAD
+    before, after = np.array(ends, dtype=int).reshape(-1, 2).T
+    return np.sqrt(walk ** 2 + force_error[before] ** 2 + force_error[after] ** 2
+                   + LEAST_RAD ** 2)
+
+
+def _paired(session, ends, far_pairs):
+    """(tuple of Flip, tuple of the rests on faces that were never flipped)."""
+    codes = [run.code for run in session.runs]
+    flips, alone = [], []
+    for face in range(6):
+        own = [k for k, code in enumerate(codes) if face_of_code(code) == face]
+        made = []
+        for k in own:
+            if k + 1 in own and is_b(codes[k]) != is_b(codes[k + 1]):
+                move = ends.index((k, k + 1)) if (k, k + 1) in ends else None
+                a_first = not is_b(codes[k])
+                a, b = (k, k + 1) if a_first else (k + 1, k)
+                made.append(Flip(face, a, b, move, 1 if a_first else -1))
+        if not made:
+            a = [k for k in own if not is_b(codes[k])]
+            b = [k for k in own if is_b(codes[k])]
+            if a and b and far_pairs:
+                made.append(Flip(face, a[0], b[0], None, 1))
+            else:
+                alone += own
+        flips += made
+    return tuple(flips), tuple(alone)
+
+
+def _refuse_contradictions(session, force):
+    """CheckFailed for rests that gravity cannot explain, by name, and a gyro that never moved."""
+    for run, mean in zip(session.runs, force):
+        name, face = pose_name(run.code), face_of_code(run.code)
+        length = float(np.linalg.norm(mean))
+        if not MINIMUM_G < length < 2.0 - MINIMUM_G:
+            raise CheckFailed("rest %s reads %.2f g, expected about 1 g" % (name, length))
+        if face >= 0 and SIGN[face] * mean[AXIS[face]] < FACE_COSINE * length:
+            raise CheckFailed("rest %s is labelled %s, but gravity there is %s g" % (
+                name, name[:2], " ".join("%+.2f" % f for f in mean)))
+    gyro = session.capture.gyro
+    if gyro is not None and not np.ptp(gyro, axis=0).all():
+        raise CheckFailed("gyro %s reads the same in every sample, expected a live gyro"
+                          % "xyz"[int(np.argmin(np.ptp(gyro, axis=0)))])
+
+
+def _refuse_unusable(session, ends, left_out, flips):
+    """CheckFailed where the gyro saw no move, or no flip of those that there are."""
+    meta = session.capture.meta
+    if session.gyro is not None and len(session.runs) > 1 and not ends:
+        if all("saturated" in line for line in left_out):
+            raise CheckFailed(
+                "the gyro is saturated in every move, expected turns slower than %g deg/s"
+                % meta.get("gyro_range_dps", RAIL / meta["gyro_lsb_per_dps"]))
+        raise CheckFailed("no move can be integrated (%s), expected even timestamps and rates "
+                          "below full scale" % left_out[0])
+    lost = [line for line in left_out if "saturated" in line]
+    if flips and lost and all(flip.move is None for flip in flips):
+        raise CheckFailed("the gyro is saturated in every flip (%s), expected flips slower than "
+                          "full scale" % lost[0])

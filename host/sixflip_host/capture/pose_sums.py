@@ -2,12 +2,11 @@
 
 import numpy as np
 
-from sixflip import RAIL
 from sixflip.poses.placement import LATE_US, Move, Placement
 from sixflip.poses.placement_log import PlacementLog
 from sixflip.poses.still_window import window_length
 
-from . import rests
+from . import registers, rests
 from .still_windows import POSE_SAMPLES
 
 AT_A_TIME = 1000        # windows as floats, which take four times the room of counts
@@ -65,14 +64,12 @@ def _move(capture, index, before, after):
     first, end = before.first + before.n, after.first
     gyro = capture.gyro[first:end]
     gaps = np.diff(capture.t_us[first - 1:end])
-    rail = min(RAIL, capture.meta.get("gyro_range_dps", np.inf)
-               * capture.meta["gyro_lsb_per_dps"])
-    saturated = bool(len(gyro)) and bool((np.abs(gyro.astype(np.int32)) >= rail - 1).any())
     move = Move(index, index + 1, first, end - first,
                 [int(s) for s in gyro.sum(axis=0, dtype=np.int64)],
                 # n samples span n intervals, each sample the one before it, as on the board
                 int(capture.t_us[end - 1] - capture.t_us[first - 1]),
-                _late(capture, first, end, gaps), saturated, int(gaps.max(initial=0)))
+                _late(capture, first, end, gaps),
+                registers.gyro_railed(capture, first, end), int(gaps.max(initial=0)))
     move.path = _path(capture, before, after)
     return move
 

@@ -25,6 +25,16 @@ def steps(counts):
     return np.array(out)
 
 
+def gyro_railed(capture, first, end):
+    """True when a gyro axis reads the end of its range, or of its register, in samples
+    first..end-1 of a capture."""
+    if capture.gyro is None:
+        return False
+    full_scale = capture.meta.get("gyro_range_dps", np.inf) * capture.meta["gyro_lsb_per_dps"]
+    peak = np.abs(capture.gyro[first:end].astype(np.int32)).max(initial=0)
+    return bool(peak >= min(RAIL, full_scale) - 1)
+
+
 def spacing(size, least):
     """Usual distance of the values next to each other among sizes (n,) of codes from `least` to
     SPACED times that: what a column counts in where a file's decimals, a factor or few samples

@@ -13,9 +13,10 @@ LONG_REST_S = 12.0
 
 def of_runs(capture, runs, rate, t_s, labelled, smooth):
     """{field: array} of the blocks of these runs."""
-    edge = int(EDGE_S * rate)
-    cut = [(placement, code, a, b) for placement, (code, first, end) in enumerate(runs)
-           for a, b in cut_rest(first + edge, end - edge, rate)]
+    cut = []
+    for placement, (code, first, end) in enumerate(runs):
+        edge = min(int(EDGE_S * rate), (end - first) // 4)
+        cut += [(placement, code, a, b) for a, b in cut_rest(first + edge, end - edge, rate)]
     placement, code, first, end = np.array(cut, dtype=np.int64).reshape(len(cut), 4).T.copy()
     t = t_s[(first + end) // 2]
     starts = np.array([t_s[run.first] for run in runs])

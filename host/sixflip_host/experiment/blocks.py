@@ -93,6 +93,13 @@ class Session:
         return replace(self, **{name: value if value is None else value[keep]
                                 for name, value in values.items()})
 
+    def rest_means(self, values):
+        """(placements, k): values (n, k) of the blocks, averaged over each placement."""
+        weight = np.bincount(self.placement, self.seconds, self.placements())
+        sums = [np.bincount(self.placement, self.seconds * column, self.placements())
+                for column in values.T]
+        return np.stack(sums, axis=1) / weight[:, None]
+
     def without_poses(self, labels):
         """The same session without the placements with these labels."""
         codes = {faces.pose_code(label) for label in labels}
@@ -184,23 +191,32 @@ def fading(starts, up, tau_s):
     return state
 
 
-def of(name, capture):
-    """Session of a capture; poses are found where nobody labelled any. The capture itself is
-    not changed."""
+def of(name, capture, runs=None):
+    """Session of a capture; poses are found where nobody labelled any. runs: list of rests.Run,
+    rests that were found in a way of their own, taken as labelled. The capture itself is not
+    changed."""
     progress.doing("the rests of %s" % name)
     rate = float(capture.meta["rate_hz"])
     t_s = (capture.t_us - capture.t_us[0]) * 1e-6
     timeless = len(capture) > 1 and t_s[-1] <= 0.0
     if timeless:
         t_s = np.arange(len(capture)) / rate
-    labelled = capture.pose is not None and bool((capture.pose > 0).any())
+    labelled = runs is not None or (capture.pose is not None and bool((capture.pose > 0).any()))
     if not labelled:
         capture = _labelled(capture)
-    unsteady = {faces.pose_code(name) for name in capture.meta.get(HELD_BY_HAND, ())}
-    runs = tuple(rests.labelled(capture.pose, max(FEWEST_SAMPLES, SHORTEST_S * rate), unsteady))
+    runs = tuple(runs_of(capture) if runs is None else runs)
     smooth = thermometer.of(capture, t_s)
     return Session(name, capture, rate, t_s, timeless, labelled, runs, smooth,
                    **block_means.of_runs(capture, runs, rate, t_s, labelled, smooth))
+
+
+def runs_of(capture, by_hand=False):
+    """list of rests.Run: the labelled rests of a capture that are long enough; by_hand: those that
+    a hand held as well."""
+    held = () if by_hand else capture.meta.get(HELD_BY_HAND, ())
+    return rests.labelled(capture.pose,
+                          max(FEWEST_SAMPLES, SHORTEST_S * float(capture.meta["rate_hz"])),
+                          {faces.pose_code(name) for name in held})
 
 
 def _labelled(capture):

@@ -11,15 +11,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sixflip import RAIL
-
 from ..capture.attitude import _rotation, carried
+from . import moves
 from .projection import cross, lateral_basis
 
 ROUNDS = 2  # of fits that begin with what the one before left
 PULL_DPS = 0.1  # deg/s per g, typical (effects/typical.py: g_sensitivity)
 SHORTEST_S, LONGEST_S, LEAST_DEG = 0.3, 60.0, 20.0
-LATE_S = 0.1  # the longest delay of the library's filter_lag
 _known = weakref.WeakKeyDictionary()  # {Session: {up: turns}}: what was integrated is not again
 
 
@@ -99,20 +97,14 @@ class Turn:
 def between(session, up, bias, place, wander=None):
     """Turn from a placement of a Session to the next, not integrated. up (placements, 3): unit
     vectors against gravity; bias (3,) deg/s; wander as Turn has it."""
-    run, following = session.runs[place], session.runs[place + 1]
-    # What is read late is still read when the box lies still again.
-    longer = int(LATE_S * session.rate)
-    first = run.end - 1 - min(longer, (run.end - run.first) // 4)
-    last = following.first + 1 + min(longer, (following.end - following.first) // 4)
-    counts = session.capture.gyro[first:last]
-    t = session.t_s[first:last]
-    rate = counts / session.capture.meta["gyro_lsb_per_dps"] - bias
-    a, b = run.code, following.code
-    flip = session.labelled and a != b and a <= 12 and b <= 12 and (a - 1) // 2 == (b - 1) // 2
+    move = moves.after(session, place)
+    t = session.t_s[move.first:move.end]
+    rate = session.capture.gyro[move.first:move.end] / session.capture.meta[
+        "gyro_lsb_per_dps"] - bias
     temperature = None if session.thermometer is None else session.thermometer.at(t[1:])
-    return Turn(first, last, t, rate, 0.5 * (rate[1:] + rate[:-1]), up[place], up[place + 1],
-                flip, temperature, np.zeros(3) if wander is None else wander,
-                bool((np.abs(counts.astype(int)) >= RAIL - 1).any()), np.eye(3), np.zeros(3))
+    return Turn(move.first, move.end, t, rate, 0.5 * (rate[1:] + rate[:-1]), up[place],
+                up[place + 1], session.labelled and move.flip, temperature,
+                np.zeros(3) if wander is None else wander, move.railed, np.eye(3), np.zeros(3))
 
 
 def of(session, up):

@@ -25,7 +25,7 @@ def truth():
 
 def sampled(interval):
     t = np.arange(0, 3 + interval / 2, interval)
-    return gyro_moves.GyroMoves(rates(t), np.zeros((len(t), 3)), t, [(0, len(t) - 1)])
+    return gyro_moves.of_samples(rates(t), np.zeros((len(t), 3)), t, [(0, len(t) - 1)])
 
 
 def test_fourth_order_on_a_smooth_move():
@@ -43,7 +43,7 @@ def test_derivatives_are_those_of_the_rotation(column):
     rng = np.random.default_rng(2)
     t = np.arange(0, 3.005, 0.01)
     force = rng.normal(0, 1, (len(t), 3))
-    moves = gyro_moves.GyroMoves(rates(t), force, t, [(0, 300), (0, 120), (40, 299)])
+    moves = gyro_moves.of_samples(rates(t), force, t, [(0, 300), (0, 120), (40, 299)])
     before, change = moves.rotate(PERFECT)
     shift = np.zeros(21)
     shift[column] = 1e-6
@@ -56,8 +56,8 @@ def test_derivatives_are_those_of_the_rotation(column):
 def test_moves_of_different_length_do_not_disturb_each_other():
     t = np.arange(0, 3.005, 0.01)
     zero = np.zeros((len(t), 3))
-    both, _ = gyro_moves.GyroMoves(rates(t), zero, t, [(0, 300), (10, 50)]).rotate(PERFECT)
-    alone, _ = gyro_moves.GyroMoves(rates(t), zero, t, [(10, 50)]).rotate(PERFECT)
+    both, _ = gyro_moves.of_samples(rates(t), zero, t, [(0, 300), (10, 50)]).rotate(PERFECT)
+    alone, _ = gyro_moves.of_samples(rates(t), zero, t, [(10, 50)]).rotate(PERFECT)
     assert np.abs(both[1] - alone[0]).max() < 1e-14
 
 

@@ -5,8 +5,7 @@ import pytest
 
 from sixflip.accelerometer import solver as accelerometer
 from sixflip_host.calibrate import gyro_rests, joint_refinement, refinement, refinement_answer
-from sixflip_host.calibrate.rests_and_moves import RestsAndMoves
-from sixflip_host.capture import rests
+from sixflip_host.experiment import blocks, moves, turns
 from tests.worlds import hand_session, xsens_recording
 from tests.worlds.hand_session import RAD
 
@@ -14,7 +13,7 @@ PULL = np.array([[0.1, 0.02, 0.0], [-0.15, 0.05, 0.1], [0.0, -0.1, 0.05]])  # de
 
 
 def solved(capture, per_g=False):
-    session = RestsAndMoves(capture, rests.labelled(capture.pose))
+    session, _ = refinement.session_of(capture)
     return session, joint_refinement.refine(session, per_g)
 
 
@@ -54,6 +53,19 @@ def test_a_box_set_down_askew_gains_from_the_moves():
     errors = np.array([six_face_errors(seed, 5.0, 0.4, 0.05) for seed in range(8)])
     _, with_angles, joint = np.median(errors, axis=0)
     assert joint < 0.8 * with_angles
+
+
+def test_the_refinement_and_the_diagnosis_see_the_same_rests_and_moves_and_neither_writes():
+    capture = hand_session.session(hand_session.Sensor(1), hand_session.free_poses(1, 6), 1)
+    session, _ = refinement.session_of(capture)
+    seen = turns.of(session.session, session.force)
+    assert [turn.first for turn in seen] == [move.first for move in moves.of(session.session)]
+    assert session.moves.seconds.tolist() == pytest.approx([turn.seconds for turn in seen])
+    assert blocks.of("the same", capture).runs == session.session.runs
+    for array in (session.force, session.rate_error, session.move_error, session.moves.dt,
+                  session.moves.before):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0.0
 
 
 def test_gyro_scale_of_the_first_pass_owes_nothing_to_the_flips():
@@ -99,7 +111,7 @@ def test_g_sensitivity_comes_back():
 def test_g_sensitivity_is_not_invented():
     sensor = hand_session.Sensor(4)
     capture = hand_session.session(sensor, hand_session.free_poses(4, 20), 4)
-    session = RestsAndMoves(capture, rests.labelled(capture.pose))
+    session, _ = refinement.session_of(capture)
     assert not gyro_rests.pulled_by_gravity(session)
 
 
@@ -119,9 +131,8 @@ def test_standard_errors_are_the_errors():
 
 def test_xsens_fuller_problem(recordings):
     capture = xsens_recording.read(recordings)
-    runs, _ = refinement.rests_of(capture, free=True)
-    session = RestsAndMoves(capture, runs)
-    assert len(runs) == 38
+    session, _ = refinement.session_of(capture, free=True)
+    assert len(session.names) == 38
     assert len(session.moves) == 37
     without, with_it, pull = gyro_rests.regress(session)
     assert (without > 20).all()

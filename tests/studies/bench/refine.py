@@ -19,8 +19,6 @@ from sixflip_host.calibrate import (
     refinement,
     refinement_answer,
 )
-from sixflip_host.calibrate.rests_and_moves import RestsAndMoves
-from sixflip_host.capture import rests
 from tests.worlds import hand_session, xsens_recording
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -47,8 +45,7 @@ def xsens(folder):
     print("  leave one pose out, mg rms            %9.3f %9.3f" % (0.207, 1e3 * rms(left) / g))
     print("  rest detection, search and fit, s     %9.1f %9.2f" % (0.7, seconds))
     began = time.perf_counter()
-    runs, _ = refinement.rests_of(capture, free=True)
-    session = RestsAndMoves(capture, runs)
+    session, _ = refinement.session_of(capture, free=True)
     plain = joint_refinement.refine(session)
     fuller = joint_refinement.refine(session, per_g=True)
     seconds = time.perf_counter() - began
@@ -79,7 +76,7 @@ def one_session(seed, off, hand, scatter):
     sensor = hand_session.Sensor(seed)
     poses = hand_session.six_faces(seed, 2.0, off, scatter, hand)
     capture = hand_session.session(sensor, poses, seed)
-    session = RestsAndMoves(capture, rests.labelled(capture.pose))
+    session, _ = refinement.session_of(capture)
     result = joint_refinement.refine(session)
     errors = []
     for angles in (None, refinement_answer.angles(session, result)):
@@ -97,7 +94,7 @@ def free_hand(sessions):
     for seed in range(sessions):
         sensor = hand_session.Sensor(seed)
         capture = hand_session.session(sensor, hand_session.free_poses(seed, 30), seed)
-        session = RestsAndMoves(capture, rests.labelled(capture.pose))
+        session, _ = refinement.session_of(capture)
         result = joint_refinement.refine(session)
         U, _, V = np.linalg.svd(result.accelerometer()[0] @ sensor.K)
         error = (U @ V).T @ result.gyro()[0] @ sensor.Kw - np.eye(3)
