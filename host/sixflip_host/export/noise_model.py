@@ -6,19 +6,15 @@ rest of a minute or more. A capture that calibrates the board says what it reads
 acts; a log of one long rest says that of the gyro, and of the accelerometer how it is noisy and
 no more.
 """
-import copy
 from dataclasses import dataclass
 
 import numpy as np
 
 from sixflip.accelerometer.scale_form import scale_form
-from sixflip.poses.faces import pose_code
 
 from ..calibrate.solution import solve
-from ..capture import rests, rests_by_variance
-from ..capture.find_poses import HELD_BY_HAND, find_poses
 from ..errors import CheckFailed
-from ..experiment import long_rest, signal_measures
+from ..experiment import blocks, long_rest, signal_measures
 
 SHORTEST_S = 2.0
 WALK_S = 60.0  # a rest this long shows the random walk
@@ -50,7 +46,8 @@ def measure(capture):
     """{"accel": Triad, "gyro": Triad or absent}; CheckFailed where there is nothing to measure."""
     rate = capture.meta["rate_hz"]
     shortest = max(SHORTEST_S * rate, FEWEST_SAMPLES)
-    still = [(a, b) for a, b in _rests(capture) if b - a >= shortest]
+    still = [(run.first, run.end) for run in blocks.of("the capture", capture).runs
+             if run.end - run.first >= shortest]
     if not still:
         raise CheckFailed("no rest of %g s or more in the capture: noise cannot be measured"
                           % max(SHORTEST_S, FEWEST_SAMPLES / rate))
@@ -80,18 +77,6 @@ def _gyro(capture, still, P=None):
         _, _, v, inverse = scale_form(P)
         matrix, bias = np.array(inverse), -np.array(v)
     return _triad(capture, capture.gyro, still, lsb, "rad/s", matrix, bias)
-
-
-def _rests(capture):
-    """[(first, end)] of the capture's rests; of a log that nobody labelled, those found in it.
-    What a hand steadied is none."""
-    if capture.pose is None or not (capture.pose > 0).any():
-        if capture.accel is None:
-            capture = rests_by_variance.label_still_gyro(copy.copy(capture))
-        else:
-            find_poses(capture).label(capture)
-    held = {pose_code(name) for name in capture.meta.get(HELD_BY_HAND, ())}
-    return [(run.first, run.end) for run in rests.labelled(capture.pose) if run.code not in held]
 
 
 def _one_attitude(capture, still):
