@@ -20,13 +20,8 @@ def spelled(unit):
 
 def of(diagnosis):
     """dict for json.dumps, no NaN in it."""
-    causes = [_finding(f) for f in diagnosis.findings]
-    causes += [_cause(kind, c) for kind, c in diagnosis.causes]
-    causes += [_drift(kind, gap) for kind, gap in diagnosis.gaps.items() if gap.drift]
-    causes = [_with_strangers(cause, diagnosis) for cause in causes]
-    causes.sort(key=lambda c: -(c["share"] or 0.0) - 1e-3 * c["score_nats"])
     answer = {
-        "format": 1, "verdict": diagnosis.verdict, "causes": causes,
+        "format": 1, "verdict": diagnosis.verdict, "causes": causes(diagnosis),
         "where": [{"sensor": p.sensor, "axis": p.axis, "domain": p.domain,
                    "share": number(p.share), "p": float("%.2g" % p.p)}
                   for p in diagnosis.where],
@@ -39,6 +34,15 @@ def of(diagnosis):
     if diagnosis.comparisons:
         answer["simulator"] = simulator_answer.of(diagnosis.comparisons)
     return answer
+
+
+def causes(diagnosis):
+    """list of dict, the cause of the largest share first."""
+    found = [_finding(f) for f in diagnosis.findings]
+    found += [_cause(kind, c) for kind, c in diagnosis.causes]
+    found += [_drift(kind, gap) for kind, gap in diagnosis.gaps.items() if gap.drift]
+    found = [_with_strangers(cause, diagnosis) for cause in found]
+    return sorted(found, key=lambda c: -(c["share"] or 0.0) - 1e-3 * c["score_nats"])
 
 
 def gaps(diagnosis):

@@ -36,9 +36,7 @@ def of(kept, sessions, settings=None):
     found = diagnosis.Diagnosis(
         rests.everything, settings, conditions, (None,) * len(kept), tuple(findings), gaps, {},
         None, None, tuple(nameless), False, list(rests.remarks), (), (), {})
-    causes = [answer._finding(f) for f in findings]
-    causes += [answer._cause(kind, c) for kind, c in found.causes]
-    return {"verdict": found.verdict if gaps else "cannot tell", "causes": causes,
+    return {"verdict": found.verdict if gaps else "cannot tell", "causes": answer.causes(found),
             "gap": {kind: answer._gap(kind, gap) for kind, gap in gaps.items()}}
 
 
