@@ -19,7 +19,7 @@ MOST, BEAM = 4, 3  # members of a set (GAP stage 3); sets that the search goes o
 FORM_COST = 1.0  # nats
 AS_WELL = 3.0  # nats, GAP stage 4
 NOISE_FORM = 0.2  # of a name's gain, that its true form may leave to noise that wanders
-LEAST_GAIN = 2.0  # nats that one more member must gain for the search to go on
+WORTH_TRYING = 0.5  # of what a member must gain: two that need each other may share it unevenly
 
 
 @dataclass(frozen=True)
@@ -55,6 +55,7 @@ def search(model, forms, cost, most=MOST):
         return _worth(scored, cost)
     empty = model.scored(())
     beam, reached = [empty], [empty]
+    least = WORTH_TRYING * min((cost.of(form) + PRESENT for form in forms), default=0.0)
     for _ in range(most):
         found = {}
         for base in beam:
@@ -64,8 +65,7 @@ def search(model, forms, cost, most=MOST):
         ordered = sorted(found.values(), key=worth, reverse=True)
         grown = sorted((_with_discrepancy(model, forms, one, cost) for one in ordered[:BEAM]),
                        key=worth, reverse=True)
-        if max((s.score for s in grown), default=-np.inf) < LEAST_GAIN + max(
-                s.score for s in beam):
+        if max((s.score for s in grown), default=-np.inf) < least + max(s.score for s in beam):
             break
         beam = grown
         reached += grown
