@@ -128,8 +128,8 @@ def test_a_late_redo_costs_no_session(board, sensor):
 
 
 @pytest.mark.parametrize("sensor", ["gy85"])  # two chips take the more
-def test_every_term_in_force_and_kept_through_a_session(board, sensor):
-    _, _, record, _ = session(board, sensor, **SMALL)
+def test_every_term_in_force_and_kept_through_a_session(board, sensor, tmp_path, monkeypatch):
+    _, record = in_double_precision(sensor, tmp_path, monkeypatch)
     record.accel["P"][3][0] += 0.02  # so that the session has something new to say
     events, used, record, said = session(
         board, sensor, record=bytes(correction_record.encode(with_terms(record))), **SMALL)

@@ -11,7 +11,10 @@ from sixflip_host.simulation import scenario, simulated_session
 def captures():
     plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 21,
                                "world": {"placement_scatter_deg": 0.05}})
-    return [simulated_session.session(plan, k) for k in range(len(plan.worlds))]
+    found = [simulated_session.session(plan, k) for k in range(len(plan.worlds))]
+    for capture in found:   # the accelerometer alone: half the work
+        capture.gyro = None
+    return found
 
 
 def diagnosed(captures, change):

@@ -14,9 +14,8 @@ HERE = cluster.Target(None, 1)
 SQUARE = {"box_tilt_deg": 0.0}
 CASES = {
     "null": ("null", Specification(11, habits=SQUARE)),
-    "thermal": ("single", Specification(12, effects=[("thermal_bias", "accel", 1.0)],
-                                        habits=SQUARE)),
-    "g": ("single", Specification(13, effects=[("g_sensitivity", "gyro", 1.0)], habits=SQUARE)),
+    "both": ("pair", Specification(12, effects=[("thermal_bias", "accel", 1.0),
+                                                ("g_sensitivity", "gyro", 1.0)], habits=SQUARE)),
     "step": ("stranger", Specification(14, effects=[("bias step", "accel", 1.0)],
                                        habits=SQUARE)),
     "paper": ("paper", Specification(15, protocol="paper", effects=[("cubic", "accel", 1.0)],
@@ -47,13 +46,13 @@ def test_a_healthy_sensor_has_no_gap(run):
 
 
 def test_a_thermal_bias_of_another_form_is_in_the_class_named(run):
-    effect = run["thermal"]["effects"][0]
+    effect = run["both"]["effects"][0]
     assert effect["class_right"] and effect["axes_right"] and effect["domain_listed"]
-    assert run["thermal"]["false"] == []
+    assert run["both"]["false"] == []
 
 
 def test_a_g_sensitivity_is_named(run):
-    assert run["g"]["effects"][0]["name_right"] and run["g"]["false"] == []
+    assert run["both"]["effects"][1]["name_right"]
 
 
 def test_a_family_outside_the_library_is_not_called_explained(run):
@@ -75,7 +74,8 @@ def test_the_tables_count_what_was_wrong(run):
     wrong.update(verdict="explained", named=[["accel", "cubic", 9.0, 0.97]],
                  false=[["accel", "cubic"]], single_false=["cubic"],
                  never=["accel cubic is silent in this protocol"])
-    text, failed = target_tables.report([wrong] * 3 + list(run.values()))
+    alone = dict(run["both"], suite="single", effects=run["both"]["effects"][:1])
+    text, failed = target_tables.report([wrong] * 3 + [alone, *run.values()])
     assert failed and "false alarm" in text and "cubic is silent" in text
     assert target_tables.calibration_error([wrong] * 3) == (pytest.approx(0.97), 3)
     _, fine = target_tables.report(list(run.values()))
