@@ -46,14 +46,27 @@ def key(seed, channel):
     return mix((mix(seed & MASK) + (channel + 1) * 0x1E3779B1) & MASK)
 
 
+def hashed(k):
+    """What all streams have in common in sample k (int or int64 array, 0 <= k < 2**32)."""
+    return mix((k * 0x1E3779B1) & MASK)
+
+
 def bits(stream, k):
-    """32 random bits of sample k (int or int64 array, 0 <= k < 2**32) of a stream's key."""
-    return mix(mix((k * 0x1E3779B1) & MASK) ^ stream)
+    """32 random bits of sample k of a stream's key."""
+    return mix(hashed(k) ^ stream)
 
 
 def gauss_int(stream, k):
     """Standard normal deviate times 8192, an int, of sample k."""
-    x = bits(stream, k)
+    return deviate(hashed(k) ^ stream)
+
+
+def deviate(x):
+    """gauss_int of hashed(k) ^ stream, where several streams of one sample are wanted. mix() is
+    written out: a simulated board does little else as often."""
+    x = ((x ^ (x >> 16)) * 0x21F0AAAD) & 0xFFFFFFFF
+    x = ((x ^ (x >> 15)) * 0x31848BAB) & 0xFFFFFFFF
+    x ^= x >> 16
     cell = (x >> 24) & 0x7F
     if cell < 127:
         low = BODY[cell]

@@ -80,10 +80,11 @@ class Triad:
 
     def round(self, measured, k, per_unit, rail, louder, counts, first):
         """Counts of all three axes into counts[first:first + 3]."""
-        step = self.step
+        step, keys, sigma = self.step, self.keys, self.sigma
         gain = per_unit / step
+        sample, deviate = noise.hashed(k), noise.deviate
         for i in range(3):
-            x = measured[i] + self.sigma[i] * louder * noise.gauss(self.keys[i], k)
+            x = measured[i] + sigma[i] * louder * (deviate(sample ^ keys[i]) * noise.UNIT)
             count = math.floor(x * gain + 0.5) * step
             if count > rail:
                 count = rail
