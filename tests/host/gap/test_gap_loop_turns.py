@@ -1,17 +1,23 @@
-"""The loop closed for the gyro in motion: real turns made again with and without the effect."""
+"""The loop closed for the gyro in motion: real turns made again with and without the effect. The
+turns alone are judged: a tenth of a whole diagnosis."""
 import pytest
 
-from sixflip_host.diagnosis import closed_loop_turns, diagnosis
-from sixflip_host.experiment import blocks
+from sixflip_host.diagnosis import closed_loop_turns, diagnosis, turn_model
+from sixflip_host.experiment import attitude_fit, blocks
 from sixflip_host.simulation import scenario, simulated_session
 
 
-def test_scales_that_differ_by_direction_close_the_gap_when_simulated_again():
-    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 4,
-                               "effects": [{"effect": "asymmetry", "sensor": "gyro", "x": 3.0}]})
+def judged(effects, seed):
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": seed,
+                               "effects": effects})
     sessions = [blocks.of(str(k), simulated_session.session(plan, k)) for k in range(2)]
-    found = diagnosis.of(sessions, diagnosis.Settings())
-    loop = closed_loop_turns.close(found.turns, found.conditions.reference_c)
+    return turn_model.TurnModel("gyro", "mpu6050", diagnosis.Settings()).fit(
+        sessions, [attitude_fit.fit(session) for session in sessions])
+
+
+def test_scales_that_differ_by_direction_close_the_gap_when_simulated_again():
+    turns = judged([{"effect": "asymmetry", "sensor": "gyro", "x": 3.0}], 4)
+    loop = closed_loop_turns.close(turns, turns.model.conditions.reference_c)
     assert [e["effect"] for e in loop.effects] == ["asymmetry"]
     assert loop.effects[0]["x"] == pytest.approx(3.0, abs=0.2)
     assert loop.before > 3.0 * loop.floor
@@ -20,9 +26,6 @@ def test_scales_that_differ_by_direction_close_the_gap_when_simulated_again():
 
 
 def test_nothing_found_is_nothing_to_add():
-    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 5,
-                               "effects": []})
-    sessions = [blocks.of(str(k), simulated_session.session(plan, k)) for k in range(2)]
-    found = diagnosis.of(sessions, diagnosis.Settings())
-    assert found.turns is not None
-    assert closed_loop_turns.close(found.turns, 25.0) is None
+    turns = judged([], 5)
+    assert turns.units[0].turns and not turns.chosen
+    assert closed_loop_turns.close(turns, 25.0) is None
