@@ -1,5 +1,5 @@
 """Fixtures of the tests on a virtual board."""
 
-from tests.worlds.micropython_tier import board, link, micropython
+from tests.worlds.micropython_tier import board, link, micropython, provisioned
 
-__all__ = ["board", "link", "micropython"]
+__all__ = ["board", "link", "micropython", "provisioned"]

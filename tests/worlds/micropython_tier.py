@@ -4,8 +4,13 @@ SIXFLIP_MICROPYTHON, PATH, or what `make micropython` has put into the cache. Fo
 missing one is a skip, which is a failure in CI (CI=true).
 """
 
+import hashlib
+import json
+import shutil
+
 import pytest
 
+from sixflip_host.board import firmware_update
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.virtual import micropython_fetch
 from sixflip_host.virtual.virtual_board import VirtualBoard
@@ -20,6 +25,23 @@ def micropython():
     if path is None:
         pytest.skip(micropython_fetch.MISSING)
     return path
+
+
+@pytest.fixture(scope="session")
+def provisioned(micropython, once, tmp_path_factory):
+    """provisioned(path, settings): a flash with the firmware and these settings, whose sensor is
+    named; provisioned by one test of a run, and copied for all others."""
+    def put(path, settings):
+        def make():
+            image = tmp_path_factory.mktemp("provisioned") / "flash.img"
+            with VirtualBoard(dict(STILL, sensor=settings["sensor"]), image,
+                              micropython=micropython) as board, \
+                    MpremoteLink(board.port) as link:
+                firmware_update.copy(link, settings, lambda text: None)
+            return str(image)
+        text = json.dumps(settings, sort_keys=True)
+        shutil.copy(once("flash-" + hashlib.sha256(text.encode()).hexdigest()[:16], make), path)
+    return put
 
 
 @pytest.fixture

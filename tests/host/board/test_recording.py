@@ -17,7 +17,6 @@ from sixflip.capture.reader import read as read_blocks
 from sixflip.capture.writer import BlockWriter
 from sixflip.poses.placement import Placement
 from sixflip_host import cli
-from sixflip_host.board import firmware_update
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.board.recording import Recording, RecordingLink, name_of
 from sixflip_host.board.stream_reader import decode_piece
@@ -153,20 +152,18 @@ def test_the_file_is_named_by_device_and_session(meta, name, tmp_path, monkeypat
 
 
 @pytest.fixture
-def resting(micropython, tmp_path, monkeypatch):
+def resting(micropython, provisioned, tmp_path, monkeypatch):
     """start(**settings): a provisioned virtual board at rest, and --port of it."""
     boards = []
     monkeypatch.setenv("SIXFLIP_PATIENCE", "4")  # other tests run beside this one
 
     def start(**settings):
-        board = VirtualBoard({"sensor": "mpu6050", "seed": 3, "order": []},
-                             tmp_path / "flash.img", micropython=micropython)
+        image = tmp_path / "flash.img"
+        provisioned(image, dict({"sensor": "mpu6050", "grace_ms": 100}, **settings))
+        board = VirtualBoard({"sensor": "mpu6050", "seed": 3, "order": []}, image,
+                             micropython=micropython)
         boards.append(board)
         board.__enter__()
-        with MpremoteLink(board.port) as link:
-            firmware_update.copy(link, dict({"sensor": "mpu6050", "grace_ms": 100}, **settings),
-                           lambda text: None)
-        board.power_cycle()
         return board, ["--port", board.port]
     yield start
     for board in boards:

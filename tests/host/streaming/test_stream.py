@@ -41,17 +41,17 @@ def record(sensor="mpu6050", who_am_i=(0x68, 0x68), gyro=True):
 
 
 @pytest.fixture
-def running(micropython, tmp_path):
+def running(micropython, provisioned, tmp_path):
     """A function: a virtual board in a world, with the firmware and a record; (board, port)."""
     boards = []
 
     def start(world, speed=None):
-        board = VirtualBoard(world, tmp_path / "flash.img", micropython=micropython, speed=speed)
+        image = tmp_path / "flash.img"
+        provisioned(image, {"sensor": world["sensor"], "rest_s": 1, "grace_ms": 100})
+        board = VirtualBoard(world, image, micropython=micropython, speed=speed)
         boards.append(board)
         board.__enter__()
         with MpremoteLink(board.port) as link:
-            firmware_update.copy(link, {"sensor": world["sensor"], "rest_s": 1, "grace_ms": 100},
-                           lambda text: None)
             link.put("record_a.bin", record())
         board.power_cycle()
         return board
