@@ -5,6 +5,7 @@ The firmware is the real one, on simulated chips and a virtual clock. 25 samples
 poses of two seconds are settings that a user may choose as well.
 """
 
+import copy
 import math
 import random
 import tempfile
@@ -86,15 +87,30 @@ def calibration(seed=1, sensor=0, flavour="rp2", faults=(), faults_later=(), wat
     first and in the second power-up; watch: a list for the numbers of the transactions that
     write in the first.
     """
-    outcome = Outcome()
     spec = dict(WORLD, seed=seed, flavour=flavour, **(SENSORS + MORE)[sensor])
+    return powered_again(calibrated(spec, faults, watch), spec, faults_later)
+
+
+def calibrated(spec, faults=(), watch=None):
+    """(Outcome, {name: bytes} of the flash) after the first power-up in a world."""
+    outcome = Outcome()
     with tempfile.TemporaryDirectory() as root:
         first = worlds.make(dict(spec, faults=list(faults)))
         if watch is not None:
             _watch_writes(first.i2c, watch)
         _power_on(outcome, StormBoard(first, root, ReactingHand(first)))
         _judge(outcome, first, Path(root))
-        later = worlds.make(dict(spec, first_rest_s=400.0, faults=list(faults_later)))
+        return outcome, {path.name: path.read_bytes() for path in Path(root).iterdir()}
+
+
+def powered_again(before, spec, faults=()):
+    """The Outcome of what calibrated() returned, which stays as it is, and a power-up more."""
+    outcome, files = copy.copy(before[0]), before[1]
+    outcome.boards = list(outcome.boards)
+    with tempfile.TemporaryDirectory() as root:
+        for name, data in files.items():
+            (Path(root) / name).write_bytes(data)
+        later = worlds.make(dict(spec, first_rest_s=400.0, faults=list(faults)))
         _power_on(outcome, StormBoard(later, root, None))
         _judge_later(outcome, later)
     return outcome
