@@ -201,7 +201,7 @@ class Redo(Folder):
         from sixflip_device.capture import store
         real, store.free_bytes = store.free_bytes, lambda root: 30000
         try:
-            self.calibrated()
+            power_on(self.root)
         finally:
             store.free_bytes = real
         board = self.redo("X+")
