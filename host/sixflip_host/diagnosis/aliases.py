@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..experiment.terms import is_stranger
-from . import evidence, odds
+from . import evidence, hypotheses, odds
 
 SAME, SIGMAS = 0.9, 3.0  # GAP stage 4: alias index and distinguishability of one class
 
@@ -116,21 +116,27 @@ def _aliases(form, theta, known, forms, beside, grams, each):
     """{effect: why} of every other one but the known that cannot be told from a form with these
     sizes in principle, the other members of the set projected out."""
     own = [i for i, power in enumerate(form.powers) if power == 1]
-    mine, theta, found = form.columns[own], theta[own], {}
+    every, whole = form.columns, theta
+    mine, theta, found = every[own], theta[own], {}
     even = balanced(grams, mine)
     for name in dict.fromkeys(f.effect for f in forms if not f.generic and len(f.shared)):
         if name == form.effect or name in known:
             continue
         others = [f.columns for f in beside if f.effect not in (name, form.effect)]
-        others = np.concatenate([*others, np.zeros(0, dtype=int)])
-        others = others[~np.isin(others, mine)].astype(int)
-        spaces = [f.columns for f in forms if f.effect == name and f.axis is None
-                  and not f.record]
-        left = reproduced(even, mine, theta, spaces, others)
+        others = np.concatenate([*others, np.zeros(0, dtype=int)]).astype(int)
+        free = others[~np.isin(others, mine)]
+        rivals = [f for f in forms if f.effect == name and f.axis is None and not f.record]
+        spaces = [f.columns for f in rivals]
+        left = reproduced(even, mine, theta, spaces, free)
         if left is None:
             continue
-        apart = reproduced(grams[0] + grams[1], mine, theta, spaces, others)[1]
-        if left[0] > SAME and not any(_told(g, mine, theta, spaces, others)
+        # A discrepancy is a part of what a name of another variable would have to reproduce; one
+        # of the same variable could have the same discrepancy.
+        same = any(hypotheses.alike(form, rival) for rival in rivals)
+        columns, sizes = (mine, theta) if same else (every, whole)
+        apart = reproduced(grams[0] + grams[1], columns, sizes, spaces,
+                           others[~np.isin(others, columns)])[1]
+        if left[0] > SAME and not any(_told(g, mine, theta, spaces, free)
                                       for g in each if len(each) > 1):
             found[name] = "alias index %.2f" % left[0]
         elif apart < SIGMAS:

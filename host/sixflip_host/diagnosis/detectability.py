@@ -4,6 +4,8 @@ import numpy as np
 from sixflip_sim.effects import typical
 from sixflip_sim.effects.library import EFFECTS, NAMES
 
+from ..planning import detectable
+
 ABSORBED = {
     "cubic": "absorbed by scale", "local_gravity": "absorbed by scale",
     "quadratic": "absorbed by bias and box", "cross_quadratic": "absorbed by misalignment and box",
@@ -22,7 +24,6 @@ STILL_ONLY = {"gyro": ("thermal_scale", "quadratic", "cubic", "asymmetry", "satu
 ALWAYS_SEEN = ("quantisation", "dead_band", "torn_reads", "dropped_samples", "sample_rate",
                "vibration", "axis_swap", "drift")
 NOT_DETERMINED = "this capture does not determine its size"
-TIMES_SIGMA = 3.7  # 80 % power at the threshold, as in the plan
 
 
 def listed(diagnosis):
@@ -105,7 +106,7 @@ def least(gap, options):
     information = np.zeros(len(columns))
     for unit, index in zip(gap.units, gap.levels()):
         information += np.diag(unit.gram[index])[columns]
-    sizes = np.sort(TIMES_SIGMA / np.sqrt(np.maximum(information, 1e-300)))
+    sizes = np.sort(detectable.QUANTILE / np.sqrt(np.maximum(information, 1e-300)))
     return float(sizes[(len(sizes) - 1) // 2])
 
 

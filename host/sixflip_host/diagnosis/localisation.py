@@ -8,7 +8,7 @@ from scipy import special
 from ..experiment import covariance, linear_model
 from . import face_squareness, hypotheses, odds, session_offsets
 
-FALSE_DISCOVERIES = 0.01
+FALSE_DISCOVERIES = 0.01  # one in a hundred of the places shown is there by chance: a stated rate
 LEAST_SHARE = 0.01  # of the excess: less is no place to look at
 BROAD = ("along_gravity", "across_gravity")
 

@@ -5,6 +5,7 @@ and the strangers of motion (what follows the rate, its size, its products, its 
 the posterior that rests and turns have, too, each session by the others; what a member costs comes
 from the moves themselves with their signs drawn by lot (moves_unit.py).
 """
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from sixflip_sim.effects.library import EFFECTS
 
 from ..experiment import inertial_fit
+from ..planning import detectable
 from . import (
     cutoffs,
     holdout_gain,
@@ -28,13 +30,11 @@ from . import (
 from .detect.detection import Finding
 
 FEWEST_MOVES = 12  # three for each of the four sizes
-LEAST_NATS = 9.0
 STRANGE_SHARE = 0.06  # of what a stranger gains, that a name must gain beside it: a quarter of
 # the stranger's size, squared, is of another form than the strangers of motion have
 FOLLOWS = {"speed": "size of the rate", "rates": "rate", "squares": "products of the rates",
            "changes": "change of the rate", "scale": "size of the rate and gravity"}
 LEAST_LAG_MS = 0.5  # two sensors of one chip are not sampled at the same moment either
-TIMES_SIGMA = 4.5  # 80 % power at the threshold
 KNOWN_CM = 5.0  # standard deviation beyond which a direction of the arm is not known
 UNTOLD = 0.1  # of an effect's power
 RESAMPLED = 400  # of which 20 lie beyond either end of a 90 % interval
@@ -101,7 +101,8 @@ class MotionGap:
     def least(self, name):
         """Smallest size that would show, cm or ms."""
         sigma = np.sort(np.sqrt(np.diag(self.covariance)[moves_fit.EFFECTS[name]]))
-        shown = TIMES_SIGMA * float(sigma[(len(sigma) - 1) // 2])
+        shown = (math.sqrt(2.0 * self.posterior.cost.member) + detectable.POWER_80) * float(
+            sigma[(len(sigma) - 1) // 2])
         return max(shown, LEAST_LAG_MS) if name == "filter_lag" else shown
 
     def floor(self):
@@ -156,11 +157,20 @@ def _searched(fit, without):
     model = scored_sets.Model(units, [u.statistics() for u in units], moves_unit.NO_LEVELS)
     # Each at its own cost: few moves of a hand carry most of what it adds, and a form that those
     # few mimic gains ten times in nulls what another does.
-    own = {form: max(nats, LEAST_NATS) for form, nats in cutoffs.of_each(
+    least = least_nats(len(forms))
+    own = {form: max(nats, least) for form, nats in cutoffs.of_each(
         units, forms, moves_unit.NO_LEVELS, [0] * len(units)).items()}
-    found = posterior.search(model, forms, cutoffs.Cutoffs(LEAST_NATS, STRANGE_SHARE, own=own))
+    found = posterior.search(model, forms, cutoffs.Cutoffs(least, STRANGE_SHARE, own=own))
     alone = model.scored(())
     return found, {f.effect: model.scored((f,)).score - alone.score for f in forms}
+
+
+def least_nats(number):
+    """Nats below which none of so many forms is taken in. A habit of the hand is in the moves, and
+    no lot of their signs shows it; so the nulls alone are not trusted with less than what holds
+    for any: exp(nats) of a predictive likelihood is 1 on average without an effect, and the
+    largest of `number` exceeds `number` / CHANCE in at most CHANCE [Markov's inequality]."""
+    return odds.COST + math.log(number) + cutoffs.MARGIN_NATS
 
 
 def _told(gap):

@@ -18,6 +18,9 @@ HATS = 6  # corners of what is smooth in time and repeats in every session
 OWN_HATS = 8  # and of what is a session's own
 FADES_S = (5.0, 20.0, 80.0)  # of what follows a move
 JUMPS = 24  # times tried
+# From 16 s, faster than which rests with moves between them do not follow, to the whole session:
+# in a quarter of an hour each is 1.3 times the one before, and a wave between two of them keeps
+# step with one for two of its periods. Faster ones are looked for in the spectrum of the rests.
 PERIODS = 16
 WALK = 16  # terms of a random walk
 # Of the others: their own.

@@ -5,6 +5,7 @@ placement (two small turns a placement, by hand), flicker as the diagnosis has i
 The unit of replication is the placement, never the sample (GAP finding 3).
 """
 import math
+from statistics import NormalDist
 
 import numpy as np
 
@@ -15,8 +16,9 @@ from ..experiment.projection import basis, without
 
 PLACEMENT_DEG = 0.05  # scatter of placing a box by hand (METHOD section 1)
 FLIP_DEG = 0.4  # error of a half turn by hand (METHOD section 2)
-POWER_80 = 0.8416212335729143
-QUANTILE = 2.8652589 + POWER_80  # two-sided 5 % over 12 tests (Bonferroni), and 80 % power
+POWER_80 = NormalDist().inv_cdf(0.8)  # standard deviations beyond a cutoff: seen in 80 %
+# Two-sided 5 % over 12 tests (Bonferroni), and 80 % power.
+QUANTILE = NormalDist().inv_cdf(1.0 - 0.05 / 2.0 / 12.0) + POWER_80
 SILENT = math.inf
 MG_PER_RAD = 1000.0
 

@@ -11,16 +11,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import linalg, ndimage
 
+from .. import odds
+
 STEADY = 0.5  # of the power of short stretches that has to go on in phase over the whole
 PADDED = 4  # times its length: the transform in which a peak is looked for
 PAIRED = 1000  # points, half a million pairs: their number grows with the square
 SHORT_BINS = 1.5  # bins of a short stretch within which the line lies
 SLOW_S = 40.0  # a rest that shows lines slower than LOWEST_HZ
 SLOWEST, FASTEST_HZ = 8.0, 1.0  # periods in the rest, and what short stretches see
-SLOW_RATE = 4.0  # Hz of the means that slow lines are looked for in
-SLOW_CHANCE, SLOW_SHARE, SLOW_WIDTH = 1e-6, 0.5, 25
+SLOW_RATE = 4.0  # Hz of the means that slow lines are looked for in: four times FASTEST_HZ
+SLOW_CHANCE = 1e-6  # of a peak: the floor below it is a guess, noise that is slow has no flat one
+SLOW_SHARE = 0.5  # of the standard deviation, as an amplitude: an eighth of the variance
+SLOW_WIDTH = 25  # bins of the floor's running median: five times the five of a sine's lobe
+MEDIAN_ERROR = 1.0 / math.log(2.0)  # of the median of n exponentials, relative: times 1 / sqrt(n)
 HALVES = 0.5  # of the amplitude that either half of a rest has, in phase with the other
-LOBE = 0.8  # of the power around a peak that a sine has in its own lobe
+LOBE = 0.8  # of the power around a peak in a lobe that has 0.999 of a sine's: the rest is noise
 
 
 @dataclass(frozen=True)
@@ -96,7 +101,7 @@ def _over_whole(line, session, sensor):
         return None
     halves = [_found(line, half, session.rate) for half in (x[:len(x) // 2], x[len(x) // 2:])]
     apart = abs(halves[0][1] - halves[1][1]) / 4.0 if all(halves) else 0.0
-    return whole[0], whole[1], math.hypot(whole[2], 1.645 * apart)
+    return whole[0], whole[1], math.hypot(whole[2], odds.Z_90 * apart)
 
 
 def _slope(x, y):
@@ -129,7 +134,7 @@ def _found(line, x, rate):
     noise = max(float(np.var(x)) - 0.5 * amplitude ** 2, 1.0 / 12.0)
     # Of a frequency [Rife & Boorstyn, IEEE Trans. IT 20 (1974) 591, eq. 24].
     sigma = rate / (2.0 * math.pi) * math.sqrt(24.0 * noise / (amplitude ** 2 * n ** 3))
-    return amplitude, peak(power, k) * spacing, 1.645 * sigma
+    return amplitude, peak(power, k) * spacing, odds.Z_90 * sigma
 
 
 def slow(sessions, sensor, axis):
@@ -169,7 +174,7 @@ def _slow(session, sensor, axis):
     k = int(ratio.argmax())
     if not _in_both_halves(x, (first + k) / n, math.sqrt(4.0 * band[k] / n)):
         return None
-    doubt = 1.0 + 2.5 / math.sqrt(SLOW_WIDTH)
+    doubt = 1.0 + odds.Z_90 * MEDIAN_ERROR / math.sqrt(SLOW_WIDTH)
     nats = float(ratio[k]) / doubt - math.log(3.0 * len(band))
     lobe, around = (band[max(0, k - w):k + w + 1].sum() for w in (2, 8))
     amplitude = math.sqrt(4.0 * lobe / n)
@@ -180,7 +185,7 @@ def _slow(session, sensor, axis):
                 excess=float(max(around, lobe)), steady=True)
     sigma = rate / (2.0 * math.pi) * math.sqrt(24.0 * float(floor[k]) / (
         amplitude ** 2 * float(n) ** 3))
-    low, high = line.hz - 1.645 * sigma, line.hz + 1.645 * sigma
+    low, high = line.hz - odds.Z_90 * sigma, line.hz + odds.Z_90 * sigma
     return replace(line, low=low, high=high, files=((session.name, line.hz, low, high),))
 
 

@@ -20,10 +20,10 @@ POSE = np.radians(15.0)  # how alike the rests of two runs of one robot are
 POSES_COUNT = 4  # runs of one robot stand alike: that many of its rests say something new
 NORM_SIGMA = 0.12  # of |force| / g at rest: bias and scale
 RATIO_SIGMA = 1.0  # how alike two runs are in the size of their turn rates, natural logarithm
-STEPS_HZ = 25.0
+STEPS_HZ = 25.0  # a robot turns below 5 Hz: five steps a period
 TURNED = 0.3  # rad: less than that says nothing on where gravity should have gone
 MOVES = 10.0  # times its noise at rest: a gyro that turns at all
-HEADINGS = 48
+HEADINGS = 48  # each 7.5 degrees: within SIGMA of the true one
 
 
 @dataclass(frozen=True)

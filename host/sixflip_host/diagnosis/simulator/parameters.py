@@ -18,7 +18,7 @@ from . import conventions, single_log, traces
 DIFFERS = 4.0
 MG, DEG = 1000.0 / STANDARD_G, 180.0 / np.pi
 SETTING = 0.2  # how far a noise that was set by hand may be off, natural logarithm
-ANY = 2.0
+ANY = 2.0  # natural logarithm, of a noise that was set to anything: a factor of seven
 LIKELY = 0.95  # probability from which on a noise is said to be the density's number
 COARSE = 1.5  # times its noise: a step in which noise is not seen any more
 RANGE_APART = 1.01  # times the other's: a range that differs; full scales are twofold apart
