@@ -16,9 +16,9 @@ from ..experiment import inertial_fit
 from ..planning import detectable
 from . import (
     cutoffs,
-    holdout_gain,
     hypotheses,
     localisation,
+    motion_holdout,
     moves_fit,
     moves_of_sessions,
     moves_unit,
@@ -36,19 +36,6 @@ FOLLOWS = {"speed": "size of the rate", "rates": "rate", "squares": "products of
            "changes": "change of the rate", "scale": "size of the rate and gravity"}
 LEAST_LAG_MS = 0.5  # two sensors of one chip are not sampled at the same moment either
 KNOWN_CM = 5.0  # standard deviation beyond which a direction of the arm is not known
-UNTOLD = 0.1  # of an effect's power
-RESAMPLED = 400  # of which 20 lie beyond either end of a 90 % interval
-
-
-@dataclass(frozen=True, eq=False)
-class Held:
-    """What the sizes found do on the moves held out: shrinkage; by_others {fold: sizes (4,)} that
-    the other folds say; folds (moves,); alone: each session could be held out."""
-
-    shrinkage: holdout_gain.Shrinkage
-    by_others: dict
-    folds: np.ndarray
-    alone: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +59,7 @@ class MotionGap:
     covariance: np.ndarray | None = None
     sizes: np.ndarray | None = None
     bare: tuple = ()
-    held: Held | None = None
+    held: motion_holdout.Held | None = None
 
     @property
     def seen(self):
@@ -206,14 +193,14 @@ def _told(gap):
                   nameless=tuple(nameless), remarks=tuple(remarks))
     if not found:
         return gap
-    held = _held(gap, named, spread * named * named[:, None])
+    held = motion_holdout.of(gap, named, spread * named * named[:, None])
     if not held.alone:
         remarks.append("no session alone shows all that was found in motion: it was held out by "
                        "every other move")
     remarks.append("what was found in motion is judged on %d moves; what the hand adds counts as "
                    "noise there" % len(gap.fit.moves))
     return replace(gap, held=held, remarks=tuple(remarks), found=[
-        replace(one, share=_share(gap, held, one.effect)) for one in found])
+        replace(one, share=motion_holdout.share(gap, held, one.effect)) for one in found])
 
 
 def _strange(found):
@@ -229,57 +216,6 @@ def _strange(found):
                         "what the accelerometer reads in motion follows the %s in a way that no "
                         "effect of the library does" % FOLLOWS[form.variant]))
     return out
-
-
-def _held(gap, named, spread):
-    """Held: before, after, floor as rms has them; each fold by what the others say of the sizes.
-    The interval is that of the sizes themselves."""
-    columns, fit, sizes = gap.columns(), gap.fit, gap.sizes
-    folds, alone = fit.folds, True
-    if not _apart(gap, columns, folds, named):
-        folds, alone = np.arange(len(fit.moves)) % moves_fit.SINGLE_FOLDS, False
-    drawn = np.random.default_rng(2).multivariate_normal(sizes, spread, RESAMPLED,
-                                                         check_valid="ignore")
-    before, after = np.zeros(RESAMPLED), np.zeros(RESAMPLED)
-    own = other = 0.0
-    by_others = {}
-    for f in np.unique(folds):
-        power = fit.gram[folds == f, :4, :4].sum(axis=0)
-        theirs = by_others[f] = fit.sizes(columns, folds != f)[0] * named
-        before += np.einsum("ra,ab,rb->r", drawn, power, drawn)
-        after += np.einsum("ra,ab,rb->r", drawn - theirs, power, drawn - theirs)
-        noise = float((power * spread).sum())
-        own += sizes @ power @ sizes - noise
-        other += (sizes - theirs) @ power @ (sizes - theirs) + noise
-    floor = gap.floor()
-    total = sum(float(p.sum()) for p in fit.precision)
-    rms = [float(np.sqrt(floor ** 2 + max(v, 0.0) / total)) for v in (own, other)] + [floor]
-    if own <= 0.0:
-        return Held(holdout_gain.Shrinkage(*rms, None, None), by_others, folds, alone)
-    low, high = np.quantile(1.0 - after / before, [0.05, 0.95])
-    return Held(holdout_gain.Shrinkage(*rms, 1.0 - other / own, (float(low), float(high))),
-                by_others, folds, alone)
-
-
-def _apart(gap, columns, folds, named):
-    """True when all folds but one tell the sizes well enough for that one."""
-    for f in np.unique(folds):
-        power = gap.fit.gram[folds == f, :4, :4].sum(axis=0)
-        spread = gap.fit.sizes(columns, folds != f)[1] * named * named[:, None]
-        if (power * spread).sum() > UNTOLD * (gap.sizes @ power @ gap.sizes):
-            return False
-    return True
-
-
-def _share(gap, held, name):
-    """Share of the explainable gap that one of the effects found closes on what is held out, or
-    None where that is too small to measure."""
-    if held.shrinkage.share is None:
-        return None
-    power = gap.fit.gram[:, :4, :4].sum(axis=0)
-    without = gap.sizes * ~np.isin(np.arange(4), moves_fit.EFFECTS[name])
-    whole, rest = (float(v @ power @ v) for v in (gap.sizes, without))
-    return float(np.clip(held.shrinkage.share * (1.0 - rest / whole), 0.0, 1.0))
 
 
 def _finding(name, sizes, sigma, score, place):
