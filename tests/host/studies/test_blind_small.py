@@ -6,7 +6,7 @@ import json
 import pytest
 
 from sixflip_host.fleet import cluster
-from tests.studies.blind import blind_run, seal, target_tables
+from tests.studies.blind import blind_run, reliability, seal, target_tables
 from tests.studies.blind.generator.case import Specification
 from tests.studies.blind.scoring import scored
 
@@ -77,6 +77,8 @@ def test_the_tables_count_what_was_wrong(run):
     alone = dict(run["both"], suite="single", effects=run["both"]["effects"][:1])
     text, failed = target_tables.report([wrong] * 3 + [alone, *run.values()])
     assert failed and "false alarm" in text and "cubic is silent" in text
-    assert target_tables.calibration_error([wrong] * 3) == (pytest.approx(0.97), 3)
+    assert reliability.calibration_error([wrong] * 3) == (pytest.approx(0.97), 3)
+    assert reliability.by_name([wrong] * 3) == [("cubic", 3, pytest.approx(0.97), 0)]
+    assert "Reliability by what was named" in text
     _, fine = target_tables.report(list(run.values()))
     assert not fine

@@ -7,8 +7,9 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
+from .reliability import bins, calibration_error  # noqa: E402
 from .statsmath import wilson  # noqa: E402
-from .target_tables import calibration_error, confusion, reliability  # noqa: E402
+from .target_tables import confusion  # noqa: E402
 
 
 def draw(results, folder):
@@ -50,18 +51,18 @@ def _confusion(results):
 
 
 def _reliability(results):
-    bins = [b for b in reliability(results) if b[3]]
-    if not bins:
+    filled = [b for b in bins(results) if b[3]]
+    if not filled:
         return None
     figure, axes = plt.subplots(figsize=(5, 4.5))
-    stated, shares = [b[2] for b in bins], [right / n for *_, n, right in bins]
-    bounds = [wilson(right, n) for *_, n, right in bins]
+    stated, shares = [b[2] for b in filled], [right / n for *_, n, right in filled]
+    bounds = [wilson(right, n) for *_, n, right in filled]
     axes.plot([0, 1], [0, 1], color="grey", lw=0.8, ls="--")
     axes.errorbar(stated, shares,
                   yerr=[[max(0, s - low) for s, (low, _) in zip(shares, bounds)],
                         [max(0, high - s) for s, (_, high) in zip(shares, bounds)]],
                   fmt="o", capsize=4)
-    for x, y, (*_, n, _) in zip(stated, shares, bins):
+    for x, y, (*_, n, _) in zip(stated, shares, filled):
         axes.annotate("n=%d" % n, (x, y), textcoords="offset points", xytext=(-8, -14),
                       ha="right", fontsize=8)
     axes.set_xlim(-0.03, 1.03)

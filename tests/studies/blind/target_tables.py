@@ -2,6 +2,8 @@
 
 from collections import Counter, defaultdict
 
+from . import reliability
+from .reliability import table
 from .statsmath import above, wilson
 
 NAMEABLE = ("single", "power", "share", "stranger", "held out")
@@ -52,14 +54,6 @@ def _target(target, at_least):
     return "%s %g %%" % (">=" if at_least else "<=", 100 * target)
 
 
-def table(head, rows):
-    cells = [head] + [tuple(str(c) for c in row) for row in rows]
-    widths = [max(len(row[k]) for row in cells) for k in range(len(head))]
-    lines = ["  ".join(c.ljust(w) for c, w in zip(row, widths)).rstrip() for row in cells]
-    lines.insert(1, "-" * len(lines[0]))
-    return "\n".join(lines)
-
-
 def alarm(result):
     """Whether a null was given a gap that is not there."""
     box_named = bool(result["named"]) and not result["false"]
@@ -106,15 +100,15 @@ def report(results):
     _shrinkage(rows, answered)
     rows.share("12 poses of the paper: no false name", [not r["single_false"] and not r["never"]
                                                        for r in suites["paper"]], 1.0)
-    error, number = calibration_error(results)
+    error, number = reliability.calibration_error(results)
     rows.number("stated probabilities: expected calibration error", "<= 0.05", "%.3f" % error,
                 number, error <= 0.05)
     crashed = [r for r in results if r["verdict"] is None]
     rows.number("runs without an answer", "0 (but axis_swap refused)", len(crashed), len(results),
                 all(any(t[0] == "axis_swap" for t in r["truth"]) for r in crashed))
     parts = ["Targets of GAP.md\n\n" + rows.text(), _by_effect(suites), _confusion(answered),
-             _reliability(answered), _families(suites), _seconds(answered),
-             _failures(results, violations)]
+             reliability.table_of(answered), reliability.by_name_table(answered),
+             _families(suites), _seconds(answered), _failures(results, violations)]
     too_many = above(sum(alarm(r) for r in nulls), len(nulls), 0.05)
     return "\n\n\n".join(p for p in parts if p), bool(violations) or too_many
 
@@ -212,40 +206,6 @@ def _confusion(results):
         rows.append((true, sum(c for _, c in named),
                      ", ".join("%s %d" % (n, c) for n, c in named)))
     return "Confusion: what was there, what was named\n\n" + table(("true", "n", "named"), rows)
-
-
-EDGES = (0.0, 0.5, 0.8, 0.9, 0.95, 0.99, 1.0)
-
-
-def reliability(results):
-    """[(low, high, mean stated probability, n, right)] of causes by stated probability."""
-    flat = [(c[3], [c[0], c[1]] not in r["false"]) for r in results for c in r["named"]
-            if c[3] is not None]
-    out = []
-    for low, high in zip(EDGES[:-1], EDGES[1:]):
-        here = [one for one in flat if low <= one[0] < high or one[0] == high == 1.0]
-        stated = sum(p for p, _ in here) / len(here) if here else None
-        out.append((low, high, stated, len(here), sum(right for _, right in here)))
-    return out
-
-
-def calibration_error(results):
-    """(expected calibration error, number of causes): how far the share of causes that were
-    there is off the mean probability stated, averaged over the causes [Naeini, Cooper &
-    Hauskrecht, AAAI 2015]."""
-    bins = [b for b in reliability(results) if b[3]]
-    number = sum(n for *_, n, _ in bins)
-    return sum(abs(n * stated - right) for _, _, stated, n, right in bins) / max(number, 1), number
-
-
-def _reliability(results):
-    rows = []
-    for low, high, stated, n, right in reliability(results):
-        interval = "%.0f-%.0f" % tuple(100 * x for x in wilson(right, n)) if n else ""
-        rows.append(("%g-%g" % (low, high), n, "%.3f" % stated if n else "-",
-                     "%.3f" % (right / n) if n else "-", interval))
-    return "Reliability: causes that were there, by stated probability\n\n" + table(
-        ("stated", "causes", "mean", "were there", "95 % interval, %"), rows)
 
 
 def _families(suites):
