@@ -80,8 +80,10 @@ class Diagnosis:
     @cached_property
     def verdict(self):
         """One of the verdict's rows, on what was found in rests, turns, moves and samples."""
-        found = verdict.of(self._claims(), [*self._nameless(), float(self.broken)], self.sees())
-        return simulator_answer.verdict(found, self.comparisons) if self.comparisons else found
+        claims = self._claims()
+        found = verdict.of(claims, [*self._nameless(), float(self.broken)], self.sees())
+        return simulator_answer.verdict(found, self.comparisons, verdict.any_of(
+            [c.probability for c in claims]) > verdict.LIKELY) if self.comparisons else found
 
     def _claims(self):
         claims = [verdict.Claim(f.named, told([f.effect, *f.rivals], f.share) and self._sized(f),

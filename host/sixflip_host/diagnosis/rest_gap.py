@@ -103,9 +103,10 @@ class RestGap:
 
 
 def of(sessions, settings, lines=(), least_s=0.0):
-    """{sensor: RestGap} of blocks.Sessions, {} where nothing rests for long enough."""
+    """{sensor: RestGap} of blocks.Sessions, {} where nothing rests for long enough; least_s: of
+    the longest rest."""
     rest = long_rest.of(sessions, lines)
-    if rest is None or rest.n < MEANS or rest.seconds.sum() < least_s:
+    if rest is None or rest.n < MEANS or np.bincount(rest.rest, rest.seconds).max() < least_s:
         return {}
     chip = sessions[0].capture.meta["sensor"]
     return {kind: _sensor(rest, kind, chip, settings) for kind in rest.values}

@@ -6,6 +6,7 @@ import numpy as np
 from . import put_back
 
 AXES = "xyz"
+MATLAB_C = 25.0  # of accelparams and gyroparams, [imuSensor, Algorithms]
 
 
 def lacking(found, expressed):
@@ -104,26 +105,28 @@ def isaaclab(found):
 
 
 def matlab(found):
-    """JSON for loadparams(imuSensor, file, "sixflip"): fields of accelparams and gyroparams."""
+    """JSON for loadparams(imuSensor, file, "sixflip"): fields of accelparams and gyroparams.
+
+    Their temperature's effects count from 25 degC. A density N whose samples have N sqrt(rate) is
+    a double-sided one. AccelerationBias acts by the linear acceleration, without gravity.
+    """
     cannot = lacking(found, ("bias", "noise", "step", "range", "scale", "thermal_bias",
-                             "thermal_scale", "g-sensitivity"))
+                             "thermal_scale"))
     parts = {}
     for name, triad in (("Accelerometer", found.accel), ("Gyroscope", found.gyro)):
         limit = triad.limit.min()
-        part = {"ConstantBias": triad.bias.tolist(),
-                "AxesMisalignment": (100.0 * triad.matrix).tolist(),
-                "NoiseDensity": triad.noise.tolist(), "NoiseType": "single-sided",
-                "Resolution": float(triad.step.max()),
-                "TemperatureBias": list(triad.effects.get("thermal_bias", np.zeros(3))),
-                "TemperatureScaleFactor": [100.0 * x for x in triad.effects.get(
-                    "thermal_scale", np.zeros(3))]}
+        bias, scale = (triad.effects.get(effect, np.zeros(3)) for effect in (
+            "thermal_bias", "thermal_scale"))
+        cooler = MATLAB_C - found.reference_c
+        part = {"ConstantBias": (triad.bias + cooler * bias).tolist(),
+                "AxesMisalignment": (100.0 * triad.matrix * (
+                    1.0 + cooler * scale)[:, None]).tolist(),
+                "NoiseDensity": triad.noise.tolist(), "NoiseType": "double-sided",
+                "Resolution": float(triad.step.max()), "TemperatureBias": bias.tolist(),
+                "TemperatureScaleFactor": (100.0 * scale).tolist()}
         if np.isfinite(limit):
             part["MeasurementRange"] = float(limit)
         parts[name] = part
-    coupling = found.coupling
-    parts["Gyroscope"]["AccelerationBias"] = (np.diag(coupling) / put_back.G).tolist()
-    if (coupling != np.diag(np.diag(coupling))).any():
-        cannot = cannot + ["g-sensitivity across the axes"]
     about = put_back.header(found, "", cannot).strip().split("\n")
     return json.dumps({"about": [line.strip() for line in about], "sixflip": parts},
                       indent=1) + "\n"

@@ -63,23 +63,27 @@ class ImuModel:
                 self._read(gyro, self.GYRO_STEP, self.GYRO_RANGE))
 
     def _late(self, accel, gyro, dt):
-        """Low-passes and delays."""
+        """Low-passes and delays. A pole that acts on samples scatters a moment over as much time
+        as one of that time constant where (LAG / dt)**2 = keep / (1 - keep)**2, and is less late:
+        the rest of LAG is delay."""
         now = np.concatenate([accel, gyro])
         if self.smooth is None:
             self.smooth = now
-        keep = np.repeat([np.exp(-dt / lag) if lag > 0 else 0.0
-                          for lag in (self.ACCEL_LAG, self.GYRO_LAG)], 3)
+        wide = (np.array([self.ACCEL_LAG, self.GYRO_LAG]) / dt) ** 2
+        keep = 2.0 * wide / (2.0 * wide + 1.0 + np.sqrt(4.0 * wide + 1.0))
+        late = np.array([self.ACCEL_DELAY, self.GYRO_DELAY]) + np.array(
+            [self.ACCEL_LAG, self.GYRO_LAG]) * (1.0 - np.sqrt(keep))
+        keep = np.repeat(keep, 3)
         self.smooth = keep * self.smooth + (1.0 - keep) * now
         self.time += dt
         self.past.append((self.time, self.smooth))
-        longest = max(self.ACCEL_DELAY, self.GYRO_DELAY) + 2.0 * dt
-        while len(self.past) > 2 and self.past[1][0] < self.time - longest:
+        while len(self.past) > 2 and self.past[1][0] < self.time - late.max() - 2.0 * dt:
             self.past.pop(0)
         times = [t for t, _ in self.past]
         values = np.array([v for _, v in self.past])
         return tuple(np.array([np.interp(self.time - delay, times, values[:, i])
                                for i in range(first, first + 3)])
-                     for delay, first in ((self.ACCEL_DELAY, 0), (self.GYRO_DELAY, 3)))
+                     for delay, first in zip(late, (0, 3)))
 
     @staticmethod
     def _read(values, step, limit):

@@ -93,7 +93,7 @@ def parameter_rows(simulator, all_of_them=False):
                 out.append((label, valued(p["real"], p["real_interval_90"], ""),
                             valued(p["simulator"], p["simulator_interval_90"], ""),
                             valued(p["difference"], p["difference_interval_90"], p["unit"]),
-                            "" if p["set"] is None else "%.4g %s" % (p["set"], p["unit"])))
+                            p["how"] if p["set"] is None else "%.4g %s" % (p["set"], p["unit"])))
     return out
 
 

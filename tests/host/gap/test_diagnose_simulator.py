@@ -1,5 +1,6 @@
 """`sixflip diagnose --sim` with logs that are not as they should be: what can be said is said."""
 import json
+import struct
 
 import numpy as np
 import pytest
@@ -114,3 +115,77 @@ def test_what_both_have_is_no_gap_though_the_simulators_axes_are_swapped(tmp_pat
     answer = diagnosed(capsys, *paths)
     assert [c["name"] for c in answer["simulator"]["conventions"]] == ["gyro_axes"]
     assert "quantisation" not in [c["effect"] for c in answer["causes"]]
+
+
+def bag(path, t, force, rate):
+    """A ROS 1 bag of sensor_msgs/Imu, by rosbags' own writer."""
+    from rosbags.rosbag1 import Writer
+    from rosbags.typesys import Stores, get_typestore
+    store = get_typestore(Stores.ROS1_NOETIC)
+    kind = store.types
+    vector, none = kind["geometry_msgs/msg/Vector3"], np.zeros(9)
+    with Writer(path) as writer:
+        topic = writer.add_connection("/imu", "sensor_msgs/msg/Imu", typestore=store)
+        for at, f, w in zip(t, force, rate):
+            ns = 10 ** 18 + int(round(1e9 * at))
+            stamp = kind["builtin_interfaces/msg/Time"](ns // 10 ** 9, ns % 10 ** 9)
+            message = kind["sensor_msgs/msg/Imu"](
+                kind["std_msgs/msg/Header"](0, stamp, "imu"),
+                kind["geometry_msgs/msg/Quaternion"](0, 0, 0, 1), none, vector(*w), none,
+                vector(*f), none)
+            writer.write(topic, ns, store.serialize_ros1(message, topic.msgtype))
+    return str(path)
+
+
+def ulog(path, t, force, rate):
+    """sensor_combined of a flight log, by the format's description."""
+    def message(kind, data):
+        return struct.pack("<HB", len(data), ord(kind)) + data
+    text = b"sensor_combined:uint64_t timestamp;float[3] gyro_rad;float[3] accelerometer_m_s2;"
+    rows = [message("D", struct.pack("<HQ6f", 7, int(5e6 + 1e6 * at), *w, *f))
+            for at, f, w in zip(t, force, rate)]
+    path.write_bytes(b"ULog\x01\x12\x35\x01" + struct.pack("<Q", 0) + message("B", bytes(40))
+                     + message("F", text) + message("A", struct.pack("<BH", 0, 7)
+                                                    + b"sensor_combined") + b"".join(rows))
+    return str(path)
+
+
+def noisy(t, force, rate, seed):
+    rng = np.random.default_rng(seed)
+    return (t, force + 0.03 * rng.normal(size=force.shape),
+            rate + 0.001 * rng.normal(size=rate.shape))
+
+
+def test_a_flight_log_is_held_against_a_simulators_bag(tmp_path, capsys):
+    """Directly, of logs that only turn: with its sign wrong, its steps of time are not, too."""
+    t, force, rate = turning(1)
+    real = ulog(tmp_path / "real.ulg", *noisy(t, force, rate, 1))
+    healthy = bag(tmp_path / "sim.bag", *noisy(t, force, rate, 2))
+    turned = bag(tmp_path / "turned.bag", *noisy(t, -force, rate, 3))
+    answer = diagnosed(capsys, real, healthy, turned)
+    assert [log["same_motion"] for log in answer["simulator"]["logs"]] == [True, True]
+    assert [(c["name"], c["log"]) for c in answer["simulator"]["conventions"]] == [
+        ("force_sign", turned)]
+    assert cli.main(["diagnose", real, "--sim", healthy, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["verdict"] == "no gap"
+
+
+def driving(seed, rate_hz=100.0):
+    """(t, force, rate) of a robot that turns on the spot and creeps on after it has stopped."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(0.0, 60.0, 1.0 / rate_hz)
+    rate = np.zeros((len(t), 3))
+    for first in np.arange(4.0, 58.0, 6.0):
+        way = (t >= first) & (t < first + 2.0)
+        rate[way, 2] = rng.uniform(-1.5, 1.5) * np.sin(np.pi * (t[way] - first) / 2.0) ** 2
+        rest = (t >= first + 2.0) & (t < first + 6.0)
+        rate[rest, 2] = np.radians(rng.uniform(-0.3, 0.3)) * np.exp(first + 2.0 - t[rest])
+    return t, np.tile([0.0, 0.0, G], (len(t), 1)), rate
+
+
+def test_a_robot_that_never_leaves_its_wheels_is_not_in_poses(tmp_path, capsys):
+    """However many rests it has: what its body does in them is no drift of its gyro."""
+    answer = diagnosed(capsys, capture(tmp_path / "real.csv", *driving(1)),
+                       capture(tmp_path / "sim.csv", *driving(1), seed=5))
+    assert answer["verdict"] == "no gap"
+    assert any("settles" in said for said in answer["remarks"])

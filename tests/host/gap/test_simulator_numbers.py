@@ -1,8 +1,10 @@
 """Numbers of two logs side by side: ranges, and intervals that hold what stretches disagree on."""
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from sixflip_host.diagnosis.simulator import evidence_of_logs, parameters
+from sixflip_host.diagnosis.simulator import evidence_of_logs, parameters, simulator_answer
 from sixflip_host.export import put_back
 
 
@@ -38,3 +40,22 @@ def test_a_coefficient_is_as_uncertain_as_stretches_of_the_log_disagree_on_it():
                                          np.zeros(0), np.zeros(0), 1.0, np.ones(3, bool))
     sigma = result[5][:, 0]
     assert sigma == pytest.approx(slopes.std() / np.sqrt(20.0), rel=0.4)
+
+
+def test_what_has_no_field_to_set_has_words_to_copy():
+    """A pole of 20 Hz is half of 63 ms² of smoothness; what does not differ says nothing."""
+    tau = 1.0 / (2.0 * np.pi * 20.0)
+    fits = {"gyro": SimpleNamespace(found=(), fit=SimpleNamespace(
+        smooth_s2=-0.5 * tau ** 2, smooth_sigma_s2=1e-8))}
+    said = {p.name: p.how for p in parameters.timing(-0.04, 1e-4, fits, SimpleNamespace(
+        same=True, drift=0.0, drift_sigma=1e-5))}
+    assert said == {"delay": "output the gyro 40 ms later", "clock": "",
+                    "smoothness": "put a low-pass of first order at 20 Hz (time constant 7.96 ms) "
+                                  "behind it"}
+
+
+def test_an_effect_that_is_seen_under_two_names_is_not_no_gap():
+    logs = [SimpleNamespace(unexplained=False, conventions=(), differs=[], motion_judged=True,
+                            alignment=SimpleNamespace(same=True))]
+    assert simulator_answer.verdict("cannot tell", logs) == "no gap"
+    assert simulator_answer.verdict("cannot tell", logs, named_effects=True) == "cannot tell"

@@ -18,7 +18,7 @@ class Parts:
     (m/s2 and rad/s per root Hz), steps in counts, ranges (g, deg/s), low-pass (Hz or None),
     delays (s), rows over which each is held, whether noise is new in each of them; what the real
     part drifts with (name of an
-    effect, or "")."""
+    effect, or ""), at so many times its typical size."""
 
     accel: np.ndarray = field(default_factory=lambda: np.eye(3))
     gyro: np.ndarray = field(default_factory=lambda: np.eye(3))
@@ -36,6 +36,7 @@ class Parts:
     gyro_held: int = 1
     fresh_noise: bool = False
     effect: str = ""
+    times: float = 1.0
 
 
 def real_part(rng, effect="", parameters=True):
@@ -49,7 +50,7 @@ def real_part(rng, effect="", parameters=True):
 
 
 def with_effect(name, t, force, rate, celsius):
-    """(force, rate) of a real part that has one of five effects, of about typical size."""
+    """(force, rate) of a real part that has an effect, of about typical size."""
     warm = (celsius - 25.0)[:, None]
     if name == "thermal_bias":
         force = force + 0.0008 * G * warm * (1.0, -0.7, 1.2)
@@ -61,6 +62,12 @@ def with_effect(name, t, force, rate, celsius):
             [[1.0, 0.3, 0.0], [-0.4, 0.8, 0.2], [0.0, 0.1, -1.0]])
     elif name == "warm_up":
         force = force + 0.008 * G * np.exp(-t / 40.0)[:, None] * (1.0, 0.6, -1.0)
+    elif name == "thermal_scale":
+        force = force * (1.0 + 0.0008 * warm * (1.0, -0.8, 1.1))
+    elif name == "cubic":
+        force = force + 0.008 * G * (force / G) ** 3 * (1.0, -1.0, 0.8)
+    elif name == "asymmetry":
+        force = force + 0.008 * G * np.abs(force / G) * (1.0, -1.0, 0.8)
     elif name == "vibration":
         force = force + 0.03 * G * np.sin(2 * np.pi * 31.0 * t)[:, None] * (0.4, 0.2, 1.0)
     return force, rate
@@ -69,12 +76,15 @@ def with_effect(name, t, force, rate, celsius):
 EFFECTS = ("thermal_bias", "quadratic", "g_sensitivity", "warm_up", "vibration")
 
 
-def counts(parts, motion, force, rate, rng, rate_hz, start_s=0.0):
-    """The text of a capture: what these Parts make of force and rate, from start_s on."""
+def counts(parts, motion, force, rate, rng, rate_hz, start_s=0.0, celsius_all=None):
+    """The text of a capture: what these Parts make of force and rate, from start_s on;
+    celsius_all: temperature at every time of the Motion, None: of one that warms up."""
     dt = motion.t[1] - motion.t[0]
     t = np.arange(start_s, motion.t[-1], 1.0 / rate_hz)
-    celsius_all = 24.0 + 9.0 * (1.0 - np.exp(-motion.t / 60.0))
-    force, rate = with_effect(parts.effect, motion.t, force, rate, celsius_all)
+    if celsius_all is None:
+        celsius_all = 24.0 + 9.0 * (1.0 - np.exp(-motion.t / 60.0))
+    changed = with_effect(parts.effect, motion.t, force, rate, celsius_all)
+    force, rate = (x + parts.times * (y - x) for x, y in zip((force, rate), changed))
     force = force @ parts.accel.T + parts.accel_bias
     rate = rate @ parts.gyro.T + parts.gyro_bias
     if parts.low_pass_hz:

@@ -88,12 +88,13 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
     n = len(measured)
     delay, k = 0.0, h.columns.shape[2]
     target = measured / unit
+    turned = np.einsum("ij,njk->nik", axes, h.columns)
     for last in (False, False, True):
         shift = shifted(h.signal, delay * grid_hz)
         signal = shift @ axes.T
         slope = -np.gradient(signal, axis=0) * grid_hz
         bend = -np.gradient(slope, axis=0) * grid_hz
-        columns = np.concatenate([shifted(h.columns, delay * grid_hz), slope[:, :, None],
+        columns = np.concatenate([shifted(turned, delay * grid_hz), slope[:, :, None],
                                   bend[:, :, None]], 2)
         mean = np.concatenate([h.mean, [-delay, 0.0]])
         sd = np.concatenate([h.sd, [DELAY_S, SMOOTH_S2]])

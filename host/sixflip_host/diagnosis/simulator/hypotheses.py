@@ -1,6 +1,6 @@
 """What a simulator may output instead of what a sensor reads, as signals made of the real log.
 
-A hypothesis says: simulator = S (1 + E) signal + bias + columns · c, where the signal is made of
+A hypothesis says: simulator = (1 + E) S signal + S columns · c + bias, where the signal is made of
 what the real sensor went through. S is a signed permutation times a unit, or a turn about the
 vertical; E, the bias and c have priors of their physical size. The nameless one is the sensor's
 own reading with every signal beside it, each with free coefficients.

@@ -4,7 +4,7 @@ smoothness of the simulator and of the real sensor side by side, each with its i
 Two logs of one motion give the difference directly; logs of different motions give each sensor by
 its own rests and moves, and the difference with the sum of both covariances.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -29,7 +29,8 @@ DROWNED = 0.3  # of a step: noise below it does not show
 class Parameter:
     """name; sensor accel, gyro or device; axis "x", "xy" (row, column) or ""; unit; real and
     simulated: values with intervals (low, high) at 90 %, None where a log cannot say; difference
-    real less simulated with its interval; differs; set_to: the simulator's value to set."""
+    real less simulated with its interval; differs; set_to: the simulator's value to set; how: what
+    to do in words, of a number that simulators have no field for."""
 
     name: str
     sensor: str
@@ -43,6 +44,7 @@ class Parameter:
     difference_interval: tuple
     differs: bool
     set_to: float
+    how: str = ""
 
 
 def compared(name, sensor, axis, unit, real, real_sigma, sim, sim_sigma, difference=None,
@@ -231,22 +233,47 @@ def ranges(kind, axis, unit, real, sim):
 
 
 def timing(late, late_sigma, fits, alignment):
-    """Delay between the sensors, smoothness of each, clock."""
+    """Delay between the sensors, smoothness of each, clock: differences only, each with what to
+    do."""
     out = []
     if late is not None:
-        out.append(compared("delay", "gyro", "", "ms", None, np.inf, None, np.inf, -1e3 * late,
-                            1e3 * late_sigma, least=LEAST_DELAY_MS))
+        out.append(with_how(compared("delay", "gyro", "", "ms", None, np.inf, None, np.inf,
+                                     -1e3 * late, 1e3 * late_sigma, least=LEAST_DELAY_MS),
+                            later))
     for kind, found in fits.items():
         fit = found.fit
         if any(c.name == "unknown" for c in found.found):
             continue
-        out.append(compared("smoothness", kind, "", "ms²", None, np.inf, None, np.inf,
-                            -1e6 * fit.smooth_s2, 1e6 * fit.smooth_sigma_s2,
-                            least=LEAST_SMOOTH_MS2))
+        out.append(with_how(compared(
+            "smoothness", kind, "", "ms²", None, np.inf, None, np.inf, -1e6 * fit.smooth_s2,
+            1e6 * fit.smooth_sigma_s2, least=LEAST_SMOOTH_MS2), smoother))
     if alignment.same:
-        out.append(compared("clock", "device", "", "%", None, np.inf, None, np.inf,
-                            -100.0 * alignment.drift, 100.0 * alignment.drift_sigma))
+        out.append(with_how(compared(
+            "clock", "device", "", "%", None, np.inf, None, np.inf, -100.0 * alignment.drift,
+            100.0 * alignment.drift_sigma), faster))
     return out
+
+
+def with_how(parameter, how):
+    """The Parameter with what to do where it differs."""
+    return replace(parameter, how=how(parameter.difference)) if parameter.differs else parameter
+
+
+def later(ms):
+    return "output the %s %.3g ms later" % ("gyro" if ms > 0 else "accelerometer", abs(ms))
+
+
+def smoother(ms2):
+    """Half the square of a time constant; two poles one after the other add theirs."""
+    tau_ms = np.sqrt(2.0 * abs(ms2))
+    pole = "low-pass of first order at %.3g Hz (time constant %.3g ms)" % (
+        1e3 / (2.0 * np.pi * tau_ms), tau_ms)
+    return "put a %s behind it" % pole if ms2 > 0 else \
+        "it is smoother than the sensor by a %s: take as much out" % pole
+
+
+def faster(percent):
+    return "multiply its times by %.6g" % (1.0 - percent / 100.0)
 
 
 # An engine whose rates are half a physics step older than its forces (MuJoCo, Featherstone's

@@ -55,7 +55,7 @@ def numbers(found):
             "simulator_interval_90": span(p.simulated_interval),
             "difference": digits(p.difference),
             "difference_interval_90": span(p.difference_interval), "differs": p.differs,
-            "set": digits(p.set_to)}
+            "set": digits(p.set_to), "how": p.how}
     return out
 
 
@@ -74,8 +74,9 @@ def digits(x, number=4):
     return float("%.*g" % (number, x))
 
 
-def verdict(effects, comparisons):
-    """The verdict over all layers; effects: that of the effects' layer alone."""
+def verdict(effects, comparisons, named_effects=False):
+    """The verdict over all layers; effects: that of the effects' layer alone; named_effects: it
+    names some, be it under several names."""
     unexplained = any(x.unexplained for x in comparisons)
     undecided = any(c.one_of for x in comparisons for c in x.conventions)
     named = any(c.name != "unknown" for x in comparisons for c in x.conventions)
@@ -87,7 +88,7 @@ def verdict(effects, comparisons):
         return "explained"
     if undecided:
         return "cannot tell"
-    if effects == "cannot tell" and all(x.alignment.same and x.motion_judged
-                                           for x in comparisons):
+    if effects == "cannot tell" and not named_effects and all(
+            x.alignment.same and x.motion_judged for x in comparisons):
         return "no gap"
     return effects
