@@ -8,6 +8,8 @@ import pytest
 import sixflip_host
 from sixflip_host import cli
 from sixflip_host.capture import capture_file
+from sixflip_host.diagnosis.diagnose import diagnose
+from sixflip_host.diagnosis.simulator import comparison
 
 G = 9.80665
 
@@ -171,7 +173,8 @@ def test_a_flight_log_is_held_against_a_simulators_bag(tmp_path, capsys):
 
 
 def driving(seed, rate_hz=100.0):
-    """(t, force, rate) of a robot that turns on the spot and creeps on after it has stopped."""
+    """(t, force, rate) of a robot that drives and turns on a floor, and creeps on in yaw after it
+    has stopped; nothing pitches or rolls it."""
     rng = np.random.default_rng(seed)
     t = np.arange(0.0, 60.0, 1.0 / rate_hz)
     rate = np.zeros((len(t), 3))
@@ -180,7 +183,9 @@ def driving(seed, rate_hz=100.0):
         rate[way, 2] = rng.uniform(-1.5, 1.5) * np.sin(np.pi * (t[way] - first) / 2.0) ** 2
         rest = (t >= first + 2.0) & (t < first + 6.0)
         rate[rest, 2] = np.radians(rng.uniform(-0.3, 0.3)) * np.exp(first + 2.0 - t[rest])
-    return t, np.tile([0.0, 0.0, G], (len(t), 1)), rate
+    force = np.tile([0.0, 0.0, G], (len(t), 1))
+    force[:, 0] += 0.5 * np.sin(0.7 * t) * (np.abs(rate[:, 2]) > 0.2)
+    return t, force, rate
 
 
 def test_a_robot_that_never_leaves_its_wheels_is_not_in_poses(tmp_path, capsys):
@@ -189,3 +194,24 @@ def test_a_robot_that_never_leaves_its_wheels_is_not_in_poses(tmp_path, capsys):
                        capture(tmp_path / "sim.csv", *driving(1), seed=5))
     assert answer["verdict"] == "no gap"
     assert any("settles" in said for said in answer["remarks"])
+
+
+def test_a_bump_that_one_log_is_cut_off_at_is_no_gap(tmp_path):
+    """The other one stops at no other range: it has not been there."""
+    logs = []
+    for name, counts, seed in (("real", 32767, 0), ("sim", 32000, 5)):
+        log = capture_file.read(capture(tmp_path / name, *driving(1), seed=seed))
+        log.accel[500, 2] = counts
+        logs.append((name, log))
+    found = diagnose(logs[:1], logs[1:])
+    assert not found.findings
+    assert not [p for c in found.comparisons for p in c.differs if p.name == "range"]
+
+
+def test_a_channel_that_hears_nothing_but_noise_has_no_scale_and_no_axes(tmp_path):
+    """On a floor four of six channels do: two logs of one robot have nothing there to share."""
+    real, sim = (capture_file.read(capture(tmp_path / str(seed), *driving(1), seed=seed))
+                 for seed in (0, 5))
+    found = comparison.compare([("real", real)], "sim", sim)
+    assert found.alignment.same
+    assert not found.conventions and not found.differs

@@ -3,8 +3,9 @@ diagnosed, exported to every target, simulated again with what was exported, and
 against the same real log. The gap before and after is that of another motion, which nothing was
 fitted to.
 
-A cell has the gap that is left and the verdict; "-" stands where the file itself lists the effect
-as one that its target cannot express.
+Conventions and parameters are judged in those two layers, what a sensor has of its own (the rows
+from thermal_bias on) by the whole diagnosis. A cell has the gap that is left and the verdict; "-"
+stands where the file itself lists the effect as one that its target cannot express.
 """
 import argparse
 import functools
@@ -22,6 +23,7 @@ from sixflip_host import cli
 from sixflip_host.capture import capture_file
 from sixflip_host.diagnosis import answer
 from sixflip_host.diagnosis.diagnose import diagnose
+from sixflip_host.diagnosis.simulator import comparison, simulator_answer
 from sixflip_host.export import put_back
 
 from .. import cases
@@ -182,8 +184,7 @@ def answered(pair):
     name, wanted = pair
     effect = EFFECTS[name]
     mine, held = real(effect, DIAGNOSED), real(effect, HELD_OUT)
-    said = answer.of(diagnose([("real.csv", mine)],
-                              [("sim.csv", simulated(effect, None, DIAGNOSED))]))
+    said = judged(effect, mine, simulated(effect, None, DIAGNOSED))
     after = {}
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "gap.json"
@@ -201,10 +202,19 @@ def answered(pair):
                put_back.of(said).left)
 
 
+def judged(effect, mine, sim):
+    """The answer of a diagnosis; of its first two layers where the effect is in them."""
+    if effect.laps > 1:
+        return answer.of(diagnose([("real.csv", mine)], [("sim.csv", sim)]))
+    found = comparison.compare([("real.csv", mine)], "sim.csv", sim)
+    return {"verdict": simulator_answer.verdict("no gap", [found]), "causes": [],
+            "simulator": simulator_answer.of([found])}
+
+
 def again(effect, target, mine, held):
     """(verdict, gap held out) of the simulator with what was exported."""
-    after = diagnose([("real.csv", mine)], [("sim.csv", simulated(effect, target, DIAGNOSED))])
-    return after.verdict, gap(effect, held, simulated(effect, target, HELD_OUT))
+    after = judged(effect, mine, simulated(effect, target, DIAGNOSED))
+    return after["verdict"], gap(effect, held, simulated(effect, target, HELD_OUT))
 
 
 def main():

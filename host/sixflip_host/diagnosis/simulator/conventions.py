@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from . import alignment as align_by
-from . import evidence_of_logs, hypotheses, pairing
+from . import evidence_of_logs, hypotheses, pairing, single_log
 
 # Before looking: nine simulators in ten are right about each sensor, and every single thing that
 # public reports name is one in some fifty of them.
@@ -123,10 +123,14 @@ def same_motion(real, sim, alignment, motion, live, fresh_hz):
 
 def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
     """SensorFit of one sensor."""
+    noise = single_log.noise(real, real.force if kind == "accel" else real.rate)
+
     def asked(pair):
         if kind == "accel":
-            return pair.sim_force, hypotheses.accelerometer(pair.force, pair.motion, real.g)
-        return pair.sim_rate, hypotheses.gyro(pair.rate, pair.motion, pair.force, real.g)
+            return pair.sim_force, hypotheses.accelerometer(
+                reliable(pair.force, noise, pair.band_hz), pair.motion, real.g)
+        return pair.sim_rate, hypotheses.gyro(reliable(pair.rate, noise, pair.band_hz),
+                                              pair.motion, pair.force, real.g)
 
     pair = pairing.paired(real, sim, alignment, motion)
     measured, tried = asked(pair)
@@ -151,6 +155,20 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
         (own[0], sizes), live, rows).log)
     found, fit = posterior(kind, judged(inflation, rows), live)
     return SensorFit(kind, found, fit, inflation, pair, fit.hypothesis, own, live)
+
+
+def reliable(values, noise, band_hz):
+    """values (n, 3) of the real log, each channel drawn to its mean by the share of its variance
+    that its noise makes up in the band: what is expected of the motion, given the reading. What
+    follows from the motion alone is then fitted without being made too small, and a channel that
+    reads nothing but noise says nothing of the simulator's [Fuller, Measurement Error Models
+    (1987), section 1.1; Carroll et al., Measurement Error in Nonlinear Models (2006), chapter 4].
+    noise: single_log.Noise, None where it is not known."""
+    if noise is None:
+        return values
+    mean, variance = values.mean(axis=0), values.var(axis=0)
+    share = 1.0 - 2.0 * band_hz * noise.density ** 2 / np.maximum(variance, 1e-30)
+    return mean + np.clip(share, 0.0, 1.0) * (values - mean)
 
 
 def sized(own, log):
