@@ -152,6 +152,9 @@ def triad(kind, named, effects, lag_s, delay_s, rate_hz):
         for axis, p in named.get(name, {}).items():
             if p["differs"]:
                 matrix[AXES.index(axis[0]), AXES.index(axis[-1])] += p["difference"] * size
+    # One axis whose noise differs is enough: the others' is measured as well as that one's.
+    densities = named.get("noise_density", {})
+    noisy = any(p["differs"] for p in densities.values())
     bias, noise, step, limit = np.zeros(3), np.zeros(3), np.zeros(3), np.full(3, np.inf)
     for i, axis in enumerate(AXES):
         for name, values in (("bias", bias), ("step", step), ("range", limit)):
@@ -159,8 +162,8 @@ def triad(kind, named, effects, lag_s, delay_s, rate_hz):
             wanted = p and p["differs"] and p["difference" if name == "bias" else "real"]
             if wanted:
                 values[i] = unit * wanted
-        p = named.get("noise_density", {}).get(axis)
-        if p and p["differs"]:
+        p = densities.get(axis)
+        if p and noisy:
             noise[i] = unit * np.sqrt(max(p["real"] ** 2 - p["simulator"] ** 2, 0.0))
     return Triad(matrix, bias, noise, step, limit, lag_s, delay_s, effects)
 
