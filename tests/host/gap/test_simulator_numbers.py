@@ -59,3 +59,11 @@ def test_an_effect_that_is_seen_under_two_names_is_not_no_gap():
                             alignment=SimpleNamespace(same=True))]
     assert simulator_answer.verdict("cannot tell", logs) == "no gap"
     assert simulator_answer.verdict("cannot tell", logs, named_effects=True) == "cannot tell"
+
+
+def test_a_step_is_told_so_exactly_that_its_multiples_are_the_chips():
+    """64 counts of 8192 a g are 7.8125 mg: at 4 g, 7.812 would be off by two counts."""
+    step = parameters.Parameter("step", "accel", "x", "mg", 7.8125, None, 0.1220703125, None,
+                                7.6904296875, None, True, 7.8125)
+    found = simulator_answer.numbers([step])["accel"]["step"]["x"]
+    assert found["real"] == found["set"] == 7.8125

@@ -5,7 +5,8 @@ fitted to.
 
 Conventions and parameters are judged in those two layers, what a sensor has of its own (the rows
 from thermal_bias on) by the whole diagnosis. A cell has the gap that is left and the verdict; "-"
-stands where the file itself lists the effect as one that its target cannot express.
+stands where the file itself lists the effect as one that its target cannot express, "?" where
+the diagnosis does not name it on these logs, so that no file can hold it.
 """
 import argparse
 import functools
@@ -168,14 +169,15 @@ def apart(measure, kind, one, other):
 @dataclass(frozen=True)
 class Row:
     """gap {sensor: ...} before, of noise alone; after {target: (verdict, gap), or None where its
-    file says that it cannot express the effect}; verdict and names said before; left: what the
-    diagnosis found and no file holds."""
+    file says that it cannot express the effect}; verdict and names said before; named: the effect
+    was, and can be put back; left: what the diagnosis found and no file holds."""
 
     before: dict
     noise: dict
     after: dict
     verdict: str
     names: tuple
+    named: bool
     left: tuple
 
 
@@ -185,7 +187,8 @@ def answered(pair):
     effect = EFFECTS[name]
     mine, held = real(effect, DIAGNOSED), real(effect, HELD_OUT)
     said = judged(effect, mine, simulated(effect, None, DIAGNOSED))
-    after = {}
+    after, holds = {}, put_back.of(said)
+    named = any(effect.words in one for one in holds.holds)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "gap.json"
         file.write_text(json.dumps(said), encoding="utf-8")
@@ -194,12 +197,13 @@ def answered(pair):
             if cli.main(["export", str(file), "--to", to, "-o", str(out)]):
                 raise RuntimeError("the export to %s failed" % to)
             text = out.read_text(encoding="utf-8")
-            after[to] = None if any(effect.words in one for one in targets.cannot(text)) else \
-                again(effect, targets.TARGETS[to](text), mine, held)
+            cannot = any(effect.words in one for one in targets.cannot(text))
+            after[to] = again(effect, targets.TARGETS[to](text), mine, held) \
+                if named and not cannot else None
     return Row(gap(effect, held, simulated(effect, None, HELD_OUT)),
                gap(effect, held, real(effect, HELD_OUT, 30)), after, said["verdict"],
                tuple(c["effect"] or " or ".join(c["class"]) for c in said["causes"]),
-               put_back.of(said).left)
+               named, holds.left)
 
 
 def judged(effect, mine, sim):
@@ -242,7 +246,8 @@ def show(rows, wanted):
         for kind in EFFECTS[name].sensors:
             unit = ("mg" if kind == "accel" else "°/s") + (
                 "/√Hz" if EFFECTS[name].measure == "noise" else "")
-            cells = ["-" if cell is None else "%.3g%s" % (
+            nothing = "-" if row.named else "?"
+            cells = [nothing if cell is None else "%.3g%s" % (
                 cell[1][kind], "" if cell[0] == "no gap" else " !")
                 for cell in (row.after[one] for one in wanted)]
             print((line % (name, unit, "%.3g" % row.before[kind], "%.3g" % row.noise[kind],
@@ -250,11 +255,12 @@ def show(rows, wanted):
         wrong = ["%s %s" % (to, cell[0]) for to, cell in row.after.items()
                  if cell and cell[0] != "no gap"]
         failed += len(wrong)
-        if wrong or row.left:
+        if wrong or row.left or not row.named:
             print("  said before: %s %s; in no file: %s; after: %s" % (
                 row.verdict, ", ".join(row.names), ", ".join(row.left) or "nothing",
                 ", ".join(wrong) or "no gap"))
-    print("! another verdict than no gap; -: the file says that its target cannot express it")
+    print("! another verdict than no gap; -: the file says that its target cannot express it; ?: "
+          "not named on these logs")
     return failed
 
 

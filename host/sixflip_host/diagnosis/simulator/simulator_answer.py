@@ -50,13 +50,19 @@ def numbers(found):
     for p in found:
         place = out.setdefault(p.sensor, {}).setdefault(p.name, {})
         place[p.axis or "all"] = {
-            "unit": p.unit, "real": digits(p.real), "real_interval_90": span(p.real_interval),
+            "unit": p.unit, "real": digits(p.real, whole(p)),
+            "real_interval_90": span(p.real_interval),
             "simulator": digits(p.simulated),
             "simulator_interval_90": span(p.simulated_interval),
             "difference": digits(p.difference),
             "difference_interval_90": span(p.difference_interval), "differs": p.differs,
-            "set": digits(p.set_to), "how": p.how}
+            "set": digits(p.set_to, whole(p)), "how": p.how}
     return out
+
+
+def whole(parameter):
+    """Significant digits of a Parameter's value: a step stands in readings thousands of times."""
+    return 9 if parameter.name in ("step", "range") else 4
 
 
 def span(interval):
