@@ -1,11 +1,14 @@
 """How `sixflip fleet` scales, and what becomes of it when a worker or the scheduler dies.
 
     python -m tests.studies.bench.fleet [--boards 100 1000] [--workers 1 2]
+    python -m tests.studies.bench.fleet --diagnosed 10
 
 Boards come as summaries of two sessions of 24 poses each, made by tests/worlds/simulated_fleet.py,
 and are done by the command itself in processes of its own. Memory is the largest sum over the
 command and its workers (proportional set size, so what they share counts once). Then a worker is
-killed in mid-run, and a scheduler of its own; the data set is counted afterwards.
+killed in mid-run, and a scheduler of its own; the data set is counted afterwards. --diagnosed is
+of the processor time only: the same boards plain and with --diagnose, one worker, what chance
+alone shows in their protocol simulated in a run before.
 """
 import argparse
 import os
@@ -93,6 +96,21 @@ def speed(number, workers, top):
     return number / seconds
 
 
+def diagnosed(number, top):
+    """Processor time of a board without and with --diagnose, the latter with cutoffs cached."""
+    folder = made(top / "in", number)
+    for name, more in (("plain", ()), ("what chance alone shows not yet kept", ("--diagnose",)),
+                       ("diagnosed", ("--diagnose",))):
+        out = top / name
+        code, said = run([*SIXFLIP, "fleet", str(folder), "-o", str(out), "--workers", "1",
+                          *more])[2:]
+        cpu = [row["cpu_s"] for row in dataset.DataSet(out).rows(
+            columns=("board", "batch", "written", "cpu_s"))]
+        print("%d boards, %s: %.2f s of processor a board, median; %.2f to %.2f%s" % (
+            len(cpu), name, np.median(cpu), min(cpu), max(cpu),
+            "" if code == 0 else ", exit code %d: %s" % (code, said)), flush=True)
+
+
 def worker_killed(folder, number, top):
     """A worker dies while boards are under way."""
     killed, out = [], top / "out-killed"
@@ -148,9 +166,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--boards", type=int, nargs="+", default=[100, 1000])
     parser.add_argument("--workers", type=int, nargs="+", default=[1, 2])
+    parser.add_argument("--diagnosed", type=int, metavar="BOARDS")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as top:
         top = Path(top)
+        if args.diagnosed:
+            diagnosed(args.diagnosed, top)
+            return
         for number in args.boards:
             rates = [speed(number, workers, top) for workers in args.workers]
             if len(rates) > 1:
