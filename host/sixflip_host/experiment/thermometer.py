@@ -1,6 +1,5 @@
 """The chip's temperature over a capture: smooth, with its rate, and as felt with a lag."""
 import numpy as np
-from scipy import ndimage
 
 STEP_S = 1.0  # a chip's temperature follows its surroundings over tens of seconds
 SMOOTH_S = 8.0
@@ -72,7 +71,9 @@ def _smooth(values, seconds):
     if len(values) < 2 * half + 1:
         return values.copy()
     width = 2 * half + 1
-    out = ndimage.uniform_filter1d(values, width)  # in the middle of a line lies its mean
+    out = np.empty(len(values))
+    # In the middle of a line lies its mean.
+    out[half:-half] = np.convolve(values, np.full(width, 1.0 / width), "valid")
     u = np.arange(width)
     out[:half] = np.polyval(np.polyfit(u, values[:width], 1), u[:half])
     out[-half:] = np.polyval(np.polyfit(u, values[-width:], 1), u[-half:])
