@@ -11,6 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..experiment.read_only import ReadOnlyArrays
+
 COLUMNS = 7
 RAD = np.pi / 180.0
 
@@ -56,7 +58,7 @@ def cross_matrix(v):
 
 
 @dataclass(frozen=True, eq=False)
-class GyroMoves:
+class GyroMoves(ReadOnlyArrays):
     """All moves of a session, padded to one length of n steps; arrays read only.
 
     dt (moves, n) s; before, after (moves, n, 7): x (see above) at both ends of each step.
@@ -65,10 +67,6 @@ class GyroMoves:
     dt: np.ndarray
     before: np.ndarray
     after: np.ndarray
-
-    def __post_init__(self):
-        for value in (self.dt, self.before, self.after):
-            value.setflags(write=False)
 
     @property
     def seconds(self):

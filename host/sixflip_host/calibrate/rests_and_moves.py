@@ -10,6 +10,7 @@ from sixflip.poses.placement import GAP_US
 
 from ..errors import BadFile, CheckFailed
 from ..experiment import blocks, moves
+from ..experiment.read_only import ReadOnlyArrays
 from . import gyro_moves
 
 FLOOR_G = 5e-5  # standard error a mean is never better than: a chip's own flicker noise
@@ -42,7 +43,7 @@ class Flip:
 
 
 @dataclass(frozen=True, eq=False)
-class RestsAndMoves:
+class RestsAndMoves(ReadOnlyArrays):
     """The blocks of a session as k rests, and the moves that can be integrated; arrays read only.
 
     session: blocks.Session; force (k, 3) g and rate (k, 3) rad/s, means by the nominal scale;
@@ -63,11 +64,6 @@ class RestsAndMoves:
     left_out: tuple
     flips: tuple
     alone: tuple
-
-    def __post_init__(self):
-        for value in self.__dict__.values():
-            if isinstance(value, np.ndarray):
-                value.setflags(write=False)
 
     @property
     def g(self):

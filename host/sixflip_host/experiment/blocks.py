@@ -17,6 +17,7 @@ from ..capture import rests, rests_by_variance
 from ..capture.capture_file import Capture
 from ..capture.find_poses import HELD_BY_HAND, find_poses
 from . import block_means, noise_arrays, thermometer
+from .read_only import ReadOnlyArrays
 
 SHORTEST_S, FEWEST_SAMPLES = 0.8, 8
 PLAY_S = 0.1  # step at which hysteresis follows the way
@@ -27,7 +28,7 @@ OF_BLOCKS = ("placement", "code", "first", "end", "face", "t", "since", "seconds
 
 
 @dataclass(frozen=True, eq=False)
-class Session:
+class Session(ReadOnlyArrays):
     """One capture as n blocks; arrays are read only.
 
     name; capture, labelled; rate (Hz); t_s (N,) s of every sample; timeless: the timestamps
@@ -69,11 +70,6 @@ class Session:
     rounding_gyro: np.ndarray | None
     thermal: bool = False
     shaken: bool = False
-
-    def __post_init__(self):
-        for value in self.__dict__.values():
-            if isinstance(value, np.ndarray):
-                value.setflags(write=False)
 
     @property
     def n(self):

@@ -14,6 +14,7 @@ import numpy as np
 from ..capture.attitude import _rotation, carried
 from . import moves
 from .projection import cross, lateral_basis
+from .read_only import ReadOnlyArrays
 
 ROUNDS = 2  # of fits that begin with what the one before left
 PULL_DPS = 0.1  # deg/s per g, typical (effects/typical.py: g_sensitivity)
@@ -22,7 +23,7 @@ _known = weakref.WeakKeyDictionary()  # {Session: {up: turns}}: what was integra
 
 
 @dataclass(frozen=True, eq=False)
-class Turn:
+class Turn(ReadOnlyArrays):
     """One move from rest to rest over n samples, arrays read only.
 
     first, last: which samples (last exclusive); t (n,) s; rate (n, 3) deg/s about the bias;
@@ -48,11 +49,6 @@ class Turn:
     shift: np.ndarray
     attitude: np.ndarray | None = None
     end: np.ndarray | None = None
-
-    def __post_init__(self):
-        for value in self.__dict__.values():
-            if isinstance(value, np.ndarray):
-                value.setflags(write=False)
 
     @property
     def dt(self):
