@@ -87,8 +87,8 @@ blind-studies: setup
 
 # SEEDS=3 of each defect, KINDS=box,rover, JOBS=2 or SCHEDULER=…; the printed table is the result
 zoo: setup
-	@$(BIN)/python -m tests.studies.zoo.zoo_run --seeds $(or $(SEEDS),3) --kinds $(or $(KINDS),box,rover) \
-		$(CLUSTER)
+	@$(BIN)/python -m tests.studies.zoo.zoo_run --seeds $(or $(SEEDS),3) \
+		$(if $(KINDS),--kinds $(KINDS)) $(CLUSTER)
 
 # every claim on the recordings of ../shared/data beside a plain computation; ONLY=name
 real: setup
