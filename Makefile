@@ -85,8 +85,12 @@ blind-studies: setup
 		echo; echo "== $$each"; $(BIN)/python -m tests.studies.robustness.$$each \
 		$$([ $$each = unattended ] || echo $(CLUSTER)) || failed=1; done; exit $$failed
 
+$(VENV)/.zoo: $(VENV)/.installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[zoo]'
+	touch $@
+
 # SEEDS=3 of each defect, KINDS=box,rover, JOBS=2 or SCHEDULER=…; the printed table is the result
-zoo: setup
+zoo: $(VENV)/.zoo
 	@$(BIN)/python -m tests.studies.zoo.zoo_run --seeds $(or $(SEEDS),3) \
 		$(if $(KINDS),--kinds $(KINDS)) $(CLUSTER)
 
