@@ -126,11 +126,7 @@ def _of_rates(effect, variant, chosen, functions, prior):
     for turn in chosen:
         values = functions(turn)
         number = len(values)
-        added = np.zeros((len(turn.dt), 3, 3 * number))
-        for k, value in enumerate(values):
-            for axis in range(3):
-                added[:, axis, 3 * k + axis] = value[:, axis]
-        parts.append(turns.projected(turn, added))
+        parts.append(turns.projected_by_axis(turn, values))
     keys = ["%s%s" % ("xyz"[a], "" if not k and not terms.is_stranger(effect) else k)
             for k in range(number) for a in range(3)]
     return terms.Design(effect, variant, keys, [0, 1, 2] * number, np.vstack(parts),

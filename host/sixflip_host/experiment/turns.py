@@ -174,8 +174,17 @@ def observed(turn):
 
 def projected(turn, added):
     """(2 or 3, k): rates added (n, 3, k), deg/s, as what is observed."""
-    phi = np.einsum("nij,njk,n->ik", turn.attitude, added, turn.dt)
+    weights = turn.attitude * turn.dt[:, None, None]
+    phi = weights.transpose(1, 0, 2).reshape(3, -1) @ added.reshape(-1, added.shape[2])
     return rows(turn, lateral_basis(turn.before)) @ phi
+
+
+def projected_by_axis(turn, functions):
+    """(2 or 3, 3k): k functions (n, 3) of each axis' own rate, deg/s, with a coefficient an axis:
+    those of the first function first."""
+    weights = (turn.attitude * turn.dt[:, None, None]).transpose(2, 1, 0)
+    phi = weights @ np.stack(functions, 2).transpose(1, 0, 2)
+    return rows(turn, lateral_basis(turn.before)) @ phi.transpose(1, 2, 0).reshape(3, -1)
 
 
 def wandering(chosen):
@@ -183,7 +192,7 @@ def wandering(chosen):
     not known between two rests."""
     parts = []
     for turn in chosen:
-        constant = projected(turn, np.broadcast_to(np.eye(3), (len(turn.dt), 3, 3)))
+        constant = projected_by_axis(turn, [np.ones((len(turn.dt), 3))])
         parts.append(constant @ np.diag(turn.wander ** 2) @ constant.T)
     return parts
 
@@ -192,12 +201,11 @@ def nuisance(chosen):
     """Columns: scale and misalignment (9), bias (3)."""
     parts = []
     for turn in chosen:
-        n = len(turn.dt)
-        added = np.zeros((n, 3, 12))
-        for i in range(3):
-            added[:, i, 3 * i:3 * i + 3] = turn.middle
-            added[:, i, 9 + i] = 1.0
-        parts.append(projected(turn, added))
+        every = [*(np.repeat(turn.middle[:, j:j + 1], 3, axis=1) for j in range(3)),
+                 np.ones((len(turn.dt), 3))]
+        found = projected_by_axis(turn, every)
+        parts.append(np.hstack([found[:, [3 * j + i for i in range(3) for j in range(3)]],
+                                found[:, 9:]]))
     return np.vstack(parts)
 
 

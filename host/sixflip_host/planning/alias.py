@@ -5,6 +5,8 @@ Everything is linear algebra on the rows of a plan. The signature of an effect i
 anything left is silent. The alias index A(a|b) = |P_b S_a|^2 / |S_a|^2 is the share of a's
 signature that b can reproduce, averaged over a's coefficients with equal weight.
 """
+from functools import cached_property
+
 import numpy as np
 
 from sixflip.poses import faces
@@ -50,21 +52,51 @@ class PlannedModel:
     """
 
     def __init__(self, rows, sensor="accel", certified_box=False, tilt=True):
-        self.rows, self.sensor, self.certified_box = rows, sensor, certified_box
+        self.rows, self.sensor, self.certified_box, self.tilt = rows, sensor, certified_box, tilt
         self._reduced = {}
         # Nuisances that are effects too: they are looked at beside the other nuisances.
         self.own = ("table_tilt",) if certified_box else ("table_tilt", "box_tilt")
+
+    @cached_property
+    def space(self):
+        """(3n, r): orthonormal basis of what the nominal parameters take up."""
+        number = np.bincount(self.rows.placement)
+        leaning = [self.tilts_of(p) / np.sqrt(number[p])
+                   for p in np.unique(self.rows.placement[self.rows.leaning])]
+        return np.hstack([*(leaning if self.sensor == "accel" else ()), self._common])
+
+    @cached_property
+    def _common(self):
+        """(3n, r): basis of what is common to many rows, across the leaning poses' own angles."""
         parts = [self._matrix(), self._biases()]
-        if sensor == "accel":
-            if tilt:
+        if self.sensor == "accel":
+            if self.tilt:
                 parts.append(self._table())
-            parts.append(self._leaning())
-            if not certified_box:
+            if not self.certified_box:
                 parts.append(self._box())
         else:
             parts.append(self.raw("earth_rate")[1][:, 1:])
-        self.nominal = np.hstack(parts)
-        self.space = basis(self.nominal)
+        return basis(self._across_leaning(np.hstack(parts)))
+
+    def left(self, columns):
+        """What the nominal parameters leave of columns (3n, k)."""
+        return without(self._common, self._across_leaning(columns))
+
+    def _across_leaning(self, columns):
+        """Columns (3n, k) without two free angles for each leaning pose, where only the length of
+        gravity is known: taken off pose by pose, so that it costs no more than there are rows."""
+        lean = self.rows.leaning
+        if self.sensor != "accel" or not lean.any():
+            return columns
+        at = self.rows.at
+        turns = np.stack([np.stack(at.table_x, 1), np.stack(at.table_y, 1)], 1)[lean]
+        _, pose, number = np.unique(self.rows.placement[lean], return_inverse=True,
+                                    return_counts=True)
+        left = columns.reshape(self.rows.n, 3, -1).copy()
+        mean = np.zeros((len(number), 2, left.shape[2]))
+        np.add.at(mean, pose, turns @ left[lean])
+        left[lean] -= turns.transpose(0, 2, 1) @ (mean / number[:, None, None])[pose]
+        return left.reshape(columns.shape)
 
     def _matrix(self):
         felt = self.rows.at.f if self.sensor == "accel" else self.rows.at.w
@@ -82,12 +114,6 @@ class PlannedModel:
         flat = np.repeat(~self.rows.leaning, 3)
         return np.hstack([columns * (flat & np.repeat(self.rows.session == s, 3))[:, None]
                           for s in np.unique(self.rows.session)])
-
-    def _leaning(self):
-        """Two free angles for each leaning pose: only the length of gravity is known there."""
-        leaning = np.unique(self.rows.placement[self.rows.leaning])
-        columns = [self.tilts_of(p) for p in leaning]
-        return np.hstack(columns) if columns else np.zeros((3 * self.rows.n, 0))
 
     def _box(self):
         return effect_columns(EFFECTS["box_tilt"](), self.rows.at, self.rows.n)[1]
@@ -123,8 +149,7 @@ class PlannedModel:
         nothing is left of it, which is what silent means. A nuisance is not taken up by
         itself."""
         columns = self.raw(name)[1]
-        space = self.without_own(name).space if name in self.own else self.space
-        left = without(space, columns)
+        left = (self.without_own(name) if name in self.own else self).left(columns)
         energy = (columns ** 2).sum()
         return left if (left ** 2).sum() > NEGLIGIBLE * max(energy, 1e-300) else None
 
@@ -134,5 +159,4 @@ def even_contrasts(rows):
     the face alone, three channels, what the 12 parameters do not take up."""
     free = np.hstack([blocks_of(rows, np.ones(rows.n), rows.face == face)
                       for face in range(len(faces.FACES))])
-    space = PlannedModel(rows, certified_box=True, tilt=False).space
-    return rank(without(space, free), free)
+    return rank(PlannedModel(rows, certified_box=True, tilt=False).left(free), free)
