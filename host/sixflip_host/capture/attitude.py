@@ -66,15 +66,9 @@ def carried(steps):
 
 
 def _rotation(vectors):
-    """Rotation matrices (n, 3, 3) of rotation vectors (n, 3), rad (Rodrigues)."""
-    angle = np.linalg.norm(vectors, axis=1)
-    safe = np.where(angle > 0, angle, 1)
-    K = np.zeros((len(vectors), 3, 3))
-    x, y, z = (vectors / safe[:, None]).T
-    K[:, 0, 1], K[:, 0, 2], K[:, 1, 2] = -z, y, -x
-    K[:, 1, 0], K[:, 2, 0], K[:, 2, 1] = z, -y, x
-    s, c = np.sin(angle)[:, None, None], np.cos(angle)[:, None, None]
-    return np.eye(3) + s * K + (1 - c) * (K @ K)
+    """Rotation matrices (n, 3, 3) of rotation vectors (n, 3), rad."""
+    from scipy.spatial.transform import Rotation  # takes a while to load
+    return Rotation.from_rotvec(vectors).as_matrix()
 
 
 def _between(a, b):

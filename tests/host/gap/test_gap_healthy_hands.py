@@ -6,7 +6,7 @@ import pytest
 
 from sixflip_host.capture.capture_file import Capture
 from sixflip_host.diagnosis import diagnosis, hypotheses, stray_turns, turn_model
-from sixflip_host.diagnosis.detect import spectral_lines, torn_reads
+from sixflip_host.diagnosis.detect import sample_neighbours, spectral_lines, torn_reads
 from sixflip_host.diagnosis.detect.detection import present
 from sixflip_host.experiment import attitude_fit, block_noise, blocks, nominal_rows
 from sixflip_host.simulation import scenario, simulated_session
@@ -55,7 +55,7 @@ def test_noise_near_the_edge_of_a_page_is_no_torn_read():
     samples only made twice as many samples look torn as can be."""
     generator = np.random.default_rng(3)
     column = np.rint(16384 + 149.0 + 59.0 * generator.standard_normal(38000)).astype(np.int64)
-    assert not present(torn_reads.competed(torn_reads.tabled(column, False))[0])
+    assert not present(torn_reads.competed(sample_neighbours.tabled(column, False))[0])
 
 
 def test_white_noise_is_known_as_well_as_its_degrees_of_freedom_say():

@@ -10,6 +10,7 @@ from sixflip_host.diagnosis.detect import (
     codes,
     integrity,
     sample_clock,
+    sample_neighbours,
     spectral_lines,
     torn_reads,
 )
@@ -40,7 +41,7 @@ def torn(column, share, generator):
 
 
 def nats(column):
-    return torn_reads.competed(torn_reads.tabled(column, False))[0]
+    return torn_reads.competed(sample_neighbours.tabled(column, False))[0]
 
 
 def test_torn_reads_are_the_likelier_the_more_there_are():
@@ -50,6 +51,17 @@ def test_torn_reads_are_the_likelier_the_more_there_are():
     assert not present(scores[0])
     assert present(scores[1]) and scores == sorted(scores)
     assert scores[3] > 3.0 * scores[2]
+
+
+def test_torn_reads_are_the_same_however_many_samples_are_looked_at_at_once(monkeypatch):
+    generator = np.random.default_rng(2)
+    sound = np.rint(16380.0 + 50.0 * generator.standard_normal(3000)).astype(np.int64)
+    column = torn(sound, 2e-2, generator)
+    whole = torn_reads.competed(sample_neighbours.tabled(column, False))
+    for module in (torn_reads, sample_neighbours):
+        monkeypatch.setattr(module, "AT_A_TIME", 77)
+    assert torn_reads.competed(sample_neighbours.tabled(column, False)) == pytest.approx(
+        whole, rel=1e-9)
 
 
 def test_a_line_is_the_likelier_the_stronger_it_is_however_strong():

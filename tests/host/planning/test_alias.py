@@ -63,6 +63,20 @@ def test_leaning_poses_show_what_was_silent():
     assert found.signature("local_gravity") is None
 
 
+def test_the_angles_of_leaning_poses_are_taken_off_pose_by_pose():
+    """Many of them make no wide matrix, and leave what the whole space leaves."""
+    from sixflip_host.experiment.projection import without
+    widths = []
+    for leaning in (6, 24):
+        session = protocols.faces_session(protocols.order_of("fixed"), leaning)
+        found = design(protocols.Protocol("x", [session]), 2, certified_box=False)
+        widths.append(found._common.shape[1])
+        assert np.allclose(found.space.T @ found.space, np.eye(found.space.shape[1]), atol=1e-9)
+        columns = found.raw("hysteresis")[1]
+        assert np.allclose(found.left(columns), without(found.space, columns), atol=1e-9)
+    assert widths[0] == widths[1]
+
+
 def test_quadratic_is_asymmetry_on_faces_and_a_crooked_box_takes_both():
     assert index("quadratic", "asymmetry", "paper") == pytest.approx(1.0, abs=1e-9)
     assert index("vibration_rectification", "quadratic", "paper") == pytest.approx(1, abs=1e-9)

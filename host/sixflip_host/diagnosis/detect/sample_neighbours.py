@@ -1,0 +1,89 @@
+"""How far each sample of a column lies from what the samples around it predict."""
+from dataclasses import dataclass, fields
+
+import numpy as np
+from scipy import ndimage
+
+PAGE = 256  # counts that share a high byte
+FEWEST = 50  # samples before the noise of a column is known
+CALM = 8.0  # standard deviations that the neighbours of a sample at rest may span
+LONG = 25  # samples on each side: their median errs by a sixth of the noise
+BLURRED = 100.0  # counts: with wider noise a page more or less tells nothing
+AT_A_TIME = 1 << 16  # samples that are looked at at once: memory, not time
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """n samples against those around them: off, moved (n,): what those predict, and that by whole
+    pages but 0, in standard deviations sigma (n,) counts; calm (n,) bool: those around agree;
+    before, after (n,) bool: the page is that of the sample before, of the one after."""
+
+    off: np.ndarray
+    moved: np.ndarray
+    sigma: np.ndarray
+    calm: np.ndarray
+    before: np.ndarray
+    after: np.ndarray
+
+    def __len__(self):
+        return len(self.off)
+
+    def of(self, chosen):
+        """Samples of a slice or a mask."""
+        return Samples(*(getattr(self, f.name)[chosen] for f in fields(self)))
+
+
+def together(tables):
+    """Samples of several, None left out."""
+    tables = [one for one in tables if one is not None]
+    return Samples(*(np.concatenate([getattr(one, f.name) for one in tables] or [np.zeros(0)])
+                     for f in fields(Samples)))
+
+
+def tabled(column, banded):
+    """Samples of a column (n,) of whole numbers that are not at its ends, or None where noise
+    hides a page; banded: a reading of 0 says nothing."""
+    around = np.lib.stride_tricks.sliding_window_view(column, 7)
+    noise = 1.4826 / np.sqrt(2.0) * float(np.median(np.abs(np.diff(column))))
+    span, middle = _beside(around)
+    calm = span < CALM * max(noise, 1.0)
+    level, same = _long(column, noise)
+    same &= np.abs(level - middle) < 2.0 * max(noise, 1.0)
+    level = np.where(calm, np.where(same, level, middle),
+                     (4.0 * (around[:, 2] + around[:, 4]) - around[:, 1] - around[:, 5]) / 6.0)
+    off = around[:, 3] - level
+    sigma = np.ones(len(off))
+    for mask in (calm & same, calm & ~same, ~calm):
+        if mask.any():
+            sigma[mask] = max(1.4826 * float(np.median(np.abs(off[mask]))), 1.0)
+    keep = sigma < BLURRED
+    if banded:
+        keep &= (around != 0).all(axis=1)
+    if keep.sum() < FEWEST:
+        return None
+    off, sigma, page = off[keep], sigma[keep], column // PAGE
+    pages = np.rint(off / PAGE)
+    pages = np.where(pages == 0.0, np.where(off < 0.0, -1.0, 1.0), pages)
+    before, after = ((page[3:-3] == page[3 + k:len(page) - 3 + k])[keep] for k in (-1, 1))
+    return Samples(off / sigma, (off - PAGE * pages) / sigma, sigma, calm[keep], before, after)
+
+
+def _beside(around):
+    """((n,) how far the six around each sample span, (n,) their median) of (n, 7)."""
+    span, middle = np.empty(len(around)), np.empty(len(around))
+    for first in range(0, len(around), AT_A_TIME):
+        part = slice(first, first + AT_A_TIME)
+        ordered = np.sort(around[part][:, [0, 1, 2, 4, 5, 6]], axis=1)
+        span[part] = ordered[:, 5] - ordered[:, 0]
+        middle[part] = 0.5 * (ordered[:, 2] + ordered[:, 3])
+    return span, middle
+
+
+def _long(column, noise):
+    """((n,) median of many samples around, whether it is the same all the while). A page's
+    edge stands still while a level known by few neighbours moves: which page a sample is likely
+    to have had would be told from how far that level is off."""
+    level = ndimage.median_filter(column, 2 * LONG + 1, mode="nearest").astype(float)
+    change = ndimage.maximum_filter1d(level, 2 * LONG + 1) \
+        - ndimage.minimum_filter1d(level, 2 * LONG + 1)
+    return level[3:-3], change[3:-3] < max(noise, 1.0)
