@@ -145,7 +145,7 @@ def _taken(unit, point, private):
     """Degrees of freedom that private columns take off."""
     if not len(private):
         return 0.0
-    gram = unit.gram[point][np.ix_(private.index, private.index)]
+    gram = unit.gram.at(point, private.index)
     return float(np.trace(np.linalg.solve(gram + np.diag(private.prior ** -2.0), gram)))
 
 
@@ -158,7 +158,7 @@ def excess_at(units, statistics, chosen, index):
     for unit, (quadratic, projections), point in zip(units, statistics, index):
         total += quadratic[point, 0] - unit.freedom
         if len(columns):
-            gram = unit.gram[point][np.ix_(columns, columns)] + np.diag(1.0 / prior ** 2)
+            gram = unit.gram.at(point, columns) + np.diag(1.0 / prior ** 2)
             inner = projections[point][columns, 0]
             total -= inner @ np.linalg.solve(gram, inner) - (~unit.silent[columns]).sum()
     return float(total)

@@ -102,7 +102,7 @@ def _grams(units, fits):
     """([gram (K, K) within sessions, between them], [gram of each session])."""
     grams, each = [0.0, 0.0], []
     for unit, fit in zip(units, fits):
-        gram = unit.gram[fit.index[0]]
+        gram = unit.gram.at(fit.index[0])
         grams[unit.between] = grams[unit.between] + gram
         each += [] if unit.between else [gram]
     return grams, each

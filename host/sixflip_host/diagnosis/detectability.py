@@ -105,7 +105,7 @@ def least(gap, options):
     columns = max(options, key=lambda o: len(o.columns)).columns
     information = np.zeros(len(columns))
     for unit, index in zip(gap.units, gap.levels()):
-        information += np.diag(unit.gram[index])[columns]
+        information += np.diag(unit.gram.at(index, columns))
     sizes = np.sort(detectable.QUANTILE / np.sqrt(np.maximum(information, 1e-300)))
     return float(sizes[(len(sizes) - 1) // 2])
 

@@ -42,7 +42,7 @@ def letters(cause, theta, sigma):
 def effective(cause, data, levels):
     """({key: size}, {key: sigma}): what all variants and bends of the effect add together, as
     the nearest plain sizes. levels: index into each unit's grid."""
-    gram = sum(u.gram[i] for u, i in zip(data.units, levels))
+    gram = sum(u.gram.at(i) for u, i in zip(data.units, levels))
     base = {}
     for candidate in sorted(cause.chosen, key=lambda c: -_energy(c, cause, gram)):
         for key, power, column in zip(candidate.keys, candidate.powers, candidate.columns):

@@ -118,7 +118,7 @@ class Elimination:
             return
         self._done[points] = True
         index, quadratic, projections = self.private.index, *self.statistics
-        cross = self.unit.gram[_block(points, index, np.arange(len(self.unit.silent)))]
+        cross = self.unit.gram.blocks(points, index, np.arange(len(self.unit.silent)))
         block = cross[:, :, index] + np.diag(self.private.prior ** -2.0)
         self.solved[points] = np.linalg.solve(block, cross)
         own = projections[points]
@@ -131,23 +131,18 @@ class Elimination:
     def reduced(self, columns, points):
         """Reduced of these shared columns at these points of the grid."""
         self._fill(points)
-        cross = self.unit.gram[_block(points, columns, self.private.index)]
-        solved = self.solved[_block(points, np.arange(len(self.private)), columns)]
-        return Reduced(self.unit.gram[_block(points, columns, columns)] - cross @ solved,
+        cross = self.unit.gram.blocks(points, columns, self.private.index)
+        solved = self.solved[points[:, None, None], np.arange(len(self.private))[:, None], columns]
+        return Reduced(self.unit.gram.blocks(points, columns, columns) - cross @ solved,
                        self.inner[points[:, None], columns], self.quadratic[points],
                        self.logdet[points])
-
-
-def _block(points, rows, columns):
-    """Index of rows and columns of matrices at points, as numpy.ix_ makes it."""
-    return points[:, None, None], rows[:, None], columns
 
 
 def reduced(unit, statistics, shared, private, points):
     """Reduced of one unit without anything made before, for R data sets."""
     k, p = len(shared), len(private)
     both = (private + shared).index
-    gram = unit.gram[_block(points, both, both)]
+    gram = unit.gram.blocks(points, both, both)
     inner = statistics[1][points[:, None], both]
     if not p:
         return Reduced(gram, inner, statistics[0][points], unit.logdet[points])

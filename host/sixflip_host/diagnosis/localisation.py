@@ -83,7 +83,7 @@ def _tested(gap, option):
     sums = None
     for statistics, unit, index in zip(gap.data.statistics, gap.units, gap.levels()):
         projections = statistics[1]
-        gram = unit.gram[index][np.ix_(option.columns, option.columns)]
+        gram = unit.gram.at(index, option.columns)
         inner = projections[index][option.columns, 0]
         if apart:
             gain, rank = _explained(gram, inner)

@@ -8,6 +8,7 @@ has in common with an effect [ter Braak, Permutation versus bootstrap significan
 import numpy as np
 
 from ..experiment import inertial_fit
+from ..experiment.gram import Products
 from ..experiment.terms import Design
 from .evidence import Levels
 
@@ -15,8 +16,8 @@ NO_LEVELS = Levels(1.0, 1.0, 1.0)  # of noise to choose from: the moves' own spe
 
 
 class MovesUnit:
-    """What scored_sets.Model asks of a unit, over the hypotheses' columns (K,): gram (1, K, K),
-    logdet (1,), silent (K,), energy (K,), designs; one point of a grid of levels."""
+    """What scored_sets.Model asks of a unit, over the hypotheses' columns (K,): gram
+    (Products), logdet (1,), silent (K,), energy (K,), designs; one point of a grid of levels."""
 
     between, turns, apart, within, rows = False, False, False, {}, None
     grid, shape, coarse = [(0.0, 0.0)], (1, 1), np.array([0])
@@ -27,13 +28,14 @@ class MovesUnit:
         total = gram.sum(axis=0)
         block = total[np.ix_(nuisance, nuisance)] + np.diag(prior[nuisance] ** -2.0)
         self._taken = np.linalg.solve(block, total[np.ix_(nuisance, columns)])
-        self.gram = (total[np.ix_(columns, columns)]
-                     - total[np.ix_(columns, nuisance)] @ self._taken)[None]
+        own = (total[np.ix_(columns, columns)]
+               - total[np.ix_(columns, nuisance)] @ self._taken)
+        self.gram = Products(own[None])
         self._inner, self._left = (one[:, columns] - one[:, nuisance] @ self._taken
                                    for one in (inner, left))
         self.logdet = np.zeros(1)
         self.energy, self.designs = energy, designs
-        power = np.diag(self.gram[0])
+        power = np.diag(own)
         self.silent = power <= 1e-9 * max(power.max(), 1e-300)
         self.freedom = len(gram)
 

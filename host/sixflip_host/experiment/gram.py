@@ -1,7 +1,10 @@
 """What columns say together, S' C^-1 S, at the points of a grid of noise levels.
 
-A search looks at few points of the grid, near the levels that the data has, and a matrix of all
-columns costs more than all else there: it is worked out where it is asked for, once.
+A search looks at few points of the grid, near the levels that the data has, and at few columns at
+a time; a matrix of all columns costs more than all else there. What is kept of a point is made
+when it is first asked for, and is the smaller one: where a session has fewer contrasts than there
+are columns, the whitened columns themselves, of which any products are a short sum; in a longer
+one the products.
 """
 import numpy as np
 
@@ -11,9 +14,25 @@ from . import covariance
 MOSTLY = 0.9  # share of columns that are not silent from which on none is left out
 
 
-class Grams:
-    """An array (G, K, K) of which each point of the grid is worked out when it is first asked
-    for: an index as of such an array, whose first part says which points."""
+class Products:
+    """Products that are there already: values (G, K, K)."""
+
+    def __init__(self, values):
+        self.values = values
+
+    def at(self, point, columns=None):
+        """(k, k) products of columns (default all) at one point of the grid."""
+        columns = np.arange(self.values.shape[1]) if columns is None else columns
+        return self.blocks(np.array([point]), columns, columns)[0]
+
+    def blocks(self, points, rows, columns):
+        """(P, r, c) products of columns rows (r,) with columns (c,) at points (P,) of the grid."""
+        return self.values[points[:, None, None], rows[:, None], columns]
+
+
+class Grams(Products):
+    """Products of K columns at the G points of a grid, each point worked out when it is first
+    asked for. values: the products, or (G, K, rows) the columns that they are the products of."""
 
     def __init__(self, groups, grid, space, common, columns):
         """grid: list of (placement level, flicker level); space (m, p) orthonormal, projected out;
@@ -24,26 +43,30 @@ class Grams:
         self.loud = slice(None) if most else np.flatnonzero(loud)
         self.fixed, self.known = space.shape[1] + common.shape[1], space.shape[1]
         self.space, self.common, self._columns = space, common, columns
-        size = columns.shape[1]
+        rows, size = len(columns) + common.shape[1], columns.shape[1]
+        self._whitened = rows < np.count_nonzero(loud)
         # Memory that is never written to is never taken.
-        self._values = np.empty((len(grid), size, size))
+        super().__init__(np.empty((len(grid), size, rows if self._whitened else size)))
         self._done = np.zeros(len(grid), bool)
         self._factors = {}
 
     def __len__(self):
         return len(self.grid)
 
-    def __getitem__(self, index):
-        points, *columns = index if isinstance(index, tuple) else (index,)
-        if all(np.size(one) for one in columns) and not self._done[points].all():
-            self._fill(np.atleast_1d(np.arange(len(self.grid))[points]).ravel())
-        return self._values[index]
+    def blocks(self, points, rows, columns):
+        self._fill(points)
+        if not self._whitened:
+            return super().blocks(points, rows, columns)
+        others = self.values[points[:, None], columns]
+        own = others if rows is columns else self.values[points[:, None], rows]
+        return own @ others.transpose(0, 2, 1)
 
     def of(self, columns):
         """(G, k, k) of a few columns at every point; nothing is kept of it."""
         out = np.empty((len(self.grid), len(columns), len(columns)))
-        out[self._done] = self._values[np.ix_(self._done, columns, columns)]
-        for points, left in self._left(np.flatnonzero(~self._done), columns):
+        done = np.flatnonzero(self._done)
+        out[done] = self.blocks(done, columns, columns)
+        for points, left in self._products(np.flatnonzero(~self._done), columns):
             out[points] = left
         return out
 
@@ -75,16 +98,36 @@ class Grams:
         return quadratic, inner, logdet
 
     def _fill(self, points):
-        for chosen, left in self._left(np.unique(points[~self._done[points]]), self.loud):
+        new = np.unique(points[~self._done[points]])
+        made = self._left if self._whitened else self._products
+        for chosen, left in made(new, self.loud) if len(new) else ():
             for point, one in zip(chosen, left):
                 if isinstance(self.loud, slice):
-                    self._values[point] = one
+                    self.values[point] = one
+                    continue
+                self.values[point] = 0.0
+                if self._whitened:
+                    self.values[point, self.loud] = one
                 else:
-                    self._values[point] = 0.0
-                    self._values[point][np.ix_(self.loud, self.loud)] = one
+                    self.values[point][np.ix_(self.loud, self.loud)] = one
             self._done[chosen] = True
 
     def _left(self, points, columns):
+        """Pairs of points of one flicker level and (points, k, m + c) these columns whitened,
+        without space and common: what is left of them, and below it what the coefficients of
+        common, known to 1, would have to be, so that the products of both are those asked for."""
+        given = np.hstack([self.space, self.common, self._columns[:, columns]])
+        f = self.fixed
+        for chosen, factor in self._of_flicker(points):
+            white = factor.whitened(given)
+            fixed, left = white[:, :, :f], white[:, :, f:]
+            lower = self._metric(fixed.transpose(0, 2, 1) @ fixed)
+            inverse = np.linalg.inv(lower)
+            its = inverse.transpose(0, 2, 1) @ (inverse @ (fixed.transpose(0, 2, 1) @ left))
+            left = np.concatenate([left - fixed @ its, its[:, self.known:]], axis=1)
+            yield chosen, left.transpose(0, 2, 1)
+
+    def _products(self, points, columns):
         """Pairs of points of one flicker level and (points, k, k) products of these columns,
         whitened, without space and common."""
         every = np.hstack([self.space, self.common, self._columns[:, columns]])

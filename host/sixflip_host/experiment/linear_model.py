@@ -29,7 +29,7 @@ class Unit:
     rows; designs: list of terms.Design, their K columns side by side; grid: list of (placement
     level, flicker level), G of them, in a table of this shape; z (m,) contrasts and columns (m,
     K), in the basis of the rows' groups without what space (m, p), orthonormal, holds; freedom;
-    energy (K,), silent (K,) bool; gram (G, K, K) as gram.Grams, logdet (G,), quadratic (G,),
+    energy (K,), silent (K,) bool; gram: gram.Grams, logdet (G,), quadratic (G,),
     inner (G, K).
     signature: what the protocol is known by, see cutoffs.py. within: {(effect, number of its
     choice): nats that the blocks of the rests say for it}. between: it lies between the

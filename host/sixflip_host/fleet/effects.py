@@ -104,7 +104,8 @@ def averaged(unit, prior, usual):
     weight = np.exp(_likelihood(unit, points, prior, usual) - likelihood.max())
     weight /= weight.sum()
     floor = np.diag((FLOOR * prior) ** -2.0)
-    spread = np.linalg.inv(unit.gram[points] + floor)
+    every = np.arange(len(prior))
+    spread = np.linalg.inv(unit.gram.blocks(points, every, every) + floor)
     each = (spread @ unit.inner[points][:, :, None])[:, :, 0]
     mean = weight @ each
     away = each - mean
@@ -118,7 +119,8 @@ def _likelihood(unit, points, prior, usual):
     of the flicker."""
     flicker = np.array([unit.grid[k][1] for k in points])
     known = -0.5 * (np.log(flicker / usual) / np.log(evidence.USUAL_FACTOR["flicker"])) ** 2
-    full = unit.gram[points] + np.diag(prior ** -2.0)
+    every = np.arange(len(prior))
+    full = unit.gram.blocks(points, every, every) + np.diag(prior ** -2.0)
     inner = unit.inner[points]
     taken = (inner * np.linalg.solve(full, inner[:, :, None])[:, :, 0]).sum(axis=1)
     return (known - 0.5 * unit.quadratic[points] - unit.logdet[points] + 0.5 * taken

@@ -139,7 +139,7 @@ def alias_matrix(diagnosis, path):
     from .alias_picture import draw
     tables = {}
     for kind, gap in diagnosis.gaps.items():
-        gram = sum(u.gram[i] for u, i in zip(gap.units, gap.levels()))
+        gram = sum(u.gram.at(i) for u, i in zip(gap.units, gap.levels()))
         names, table = aliases.alias_table(gram, gap.options)
         if names:
             tables[kind] = names, np.nan_to_num(table)

@@ -19,9 +19,10 @@ FREE = (1, 3)  # placements that lean: free across gravity
 
 
 class Plain:
-    """A session of five placements and the same in matrices of all readings."""
+    """A session of five placements, with so many columns of effects, and the same in matrices of
+    all readings."""
 
-    def __init__(self):
+    def __init__(self, loud=2):
         rng = np.random.default_rng(12)
         n = 3 * len(T)
         self.base, self.lateral, self.free, parts = np.zeros((n, n)), [], [], []
@@ -41,9 +42,10 @@ class Plain:
         self.lateral, self.free = np.hstack(self.lateral), np.hstack(self.free)
         self.kernel = np.kron(flicker_kernel(T, SECONDS), np.diag(SHARES))
         self.common = rng.standard_normal((n, 1))
-        self.columns = np.hstack([rng.standard_normal((n, 2)), np.zeros((n, 1))])
+        self.columns = np.hstack([rng.standard_normal((n, loud)), np.zeros((n, 1))])
         self.nuisance, self.y = rng.standard_normal((n, 4)), rng.standard_normal(n)
-        design = Design("slope", "", ["x", "y", "z"], [0, 1, 2], self.columns, np.full(3, 10.0))
+        design = Design("slope", "", list(map(str, range(loud + 1))), [0] * (loud + 1),
+                        self.columns, np.full(loud + 1, 10.0))
         self.unit = linear_model.unit(Rows(
             self.y, covariance.in_time(T, SECONDS, SHARES, parts), self.nuisance,
             ((0.0, 0.3, 20.0), (0.01, 1.0)), (), self.common), [design])
@@ -61,16 +63,23 @@ def plain():
     return Plain()
 
 
-def test_statistics_are_those_of_the_covariance_at_every_point(plain):
+@pytest.mark.parametrize("loud", [2, 60])  # fewer than there are contrasts, and more
+def test_statistics_are_those_of_the_covariance_at_every_point(loud):
+    plain = Plain(loud)
     unit, q = plain.unit, plain.across
     assert unit.freedom == q.shape[1] and len(unit.grid) == 6
-    assert unit.silent.tolist() == [False, False, True]
+    assert unit.silent.tolist() == [False] * loud + [True]
+    few = np.array([1, loud, 0])
     others = np.random.default_rng(1).standard_normal((len(plain.y), 3))
     quadratic, projections = unit.statistics(np.stack([unit.contrasts(y) for y in others.T], 1))
     for index, point in enumerate(unit.grid):
         c = plain.covariance(*point)
         inverse, s, z = np.linalg.inv(c), q.T @ plain.columns, q.T @ plain.y
-        assert unit.gram[index] == pytest.approx(s.T @ inverse @ s)
+        products = s.T @ inverse @ s
+        assert unit.gram.of(few)[index] == pytest.approx(products[np.ix_(few, few)])
+        assert unit.gram.blocks(np.array([index]), few[:1], few) == pytest.approx(
+            products[None, few[:1]][:, :, few])
+        assert unit.gram.at(index) == pytest.approx(products)
         assert unit.logdet[index] == pytest.approx(0.5 * np.linalg.slogdet(c)[1])
         assert unit.quadratic[index] == pytest.approx(z @ inverse @ z)
         assert unit.inner[index] == pytest.approx(s.T @ inverse @ z)
