@@ -54,7 +54,8 @@ class Grams(Products):
         return len(self.grid)
 
     def blocks(self, points, rows, columns):
-        self._fill(points)
+        if len(rows) and len(columns):
+            self._fill(points)
         if not self._whitened:
             return super().blocks(points, rows, columns)
         others = self.values[points[:, None], columns]
