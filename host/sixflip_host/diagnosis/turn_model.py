@@ -66,8 +66,8 @@ class TurnModel(RestModel):
         groups = covariance.apart(bases, [np.eye(len(b)) / t.seconds
                                           for b, t in zip(bases, chosen)], by_hand)
         flips = FLIPS_DEG if any(t.flip for t in chosen) else (FLIP_DEG,)
-        rows = nominal_rows.Rows(y, groups, turns.nuisance(chosen),
-                                 (stray_turns.LEVELS_DEG, flips))
+        nuisance = np.hstack([turns.nuisance(chosen), turns.squareness(chosen)])
+        rows = nominal_rows.Rows(y, groups, nuisance, (stray_turns.LEVELS_DEG, flips))
         return linear_model.unit(
             rows, designs, wanted, turns=chosen,
             signature=("turns", tuple((t.flip, round(t.turned, -1)) for t in chosen)))

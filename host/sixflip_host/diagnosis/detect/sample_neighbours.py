@@ -9,6 +9,11 @@ FEWEST = 50  # samples before the noise of a column is known
 CALM = 8.0  # standard deviations that the neighbours of a sample at rest may span
 LONG = 25  # samples on each side: their median errs by a sixth of the noise
 BLURRED = 100.0  # counts: with wider noise a page more or less tells nothing
+# The same where a hand or a slow wave moves the level: what is foreseen there is off with the very
+# samples whose page is compared, so a page must lie where noise of any tail seldom comes.
+BLURRED_MOVING = PAGE / CALM
+WHITE = 0.1  # correlation with the sample before, up to which a level at rest is known beside it
+NEAR = 2.0  # standard deviations beyond which a sample may be a jump, and counts as so far
 AT_A_TIME = 1 << 16  # samples that are looked at at once: memory, not time
 
 
@@ -40,9 +45,10 @@ def together(tables):
                      for f in fields(Samples)))
 
 
-def tabled(column, banded):
+def tabled(column, banded, at_rest=None):
     """Samples of a column (n,) of whole numbers that are not at its ends, or None where noise
-    hides a page; banded: a reading of 0 says nothing."""
+    hides a page; banded: a reading of 0 says nothing; at_rest (n,): which of them are in a rest,
+    None: all."""
     around = np.lib.stride_tricks.sliding_window_view(column, 7)
     noise = 1.4826 / np.sqrt(2.0) * float(np.median(np.abs(np.diff(column))))
     span, middle = _beside(around)
@@ -53,10 +59,12 @@ def tabled(column, banded):
                      (4.0 * (around[:, 2] + around[:, 4]) - around[:, 1] - around[:, 5]) / 6.0)
     off = around[:, 3] - level
     sigma = np.ones(len(off))
-    for mask in (calm & same, calm & ~same, ~calm):
+    known = calm & same & (True if at_rest is None else at_rest[3:-3])
+    for mask in (known, calm & ~known, ~calm):
         if mask.any():
             sigma[mask] = max(1.4826 * float(np.median(np.abs(off[mask]))), 1.0)
-    keep = sigma < BLURRED
+    widest = np.where(known & _white(off / sigma, known), BLURRED, BLURRED_MOVING)
+    keep = sigma < widest
     if banded:
         keep &= (around != 0).all(axis=1)
     if keep.sum() < FEWEST:
@@ -87,3 +95,11 @@ def _long(column, noise):
     change = ndimage.maximum_filter1d(level, 2 * LONG + 1) \
         - ndimage.minimum_filter1d(level, 2 * LONG + 1)
     return level[3:-3], change[3:-3] < max(noise, 1.0)
+
+
+def _white(z, among):
+    """Whether standardised residuals z (n,) among those (n,) tell little of the next ones."""
+    pairs = among[1:] & among[:-1]
+    z = np.clip(z, -NEAR, NEAR)
+    one, after = z[:-1][pairs], z[1:][pairs]
+    return float(one @ after) <= WHITE * float(one @ one)

@@ -28,24 +28,33 @@ LEAST = 1e-200  # of a density: what a float still divides by
 def finding(sessions, sensor, banded=()):
     """[Finding] of torn reads in a sensor, or []; banded: axes on which readings near 0 read 0,
     which are jumps with a name."""
-    columns = [getattr(s.capture, sensor) for s in registers.of_counts(sessions, sensor)]
-    tables = [tabled(counts[:, axis].astype(np.int64), axis in banded)
-              for counts in columns if len(counts) >= FEWEST for axis in range(3)]
+    tables = [tabled(counts[:, axis].astype(np.int64), axis in banded, _at_rest(s, len(counts)))
+              for s in registers.of_counts(sessions, sensor)
+              for counts in [getattr(s.capture, sensor)] if len(counts) >= FEWEST
+              for axis in range(3)]
     samples = together(tables)
     if not len(samples):
         return []
     nats, number, others = competed(samples)
     if not present(nats):
         return []
-    chances = sum(int((np.diff(column // PAGE) != 0).sum()) for counts in columns
-                  for column in counts.T.astype(np.int64))
-    percent = 100.0 * number / max(chances, number, 1.0)
+    # Of the samples looked at: whose page changed, and whose change the tear hid.
+    chances = float((samples.before == 0).sum()) + number
+    percent = 100.0 * number / max(chances, 1.0)
     half = 1.645 * percent / np.sqrt(max(number, 1.0))
     return [Finding("torn_reads", sensor, [], {"chance": round(percent, 3)}, "%", nats, "noise",
                     "about %.0f samples mix the bytes of two readings" % number,
                     {"chance": (max(percent - half, 0.0), percent + half)},
                     share=float(number / max(number + others, 1e-9)),
                     number=max(1, round(number + others)))]
+
+
+def _at_rest(session, number):
+    """(number,) whether a sample is in a rest of the session."""
+    rests = np.zeros(number, bool)
+    for run in session.runs:
+        rests[run.first:run.end] = True
+    return rests
 
 
 def jumps(sessions, without=()):
