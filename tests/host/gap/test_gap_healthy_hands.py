@@ -113,3 +113,46 @@ def test_another_form_of_an_effect_may_look_like_one_of_the_same_variable_only()
     assert not hypotheses.alike(form("thermal_rate", (2,)), bias)
     assert not hypotheses.alike(form("g_sensitivity", (1,)), bias)
     assert hypotheses.alike(form("dead_band", (1,)), form("asymmetry", (1,)))
+
+
+def carried(seed, rest=500, move=400):
+    """(counts, whether at rest) of noise of a fifth of a page where a hand that trembles carries
+    the box from rest to rest, every other time onto another face."""
+    generator, level, parts = np.random.default_rng(seed), 1000.0, []
+    u = (np.arange(move) + 0.5) / move
+    for number in range(24):
+        parts.append(np.full(rest, level))
+        way = number % 2 * (generator.choice([-16384, 0, 16384]) + 400.0 * generator.normal())
+        trembling = sum(250.0 * generator.normal() * np.sin(8.0 * np.pi * hz * u)
+                        for hz in generator.uniform(2.0, 9.0, 4))
+        parts.append(level + way * u ** 3 * (10.0 - 15.0 * u + 6.0 * u ** 2)
+                     + trembling * np.sin(np.pi * u) ** 2)
+        level += way
+    counts = np.concatenate(parts)
+    return (np.rint(counts + 47.0 * generator.standard_normal(len(counts))).astype(np.int64),
+            np.tile(np.arange(rest + move) < rest, 24))
+
+
+@pytest.mark.parametrize("seed", [1, 2, 4])
+def test_a_hand_that_trembles_between_the_rests_is_no_torn_read(seed):
+    """A sample and the one before it are carried together, so the page of one tells of the
+    other: 10 to 30 nats for torn reads where all samples were judged alike."""
+    counts, at_rest = carried(seed)
+    samples = torn_reads.tabled(counts, False, at_rest)
+    assert 11000 < len(samples) <= at_rest.sum()
+    assert not present(torn_reads.competed(samples)[0])
+
+
+def test_the_angles_of_the_accelerometer_that_reads_the_ends_are_no_gap_of_the_gyro():
+    """Faces of a crooked box are read as angles between its axes, alike in every session."""
+    plans = [scenario.from_dict({"sensor": "mpu6050", "scene": "paper", "seed": seed})
+             for seed in (9, 10)]
+    sessions = [blocks.of("s", simulated_session.session(plan, 0)) for plan in plans]
+    nominal = [attitude_fit.fit(session) for session in sessions]
+    skewed = np.eye(3) + np.radians(0.15) * np.array([[0, 1, -1], [1, 0, 1], [-1, 1, 0]])
+    for one in nominal:
+        up = one.up @ skewed
+        one.up = up / np.linalg.norm(up, axis=1)[:, None]
+    gap = turn_model.TurnModel("gyro", "mpu6050", diagnosis.Settings(jobs=1)).fit(
+        sessions, nominal)
+    assert gap.adequacy.ok and not gap.found.best.forms

@@ -15,13 +15,21 @@ import numpy as np
 from ...capture import registers
 from .. import odds
 from .detection import Finding, present
-from .sample_neighbours import AT_A_TIME, CALM, FEWEST, PAGE, Samples, tabled, together
+from .sample_neighbours import (
+    AT_A_TIME,
+    CALM,
+    FEWEST,
+    NEAR,
+    PAGE,
+    Samples,
+    tabled,
+    together,
+)
 
 WIDE = 4096.0  # counts: jumps of any size are spread evenly that far to both sides
 SHARES = tuple(10.0 ** np.arange(-5.0, -0.49, 0.25))  # tried, of torn samples and of jumps
 FREEDOM = (5.0, 15.0, 200.0)  # of Student's t: how heavy the tails of the noise are
 LOUD = (2.0, 3.0, 5.0)  # times the noise, of samples that are louder without a name
-NEAR = 2.0  # standard deviations within which a sample's chance of a jump is small
 LEAST = 1e-200  # of a density: what a float still divides by
 
 
