@@ -24,6 +24,13 @@ def pytest_runtest_call():
     gc.freeze()
 
 
+def pytest_xdist_auto_num_workers():
+    """Workers of -n auto: one more than this process has cores. Part of a worker's time is
+    waiting, for a board's answer, a download or a package, in which another test computes."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    return (cores or 1) + 1
+
+
 # In no package registry, so of all tiers this one alone may be absent in CI.
 MAY_BE_ABSENT = "no firmware image for the emulated Pico"
 
