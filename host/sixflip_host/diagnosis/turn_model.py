@@ -68,8 +68,9 @@ class TurnModel(RestModel):
         flips = FLIPS_DEG if any(t.flip for t in chosen) else (FLIP_DEG,)
         nuisance = np.hstack([turns.nuisance(chosen), turns.squareness(chosen)])
         rows = nominal_rows.Rows(y, groups, nuisance, (stray_turns.LEVELS_DEG, flips))
+        # Of a half only sizes are asked: its turns, all of their samples, need not stay.
         return linear_model.unit(
-            rows, designs, wanted, turns=chosen,
+            rows, designs, wanted, turns=chosen if wanted is None else (),
             signature=("turns", tuple((t.flip, round(t.turned, -1)) for t in chosen)))
 
     def usual(self):

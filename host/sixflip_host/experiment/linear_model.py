@@ -33,8 +33,8 @@ class Unit:
     inner (G, K).
     signature: what the protocol is known by, see cutoffs.py. within: {(effect, number of its
     choice): nats that the blocks of the rests say for it}. between: it lies between the
-    sessions, see session_offsets.py. turns: the turns that it was made of. apart: the units
-    are axes, which have no coefficient in common.
+    sessions, see session_offsets.py. turns: the turns that it was made of, where all columns
+    are asked for. apart: the units are axes, which have no coefficient in common.
     """
 
     rows: Rows
