@@ -30,9 +30,11 @@ help:
 
 setup: $(VENV)/.installed
 
+# --no-compile: Python compiles what is imported, a small part of what is installed
 $(VENV)/.installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test,pico]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile \
+		--editable '.[test,pico]'
 	touch $@
 
 micropython: setup
