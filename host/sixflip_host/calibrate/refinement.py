@@ -7,10 +7,12 @@ from sixflip.poses.faces import LEANING
 from ..capture import rests, rests_by_variance
 from ..errors import BadFile, CheckFailed
 from ..experiment import blocks
-from . import gyro_rests, joint_refinement, kept_parameters, multiposition, rests_and_moves
+from . import joint_refinement, kept_parameters, multiposition, rests_and_moves
 from . import refinement_answer as answer
 
 LABELS = "labels"
+FEWEST_RESTS = 8        # from which the gyro's g-sensitivity is told from its bias
+WORTH_NINE_TERMS = 2.0  # chi2/dof must fall this many times over before they are believed
 
 
 def refine(capture, free=False, record=None, g_sensitivity="auto"):
@@ -24,11 +26,37 @@ def refine(capture, free=False, record=None, g_sensitivity="auto"):
         result, told, kept = kept_parameters.refine(session, record)
     else:
         per_g = g_sensitivity == "on" or (
-            g_sensitivity == "auto" and gyro_rests.pulled_by_gravity(session))
+            g_sensitivity == "auto" and pulled_by_gravity(session))
         if g_sensitivity == "on" and not session.has_gyro:
             raise BadFile("no gyro columns, expected gx gy gz for --g-sensitivity on")
         result = joint_refinement.refine(session, per_g)
     return assemble(capture, session, result, source, told, kept)
+
+
+def bias_of_rests(session):
+    """Rest means of each gyro axis as bias + per_g . force, and without per_g.
+
+    session: RestsAndMoves. Returns (chi2/dof without (3,), with (3,), per_g (3, 3) rad/s a g).
+    """
+    x = np.hstack([np.ones((len(session.force), 1)), session.force])
+    weight = 1.0 / session.rate_error[:, None]
+    chi2 = []
+    for columns in (x[:, :1], x):
+        found = np.linalg.lstsq(columns * weight, session.rate * weight, rcond=None)[0]
+        left = (session.rate - columns @ found) * weight
+        chi2.append((left**2).sum(axis=0) / (len(x) - columns.shape[1]))
+    return chi2[0], chi2[1], found[1:].T
+
+
+def pulled_by_gravity(session):
+    """True when the rests say that g-sensitivity is there and can be told from the bias."""
+    if not session.has_gyro or len(session.codes) < FEWEST_RESTS:
+        return False
+    spread = np.linalg.svd(session.force - session.force.mean(axis=0), compute_uv=False)
+    if spread[-1] < 0.5:
+        return False
+    without, with_it, _ = bias_of_rests(session)
+    return bool(without.mean() > WORTH_NINE_TERMS * max(with_it.mean(), 1.0))
 
 
 def session_of(capture, free=False, far_pairs=None):

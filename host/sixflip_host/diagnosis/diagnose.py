@@ -1,11 +1,17 @@
 """Captures in, a Diagnosis out: the one way in for the verb, the report and Python programs."""
 from dataclasses import replace
 
+import numpy as np
+
 from .. import progress
-from ..experiment import blocks
-from . import diagnosis, noise_reference
+from ..errors import BadFile
+from ..experiment import blocks, long_rest
+from ..experiment.signal_measures import allan
+from . import diagnosis
 from .detect import byte_faults
 from .settings import Settings
+
+SHORTEST_REST_S = 20.0  # flicker shows from some seconds on
 
 
 def diagnose(captures, simulator=(), reference=(), certified_box=False, without=(), jobs=0,
@@ -22,7 +28,7 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
     sessions = [blocks.of(name, capture) for name, capture in captures]
     noise = {}
     for name, capture in reference:
-        noise = noise_reference.levels(capture, name)
+        noise = flicker_levels(capture, name)
     settings = Settings(certified_box, tuple(without), noise, jobs, prior=prior)
     own, comparisons = None, []
     if simulator:
@@ -39,3 +45,23 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
             own = against_simulator.read(list(simulated), list(names), settings)
             settings = replace(settings, simulated=own.known)
     return diagnosis.of(sessions, settings, own, comparisons, damages)
+
+
+def flicker_levels(capture, path):
+    """{sensor: flicker level (mg or deg/s)} of a capture's longest rest: what the sensor has when
+    nothing else acts. BadFile when there is no such rest."""
+    session = blocks.of(path, capture)
+    rest = long_rest.longest(session)
+    if rest is None or (rest[1] - rest[0]) / session.rate < SHORTEST_REST_S:
+        raise BadFile("%s: no rest of %g s or more to know the noise by" % (path, SHORTEST_REST_S))
+    found = {}
+    for sensor in ("accel", "gyro"):
+        if getattr(capture, sensor) is None:
+            continue
+        x = long_rest.scaled(session, sensor)[rest[0]:rest[1]]
+        noise = session.noise_accel if sensor == "accel" else session.noise_gyro
+        m = max(1, len(x) // 12)
+        tau = m / session.rate
+        excess = np.maximum(allan(x, m) ** 2 - noise ** 2 / tau, 0.0)
+        found[sensor] = float(np.sqrt(excess.mean()))
+    return found

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sixflip.accelerometer import solver as accelerometer
-from sixflip_host.calibrate import gyro_rests, joint_refinement, refinement, refinement_answer
+from sixflip_host.calibrate import joint_refinement, refinement, refinement_answer
 from sixflip_host.experiment import blocks, moves, turns
 from tests.worlds import hand_session, xsens_recording
 from tests.worlds.hand_session import RAD
@@ -100,7 +100,7 @@ def test_g_sensitivity_comes_back():
     sensor = hand_session.Sensor(3, noise_mg=1.0, noise_dps=0.05, per_g=PULL)
     capture = hand_session.session(sensor, hand_session.free_poses(3, 30), 3)
     session, result = solved(capture, per_g=True)
-    assert gyro_rests.pulled_by_gravity(session)
+    assert refinement.pulled_by_gravity(session)
     # The solution's axes are turned against the box's by Q; the gyro's own are not.
     Q = body_frame(result.accelerometer()[0], sensor)
     found = refinement_answer.gyro(result)
@@ -112,7 +112,7 @@ def test_g_sensitivity_is_not_invented():
     sensor = hand_session.Sensor(4)
     capture = hand_session.session(sensor, hand_session.free_poses(4, 20), 4)
     session, _ = refinement.session_of(capture)
-    assert not gyro_rests.pulled_by_gravity(session)
+    assert not refinement.pulled_by_gravity(session)
 
 
 def test_standard_errors_are_the_errors():
@@ -134,7 +134,7 @@ def test_xsens_fuller_problem(recordings):
     session, _ = refinement.session_of(capture, free=True)
     assert len(session.names) == 38
     assert len(session.moves) == 37
-    without, with_it, pull = gyro_rests.regress(session)
+    without, with_it, pull = refinement.bias_of_rests(session)
     assert (without > 20).all()
     assert (with_it < 2.2).all()
     plain = joint_refinement.refine(session)

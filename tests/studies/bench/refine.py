@@ -13,7 +13,6 @@ import numpy as np
 
 from sixflip.accelerometer import solver as accelerometer
 from sixflip_host.calibrate import (
-    gyro_rests,
     joint_refinement,
     multiposition,
     refinement,
@@ -49,7 +48,7 @@ def xsens(folder):
     plain = joint_refinement.refine(session)
     fuller = joint_refinement.refine(session, per_g=True)
     seconds = time.perf_counter() - began
-    without, with_it, _ = gyro_rests.regress(session)
+    without, with_it, _ = refinement.bias_of_rests(session)
     print("fuller problem: all of every rest, all moves, the gyro (%.1f s)" % seconds)
     print("  | |a|-g | per pose, mg rms %.3f" % rms(refinement_answer.norm_off_mg(fuller)))
     print("  chi2/dof of the gyro's rests, x y z: %s without g-sensitivity, %s with it" % (
