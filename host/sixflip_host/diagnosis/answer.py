@@ -1,16 +1,13 @@
 """The answer as JSON, in the words and with the keys of GAP.md."""
 import math
 
-from sixflip_sim.effects.drift import FLOOR_OF_UNIT
-
+from ..experiment.flicker import FLOOR_OF_KERNEL
 from ..planning import next_capture
 from . import detectability, odds, rest_noise
 from .detect import damage, line_frequency, sample_clock
 from .simulator import simulator_answer
 
 UNITS = {"accel": "mg", "gyro": "deg/s", "gyro_turns": "deg/s", "accel_motion": "mg"}
-# Allan floor of the five exponentials of unit level, by numerical integration of their kernel.
-FLOOR_OF_KERNEL = 0.78 / FLOOR_OF_UNIT
 
 
 def spelled(unit):

@@ -22,6 +22,7 @@ from ..experiment.session_rows import body_to_table
 from ..simulation import replica
 from . import coefficient_fits
 
+# s, tried of a session's own warming: GAP has 60-300 s, and some octaves to both sides.
 TAUS_S = (30.0, 60.0, 120.0, 200.0, 300.0, 400.0, 600.0, 1000.0, 3000.0)
 
 

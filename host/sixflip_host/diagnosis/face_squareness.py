@@ -4,6 +4,8 @@ Where each face points is a nuisance of the fit, so a crooked box leaves no gap 
 worth a word all the same. Twelve parameters of a sensor take up three of the angles between six
 faces; what the others are off is seen.
 """
+from dataclasses import dataclass
+
 import numpy as np
 from scipy import special
 
@@ -14,14 +16,16 @@ from ..experiment import nominal_rows, projection
 WORTH_DEG = 0.2  # 3.5 mg across gravity
 PLACEMENT_MG = 1.2  # 0.07 deg: a box set down by hand
 SEEN = 0.2  # of the best seen direction: what a tilted table alone lets show is not used
-MG_A_DEG = 1000.0 * np.pi / 180.0
+MG_A_DEG = 1000.0 * np.radians(1.0)  # of gravity, across a face that leans
 
 
+@dataclass(frozen=True)
 class Crooked:
     """deg {face name: degrees off}, p, flipped: True when the table's tilt is not in it."""
 
-    def __init__(self, deg, p, flipped):
-        self.deg, self.p, self.flipped = deg, p, flipped
+    deg: dict
+    p: float
+    flipped: bool
 
     @property
     def worst(self):

@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import progress
 from ..experiment import long_rest, terms
+from ..experiment.flicker import FLOOR_OF_KERNEL
 from . import (
     adequacy,
     aliases,
@@ -202,7 +203,6 @@ def _with_bent(cause, data, index):
 def _drift(found, units, data, levels, kind, chosen, index):
     """[RestCause] of a drift in the likeliest set: its Allan floor on the axes that wander more
     than is usual, with a 90 % interval by the profile of the likelihood."""
-    from .answer import FLOOR_OF_KERNEL
     if "drift" not in found.best.names:
         return []
     value, interval, free = {}, {}, frozenset(["flicker"])

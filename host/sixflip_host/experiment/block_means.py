@@ -6,6 +6,9 @@ from sixflip.poses import faces
 from . import block_noise
 
 EDGE_S = 0.1  # left out at both ends of a rest: a label is never exact
+# Two blocks tell what fades within a rest, of which the fastest creep (terms.CREEP_S, 5 s) needs
+# one each half of its time. All blocks of a rest are in one matrix (covariance.Group): a minute's
+# rest has no more than six, and a rest as short as a protocol's no more than two.
 BLOCK_S, MOST_BLOCKS = 2.5, 6
 SHORT_REST_BLOCKS = 2
 LONG_REST_S = 12.0

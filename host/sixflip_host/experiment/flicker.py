@@ -1,10 +1,12 @@
 """Flicker, the slow noise of a sensor, as the covariance of means over stretches of time."""
 import numpy as np
 
-from sixflip_sim.effects.drift import TIMES_S
+from sixflip_sim.effects.drift import FLOOR_OF_UNIT, TIMES_S
 
 # Flicker has neither a shortest nor a longest time: beside the library's 10 to 1000 s.
 ALL_TIMES_S = (0.3, 1.0, 3.0, *TIMES_S, 3000.0, 10000.0)
+# Allan floor of the five exponentials of unit level, by numerical integration of their kernel.
+FLOOR_OF_KERNEL = 0.78 / FLOOR_OF_UNIT
 
 
 def flicker_kernel(t, seconds):

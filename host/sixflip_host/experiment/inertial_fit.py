@@ -19,7 +19,7 @@ from . import noise_arrays, projection, terms
 from .turns import Turn
 
 EFFECT_NAMES = ("lever_arm", "filter_lag")
-EACH = (0, 1, 2)
+EACH = (0, 1, 2)  # x y z
 # What competes in motion, in the order of Move's columns: effect, variant, axis of each column.
 # Without a name: what is read along each axis with the size of the rate, with each rate, with
 # their products, with their changes, and a scale that the size of the rate changes.
@@ -34,10 +34,12 @@ FLAT_DEG = 15.0  # a move that leaves the vertical where it was, in the box
 HATS = 4  # of the bias's course over a session
 HABITS = 4  # cosines that hands have in common when they turn a box over, see handling_noise.py
 BENDS = 39  # columns of what bends with the attitude, or remembers the one before
+# Standard deviations: of a hand's way, of a centre of turning in a box as large as a hand, and of
+# what has no name (strangers.SCALE: as large as the library's effects are).
 PRIOR_METRES, PRIOR_CM, PRIOR_MG = 0.1, 10.0, 5.0
 BIAS_MG, STRANGE_BIAS_MG = 10.0, 60.0  # a session calibrated by its own poses, or by others'
 HAND_CM, WHEELS_CM = 0.3, 0.03  # how well the same hand, the same axle hold their centre
-MG_PER_METRE_S2 = 1000.0 / STANDARD_G
+MG_PER_METRE_S2 = 1000.0 / STANDARD_G  # mg
 SMALL_DEG = 10.0  # of turning: less has no axis of its own
 
 

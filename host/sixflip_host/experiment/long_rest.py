@@ -15,7 +15,7 @@ from . import block_noise, noise_arrays
 SAME_DEG = 3.0  # rests that lie apart by no more are in one attitude
 MEANS = 96  # of all rests together
 SHORTEST_S, FEWEST_SAMPLES = 0.5, 4  # of a mean
-SHORTEST_REST_S = 2.0
+SHORTEST_REST_S = 4.0 * SHORTEST_S  # fewer means have no course
 EDGE_S = 0.1  # left out at both ends of a rest: where it begins is never exact
 
 

@@ -14,13 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import optimize
 
-TAPERS = 4
+TAPERS = 4  # eight degrees of freedom a frequency; more of them blur it
 HIGHEST = 0.1  # of the sample rate: above that a chip's own filter takes noise away
 GROUPS = 80  # of frequencies, equally spaced in their logarithm
 PARTS, FEWEST = 20, 9  # of the frequencies, whose medians a line is held against; in each
 LINE = 6.0  # times its neighbourhood: no noise, but a line, for a mean of four tapers
 HALF_OF_90 = 1.353  # nats below the maximum at the ends of a 90 % interval: half of chi2(0.9, 1)
-ROUNDS = 200
+ROUNDS = 200  # of halved steps, which settle in 30 but where a square goes to zero
 
 
 @dataclass(frozen=True)

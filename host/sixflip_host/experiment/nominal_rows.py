@@ -14,10 +14,11 @@ from .attitude_fit import face_axes
 from .projection import lateral_basis
 
 PLACEMENT_MG = (0.1, 0.45, 0.8, 1.4, 3.0, 8.0, 40.0)  # per direction; 0.05 deg: 0.87
+# Levels tried: factors of 1.4 apart where parts are (typical.FLICKER), two and more beyond.
 FLICKER_MG = (0.005, 0.02, 0.033, 0.05, 0.075, 0.11, 0.15, 0.22, 0.4, 0.8, 1.6, 4.0)
 EARTH_DPS = (0.0005, 0.003)  # the Earth's horizontal rate, the box at an unknown azimuth
 FLICKER_DPS = (0.0002, 0.0007, 0.0014, 0.002, 0.003, 0.0045, 0.008, 0.016, 0.03, 0.1)
-EARTH_UP_DPS = 0.003
+EARTH_UP_DPS = 0.003  # 15 deg/h at a latitude of 45 degrees
 FEWEST_PAIRS, MOST_UNLIKE = 12, 2.0  # of blocks; an axis' flicker against all, at most
 STILL = 1e-6  # of an axis that does not wander at all
 COARSE_MG = 0.5  # of what rounding leaves in the mean of a rest

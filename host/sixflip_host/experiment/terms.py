@@ -20,7 +20,7 @@ WARM_UP_S = (30.0, 60.0, 120.0, 240.0, 480.0)  # GAP: 60-300 s, and an octave to
 CREEP_S = (5.0, 15.0, 30.0, 60.0, 120.0)  # GAP: 60-70 s seen on Z; down to a rest's length
 LONG_MEMORY_S = 30.0  # longer than two rests with the move between them
 PLAY_G = (0.1, 0.2, 0.4)  # widths of a play operator
-LEAST_VIBRATION_MG = 5.0
+LEAST_VIBRATION_MG = 5.0  # above the quietest rest: more than the noise of a chip (typical.NOISE)
 DOMAIN = {  # where an effect shows itself
     "thermal_bias": "temperature", "thermal_scale": "temperature", "thermal_rate": "temperature",
     "warm_up": "time", "drift": "time", "supply": "time", "quadratic": "orientation",

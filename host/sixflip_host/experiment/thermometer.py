@@ -2,8 +2,8 @@
 import numpy as np
 
 STEP_S = 1.0  # a chip's temperature follows its surroundings over tens of seconds
-SMOOTH_S = 8.0
-RATE_S = 40.0
+SMOOTH_S = 8.0  # shorter than that, averaged over the steps of the thermometer
+RATE_S = 40.0  # a rate is a difference, whose noise falls with this to the power 1.5
 MOVES_C = 0.4  # less than this over a whole capture says nothing about temperature
 
 

@@ -18,6 +18,8 @@ from .read_only import ReadOnlyArrays
 
 ROUNDS = 2  # of fits that begin with what the one before left
 PULL_DPS = 0.1  # deg/s per g, typical (effects/typical.py: g_sensitivity)
+# Of a turn: a hand is not faster; over more than a minute a bias that is off by 0.01 deg/s turns
+# the end by as much as a hand does (METHOD section 2); less than that is no turn to another pose.
 SHORTEST_S, LONGEST_S, LEAST_DEG = 0.3, 60.0, 20.0
 _known = weakref.WeakKeyDictionary()  # {Session: {up: turns}}: what was integrated is not again
 

@@ -13,6 +13,7 @@ from sixflip.poses import faces
 from sixflip_sim.effects.library import EFFECTS
 
 from ..experiment.projection import NEGLIGIBLE, basis, rank, without
+from . import protocols
 
 # Which effects have a signature in rests and turns; the order is that of the printed table.
 ACCEL = ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic",
@@ -21,9 +22,9 @@ ACCEL = ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic"
 GYRO = ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic", "cubic",
         "asymmetry", "saturation", "g_sensitivity", "hysteresis", "earth_rate", "supply")
 # Shapes at which a signature is looked at: a supply that differs, a rail below 1 g, a vibration.
-SHAPES = {"supply": {"volts": 3.4}, "vibration_rectification": {"vibration_mg": 300.0},
-          "saturation": {"level": 0.95}}
-GYRO_SHAPES = {"saturation": {"level": 50.0}}
+SHAPES = {"supply": {"volts": 3.4}, "saturation": {"level": 0.95},
+          "vibration_rectification": {"vibration_mg": protocols.SHAKE_MG}}
+GYRO_SHAPES = {"saturation": {"level": 50.0}}  # deg/s, below session_rows.FLIP_DPS
 
 
 def effect_columns(effect, moment, n):

@@ -10,7 +10,7 @@ from . import plan_file, protocols
 
 SETTLING_S = 1.0        # of a dwell: until the board has seen that the box is at rest
 SHORTEST, LONGEST = 50, 60000   # samples of a pose, as session_request.py on the board says
-MOST_POSES, MOST_TEXT = 200, 4096
+MOST_POSES, MOST_TEXT = 200, 4096  # poses, and characters of a request, as it says too
 
 
 def session_of(name, number):

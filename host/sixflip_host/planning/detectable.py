@@ -20,7 +20,7 @@ POWER_80 = NormalDist().inv_cdf(0.8)  # standard deviations beyond a cutoff: see
 # Two-sided 5 % over 12 tests (Bonferroni), and 80 % power.
 QUANTILE = NormalDist().inv_cdf(1.0 - 0.05 / 2.0 / 12.0) + POWER_80
 SILENT = math.inf
-MG_PER_RAD = 1000.0
+MG_PER_RAD = 1000.0  # of gravity, across it
 
 
 class Power:

@@ -3,12 +3,14 @@ import copy
 
 import numpy as np
 
+from sixflip.poses import faces
+
 from ..experiment import projection
 from ..experiment.session_rows import rows_of
 from . import alias, protocols
+from .plan_findings import SAME_CLASS
 
-MOST_MINUTES = 10.0
-APART = 0.9
+MOST_MINUTES = 10.0  # of a capture that somebody is asked for beside those that are there
 WORDS = {
     "cooling": "one cooling session, 12 poses", "warm": "one session started warm, 12 poses",
     "backward": "12 poses, then the same backward", "random": "12 poses in random order",
@@ -20,9 +22,10 @@ def candidates():
     """{name: SessionPlan}"""
     fixed = protocols.order_of("fixed")
     random = protocols.order_of("random", 11)
-    long = protocols.faces_session([1, 3, 5, 7, 9, 11, 2], dwell_s=60.0, state="warm")
+    long = protocols.faces_session([1, 3, 5, 7, 9, 11, 2], dwell_s=protocols.LONG_DWELL_S,
+                                   state="warm")
     shaken = protocols.faces_session(fixed, state="warm")
-    shaken.vibration_mg = 300.0
+    shaken.vibration_mg = protocols.SHAKE_MG
     return {"cooling": protocols.faces_session(random, state="cooling"),
             "warm": protocols.faces_session(random, state="warm"),
             "backward": protocols.faces_session(fixed, backward=True, state="warm"),
@@ -50,7 +53,6 @@ def present(diagnosis):
 
 
 def _faces(codes):
-    from sixflip.poses import faces
     return [faces.face_of_code(c) for c in codes]
 
 
@@ -113,7 +115,7 @@ def resolved(design, kind, wanted):
         one, two = signature.get(pair[1]), signature.get(pair[2])
         if one is None or two is None:
             continue
-        if max(projection.alias_index(one, two), projection.alias_index(two, one)) < APART:
+        if max(projection.alias_index(one, two), projection.alias_index(two, one)) < SAME_CLASS:
             found.append(pair)
     return found
 

@@ -8,7 +8,7 @@ would be noise amplified (six faces and |a| = g alone: 16 mg, with a perfect cos
 
 import numpy as np
 
-ENOUGH = 10.0
+ENOUGH = 10.0  # times narrower than the data sheets' spread
 NAMED = 0.3  # share of a parameter in the open directions above which it is named
 
 LISTED = 9  # names in a sentence; more are counted

@@ -5,9 +5,7 @@ from . import protocols
 from .plan_findings import Findings
 
 FREE_MINUTES = 0.25  # an addition that takes no time still takes a thought
-LONG_DWELL_S = 60.0
-LEANING = 12
-SHAKE_MG = 300.0
+LEANING = 12  # as many as there are poses on faces
 
 
 class Addition:
@@ -42,8 +40,8 @@ def candidates(protocol):
         built.append(("%d leaning poses" % LEANING, _leaning))
     if all(s.change_c > 0 for s in protocol.sessions):
         built.append(("a cooling session", _cooling))
-    if max(r.dwell_s for s in protocol.sessions for r in s.rests) < LONG_DWELL_S:
-        built.append(("dwell of %g s" % LONG_DWELL_S, _longer))
+    if max(r.dwell_s for s in protocol.sessions for r in s.rests) < protocols.LONG_DWELL_S:
+        built.append(("dwell of %g s" % protocols.LONG_DWELL_S, _longer))
     if len({r.turn for r in first.rests}) == 1:
         built.append(("turns both ways", _both_ways))
     if all(s.vibration_mg == 0 for s in protocol.sessions):
@@ -87,7 +85,7 @@ def _cooling(protocol):
 def _longer(protocol):
     for session in protocol.sessions:
         for rest in session.rests:
-            rest.dwell_s = LONG_DWELL_S
+            rest.dwell_s = protocols.LONG_DWELL_S
 
 
 def _both_ways(protocol):
@@ -98,7 +96,7 @@ def _both_ways(protocol):
 
 def _shaken(protocol):
     session = copy.deepcopy(protocol.sessions[0])
-    session.vibration_mg = SHAKE_MG
+    session.vibration_mg = protocols.SHAKE_MG
     protocol.sessions.append(session)
 
 

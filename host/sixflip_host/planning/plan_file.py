@@ -17,9 +17,10 @@ from ..atomic_write import write_text
 from ..errors import BadFile
 from .protocols import DWELL_S, MOVE_S, Protocol, Rest, SessionPlan, face_rest
 
-VERSION = 1
-MOST_POSES = 2000
+VERSION = 1  # of the file's form
+MOST_POSES = 2000  # of 5 s each: three hours
 LARGEST = 1 << 20       # characters of a plan's file
+# What a person, an oven or a robot can do: a day, and the parts' own temperatures and beyond.
 LIMITS = {"dwell_s": (0.5, 86400.0), "move_s": (0.0, 3600.0), "start_c": (-60.0, 150.0),
           "change_c": (-150.0, 150.0), "tau_s": (1.0, 1e5), "rest_s": (0.0, 86400.0)}
 POSE_KEYS = ("pose", "dwell_s", "move_s", "turn", "up")

@@ -3,10 +3,10 @@ import numpy as np
 
 from .detection import Finding
 
-WINDOW_S = 1.0
+WINDOW_S = 1.0  # a shaken second stands beside quiet ones; at 100 Hz it knows its level to 7 %
 QUIET = 0.02  # share of the windows that counts as quiet
 SHAKEN = 3.0  # times the quiet level, root mean square, in at least half of the windows
-FEWEST_WINDOWS = 8
+FEWEST_WINDOWS = 8  # of which half and one quiet one are compared
 
 
 def findings(sessions):

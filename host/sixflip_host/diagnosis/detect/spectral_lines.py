@@ -16,7 +16,7 @@ from . import line_frequency
 from .detection import Finding
 from .line_frequency import Line
 
-LENGTH_S, SHORTEST_S = 5.0, 2.0
+LENGTH_S, SHORTEST_S = 5.0, 2.0  # of a stretch: a rest of the paper's protocol, and of a short one
 LOWEST_HZ, LOWEST_MOVING_HZ = 0.7, 2.0  # a hand or a vehicle moves more slowly than that
 CHANCE = 0.001  # six axes together: well below what registers and spectra share, see odds.py
 FEWEST = 4  # stretches

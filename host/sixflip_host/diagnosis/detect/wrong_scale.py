@@ -17,6 +17,7 @@ from .detection import present
 SOUND_ACCEL = 0.1  # of |a|: ±80 mg of offset and 3 % of scale [MPU-6000 PS rev 3.4, table 6.2]
 SOUND_GYRO = 0.05  # ±3 % of scale [table 6.1], and a misaligned axis
 MOVING = 3.0  # times that, where a hand or wheels pull at the accelerometer, or the gyro is late
+# Full scales of a chip are octaves apart, and there are up to five.
 RANGES = (0.0625, 0.125, 0.25, 0.5, 2.0, 4.0, 8.0, 16.0)
 WIDEST = 64.0  # any factor without a name lies within that and its inverse
 ALIKE = 0.8  # correlation of gravity's turning and the gyro's that tells a factor
