@@ -6,6 +6,7 @@ here is a value: a part of a session, or one without some of its rests, is anoth
 """
 import copy
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from sixflip.poses import faces
 from sixflip_sim.effects.moment import Moment
 
 from .. import progress
-from ..capture import rests, rests_by_variance
+from ..capture import clock, rests, rests_by_variance
 from ..capture.capture_file import Capture
 from ..capture.find_poses import HELD_BY_HAND, find_poses
 from . import block_means, noise_arrays, thermometer
@@ -100,6 +101,12 @@ class Session(ReadOnlyArrays):
         """The same session without the placements with these labels."""
         codes = {faces.pose_code(label) for label in labels}
         return self._of_runs([run for run in self.runs if run.code not in codes])
+
+    @cached_property
+    def period_s(self):
+        """Seconds between two samples, by the clock where it runs."""
+        measured = None if self.timeless else clock.of(self.capture)
+        return 1.0 / (measured.rate_hz if measured else self.rate)
 
     def without_samples(self, bad):
         """The same session without the placements with more than a few bad samples; bad (N,)."""

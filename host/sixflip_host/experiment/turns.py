@@ -21,6 +21,8 @@ PULL_DPS = 0.1  # deg/s per g, typical (effects/typical.py: g_sensitivity)
 # Of a turn: a hand is not faster; over more than a minute a bias that is off by 0.01 deg/s turns
 # the end by as much as a hand does (METHOD section 2); less than that is no turn to another pose.
 SHORTEST_S, LONGEST_S, LEAST_DEG = 0.3, 60.0, 20.0
+WHOLE = 0.7  # samples: half of one that is missing, and what the stamps of both ends scatter by
+LEAST_STEP = 0.05  # periods between two samples, whatever their stamps
 _known = weakref.WeakKeyDictionary()  # {Session: {up: turns}}: what was integrated is not again
 
 
@@ -96,13 +98,22 @@ def between(session, up, bias, place, wander=None):
     """Turn from a placement of a Session to the next, not integrated. up (placements, 3): unit
     vectors against gravity; bias (3,) deg/s; wander as Turn has it."""
     move = moves.after(session, place)
-    t = session.t_s[move.first:move.end]
+    t = _even(session.t_s[move.first:move.end], session.period_s)
     rate = session.capture.gyro[move.first:move.end] / session.capture.meta[
         "gyro_lsb_per_dps"] - bias
     temperature = None if session.thermometer is None else session.thermometer.at(t[1:])
     return Turn(move.first, move.end, t, rate, 0.5 * (rate[1:] + rate[:-1]), up[place],
                 up[place + 1], session.labelled and move.flip, temperature,
                 np.zeros(3) if wander is None else wander, move.railed, np.eye(3), np.zeros(3))
+
+
+def _even(t, period_s):
+    """Times t (n,) s without what the stamps scatter by: spaced evenly where as many samples came
+    as so much time takes; else, where some are missing, as stamped, and none at the same time."""
+    if abs((t[-1] - t[0]) / period_s - (len(t) - 1)) < WHOLE:
+        return np.linspace(t[0], t[-1], len(t))
+    least = LEAST_STEP * period_s * np.arange(len(t))
+    return np.maximum.accumulate(t - least) + least
 
 
 def of(session, up):

@@ -174,3 +174,19 @@ def test_a_dead_band_is_wider_than_the_spacing_elsewhere():
     banded = np.where(np.abs(printed) < 40.0, 0.0, printed)
     assert band_of(banded) == 52
     assert codes.band_nats(np.rint(banded)[:, None])[0] > 20.0
+
+
+@pytest.mark.parametrize("level", [-84.0, 8.0])
+def test_bytes_are_told_by_the_steps_that_a_rule_changes_not_by_how_quiet_the_rests_are(level):
+    """A gyro that rests most of the time: what suits the rests better is no matter of bytes."""
+    generator, u, parts = np.random.default_rng(1), (np.arange(250) + 0.5) / 250, []
+    for _ in range(8):
+        swings = sum(3000.0 * generator.normal() * np.sin(4.0 * np.pi * f * u + f)
+                     for f in generator.uniform(0.4, 3.0, 3))
+        parts += [np.full(1500, level), level + np.sin(np.pi * u) ** 2 * swings]
+    rates = np.concatenate(parts)
+    sound = np.rint(rates + 1.6 * generator.standard_normal(len(rates))).astype(np.int64)
+    assert byte_faults.of_column(sound) is None
+    kind, words, back, _ = byte_faults.of_column(np.where(sound & 255 >= 128, sound - 256, sound))
+    assert kind == "sign_extension" and words.startswith("the low byte has a sign of its own")
+    assert np.array_equal(back(np.where(sound & 255 >= 128, sound - 256, sound)), sound)

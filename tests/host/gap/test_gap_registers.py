@@ -1,4 +1,6 @@
 """What registers and noise do to the rests: rails, steps, torn reads, stuck bits, bursts."""
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -163,3 +165,16 @@ def test_an_axis_that_nobody_turned_in_coarse_steps_is_not_stuck(coarse, said):
     if coarse:
         session.capture.accel[:, :2] = np.rint(session.capture.accel[:, :2] / 1000.0)
     assert counts.stuck([session]) == said
+
+
+@pytest.mark.parametrize("wide", [1.5, 1.64, 1.7])
+def test_noise_of_two_counts_has_no_spikes(wide):
+    """A median of half counts says of every other rest that it is three quarters as wide."""
+    generator = np.random.default_rng(4)
+    gyro = np.rint(-84.3 + wide * generator.standard_normal((60000, 3))).astype(np.int16)
+    session = SimpleNamespace(capture=SimpleNamespace(gyro=gyro), runs=[
+        (1, first, first + 500) for first in range(0, len(gyro), 500)])
+    number, looked = noise_bursts.spikes(session, "gyro")
+    assert looked > 59000 and number < noise_bursts.LEAST_SPIKES
+    gyro[100::200, 1] += 30
+    assert noise_bursts.spikes(session, "gyro")[0] > 200

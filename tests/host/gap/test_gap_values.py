@@ -74,6 +74,19 @@ def test_a_half_is_not_changed_by_calibrating_the_whole(capture):
     assert any(not np.allclose(a, t.middle) for a, t in zip(before, calibrated))
 
 
+def test_stamps_that_scatter_turn_no_box_and_two_of_the_same_time_stop_nothing(capture):
+    generator, scattered = np.random.default_rng(3), copy.copy(capture)
+    scatter = np.rint(2500.0 * generator.standard_normal(len(capture))).astype(np.int64)
+    scattered.t_us = np.maximum.accumulate(capture.t_us + scatter)
+    assert (np.diff(scattered.t_us) == 0).any()
+    up = attitude_fit.fit(blocks.of("s", capture)).up
+    even, other = (turns.of(blocks.of("s", c), up) for c in (capture, scattered))
+    assert len(even) == len(other)
+    for one, same in zip(even, other):
+        assert one.dt.min() > 0 and same.dt.min() > 0
+        assert np.degrees(np.abs(one.end - same.end)).max() < 0.25
+
+
 def pulled_by_gravity(capture, some):
     up = capture.accel[some] / capture.meta["accel_lsb_per_g"]
     return 0.5 * up[:, [1, 2, 0]]
