@@ -7,6 +7,7 @@ import fcntl
 import gc
 import json
 import os
+import signal
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,10 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy; the runs are side by side
 os.environ["SIXFLIP_HISTORY"] = ""      # the history of whoever runs the tests is not theirs
+# A shell starts what it runs in the background with Ctrl-C ignored, and so would be every program
+# that a test starts and then stops with it.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_runtest_call():
