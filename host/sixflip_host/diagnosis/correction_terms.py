@@ -6,6 +6,7 @@ board's own correction (term_gain.py). The coefficients are refitted without wha
 do: no lag of the thermometer, no bend of a scale or of a g-sensitivity.
 """
 import copy
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -27,96 +28,102 @@ CLOSED = 0.5  # share of what a term says is there that must be there where it w
 OTHER_PART_G = 0.02  # |a| at rest beyond this: it is not this sensor's record
 
 
+@dataclass(frozen=True, eq=False)
 class Term:
-    """name of the section; cause; gap (SensorGap); fields of record_terms.py, gain included."""
+    """name of the section; cause; gap (SensorGap); fields of record_terms.py, gain included,
+    where it was shown."""
 
-    def __init__(self, gap, cause, name):
-        self.gap, self.cause, self.name = gap, cause, name
+    gap: object
+    cause: object
+    name: str
+    fields: dict | None = None
 
 
+@dataclass(frozen=True, eq=False)
 class Terms:
-    """found: [Term]; left_out: [(sensor, names, reason)]; record: with the terms found in it."""
+    """found: tuple of Term; left_out: [(sensor, names, reason)]; record: with the terms found."""
 
-    def __init__(self, diagnosis, record, left_out=()):
-        self.diagnosis, self.left_out = diagnosis, list(left_out)
-        self.base = copy.deepcopy(record)
-        candidates = self._candidates()
-        self.found = []
-        for gap in {id(t.gap): t.gap for t in candidates}.values():
-            self.found += self._shown(gap, [t for t in candidates if t.gap is gap])
-        self.record = copy.deepcopy(record)
-        for term in self.found:
-            record_terms.put(self.record, term.name, term.fields)
-        if self.found:
-            self.record.sequence = following(self.record.sequence)
+    found: tuple
+    left_out: list
+    record: object
 
-    def _gaps(self):
-        turns = [self.diagnosis.turns] if self.diagnosis.turns else []
-        return [*self.diagnosis.gaps.values(), *turns]
 
-    def _candidates(self):
-        """[Term] of the causes that can become one."""
-        out = []
-        self.left_out += [(f.sensor, [f.effect], "no term of a record")
-                          for f in self.diagnosis.findings]
-        for gap in self._gaps():
-            if gap.drift:
-                self.left_out.append((gap.kind, ["drift"], "no term of a record"))
-            for cause in gap.causes:
-                reason = self._reason(gap, cause)
-                if reason:
-                    self.left_out.append((gap.kind, cause.names, reason))
-                else:
-                    out.append(Term(gap, cause, TERMS[gap.kind, cause.effect]))
-        return out
+def of(diagnosis, record):
+    """Terms of a Diagnosis for a record."""
+    candidates, left_out = _candidates(diagnosis, record)
+    found = []
+    for gap in {id(t.gap): t.gap for t in candidates}.values():
+        shown, others = _shown(gap, [t for t in candidates if t.gap is gap], record, diagnosis)
+        found += shown
+        left_out += others
+    written = copy.deepcopy(record)
+    for term in found:
+        record_terms.put(written, term.name, term.fields)
+    if found:
+        written.sequence = following(written.sequence)
+    return Terms(tuple(found), left_out, written)
 
-    def _reason(self, gap, cause):
-        """"" or why a cause cannot become a term."""
-        if not any((gap.kind, name) in TERMS for name in cause.names):
-            return "no term of a record"
-        if len(cause.names) > 1:
-            return "cannot be told apart"
-        if not cause.plausible:
-            return "physically implausible"
-        if cause.effect != "g_sensitivity" and self.base.temp_c is None:
-            return "the record does not say at which temperature it was measured"
-        return ""
 
-    def _shown(self, gap, terms):
-        """[Term] of one gap that show a gain; the others are left out with the reason."""
-        gains = Gains(gap, self.base, self.diagnosis.settings.certified)
-        if not gains.parts:
-            self.left_out += [(gap.kind, t.cause.names, "nothing to hold out: one session, too "
-                               "short to be halved") for t in terms]
-            return []
-        kept = list(terms)
-        while kept:
-            fit = Fit(gap, kept, gains.data, self.diagnosis)
-            weakest = self._weakest(gains, fit, kept)
-            if weakest is None:
-                break
-            kept.remove(weakest)
-            self.left_out.append((gap.kind, weakest.cause.names, "no gain on what was held out "
-                                  "(%.3g before, %.3g after)" % (weakest.gain[:2])))
-        for term in kept:
-            before, after, floor = term.gain
-            term.fields = dict(fit.fields(term), before=before, after=after, floor=floor)
-        return kept
+def _candidates(diagnosis, record):
+    """([Term] of the causes that can become one, [(sensor, names, reason)] of the others)."""
+    out, left_out = [], [(f.sensor, [f.effect], "no term of a record") for f in diagnosis.findings]
+    for gap in diagnosis.judged:
+        if gap.drift:
+            left_out.append((gap.kind, ["drift"], "no term of a record"))
+        for cause in gap.causes:
+            reason = _reason(gap, cause, record)
+            if reason:
+                left_out.append((gap.kind, cause.names, reason))
+            else:
+                out.append(Term(gap, cause, TERMS[gap.kind, cause.effect]))
+    return out, left_out
 
-    def _weakest(self, gains, fit, terms):
-        """Fill gain (before, after, floor) of each Term; the one that gains nothing, or None."""
-        held = range(len(gains.parts))
-        after = gains.left([fit.sections(terms, h) for h in held])
-        worst, least = None, CLOSED
-        for term in terms:
-            rest = [t for t in terms if t is not term]
-            before = gains.left([fit.sections(rest, h) for h in held])
-            said = before - after
-            term.gain = rms(before), rms(after), gains.floor
-            share = (before @ before - after @ after) / max(said @ said, 1e-12)
-            if share < least:
-                worst, least = term, share
-        return worst
+
+def _reason(gap, cause, record):
+    """"" or why a cause cannot become a term."""
+    if not any((gap.kind, name) in TERMS for name in cause.names):
+        return "no term of a record"
+    if len(cause.names) > 1:
+        return "cannot be told apart"
+    if not cause.plausible:
+        return "physically implausible"
+    if cause.effect != "g_sensitivity" and record.temp_c is None:
+        return "the record does not say at which temperature it was measured"
+    return ""
+
+
+def _shown(gap, terms, record, diagnosis):
+    """([Term] of one gap that show a gain, [(sensor, names, reason)] of the others)."""
+    gains = Gains(gap, record, diagnosis.settings.certified)
+    if not gains.parts:
+        return [], [(gap.kind, t.cause.names, "nothing to hold out: one session, too short to be "
+                     "halved") for t in terms]
+    kept, left_out = list(terms), []
+    while kept:
+        fit = Fit(gap, kept, gains.data, diagnosis)
+        gain, share = _gained(gains, fit, kept)
+        weakest = min(kept, key=share.get)
+        if share[weakest] >= CLOSED:
+            return [replace(term, fields=dict(fit.fields(term), **gain[term]))
+                    for term in kept], left_out
+        kept.remove(weakest)
+        left_out.append((gap.kind, weakest.cause.names, "no gain on what was held out "
+                         "(%(before).3g before, %(after).3g after)" % gain[weakest]))
+    return [], left_out
+
+
+def _gained(gains, fit, terms):
+    """({Term: before, after and floor}, {Term: share of what it says is there that is there where
+    it was held out})."""
+    held = range(len(gains.parts))
+    after, gain, share = gains.left([fit.sections(terms, h) for h in held]), {}, {}
+    for term in terms:
+        rest = [t for t in terms if t is not term]
+        before = gains.left([fit.sections(rest, h) for h in held])
+        said = before - after
+        gain[term] = {"before": rms(before), "after": rms(after), "floor": gains.floor}
+        share[term] = (before @ before - after @ after) / max(said @ said, 1e-12)
+    return gain, share
 
 
 def rms(values):

@@ -4,6 +4,8 @@ Twelve parameters take counts to g. All placements give |f| = 1; those on a labe
 say, loosely (a table may be tilted, a box crooked), which way. Source: METHOD section 1, and
 Tedaldi et al. (ICRA 2014) for what lies in between.
 """
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.optimize import least_squares
 
@@ -23,11 +25,13 @@ def face_axes(face):
     return out
 
 
+@dataclass(frozen=True, eq=False)
 class NominalSensor:
     """matrix (3, 3), offset (3,): f = matrix · measured (g) + offset; up (placements, 3)."""
 
-    def __init__(self, matrix, offset, up):
-        self.matrix, self.offset, self.up = matrix, offset, up
+    matrix: np.ndarray
+    offset: np.ndarray
+    up: np.ndarray
 
     def corrected(self, mg):
         """(n, 3) g from (n, 3) mg as measured."""

@@ -1,5 +1,6 @@
 """What could be added to a protocol, and how much each addition resolves per minute."""
 import copy
+from dataclasses import dataclass
 
 from . import protocols
 from .plan_findings import Findings
@@ -8,13 +9,16 @@ FREE_MINUTES = 0.25  # an addition that takes no time still takes a thought
 LEANING = 12  # as many as there are poses on faces
 
 
+@dataclass(frozen=True)
 class Addition:
     """name, minutes it adds, and what it resolves: pairs of effects now apart, effects that
     were silent and now show, effects whose typical size now shows."""
 
-    def __init__(self, name, minutes, pairs, shown, reached):
-        self.name, self.minutes = name, minutes
-        self.pairs, self.shown, self.reached = pairs, shown, reached
+    name: str
+    minutes: float
+    pairs: list
+    shown: list
+    reached: list
 
     @property
     def resolves(self):

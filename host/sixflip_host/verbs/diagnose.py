@@ -103,7 +103,7 @@ def answered(args, without, record):
         result["simulated"] = {kind: answer.of_loop(kind, loop) for kind, loop in loops.items()}
     terms = None
     if record:
-        terms = correction_terms.Terms(found, record)
+        terms = correction_terms.of(found, record)
         result["terms"] = correction_terms.answer(terms, args.output)
     if args.report:
         from ..present import gap_report
