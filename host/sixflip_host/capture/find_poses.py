@@ -10,6 +10,7 @@ from sixflip.poses.pose_label import CROOKED_DEG, HALF_TURN_DEG, SAME_DEG
 from . import rests
 from .attitude import heading_change
 
+POSES, FOUND = "poses", "found"  # key and value of a capture's header: no person named its poses
 HELD_BY_HAND = "held_by_hand"   # key of a capture's header: names of poses that were not at rest
 
 
@@ -23,8 +24,10 @@ class FoundPoses:
     noise: NoiseFloor | None
 
     def label(self, capture):
-        """Write the poses into the capture, and into its header which were held by hand."""
+        """Write the poses into the capture, and into its header that they were found and which
+        were held by hand."""
         capture.pose = self.pose
+        capture.meta[POSES] = FOUND
         by_hand = [pose_name(rest.code) for rest in self.rests if rest.by_hand]
         if by_hand:
             capture.meta[HELD_BY_HAND] = by_hand
@@ -40,6 +43,13 @@ class FoundPoses:
                 pose_name(rest.code), rest.first, rest.end - 1, rest.off_deg, FACES[rest.face],
                 "".join("; " + why for why in (rest.why, rest.by_hand and "held by hand") if why)))
         return lines
+
+
+def by_a_person(capture):
+    """Whether the poses of a Capture were named by who made it: of those that were found, the
+    first of a face is called a whichever way the box lay."""
+    return (capture.pose is not None and bool((capture.pose > 0).any())
+            and capture.meta.get(POSES) != FOUND)
 
 
 def find_poses(capture):

@@ -16,7 +16,7 @@ from sixflip_sim.effects.moment import Moment
 from .. import progress
 from ..capture import clock, rests, rests_by_variance
 from ..capture.capture_file import Capture
-from ..capture.find_poses import HELD_BY_HAND, find_poses
+from ..capture.find_poses import HELD_BY_HAND, by_a_person, find_poses
 from . import block_means, noise_arrays, thermometer
 from .read_only import ReadOnlyArrays
 
@@ -204,8 +204,8 @@ def of(name, capture, runs=None):
     timeless = len(capture) > 1 and t_s[-1] <= 0.0
     if timeless:
         t_s = np.arange(len(capture)) / rate
-    labelled = runs is not None or (capture.pose is not None and bool((capture.pose > 0).any()))
-    if not labelled:
+    labelled = runs is not None or by_a_person(capture)
+    if not labelled and (capture.pose is None or not (capture.pose > 0).any()):
         capture = _labelled(capture)
     runs = tuple(runs_of(capture) if runs is None else runs)
     smooth = thermometer.of(capture, t_s)

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from sixflip.poses.faces import pose_name
+from sixflip_host.capture import capture_file
 from sixflip_host.capture.attitude import heading_change
 from sixflip_host.capture.find_poses import find_poses
 from sixflip_host.capture.rests import rest
+from sixflip_host.experiment import blocks
 from tests.worlds.board_session import unlabelled
 from tests.worlds.hand_session import Rotation, Sensor, face_attitude, session, six_faces
 
@@ -30,6 +32,19 @@ def test_the_papers_session():
     assert names(found) == [label for label, _ in six_faces(3)]
     assert found.noise.sd[:3] == pytest.approx([49] * 3, rel=0.25)      # 3 mg
     assert capture.pose is None
+
+
+def test_poses_that_were_found_stay_a_guess_in_a_file(tmp_path):
+    """The first of a face is called a: were b the first, the table would lean the other way."""
+    capture = unlabelled(3)
+    before = blocks.of("s", capture)
+    find_poses(capture).label(capture)
+    capture_file.write(tmp_path / "c.csv", capture)
+    after = blocks.of("s", capture_file.read(tmp_path / "c.csv"))
+    assert not before.labelled and not after.labelled
+    assert (after.face == -1).all() and np.array_equal(after.code, before.code)
+    del capture.meta["poses"]
+    assert blocks.of("s", capture).labelled
 
 
 def test_a_and_b_by_the_gyro_whatever_came_between():
