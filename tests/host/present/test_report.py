@@ -16,6 +16,7 @@ from sixflip_host.cli import main
 from sixflip_host.history import logbook, store
 from sixflip_host.present import calibration_pictures
 from sixflip_host.present.page import Page
+from sixflip_host.simulation import scenario, simulated_session
 from tests.worlds.board_session import leave_files, unlabelled
 
 BOARD = "e6614c311b4c5a2f"
@@ -145,6 +146,15 @@ def test_a_rest_and_its_gap(tmp_path):
     seen = report(tmp_path, tmp_path / "rest.csv", "--gap")
     assert "The gap to a nominal simulator" in seen.text and "vibration" in seen.text
     assert "Spectrum and Allan deviation" in seen.pictures
+
+
+def test_the_gap_of_poses_is_measured_again_with_what_was_found(tmp_path):
+    """The page once had a diagnosis of its own, without the loop that `diagnose` closes."""
+    plan = scenario.from_dict({"sensor": "adxl345", "scene": "thermal", "seed": 35, "effects": [
+        {"effect": "thermal_bias", "sensor": "accel", "z": -8.0}]})
+    capture_file.write(tmp_path / "poses.csv", simulated_session.session(plan, 0))
+    seen = report(tmp_path, tmp_path / "poses.csv", "--gap")
+    assert "Simulated again with" in seen.text
 
 
 @pytest.mark.parametrize("words,code,said", [
