@@ -27,6 +27,19 @@ def imports():
     return found
 
 
+def files():
+    """[(module, module it imports)] of every file below host/sixflip_host, in functions, too."""
+    modules = {path.relative_to(HOST).with_suffix("").parts for path in HOST.rglob("*.py")
+               if path.name != "__init__.py"}
+    for module in sorted(modules):
+        for node in ast.walk(ast.parse(HOST.joinpath(*module).with_suffix(".py").read_text())):
+            if isinstance(node, ast.ImportFrom) and node.level:
+                above = module[:len(module) - node.level]
+                lower = (*above, *(node.module.split(".") if node.module else ()))
+                for one in {lower, *((*lower, name.name) for name in node.names)} & modules:
+                    yield module, one
+
+
 def order(pairs):
     """Rooms from the lowest up; AssertionError with the rooms of a circle."""
     needs = {}
@@ -56,6 +69,12 @@ def test_no_circles_and_the_order_of_the_design():
 
 def test_nothing_imports_a_verb_but_another_verb():
     assert not [(room, files) for (room, lower), files in imports().items() if lower == "verbs"]
+
+
+def test_no_file_imports_one_that_imports_it():
+    found = set(files())
+    assert len(found) > 1000
+    order(found)
 
 
 def test_a_circle_is_seen():

@@ -12,6 +12,7 @@ from .. import sample_limit
 from ..errors import BadFile
 from . import board_extras
 from .board_extras import EXTRAS, LOST, PAUSES
+from .capture import Capture
 from .capture_header import check_meta
 from .capture_rows import quoted
 
@@ -41,7 +42,6 @@ def decode(data, path="capture"):
     sums_only         the board had no room for all samples: taken says how many there were
     Raises BadFile when there is no readable header or not one sample.
     """
-    from .capture_file import Capture
     try:
         blocks = read_blocks(data)
     except ValueError as error:
