@@ -8,8 +8,10 @@ from sixflip import STANDARD_G
 
 from . import (
     alignment,
+    convention_findings,
     conventions,
     held_readings,
+    noise_levels,
     own_calibration,
     own_consistency,
     own_motion,
@@ -29,9 +31,9 @@ MG, DEG = 1000.0 / STANDARD_G, 180.0 / np.pi
 @dataclass(frozen=True)
 class Comparison:
     """log, against: names of the simulator's and the real log; alignment; conventions
-    (conventions.Convention, ...); parameters (parameters.Parameter, ...); task (task.Task or
-    None); gap {sensor: (before, after, noise alone)} held out, of one motion; fits {sensor:
-    conventions.SensorFit}; real and simulated own_calibration.OwnSensor; noise {sensor:
+    (convention_findings.Convention, ...); parameters (parameters.Parameter, ...); task
+    (task.Task or None); gap {sensor: (before, after, noise alone)} held out, of one motion; fits
+    {sensor: conventions.SensorFit}; real and simulated own_calibration.OwnSensor; noise {sensor:
     single_log.Noise of the real log}; remarks; unseen; motion_judged: lever arm and delay of the
     two logs were compared, or what is wrong with the simulator's hides them; reference_c: mean
     temperature of the real log or None."""
@@ -85,7 +87,7 @@ def of_traces(real, sim, aligned):
         still = mask | ~live[kind] & (kind == "accel" or sim.rate is not None)
         if still.any():
             axes = [a for a, x in zip("xyz", still) if x]
-            found.append(conventions.finding(
+            found.append(convention_findings.finding(
                 "constant_channel", kind, 1.0, 100.0, "its %s says nothing of the motion" %
                 " and ".join(axes), value=dict.fromkeys(axes, 0.0), unit="1"))
             live[kind] = live[kind] & ~still
@@ -116,13 +118,13 @@ def of_traces(real, sim, aligned):
         found += more
     if real.rate is not None and sim.rate is None:
         unseen = [*unseen, "the gyro: there is none in %s" % sim.name]
-    found = conventions.merged(found)
+    found = convention_findings.merged(found)
     mended = put_right.trace(sim_free, found)
     own_sim = own_calibration.fitted(mended)
     usable = {k: not any(c.name in put_right.SPOILED and c.sensor in (k, "device") for c in found)
               for k in ("accel", "gyro")}
     numbers = parameters.shapes(own_real, own_sim, fits, usable)
-    noise_numbers, noise_found = parameters.noises(real, mended)
+    noise_numbers, noise_found = noise_levels.noises(real, mended)
     numbers += noise_numbers + parameters.registers(real, sim)
     numbers += parameters.timing(late, late_sigma, fits, aligned)
     found += noise_found + parameters.bias_sign(numbers)

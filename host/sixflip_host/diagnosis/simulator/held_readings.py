@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from . import conventions
+from . import convention_findings
 
 WINDOW_ROWS = 40
 MOVING = 8.0  # steps by which a reading has to change over a window to be seen to repeat
@@ -116,7 +116,7 @@ def findings(real, sim, holds_real, holds_sim):
     for kind, hold in holds_sim.items():
         hz = real.rate_hz / holds_real[kind].rows, sim.rate_hz / hold.rows
         if hold.held and hz[1] <= SLOWER * hz[0]:
-            out.append(conventions.finding(
+            out.append(convention_findings.finding(
                 kind + "_rate_held", kind, 1.0, 100.0, "update it %.4g times a second: it says "
                 "something new every %.3g rows" % (hz[0], hold.rows), value={"rate": hz[1]},
                 unit="Hz"))

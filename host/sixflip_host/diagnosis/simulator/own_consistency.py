@@ -10,20 +10,14 @@ import numpy as np
 
 from sixflip import STANDARD_G
 
-from ...capture.attitude import _rotation
-from . import conventions, traces
+from . import convention_findings, conventions, traces
+from . import gravity_directions as directions
 from .hypotheses import DEG, SIGNED
 
-SIGMA = np.radians(4.0)  # of a direction: bias of 60 mg, scale of the gyro 3 % of a half turn
-ASTRAY = 0.02  # of moves and rests that follow nothing
-POSE = np.radians(15.0)  # how alike the rests of two runs of one robot are
-POSES_COUNT = 4  # runs of one robot stand alike: that many of its rests say something new
 NORM_SIGMA = 0.12  # of |force| / g at rest: bias and scale
 RATIO_SIGMA = 1.0  # how alike two runs are in the size of their turn rates, natural logarithm
-STEPS_HZ = 25.0  # a robot turns below 5 Hz: five steps a period
 TURNED = 0.3  # rad: less than that says nothing on where gravity should have gone
 MOVES = 10.0  # times its noise at rest: a gyro that turns at all
-HEADINGS = 48  # each 7.5 degrees: within SIGMA of the true one
 
 
 @dataclass(frozen=True)
@@ -51,22 +45,23 @@ def conventions_of(real, sim):
     unit, none = by_norm(norms)
     eye = np.eye(3)
     if none > conventions.CERTAIN:
-        found = [conventions.finding("no_gravity", "accel", none, -np.log(max(1 - none, 1e-300)))]
+        found = [convention_findings.finding("no_gravity", "accel", none,
+                                             -np.log(max(1 - none, 1e-300)))]
         return found + unit_by_size(real, sim), unseen + [
             "axes and frame of %s: without gravity a log of another motion does not show them"
             % sim.name]
     found = []
     if unit != 1.0:
-        found.append(conventions.finding(
+        found.append(convention_findings.finding(
             "accel_unit", "accel", 1.0, 100.0, "multiply by %.5g: %s" % (
-                1.0 / unit, conventions.unit_words("accel", unit)), value={"factor": unit},
+                1.0 / unit, convention_findings.unit_words("accel", unit)), value={"factor": unit},
             unit="1"))
     ups = sim.rest_means(sim.force)
     ups = ups / np.maximum(np.linalg.norm(ups, axis=1), 1e-12)[:, None]
-    ways = moves(sim)
+    ways = directions.moves(sim)
     choices = []
     for accel in SIGNED:
-        seen = direction_log(ups @ accel, real, sim)  # body = Sᵀ measured
+        seen = directions.direction_log(ups @ accel, real, sim)  # body = Sᵀ measured
         choices.append((Reading(accel, eye), seen))
     best = max(v for _, v in choices)
     accels = [(r.accel, v) for r, v in choices if v > best - 12.0 or np.array_equal(r.accel, eye)]
@@ -77,15 +72,17 @@ def conventions_of(real, sim):
         for unit_log, rate_unit in rate_units:
             for gyro in SIGNED:
                 tried.append((Reading(accel, gyro, gyro_unit=rate_unit),
-                              seen + unit_log + carried_log(body, ways, gyro * rate_unit)))
+                              seen + unit_log + directions.carried_log(
+                                  body, ways, gyro * rate_unit)))
         if np.array_equal(accel, eye):
-            tried.append((Reading(accel, eye, world=True), seen + world_log(body, ways)))
+            tried.append((Reading(accel, eye, world=True),
+                          seen + directions.world_log(body, ways)))
     if max((np.linalg.norm(steps.sum(axis=0)) for _, _, steps in ways), default=0.0) > TURNED:
-        tried.append((Reading(eye, eye, constant=True), constant_log(ups, ways, sim)))
+        tried.append((Reading(eye, eye, constant=True), directions.constant_log(ups, ways, sim)))
     more = judged(tried)
     if len(sim.rests) < 2 or not ways:
         unseen.append("axes and frame of the gyro of %s: no move between two rests" % sim.name)
-    elif max(turned(ups, ways)) < np.radians(20.0):
+    elif max(directions.turned(ups, ways)) < np.radians(20.0):
         unseen.append("axes and frame of the gyro of %s: gravity stays where it is in the sensor"
                       % sim.name)
     return found + more, unseen
@@ -94,8 +91,9 @@ def conventions_of(real, sim):
 def by_norm(norms):
     """(unit of the accelerometer, probability that gravity is missing)."""
     def log(mean):
-        return np.log((1 - ASTRAY) * np.exp(-0.5 * ((norms - mean) / (NORM_SIGMA * max(
-            mean, 0.5))) ** 2) + ASTRAY * 1e-2).sum()
+        off = (norms - mean) / (NORM_SIGMA * max(mean, 0.5))
+        return np.log((1 - directions.ASTRAY) * np.exp(-0.5 * off ** 2)
+                      + directions.ASTRAY * 1e-2).sum()
 
     logs = {"healthy": log(1.0) + np.log(conventions.PRIOR_HEALTHY),
             "none": log(0.0) + np.log(conventions.PRIOR_EACH),
@@ -139,96 +137,10 @@ def unit_by_size(real, sim):
 
 
 def gyro_unit(unit, probability, nats):
-    return conventions.finding("gyro_unit", "gyro", probability, nats, "multiply by %.5g: %s" % (
-        1.0 / unit, conventions.unit_words("gyro", unit)), value={"factor": unit}, unit="1")
-
-
-def moves(trace):
-    """[(rest before, rest after, increments (k, 3) rad)] of the gyro, in short steps."""
-    if trace.rate is None:
-        return []
-    rate = trace.rate - traces.rest_line(trace, trace.rate)
-    out = []
-    for k in range(len(trace.rests) - 1):
-        first, last = trace.rests[k][1] - 1, trace.rests[k + 1][0]
-        dt = np.diff(trace.t[first:last + 1])[:, None]
-        steps = 0.5 * (rate[first:last] + rate[first + 1:last + 1]) * dt
-        group = max(1, int(trace.rate_hz / STEPS_HZ))
-        edges = np.arange(0, len(steps), group)
-        out.append((k, k + 1, np.add.reduceat(steps, edges, axis=0)))
-    return out
-
-
-def closeness(a, b):
-    """log density of direction a given b, each (…, 3), up to a constant; nothing at all is
-    always possible [Fisher, Proc. R. Soc. A 217 (1953), 295]."""
-    kappa = 1.0 / SIGMA ** 2
-    near = kappa / (2.0 * np.pi) * np.exp(kappa * ((a * b).sum(axis=-1) - 1.0))
-    return np.log((1 - ASTRAY) * near + ASTRAY / (4.0 * np.pi))
-
-
-def carried_log(body, ways, gyro):
-    """Sum over moves: gravity after, carried by the gyro's readings (read = gyro · true rate)."""
-    total = 0.0
-    matrix = np.linalg.inv(gyro)
-    for before, after, steps in ways:
-        turn = traces.chained(_rotation(steps @ matrix.T))[-1]
-        total += closeness(body[after], turn.T @ body[before])
-    return float(total)
-
-
-def world_log(body, ways):
-    """The same with rates along the world's axes, the heading at the start unknown."""
-    if not ways:
-        return -1e9
-    z = np.array([0.0, 0.0, 1.0])
-    best = []
-    for psi in np.linspace(0.0, 2.0 * np.pi, HEADINGS, endpoint=False):
-        c, s = np.cos(psi), np.sin(psi)
-        attitude = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]) @ traces._between(body[0], z)
-        total = 0.0
-        for _, after, steps in ways:
-            turns = _rotation(steps)
-            whole = np.eye(3)
-            for one in turns:
-                whole = one @ whole
-            attitude = whole @ attitude
-            total += closeness(body[after], attitude[2])
-            attitude = traces._between(attitude @ body[after], z) @ attitude
-        best.append(total)
-    top = max(best)
-    return float(top + np.log(np.mean(np.exp(np.array(best) - top))))
-
-
-def constant_log(ups, ways, sim):
-    """Gravity along one axis of the sensor, whichever way it was turned."""
-    axis = ups.mean(axis=0)
-    near = np.zeros(3)
-    near[np.abs(axis).argmax()] = np.sign(axis[np.abs(axis).argmax()])
-    total = sum(closeness(ups[b], near) for _, b, _ in ways)
-    for up, face in zip(ups, sim.faces):
-        if face is not None:
-            total += closeness(up, near)
-    return float(total) - np.log(6.0)
-
-
-def direction_log(body, real, sim):
-    """How well the directions at rest fit the labels, or the rests of the real robot."""
-    if any(f is not None for f in sim.faces):
-        return float(sum(closeness(b, f) for b, f in zip(body, sim.faces) if f is not None))
-    theirs = real.rest_means(real.force)
-    if not len(theirs):
-        return 0.0
-    theirs = theirs / np.linalg.norm(theirs, axis=1)[:, None]
-    kappa = 1.0 / POSE ** 2
-    near = kappa / (2 * np.pi) * np.exp(kappa * (body @ theirs.T - 1.0))
-    density = np.log(0.9 * near.mean(axis=1) + 0.1 / (4 * np.pi))
-    return float(density.mean() * min(len(body), POSES_COUNT))
-
-
-def turned(ups, ways):
-    """Angles by which gravity moved in the sensor."""
-    return [float(np.arccos(np.clip(ups[a] @ ups[b], -1, 1))) for a, b, _ in ways] or [0.0]
+    return convention_findings.finding(
+        "gyro_unit", "gyro", probability, nats, "multiply by %.5g: %s" % (
+            1.0 / unit, convention_findings.unit_words("gyro", unit)),
+        value={"factor": unit}, unit="1")
 
 
 def judged(tried):
@@ -278,15 +190,15 @@ def judged(tried):
             out.append(gyro_unit(best.gyro_unit, probability, nats))
         elif name.endswith("_axes"):
             axes = best.gyro if name == "gyro_axes" else best.accel
-            value = {a: conventions.signed(row) for a, row in zip("xyz", axes)}
-            out.append(conventions.finding(
+            value = {a: convention_findings.signed(row) for a, row in zip("xyz", axes)}
+            out.append(convention_findings.finding(
                 name, sensor, probability, nats, "its axes are the sensor's so: " + ", ".join(
                     "%s = %s" % pair for pair in value.items()), value=value, unit="axis"))
         else:
-            out.append(conventions.finding(name, sensor, probability, nats))
+            out.append(convention_findings.finding(name, sensor, probability, nats))
     quiet = float(sum(w for (r, _), w in zip(tried, weights) if not labels(r)))
     if labels(best) and not sure and quiet < 1.0 - conventions.CERTAIN:
         candidates = sorted({n for (r, _), w in zip(tried, weights) if w > 0.002
                              for n in labels(r)})
-        out.append(conventions.one_of("device", candidates, 1.0 - quiet, nats))
+        out.append(convention_findings.one_of("device", candidates, 1.0 - quiet, nats))
     return out

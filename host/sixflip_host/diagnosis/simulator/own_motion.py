@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import alignment as align_by
-from . import conventions, evidence_of_logs, hypotheses, traces
+from . import convention_findings, conventions, evidence_of_logs, hypotheses, traces
 from .pairing import GRID_HZ, increasing
 
 ARM_M = 0.3  # prior of a lever arm in a log: of the sensor, and of the point it is turned about
@@ -117,10 +117,11 @@ def compared(real, sim, row_s):
         r = real.tangential - sim.tangential
         value = {a: float(100 * v) for a, v in zip("xyz", r)} \
             if names[0] == "lever_arm_missing" else {}
-        out.append(conventions.finding(names[0], "accel", conventions.CERTAIN, nats, value=value,
-                                       unit="cm" if value else ""))
+        out.append(convention_findings.finding(
+            names[0], "accel", conventions.CERTAIN, nats, value=value,
+            unit="cm" if value else ""))
     else:
-        out.append(conventions.one_of("accel", names, conventions.CERTAIN, nats))
+        out.append(convention_findings.one_of("accel", names, conventions.CERTAIN, nats))
     return out
 
 

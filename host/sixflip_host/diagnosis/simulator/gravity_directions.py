@@ -1,0 +1,101 @@
+"""How likely one log's directions of gravity are: at its rests, as labels or the real robot's own
+rests have them, and from each rest to the next, as the gyro carries them."""
+import numpy as np
+
+from ...capture.attitude import _rotation
+from . import traces
+
+SIGMA = np.radians(4.0)  # of a direction: bias of 60 mg, scale of the gyro 3 % of a half turn
+ASTRAY = 0.02  # of moves and rests that follow nothing
+POSE = np.radians(15.0)  # how alike the rests of two runs of one robot are
+POSES_COUNT = 4  # runs of one robot stand alike: that many of its rests say something new
+STEPS_HZ = 25.0  # a robot turns below 5 Hz: five steps a period
+HEADINGS = 48  # each 7.5 degrees: within SIGMA of the true one
+
+
+def moves(trace):
+    """[(rest before, rest after, increments (k, 3) rad)] of the gyro, in short steps."""
+    if trace.rate is None:
+        return []
+    rate = trace.rate - traces.rest_line(trace, trace.rate)
+    out = []
+    for k in range(len(trace.rests) - 1):
+        first, last = trace.rests[k][1] - 1, trace.rests[k + 1][0]
+        dt = np.diff(trace.t[first:last + 1])[:, None]
+        steps = 0.5 * (rate[first:last] + rate[first + 1:last + 1]) * dt
+        group = max(1, int(trace.rate_hz / STEPS_HZ))
+        edges = np.arange(0, len(steps), group)
+        out.append((k, k + 1, np.add.reduceat(steps, edges, axis=0)))
+    return out
+
+
+def closeness(a, b):
+    """log density of direction a given b, each (…, 3), up to a constant; nothing at all is
+    always possible [Fisher, Proc. R. Soc. A 217 (1953), 295]."""
+    kappa = 1.0 / SIGMA ** 2
+    near = kappa / (2.0 * np.pi) * np.exp(kappa * ((a * b).sum(axis=-1) - 1.0))
+    return np.log((1 - ASTRAY) * near + ASTRAY / (4.0 * np.pi))
+
+
+def carried_log(body, ways, gyro):
+    """Sum over moves: gravity after, carried by the gyro's readings (read = gyro · true rate)."""
+    total = 0.0
+    matrix = np.linalg.inv(gyro)
+    for before, after, steps in ways:
+        turn = traces.chained(_rotation(steps @ matrix.T))[-1]
+        total += closeness(body[after], turn.T @ body[before])
+    return float(total)
+
+
+def world_log(body, ways):
+    """The same with rates along the world's axes, the heading at the start unknown."""
+    if not ways:
+        return -1e9
+    z = np.array([0.0, 0.0, 1.0])
+    best = []
+    for psi in np.linspace(0.0, 2.0 * np.pi, HEADINGS, endpoint=False):
+        c, s = np.cos(psi), np.sin(psi)
+        attitude = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]) @ traces._between(body[0], z)
+        total = 0.0
+        for _, after, steps in ways:
+            turns = _rotation(steps)
+            whole = np.eye(3)
+            for one in turns:
+                whole = one @ whole
+            attitude = whole @ attitude
+            total += closeness(body[after], attitude[2])
+            attitude = traces._between(attitude @ body[after], z) @ attitude
+        best.append(total)
+    top = max(best)
+    return float(top + np.log(np.mean(np.exp(np.array(best) - top))))
+
+
+def constant_log(ups, ways, sim):
+    """Gravity along one axis of the sensor, whichever way it was turned."""
+    axis = ups.mean(axis=0)
+    near = np.zeros(3)
+    near[np.abs(axis).argmax()] = np.sign(axis[np.abs(axis).argmax()])
+    total = sum(closeness(ups[b], near) for _, b, _ in ways)
+    for up, face in zip(ups, sim.faces):
+        if face is not None:
+            total += closeness(up, near)
+    return float(total) - np.log(6.0)
+
+
+def direction_log(body, real, sim):
+    """How well the directions at rest fit the labels, or the rests of the real robot."""
+    if any(f is not None for f in sim.faces):
+        return float(sum(closeness(b, f) for b, f in zip(body, sim.faces) if f is not None))
+    theirs = real.rest_means(real.force)
+    if not len(theirs):
+        return 0.0
+    theirs = theirs / np.linalg.norm(theirs, axis=1)[:, None]
+    kappa = 1.0 / POSE ** 2
+    near = kappa / (2 * np.pi) * np.exp(kappa * (body @ theirs.T - 1.0))
+    density = np.log(0.9 * near.mean(axis=1) + 0.1 / (4 * np.pi))
+    return float(density.mean() * min(len(body), POSES_COUNT))
+
+
+def turned(ups, ways):
+    """Angles by which gravity moved in the sensor."""
+    return [float(np.arccos(np.clip(ups[a] @ ups[b], -1, 1))) for a, b, _ in ways] or [0.0]

@@ -1,0 +1,81 @@
+"""Noise of the simulator at rest against the real sensor's: the densities side by side, and
+whether a sample was given the number of a density (or the reverse)."""
+import numpy as np
+
+from .. import odds
+from . import convention_findings, conventions, single_log
+from .parameters import DEG, MG, compared
+
+SETTING = 0.2  # how far a noise that was set by hand may be off, natural logarithm
+ANY = 2.0  # natural logarithm, of a noise that was set to anything: a factor of seven
+LIKELY = 0.95  # probability from which on a noise is said to be the density's number
+COARSE = 1.5  # times its noise: a step in which noise is not seen any more
+DROWNED = 0.3  # of a step: noise below it does not show
+
+
+def noises(real, sim):
+    """(Parameters of the noise densities, Conventions on the noise)."""
+    out, found = [], []
+    for kind in ("accel", "gyro"):
+        name = "force" if kind == "accel" else "rate"
+        values = [getattr(x, name) for x in (real, sim)]
+        if any(v is None for v in values):
+            continue
+        a, b = (single_log.noise(x, v) for x, v in zip((real, sim), values))
+        if a is None or b is None:
+            continue
+        scale = MG if kind == "accel" else DEG
+        unit = "mg/√Hz" if kind == "accel" else "°/s/√Hz"
+        floor = [x.quantum[0 if kind == "accel" else 1] for x in (real, sim)]
+        silent = bool((b.per_sample < DROWNED * floor[1]).all())
+        for i, axis in enumerate("xyz"):
+            if not np.ptp(values[1][:, i]):
+                continue  # a channel that says nothing is a convention
+            if single_log.step(values[0], floor[0])[i] > COARSE * (
+                    a if silent else b).per_sample[i] > 0:
+                continue  # in steps that coarse the real one's noise does not show
+            da, db = a.density[i] * scale, 0.0 if silent else b.density[i] * scale
+            # Noise is known to a share of itself: it is the ratio that can be told from one.
+            ratio = abs(np.log(max(da, 1e-12) / max(db, 1e-12)))
+            out.append(compared("noise_density", kind, axis, unit, da, da * a.relative_sigma, db,
+                                db * b.relative_sigma, apart=ratio / np.hypot(
+                                    a.relative_sigma, b.relative_sigma)))
+        if not silent and (a.per_sample > DROWNED * floor[0]).all() and (b.density > 0).all():
+            found += density_convention(kind, a, b, sim.rate_hz)
+    return out, merged_noise(found)
+
+
+def density_convention(kind, real, sim, rate_hz):
+    """Whether the ratio of the densities is that of a sample's noise to a density, hypothesis
+    against hypothesis, the nameless one wide."""
+    ratio = float(np.mean(np.log(sim.density / np.maximum(real.density, 1e-300))))
+    sigma = float(np.hypot(np.hypot(real.relative_sigma, sim.relative_sigma) / np.sqrt(3.0),
+                           SETTING))
+    half = 0.5 * np.log(rate_hz)
+    means = {"healthy": (0.0, sigma, conventions.PRIOR_HEALTHY),
+             "too small": (-half, sigma, conventions.PRIOR_EACH),
+             "too large": (half, sigma, conventions.PRIOR_EACH),
+             "another": (0.0, ANY, conventions.PRIOR_NAMELESS)}
+    logs = {n: np.log(p) - np.log(s) - 0.5 * ((ratio - m) / s) ** 2
+            for n, (m, s, p) in means.items()}
+    top = max(logs.values())
+    total = sum(np.exp(v - top) for v in logs.values())
+    shares = {n: float(np.exp(v - top) / total) for n, v in logs.items()}
+    probability = shares["too small"] + shares["too large"]
+    if probability < LIKELY:
+        return []
+    factor, half_of_90 = float(np.exp(ratio)), odds.Z_90 * sigma
+    return [convention_findings.finding(
+        "noise_per_sample", kind, probability, logs["too small" if ratio < 0 else "too large"]
+        - logs["healthy"], value={"factor": factor}, unit="1",
+        interval_90={"factor": (factor * np.exp(-half_of_90), factor * np.exp(half_of_90))})]
+
+
+def merged_noise(found):
+    """Both sensors at once are one finding, of the device."""
+    if len(found) < 2:
+        return found
+    one = found[0]
+    return [convention_findings.finding("noise_per_sample", "device",
+                                min(c.probability for c in found), sum(c.nats for c in found),
+                                value=one.value, unit="1", interval_90=one.interval_90)]
