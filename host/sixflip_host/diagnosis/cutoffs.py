@@ -66,7 +66,9 @@ def folder():
 
 
 def of(units, forms, levels):
-    """Cutoffs in this protocol."""
+    """Cutoffs in this protocol; where no form is left to compete, none can gain by chance."""
+    if not forms:
+        return Cutoffs(LEAST_NATS, LEAST_SHARE)
     empty = [evidence.fit(u, u.statistics(), NONE, NONE, levels.prior(u, ())) for u in units]
     points = [_usual(u, int(f.index[0]), levels) for u, f in zip(units, empty)]
     name = folder() / ("%s.json" % _key(units, forms, levels, points))

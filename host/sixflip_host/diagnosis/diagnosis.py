@@ -167,15 +167,20 @@ def of(sessions, settings=None, simulator=None, comparisons=(), damages=(), besi
                 f.effect == "vibration" and f.sensor == "accel" for f in findings):
             findings += [f for f in shake_detector.findings(sessions)
                          if f.effect not in settings.without]
+    compared_in_motion = any(one.motion_judged for one in comparisons)
     if simulator:
         remarks += simulator.remarks
         remarks += ["the simulator has %s (%s), the real sensor does not" % (f.effect, f.sensor)
-                    for f in simulator.only_simulated(findings)]
-        findings = [f for f in findings if simulator.new(f)]
+                    for f in simulator.only_simulated(findings, motion is not None
+                                                      and not compared_in_motion)]
+        remarks += ["the real sensor has %s (%s); the simulator's log does not show whether it "
+                    "has it, too" % (f.effect, f.sensor)
+                    for f in findings if not (compared_in_motion or simulator.shows(f))]
+        findings = [f for f in findings if simulator.shows(f) and simulator.new(f)]
     if comparisons:
         # Where readings are cut off is a range, which the parameters of both logs compare.
         findings = [f for f in findings if f.effect != "saturation"]
-    if any(one.motion_judged for one in comparisons):
+    if compared_in_motion:
         # The two logs were compared in motion: what the hand or both do is no gap.
         findings = [f for f in findings if f.domain != "motion"]
     remarks += ["the %s: %s" % (samples_judged.SENSOR[f.sensor], f.words)

@@ -7,13 +7,15 @@ import pytest
 from sixflip_host.diagnosis.simulator import against_simulator
 
 
-def finding(value, half=None, effect="vibration", sensor="accel"):
+def finding(value, half=None, effect="vibration", sensor="accel", domain="frequency"):
     interval = None if half is None else {k: (v - half, v + half) for k, v in value.items()}
-    return SimpleNamespace(effect=effect, sensor=sensor, value=value, interval=interval)
+    return SimpleNamespace(effect=effect, sensor=sensor, value=value, interval=interval,
+                           domain=domain)
 
 
-def simulator(*findings):
-    return against_simulator.Simulator(SimpleNamespace(findings=list(findings)), {}, ())
+def simulator(*findings, motion=None):
+    return against_simulator.Simulator(SimpleNamespace(findings=list(findings), motion=motion),
+                                       {}, ())
 
 
 @pytest.mark.parametrize("value,half,new", [
@@ -34,6 +36,16 @@ def test_another_sensor_or_effect_is_another_finding():
 def test_what_only_the_simulator_has_is_passed_on():
     line, step = finding({"x": 10.0}), finding({"x": 4.0}, effect="quantisation")
     assert simulator(line, step).only_simulated([finding({"x": 9.0})]) == [step]
+
+
+def test_a_log_that_shows_nothing_of_what_acts_in_motion_is_not_said_to_lack_it():
+    arm = finding({"x": 4.0}, 0.5, effect="lever_arm", domain="motion")
+    assert not simulator().shows(arm)
+    assert simulator(motion="judged").shows(arm)
+    assert simulator().shows(finding({"x": 10.0}))
+    own = simulator(arm, finding({"x": 10.0}), motion="judged")
+    assert own.only_simulated([], in_motion=False) == [own.found.findings[1]]
+    assert own.only_simulated([]) == own.found.findings
 
 
 def test_the_simulators_remarks_and_silent_effects_are_passed_on(monkeypatch):

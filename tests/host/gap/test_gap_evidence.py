@@ -223,3 +223,8 @@ def test_strangers_that_look_like_a_name_make_every_name_less_sure(monkeypatch):
     sure = [odds.of_name(0.99, mimicked, outside) for mimicked, outside in (
         (0.0, 1.0), (taken["unlike"], 0.0), (taken["unlike"], 1.0), (taken["alike"], 1.0))]
     assert sure[0] == 0.99 and sure == sorted(sure, reverse=True) and len(set(sure)) == 4
+
+
+def test_where_no_form_is_left_to_compete_a_cost_is_not_simulated():
+    """Half a session, whose few turns show no effect at all."""
+    assert cutoffs.of([], [], USUAL).member == cutoffs.LEAST_NATS

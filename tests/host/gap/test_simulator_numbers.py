@@ -67,3 +67,12 @@ def test_a_step_is_told_so_exactly_that_its_multiples_are_the_chips():
                                 7.6904296875, None, True, 7.8125)
     found = simulator_answer.numbers([step])["accel"]["step"]["x"]
     assert found["real"] == found["set"] == 7.8125
+
+
+@pytest.mark.parametrize("same,simulated,said", [
+    (False, None, "cannot tell"), (False, "known", "no gap"), (True, None, "no gap")])
+def test_logs_of_two_motions_and_no_rest_are_not_no_gap(same, simulated, said):
+    logs = [SimpleNamespace(unexplained=False, conventions=(), differs=[], motion_judged=False,
+                            alignment=SimpleNamespace(same=same), real="known",
+                            simulated=simulated)]
+    assert simulator_answer.verdict("no gap", logs) == said

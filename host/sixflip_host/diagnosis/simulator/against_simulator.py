@@ -40,10 +40,16 @@ class Simulator:
                 return False
         return True
 
-    def only_simulated(self, findings):
-        """Findings of the simulator that the real sensor does not show."""
+    def shows(self, finding):
+        """True when its log would show a Finding of the real sensor, if it had it."""
+        return finding.domain != "motion" or self.found.motion is not None
+
+    def only_simulated(self, findings, in_motion=True):
+        """Findings of the simulator that the real sensor does not show; in_motion: its log would
+        show what acts in motion."""
         real = {(f.effect, f.sensor) for f in findings}
-        return [f for f in self.found.findings if (f.effect, f.sensor) not in real]
+        return [f for f in self.found.findings if (f.effect, f.sensor) not in real
+                and (in_motion or f.domain != "motion")]
 
 
 def _size(finding, key):

@@ -97,4 +97,7 @@ def verdict(effects, comparisons, named_effects=False):
     if effects == "cannot tell" and not named_effects and all(
             x.alignment.same and x.motion_judged for x in comparisons):
         return "no gap"
+    if effects == "no gap" and not any(
+            x.alignment.same or None not in (x.real, x.simulated) for x in comparisons):
+        return "cannot tell"  # neither of one motion, nor is what each sensor is known by itself
     return effects
