@@ -219,13 +219,13 @@ def energies(groups, basis):
 def dense(groups, placement, flicker):
     """(n, n) the covariance itself, for what is small."""
     n = groups[-1].rows.stop
-    out = np.zeros((n, n))
-    for k, g in enumerate(groups):
-        out[g.rows, g.rows] = g.base + placement ** 2 * g.lateral @ g.lateral.T \
+    out, state = np.zeros((n, n)), np.zeros((len(groups[0].decay), n))
+    for g in groups:
+        own, before = g.rows, slice(g.rows.start)
+        out[own, own] = g.base + placement ** 2 * g.lateral @ g.lateral.T \
             + flicker ** 2 * g.kernel
-        reach = flicker ** 2 * g.to_later
-        for later in groups[k + 1:]:
-            out[later.rows, g.rows] = later.from_before @ reach.T
-            out[g.rows, later.rows] = out[later.rows, g.rows].T
-            reach = reach * later.decay
+        out[own, before] = flicker ** 2 * g.from_before @ state[:, before]
+        out[before, own] = out[own, before].T
+        state[:, before] *= g.decay[:, None]
+        state[:, own] = g.to_later.T
     return out

@@ -7,10 +7,12 @@ are columns, the whitened columns themselves, of which any products are a short 
 one the products.
 """
 import numpy as np
+from scipy.linalg import lapack
 
 from ..progress import steps
 from . import covariance
 
+FEW = 300  # readings up to which one matrix of all of them takes less time than many small ones
 MOSTLY = 0.9  # share of columns that are not silent from which on none is left out
 
 
@@ -28,6 +30,73 @@ class Products:
     def blocks(self, points, rows, columns):
         """(P, r, c) products of columns rows (r,) with columns (c,) at points (P,) of the grid."""
         return self.values[points[:, None, None], rows[:, None], columns]
+
+
+def of(groups, grid, space, common, columns):
+    """Grams, or FewGrams of few readings."""
+    kind = FewGrams if len(columns) <= FEW else Grams
+    return kind(groups, grid, space, common, columns)
+
+
+class FewGrams(Products):
+    """The same as Grams of few readings: one matrix of all of them, across what is projected out.
+    values (G, K, r): the columns whitened, at the points that were asked for."""
+
+    def __init__(self, groups, grid, space, common, columns):
+        self.grid = grid
+        self._across = np.linalg.qr(space, mode="complete")[0][:, space.shape[1]:]
+        self._columns = self._across.T @ columns
+        self._loud = np.flatnonzero((columns != 0.0).any(axis=0))
+        self._given = np.asfortranarray(self._columns[:, self._loud])
+        # Memory that is never written to is never taken.
+        super().__init__(np.zeros((len(grid), columns.shape[1], len(self._columns))))
+        self._done = np.zeros(len(grid), bool)
+        self._lower = self._factors(groups, common)
+
+    def _factors(self, groups, common):
+        """(G, r, r) lower factors of the covariance at all points."""
+        def turned(covariances):
+            return self._across.T @ covariances @ self._across
+        base = covariance.dense(groups, 0.0, 0.0)
+        lateral = turned(covariance.dense(groups, 1.0, 0.0) - base)
+        kernel = turned(covariance.dense(groups, 0.0, 1.0) - base)
+        a, b = np.array(self.grid).T[:, :, None, None] ** 2
+        return np.linalg.cholesky(turned(base + common @ common.T) + a * lateral + b * kernel)
+
+    def blocks(self, points, rows, columns):
+        for point in np.unique(points[~self._done[points]]):
+            self.values[point, self._loud] = self._solved(point, self._given, 1).T
+            self._done[point] = True
+        others = self.values[points[:, None], columns]
+        own = others if rows is columns else self.values[points[:, None], rows]
+        return own @ others.transpose(0, 2, 1)
+
+    def of(self, columns):
+        """(G, k, k) of a few columns at every point; nothing is kept of it."""
+        given = np.asfortranarray(self._columns[:, columns])
+        white = np.stack([self._solved(point, given, 1) for point in range(len(self.grid))])
+        return white.transpose(0, 2, 1) @ white
+
+    def statistics(self, z, points=None):
+        """As Grams.statistics."""
+        z = np.asfortranarray(self._across.T @ z)
+        wanted = np.arange(len(self.grid)) if points is None else points
+        quadratic = np.full((len(self.grid), z.shape[1]), np.nan)
+        inner = np.full((len(self.grid), self.values.shape[1], z.shape[1]), np.nan)
+        logdet = np.full(len(self.grid), np.nan)
+        back = np.empty((len(wanted), *z.shape))
+        for place, point in enumerate(wanted):
+            white = self._solved(point, z, 1)
+            quadratic[point] = (white ** 2).sum(axis=0)
+            logdet[point] = np.log(np.diagonal(self._lower[point])).sum()
+            back[place] = self._solved(point, white, 0)
+        inner[wanted] = self._columns.T @ back
+        return quadratic, inner, logdet
+
+    def _solved(self, point, x, transposed):
+        """x (r, R) in the order of Fortran whitened at a point (1), or whitened back (0)."""
+        # Read in the order of Fortran the lower factor is an upper one.
+        return lapack.dtrtrs(self._lower[point].T, x, trans=transposed)[0]
 
 
 class Grams(Products):

@@ -14,8 +14,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from . import covariance
-from .gram import Grams
+from . import covariance, gram
 from .nominal_rows import Rows
 
 AT_A_TIME = 256  # columns of a unit matrix that are there at once: memory, not time
@@ -29,7 +28,7 @@ class Unit:
     rows; designs: list of terms.Design, their K columns side by side; grid: list of (placement
     level, flicker level), G of them, in a table of this shape; z (m,) contrasts and columns (m,
     K), in the basis of the rows' groups without what space (m, p), orthonormal, holds; freedom;
-    energy (K,), silent (K,) bool; gram: gram.Grams, logdet (G,), quadratic (G,),
+    energy (K,), silent (K,) bool; gram: gram.Products, logdet (G,), quadratic (G,),
     inner (G, K).
     signature: what the protocol is known by, see cutoffs.py. within: {(effect, number of its
     choice): nats that the blocks of the rests say for it}. between: it lies between the
@@ -48,7 +47,7 @@ class Unit:
     freedom: int
     energy: np.ndarray
     silent: np.ndarray
-    gram: Grams
+    gram: gram.Products
     logdet: np.ndarray
     quadratic: np.ndarray
     inner: np.ndarray
@@ -182,10 +181,10 @@ def unit(rows, designs, wanted=None, **about):
         placements = placements[:1]
     grid = [(a, b) for a in placements for b in flickers]
     shape = len(placements), len(flickers)
-    gram = Grams(groups, grid, space, _common(rows), columns)
-    quadratic, inner, logdet = gram.statistics(z)
+    grams = gram.of(groups, grid, space, _common(rows), columns)
+    quadratic, inner, logdet = grams.statistics(z)
     return Unit(rows, designs, grid, shape, groups, space, z[:, 0],
-                columns, len(z) - space.shape[1], 3.0 * (raw ** 2).mean(axis=0), silent, gram,
+                columns, len(z) - space.shape[1], 3.0 * (raw ** 2).mean(axis=0), silent, grams,
                 logdet, quadratic[:, 0], inner[:, :, 0], **about)
 
 
