@@ -9,6 +9,7 @@ from sixflip.capture import blocks as capture_blocks
 from sixflip.capture import writer as capture_writer
 from sixflip_host import cli
 from sixflip_host.capture import capture_file
+from sixflip_host.diagnosis import diagnose
 from sixflip_host.simulation import scenario, simulated_session
 
 KEYS = {"format", "verdict", "causes", "where", "gap", "unseen", "next"}
@@ -36,12 +37,33 @@ def two_sessions(tmp_path_factory):
     return captures(tmp_path_factory.mktemp("gap"), "recommended", EFFECTS)
 
 
+@pytest.fixture(scope="module")
+def made():
+    """{what was diagnosed: its Diagnosis} of the tests that ask for made_once."""
+    return {}
+
+
+@pytest.fixture
+def made_once(made, monkeypatch):
+    """The diagnosis of the two sessions is made once for the JSON, the words and the page: its
+    result is a frozen value, and each test goes the verb's whole way with it."""
+    make = diagnose.diagnose
+
+    def once(captures, *settings):
+        key = repr(([name for name, _ in captures], settings))
+        if key not in made:
+            made[key] = make(captures, *settings)
+        return made[key]
+    monkeypatch.setattr(diagnose, "diagnose", once)
+
+
 def diagnosed(capsys, *words):
     assert cli.main(["diagnose", *words, "--json"]) == 0
     return json.loads(capsys.readouterr().out)
 
 
-def test_two_causes_are_named_with_size_axis_and_share(two_sessions, capsys, tmp_path):
+def test_two_causes_are_named_with_size_axis_and_share(
+        two_sessions, made_once, capsys, tmp_path):
     junit = tmp_path / "checks.xml"
     answer = diagnosed(capsys, *two_sessions, "--junit", str(junit), "--add", "found",
                        "--scenario", str(tmp_path / "found.toml"))
@@ -84,7 +106,8 @@ def test_a_simulator_that_has_the_effects_differs_by_its_parameters_alone(
     assert "thermal_bias" in " ".join(answer["remarks"])
 
 
-def test_the_first_line_is_the_verdict_and_ci_can_fail_on_it(two_sessions, tmp_path, capsys):
+def test_the_first_line_is_the_verdict_and_ci_can_fail_on_it(
+        two_sessions, made_once, tmp_path, capsys):
     report = tmp_path / "report"
     junit = tmp_path / "checks.xml"
     code = cli.main(["diagnose", *two_sessions, "--fail-on", "explained", "--report", str(report),
