@@ -8,14 +8,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from . import convention_findings
+from . import convention_findings, conventions
 
 WINDOW_ROWS = 40
 MOVING = 8.0  # steps by which a reading has to change over a window to be seen to repeat
 LONGEST = 25  # rows that a reading is looked for to be held under noise
 LEAST = 1.5  # rows from which on a reading is held at all
-PRIOR = 0.02  # that a log holds a sensor at all, over all numbers of rows and beginnings
-CERTAIN = 0.99
 SLOWER = 0.8  # of the real log's own rate of new readings
 
 
@@ -88,7 +86,8 @@ def under_noise(values, moving, rests):
             best = nats[first], k, first
     nats, k, first = best
     ways = sum(range(2, LONGEST + 1))
-    if nats < np.log(ways * (1.0 - PRIOR) / PRIOR * CERTAIN / (1.0 - CERTAIN)):
+    sure = conventions.CERTAIN / (1.0 - conventions.CERTAIN)
+    if nats < np.log(ways * (1.0 - conventions.PRIOR_EACH) / conventions.PRIOR_EACH * sure):
         return everywhere
     starts = np.arange(n) % k == first
     starts[0] = True

@@ -10,7 +10,7 @@ from . import convention_findings, conventions, evidence_of_logs, hypotheses, tr
 from .pairing import GRID_HZ, increasing
 
 ARM_M = 0.3  # prior of a lever arm in a log: of the sensor, and of the point it is turned about
-BAND_HZ = 6.0
+BAND_HZ = align_by.BAND_HZ
 FEWEST_MOVES = 8
 CHI_OF_THREE = 10.0  # more than APART ** 2 by which chi-squared of three is as rare
 APART = 4.5  # standard errors between two logs from which on they differ
