@@ -16,7 +16,7 @@ from . import (
     coefficient_fits,
     cutoffs,
     effect_estimates,
-    evidence,
+    flicker_profile,
     hypotheses,
     odds,
     posterior,
@@ -207,9 +207,9 @@ def _drift(found, units, data, levels, kind, chosen, index):
         return []
     value, interval, free = {}, {}, frozenset(["flicker"])
     for key, unit, statistics in zip("xyz", units, data.statistics):
-        course = evidence.by_flicker(unit, statistics, found.best.shared,
-                                     levels.prior(unit, free))
-        level, low, high = evidence.profile(sorted({b for _, b in unit.grid}), course)
+        course = flicker_profile.by_flicker(unit, statistics, found.best.shared,
+                                            levels.prior(unit, free))
+        level, low, high = flicker_profile.profile(sorted({b for _, b in unit.grid}), course)
         if low > levels.flicker:
             value[key] = level * FLOOR_OF_KERNEL
             interval[key] = (low * FLOOR_OF_KERNEL, high * FLOOR_OF_KERNEL)
