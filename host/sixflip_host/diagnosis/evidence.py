@@ -128,6 +128,21 @@ class Elimination:
         self.logdet[points] = (self.unit.logdet[points] + 0.5 * np.linalg.slogdet(block)[1]
                                + np.log(self.private.prior).sum())
 
+    def at(self, points):
+        """(quadratic (G, 1), inner (G, K, 1), logdet (G,)), made at these points of the grid."""
+        self._fill(points)
+        return self.quadratic, self.inner, self.logdet
+
+    def taken(self, points, index):
+        """(P, F, k, k): what the private columns take off the products of columns (F, k)."""
+        self._fill(points)
+        forms, k = index.shape
+        cross = self.unit.gram.blocks(points, index.ravel(), self.private.index)
+        solved = self.solved[points[:, None, None], np.arange(len(self.private))[:, None],
+                             index.ravel()]
+        own = solved.reshape(len(points), len(self.private), forms, k).transpose(0, 2, 1, 3)
+        return cross.reshape(len(points), forms, k, len(self.private)) @ own
+
     def reduced(self, columns, points):
         """Reduced of these shared columns at these points of the grid."""
         self._fill(points)
@@ -204,8 +219,13 @@ def known(gram, inner, quadratic):
 
 def coefficients(fits, shared):
     """(theta (R, k), V (R, k, k)) of several Fits together."""
-    covariance = np.linalg.inv(sum(f.gram for f in fits) + np.diag(shared.prior ** -2.0))
+    covariance = np.linalg.inv(sum(f.gram for f in fits) + diagonal(shared.prior ** -2.0))
     return _times(covariance, sum(f.inner for f in fits)), covariance
+
+
+def diagonal(values):
+    """(..., k, k) of values (..., k)."""
+    return values[..., None] * np.eye(values.shape[-1])
 
 
 def _times(matrices, vectors):
@@ -227,13 +247,14 @@ def predictive(fit, theta, covariance):
 
 
 def score(fits, shared, apart=False):
-    """(R,) log predictive likelihood of all units, and how plausible the sizes are; apart: the
-    units have no coefficient in common, nothing is learned from one for the other."""
-    number, k = len(fits[0].quadratic), len(shared)
+    """(R,) log predictive likelihood of all units, and how plausible the sizes are; shared:
+    Columns, of which each of the R may have its own (R, k); apart: the units have no coefficient
+    in common, nothing is learned from one for the other."""
+    number, k = len(fits[0].quadratic), shared.index.shape[-1]
     if not k:
         return sum(predictive(f, np.zeros((number, 0)), np.zeros((number, 0, 0))) for f in fits)
     if apart or len(fits) == 1:
-        wide = np.broadcast_to(np.diag(shared.prior ** 2), (number, k, k))
+        wide = np.broadcast_to(diagonal(shared.prior ** 2), (number, k, k))
         return sum(predictive(f, np.zeros((number, k)), wide) for f in fits)
     total = np.zeros(number)
     for held, one in enumerate(fits):

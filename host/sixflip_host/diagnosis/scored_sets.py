@@ -2,10 +2,11 @@
 members, those of each unit's own chosen one by one, and what was computed once kept.
 """
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from . import evidence
+from . import evidence, forms_at_once
 from .evidence import NONE
 
 KEPT = 8  # eliminations of each unit that are kept
@@ -42,7 +43,7 @@ class Model:
 
     def scored(self, forms):
         """Scored of a tuple of Forms."""
-        found = self._extended(None, None, evidence.EVERY)
+        found = self._empty
         for form in forms:
             found = self.extended(found, form)
         return found
@@ -58,11 +59,35 @@ class Model:
     def best(self, base, forms):
         """[(Form, Scored of a base with it)] of the Forms that come near to the best one, which
         is first. Found with few levels of noise, then looked at with all of them."""
-        rough = sorted(((self.extended(base, form, evidence.COARSE).score, place)
-                        for place, form in enumerate(forms)), reverse=True)
+        rough = sorted(((score, place) for place, score in enumerate(self._roughly(base, forms))),
+                       reverse=True)
         near = [forms[place] for _, place in rough[:NEAR]]
         return sorted(((form, self.extended(base, form)) for form in near),
                       key=lambda pair: -pair[1].score)
+
+    @cached_property
+    def _empty(self):
+        return self._extended(None, None, evidence.EVERY)
+
+    def _roughly(self, base, forms):
+        """[score (nats)] of a base with each of the forms, with few levels of noise; those that
+        only add shared columns are taken together."""
+        found = [None if one.choices or one.free else 0.0 for one in forms]
+        plain = [place for place, score in enumerate(found) if score is not None]
+        free = frozenset().union(*(f.free for f in base.forms))
+        shared = [_distinct((*base.forms, forms[place])) for place in plain]
+        for places in forms_at_once.by_size(shared).values():
+            index, prior = (np.stack([getattr(shared[k], name) for k in places])
+                            for name in ("index", "prior"))
+            fits = [forms_at_once.fit(
+                unit, statistics, index, prior, self._prior(number, free), unit.coarse,
+                self._elimination(number, base.private[number]))
+                for number, (unit, statistics) in enumerate(zip(self.units, self.statistics))]
+            scores = evidence.score(fits, evidence.Columns(index, prior), self.units[0].apart)
+            for k, score in zip(places, scores):
+                found[plain[k]] = float(score) - base.chances
+        return [self.extended(base, form, evidence.COARSE).score if score is None else score
+                for form, score in zip(forms, found)]
 
     def _extended(self, base, form, points):
         forms = () if base is None else (*base.forms, form)
@@ -109,12 +134,16 @@ class Model:
         within themselves says for it)."""
         unit, found = self.units[place], []
         elimination = self._elimination(place, private)
-        for number, one in enumerate(form.choices):
-            within = unit.within.get((form.effect, number), 0.0)
-            # Integrated out by its prior a column is the same, shared or private.
-            likelihood = evidence.fit(unit, self.statistics[place], shared + one, private, level,
-                                      evidence.COARSE, elimination).evidence[0]
-            found.append((float(likelihood) + within, number, within))
+        # Integrated out by its prior a column is the same, shared or private.
+        together = [shared + one for one in form.choices]
+        for numbers in forms_at_once.by_size(together).values():
+            likelihoods = forms_at_once.fit(
+                unit, self.statistics[place], np.stack([together[n].index for n in numbers]),
+                np.stack([together[n].prior for n in numbers]), level, unit.coarse,
+                elimination).evidence
+            for number, likelihood in zip(numbers, likelihoods.tolist()):
+                within = unit.within.get((form.effect, number), 0.0)
+                found.append((likelihood + within, number, within))
         _, number, within = max(found)
         return private + form.choices[number], within
 

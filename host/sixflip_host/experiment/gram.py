@@ -31,6 +31,10 @@ class Products:
         """(P, r, c) products of columns rows (r,) with columns (c,) at points (P,) of the grid."""
         return self.values[points[:, None, None], rows[:, None], columns]
 
+    def each(self, points, index):
+        """(P, F, k, k) products of columns index (F, k) with one another."""
+        return self.values[points[:, None, None, None], index[:, :, None], index[:, None, :]]
+
 
 def of(groups, grid, space, common, columns):
     """Grams, or FewGrams of few readings."""
@@ -38,7 +42,24 @@ def of(groups, grid, space, common, columns):
     return kind(groups, grid, space, common, columns)
 
 
-class FewGrams(Products):
+class Whitened(Products):
+    """Products of whitened columns: values (G, K, r), those of a point there after _fill."""
+
+    def blocks(self, points, rows, columns):
+        if len(rows) and len(columns):
+            self._fill(points)
+        others = self.values[points[:, None], columns]
+        own = others if rows is columns else self.values[points[:, None], rows]
+        return own @ others.transpose(0, 2, 1)
+
+    def each(self, points, index):
+        if index.size:
+            self._fill(points)
+        white = self.values[points[:, None, None], index]
+        return white @ white.transpose(0, 1, 3, 2)
+
+
+class FewGrams(Whitened):
     """The same as Grams of few readings: one matrix of all of them, across what is projected out.
     values (G, K, r): the columns whitened, at the points that were asked for."""
 
@@ -63,13 +84,10 @@ class FewGrams(Products):
         a, b = np.array(self.grid).T[:, :, None, None] ** 2
         return np.linalg.cholesky(turned(base + common @ common.T) + a * lateral + b * kernel)
 
-    def blocks(self, points, rows, columns):
-        for point in np.unique(points[~self._done[points]]):
+    def _fill(self, points):
+        for point in points[~self._done[points]]:
             self.values[point, self._loud] = self._solved(point, self._given, 1).T
             self._done[point] = True
-        others = self.values[points[:, None], columns]
-        own = others if rows is columns else self.values[points[:, None], rows]
-        return own @ others.transpose(0, 2, 1)
 
     def of(self, columns):
         """(G, k, k) of a few columns at every point; nothing is kept of it."""
@@ -99,7 +117,7 @@ class FewGrams(Products):
         return lapack.dtrtrs(self._lower[point].T, x, trans=transposed)[0]
 
 
-class Grams(Products):
+class Grams(Whitened):
     """Products of K columns at the G points of a grid, each point worked out when it is first
     asked for. values: the products, or (G, K, rows) the columns that they are the products of."""
 
@@ -123,13 +141,16 @@ class Grams(Products):
         return len(self.grid)
 
     def blocks(self, points, rows, columns):
-        if len(rows) and len(columns):
-            self._fill(points)
-        if not self._whitened:
+        if self._whitened:
             return super().blocks(points, rows, columns)
-        others = self.values[points[:, None], columns]
-        own = others if rows is columns else self.values[points[:, None], rows]
-        return own @ others.transpose(0, 2, 1)
+        self._fill(points)
+        return Products.blocks(self, points, rows, columns)
+
+    def each(self, points, index):
+        if self._whitened:
+            return super().each(points, index)
+        self._fill(points)
+        return Products.each(self, points, index)
 
     def of(self, columns):
         """(G, k, k) of a few columns at every point; nothing is kept of it."""

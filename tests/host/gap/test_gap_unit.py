@@ -81,6 +81,8 @@ def test_statistics_are_those_of_the_covariance_at_every_point(loud, few, monkey
         assert unit.gram.of(few)[index] == pytest.approx(products[np.ix_(few, few)])
         assert unit.gram.blocks(np.array([index]), few[:1], few) == pytest.approx(
             products[None, few[:1]][:, :, few])
+        assert unit.gram.each(np.array([index]), few[None, :2])[0, 0] == pytest.approx(
+            products[np.ix_(few[:2], few[:2])])
         assert unit.gram.at(index) == pytest.approx(products)
         assert unit.logdet[index] == pytest.approx(0.5 * np.linalg.slogdet(c)[1])
         assert unit.quadratic[index] == pytest.approx(z @ inverse @ z)
