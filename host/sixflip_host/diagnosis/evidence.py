@@ -177,7 +177,7 @@ def fit(unit, statistics, shared, private, level, points=EVERY, elimination=None
     chosen = points
     if isinstance(points, str):
         chosen = np.arange(len(level)) if points == EVERY else unit.coarse
-    if elimination is None or not len(private):
+    if elimination is None or not len(private) or not len(shared):
         r = reduced(unit, statistics, shared, private, chosen)
     else:
         r = elimination.reduced(shared.index, chosen)

@@ -34,6 +34,13 @@ def fit(unit, statistics, index, prior, level, points, elimination=None):
                logdet[best], level[points][best], likelihood[best, every])
 
 
+def one(fit, number):
+    """Fit of one of the forms."""
+    own = slice(number, number + 1)
+    return Fit(fit.index[own], fit.quadratic[own], fit.inner[own], fit.gram[own],
+               fit.logdet[own], fit.level[own], fit.evidence[own])
+
+
 def by_size(columns):
     """{k: places of the Columns (a list) that are k}"""
     found = {}

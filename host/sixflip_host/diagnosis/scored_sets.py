@@ -1,7 +1,7 @@
 """The score of a set of hypotheses on the units of one sensor: evidence.py with the columns of all
 members, those of each unit's own chosen one by one, and what was computed once kept.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -48,33 +48,36 @@ class Model:
             found = self.extended(found, form)
         return found
 
-    def extended(self, base, form, points=evidence.EVERY):
-        """Scored of a Scored set with one more Form; what is private in it stays as it is.
-        points: evidence.EVERY or COARSE, how finely the levels of noise are looked through."""
-        key = (frozenset((*base.forms, form)), points)
+    def extended(self, base, form):
+        """Scored of a Scored set with one more Form; what is private in it stays as it is."""
+        key = frozenset((*base.forms, form))
         if key not in self._known:
-            self._known[key] = self._extended(base, form, points)
+            self._known[key] = self._closer(self._rough(base, form))
         return self._known[key]
 
     def best(self, base, forms):
         """[(Form, Scored of a base with it)] of the Forms that come near to the best one, which
         is first. Found with few levels of noise, then looked at with all of them."""
-        rough = sorted(((score, place) for place, score in enumerate(self._roughly(base, forms))),
-                       reverse=True)
-        near = [forms[place] for _, place in rough[:NEAR]]
-        return sorted(((form, self.extended(base, form)) for form in near),
-                      key=lambda pair: -pair[1].score)
+        rough = sorted(enumerate(self._roughly(base, forms)),
+                       key=lambda pair: (pair[1].score, pair[0]), reverse=True)
+        found = []
+        for place, one in rough[:NEAR]:
+            key = frozenset(one.forms)
+            if key not in self._known:
+                self._known[key] = self._closer(one)
+            found.append((forms[place], self._known[key]))
+        return sorted(found, key=lambda pair: -pair[1].score)
 
     @cached_property
     def _empty(self):
-        return self._extended(None, None, evidence.EVERY)
+        return self._closer(self._rough(None, None))
 
     def _roughly(self, base, forms):
-        """[score (nats)] of a base with each of the forms, with few levels of noise; those that
-        only add shared columns are taken together."""
-        found = [None if one.choices or one.free else 0.0 for one in forms]
-        plain = [place for place, score in enumerate(found) if score is not None]
-        free = frozenset().union(*(f.free for f in base.forms))
+        """[_rough(base, form)] of many forms; those that only add shared columns are taken
+        together."""
+        found = [self._rough(base, one) if one.choices or one.free else None for one in forms]
+        plain = [place for place, one in enumerate(found) if one is None]
+        free = _free(base.forms)
         shared = [_distinct((*base.forms, forms[place])) for place in plain]
         for places in forms_at_once.by_size(shared).values():
             index, prior = (np.stack([getattr(shared[k], name) for k in places])
@@ -84,15 +87,18 @@ class Model:
                 self._elimination(number, base.private[number]))
                 for number, (unit, statistics) in enumerate(zip(self.units, self.statistics))]
             scores = evidence.score(fits, evidence.Columns(index, prior), self.units[0].apart)
-            for k, score in zip(places, scores):
-                found[plain[k]] = float(score) - base.chances
-        return [self.extended(base, form, evidence.COARSE).score if score is None else score
-                for form, score in zip(forms, found)]
+            for number, k in enumerate(places):
+                found[plain[k]] = Scored(
+                    (*base.forms, forms[plain[k]]), float(scores[number]) - base.chances,
+                    tuple(forms_at_once.one(fit, number) for fit in fits), base.private,
+                    base.chances)
+        return found
 
-    def _extended(self, base, form, points):
+    def _rough(self, base, form):
+        """Scored of a base with one more Form (both None: of no form), looked at with few levels
+        of noise."""
         forms = () if base is None else (*base.forms, form)
-        shared = _distinct(forms)
-        free = frozenset().union(*(f.free for f in forms)) if forms else frozenset()
+        shared, free = _distinct(forms), _free(forms)
         fits, privates = [], []
         chances = 0.0 if base is None else base.chances
         for place, (unit, statistics) in enumerate(zip(self.units, self.statistics)):
@@ -101,15 +107,22 @@ class Model:
             if form is not None and form.choices and not unit.between:
                 private, nats = self._chosen(place, shared, private, form, level)
                 chances += float(np.log(len(form.choices))) - nats
-            made = self._elimination(place, private)
-            fit = evidence.fit(unit, statistics, shared, private, level, evidence.COARSE, made)
-            if points == evidence.EVERY:
-                near = unit.around(int(fit.index[0]))
-                fit = evidence.fit(unit, statistics, shared, private, level, near, made)
-            fits.append(fit)
+            fits.append(evidence.fit(unit, statistics, shared, private, level, evidence.COARSE,
+                                     self._elimination(place, private)))
             privates.append(private)
         score = float(evidence.score(fits, shared, self.units[0].apart)[0])
         return Scored(forms, score - chances, tuple(fits), tuple(privates), chances)
+
+    def _closer(self, rough):
+        """The Scored set looked at with all levels of noise around its likeliest."""
+        free, fits = _free(rough.forms), []
+        for place, (unit, fit) in enumerate(zip(self.units, rough.fits)):
+            private = rough.private[place]
+            fits.append(evidence.fit(
+                unit, self.statistics[place], rough.shared, private, self._prior(place, free),
+                unit.around(int(fit.index[0])), self._elimination(place, private)))
+        score = float(evidence.score(fits, rough.shared, self.units[0].apart)[0])
+        return replace(rough, score=score - rough.chances, fits=tuple(fits))
 
     def _prior(self, place, free):
         """(G,) log prior of one unit's grid, made once for what is free."""
@@ -146,6 +159,11 @@ class Model:
                 found.append((likelihood + within, number, within))
         _, number, within = max(found)
         return private + form.choices[number], within
+
+
+def _free(forms):
+    """Names of the levels that may be anything."""
+    return frozenset().union(*(form.free for form in forms))
 
 
 def _distinct(forms):

@@ -59,7 +59,7 @@ def in_time(t, seconds, shares, parts):
     """[Group] of blocks of three readings each (x y z): t, seconds (n,) of the blocks; shares
     (3,): variance of each axis' flicker; parts: [(slice of blocks, base, lateral, basis)]."""
     times = np.array(ALL_TIMES_S)
-    axes = np.diag(np.sqrt(shares))
+    axes = np.sqrt(shares)
     ends, found, before = t + 0.5 * seconds, [], None
     for blocks, base, lateral, basis in parts:
         own_t, own_s = t[blocks], seconds[blocks]
@@ -71,10 +71,18 @@ def in_time(t, seconds, shares, parts):
         left = mean * np.exp(-(last - ends[blocks])[:, None] / times)
         found.append(Group(
             slice(3 * blocks.start, 3 * blocks.stop), base, lateral,
-            np.kron(flicker_kernel(own_t, own_s), np.diag(shares)), np.kron(felt, axes),
-            np.kron(left, axes), np.repeat(np.exp(-max(last - before, 0.0) / times), 3), basis))
+            _of_axes(flicker_kernel(own_t, own_s), shares), _of_axes(felt, axes),
+            _of_axes(left, axes), np.repeat(np.exp(-max(last - before, 0.0) / times), 3), basis))
         before = max(last, before)
     return found
+
+
+def _of_axes(values, sizes):
+    """Kronecker product of values (a, b) and the diagonal matrix of sizes (3,)."""
+    out = np.zeros((len(values), 3, values.shape[1], 3))
+    for axis, size in enumerate(sizes):
+        out[:, axis, :, axis] = values * size
+    return out.reshape(3 * len(values), -1)
 
 
 def across(columns):

@@ -5,6 +5,7 @@ from sixflip_sim.effects.drift import FLOOR_OF_UNIT, TIMES_S
 
 # Flicker has neither a shortest nor a longest time: beside the library's 10 to 1000 s.
 ALL_TIMES_S = (0.3, 1.0, 3.0, *TIMES_S, 3000.0, 10000.0)
+FEW = 64  # stretches up to which all times are taken at once: memory
 # Allan floor of the five exponentials of unit level, by numerical integration of their kernel.
 FLOOR_OF_KERNEL = 0.78 / FLOOR_OF_UNIT
 
@@ -13,17 +14,19 @@ def flicker_kernel(t, seconds):
     """(n, n) covariance of unit flicker: of the means over stretches of `seconds` (n,) around
     t (n,) s of a sum of exponentials (Ornstein-Uhlenbeck processes), equally spaced in the
     logarithm of time."""
-    gap = np.abs(t[:, None] - t[None])
-    kernel = np.zeros_like(gap)
-    for tau in ALL_TIMES_S:
-        half = seconds / (2.0 * tau)
+    apart = np.maximum(np.abs(t[:, None] - t) - 0.5 * (seconds[:, None] + seconds), 0.0)
+    kernel, own = np.zeros_like(apart), 0.0
+    at_a_time = len(ALL_TIMES_S) if len(t) <= FEW else 1
+    for first in range(0, len(ALL_TIMES_S), at_a_time):
+        times = np.array(ALL_TIMES_S[first:first + at_a_time])[:, None]
+        half = seconds / (2.0 * times)  # (times, n)
         shrunk = np.sinh(np.minimum(half, 30.0)) / np.maximum(half, 1e-9)
-        apart = np.maximum(gap - (seconds[:, None] + seconds[None]) / 2.0, 0.0)
-        inside = np.exp(-np.minimum(half[:, None] + half[None], 60.0)) * np.outer(shrunk, shrunk)
-        mean = np.exp(-apart / tau) * inside
+        inside = np.minimum(half[:, :, None] + half[:, None], 60.0)
+        kernel += (np.exp(-apart / times[:, :, None] - inside)
+                   * shrunk[:, :, None] * shrunk[:, None]).sum(axis=0)
         x = 2.0 * half
-        np.fill_diagonal(mean, 2.0 / x * (1.0 - (1.0 - np.exp(-x)) / x))
-        kernel += mean
+        own = own + (2.0 / x * (1.0 - (1.0 - np.exp(-x)) / x)).sum(axis=0)
+    np.fill_diagonal(kernel, own)
     return kernel
 
 
