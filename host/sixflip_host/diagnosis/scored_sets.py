@@ -38,7 +38,7 @@ class Model:
 
     def __init__(self, units, statistics, levels):
         self.units, self.statistics, self.levels = units, statistics, levels
-        self._known, self._priors = {}, {}
+        self._known, self._looked_at, self._priors = {}, {}, {}
         self._eliminations = {}
 
     def scored(self, forms):
@@ -52,7 +52,7 @@ class Model:
         """Scored of a Scored set with one more Form; what is private in it stays as it is."""
         key = frozenset((*base.forms, form))
         if key not in self._known:
-            self._known[key] = self._closer(self._rough(base, form))
+            self._known[key] = self._closer(self._looked_at.get(key) or self._rough(base, form))
         return self._known[key]
 
     def best(self, base, forms):
@@ -60,13 +60,9 @@ class Model:
         is first. Found with few levels of noise, then looked at with all of them."""
         rough = sorted(enumerate(self._roughly(base, forms)),
                        key=lambda pair: (pair[1].score, pair[0]), reverse=True)
-        found = []
-        for place, one in rough[:NEAR]:
-            key = frozenset(one.forms)
-            if key not in self._known:
-                self._known[key] = self._closer(one)
-            found.append((forms[place], self._known[key]))
-        return sorted(found, key=lambda pair: -pair[1].score)
+        self._looked_at.update((frozenset(one.forms), one) for _, one in rough)
+        return sorted(((forms[place], self.extended(base, forms[place]))
+                       for place, _ in rough[:NEAR]), key=lambda pair: -pair[1].score)
 
     @cached_property
     def _empty(self):

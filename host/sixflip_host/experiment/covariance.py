@@ -12,10 +12,14 @@ import copy
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import linalg
+from scipy.linalg import lapack
 
 from .flicker import ALL_TIMES_S, flicker_kernel
 
 AT_A_TIME = 512  # whitened rows that are there at once
+FEW = 300  # readings up to which one matrix of all of them takes less time than many small ones
+SMALL = 24  # rows of a matrix up to which many at once take less time than each by itself
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,7 +146,7 @@ class Factor:
                 g.lateral @ g.lateral.T)
             felt = g.from_before @ known
             lower = np.linalg.cholesky(own - felt @ g.from_before.T)
-            inverse = np.linalg.inv(lower)
+            inverse = inverses(lower)
             gain = (flicker ** 2 * g.to_later.T - g.decay[:, None] * felt.transpose(0, 2, 1)
                     ) @ inverse.transpose(0, 2, 1)
             known = known * (g.decay[:, None] * g.decay) + gain @ gain.transpose(0, 2, 1)
@@ -205,9 +209,26 @@ class Factor:
         state = np.zeros((len(self.groups[0].decay), white.shape[1]))
         for g, inverse, gain in zip(self.groups, self.inverses, self.gains):
             own = white[g.rows]
-            out[g.rows] = np.linalg.solve(inverse[0], own) + g.from_before @ state
+            out[g.rows] = lapack.dtrtrs(inverse[0].T, own, trans=1)[0] + g.from_before @ state
             state = g.decay[:, None] * state + gain[0] @ own
         return out
+
+
+def inverses(lower):
+    """Inverses of lower triangles (L, n, n). numpy's knows nothing of triangles, but takes many
+    small ones at once."""
+    if lower.shape[1] <= SMALL:
+        return np.linalg.inv(lower)
+    return np.stack([lapack.dtrtri(one, lower=1)[0] for one in lower])
+
+
+def together(groups):
+    """[Group] of the same readings: one where they are few, which takes less time than many."""
+    if groups[-1].rows.stop > FEW or len(groups) == 1:
+        return groups
+    base = dense(groups, 0.0, 0.0)
+    return alone(base, linalg.block_diag(*(g.lateral for g in groups)),
+                 dense(groups, 0.0, 1.0) - base)
 
 
 def energies(groups, basis):

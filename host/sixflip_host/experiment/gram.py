@@ -12,7 +12,6 @@ from scipy.linalg import lapack
 from ..progress import steps
 from . import covariance
 
-FEW = 300  # readings up to which one matrix of all of them takes less time than many small ones
 MOSTLY = 0.9  # share of columns that are not silent from which on none is left out
 
 
@@ -38,7 +37,7 @@ class Products:
 
 def of(groups, grid, space, common, columns):
     """Grams, or FewGrams of few readings."""
-    kind = FewGrams if len(columns) <= FEW else Grams
+    kind = FewGrams if len(columns) <= covariance.FEW else Grams
     return kind(groups, grid, space, common, columns)
 
 
@@ -81,8 +80,11 @@ class FewGrams(Whitened):
         base = covariance.dense(groups, 0.0, 0.0)
         lateral = turned(covariance.dense(groups, 1.0, 0.0) - base)
         kernel = turned(covariance.dense(groups, 0.0, 1.0) - base)
-        a, b = np.array(self.grid).T[:, :, None, None] ** 2
-        return np.linalg.cholesky(turned(base + common @ common.T) + a * lateral + b * kernel)
+        base = turned(base + common @ common.T)
+        out = np.empty((len(self.grid), *base.shape))
+        for own, (placement, flicker) in zip(out, self.grid):
+            own[:] = np.linalg.cholesky(base + placement ** 2 * lateral + flicker ** 2 * kernel)
+        return out
 
     def _fill(self, points):
         for point in points[~self._done[points]]:

@@ -11,6 +11,7 @@ projected out there, and the covariance is factored in time (covariance.py), so 
 grows as the session does.
 """
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -122,12 +123,16 @@ class Unit:
                                                 index)))
                    for first in range(0, n, AT_A_TIME))
 
+    @cached_property
+    def _together(self):
+        return covariance.together(self.groups)
+
     def _factor(self, index):
         """covariance.Factor at one point of the grid; the last one is kept."""
         if index not in self._factors:
             self._factors.clear()
             placement, level = self.grid[index]
-            self._factors[index] = covariance.Factor(self.groups, [placement], level)
+            self._factors[index] = covariance.Factor(self._together, [placement], level)
         return self._factors[index]
 
     def draw(self, index, generator, number):

@@ -24,7 +24,8 @@ def wrong_axes(placements, moves, lsb_per_dps, bias):
         return "", []
     own = _misses(evidence, (0, 1, 2), (1, 1, 1))
     best, cost = None, _cost(own)
-    for order in ORDERS:
+    # Only a move that is missed as read can contradict how the axes are read.
+    for order in ORDERS if max(own) > MISSED else ():
         for code in range(8):
             signs = (1 - 2 * (code & 1), 1 - (code & 2), 1 - ((code & 4) >> 1))
             misses = _misses(evidence, order, signs)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy import linalg
 
-from sixflip_host.experiment import covariance, gram, linear_model
+from sixflip_host.experiment import covariance, linear_model
 from sixflip_host.experiment.flicker import flicker_kernel
 from sixflip_host.experiment.nominal_rows import Rows
 from sixflip_host.experiment.projection import lateral_basis
@@ -63,10 +63,10 @@ def plain():
     return Plain()
 
 
-@pytest.mark.parametrize("few", [0, gram.FEW])  # group by group, and one matrix of all
+@pytest.mark.parametrize("few", [0, covariance.FEW])  # group by group, and one matrix of all
 @pytest.mark.parametrize("loud", [2, 60])  # fewer than there are contrasts, and more
 def test_statistics_are_those_of_the_covariance_at_every_point(loud, few, monkeypatch):
-    monkeypatch.setattr(gram, "FEW", few)
+    monkeypatch.setattr(covariance, "FEW", few)
     plain = Plain(loud)
     unit, q = plain.unit, plain.across
     assert unit.freedom == q.shape[1] and len(unit.grid) == 6
