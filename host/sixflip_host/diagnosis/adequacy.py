@@ -17,7 +17,7 @@ from .evidence import Levels
 PLACEMENT = {"accel": 0.87, "gyro": 0.003}  # 0.05 deg across gravity, mg; the Earth's rate
 TIMES_TYPICAL = 4.0  # of flicker, that one rest may have: data sheets give no largest value
 ABSORBED = 0.6  # leverage above which a residual is mostly fitted away
-FEWEST = 20  # innovations of a session
+FEWEST = 20  # innovations of each axis of a session, and of two axes at the same time
 FROZEN = 1e-6  # of a standard deviation: rounding of a reading that never changes leaves less
 # Standard deviations of a kurtosis that chance reaches once in 30,000; how much one axis' noise
 # may be above another's in a chip as it is [ADXL345 rev. E, table 1: Z 1.1 LSB, X and Y 0.75].
@@ -56,8 +56,9 @@ class Adequacy:
     odd: str = ""
 
 
-def of(units, statistics, scored, shaken=()):
-    """Adequacy of a scored_sets.Scored; shaken: axes (0..2) that a line of the spectrum is on."""
+def of(units, statistics, scored, shaken=(), by_hand=False):
+    """Adequacy of a scored_sets.Scored; shaken: axes (0..2) that a line of the spectrum is on;
+    by_hand: what a placement adds is the hand's doing, which has any distribution."""
     shared = scored.shared
     theta = evidence.coefficients(scored.fits, shared)[0][0]
     index, parts, before = [], [], 0.0
@@ -76,7 +77,7 @@ def of(units, statistics, scored, shaken=()):
     largest = max([chi2 / freedom] + [c / f for c, f in parts])
     looks = len(parts) + 1  # at each of them, and at all together [Bonferroni]
     ok = not (looks * min(p, worst) < DOUBTFUL_P and largest > DOUBTFUL_RATIO)
-    odd, chance = _odd(units, scored, theta, shaken)
+    odd, chance = _odd(units, scored, theta, shaken, by_hand)
     p = min(p, looks * worst if not ok else 1.0, chance if odd else 1.0)
     return Adequacy(ok and not odd, chi2 / freedom, p, tuple(index), chi2 - freedom, before,
                     tuple(parts), odd)
@@ -89,39 +90,44 @@ def _by_chance(chi2, freedom, known):
     return float(special.fdtrc(freedom, known, chi2 / freedom))
 
 
-def _odd(units, scored, theta, shaken):
+def _odd(units, scored, theta, shaken, by_hand):
     """oddity() of what is left in all sessions: what jumps has heavy tails, what is shared or on
     one axis alone has another cause than noise has."""
     left = [innovations(u, u.grid[int(f.index[0])], private,
-                        u.raw(scored.shared.index) @ theta)
+                        u.raw(scored.shared.index) @ theta, by_hand)
             for u, f, private in zip(units, scored.fits, scored.private)
             if not (u.between or u.turns or u.apart)]
-    left = [x for x in left if np.isfinite(x).all(axis=1).sum() >= FEWEST]
-    if not left:
-        return "", 1.0
-    return oddity(np.concatenate([one[np.isfinite(one).all(axis=1)] for one in left]), shaken)
+    left = [x for x in left if np.isfinite(x).sum(axis=0).min() >= FEWEST]
+    return oddity(np.concatenate(left), shaken) if left else ("", 1.0)
 
 
 def oddity(x, shaken=()):
-    """("" or how, p): how innovations x (n, 3) differ from noise that is normal, of one size on
-    all axes and independent between them; shaken: axes that a line of the spectrum is on."""
-    number = len(x)
-    spread = x.std(axis=0)
-    if spread.min() < FROZEN:  # an axis that always reads the same has no noise to compare
+    """("" or how, p): how innovations x (n, 3), NaN where the fit takes them up, differ from noise
+    that is normal, of one size on all axes and independent between them; shaken: axes that a line
+    of the spectrum is on."""
+    each = [column[np.isfinite(column)] for column in x.T]
+    if min(one.std() for one in each) < FROZEN:  # what always reads the same has no noise
         return "", 1.0
-    tails = _kurtosis(x)
-    if tails > KURTOSIS_SIGMAS * np.sqrt(24.0 / x.size) + 0.5:
-        return "heavy tails", float(special.ndtr(-(tails - 0.5) / np.sqrt(24.0 / x.size)))
-    size = (x ** 2).mean(axis=0)
-    size = np.delete(size, shaken) if len(shaken) < 2 else size[:1]  # a line is noise with a name
-    if size.max() / size.min() > special.fdtri(
-            number, number, 1.0 - DOUBTFUL_P / 3.0) * UNLIKE ** 2:
+    every = np.concatenate(each)
+    tails = _kurtosis(every)
+    if tails > KURTOSIS_SIGMAS * np.sqrt(24.0 / every.size) + 0.5:
+        return "heavy tails", float(special.ndtr(-(tails - 0.5) / np.sqrt(24.0 / every.size)))
+    # A line is noise with a name.
+    quiet = [one for axis, one in enumerate(each) if axis not in shaken] or each[:1]
+    small, large = (pick(quiet, key=lambda one: (one ** 2).mean()) for pick in (min, max))
+    ratio, numbers = (large ** 2).mean() / (small ** 2).mean(), (len(large), len(small))
+    if ratio > special.fdtri(*numbers, 1.0 - DOUBTFUL_P / 3.0) * UNLIKE ** 2:
         return "one axis more than the others", 3.0 * float(special.fdtrc(
-            number, number, size.max() / size.min() / UNLIKE ** 2))
-    together = np.abs(np.corrcoef(x.T)[np.triu_indices(3, 1)]).max()
-    if together > 4.0 / np.sqrt(number) + 0.1:
-        return "axes move together", 6.0 * float(special.ndtr(
-            -np.arctanh(together - 0.1) * np.sqrt(number)))
+            *numbers, ratio / UNLIKE ** 2))
+    for a, b in ((0, 1), (0, 2), (1, 2)):
+        both = np.isfinite(x[:, a]) & np.isfinite(x[:, b])
+        number = np.count_nonzero(both)
+        if number < FEWEST:
+            continue
+        together = abs(np.corrcoef(x[both, a], x[both, b])[0, 1])
+        if together > 4.0 / np.sqrt(number) + 0.1:
+            return "axes move together", 6.0 * float(special.ndtr(
+                -np.arctanh(together - 0.1) * np.sqrt(number)))
     return "", 1.0
 
 
@@ -131,11 +137,12 @@ def _kurtosis(x):
     return float((off ** 2).mean() / off.mean() ** 2 - 3.0)
 
 
-def innovations(unit, point, private, explained):
+def innovations(unit, point, private, explained, loose=False):
     """(n, 3) residuals of a session's nuisance fit, whitened in the order of time to a standard
     deviation of 1 at a point (placement, flicker) of its grid; NaN where the fit takes them up.
-    explained (3n,): what the shared columns add; private columns are fitted as the nuisance."""
-    left, leverage = unit.innovations(point, private.index, explained)
+    explained (3n,): what the shared columns add; private columns are fitted as the nuisance;
+    loose: see linear_model.Unit."""
+    left, leverage = unit.innovations(point, private.index, explained, loose)
     left = left / np.sqrt(np.maximum(1.0 - leverage, 1e-9))
     left[leverage > ABSORBED] = np.nan
     return left

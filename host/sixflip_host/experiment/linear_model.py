@@ -19,6 +19,7 @@ from . import covariance, gram
 from .nominal_rows import Rows
 
 AT_A_TIME = 256  # columns of a unit matrix that are there at once: memory, not time
+LOOSE = 10.0  # times the largest level of placement that is looked at: as good as any
 NOTHING = 1e-7  # share of its energy below which a column is silent
 
 
@@ -143,12 +144,15 @@ class Unit:
         z = z + common @ generator.standard_normal((common.shape[1], number))
         return z - self.space @ (self.space.T @ z)
 
-    def innovations(self, point, private, explained):
+    def innovations(self, point, private, explained, loose=False):
         """(m, 3) what is left of the readings at a point (placement, flicker), whitened in the
         order of time to a standard deviation of 1, and (m, 3) the share of each that the fit
         takes up. private: columns that are fitted as the nuisance is; explained (n,): what the
-        others add. Of a placement that is free across gravity, the differences of its blocks."""
-        factor = covariance.Factor(self.groups, [point[0]], point[1])
+        others add. Of a placement that is free across gravity, the differences of its blocks;
+        loose: every one may lie anywhere there, as in a fit, and what it takes up of a reading
+        is in its share."""
+        placement = LOOSE * max(a for a, _ in self.grid) if loose else point[0]
+        factor = covariance.Factor(self.groups, [placement], point[1])
         fitted = np.hstack([self.rows.nuisance, self.raw(private)])
         x = covariance.turned(self.rows.groups, np.column_stack(
             [fitted, self.rows.y - explained]))
@@ -157,6 +161,10 @@ class Unit:
         basis = basis[:, s > 1e-9 * s[0]]
         left = white[:, -1] - basis @ (basis.T @ white[:, -1])
         leverage = (basis ** 2).sum(axis=1)
+        if loose:
+            leverage += np.concatenate([
+                ((inverse[0] @ g.lateral * placement) ** 2).sum(axis=1)
+                for g, inverse in zip(self.groups, factor.inverses)])
         keep = np.concatenate([np.arange(g.rows.start, g.rows.start
                                          + (g.rows.stop - g.rows.start) // 3 * 3)
                                for g in self.groups])
