@@ -118,7 +118,7 @@ class RestModel:
         if self.kind == "accel":
             designs.append(terms.of_terms("box_tilt", "accel", part.moment(model.up), part.n,
                                                chip=self.chip))
-        designs += strangers.designs(part, model.up, self.kind)
+        designs += strangers.designs(part, model.up, self.kind, reference)
         if self.settings.certified:
             designs = [d for d in designs if d.effect != "box_tilt"]
         rows = nominal_rows.rows(self.kind, part, model, certified)

@@ -33,20 +33,22 @@ def domain(effect):
     return DOMAIN.get(effect, effect)
 
 
-def designs(session, up, sensor):
+def designs(session, up, sensor, reference_c):
     """list of Design that are no effect's of the library but a walk, in the same order for every
     session."""
-    return shared(session, up, sensor) + private(session, sensor)
+    return shared(session, up, sensor, reference_c) + private(session, sensor)
 
 
-def shared(session, up, sensor):
-    """Nameless functions whose coefficients are those of the sensor."""
+def shared(session, up, sensor, reference_c):
+    """Nameless functions whose coefficients are those of the sensor; reference_c: temperature
+    that all sessions have in common, about which those of temperature are the same functions in
+    each."""
     n, m = session.n, session.moment(up)
     f = np.stack(m.f, 1)
     scale = SCALE[sensor]
     found = [_smooth("time", hats(session.t, HATS), n, scale)]
     if session.thermal:
-        t = (session.temperature - session.temperature.mean()) / 5.0
+        t = (session.temperature - reference_c) / 5.0
         found.append(_smooth("temperature", [t, t ** 2, t ** 3], n, scale))
         found.append(_smooth("thermal_orientation", [t * f[:, i] for i in range(3)], n, scale))
     before = np.stack(m.before, 1)

@@ -1,4 +1,5 @@
 """What hands do, and how far noise is known, is in the model with levels of its own: no gap."""
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -150,9 +151,9 @@ def test_the_angles_of_the_accelerometer_that_reads_the_ends_are_no_gap_of_the_g
     sessions = [blocks.of("s", simulated_session.session(plan, 0)) for plan in plans]
     nominal = [attitude_fit.fit(session) for session in sessions]
     skewed = np.eye(3) + np.radians(0.15) * np.array([[0, 1, -1], [1, 0, 1], [-1, 1, 0]])
-    for one in nominal:
-        up = one.up @ skewed
-        one.up = up / np.linalg.norm(up, axis=1)[:, None]
+    read = [one.up @ skewed for one in nominal]
+    nominal = [replace(one, up=up / np.linalg.norm(up, axis=1)[:, None])
+               for one, up in zip(nominal, read)]
     gap = turn_model.TurnModel("gyro", "mpu6050", diagnosis.Settings(jobs=1)).fit(
         sessions, nominal)
     assert gap.adequacy.ok and not gap.found.best.forms
