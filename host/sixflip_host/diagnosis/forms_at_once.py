@@ -19,9 +19,11 @@ def fit(unit, statistics, index, prior, level, points, elimination=None):
     quadratic, inner, logdet = (one[points] for one in (
         (statistics[0], statistics[1], unit.logdet) if elimination is None
         else elimination.at(points)))
-    gram = unit.gram.each(points, index)
+    own, place = np.unique(index, axis=0, return_inverse=True)  # forms may differ by prior only
+    gram = unit.gram.each(points, own)
     if elimination is not None:
-        gram = gram - elimination.taken(points, index)
+        gram = gram - elimination.taken(points, own)
+    gram = gram[:, place.ravel()]
     inner = inner[:, index, 0]
     left, half = evidence.known(
         (gram + evidence.diagonal(prior ** -2.0)).reshape(number, k, k),

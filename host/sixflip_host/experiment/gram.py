@@ -47,31 +47,40 @@ class Whitened(Products):
     def blocks(self, points, rows, columns):
         if len(rows) and len(columns):
             self._fill(points)
-        others = self.values[points[:, None], columns]
-        own = others if rows is columns else self.values[points[:, None], rows]
+        others = self._chosen(points[:, None], columns)
+        own = others if rows is columns else self._chosen(points[:, None], rows)
         return own @ others.transpose(0, 2, 1)
 
     def each(self, points, index):
         if index.size:
             self._fill(points)
-        white = self.values[points[:, None, None], index]
+        white = self._chosen(points[:, None, None], index)
         return white @ white.transpose(0, 1, 3, 2)
+
+    def _chosen(self, points, columns):
+        return self.values[points, columns]
 
 
 class FewGrams(Whitened):
     """The same as Grams of few readings: one matrix of all of them, across what is projected out.
-    values (G, K, r): the columns whitened, at the points that were asked for."""
+    values (G, l + 1, r): the columns that say anything, whitened, and zero for all others."""
 
     def __init__(self, groups, grid, space, common, columns):
         self.grid = grid
         self._across = np.linalg.qr(space, mode="complete")[0][:, space.shape[1]:]
         self._columns = self._across.T @ columns
-        self._loud = np.flatnonzero((columns != 0.0).any(axis=0))
-        self._given = np.asfortranarray(self._columns[:, self._loud])
+        loud = np.flatnonzero((columns != 0.0).any(axis=0))
+        self._given = np.asfortranarray(self._columns[:, loud])
+        self._place = np.full(columns.shape[1], len(loud))
+        self._place[loud] = np.arange(len(loud))
         # Memory that is never written to is never taken.
-        super().__init__(np.zeros((len(grid), columns.shape[1], len(self._columns))))
+        super().__init__(np.empty((len(grid), len(loud) + 1, len(self._columns))))
         self._done = np.zeros(len(grid), bool)
         self._lower = self._factors(groups, common)
+
+    def at(self, point, columns=None):
+        every = np.arange(len(self._place)) if columns is None else columns
+        return super().at(point, every)
 
     def _factors(self, groups, common):
         """(G, r, r) lower factors of the covariance at all points."""
@@ -88,8 +97,12 @@ class FewGrams(Whitened):
 
     def _fill(self, points):
         for point in points[~self._done[points]]:
-            self.values[point, self._loud] = self._solved(point, self._given, 1).T
+            self.values[point, :-1] = self._solved(point, self._given, 1).T
+            self.values[point, -1] = 0.0
             self._done[point] = True
+
+    def _chosen(self, points, columns):
+        return self.values[points, self._place[columns]]
 
     def of(self, columns):
         """(G, k, k) of a few columns at every point; nothing is kept of it."""
@@ -102,7 +115,7 @@ class FewGrams(Whitened):
         z = np.asfortranarray(self._across.T @ z)
         wanted = np.arange(len(self.grid)) if points is None else points
         quadratic = np.full((len(self.grid), z.shape[1]), np.nan)
-        inner = np.full((len(self.grid), self.values.shape[1], z.shape[1]), np.nan)
+        inner = np.full((len(self.grid), len(self._place), z.shape[1]), np.nan)
         logdet = np.full(len(self.grid), np.nan)
         back = np.empty((len(wanted), *z.shape))
         for place, point in enumerate(wanted):
