@@ -4,9 +4,11 @@ Twelve free angles take up much that is none: they are looked for last, where al
 explained, nothing in the registers moves readings near zero, and no nonlinearity was found: what
 its true form differs from the library's by would be called a crooked box (GAP 1).
 """
+from dataclasses import replace
+
 import numpy as np
 
-from ..experiment import nominal_rows
+from ..experiment import linear_model, nominal_rows
 from . import aliases, coefficient_fits, cutoffs, hypotheses, odds, scored_sets
 from .posterior import Posterior
 
@@ -36,7 +38,10 @@ def found(gap):
     wanted = np.concatenate([np.arange(start, start + len(one.keys))
                              for start, one in zip(first, designs)
                              if not (one.generic or one.choices) or one.effect in looked_at])
-    units = [gap.unit(part, model, True, wanted) for part, model in gap.parts]
+    units = [linear_model.unit(
+        replace(one.rows, nuisance=nominal_rows.accel_nuisance(session, model, True)),
+        one.designs, wanted, signature=one.signature, within=one.within)
+        for one, (session, model) in zip(gap.units, gap.parts)]
     data = coefficient_fits.Data(units)
     forms = hypotheses.of(units, gap.settings.without)
     mine = [f for f in forms if f.effect == "box_tilt"]
