@@ -83,16 +83,23 @@ class FewGrams(Whitened):
         return super().at(point, every)
 
     def _factors(self, groups, common):
-        """(G, r, r) lower factors of the covariance at all points."""
+        """(G, r, r) lower factors of the covariance at all points; what is above them is not
+        zero, but not read."""
         def turned(covariances):
             return self._across.T @ covariances @ self._across
         base = covariance.dense(groups, 0.0, 0.0)
         lateral = turned(covariance.dense(groups, 1.0, 0.0) - base)
         kernel = turned(covariance.dense(groups, 0.0, 1.0) - base)
         base = turned(base + common @ common.T)
-        out = np.empty((len(self.grid), *base.shape))
+        out, slow = np.empty((len(self.grid), *base.shape)), np.empty_like(base)
         for own, (placement, flicker) in zip(out, self.grid):
-            own[:] = np.linalg.cholesky(base + placement ** 2 * lateral + flicker ** 2 * kernel)
+            np.multiply(lateral, placement ** 2, out=own)
+            np.multiply(kernel, flicker ** 2, out=slow)
+            own += slow
+            own += base
+            # In its own place; in the order of Fortran a lower factor is an upper one.
+            if lapack.dpotrf(own.T, lower=0, clean=0, overwrite_a=1)[1]:
+                raise np.linalg.LinAlgError("a covariance that is not positive definite")
         return out
 
     def _fill(self, points):
