@@ -162,13 +162,26 @@ def rows(kind, session, nominal, certified=False):
                 (PLACEMENT_MG, FLICKER_MG), (0, 4, 8), None, _known(session))
 
 
+def _earth(session, up):
+    """(3n, c) deg/s: the Earth's rate, its coefficients of a standard deviation of 1: upward, and
+    of each face in both directions across it, where half a turn on the face inverts it: the box
+    has a heading in the room, and is turned by half a circle, whatever else a hand does."""
+    found = [EARTH_UP_DPS * up.reshape(-1)]
+    half = np.where(session.code % 2 == 1, EARTH_DPS[-1], -EARTH_DPS[-1])[:, None]
+    for face in np.unique(session.face[session.face >= 0]) if session.labelled else ():
+        on = (session.face == face)[:, None]
+        found += [(on * half * direction).reshape(-1)
+                  for direction in lateral_basis(face_axes(np.array([face]))[0])]
+    return np.stack(found, 1)
+
+
 def _gyro_rows(session, nominal):
     """Bias, and the Earth's rate known to a standard deviation."""
     up = nominal.up[session.placement]
     groups = _groups(session, session.gyro, session.noise_gyro, session.rounding_gyro,
                      lambda place, placement: (lateral_basis(nominal.up[placement]), None))
     return Rows(session.gyro.reshape(-1), groups, np.kron(np.ones((session.n, 1)), np.eye(3)),
-                (EARTH_DPS, FLICKER_DPS), (0, 1, 2), EARTH_UP_DPS * up.reshape(-1, 1),
+                (EARTH_DPS, FLICKER_DPS), (0, 1, 2), _earth(session, up),
                 _known(session))
 
 

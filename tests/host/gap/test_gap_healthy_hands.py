@@ -10,6 +10,8 @@ from sixflip_host.diagnosis import diagnosis, hypotheses, stray_turns, turn_mode
 from sixflip_host.diagnosis.detect import sample_neighbours, spectral_lines, torn_reads
 from sixflip_host.diagnosis.detect.detection import present
 from sixflip_host.experiment import attitude_fit, block_noise, blocks, nominal_rows
+from sixflip_host.experiment.attitude_fit import face_axes
+from sixflip_host.experiment.projection import lateral_basis
 from sixflip_host.simulation import scenario, simulated_session
 
 KNOWN_DEG = 0.03
@@ -157,3 +159,28 @@ def test_the_angles_of_the_accelerometer_that_reads_the_ends_are_no_gap_of_the_g
     gap = turn_model.TurnModel("gyro", "mpu6050", diagnosis.Settings(jobs=1)).fit(
         sessions, nominal)
     assert gap.adequacy.ok and not gap.found.best.forms
+
+
+def test_the_earth_turns_round_with_a_box_that_is_turned_on_a_face():
+    """A bias that followed orientation was seen in healthy gyros whose box always stood in the
+    same heading: the Earth's horizontal rate, which changes sign with the flip."""
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "paper", "seed": 4})
+    session = blocks.of("s", simulated_session.session(plan, 0))
+    nominal = attitude_fit.fit(session)
+    up = nominal.up[session.placement]
+    heading = np.random.default_rng(1).uniform(0.0, 2.0 * np.pi, 6)
+    earth = np.zeros((session.n, 3))
+    for k, (face, code) in enumerate(zip(session.face, session.code)):
+        # From a heading in the room, the same for each visit of a face; b is half a turn from a.
+        first, second = lateral_basis(up[k])
+        axis = lateral_basis(face_axes(np.array([face]))[0])[0]
+        start = np.arctan2(axis @ second, axis @ first) + heading[face]
+        turn = start + (0.0 if code % 2 else np.pi)
+        earth[k] = 0.0042 * (np.cos(0.8) * (np.cos(turn) * first + np.sin(turn) * second)
+                             + np.sin(0.8) * up[k])
+    common = nominal_rows.rows("gyro", session, nominal).common
+    size, *_ = np.linalg.lstsq(common, earth.reshape(-1), rcond=None)
+    left = earth.reshape(-1) - common @ size
+    assert np.abs(left).max() < 0.0003 < 0.002 < np.abs(
+        earth.reshape(-1) - common[:, :1] @ size[:1]).max()
+    assert np.abs(size).max() < 1.2
