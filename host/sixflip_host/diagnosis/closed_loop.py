@@ -20,7 +20,7 @@ from ..capture.capture_file import Capture
 from ..experiment import attitude_fit, blocks, nominal_rows
 from ..experiment.session_rows import body_to_table
 from ..simulation import replica
-from . import coefficient_fits
+from . import coefficient_fits, effect_estimates
 
 # s, tried of a session's own warming: GAP has 60-300 s, and some octaves to both sides.
 TAUS_S = (30.0, 60.0, 120.0, 200.0, 300.0, 400.0, 600.0, 1000.0, 3000.0)
@@ -64,11 +64,19 @@ def cooling(session):
 
 
 def specs(gap, theta, reference_c):
-    """[{effect, sensor, key: size, parameter: value}] of the chosen candidates; theta (k,)."""
+    """[{effect, sensor, key: size, parameter: value}] of the chosen candidates; theta (k,). The
+    simulator has the library's form alone: what a discrepancy adds beside it goes to the nearest
+    sizes of that."""
     found, start = [], 0
     for candidate in gap.chosen:
         mine = theta[start:start + len(candidate.keys)]
         start += len(candidate.keys)
+        if candidate.discrepancy:
+            own = np.flatnonzero(candidate.powers)
+            gram = sum(u.gram.at(i, candidate.columns)
+                       for u, i in zip(gap.data.units, gap.levels()))
+            mine = mine.copy()
+            mine[own] = effect_estimates.nearest(gram, own, np.arange(len(mine))) @ mine
         cls = EFFECTS[candidate.effect]
         spec = {"effect": candidate.effect, "sensor": gap.kind}
         for key, power, value in zip(candidate.keys, candidate.powers, mine):

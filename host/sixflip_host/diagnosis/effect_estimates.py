@@ -50,14 +50,20 @@ def effective(cause, data, levels):
                 base.setdefault(key, column)
     plain = np.array(list(base.values()))
     every = np.concatenate([c.columns for c in cause.chosen])
+    taken = nearest(gram, plain, every)
+    size = taken @ cause.theta
+    own = np.diag(taken @ cause.covariance @ taken.T)
+    spread = np.sqrt(own + (FORM * size) ** 2)
+    return dict(zip(base, size)), dict(zip(base, spread))
+
+
+def nearest(gram, plain, every):
+    """(p, k): what coefficients of the columns `every` (k,) come to as sizes of the columns
+    `plain` (p,), nearest in the metric of the noise; gram (K, K) the products of all columns."""
     block = gram[np.ix_(plain, plain)]
     scale = np.sqrt(np.maximum(np.diag(block), 1e-300))
     block = block / scale / scale[:, None] + 1e-9 * np.eye(len(plain))
-    nearest = np.linalg.solve(block, gram[np.ix_(plain, every)] / scale[:, None]) / scale[:, None]
-    size = nearest @ cause.theta
-    own = np.diag(nearest @ cause.covariance @ nearest.T)
-    spread = np.sqrt(own + (FORM * size) ** 2)
-    return dict(zip(base, size)), dict(zip(base, spread))
+    return np.linalg.solve(block, gram[np.ix_(plain, every)] / scale[:, None]) / scale[:, None]
 
 
 def _energy(candidate, cause, gram):
