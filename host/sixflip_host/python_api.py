@@ -114,7 +114,7 @@ def diagnose(captures, simulator=None, reference=None, certified_box=False, with
     without    names of effects to leave out of the library
     """
     from .diagnosis import answer, diagnose
-    found = diagnose.diagnose(_named(captures), _named(simulator, gravity=False),
+    found = diagnose.diagnose(_named(captures or ()), _named(simulator, gravity=False),
                               _named(reference),
                               certified_box, without)
     said = answer.of(found)
@@ -133,7 +133,9 @@ def solve(capture, g=None, level=None):
 
     from .calibrate import solution, solution_json
     from .json_numbers import finite
-    [(_, read)] = _named(capture)
+    (_, read), *more = _named(capture)
+    if more:
+        raise UsageError("%d captures: expected one" % (1 + len(more)))
     found = solution.solve(copy.copy(read), g, level)
     said = finite(solution_json.to_json(found))
 
@@ -186,6 +188,8 @@ def _named(captures, gravity=True):
         return []
     if isinstance(captures, (str, os.PathLike, capture_file.Capture)):
         captures = [captures]
+    if not len(captures):
+        raise UsageError("no captures: expected one, or a sequence of them")
     return [("capture %d" % number, one) if isinstance(one, capture_file.Capture)
             else (os.fspath(one), open_recording.read_samples(one, gravity))
             for number, one in enumerate(captures, 1)]

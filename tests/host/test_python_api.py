@@ -63,6 +63,11 @@ def test_values_cannot_be_changed_and_captures_are_not(capture):
 def test_what_is_wrong_is_a_sentence(tmp_path):
     with pytest.raises(BadFile, match="no_such"):
         sixflip_host.diagnose(tmp_path / "no_such.csv")
+    for nothing in ([], None):
+        with pytest.raises(UsageError, match="no captures: expected one"):
+            sixflip_host.diagnose(nothing)
+    with pytest.raises(UsageError, match="2 captures: expected one"):
+        sixflip_host.solve(sixflip_host.simulate({"scene": "paper"}) * 2)
     with pytest.raises(UsageError, match="expected one of paper"):
         sixflip_host.plan("papr")
     with pytest.raises(BadFile, match="scenario: "):
