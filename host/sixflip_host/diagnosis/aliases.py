@@ -9,7 +9,7 @@ as much in the alias index as all that lies within them: there are few such cont
 error in the form of an effect can turn them round.
 """
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -21,7 +21,8 @@ SAME, SIGMAS = 0.9, 3.0  # GAP stage 4: alias index and distinguishability of on
 
 @dataclass(frozen=True, eq=False)
 class Cause:
-    """One effect found: chosen (tuple of Form), score (nats); place: {name: probability} of what
+    """One effect found: chosen (tuple of Form; its own, then those of the same class that do a
+    part of its work), score (nats); place: {name: probability} of what
     stands here, "" nothing; members ({effect: why it cannot be told}), alike: those of them that
     cannot be told from the effect in principle; theta (k,), covariance (k, k) over the form's
     columns; other_axes: those that cannot be told from the axes chosen. Of its size, see
@@ -93,9 +94,31 @@ def causes(found, units, forms):
         out.append(Cause(form.effect, (form,), found.gains[form.effect],
                          found.places[form.effect], {**likely, **alike}, frozenset(alike),
                          theta[place], covariance[np.ix_(place, place)]))
-    out.sort(key=lambda c: -c.score)
-    return [c for k, c in enumerate(out) if not any(
-        c.effect in b.members and b.effect in c.members for b in out[:k])]
+    kept = []
+    for cause in sorted(out, key=lambda c: -c.score):
+        same = [k for k, other in enumerate(kept) if _one(cause, other)]
+        if same:
+            kept[same[0]] = _joined(kept[same[0]], cause, shared.index, theta, covariance)
+        else:
+            kept.append(cause)
+    return kept
+
+
+def _one(cause, other):
+    """Whether two members of a set are one cause: on an axis that both have, each is in the
+    class of the other."""
+    axes = {axis for form in other.chosen for axis in form.axes}
+    return cause.effect in other.members and other.effect in cause.members and bool(
+        axes.intersection(cause.axes))
+
+
+def _joined(cause, other, columns, theta, covariance):
+    """The cause with the forms of the other, which does a part of its work; theta and covariance
+    of the set's shared columns."""
+    chosen = (*cause.chosen, *other.chosen)
+    places = [place for form in chosen for place in _places(columns, form.columns)]
+    return replace(cause, chosen=chosen, theta=theta[places],
+                   covariance=covariance[np.ix_(places, places)])
 
 
 def _grams(units, fits):

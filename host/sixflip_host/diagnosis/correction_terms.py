@@ -195,7 +195,7 @@ class Fit:
 def plain(gap, cause):
     """The candidates of a cause in the form that the board can take out."""
     out = []
-    for c in cause.chosen:
+    for c in (c for c in cause.chosen if c.effect == cause.effect):
         bent = c.discrepancy and cause.effect == "thermal_bias"
         out += [o for o in gap.options
                 if (o.effect, o.axis, o.variant, o.record) == (c.effect, c.axis, "", bent)

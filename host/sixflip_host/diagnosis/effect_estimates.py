@@ -40,11 +40,13 @@ def letters(cause, theta, sigma):
 
 
 def effective(cause, data, levels):
-    """({key: size}, {key: sigma}): what all variants and bends of the effect add together, as
-    the nearest plain sizes. levels: index into each unit's grid."""
+    """({key: size}, {key: sigma}): what all variants and bends of the effect add together, and
+    the other names of its class beside it, as the nearest plain sizes. levels: index into each
+    unit's grid."""
     gram = sum(u.gram.at(i) for u, i in zip(data.units, levels))
     base = {}
-    for candidate in sorted(cause.chosen, key=lambda c: -_energy(c, cause, gram)):
+    own = [c for c in cause.chosen if c.effect == cause.effect]
+    for candidate in sorted(own, key=lambda c: -_energy(c, cause, gram)):
         for key, power, column in zip(candidate.keys, candidate.powers, candidate.columns):
             if power == 1:
                 base.setdefault(key, column)
@@ -52,8 +54,8 @@ def effective(cause, data, levels):
     every = np.concatenate([c.columns for c in cause.chosen])
     taken = nearest(gram, plain, every)
     size = taken @ cause.theta
-    own = np.diag(taken @ cause.covariance @ taken.T)
-    spread = np.sqrt(own + (FORM * size) ** 2)
+    variance = np.diag(taken @ cause.covariance @ taken.T)
+    spread = np.sqrt(variance + (FORM * size) ** 2)
     return dict(zip(base, size)), dict(zip(base, spread))
 
 
