@@ -1,4 +1,5 @@
 """The size of a cause with its interval, the axes that have it, and whether it is believable."""
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -15,9 +16,10 @@ FORM = 0.05  # of a size, standard deviation: parts do not have the library's ve
 def sized(cause, data, levels, chip, kind, share=None):
     """The aliases.Cause with value and interval {key: ...}, letters of the axes, plausible,
     domain and unit; share: of the excess. levels: index into each unit's grid."""
-    theta, sigma = effective(cause, data, levels)
+    theta, covariance = effective(cause, data, levels)
+    sigma = dict(zip(theta, np.sqrt(np.diag(covariance))))
     axis_of = dict(zip(cause.keys, cause.axes))
-    shown = [] if cause.effect == "box_tilt" else letters(cause, theta, sigma)
+    shown = [] if cause.effect == "box_tilt" else letters(cause, theta, covariance)
     value = {k: float(v) for k, v in theta.items() if not shown or "xyz"[axis_of[k]] in shown}
     interval = {k: (float(v - odds.Z_90 * sigma[k]), float(v + odds.Z_90 * sigma[k]))
                 for k, v in value.items()}
@@ -28,19 +30,24 @@ def sized(cause, data, levels, chip, kind, share=None):
                    domain=terms.DOMAIN[cause.effect], unit=EFFECTS[cause.effect].units[kind])
 
 
-def letters(cause, theta, sigma):
-    """Axes with a significant coefficient, at least the most significant one."""
+def letters(cause, theta, covariance):
+    """Axes whose coefficients are significant together, at least the most significant one: of
+    several that share an effect each by itself may be of any size. covariance: of theta's."""
+    axis_of, keys = dict(zip(cause.keys, cause.axes)), list(theta)
     strong = {}
-    for key, axis in zip(cause.keys, cause.axes):
-        if key in theta:
-            ratio = abs(theta[key]) / max(sigma[key], 1e-12)
-            strong[axis] = max(strong.get(axis, 0.0), ratio)
+    for axis in sorted({axis_of[key] for key in keys}):
+        mine = [k for k, key in enumerate(keys) if axis_of[key] == axis]
+        size = np.array([theta[keys[k]] for k in mine])
+        block = covariance[np.ix_(mine, mine)] + 1e-24 * np.eye(len(mine))
+        # chi2 [Wald, Trans. AMS 54 (1943) 426] less what all but one would have by chance
+        chi2 = float(size @ np.linalg.solve(block, size)) - (len(mine) - 1)
+        strong[axis] = math.sqrt(max(chi2, 0.0))
     most = max(strong, key=strong.get)
     return ["xyz"[a] for a in sorted(strong) if strong[a] > SIGNIFICANT or a == most]
 
 
 def effective(cause, data, levels):
-    """({key: size}, {key: sigma}): what all variants and bends of the effect add together, and
+    """({key: size}, covariance (p, p) of the sizes): what all variants and bends of the effect add together, and
     the other names of its class beside it, as the nearest plain sizes. levels: index into each
     unit's grid."""
     gram = sum(u.gram.at(i) for u, i in zip(data.units, levels))
@@ -54,9 +61,8 @@ def effective(cause, data, levels):
     every = np.concatenate([c.columns for c in cause.chosen])
     taken = nearest(gram, plain, every)
     size = taken @ cause.theta
-    variance = np.diag(taken @ cause.covariance @ taken.T)
-    spread = np.sqrt(variance + (FORM * size) ** 2)
-    return dict(zip(base, size)), dict(zip(base, spread))
+    covariance = taken @ cause.covariance @ taken.T
+    return dict(zip(base, size)), covariance + np.diag((FORM * size) ** 2)
 
 
 def nearest(gram, plain, every):

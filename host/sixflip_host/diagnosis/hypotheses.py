@@ -83,7 +83,7 @@ def of(units, without=(), drift=True):
     for design in units[0].designs:
         columns = np.arange(start, start + len(design.keys))
         start += len(design.keys)
-        if design.effect in without:
+        if design.effect in without or design.beside:
             continue
         if design.choices:
             found.append(_private(design, columns))
@@ -169,7 +169,7 @@ VARIABLE = {"thermal_scale": ("thermal_orientation",),
             "history": ("history", "time_since_move"),
             "time_since_move": ("history", "time_since_move"),
             # of the gyro in its turns a bend's own variable is the rate
-            "orientation": ("orientation", "amplitude"), "motion": ("motion",),
+            "orientation": ("orientation", "bend", "amplitude"), "motion": ("motion",),
             "amplitude": ("amplitude",)}
 
 
@@ -184,15 +184,23 @@ def alike(form, other):
                 and set(form.axes) & set(other.axes))
 
 
+def _of_variable(designs, forms, names):
+    """[(column, axis)] of the designs of these names: of those that compete, and of what is there
+    to stand beside them; the last variant of each."""
+    known, found, start = {form.effect for form in forms}, {}, 0
+    for design in designs:
+        if design.effect in names and (design.beside or design.effect in known):
+            found[design.effect] = list(zip(range(start, start + len(design.keys)), design.axes))
+        start += len(design.keys)
+    return [pair for pairs in found.values() for pair in pairs]
+
+
 def with_discrepancy(model, forms, scored, form):
     """The form with a discrepancy in its own variable beside it, whose standard deviation is
     RELATIVE of the size that the form has in a Scored set; None where there is none."""
     if form.generic or not len(form.shared) or form.discrepancy:
         return None
-    wanted = _variable(form.effect)
-    free = list({f.effect: f for f in forms if f.effect in wanted and f.axis is None}.values())
-    if not free:
-        return None
+    free = _of_variable(model.units[0].designs, forms, _variable(form.effect))
     shared = scored.shared
     theta = evidence.coefficients(scored.fits, shared)[0][0]
     rms = np.sqrt(np.mean([u.energy for u in model.units if not u.between], axis=0))
@@ -201,12 +209,11 @@ def with_discrepancy(model, forms, scored, form):
         place = np.flatnonzero(shared.index == column)[0]
         size[axis] = np.hypot(size[axis], theta[place] * rms[column])
     columns, prior, axes = [], [], []
-    for one in free:
-        for column, axis in zip(one.shared.index, one.axes):
-            if size[axis] > 0.0 and rms[column] > 0.0 and column not in form.shared.index:
-                columns.append(column)
-                axes.append(axis)
-                prior.append(RELATIVE * size[axis] / rms[column])
+    for column, axis in free:
+        if size[axis] > 0.0 and rms[column] > 0.0 and column not in form.shared.index:
+            columns.append(column)
+            axes.append(axis)
+            prior.append(RELATIVE * size[axis] / rms[column])
     if not columns:
         return None
     prior = np.array(prior) / np.sqrt(np.bincount(axes, minlength=3)[axes])

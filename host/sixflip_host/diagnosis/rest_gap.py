@@ -192,8 +192,9 @@ def _with_bent(cause, data, index):
                if power > 1 and ratio > BENT} - set(cause.letters)
     if not missing:
         return cause
-    theta, sigma = effect_estimates.effective(cause, data, index)
-    half = {key: odds.Z_90 * sigma[key] for key in theta if key in missing}
+    theta, covariance = effect_estimates.effective(cause, data, index)
+    half = {key: odds.Z_90 * float(spread) for key, spread in zip(
+        theta, np.sqrt(np.diag(covariance))) if key in missing}
     return replace(cause, value={**cause.value, **{key: float(theta[key]) for key in half}},
                    interval={**cause.interval, **{
                        key: (float(theta[key] - half[key]), float(theta[key] + half[key]))

@@ -45,18 +45,7 @@ class RestModel:
         """SensorGap of sessions with their NominalSensors."""
         progress.doing("effects of the %s" % ("gyro" if self.kind == "gyro" else "accelerometer"))
         parts = list(zip(terms.agreed(sessions), nominal))
-        units = [self.unit(*part, self.settings.certified) for part in parts]
-        units += self.between(units, nominal)
-        data = coefficient_fits.Data(units)
-        options = hypotheses.by_fleet(hypotheses.of(units, self.settings.without, self.drifts),
-                                      self.kind, self.settings.prior)
-        noise = self.usual()
-        # A square beside a slope is for the board's record; here a discrepancy stands for it.
-        forms = [f for f in options if not f.record]
-        cost = replace(cutoffs.of(units, forms, noise), form=self.form)
-        model = scored_sets.Model(units, data.statistics, noise)
-        progress.doing("what explains it best")
-        found = posterior.search(model, forms, cost)
+        units, data, options, noise, forms, cost, model, found = self._searched(parts)
         best = found.best
         causes = [replace(c, other_axes=posterior.rival_axes(model, forms, found, c.chosen[0]))
                   for c in aliases.causes(found, units, forms)]
@@ -76,6 +65,23 @@ class RestModel:
             _drift(units, data, noise, found, fitted, chosen),
             not fitted.ok or bool(nameless) or doubted, crooked)
         return self.shrunk(self._tilted(replace(gap, causes=_sized(gap, causes, data))))
+
+    def _searched(self, parts):
+        """(units, data, options, noise, forms, cost, model, Posterior): the likeliest sets of
+        causes, with all that they were looked for with, of [(Session, NominalSensor)]."""
+        units = [self.unit(*part, self.settings.certified) for part in parts]
+        units += self.between(units, [nominal for _, nominal in parts])
+        data = coefficient_fits.Data(units)
+        options = hypotheses.by_fleet(hypotheses.of(units, self.settings.without, self.drifts),
+                                      self.kind, self.settings.prior)
+        noise = self.usual()
+        # A square beside a slope is for the board's record; here a discrepancy stands for it.
+        forms = [f for f in options if not f.record]
+        cost = replace(cutoffs.of(units, forms, noise), form=self.form)
+        model = scored_sets.Model(units, data.statistics, noise)
+        progress.doing("what explains it best")
+        return units, data, options, noise, forms, cost, model, posterior.search(
+            model, forms, cost)
 
     def _tilted(self, gap):
         """The gap with a crooked box among its causes where there is one."""
@@ -116,9 +122,12 @@ class RestModel:
         reference = self.conditions.reference_c
         designs = terms.library(part, model.up, self.kind, reference, self.chip)
         if self.kind == "accel":
+            designs += terms.along_axes(part, model, self.chip)
             designs.append(terms.of_terms("box_tilt", "accel", part.moment(model.up), part.n,
                                                chip=self.chip))
         designs += strangers.designs(part, model.up, self.kind, reference)
+        if self.kind == "accel":
+            designs = terms.corrected(designs, model.matrix)
         if self.settings.certified:
             designs = [d for d in designs if d.effect != "box_tilt"]
         rows = nominal_rows.rows(self.kind, part, model, certified)

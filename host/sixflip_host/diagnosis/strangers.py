@@ -8,6 +8,7 @@ something smooth in time. The widths of their priors are tried over a decade: of
 size is known.
 """
 import numpy as np
+from numpy.polynomial import legendre
 
 from sixflip.poses import faces
 
@@ -18,6 +19,7 @@ HATS = 6  # corners of what is smooth in time and repeats in every session
 OWN_HATS = 8  # and of what is a session's own
 FADES_S = (5.0, 20.0, 80.0)  # of what follows a move
 JUMPS = 24  # times tried
+DEGREES = 6  # of a bend: a box in few poses shows no finer one
 # From 16 s, faster than which rests with moves between them do not follow, to the whole session:
 # in a quarter of an hour each is 1.3 times the one before, and a wave between two of them keeps
 # step with one for two of its periods. Faster ones are looked for in the spectrum of the rests.
@@ -25,7 +27,7 @@ PERIODS = 16
 WALK = 16  # terms of a random walk
 # Of the others: their own.
 DOMAIN = {"jump": "time", "walk": "time", "periodic": "frequency", "own_time": "time",
-          "thermal_orientation": "temperature"}
+          "thermal_orientation": "temperature", "bend": "orientation"}
 
 
 def domain(effect):
@@ -60,6 +62,8 @@ def shared(session, up, sensor, reference_c):
         since = [fade] + [(before[:, i] - f[:, i]) * fade for i in range(3)]
         found.append(_smooth("time_since_move", since, n, scale, "tau %g s" % tau))
     found.append(_smooth("orientation", harmonics(f, sensor), n, scale))
+    if sensor == "accel":
+        found.append(bend(f, scale))
     return [*found, _flip(session, scale)]
 
 
@@ -121,6 +125,17 @@ def _smooth(name, functions, n, scale, variant="", choices=()):
             columns.append(column.reshape(-1))
     return Design(name, variant, keys, axes, np.stack(columns, 1),
                   np.full(len(keys), scale), choices)
+
+
+def bend(f, scale):
+    """Design of what any bend of an axis is made of: functions of what that axis feels, f (n, 3)
+    g, beyond the straight line. By itself it is no hypothesis: another form of one."""
+    felt = [legendre.Legendre.basis(degree)(f) for degree in range(2, DEGREES + 1)]
+    felt.append(np.abs(f))
+    columns = np.einsum("dni,ij->nidj", np.stack(felt), np.eye(3)).reshape(f.size, -1)
+    keys = ["%s%d" % (axis, number) for number in range(len(felt)) for axis in "xyz"]
+    return Design("bend", "", keys, [0, 1, 2] * len(felt), columns, np.full(len(keys), scale),
+                  beside=True)
 
 
 def hats(x, number):

@@ -41,7 +41,8 @@ class Design:
     keys (k,): the effect's own; axes (k,): 0..2, the axis whose coefficient it is; prior (k,): a
     size ten times the typical one; choices: tuples of columns of which a session has one for its
     own; powers (k,): 1 for the effect's own columns, 2 and 3 for a square and a cube of them, as
-    a bend beside a slope; record: it is there because a record of the board has that form.
+    a bend beside a slope; record: it is there because a record of the board has that form;
+    beside: it is no hypothesis, but what others may have as a discrepancy.
     """
 
     effect: str
@@ -53,6 +54,7 @@ class Design:
     choices: tuple = ()
     powers: tuple = ()
     record: bool = False
+    beside: bool = False
 
     def __post_init__(self):
         for name in ("keys", "axes", "choices"):
@@ -84,6 +86,14 @@ def of_terms(name, sensor, moment, n, variant="", only=None, shape=None, chip="m
     size = typical.size(name, chip, sensor)[0]
     prior = 10.0 * (abs(size) if size else 1.0)
     return Design(name, variant, keys, axes, np.stack(columns, 1), np.full(len(keys), prior))
+
+
+def corrected(designs, matrix):
+    """The Designs as a nominal correction's matrix (3, 3) leaves them: what a sensor adds to one
+    of its axes, as it measures, is in the others too once the correction has mixed them."""
+    return [d if d.effect == "box_tilt" else replace(d, columns=np.einsum(
+        "ij,njk->nik", matrix, d.columns.reshape(-1, 3, d.columns.shape[1])).reshape(
+            d.columns.shape)) for d in designs]
 
 
 def squared(design, columns, prior):
@@ -140,6 +150,17 @@ def library(session, up, sensor, reference_c, chip):
         terms("vibration_rectification", "vertical", shape={"vertical": 1})
         terms("vibration_rectification", "all round", shape={"vertical": 0})
     return found
+
+
+def along_axes(session, nominal, chip):
+    """Designs of the accelerometer's bends as functions of what an axis itself feels: it stands a
+    degree askew in the box, so that a large bend mixes the box's axes."""
+    reads = np.linalg.inv(nominal.matrix)
+    reads /= np.linalg.norm(reads, axis=1)[:, None]
+    m = copy.copy(session.moment(nominal.up))
+    m.f = tuple(reads @ np.stack(m.f))
+    return [of_terms(name, "accel", m, session.n, "along the axis", chip=chip)
+            for name in ("quadratic", "cubic", "asymmetry")]
 
 
 def remembered(session, m, plain):
