@@ -47,9 +47,9 @@ def letters(cause, theta, covariance):
 
 
 def effective(cause, data, levels):
-    """({key: size}, covariance (p, p) of the sizes): what all variants and bends of the effect add together, and
-    the other names of its class beside it, as the nearest plain sizes. levels: index into each
-    unit's grid."""
+    """({key: size}, covariance (p, p) of the sizes): what all variants and bends of the effect
+    add together, and the other names of its class beside it, as the nearest plain sizes. levels:
+    index into each unit's grid."""
     gram = sum(u.gram.at(i) for u, i in zip(data.units, levels))
     base = {}
     own = [c for c in cause.chosen if c.effect == cause.effect]
