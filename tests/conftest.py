@@ -67,11 +67,10 @@ def of_this_run(tmp_path_factory):
 @pytest.fixture(scope="session", autouse=True)
 def cutoffs_of_this_run(tmp_path_factory):
     """What a diagnosis simulates of a protocol before it judges is simulated by today's code, and
-    by one test for all others: its cache is one folder of this run, for every worker."""
-    from sixflip_host.diagnosis import cutoffs
-    folder = of_this_run(tmp_path_factory)
+    by one test for all others: its cache is one folder of this run, for every worker and every
+    program that a test starts."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(cutoffs, "folder", lambda: folder / "cutoffs")
+        patch.setenv("SIXFLIP_THRESHOLDS", str(of_this_run(tmp_path_factory) / "cutoffs"))
         yield
 
 

@@ -58,7 +58,9 @@ class Cutoffs:
 
 
 def folder():
-    """Where costs are kept."""
+    """Where costs are kept: SIXFLIP_THRESHOLDS, or a folder of the cache."""
+    if os.environ.get("SIXFLIP_THRESHOLDS"):
+        return Path(os.environ["SIXFLIP_THRESHOLDS"])
     root = os.environ.get("SIXFLIP_CACHE")
     if not root:
         root = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "sixflip"
