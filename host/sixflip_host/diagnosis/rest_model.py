@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import progress
-from ..experiment import linear_model, nominal_rows, terms
+from ..experiment import attitude_fit, linear_model, nominal_rows, terms
 from . import (
     adequacy,
     aliases,
@@ -12,6 +12,7 @@ from . import (
     coefficient_fits,
     cutoffs,
     effect_estimates,
+    evidence,
     face_squareness,
     flicker_profile,
     holdout_gain,
@@ -26,6 +27,8 @@ from .sensor_gap import Drift, SensorGap
 from .settings import Conditions, Settings
 
 ALONG_FREEDOM = 10  # contrasts along gravity that a half of a session must have
+SECOND_ORDER_CHI2 = 2.0  # of what turned poses change in a cause: one nat, at most
+SHRUNK = 0.1  # of the usual sizes: of what next to nothing is known, next to nothing
 DOUBT = 0.5  # probability of a stranger in a cause's place, above which it is not explained
 
 
@@ -45,7 +48,13 @@ class RestModel:
         """SensorGap of sessions with their NominalSensors."""
         progress.doing("effects of the %s" % ("gyro" if self.kind == "gyro" else "accelerometer"))
         parts = list(zip(terms.agreed(sessions), nominal))
-        units, data, options, noise, forms, cost, model, found = self._searched(parts)
+        searched = self._searched(parts)
+        turned = self._turned_back(parts, searched)
+        if turned:
+            again = self._searched(turned)
+            if again[-1].best.score > searched[-1].best.score:
+                parts, searched = turned, again
+        units, data, options, noise, forms, cost, model, found = searched
         best = found.best
         causes = [replace(c, other_axes=posterior.rival_axes(model, forms, found, c.chosen[0]))
                   for c in aliases.causes(found, units, forms)]
@@ -82,6 +91,36 @@ class RestModel:
         progress.doing("what explains it best")
         return units, data, options, noise, forms, cost, model, posterior.search(
             model, forms, cost)
+
+    def _turned_back(self, parts, searched):
+        """The parts with NominalSensors fitted without all that any effect adds; None where that
+        changes next to nothing. A nominal sensor takes up what it can of a large cause and turns
+        the poses with it, at which all columns are evaluated: the second order of a cause, which
+        would pass for another (a Gauss-Newton step, of all columns together: the causes found
+        may be the wrong ones)."""
+        units, best = searched[0], searched[-1].best
+        if self.kind != "accel" or not len(best.shared):
+            return None
+        found = evidence.coefficients(best.fits, best.shared)[0][0]
+        free = np.concatenate([np.full(len(d.keys), not (d.choices or d.record))
+                               for d in units[0].designs])
+        every = np.flatnonzero(free)
+        prior = np.concatenate([(1.0 if d.generic else hypotheses.TYPICAL) * d.prior
+                                for d in units[0].designs])[every]
+        points = [int(fit.index[0]) for fit in best.fits]
+        theta = np.linalg.solve(
+            sum(u.gram.at(k, every) for u, k in zip(units, points)) + np.diag((SHRUNK * prior) ** -2.0),
+            sum(u.inner[k][every] for u, k in zip(units, points)))
+        turned, chi2 = [], 0.0
+        for (session, nominal), unit in zip(parts, units):
+            added = (unit.raw(every) @ theta).reshape(-1, 3)
+            less = attitude_fit.fit(session, added @ np.linalg.inv(nominal.matrix).T)
+            angle = np.linalg.norm(less.up - nominal.up, axis=1)[session.placement][:, None]
+            changed = 2.0 * angle * (unit.raw(best.shared.index) @ found).reshape(-1, 3)
+            chi2 += float((changed ** 2 * session.seconds[:, None]
+                           / session.noise_accel ** 2).sum())
+            turned.append((session, less))
+        return turned if chi2 > SECOND_ORDER_CHI2 else None
 
     def _tilted(self, gap):
         """The gap with a crooked box among its causes where there is one."""

@@ -38,10 +38,11 @@ class NominalSensor:
         return mg * 1e-3 @ self.matrix.T + self.offset
 
 
-def fit(session):
-    """NominalSensor of a Session; placements in the order of session.runs."""
-    number = session.placements()
-    mean = np.array([session.accel[session.placement == p].mean(axis=0) * 1e-3
+def fit(session, added=0.0):
+    """NominalSensor of a Session; placements in the order of session.runs. added (n, 3) mg: of
+    its readings, what something else than a nominal sensor adds."""
+    number, accel = session.placements(), session.accel - added
+    mean = np.array([accel[session.placement == p].mean(axis=0) * 1e-3
                      if (session.placement == p).any() else np.array([0.0, 0.0, 1.0])
                      for p in range(number)])
     code = [run[0] for run in session.runs]
