@@ -189,15 +189,16 @@ def _session(gap, held, unit, effects, loop):
 
 
 def uncovered(gap, session, unit, nominal):
-    """NominalSensor whose directions of gravity are free of what the causes add across it."""
+    """NominalSensor whose directions of gravity are those of the readings without what the causes
+    add to them."""
     columns = np.concatenate([c.columns for c in gap.chosen])
     prior = np.concatenate([c.prior for c in gap.chosen])
     theta = coefficient_fits.coefficients(
         coefficient_fits.fits(gap.data, columns, prior), prior)[0][0]
     raw = np.hstack([d.columns for d in unit.designs])[:, columns]
-    added = (raw @ theta).reshape(-1, 3) * 1e-3
+    felt = nominal.corrected(session.accel) - (raw @ theta).reshape(-1, 3) * 1e-3
     up = nominal.up.copy()
     for place in np.unique(session.placement):
-        moved = up[place] - added[session.placement == place].mean(axis=0)
+        moved = felt[session.placement == place].mean(axis=0)
         up[place] = moved / np.linalg.norm(moved)
     return attitude_fit.NominalSensor(nominal.matrix, nominal.offset, up)
