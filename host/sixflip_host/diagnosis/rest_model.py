@@ -108,9 +108,9 @@ class RestModel:
         prior = np.concatenate([(1.0 if d.generic else hypotheses.TYPICAL) * d.prior
                                 for d in units[0].designs])[every]
         points = [int(fit.index[0]) for fit in best.fits]
-        theta = np.linalg.solve(
-            sum(u.gram.at(k, every) for u, k in zip(units, points)) + np.diag((SHRUNK * prior) ** -2.0),
-            sum(u.inner[k][every] for u, k in zip(units, points)))
+        gram = sum(u.gram.at(k, every) for u, k in zip(units, points))
+        theta = np.linalg.solve(gram + np.diag((SHRUNK * prior) ** -2.0),
+                                sum(u.inner[k][every] for u, k in zip(units, points)))
         turned, chi2 = [], 0.0
         for (session, nominal), unit in zip(parts, units):
             added = (unit.raw(every) @ theta).reshape(-1, 3)
