@@ -32,34 +32,56 @@ def bent(causes):
 
 def found(gap):
     """(list of Cause, Data they were found in) of a SensorGap of the accelerometer."""
+    units = _certified(gap, few=True)
+    data, scored = _scored(gap, units)
+    if scored is None:
+        return [], data
+    without, best, cost = scored
+    gain = best.score - without.score
+    if gain <= cost:
+        return [], data
+    # Only now are the other names asked for, which may not be told from it.
+    units = _certified(gap, few=False)
+    data, (without, best, _) = _scored(gap, units, cost)
+    gains = dict.fromkeys((f.effect for f in best.forms), gain)
+    places = {f.effect: odds.shares({"": cost, f.effect: gain}) for f in best.forms}
+    said = Posterior(best, without, gap.cost, places, gains)
+    forms = hypotheses.of(units, gap.settings.without)
+    return [c for c in aliases.causes(said, units, forms) if c.effect == "box_tilt"], data
+
+
+def _certified(gap, few):
+    """The units of a SensorGap with a box that is no nuisance; few: with the columns of the causes
+    found and of the box alone, else with those of every name, in the same places."""
     looked_at = {form.effect for form in gap.found.best.forms}
     designs = gap.units[0].designs
+    kept = [k for k, one in enumerate(designs) if one.effect in looked_at or (
+        one.effect == "box_tilt" if few else not (one.generic or one.choices or one.beside))]
     first = np.cumsum([0] + [len(one.keys) for one in designs])
-    wanted = np.concatenate([np.arange(start, start + len(one.keys))
-                             for start, one in zip(first, designs)
-                             if not (one.generic or one.choices) or one.effect in looked_at])
-    units = [linear_model.unit(
+    wanted = None if few else np.concatenate([np.arange(first[k], first[k + 1]) for k in kept])
+    return [linear_model.unit(
         replace(one.rows, nuisance=nominal_rows.accel_nuisance(session, model, True)),
-        one.designs, wanted, signature=one.signature, within=one.within)
+        [one.designs[k] for k in kept] if few else one.designs, wanted,
+        signature=one.signature, within=one.within)
         for one, (session, model) in zip(gap.units, gap.parts)]
+
+
+def _scored(gap, units, cost=None):
+    """(Data, (Scored without a crooked box, the best with one, its cost)); None instead of the
+    three where no box can be told from the rest."""
     data = coefficient_fits.Data(units)
     forms = hypotheses.of(units, gap.settings.without)
     mine = [f for f in forms if f.effect == "box_tilt"]
     if not mine:
-        return [], data
+        return data, None
     model = scored_sets.Model(units, data.statistics, gap.noise)
     same = tuple(f for f in forms if any(
         (f.effect, f.variant, f.axis, f.record) == (c.effect, c.variant, None, c.record)
         for c in gap.found.best.forms))
     without = model.scored(same)
     best = max((model.scored((*same, f)) for f in mine), key=lambda s: s.score)
-    gain = best.score - without.score
-    # What gains less than any cost is spared the simulation of its own.
-    cost = cutoffs.LEAST_NATS if gain <= cutoffs.LEAST_NATS else cutoffs.of(
-        units, mine, gap.noise).member
-    if gain <= cost:
-        return [], data
-    gains = dict.fromkeys((f.effect for f in best.forms), gain)
-    places = {f.effect: odds.shares({"": cost, f.effect: gain}) for f in best.forms}
-    said = Posterior(best, without, gap.cost, places, gains)
-    return [c for c in aliases.causes(said, units, forms) if c.effect == "box_tilt"], data
+    if cost is None:
+        # What gains less than any cost is spared the simulation of its own.
+        cost = cutoffs.LEAST_NATS if best.score - without.score <= cutoffs.LEAST_NATS \
+            else cutoffs.of(units, mine, gap.noise).member
+    return data, (without, best, cost)

@@ -15,7 +15,10 @@ import numpy as np
 from sixflip import __version__
 
 from ..calibrate import verification, verify_files
-from ..diagnosis import blas_threads  # noqa: F401 (before numpy's threads are asked for)
+from ..diagnosis import (
+    blas_threads,  # noqa: F401 (before numpy's threads are asked for)
+    usable_rests,
+)
 from ..diagnosis.samples_judged import SENSOR
 from ..errors import BadFile, SixflipError, internal_error
 from ..value_kinds import LONGEST_TEXT
@@ -152,14 +155,18 @@ def _judged(kept, remarks, options=None):
         _add(found, made if isinstance(made, (int, float)) else float(number), solved.verdict,
              solved.reason, parameters.of_solution(solved, session))
     chip, accel, gyro = _kind(kept[0].meta)
-    told, said = effects.of(sessions, chip)
+    gaps = {}
+    if options and options.diagnose:
+        answered, rests, gaps = diagnosed.of(kept, sessions)
+        found["gap"] = json.dumps(answered, allow_nan=False)
+    if not gaps:
+        rests = usable_rests.of(sessions, [], [])
+    told, said = effects.of(rests, chip, gaps)
     for sensor, one in told.items():
         found["precision_" + sensor] = one.precision[np.triu_indices(len(one.score))].tolist()
         found["score_" + sensor] = one.score.tolist()
     findings = ["the %s: %s" % (SENSOR.get(f["sensor"], f["sensor"]), f["words"] or f["effect"])
                 for one in kept for f in one.about["samples"]["findings"]]
-    if options and options.diagnose:
-        found["gap"] = json.dumps(diagnosed.of(kept, sessions), allow_nan=False)
     return dict(found, chip=chip, accel_range_g=accel, gyro_range_dps=gyro,
                 findings=list(dict.fromkeys(findings)),
                 remarks=list(dict.fromkeys([*remarks, *said])))

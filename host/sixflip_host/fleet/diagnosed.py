@@ -11,8 +11,9 @@ from ..diagnosis.settings import Conditions, Settings
 
 
 def of(kept, sessions, settings=None):
-    """dict of the [Summary] of one board and their sessions: verdict; causes as in the answer of
-    diagnose; gap {sensor: before, after and floor}."""
+    """(dict, UsableRests, gaps) of the [Summary] of one board and their sessions: verdict; causes
+    as in the answer of diagnose; gap {sensor: before, after and floor}; beside it what it was
+    found in, {sensor: SensorGap}."""
     settings = settings or Settings(jobs=1)
     findings, nameless = [], []
     for one in kept:
@@ -37,7 +38,7 @@ def of(kept, sessions, settings=None):
         rests.everything, settings, conditions, (None,) * len(kept), tuple(findings), gaps, {},
         None, None, tuple(nameless), False, list(rests.remarks), (), (), {})
     return {"verdict": found.verdict if gaps else "cannot tell", "causes": answer.causes(found),
-            "gap": {kind: answer._gap(kind, gap) for kind, gap in gaps.items()}}
+            "gap": {kind: answer._gap(kind, gap) for kind, gap in gaps.items()}}, rests, gaps
 
 
 def _finding(f):

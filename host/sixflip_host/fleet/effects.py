@@ -11,7 +11,7 @@ import numpy as np
 
 from sixflip_sim.effects.library import EFFECTS
 
-from ..diagnosis import adequacy, evidence, hypotheses, usable_rests
+from ..diagnosis import adequacy, evidence, hypotheses
 from ..experiment import linear_model, nominal_rows, terms
 
 # One form of each effect that rests can show, the likeliest cause first: where a protocol cannot
@@ -55,40 +55,53 @@ def unit(name):
     return EFFECTS[effect].units[sensor].replace("degC", "°C").replace("deg/s", "°/s")
 
 
-def of(sessions, chip):
-    """({sensor: Information}, remarks) of the blocks.Sessions of one board."""
+def of(rests, chip, gaps=None):
+    """({sensor: Information}, remarks) of the UsableRests of one board. gaps: {sensor:
+    SensorGap} of their diagnosis, whose units need not be made again."""
     found = {sensor: nothing(sensor) for sensor in FORMS}
-    rests = usable_rests.of(sessions, [], [])
     if not rests.nominal:
         return found, [*rests.remarks, "too few rests in known poses: no effects"]
     agreed = terms.agreed(rests.sessions)
     for sensor in FORMS:
         if any(getattr(one, sensor) is None for one in agreed):
             continue
-        found[sensor] = _of_sensor(sensor, agreed, rests, chip)
+        if gaps and sensor in gaps:
+            units = [unit for unit in gaps[sensor].units if not unit.between]
+        else:
+            units = [_unit(sensor, *part, rests.reference_c, chip)
+                     for part in zip(agreed, rests.nominal)]
+        found[sensor] = _of_units(sensor, units, chip)
     return found, list(rests.remarks)
 
 
-def _of_sensor(sensor, sessions, rests, chip):
-    units, names = [], None
-    for session, nominal in zip(sessions, rests.nominal):
-        designs = [d for d in terms.library(session, nominal.up, sensor, rests.reference_c, chip)
-                   if (d.effect, d.variant) in FORMS[sensor] and not d.record]
-        designs.sort(key=lambda d: FORMS[sensor].index((d.effect, d.variant)))
-        names = ["%s.%s.%s" % (sensor, d.effect, key) for d in designs for key in d.keys]
-        units.append(linear_model.unit(nominal_rows.rows(sensor, session, nominal), designs))
-    prior = hypotheses.TYPICAL * np.concatenate([d.prior for d in designs])
+def _unit(sensor, session, nominal, reference_c, chip):
+    designs = [d for d in terms.library(session, nominal.up, sensor, reference_c, chip)
+               if (d.effect, d.variant) in FORMS[sensor] and not d.record]
+    if sensor == "accel":
+        designs = terms.corrected(designs, nominal.matrix)
+    return linear_model.unit(nominal_rows.rows(sensor, session, nominal), designs)
+
+
+def _of_units(sensor, units, chip):
+    columns, names, prior, start = [], [], [], 0
+    for design in units[0].designs:
+        if (design.effect, design.variant) in FORMS[sensor] and not design.record:
+            columns += range(start, start + len(design.keys))
+            names += ["%s.%s.%s" % (sensor, design.effect, key) for key in design.keys]
+            prior += list(hypotheses.TYPICAL * design.prior)
+        start += len(design.keys)
     place = [NAMES[sensor].index(name) for name in names]
     out = nothing(sensor)
     for unit in units:
-        precision, score = averaged(unit, prior, adequacy.levels(chip, sensor).flicker)
+        precision, score = averaged(unit, np.array(columns, dtype=int), np.array(prior),
+                                    adequacy.levels(chip, sensor).flicker)
         out.precision[np.ix_(place, place)] += precision
         out.score[place] += score
     return out
 
 
-def averaged(unit, prior, usual):
-    """(precision (k, k), score (k,)) of a linear_model.Unit's columns, over the levels of
+def averaged(unit, columns, prior, usual):
+    """(precision (k, k), score (k,)) of columns of a linear_model.Unit, over the levels of
     placement and flicker that it may have: a session of ten minutes does not tell slow noise
     well, and the likeliest level alone would make its estimates too sure. usual: of flicker, for
     the chip; its logarithm's standard deviation is evidence.USUAL_FACTOR's.
@@ -97,16 +110,15 @@ def averaged(unit, prior, usual):
     averaged by their restricted likelihood, what they differ by among themselves is added.
     """
     first = unit.coarse
-    best = first[int(np.argmax(_likelihood(unit, first, prior, usual)))]
+    best = first[int(np.argmax(_likelihood(unit, first, columns, prior, usual)))]
     points = np.union1d(first, unit.around(best))
-    likelihood = _likelihood(unit, points, prior, usual)
+    likelihood = _likelihood(unit, points, columns, prior, usual)
     points = points[likelihood > likelihood.max() - NEGLIGIBLE]
-    weight = np.exp(_likelihood(unit, points, prior, usual) - likelihood.max())
+    weight = np.exp(_likelihood(unit, points, columns, prior, usual) - likelihood.max())
     weight /= weight.sum()
     floor = np.diag((FLOOR * prior) ** -2.0)
-    every = np.arange(len(prior))
-    spread = np.linalg.inv(unit.gram.blocks(points, every, every) + floor)
-    each = (spread @ unit.inner[points][:, :, None])[:, :, 0]
+    spread = np.linalg.inv(unit.gram.blocks(points, columns, columns) + floor)
+    each = (spread @ unit.inner[points][:, columns, None])[:, :, 0]
     mean = weight @ each
     away = each - mean
     whole = np.einsum("g,gij->ij", weight, spread) + np.einsum("g,gi,gj->ij", weight, away, away)
@@ -114,14 +126,13 @@ def averaged(unit, prior, usual):
     return precision - floor, precision @ mean
 
 
-def _likelihood(unit, points, prior, usual):
+def _likelihood(unit, points, columns, prior, usual):
     """Restricted log likelihood at points of the grid [Patterson & Thompson 1971], and the prior
     of the flicker."""
     flicker = np.array([unit.grid[k][1] for k in points])
     known = -0.5 * (np.log(flicker / usual) / np.log(evidence.USUAL_FACTOR["flicker"])) ** 2
-    every = np.arange(len(prior))
-    full = unit.gram.blocks(points, every, every) + np.diag(prior ** -2.0)
-    inner = unit.inner[points]
+    full = unit.gram.blocks(points, columns, columns) + np.diag(prior ** -2.0)
+    inner = unit.inner[points][:, columns]
     taken = (inner * np.linalg.solve(full, inner[:, :, None])[:, :, 0]).sum(axis=1)
     return (known - 0.5 * unit.quadratic[points] - unit.logdet[points] + 0.5 * taken
             - 0.5 * np.linalg.slogdet(full)[1])
