@@ -137,6 +137,7 @@ def of(sessions, settings=None, simulator=None, comparisons=(), damages=(), besi
     progress.doing("registers, clock and spectra")
     stuck = registers.stuck(sessions)
     samples = samples_judged.of(sessions, settings.without, damages)
+    sessions = samples.sessions
     remarks += [*stuck, *samples.remarks]
     findings, nameless = list(samples.findings), list(samples.nameless)
     rests = usable_rests.of(sessions, findings, stuck, samples.scaled)

@@ -23,9 +23,11 @@ SENSOR = {"accel": "accelerometer", "gyro": "gyro"}
 
 @dataclass(frozen=True, eq=False)
 class SamplesJudged:
-    """findings (tuple of Finding), damages (tuple of damage.Damage), nameless (tuple of Place),
-    remarks (tuple of sentences)."""
+    """sessions: those judged, without what single samples far off do to their rests; findings
+    (tuple of Finding), damages (tuple of damage.Damage), nameless (tuple of Place), remarks
+    (tuple of sentences)."""
 
+    sessions: tuple
     findings: tuple
     damages: tuple
     nameless: tuple
@@ -52,7 +54,9 @@ def of(sessions, without=(), damages=()):
     damages = [*damages, *held_values.findings(sessions), *wrong_scale.findings(sessions)]
     noisy = {f.sensor for f in findings if f.effect in NOISY}
     jumpy = {f.sensor for f in findings if f.effect in ("torn_reads", "dead_band")}
-    unsteady = [one for one in noise_bursts.found(sessions) if one[0] not in noisy]
+    without_spikes, wild = noise_bursts.without_spikes(sessions)
+    unsteady = [one for one in [*noise_bursts.found(without_spikes), *wild]
+                if one[0] not in noisy]
     unsteady += torn_reads.jumps(sessions, jumpy)
     bits = registers.stuck_bits(sessions)
     remarks = [one.words for one in damages]
@@ -64,5 +68,5 @@ def of(sessions, without=(), damages=()):
     nameless += [localisation.Place(sensor, axis, "amplitude", 1.0, odds.chance(codes.bit_nats(
         [getattr(s.capture, sensor)[:, "xyz".index(axis)] for s in sessions])))
         for sensor, axis, _, _ in bits]
-    return SamplesJudged(tuple(findings), tuple(damages), tuple(nameless),
+    return SamplesJudged(tuple(without_spikes), tuple(findings), tuple(damages), tuple(nameless),
                          (*remarks, *(words for _, words, _ in unsteady)))

@@ -117,6 +117,10 @@ class Session(ReadOnlyArrays):
         return replace(self, runs=tuple(runs), **block_means.of_runs(
             self.capture, tuple(runs), self.rate, self.t_s, self.labelled, self.thermometer))
 
+    def of_capture(self, capture):
+        """The same rests of another capture of the same samples, measured anew."""
+        return replace(self, capture=capture)._of_runs(self.runs)
+
     def reading(self, capture):
         """The same blocks and noise with the means of another capture of the same samples."""
         accel, gyro = block_means.readings(capture, self.first, self.end)

@@ -137,6 +137,7 @@ def of(name, capture):
     placed = capture if labelled else _with_poses(capture)
     session = blocks.of(name, capture)
     judged = samples_judged.of([session])
+    session, = judged.sessions
     if any(f.effect == "saturation" and f.sensor == "accel" for f in judged.findings):
         session = session.without_samples(saturation.railed(session))
     about = {

@@ -174,7 +174,19 @@ def test_noise_of_two_counts_has_no_spikes(wide):
     gyro = np.rint(-84.3 + wide * generator.standard_normal((60000, 3))).astype(np.int16)
     session = SimpleNamespace(capture=SimpleNamespace(gyro=gyro), runs=[
         (1, first, first + 500) for first in range(0, len(gyro), 500)])
-    number, looked = noise_bursts.spikes(session, "gyro")
-    assert looked > 59000 and number < noise_bursts.LEAST_SPIKES
+    found = noise_bursts.spikes(session, "gyro")
+    assert found.looked > 59000 and found.number < noise_bursts.LEAST_SPIKES
     gyro[100::200, 1] += 30
-    assert noise_bursts.spikes(session, "gyro")[0] > 200
+    assert noise_bursts.spikes(session, "gyro").number > 200
+
+
+def test_samples_with_swapped_bytes_move_no_rest():
+    """With wild samples in the means of the rests a crooked box was found in them."""
+    two, generator = captures(seed=9), np.random.default_rng(9)
+    for capture in two:
+        hit = generator.random(len(capture.accel)) < 0.005
+        capture.accel[hit] = capture.accel[hit].byteswap()
+    found = diagnosed(two)
+    assert found.verdict == "unexplained" and found.causes == []
+    assert {(w.sensor, w.domain) for w in found.where} == {("accel", "noise")}
+    assert any("spikes" in remark for remark in found.remarks)

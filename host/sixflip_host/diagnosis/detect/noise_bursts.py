@@ -3,8 +3,13 @@ samples far off their neighbours.
 
 No effect of the library does that, and no touch does it often: it is said where, not what.
 """
+import copy
+from dataclasses import dataclass
+
 import numpy as np
 from scipy import special
+
+WORDS = {"accel": "accelerometer", "gyro": "gyro"}
 
 WINDOW_S = 0.5  # a touch or a step on the floor rings for less
 LOUD = 9.0  # times the usual variance: three times as loud, which no touch is mistaken for
@@ -36,13 +41,30 @@ AGREE = 4.0  # standard deviations that the four neighbours may differ by
 # 20, 4e-5 with 30, 7e-6 in normal noise.
 SPIKE_CHANCE = 5e-5
 LEAST_SPIKES = 10  # knocks on a table come singly
+PASSES = 6  # of three side by side the one between is seen when the others are gone
 SPIKES_P = 1e-6  # so rare that in 100,000 samples a tail half as heavy again is no find either
 
 
-def spikes(session, sensor):
-    """(single samples far off the two before and the two after, samples looked at) of a
-    session's rests; counts within a step of their neighbours never are."""
-    counts, number, looked = getattr(session.capture, sensor), 0, 0
+@dataclass(frozen=True, eq=False)
+class Spikes:
+    """Single samples far off the two before and the two after in a session's rests: wild (N, 3),
+    which they are; middle (N, 3) counts, what those beside them read; looked: samples looked at.
+    Counts within a step of their neighbours never are."""
+
+    wild: np.ndarray
+    middle: np.ndarray
+    looked: int
+
+    @property
+    def number(self):
+        return int(self.wild.any(axis=1).sum())
+
+
+def spikes(session, sensor, agreeing=4):
+    """Spikes of one sensor of a session; agreeing: of the four samples beside one, those that have
+    to agree."""
+    counts, looked = getattr(session.capture, sensor), 0
+    wild, between = np.zeros(counts.shape, bool), np.array(counts, dtype=float)
     for _, first, end in session.runs:
         x = counts[first:end].astype(float)
         if len(x) < 20:
@@ -51,10 +73,11 @@ def spikes(session, sensor):
         middle = np.median(beside, axis=0)
         off = np.abs(x[2:-2] - middle)
         sigma = _deviation(off)
-        agree = np.abs(beside - middle).max(axis=0) < AGREE * sigma
-        number += int(((off > SPIKE * sigma) & agree).any(axis=1).sum())
+        agree = np.sort(np.abs(beside - middle), axis=0)[agreeing - 1] < AGREE * sigma
+        wild[first + 2:end - 2] = (off > SPIKE * sigma) & agree
+        between[first + 2:end - 2] = middle
         looked += len(off)
-    return number, looked
+    return Spikes(wild, between, looked)
 
 
 def _deviation(off):
@@ -64,10 +87,47 @@ def _deviation(off):
     return np.maximum(np.sqrt(0.5 * np.pi) * np.minimum(off, widest).mean(axis=0), 1.0)
 
 
-def found(sessions):
-    """[(sensor, sentence, p)]"""
+def without_spikes(sessions):
+    """(sessions, [(sensor, sentence, p)]): where single samples are far off more often than noise
+    has them, they read as those beside them do. What is wild says nothing of where a rest lies,
+    and as much as all others of a mean."""
     out = []
-    for sensor, words in (("accel", "accelerometer"), ("gyro", "gyro")):
+    for sensor, words in WORDS.items():
+        if any(getattr(s.capture, sensor) is None for s in sessions):
+            continue
+        each = [spikes(s, sensor) for s in sessions]
+        number, looked = sum(one.number for one in each), sum(one.looked for one in each)
+        p = float(special.bdtrc(number - 1, looked, 3.0 * SPIKE_CHANCE)) if looked else 1.0
+        if number < LEAST_SPIKES or p >= SPIKES_P:
+            continue
+        out.append((sensor, "%d of %d samples of the %s at rest are far off those before and "
+                    "after them: spikes" % (number, looked, words), p))
+        sessions = [_put_right(s, sensor) for s in sessions]
+    return sessions, out
+
+
+def _put_right(session, sensor):
+    """The session without spikes, those included that others stand beside."""
+    for _ in range(PASSES):
+        found = spikes(session, sensor, 3)
+        if not found.number:
+            break
+        session = _without(session, sensor, found)
+    return session
+
+
+def _without(session, sensor, found):
+    capture = copy.copy(session.capture)
+    counts = np.array(getattr(capture, sensor))
+    counts[found.wild] = np.rint(found.middle[found.wild]).astype(counts.dtype)
+    setattr(capture, sensor, counts)
+    return session.of_capture(capture)
+
+
+def found(sessions):
+    """[(sensor, sentence, p)] of noise that comes in bursts."""
+    out = []
+    for sensor, words in WORDS.items():
         if any(getattr(s.capture, sensor) is None for s in sessions):
             continue
         sums = np.sum([loud(s, sensor) for s in sessions], axis=0)
@@ -77,9 +137,4 @@ def found(sessions):
             out.append((sensor, "the %s is far louder in %d of %d half seconds at rest: noise "
                         "that comes in bursts" % (words, sums[0], sums[2]),
                         float(special.bdtrc(sums[0] - 1, sums[2], min(chance, 1.0)))))
-        number, looked = np.sum([spikes(s, sensor) for s in sessions], axis=0)
-        p = float(special.bdtrc(number - 1, looked, 3.0 * SPIKE_CHANCE)) if looked else 1.0
-        if number >= LEAST_SPIKES and p < SPIKES_P:
-            out.append((sensor, "%d of %d samples of the %s at rest are far off those before and "
-                        "after them: spikes" % (number, looked, words), p))
     return out
