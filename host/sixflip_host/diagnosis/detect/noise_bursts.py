@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import special
 
+from ...capture import registers
+
 WORDS = {"accel": "accelerometer", "gyro": "gyro"}
 
 WINDOW_S = 0.5  # a touch or a step on the floor rings for less
@@ -49,7 +51,7 @@ SPIKES_P = 1e-6  # so rare that in 100,000 samples a tail half as heavy again is
 class Spikes:
     """Single samples far off the two before and the two after in a session's rests: wild (N, 3),
     which they are; middle (N, 3) counts, what those beside them read; looked: samples looked at.
-    Counts within a step of their neighbours never are."""
+    Counts within a few steps of their neighbours never are."""
 
     wild: np.ndarray
     middle: np.ndarray
@@ -65,6 +67,7 @@ def spikes(session, sensor, agreeing=4):
     to agree."""
     counts, looked = getattr(session.capture, sensor), 0
     wild, between = np.zeros(counts.shape, bool), np.array(counts, dtype=float)
+    narrowest = registers.steps(counts)
     for _, first, end in session.runs:
         x = counts[first:end].astype(float)
         if len(x) < 20:
@@ -72,7 +75,7 @@ def spikes(session, sensor, agreeing=4):
         beside = np.stack([x[:-4], x[1:-3], x[3:-1], x[4:]])
         middle = np.median(beside, axis=0)
         off = np.abs(x[2:-2] - middle)
-        sigma = _deviation(off)
+        sigma = np.maximum(_deviation(off), narrowest)
         agree = np.sort(np.abs(beside - middle), axis=0)[agreeing - 1] < AGREE * sigma
         wild[first + 2:end - 2] = (off > SPIKE * sigma) & agree
         between[first + 2:end - 2] = middle
