@@ -32,43 +32,48 @@ def bent(causes):
 
 def found(gap):
     """(list of Cause, Data they were found in) of a SensorGap of the accelerometer."""
-    units = _certified(gap, few=True)
-    data, scored = _scored(gap, units)
-    if scored is None:
+    data, scored = _scored(gap, _certified(gap, few=True))
+    # What gains less than any cost is spared the rest of the search, and a cost of its own.
+    if scored is None or scored[1].score - scored[0].score <= cutoffs.LEAST_NATS:
         return [], data
-    without, best, cost = scored
+    units = _certified(gap, few=False)
+    data, (without, best) = _scored(gap, units)
+    forms = hypotheses.of(units, gap.settings.without)
+    cost = cutoffs.of(units, [f for f in forms if f.effect == "box_tilt"], gap.noise).member
     gain = best.score - without.score
     if gain <= cost:
         return [], data
-    # Only now are the other names asked for, which may not be told from it.
-    units = _certified(gap, few=False)
-    data, (without, best, _) = _scored(gap, units, cost)
     gains = dict.fromkeys((f.effect for f in best.forms), gain)
     places = {f.effect: odds.shares({"": cost, f.effect: gain}) for f in best.forms}
     said = Posterior(best, without, gap.cost, places, gains)
-    forms = hypotheses.of(units, gap.settings.without)
     return [c for c in aliases.causes(said, units, forms) if c.effect == "box_tilt"], data
 
 
 def _certified(gap, few):
     """The units of a SensorGap with a box that is no nuisance; few: with the columns of the causes
-    found and of the box alone, else with those of every name, in the same places."""
+    found and of the box alone, at levels of noise next to those found, else with those of every
+    name, which may not be told from it, in the same places, at all levels."""
     looked_at = {form.effect for form in gap.found.best.forms}
     designs = gap.units[0].designs
     kept = [k for k, one in enumerate(designs) if one.effect in looked_at or (
         one.effect == "box_tilt" if few else not (one.generic or one.choices or one.beside))]
     first = np.cumsum([0] + [len(one.keys) for one in designs])
     wanted = None if few else np.concatenate([np.arange(first[k], first[k + 1]) for k in kept])
-    return [linear_model.unit(
-        replace(one.rows, nuisance=nominal_rows.accel_nuisance(session, model, True)),
-        [one.designs[k] for k in kept] if few else one.designs, wanted,
-        signature=one.signature, within=one.within)
-        for one, (session, model) in zip(gap.units, gap.parts)]
+    units = []
+    for one, point, (session, model) in zip(gap.units, gap.adequacy.index, gap.parts):
+        near = [one.grid[k] for k in one.around(point)]
+        levels = tuple(tuple(sorted(set(values))) for values in zip(*near))
+        rows = replace(one.rows, nuisance=nominal_rows.accel_nuisance(session, model, True),
+                       levels=levels if few else one.rows.levels)
+        units.append(linear_model.unit(
+            rows, [one.designs[k] for k in kept] if few else one.designs, wanted,
+            signature=one.signature, within=one.within))
+    return units
 
 
-def _scored(gap, units, cost=None):
-    """(Data, (Scored without a crooked box, the best with one, its cost)); None instead of the
-    three where no box can be told from the rest."""
+def _scored(gap, units):
+    """(Data, (Scored without a crooked box, the best with one)); None instead of the two where no
+    box can be told from the rest."""
     data = coefficient_fits.Data(units)
     forms = hypotheses.of(units, gap.settings.without)
     mine = [f for f in forms if f.effect == "box_tilt"]
@@ -78,10 +83,5 @@ def _scored(gap, units, cost=None):
     same = tuple(f for f in forms if any(
         (f.effect, f.variant, f.axis, f.record) == (c.effect, c.variant, None, c.record)
         for c in gap.found.best.forms))
-    without = model.scored(same)
-    best = max((model.scored((*same, f)) for f in mine), key=lambda s: s.score)
-    if cost is None:
-        # What gains less than any cost is spared the simulation of its own.
-        cost = cutoffs.LEAST_NATS if best.score - without.score <= cutoffs.LEAST_NATS \
-            else cutoffs.of(units, mine, gap.noise).member
-    return data, (without, best, cost)
+    return data, (model.scored(same), max((model.scored((*same, f)) for f in mine),
+                                          key=lambda s: s.score))

@@ -21,6 +21,8 @@ from . import adequacy, coefficient_fits, odds
 
 DRAWN = 400  # of noise: their variance is known to 7 %, an interval's length to 4 %
 
+DRAWN_FLOOR = 100  # where its mean alone is asked for: a floor of 100 contrasts to half a percent
+
 
 @dataclass(frozen=True)
 class Shrinkage:
@@ -80,18 +82,19 @@ def of(data, chosen, index, usual, wanders=False):
             others = fits[:held] + fits[held + 1:] or fits
             foretold = unit.columns[:, columns] @ coefficient_fits.coefficients(
                 others, prior)[0][0]
-        noise = _drawn(unit, fits[held], point, largest, generator)
+        noise = _drawn(unit, fits[held], point, largest, generator,
+                       DRAWN if chosen else DRAWN_FLOOR)
         total = total + _sums(unit, metric, foretold, noise)
     return total.shrinkage(bool(chosen))
 
 
-def _drawn(unit, fit, point, largest, generator):
-    """(m, DRAWN) noise with the levels around a point of the grid, each as often as it is likely;
+def _drawn(unit, fit, point, largest, generator, drawn):
+    """(m, drawn) noise with the levels around a point of the grid, each as often as it is likely;
     none with more flicker than the largest."""
     points = unit.around(point)
     nats = fit.course[points, 0]
     likely = np.exp(nats - nats.max())
-    numbers = generator.multinomial(DRAWN, likely / likely.sum())
+    numbers = generator.multinomial(drawn, likely / likely.sum())
     levels = adequacy.usual_levels([unit] * len(points), points, largest)
     return np.hstack([unit.draw(level, generator, number)
                       for level, number in zip(levels, numbers) if number])
