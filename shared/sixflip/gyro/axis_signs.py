@@ -28,11 +28,11 @@ def wrong_axes(placements, moves, lsb_per_dps, bias):
     for order in ORDERS if max(own) > MISSED else ():
         for code in range(8):
             signs = (1 - 2 * (code & 1), 1 - (code & 2), 1 - ((code & 4) >> 1))
-            misses = _misses(evidence, order, signs)
             # Prefer what changes least: every change must pay for itself.
-            c = _cost(misses) + 0.05 * (3 - sum(signs)) + 0.1 * ORDERS.index(order)
-            if c < cost and _contradicts(own, misses):
-                best, cost = (order, signs), c
+            change = 0.05 * (3 - sum(signs)) + 0.1 * ORDERS.index(order)
+            misses = _misses(evidence, order, signs, cost - change)
+            if misses and _contradicts(own, misses):
+                best, cost = (order, signs), _cost(misses) + change
     if best:
         return _words(best[0], best[1]), []
     sure = []
@@ -58,10 +58,17 @@ def _evidence(placements, moves, lsb_per_dps, bias):
     return out
 
 
-def _misses(evidence, order, signs):
-    """Squared distance by which each move misses the gravity after it."""
-    return [_miss(f, t, [signs[k] * turned[order[k]] for k in range(3)])
-            for f, t, turned in evidence]
+def _misses(evidence, order, signs, most=None):
+    """Squared distance by which each move misses the gravity after it; [] as soon as they cost
+    as much as `most`."""
+    found = []
+    cost = 0.0
+    for f, t, turned in evidence:
+        found.append(_miss(f, t, [signs[k] * turned[order[k]] for k in range(3)]))
+        cost += min(found[-1], 1.0)
+        if most is not None and cost >= most:
+            return []
+    return found
 
 
 def _miss(before, after, turned):
