@@ -22,12 +22,13 @@ from .evidence import NONE
 from .odds import CHANCE
 
 RUNS = 160  # of which the upper tenth, 16, tell the scale of the tail to a quarter
+REACH = 3  # steps of the grid about the levels simulated: costs as of all of it to 0.1 nats
 UPPER = 0.1  # of them: a tail is exponential [Pickands, Annals of Statistics 3 (1975) 119]
 TIMES_USUAL = 1.6  # of the usual levels, that a null has at most
 SMALLEST_SCALE = 1e-6  # nats: all nulls gain the same
 MARGIN_NATS = 1.0  # noise is not quite what it is simulated as
 LEAST_NATS = 4.0  # GAP: 95 % of the prototype's nulls in one search with the noise known exactly
-FORMAT = 12  # of the cache: another one where what is kept, or how it is made, has changed
+FORMAT = 13  # of the cache: another one where what is kept, or how it is made, has changed
 STRANGERS = 3  # simulated for each nameless hypothesis
 STRANGE_CHI2 = 200.0  # of a simulated stranger: ten times what a cost amounts to
 SURE = 0.9  # share of the strangers beside which no name may be taken in
@@ -139,27 +140,30 @@ def of_each(units, forms, levels, points):
 def _by_chance(units, forms, levels, points):
     """(forms, RUNS) nats that each form gains alone in nulls."""
     generator = np.random.default_rng(20190919)
-    statistics = [u.statistics(u.draw(k, generator, RUNS)) for u, k in zip(units, points)]
+    near = [u.around(k, REACH) for u, k in zip(units, points)]
+    statistics = [u.statistics(u.draw(k, generator, RUNS), own)
+                  for u, k, own in zip(units, points, near)]
     prior = [levels.prior(u, ()) for u in units]
-    base = [evidence.fit(u, s, NONE, NONE, p) for u, s, p in zip(units, statistics, prior)]
+    base = [evidence.fit(u, s, NONE, NONE, p, own)
+            for u, s, p, own in zip(units, statistics, prior, near)]
     nothing = evidence.score(base, NONE)
-    return np.array([_gain(form, units, statistics, prior, levels, base) - nothing
+    return np.array([_gain(form, units, statistics, prior, near, levels, base) - nothing
                      for form in progress.steps(forms, "what chance alone shows")])
 
 
-def _gain(form, units, statistics, prior, levels, base):
+def _gain(form, units, statistics, prior, near, levels, base):
     """(RUNS,) score of a set of this form alone."""
     if form.free:
         prior = [levels.prior(u, form.free) for u in units]
     if not form.choices:
-        return evidence.score([evidence.fit(u, s, form.shared, NONE, p) for u, s, p in zip(
-            units, statistics, prior)], form.shared, units[0].apart)
+        return evidence.score([evidence.fit(u, s, form.shared, NONE, p, own) for u, s, p, own in
+                               zip(units, statistics, prior, near)], form.shared, units[0].apart)
     total = 0.0
-    for unit, one, level, plain in zip(units, statistics, prior, base):
+    for unit, one, level, own, plain in zip(units, statistics, prior, near, base):
         if unit.between:
             total = total + plain.evidence
             continue
-        best = np.max([evidence.fit(unit, one, NONE, choice, level).evidence
+        best = np.max([evidence.fit(unit, one, NONE, choice, level, own).evidence
                        for choice in form.choices], axis=0)
         total = total + best - math.log(len(form.choices))
     return total

@@ -19,6 +19,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..experiment import gram
+
 # A standard deviation of each level's logarithm. Placement may be anything: a box that is put
 # down in any heading on a tilted table scatters by degrees.
 USUAL_FACTOR = {"placement": 8.0, "flicker": 2.0, "switch_on": 1.2}
@@ -137,18 +139,26 @@ class Elimination:
         """(P, F, k, k): what the private columns take off the products of columns (F, k)."""
         self._fill(points)
         forms, k = index.shape
+        own, place = np.unique(index, return_inverse=True)
+        if len(own) ** 2 < index.size * k:  # most columns are in most of them
+            return gram.gathered(self._taken(points, own), place.reshape(index.shape))
         cross = self.unit.gram.blocks(points, index.ravel(), self.private.index)
         solved = self.solved[points[:, None, None], np.arange(len(self.private))[:, None],
                              index.ravel()]
         own = solved.reshape(len(points), len(self.private), forms, k).transpose(0, 2, 1, 3)
         return cross.reshape(len(points), forms, k, len(self.private)) @ own
 
+    def _taken(self, points, columns):
+        """(P, k, k): what the private columns take off the products of columns (k,)."""
+        cross = self.unit.gram.blocks(points, columns, self.private.index)
+        return cross @ self.solved[points[:, None, None],
+                                   np.arange(len(self.private))[:, None], columns]
+
     def reduced(self, columns, points):
         """Reduced of these shared columns at these points of the grid."""
         self._fill(points)
-        cross = self.unit.gram.blocks(points, columns, self.private.index)
-        solved = self.solved[points[:, None, None], np.arange(len(self.private))[:, None], columns]
-        return Reduced(self.unit.gram.blocks(points, columns, columns) - cross @ solved,
+        return Reduced(self.unit.gram.blocks(points, columns, columns)
+                       - self._taken(points, columns),
                        self.inner[points[:, None], columns], self.quadratic[points],
                        self.logdet[points])
 

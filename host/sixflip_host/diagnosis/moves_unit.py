@@ -39,12 +39,13 @@ class MovesUnit:
         self.silent = power <= 1e-9 * max(power.max(), 1e-300)
         self.freedom = len(gram)
 
-    def around(self, point):
+    def around(self, point, reach=1):
         return self.coarse
 
-    def statistics(self, signs=None):
+    def statistics(self, signs=None, points=None):
         """(quadratic (1, R), projections (1, K, R)) of the moves as they are, or with their
-        signs (n, R) drawn; what no hypothesis changes is left out of the quadratic."""
+        signs (n, R) drawn, at the one point of the grid; what no hypothesis changes is left out of
+        the quadratic."""
         sums = self._inner.sum(axis=0)[:, None] if signs is None else self._left.T @ signs
         return np.zeros((1, sums.shape[1])), sums[None]
 

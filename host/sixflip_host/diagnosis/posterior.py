@@ -69,8 +69,19 @@ def search(model, forms, cost, most=MOST):
             break
         beam = grown
         reached += grown
-    best = max((_pruned(model, one, cost) for one in reached), key=worth)
-    best = _refined(model, forms, best, cost)
+    return _judged(model, forms, max((_pruned(model, one, cost) for one in reached), key=worth),
+                   cost)
+
+
+def again(model, forms, cost, likeliest):
+    """Posterior where the set that is likeliest for nearly the same data is known: a tuple of
+    Forms of the same columns."""
+    return _judged(model, forms, model.scored(likeliest), cost)
+
+
+def _judged(model, forms, likely, cost):
+    """Posterior of the set that comes of a likely one."""
+    best, empty = _refined(model, forms, likely, cost), model.scored(())
     places, gains = {}, {}
     for form in best.forms:
         places[form.effect], gains[form.effect] = _place(model, forms, best, form, cost)

@@ -51,7 +51,7 @@ class RestModel:
         searched = self._searched(parts)
         turned = self._turned_back(parts, searched)
         if turned:
-            again = self._searched(turned)
+            again = self._searched(turned, searched[-1].best.forms)
             if again[-1].best.score > searched[-1].best.score:
                 parts, searched = turned, again
         units, data, options, noise, forms, cost, model, found = searched
@@ -75,9 +75,10 @@ class RestModel:
             not fitted.ok or bool(nameless) or doubted, crooked)
         return self.shrunk(self._tilted(replace(gap, causes=_sized(gap, causes, data))))
 
-    def _searched(self, parts):
+    def _searched(self, parts, likeliest=None):
         """(units, data, options, noise, forms, cost, model, Posterior): the likeliest sets of
-        causes, with all that they were looked for with, of [(Session, NominalSensor)]."""
+        causes, with all that they were looked for with, of [(Session, NominalSensor)]; likeliest:
+        the set that was found at other poses."""
         units = [self.unit(*part, self.settings.certified) for part in parts]
         units += self.between(units, [nominal for _, nominal in parts])
         data = coefficient_fits.Data(units)
@@ -89,8 +90,9 @@ class RestModel:
         cost = replace(cutoffs.of(units, forms, noise), form=self.form)
         model = scored_sets.Model(units, data.statistics, noise)
         progress.doing("what explains it best")
-        return units, data, options, noise, forms, cost, model, posterior.search(
-            model, forms, cost)
+        found = posterior.search(model, forms, cost) if likeliest is None \
+            else posterior.again(model, forms, cost, likeliest)
+        return units, data, options, noise, forms, cost, model, found
 
     def _turned_back(self, parts, searched):
         """The parts with NominalSensors fitted without all that any effect adds; None where that

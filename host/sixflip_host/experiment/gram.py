@@ -32,7 +32,14 @@ class Products:
 
     def each(self, points, index):
         """(P, F, k, k) products of columns index (F, k) with one another."""
-        return self.values[points[:, None, None, None], index[:, :, None], index[:, None, :]]
+        return gathered(self.values, index, points)
+
+
+def gathered(values, index, points=None):
+    """(P, F, k, k) of values (P, K, K) at places index (F, k) with one another; points (P,): of
+    values (G, K, K)."""
+    points = np.arange(len(values)) if points is None else points
+    return values[points[:, None, None, None], index[:, :, None], index[:, None, :]]
 
 
 def of(groups, grid, space, common, columns):
@@ -54,6 +61,9 @@ class Whitened(Products):
     def each(self, points, index):
         if index.size:
             self._fill(points)
+        own, place = np.unique(index, return_inverse=True)
+        if len(own) ** 2 < index.size * index.shape[1]:  # most columns are in most of them
+            return gathered(self.blocks(points, own, own), place.reshape(index.shape))
         white = self._chosen(points[:, None, None], index)
         return white @ white.transpose(0, 1, 3, 2)
 

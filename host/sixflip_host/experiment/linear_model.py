@@ -65,11 +65,12 @@ class Unit:
         """Every other level of placement and of flicker, as indices of the grid."""
         return np.arange(len(self.grid)).reshape(self.shape)[::2, ::2].ravel()
 
-    def around(self, point):
-        """Indices of a point of the grid and its neighbours."""
+    def around(self, point, reach=1):
+        """Indices of a point of the grid and its neighbours, so many steps off at most."""
         a, b = divmod(point, self.shape[1])
         every = np.arange(len(self.grid)).reshape(self.shape)
-        return every[max(a - 1, 0):a + 2, max(b - 1, 0):b + 2].ravel()
+        return every[max(a - reach, 0):a + reach + 1,
+                     max(b - reach, 0):b + reach + 1].ravel()
 
     def raw(self, columns):
         """(rows, k) columns before projection."""
