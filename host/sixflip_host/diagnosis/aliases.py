@@ -26,8 +26,8 @@ class Cause:
     stands here, "" nothing; members ({effect: why it cannot be told}), alike: those of them that
     cannot be told from the effect in principle; theta (k,), covariance (k, k) over the form's
     columns; other_axes: those that cannot be told from the axes chosen. Of its size, see
-    effect_estimates.sized: value and interval {key: ...}, letters of the axes, plausible, share
-    of the excess, domain, unit."""
+    effect_estimates.sized: value and interval {key: ...} of the effect in its variant, letters of
+    the axes, plausible, share of the excess, domain, unit."""
 
     effect: str
     chosen: tuple
@@ -45,6 +45,7 @@ class Cause:
     share: float | None = None
     domain: str | None = None
     unit: str | None = None
+    variant: str = ""
 
     @property
     def keys(self):

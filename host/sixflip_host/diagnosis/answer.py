@@ -3,7 +3,7 @@ import math
 
 from ..experiment.flicker import FLOOR_OF_KERNEL
 from ..planning import next_capture
-from . import detectability, odds, rest_noise
+from . import closed_loop, detectability, odds, rest_noise
 from .detect import damage, line_frequency, sample_clock
 from .simulator import simulator_answer
 
@@ -36,7 +36,7 @@ def of(diagnosis):
 def causes(diagnosis):
     """list of dict, the cause of the largest share first."""
     found = [_finding(f) for f in diagnosis.findings]
-    found += [_cause(kind, c) for kind, c in diagnosis.causes]
+    found += [_cause(kind, c, diagnosis.conditions.reference_c) for kind, c in diagnosis.causes]
     found += [_drift(kind, gap) for kind, gap in diagnosis.gaps.items() if gap.drift]
     found = [_with_strangers(cause, diagnosis) for cause in found]
     return sorted(found, key=lambda c: -(c["share"] or 0.0) - 1e-3 * c["score_nats"])
@@ -100,9 +100,15 @@ def _with_strangers(cause, diagnosis):
         name: stated(found) for name, found in cause["class_probabilities"].items()}}
 
 
-def _cause(kind, c):
-    return _entry(kind, c.letters, c.probabilities, c.score, c.value, c.unit, c.interval,
-                  c.plausible, c.share)
+def _cause(kind, c, reference_c):
+    """value_of: whose size is stated, where the class has several names; shape: the parameters of
+    the library's effect that do not enter linearly."""
+    found = _entry(kind, c.letters, c.probabilities, c.score, c.value, c.unit, c.interval,
+                   c.plausible, c.share)
+    if len(found["class"]) > 1:
+        found["value_of"] = c.effect
+    shape = closed_loop.shape(c.effect, c.variant, reference_c)
+    return {**found, "shape": shape} if shape else found
 
 
 def _finding(f):

@@ -11,6 +11,7 @@ from . import diagnosis
 from .detect import byte_faults
 from .settings import Settings
 
+MOST_AGAIN = 3  # times that what is in both logs is taken off
 SHORTEST_REST_S = 20.0  # flicker shows from some seconds on
 
 
@@ -44,7 +45,24 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
             progress.doing("the simulator's own captures")
             own = against_simulator.read(list(simulated), list(names), settings)
             settings = replace(settings, simulated=own.known)
-    return diagnosis.of(sessions, settings, own, comparisons, damages)
+    found = diagnosis.of(sessions, settings, own, comparisons, damages)
+    return _beyond(found, own, sessions) if comparisons else found
+
+
+def _beyond(found, own, sessions):
+    """The Diagnosis without what two logs of one motion show to be in both, and with the
+    simulator's parameters beside the effects that it lacks."""
+    from .simulator import effects_beside
+    progress.doing("parameters beside the effects")
+    for _ in range(MOST_AGAIN):
+        both = effects_beside.in_both(found)
+        if not both:
+            break
+        known = found.settings.simulated
+        settings = replace(found.settings, simulated={
+            **known, **{kind: [*known.get(kind, ()), *more] for kind, more in both.items()}})
+        found = diagnosis.of(sessions, settings, own, found.comparisons, found.damages)
+    return effects_beside.beyond(found)
 
 
 def flicker_levels(capture, path):

@@ -16,7 +16,8 @@ FORM = 0.05  # of a size, standard deviation: parts do not have the library's ve
 def sized(cause, data, levels, chip, kind, share=None):
     """The aliases.Cause with value and interval {key: ...}, letters of the axes, plausible,
     domain and unit; share: of the excess. levels: index into each unit's grid."""
-    theta, covariance = effective(cause, data, levels)
+    gram = sum(u.gram.at(i) for u, i in zip(data.units, levels))
+    theta, covariance = effective(cause, gram)
     sigma = dict(zip(theta, np.sqrt(np.diag(covariance))))
     axis_of = dict(zip(cause.keys, cause.axes))
     shown = [] if cause.effect == "box_tilt" else letters(cause, theta, covariance)
@@ -26,6 +27,7 @@ def sized(cause, data, levels, chip, kind, share=None):
     if shown:
         shown = sorted({*shown, *("xyz"[a] for a in cause.other_axes)})
     return replace(cause, value=value, interval=interval, letters=shown, share=share,
+                   variant=_own(cause, gram)[0].variant,
                    plausible=plausible.believable(cause.effect, chip, kind, value, sigma),
                    domain=terms.DOMAIN[cause.effect], unit=EFFECTS[cause.effect].units[kind])
 
@@ -46,14 +48,12 @@ def letters(cause, theta, covariance):
     return ["xyz"[a] for a in sorted(strong) if strong[a] > SIGNIFICANT or a == most]
 
 
-def effective(cause, data, levels):
+def effective(cause, gram):
     """({key: size}, covariance (p, p) of the sizes): what all variants and bends of the effect
-    add together, and the other names of its class beside it, as the nearest plain sizes. levels:
-    index into each unit's grid."""
-    gram = sum(u.gram.at(i) for u, i in zip(data.units, levels))
+    add together, and the other names of its class beside it, as the nearest sizes of its first
+    variant. gram (K, K): the products of all columns."""
     base = {}
-    own = [c for c in cause.chosen if c.effect == cause.effect]
-    for candidate in sorted(own, key=lambda c: -_energy(c, cause, gram)):
+    for candidate in _own(cause, gram):
         for key, power, column in zip(candidate.keys, candidate.powers, candidate.columns):
             if power == 1:
                 base.setdefault(key, column)
@@ -72,6 +72,12 @@ def nearest(gram, plain, every):
     scale = np.sqrt(np.maximum(np.diag(block), 1e-300))
     block = block / scale / scale[:, None] + 1e-9 * np.eye(len(plain))
     return np.linalg.solve(block, gram[np.ix_(plain, every)] / scale[:, None]) / scale[:, None]
+
+
+def _own(cause, gram):
+    """The cause's candidates of its own effect, the one that adds most first."""
+    own = [c for c in cause.chosen if c.effect == cause.effect]
+    return sorted(own, key=lambda c: -_energy(c, cause, gram))
 
 
 def _energy(candidate, cause, gram):

@@ -37,7 +37,7 @@ SETTLED = "session"  # the level by which one rest differs from the next
 class RestCause:
     """One effect, or one class of effects, on the axes that show it: names (the likeliest
     first), place ({name: probability} of what stands here), score (nats), value and interval by
-    axis, unit, plausible, share of the excess, domain."""
+    axis, unit, plausible, share of the excess, domain; variant of the first name."""
 
     names: tuple
     place: dict
@@ -48,6 +48,7 @@ class RestCause:
     plausible: bool
     share: object
     domain: str
+    variant: str = ""
 
     @property
     def effect(self):
@@ -172,7 +173,7 @@ def _told(cause, data, fits, chip, kind, chosen, found):
                            (chosen, fits.index))
     place = dict(found.places[cause.effect])
     return RestCause(tuple(names), place, cause.score, cause.value, cause.interval, cause.unit,
-                     cause.plausible, share, terms.DOMAIN[cause.effect])
+                     cause.plausible, share, terms.DOMAIN[cause.effect], cause.variant)
 
 
 def _beaten(cause, strange, found):
@@ -192,7 +193,8 @@ def _with_bent(cause, data, index):
                if power > 1 and ratio > BENT} - set(cause.letters)
     if not missing:
         return cause
-    theta, covariance = effect_estimates.effective(cause, data, index)
+    theta, covariance = effect_estimates.effective(
+        cause, sum(u.gram.at(i) for u, i in zip(data.units, index)))
     half = {key: odds.Z_90 * float(spread) for key, spread in zip(
         theta, np.sqrt(np.diag(covariance))) if key in missing}
     return replace(cause, value={**cause.value, **{key: float(theta[key]) for key in half}},

@@ -15,16 +15,34 @@ from ..errors import BadFile, UsageError
 DEG = np.pi / 180.0
 MARK = "put back by sixflip export"  # in every file that is made from a diagnosis
 AXES = "xyz"
-# effects that the generated class can express, with the unit their values are in
-EFFECTS = {"thermal_bias": "/°C", "thermal_scale": "%/°C", "quadratic": "mg/g", "cubic": "mg/g",
-           "asymmetry": "mg/g", "g_sensitivity": "/g"}
+SENSORS = {"accel": "accelerometer", "gyro": "gyro"}
+# How a value of an effect becomes SI units where it is not mg or deg/s.
+PERCENT = {("thermal_scale", "accel"), ("thermal_scale", "gyro"), ("asymmetry", "gyro")}
+BY_KIND = {  # effects that the generated class can express
+    "accel": ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic", "cubic",
+              "cross_quadratic", "asymmetry"),
+    "gyro": ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic", "cubic",
+             "asymmetry", "g_sensitivity")}
+
+
+@dataclass(frozen=True)
+class Added:
+    """An effect of the library: values {key: size}, m/s2 or rad/s where the library has mg or
+    deg/s, and a fraction where it has %; shape, its parameters that do not enter linearly."""
+
+    values: dict
+    shape: dict = field(default_factory=dict)
+
+    def vector(self):
+        """(3,) of an effect with one size an axis."""
+        return np.array([self.values.get(a, 0.0) for a in AXES])
 
 
 @dataclass(frozen=True)
 class Triad:
     """One sensor in SI units: read = matrix · true + bias; noise density (3,) per root Hz; step
     (3,) and limit (3,), 0 and inf for none; lag_s: the time constant of its low-pass; delay_s;
-    effects {name: (3,)} in SI units per °C, g, g2 or g3."""
+    effects {name: Added}."""
 
     matrix: np.ndarray = field(default_factory=lambda: np.eye(3))
     bias: np.ndarray = field(default_factory=lambda: np.zeros(3))
@@ -38,32 +56,31 @@ class Triad:
 
 @dataclass(frozen=True)
 class PutBack:
-    """accel and gyro (Triad); lever (3,) m from the simulator's point to the sensor; coupling
-    (3, 3) rad/s per g of the gyro; rate_hz; reference_c; first: sentences on conventions that
-    have to be put right before; left: what was found and is not in here."""
+    """accel and gyro (Triad); lever (3,) m from the simulator's point to the sensor; rate_hz;
+    reference_c; first: sentences on conventions that have to be put right before; instead:
+    sentences on names that stand for a class; left: what was found and is not in here."""
 
     accel: Triad
     gyro: Triad
     lever: np.ndarray
-    coupling: np.ndarray
     rate_hz: float
     reference_c: float
-    first: tuple
-    left: tuple
+    first: tuple = ()
+    instead: tuple = ()
+    left: tuple = ()
 
     @property
     def holds(self):
         """Names of what is in here beyond the matrices and biases."""
         out = []
-        for kind, triad in (("accelerometer", self.accel), ("gyro", self.gyro)):
+        for kind, triad in zip(SENSORS.values(), (self.accel, self.gyro)):
             out += ["%s of the %s" % (name, kind) for name, there in (
                 ("scale and misalignment", (triad.matrix != np.eye(3)).any()),
                 ("bias", triad.bias.any()), ("noise", triad.noise.any()),
                 ("step", triad.step.any()), ("range", np.isfinite(triad.limit).any()),
                 ("low-pass", triad.lag_s > 0), ("delay", triad.delay_s > 0)) if there]
             out += ["%s of the %s" % (name, kind) for name in triad.effects]
-        out += ["lever arm"] if self.lever.any() else []
-        return out + (["g-sensitivity of the gyro"] if self.coupling.any() else [])
+        return out + (["lever arm"] if self.lever.any() else [])
 
 
 def read(path):
@@ -101,30 +118,32 @@ def of(answer):
         else:
             first.append("%s%s" % (c["words"], ": " + c["set"] if c["set"] else ""))
     first += narrow(numbers)
-    triads, coupling = {}, np.zeros((3, 3))
-    effects = {"accel": {}, "gyro": {}}
+    effects, instead = {"accel": {}, "gyro": {}}, []
+    paired = {(e["sensor"], tuple(e["class"])): e for e in simulator.get("effects", [])}
     for cause in answer["causes"]:
-        name, kind = cause["effect"], cause["sensor"]
-        if name == "g_sensitivity":
-            for key, value in cause["value"].items():
-                coupling[AXES.index(key[0]), AXES.index(key[1])] = value * DEG
-        elif name in EFFECTS and kind in effects and (kind == "accel" or name in (
-                "thermal_bias", "thermal_scale")):
-            effects[kind][name] = vector(cause["value"]) * size_of(name, kind)
-        else:
-            left.append("%s (%s)" % (name or " or ".join(cause["class"]), kind))
-    for kind in ("accel", "gyro"):
-        triads[kind] = triad(kind, numbers.get(kind, {}), effects[kind], lags[kind], delays[kind],
-                             float(rate.get("real") or 100.0))
-    return PutBack(triads["accel"], triads["gyro"], lever, coupling,
-                   float(rate.get("real") or 100.0), float(simulator.get("reference_c") or 25.0),
-                   tuple(first), tuple(left))
+        kind, names = cause["sensor"], cause["class"]
+        # Two logs of one motion say the size beside the parameters, and which of a class.
+        sized = paired.get((kind, tuple(names)), {**cause, "effect": cause.get(
+            "value_of", cause["effect"])})
+        name = sized["effect"] if cause["plausible"] else None
+        if name not in BY_KIND.get(kind, ()) or name in effects[kind]:
+            left.append("%s (%s)" % (cause["effect"] or " or ".join(names), kind))
+            continue
+        effects[kind][name] = added(name, kind, sized)
+        if len(names) > 1:
+            instead.append("%s of the %s may as well be %s: these logs do not tell them apart" % (
+                name, SENSORS[kind], " or ".join(n for n in names if n != name)))
+    accel, gyro = (triad(kind, numbers.get(kind, {}), effects[kind], lags[kind], delays[kind],
+                         float(rate.get("real") or 100.0)) for kind in ("accel", "gyro"))
+    return PutBack(accel, gyro, lever, float(rate.get("real") or 100.0),
+                   float(simulator.get("reference_c") or 25.0), tuple(first), tuple(instead),
+                   tuple(left))
 
 
 def narrow(numbers):
     """Sentences on ranges that nothing behind the simulator can take back."""
     out = []
-    for kind, who in (("accel", "accelerometer"), ("gyro", "gyro")):
+    for kind, who in SENSORS.items():
         stops = [a for a, p in numbers.get(kind, {}).get("range", {}).items()
                  if p["differs"] and p["simulator"] is not None and p["difference"] > 0]
         if stops:
@@ -133,15 +152,11 @@ def narrow(numbers):
     return out
 
 
-def vector(values):
-    return np.array([float(values.get(a) or 0.0) for a in AXES])
-
-
-def size_of(name, kind):
-    """From the library's units to SI."""
-    if name == "thermal_scale":
-        return 0.01
-    return G / 1000.0 if kind == "accel" else DEG
+def added(name, kind, cause):
+    """Added of a cause."""
+    unit = 0.01 if (name, kind) in PERCENT else G / 1000.0 if kind == "accel" else DEG
+    return Added({key: unit * float(value) for key, value in cause["value"].items()},
+                 {key: float(value) for key, value in cause.get("shape", {}).items()})
 
 
 def triad(kind, named, effects, lag_s, delay_s, rate_hz):
@@ -190,5 +205,6 @@ def header(found, comment, cannot):
     lines += ["first: " + words for words in found.first]
     lines += ["holds: " + (", ".join(found.holds) or "nothing: the two did not differ")]
     lines += ["this target cannot express: " + ", ".join(cannot)] if cannot else []
+    lines += list(found.instead)
     lines += ["found, and not in here: " + ", ".join(found.left)] if found.left else []
     return "".join("%s %s\n" % (comment, line.replace("--", "-")) for line in lines)

@@ -115,7 +115,7 @@ def matlab(found):
     parts = {}
     for name, triad in (("Accelerometer", found.accel), ("Gyroscope", found.gyro)):
         limit = triad.limit.min()
-        bias, scale = (triad.effects.get(effect, np.zeros(3)) for effect in (
+        bias, scale = (triad.effects.get(effect, put_back.Added({})).vector() for effect in (
             "thermal_bias", "thermal_scale"))
         cooler = MATLAB_C - found.reference_c
         part = {"ConstantBias": (triad.bias + cooler * bias).tolist(),

@@ -1,7 +1,38 @@
-"""The effect put back as one numpy class that needs nothing else."""
+"""The effect put back as one numpy class that needs nothing else.
+
+An effect stands in the class only where it was found: a constant, and what it adds in a step.
+"""
 import numpy as np
 
 from . import put_back
+
+# (unit of the constant, what is added to the sensor's reading): {0} is the constant, {lag_s} and
+# {tau_s} the effect's own. A step has warm (degC above REFERENCE_C), warming (degC/min), g (3,)
+# the specific force in g and turns (3,) the rate in 100 deg/s, the units that the library's
+# effects are defined in (sixflip_sim.effects); self.time counts from when it is switched on.
+OF_BOTH = {
+    "thermal_bias": ("{unit} per degC", "{0} * (warm + {lag_s!r} * warming / 60.0)"),
+    "warm_up": ("{unit}", "{0} * np.exp(-self.time / {tau_s!r})"),
+    "thermal_rate": ("{unit} per degC/min", "{0} * warming"),
+}
+EXPRESSIONS = {
+    "accel": {**OF_BOTH,
+              "thermal_scale": ("1 per degC", "{0} * force * warm"),
+              "quadratic": ("{unit} per g2", "{0} * g ** 2"),
+              "cubic": ("{unit} per g3", "{0} * g ** 3"),
+              "asymmetry": ("{unit} per g", "{0} * np.abs(g)"),
+              "cross_quadratic": ("{unit} per g2 of xx, yy, zz, xy, xz, yz",
+                                  "{0} @ (g[[0, 1, 2, 0, 0, 1]] * g[[0, 1, 2, 1, 2, 2]])")},
+    "gyro": {**OF_BOTH,
+             "thermal_scale": ("1 per degC", "{0} * rate * warm"),
+             "quadratic": ("{unit} at 100 deg/s", "{0} * turns ** 2"),
+             "cubic": ("{unit} at 100 deg/s", "{0} * turns ** 3"),
+             "asymmetry": ("1", "{0} * np.abs(rate)"),
+             "g_sensitivity": ("{unit} per g", "{0} @ g")},
+}
+UNITS = {"accel": "m/s2", "gyro": "rad/s"}
+# Columns of the effects whose constant is a matrix; the row is the first letter of a key.
+COLUMNS = {"cross_quadratic": ("xx", "yy", "zz", "xy", "xz", "yz"), "g_sensitivity": "xyz"}
 
 CLASS = '''import numpy as np
 
@@ -24,16 +55,8 @@ class ImuModel:
     ACCEL_DELAY, GYRO_DELAY = %(accel_delay)r, %(gyro_delay)r  # s
     ACCEL_LAG, GYRO_LAG = %(accel_lag)r, %(gyro_lag)r  # s, time constants of low-passes
     LEVER_ARM = np.array(%(lever)s)  # m, from the simulator's point to the sensor
-    G_SENSITIVITY = np.array(%(coupling)s)  # rad/s per g
-    THERMAL_ACCEL = np.array(%(accel_thermal_bias)s)  # m/s2 per degC
-    THERMAL_GYRO = np.array(%(gyro_thermal_bias)s)  # rad/s per degC
-    THERMAL_ACCEL_SCALE = np.array(%(accel_thermal_scale)s)  # 1 per degC
-    THERMAL_GYRO_SCALE = np.array(%(gyro_thermal_scale)s)  # 1 per degC
-    QUADRATIC = np.array(%(accel_quadratic)s)  # m/s2 per g2
-    CUBIC = np.array(%(accel_cubic)s)  # m/s2 per g3
-    ASYMMETRY = np.array(%(accel_asymmetry)s)  # m/s2 per g
-    REFERENCE_C = %(reference_c)r
-    G = 9.80665
+%(constants)s    REFERENCE_C = %(reference_c)r
+    SETTLES_S = 10.0  # a thermometer's steps are no warming
 
     def __init__(self, seed=0):
         self.random = np.random.default_rng(seed)
@@ -41,6 +64,7 @@ class ImuModel:
         self.past = []
         self.rate = None
         self.smooth = None
+        self.celsius, self.warming = None, 0.0
 
     def step(self, force, rate, temperature=REFERENCE_C, dt=%(dt)r):
         """(force, rate), two arrays (3,), as the real sensor reads them."""
@@ -50,17 +74,23 @@ class ImuModel:
         turning = (rate - before) / dt
         force = force + np.cross(turning, self.LEVER_ARM) + np.cross(
             rate, np.cross(rate, self.LEVER_ARM))
-        warm, g = temperature - self.REFERENCE_C, force / self.G
-        accel = self.ACCEL_MATRIX @ force * (1.0 + self.THERMAL_ACCEL_SCALE * warm) \\
-            + self.ACCEL_BIAS + self.THERMAL_ACCEL * warm + self.QUADRATIC * g ** 2 \\
-            + self.CUBIC * g ** 3 + self.ASYMMETRY * np.abs(g)
-        gyro = self.GYRO_MATRIX @ rate * (1.0 + self.THERMAL_GYRO_SCALE * warm) \\
-            + self.GYRO_BIAS + self.THERMAL_GYRO * warm + self.G_SENSITIVITY @ g
-        accel, gyro = self._late(accel, gyro, dt)
+        warm, warming = temperature - self.REFERENCE_C, self._warming(temperature, dt)
+        g, turns = force / 9.80665, np.degrees(rate) / 100.0
+        accel = self.ACCEL_MATRIX @ force + self.ACCEL_BIAS
+        gyro = self.GYRO_MATRIX @ rate + self.GYRO_BIAS
+%(additions)s        accel, gyro = self._late(accel, gyro, dt)
         accel = accel + self.ACCEL_NOISE / np.sqrt(dt) * self.random.normal(size=3)
         gyro = gyro + self.GYRO_NOISE / np.sqrt(dt) * self.random.normal(size=3)
         return (self._read(accel, self.ACCEL_STEP, self.ACCEL_RANGE),
                 self._read(gyro, self.GYRO_STEP, self.GYRO_RANGE))
+
+    def _warming(self, temperature, dt):
+        """degC/min, of the last ten seconds or so."""
+        before = temperature if self.celsius is None else self.celsius
+        self.celsius = temperature
+        keep = np.exp(-dt / self.SETTLES_S)
+        self.warming = keep * self.warming + (1.0 - keep) * 60.0 * (temperature - before) / dt
+        return self.warming
 
     def _late(self, accel, gyro, dt):
         """Low-passes and delays. A pole that acts on samples scatters a moment over as much time
@@ -97,16 +127,30 @@ class ImuModel:
 
 def text(found):
     """The module of a PutBack."""
-    values = {"lever": array(found.lever), "coupling": array(found.coupling),
+    values = {"lever": array(found.lever), "constants": "", "additions": "",
               "reference_c": found.reference_c, "dt": 1.0 / found.rate_hz}
     for kind, triad in (("accel", found.accel), ("gyro", found.gyro)):
         for name in ("matrix", "bias", "noise", "step"):
             values["%s_%s" % (kind, name)] = array(getattr(triad, name))
         values[kind + "_limit"] = array(triad.limit)
         values[kind + "_delay"], values[kind + "_lag"] = triad.delay_s, triad.lag_s
-        for name in put_back.EFFECTS:
-            values["%s_%s" % (kind, name)] = array(triad.effects.get(name, np.zeros(3)))
+        for name, one in triad.effects.items():
+            unit, added = EXPRESSIONS[kind][name]
+            constant = ("%s_%s" % (kind, name)).upper()
+            values["constants"] += "    %s = np.array(%s)  # %s\n" % (
+                constant, array(sizes(name, one)), unit.format(unit=UNITS[kind]))
+            values["additions"] += "        %s = %s + %s\n" % (kind, kind, added.format(
+                "self." + constant, **{"lag_s": 0.0, **one.shape}))
     return put_back.header(found, "#", ()) + CLASS % values
+
+
+def sizes(name, added):
+    """(3,) or (3, k) of a put_back.Added."""
+    columns = COLUMNS.get(name)
+    if columns is None:
+        return added.vector()
+    return np.array([[added.values.get(axis + column, 0.0) for column in columns]
+                     for axis in put_back.AXES])
 
 
 def array(values):

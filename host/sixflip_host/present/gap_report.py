@@ -98,6 +98,9 @@ def simulator_sections(page, simulator):
         page.paragraph("None is other than a sensor's, as far as these logs can show.")
     page.heading("Parameters side by side")
     page.table(simulator_words.PARAMETERS, simulator_words.parameter_rows(simulator, True))
+    if simulator["effects"]:
+        page.heading("Effects by the difference of both logs")
+        page.table(simulator_words.EFFECTS, simulator_words.effect_rows(simulator))
     page.heading("What it does to a robot")
     for line in simulator_words.lines(simulator):
         page.paragraph(line)

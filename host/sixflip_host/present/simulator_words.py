@@ -3,6 +3,7 @@ from ..terminal import plain, table
 
 CONVENTIONS = ("convention", "sensor", "sure", "what to set")
 PARAMETERS = ("parameter", "real", "simulator", "real less simulator (90 %)", "set to")
+EFFECTS = ("effect that it lacks", "sensor", "real less simulator (90 %)", "may as well be")
 SENSOR = {"accel": "accelerometer", "gyro": "gyro", "device": "device"}
 
 
@@ -50,6 +51,9 @@ def show(out, simulator):
     rows = parameter_rows(simulator)
     if rows:
         out.print(table("Parameters that differ", PARAMETERS, rows, prose=True))
+    rows = effect_rows(simulator)
+    if rows:
+        out.print(table("Effects by both logs", EFFECTS, rows, prose=True))
     for line in lines(simulator):
         out.print(plain(line))
 
@@ -95,6 +99,15 @@ def parameter_rows(simulator, all_of_them=False):
                             valued(p["difference"], p["difference_interval_90"], p["unit"]),
                             p["how"] if p["set"] is None else "%.4g %s" % (p["set"], p["unit"])))
     return out
+
+
+def effect_rows(simulator):
+    """Rows of EFFECTS."""
+    return [(e["effect"].replace("_", " "), SENSOR[e["sensor"]], "\n".join(
+                 "%s %s" % (key, valued(value, e["interval_90"][key], e["unit"]))
+                 for key, value in e["value"].items()),
+             ", ".join(n.replace("_", " ") for n in e["class"] if n != e["effect"]))
+            for e in simulator["effects"]]
 
 
 def settings(simulator):

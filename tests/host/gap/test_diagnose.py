@@ -72,7 +72,7 @@ def test_two_causes_are_named_with_size_axis_and_share(
     assert answer["held_out"] == "each session by the others"
     causes = {c["sensor"]: c for c in answer["causes"]}
     assert len(answer["causes"]) == 2
-    assert set(causes["accel"]) == CAUSE_KEYS
+    assert set(causes["accel"]) == CAUSE_KEYS | {"shape"}
     # Within a session the temperature and its rate are the same thing; between the two, which
     # end at other temperatures, they are not.
     assert causes["accel"]["effect"] == "thermal_bias"

@@ -50,10 +50,11 @@ def through(model, capture):
 
 
 @pytest.mark.parametrize("name,own,effect", [
-    ("healthy", True, "thermal_bias"), ("no_noise", False, ""), ("gyro_late", True, "")])
+    ("healthy", True, "thermal_bias"), ("healthy", True, "quadratic"), ("no_noise", False, ""),
+    ("gyro_late", True, "")])
 def test_simulated_again_with_the_class_there_is_no_gap(box, once, tmp_path, name, own, effect):
     real, sim = captures(name, box, own=own, effect=effect)
-    before = once(name, lambda: answered(real, sim))
+    before = once(name + effect, lambda: answered(real, sim))
     assert before["verdict"] != "no gap"
     space = {}
     exec(exported(before, "numpy", tmp_path), space)

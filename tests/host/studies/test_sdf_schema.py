@@ -56,7 +56,7 @@ def test_every_element_is_one_that_debians_sdformat_describes():
     triad = put_back.Triad(bias=np.array([0.1, -0.2, 0.3]), noise=np.full(3, 0.004),
                            step=np.array([0.0, 0.01, 0.0]))
     text = put_back_native.gz(put_back.PutBack(
-        triad, triad, np.array([0.04, 0.0, 0.01]), np.zeros((3, 3)), 100.0, 25.0, (), ()))
+        triad, triad, np.array([0.04, 0.0, 0.01]), 100.0, 25.0))
     sensor = ElementTree.fromstring(text).find("model/link/sensor")
     check(sensor, ElementTree.parse(where / "sensor.sdf").getroot(), where)
     noise = sensor.find("imu/angular_velocity/y/noise")

@@ -52,8 +52,8 @@ class Effect:
     laps: int = 1
 
 
-def drifts(name, words="", sensors=("accel",), times=2.0):
-    return Effect(words or name, {"effect": name, "times": times}, sensors, laps=2)
+def drifts(name, sensors=("accel",), times=2.0, laps=2):
+    return Effect(name, {"effect": name, "times": times}, sensors, laps=laps)
 
 
 BOTH = ("accel", "gyro")
@@ -68,11 +68,13 @@ EFFECTS = {
     "delay": Effect("delay", {"gyro_delay_s": 0.04}, ("gyro",)),
     "lever arm": Effect("lever arm", arm=True),
     "thermal_bias": drifts("thermal_bias", sensors=BOTH),
-    "thermal_scale": drifts("thermal_scale"),
+    "warm_up": drifts("warm_up"),
+    # Two minutes do not tell it from a bend that the rests do not show.
+    "thermal_scale": drifts("thermal_scale", times=1.0, laps=5),
     "quadratic": drifts("quadratic"),
     "cubic": drifts("cubic"),
     "asymmetry": drifts("asymmetry"),
-    "g_sensitivity": drifts("g_sensitivity", "g-sensitivity", ("gyro",), 1.0),
+    "g_sensitivity": drifts("g_sensitivity", sensors=("gyro",), times=1.0),
 }
 
 

@@ -36,7 +36,8 @@ class Comparison:
     {sensor: conventions.SensorFit}; real and simulated own_calibration.OwnSensor; noise {sensor:
     single_log.Noise of the real log}; remarks; unseen; motion_judged: lever arm and delay of the
     two logs were compared, or what is wrong with the simulator's hides them; reference_c: mean
-    temperature of the real log or None."""
+    temperature of the real log or None; effects (tuple of effects_beside.Beside): those found,
+    as far as two logs of one motion show their size."""
 
     log: str
     against: str
@@ -53,6 +54,7 @@ class Comparison:
     unseen: tuple
     motion_judged: bool
     reference_c: float
+    effects: tuple = ()
 
     @property
     def differs(self):

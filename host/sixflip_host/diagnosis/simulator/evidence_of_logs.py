@@ -99,7 +99,8 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
         mean = np.concatenate([h.mean, [-delay, 0.0]])
         sd = np.concatenate([h.sd, [DELAY_S, SMOOTH_S2]])
         own = [signal, np.ones((n, 1))]
-        own_sd = [np.full(3, SHAPE), [h.bias_sd or BIAS[kind]]]
+        own_sd = [np.full(3, SHAPE) if h.shape_sd is None else h.shape_sd,
+                  [h.bias_sd or BIAS[kind]]]
         if h.free is not None:
             scale = np.maximum(h.free.std(axis=0), 1e-9)
             own.append(h.free)
@@ -107,7 +108,9 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
         if real_own is not None:
             own.append(real_own[0])
             own_sd.append(real_own[1])
-        result = regression(target - signal, np.concatenate(own, 1), np.concatenate(own_sd),
+        result = regression(target - signal, np.concatenate(own, 1), np.concatenate(
+                                [np.broadcast_to(one, (3, np.shape(one)[-1])) for one in own_sd],
+                                axis=1),
                             columns, mean, sd, inflation, live, rows,
                             residuals=last)
         delay += float(np.clip(result[2][k], -0.05, 0.05))
@@ -138,7 +141,7 @@ def gains(h, beta, shared, unit):
 def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,
                covariance=False, residuals=True):
     """Linear regression of y (n, 3) = own (n, p) · beta of each channel + columns (n, 3, k) ·
-    shared, with priors own_sd (p,) about 0 and sd (k,) about mean (k,).
+    shared, with priors own_sd (p,) or (3, p) about 0 and sd (k,) about mean (k,).
 
     Returns (log evidence, own coefficients (3, p), shared (k,), its sigma (k,), residuals (n, 3),
     sigma of the own coefficients (3, p)); with covariance also that of the shared ones (k, k).
@@ -153,7 +156,7 @@ def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,
     y, own, columns = y * weight[:, None], own * weight[:, None], columns * weight[:, None, None]
     columns = np.ascontiguousarray(columns.transpose(1, 0, 2))  # of each channel: products' speed
     size = 3 * p + k
-    prior = np.concatenate([np.tile(own_sd, 3), sd])
+    prior = np.concatenate([np.broadcast_to(own_sd, (3, p)).ravel(), sd])
     variance = np.maximum((y - y.mean(axis=0)).var(axis=0), LEAST_LEFT)
     gram_own = own.T @ own * k_rows
     cross = [own.T @ one * k_rows for one in columns]

@@ -39,7 +39,8 @@ class Hypothesis:
     """name; signal (n, 3); columns (n, 3, k) with prior
     sizes mean (k,) and sd (k,); heading: S is a turn about the vertical; units: factors that are
     tried; free (n, f): further columns of each channel with prior FREE; bias_sd; copies: the
-    first so many triples of free, and (scaled) the first of columns, carry the signal's noise."""
+    first so many triples of free, and (scaled) the first of columns, carry the signal's noise;
+    shape_sd (3, 3): of E, None for SHAPE."""
 
     name: str
     signal: np.ndarray
@@ -51,6 +52,7 @@ class Hypothesis:
     bias_sd: float = None
     copies: int = 0
     scaled: bool = False
+    shape_sd: np.ndarray = None
 
 
 def none(n):

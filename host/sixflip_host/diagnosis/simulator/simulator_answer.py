@@ -8,6 +8,7 @@ def of(comparisons):
     return {
         "conventions": [convention(c, x.log) for x in comparisons for c in x.conventions],
         "parameters": numbers(best.parameters),
+        "effects": [effect(x) for x in best.effects],
         "task": None if best.task is None else {
             "estimator": best.task.estimator, "against": best.task.against, "unit": "°",
             "attitude": rounded(best.task.attitude), "heading": rounded(best.task.heading)},
@@ -42,6 +43,14 @@ def convention(c, name):
             "unit": c.unit, "interval_90": {k: [digits(v) for v in span]
                                             for k, span in c.interval_90.items()},
             "words": c.words, "set": c.set_to, "log": name}
+
+
+def effect(found):
+    """value: of the effect named, which stands for its class."""
+    return {"effect": found.effect, "sensor": found.sensor, "class": list(found.stands_for),
+            "value": {k: digits(v) for k, v in found.value.items()},
+            "unit": found.unit.replace("degC", "°C").replace("deg/s", "°/s"),
+            "interval_90": {k: span(v) for k, v in found.interval.items()}, "shape": found.shape}
 
 
 def numbers(found):

@@ -1,0 +1,81 @@
+"""What is put back adds what the library's effects add, and says what it stands for."""
+import numpy as np
+import pytest
+
+from sixflip_host.export import put_back, put_back_numpy
+from sixflip_sim.effects.library import EFFECTS
+from sixflip_sim.effects.moment import Moment
+
+G, DEG = 9.80665, np.pi / 180.0
+SHAPES = {"thermal_bias": {"reference_c": 21.0}, "thermal_scale": {"reference_c": 21.0},
+          "warm_up": {"tau_s": 90.0}}
+EVERY = [(kind, name) for kind, names in put_back.BY_KIND.items() for name in names]
+
+
+def answer(causes, effects=()):
+    return {"simulator": {"parameters": {}, "conventions": [], "reference_c": 21.0,
+                          "effects": list(effects)}, "causes": causes}
+
+
+def cause(name, kind, value, **more):
+    return {"effect": name, "class": [name], "sensor": kind, "value": value, "plausible": True,
+            "shape": SHAPES.get(name, {}), **more}
+
+
+def made(said):
+    space = {}
+    exec(put_back_numpy.text(put_back.of(said)), space)
+    return space["ImuModel"]()
+
+
+@pytest.mark.parametrize("kind,name", EVERY)
+def test_a_step_adds_what_the_library_adds(kind, name):
+    """Warming for long enough at a steady rate, then at one moment."""
+    rng = np.random.default_rng(EVERY.index((kind, name)))
+    shape = SHAPES.get(name, {})
+    value = {key: float(rng.uniform(0.2, 1.0)) for key in EFFECTS[name].keys if key[1:] not in (
+        "2", "3")}
+    model = made(answer([cause(name, kind, value)]))
+    plain = made(answer([]))
+    force, rate = rng.normal(0.0, 6.0, 3), rng.normal(0.0, 2.0, 3)
+    for k in range(12000):
+        warm = 24.0 + 0.02 * k * 0.01
+        got, none = (one.step(force, rate, warm, 0.01) for one in (model, plain))
+    added = (got[kind == "gyro"] - none[kind == "gyro"]) / (DEG if kind == "gyro" else G / 1000.0)
+    m = Moment()
+    m.t, m.temperature, m.temperature_rate = 119.99, warm, 0.02
+    m.f, m.w = tuple(force / G), tuple(rate / DEG)
+    wanted = [0.0, 0.0, 0.0]
+    EFFECTS[name](kind, value, shape).add(m, wanted)
+    assert np.abs(wanted).max() > 1e-3
+    assert added == pytest.approx(wanted, rel=1e-3)
+
+
+def test_of_a_class_the_name_with_a_size_goes_in_and_the_others_are_said():
+    said = answer([cause(None, "accel", {"x": 3.0}, **{
+        "class": ["quadratic", "asymmetry"], "value_of": "quadratic"})])
+    found = put_back.of(said)
+    assert found.accel.effects["quadratic"].values["x"] == pytest.approx(3.0 * G / 1000.0)
+    assert found.instead == ("quadratic of the accelerometer may as well be asymmetry: these logs "
+                             "do not tell them apart",)
+    assert found.instead[0] in put_back_numpy.text(found) and not found.left
+
+
+def test_two_logs_of_one_motion_know_the_size_better():
+    names = ["quadratic", "asymmetry"]
+    said = answer([cause(None, "accel", {"x": 3.0}, **{"class": names, "value_of": "quadratic"})],
+                  [{"effect": "asymmetry", "sensor": "accel", "class": names,
+                    "value": {"x": 5.0}, "shape": {}}])
+    found = put_back.of(said)
+    assert list(found.accel.effects) == ["asymmetry"]
+    assert found.accel.effects["asymmetry"].values["x"] == pytest.approx(5.0 * G / 1000.0)
+
+
+@pytest.mark.parametrize("one", [
+    cause("creep", "accel", {"x": 3.0}), cause("quadratic", "accel", {"x": 3.0}, plausible=False),
+    cause(None, "accel", {"Z+x": 3.0}, **{"class": ["box_tilt", "quadratic"],
+                                          "value_of": "box_tilt"})])
+def test_what_a_step_cannot_know_is_left_and_said(one):
+    found = put_back.of(answer([one]))
+    assert not found.accel.effects and len(found.left) == 1
+    assert "found, and not in here: " + found.left[0] in put_back_numpy.text(found)
