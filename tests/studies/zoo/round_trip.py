@@ -250,7 +250,7 @@ def show(rows, wanted):
                 "/√Hz" if EFFECTS[name].measure == "noise" else "")
             nothing = "-" if row.named else "?"
             cells = [nothing if cell is None else "%.3g%s" % (
-                cell[1][kind], "" if cell[0] == "no gap" else " !")
+                round(cell[1][kind], 9), "" if cell[0] == "no gap" else " !")
                 for cell in (row.after[one] for one in wanted)]
             print((line % (name, unit, "%.3g" % row.before[kind], "%.3g" % row.noise[kind],
                            *cells)).rstrip())
