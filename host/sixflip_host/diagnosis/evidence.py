@@ -120,7 +120,7 @@ class Elimination:
             return
         self._done[points] = True
         index, quadratic, projections = self.private.index, *self.statistics
-        cross = self.unit.gram.blocks(points, index, np.arange(len(self.unit.silent)))
+        cross = self.unit.gram.rows(points, index)
         block = cross[:, :, index] + np.diag(self.private.prior ** -2.0)
         self.solved[points] = np.linalg.solve(block, cross)
         own = projections[points]
@@ -141,16 +141,18 @@ class Elimination:
         forms, k = index.shape
         own, place = np.unique(index, return_inverse=True)
         if len(own) ** 2 < index.size * k:  # most columns are in most of them
-            return gram.gathered(self._taken(points, own), place.reshape(index.shape))
+            return gram.gathered(self.block(points, own, own), place.reshape(index.shape))
         cross = self.unit.gram.blocks(points, index.ravel(), self.private.index)
         solved = self.solved[points[:, None, None], np.arange(len(self.private))[:, None],
                              index.ravel()]
         own = solved.reshape(len(points), len(self.private), forms, k).transpose(0, 2, 1, 3)
         return cross.reshape(len(points), forms, k, len(self.private)) @ own
 
-    def _taken(self, points, columns):
-        """(P, k, k): what the private columns take off the products of columns (k,)."""
-        cross = self.unit.gram.blocks(points, columns, self.private.index)
+    def block(self, points, rows, columns):
+        """(P, r, c): what the private columns take off the products of columns rows (r,) with
+        columns (c,)."""
+        self._fill(points)
+        cross = self.unit.gram.blocks(points, rows, self.private.index)
         return cross @ self.solved[points[:, None, None],
                                    np.arange(len(self.private))[:, None], columns]
 
@@ -158,7 +160,7 @@ class Elimination:
         """Reduced of these shared columns at these points of the grid."""
         self._fill(points)
         return Reduced(self.unit.gram.blocks(points, columns, columns)
-                       - self._taken(points, columns),
+                       - self.block(points, columns, columns),
                        self.inner[points[:, None], columns], self.quadratic[points],
                        self.logdet[points])
 

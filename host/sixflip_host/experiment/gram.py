@@ -30,6 +30,10 @@ class Products:
         """(P, r, c) products of columns rows (r,) with columns (c,) at points (P,) of the grid."""
         return self.values[points[:, None, None], rows[:, None], columns]
 
+    def rows(self, points, rows):
+        """(P, r, K) products of columns rows (r,) with every column."""
+        return self.values[points[:, None], rows]
+
     def each(self, points, index):
         """(P, F, k, k) products of columns index (F, k) with one another."""
         return gathered(self.values, index, points)
@@ -58,6 +62,12 @@ class Whitened(Products):
         own = others if rows is columns else self._chosen(points[:, None], rows)
         return own @ others.transpose(0, 2, 1)
 
+    def rows(self, points, rows):
+        self._fill(points)
+        own = self._chosen(points[:, None], rows)
+        return np.stack([self._every(one @ self.values[point].T)
+                         for point, one in zip(points, own)])
+
     def each(self, points, index):
         if index.size:
             self._fill(points)
@@ -69,6 +79,10 @@ class Whitened(Products):
 
     def _chosen(self, points, columns):
         return self.values[points, columns]
+
+    def _every(self, kept):
+        """(r, K) of what is kept for (r, l) columns."""
+        return kept
 
 
 class FewGrams(Whitened):
@@ -120,6 +134,9 @@ class FewGrams(Whitened):
 
     def _chosen(self, points, columns):
         return self.values[points, self._place[columns]]
+
+    def _every(self, kept):
+        return kept[:, self._place]
 
     def of(self, columns):
         """(G, k, k) of a few columns at every point; nothing is kept of it."""
@@ -177,6 +194,12 @@ class Grams(Whitened):
             return super().blocks(points, rows, columns)
         self._fill(points)
         return Products.blocks(self, points, rows, columns)
+
+    def rows(self, points, rows):
+        if self._whitened:
+            return super().rows(points, rows)
+        self._fill(points)
+        return Products.rows(self, points, rows)
 
     def each(self, points, index):
         if self._whitened:
