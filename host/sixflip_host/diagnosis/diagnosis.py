@@ -70,7 +70,10 @@ class Diagnosis:
 
     @cached_property
     def where(self):
-        """[Place]: what the samples show, then the rests and the turns."""
+        """[Place]: what the samples show, then the rests and the turns; of no gap nothing, also
+        where logs of one motion show in both what each by itself would be taken for."""
+        if self.verdict == "no gap":
+            return []
         named = [localisation.Place(f.sensor, axis, f.domain, 1.0, odds.chance(f.score))
                  for f in self.findings for axis in (f.axes or [None])]
         places = [p for gap in self.judged for p in localisation.places(gap)]

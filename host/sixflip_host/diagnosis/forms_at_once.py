@@ -43,9 +43,9 @@ def fit(unit, statistics, index, prior, level, points, elimination=None, common=
         across = white.transpose(0, 2, 1)[:, 1 + place]
         schur = schur - across @ across.transpose(0, 1, 3, 2)
         explained = explained - (across @ white[:, None, :, :1])[..., 0]
-    size = own.shape[1]
+    grams, size = len(points) * forms, own.shape[1]
     left, own_half = evidence.known(
-        schur.reshape(-1, size, size), explained.reshape(-1, size, 1),
+        schur.reshape(grams, size, size), explained.reshape(grams, size, 1),
         np.repeat(left, forms, axis=0))
     likelihood = (-0.5 * left[:, 0] - own_half).reshape(-1, forms) - half[:, None] \
         - np.log(prior).sum(axis=1) - (logdet - level[points])[:, None]
