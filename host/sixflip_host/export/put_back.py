@@ -20,18 +20,20 @@ SENSORS = {"accel": "accelerometer", "gyro": "gyro"}
 PERCENT = {("thermal_scale", "accel"), ("thermal_scale", "gyro"), ("asymmetry", "gyro")}
 BY_KIND = {  # effects that the generated class can express
     "accel": ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic", "cubic",
-              "cross_quadratic", "asymmetry"),
+              "cross_quadratic", "asymmetry", "vibration"),
     "gyro": ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic", "cubic",
-             "asymmetry", "g_sensitivity")}
+             "asymmetry", "g_sensitivity", "vibration")}
 
 
 @dataclass(frozen=True)
 class Added:
     """An effect of the library: values {key: size}, m/s2 or rad/s where the library has mg or
-    deg/s, and a fraction where it has %; shape, its parameters that do not enter linearly."""
+    deg/s, and a fraction where it has %; shape, its parameters that do not enter linearly; hz
+    (3,) of a steady line."""
 
     values: dict
     shape: dict = field(default_factory=dict)
+    hz: tuple = ()
 
     def vector(self):
         """(3,) of an effect with one size an axis."""
@@ -126,7 +128,8 @@ def of(answer):
         sized = paired.get((kind, tuple(names)), {**cause, "effect": cause.get(
             "value_of", cause["effect"])})
         name = sized["effect"] if cause["plausible"] else None
-        if name not in BY_KIND.get(kind, ()) or name in effects[kind]:
+        if name not in BY_KIND.get(kind, ()) or name in effects[kind] or (
+                name == "vibration" and not cause.get("hz")):  # a shake is no line
             left.append("%s (%s)" % (cause["effect"] or " or ".join(names), kind))
             continue
         effects[kind][name] = added(name, kind, sized)
@@ -156,7 +159,8 @@ def added(name, kind, cause):
     """Added of a cause."""
     unit = 0.01 if (name, kind) in PERCENT else G / 1000.0 if kind == "accel" else DEG
     return Added({key: unit * float(value) for key, value in cause["value"].items()},
-                 {key: float(value) for key, value in cause.get("shape", {}).items()})
+                 {key: float(value) for key, value in cause.get("shape", {}).items()},
+                 tuple(float(cause["hz"].get(a) or 0.0) for a in AXES) if "hz" in cause else ())
 
 
 def triad(kind, named, effects, lag_s, delay_s, rate_hz):
@@ -196,7 +200,7 @@ def relative_delay(numbers, lags):
     p = numbers.get("gyro", {}).get("delay", {}).get("all")
     wanted = 1e-3 * p["difference"] if p and p["differs"] else 0.0
     wanted -= lags["gyro"] - lags["accel"]
-    return {"gyro": max(wanted, 0.0), "accel": max(-wanted, 0.0)}
+    return {"gyro": max(wanted, 0.0), "accel": abs(min(wanted, 0.0))}
 
 
 def header(found, comment, cannot):

@@ -6,14 +6,16 @@ import numpy as np
 
 from . import put_back
 
-# (unit of the constant, what is added to the sensor's reading): {0} is the constant, {lag_s} and
-# {tau_s} the effect's own. A step has warm (degC above REFERENCE_C), warming (degC/min), g (3,)
-# the specific force in g and turns (3,) the rate in 100 deg/s, the units that the library's
+# (unit of the constant, what is added to the sensor's reading): {0} is the constant, {lag_s},
+# {tau_s} and {hz} the effect's own. A step has warm (degC above REFERENCE_C), warming (degC/min),
+# g (3,) the specific force in g and turns (3,) the rate in 100 deg/s, the units that the library's
 # effects are defined in (sixflip_sim.effects); self.time counts from when it is switched on.
 OF_BOTH = {
     "thermal_bias": ("{unit} per degC", "{0} * (warm + {lag_s!r} * warming / 60.0)"),
     "warm_up": ("{unit}", "{0} * np.exp(-self.time / {tau_s!r})"),
     "thermal_rate": ("{unit} per degC/min", "{0} * warming"),
+    "vibration": ("{unit}, of any phase",
+                  "{0} * np.sin(2.0 * np.pi * np.array({hz}) * self.time)"),
 }
 EXPRESSIONS = {
     "accel": {**OF_BOTH,
@@ -140,7 +142,7 @@ def text(found):
             values["constants"] += "    %s = np.array(%s)  # %s\n" % (
                 constant, array(sizes(name, one)), unit.format(unit=UNITS[kind]))
             values["additions"] += "        %s = %s + %s\n" % (kind, kind, added.format(
-                "self." + constant, **{"lag_s": 0.0, **one.shape}))
+                "self." + constant, **{"lag_s": 0.0, **one.shape}, hz=list(one.hz)))
     return put_back.header(found, "#", ()) + CLASS % values
 
 

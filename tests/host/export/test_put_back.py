@@ -9,6 +9,7 @@ from sixflip_sim.effects.moment import Moment
 G, DEG = 9.80665, np.pi / 180.0
 SHAPES = {"thermal_bias": {"reference_c": 21.0}, "thermal_scale": {"reference_c": 21.0},
           "warm_up": {"tau_s": 90.0}}
+LINE_HZ = {"vibration": 31.7}
 EVERY = [(kind, name) for kind, names in put_back.BY_KIND.items() for name in names]
 
 
@@ -35,7 +36,8 @@ def test_a_step_adds_what_the_library_adds(kind, name):
     shape = SHAPES.get(name, {})
     value = {key: float(rng.uniform(0.2, 1.0)) for key in EFFECTS[name].keys if key[1:] not in (
         "2", "3")}
-    model = made(answer([cause(name, kind, value)]))
+    line = {"hz": dict.fromkeys("xyz", LINE_HZ[name])} if name in LINE_HZ else {}
+    model = made(answer([cause(name, kind, value, **line)]))
     plain = made(answer([]))
     force, rate = rng.normal(0.0, 6.0, 3), rng.normal(0.0, 2.0, 3)
     for k in range(12000):
@@ -46,7 +48,8 @@ def test_a_step_adds_what_the_library_adds(kind, name):
     m.t, m.temperature, m.temperature_rate = 119.99, warm, 0.02
     m.f, m.w = tuple(force / G), tuple(rate / DEG)
     wanted = [0.0, 0.0, 0.0]
-    EFFECTS[name](kind, value, shape).add(m, wanted)
+    steady = {"frequency_hz": LINE_HZ[name]} if line else {}
+    EFFECTS[name](kind, value, {**shape, **steady}).add(m, wanted)
     assert np.abs(wanted).max() > 1e-3
     assert added == pytest.approx(wanted, rel=1e-3)
 
@@ -72,7 +75,8 @@ def test_two_logs_of_one_motion_know_the_size_better():
 
 
 @pytest.mark.parametrize("one", [
-    cause("creep", "accel", {"x": 3.0}), cause("quadratic", "accel", {"x": 3.0}, plausible=False),
+    cause("creep", "accel", {"x": 3.0}), cause("vibration", "accel", {"x": 3.0}),
+    cause("quadratic", "accel", {"x": 3.0}, plausible=False),
     cause(None, "accel", {"Z+x": 3.0}, **{"class": ["box_tilt", "quadratic"],
                                           "value_of": "box_tilt"})])
 def test_what_a_step_cannot_know_is_left_and_said(one):

@@ -184,3 +184,31 @@ def test_the_earth_turns_round_with_a_box_that_is_turned_on_a_face():
     assert np.abs(left).max() < 0.0003 < 0.002 < np.abs(
         earth.reshape(-1) - common[:, :1] @ size[:1]).max()
     assert np.abs(size).max() < 1.2
+
+
+def short_rests(added, seconds=1.7, n=4000):
+    """Session of rests of less than two seconds; added: counts of (t in the rest, its start)."""
+    generator = np.random.default_rng(3)
+    accel = [0.0, 0.0, 16384.0] + 46.0 * generator.standard_normal((n, 3))
+    pose, each = np.zeros(n, np.int16), int(100 * seconds)
+    for number, start in enumerate(range(0, n - each, each + 80)):
+        pose[start:start + each] = 1 + number % 12
+        accel[start:start + each] += added(np.arange(each) / 100.0, start / 100.0)[:, None]
+    still = at_rest(flicker(5, n)).capture
+    still.accel, still.pose = np.rint(accel).astype(np.int16), pose
+    return blocks.of("s", still)
+
+
+def test_a_line_shows_in_rests_of_less_than_two_seconds():
+    """11 mg at 31 Hz were "no gap" where no rest held two seconds."""
+    found, = spectral_lines.findings([short_rests(
+        lambda t, start: 180.0 * np.sin(2.0 * np.pi * 31.0 * (start + t)))])
+    assert found.effect == "vibration" and found.sensor == "accel"
+    assert found.value["x"] == pytest.approx(11.0, rel=0.05)
+    assert found.hz["x"] == pytest.approx(31.0, abs=0.2)
+
+
+@pytest.mark.parametrize("hz,tau", [(4.0, 0.3), (7.0, 0.15), (11.0, 0.4)])
+def test_what_rings_out_after_a_box_is_put_down_is_no_line(hz, tau):
+    assert spectral_lines.findings([short_rests(
+        lambda t, start: 500.0 * np.exp(-t / tau) * np.sin(2.0 * np.pi * hz * t))]) == []

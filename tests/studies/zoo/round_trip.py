@@ -74,6 +74,7 @@ EFFECTS = {
     "quadratic": drifts("quadratic"),
     "cubic": drifts("cubic"),
     "asymmetry": drifts("asymmetry"),
+    "vibration": Effect("vibration", {"effect": "vibration"}, measure="shake", laps=2),
     "g_sensitivity": drifts("g_sensitivity", sensors=("gyro",), times=1.0),
 }
 
@@ -160,6 +161,12 @@ def apart(measure, kind, one, other):
         rest = one.pose > 0
         level = [np.median(np.abs(np.diff(x[rest], axis=0))) / 0.6745 / np.sqrt(2.0 * RATE_HZ)
                  for x in (a, b)]
+        return float(unit * abs(level[1] - level[0]))
+    if measure == "shake":
+        place = one.pose * (one.pose > 0)
+        starts = np.flatnonzero(np.diff(place, prepend=0) != 0)
+        level = [np.median([x[i:j].std(axis=0).max() for i, j in zip(starts, starts[1:])
+                            if place[i] > 0]) for x in (a, b)]
         return float(unit * abs(level[1] - level[0]))
     if measure == "step":
         step = [np.gcd.reduce(np.abs(x.accel.astype(int) - x.accel[0].astype(int)), axis=0)

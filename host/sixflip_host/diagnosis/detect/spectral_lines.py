@@ -16,8 +16,12 @@ from . import line_frequency
 from .detection import Finding
 from .line_frequency import Line
 
-LENGTH_S, SHORTEST_S = 5.0, 2.0  # of a stretch: a rest of the paper's protocol, and of a short one
+# Of a stretch: a rest of the paper's protocol, a short one, one on the way.
+LENGTHS_S, MOVING_S = (5.0, 2.0, 1.0), 2.0
 LOWEST_HZ, LOWEST_MOVING_HZ = 0.7, 2.0  # a hand or a vehicle moves more slowly than that
+LEAST_CYCLES = 1.4  # of a line in a stretch: what settles in a rest has less
+BRIEF_S = 1.5  # a shorter stretch is all of its rest, and begins where the box was just put down
+GOES_ON = 0.5  # of a line's power in the first half of such stretches that the second has
 CHANCE = 0.001  # six axes together: well below what registers and spectra share, see odds.py
 FEWEST = 4  # stretches
 MEDIAN_SHARE = 0.25  # of the band: wider than any line, narrower than a filter's colour
@@ -81,11 +85,12 @@ def rests(sessions, sensor):
     """list of (n, 3) stretches of samples in mg or deg/s, all at rest, equally long; of the
     whole capture where there is no rest."""
     if not any(session.runs for session in sessions):
-        return _stretches(sessions, sensor, int(SHORTEST_S * sessions[0].rate), whole=True)
-    found = _stretches(sessions, sensor, int(LENGTH_S * sessions[0].rate))
-    if len(found) < FEWEST:
-        found = _stretches(sessions, sensor, int(SHORTEST_S * sessions[0].rate))
-    return found if len(found) >= FEWEST else []
+        return _stretches(sessions, sensor, int(MOVING_S * sessions[0].rate), whole=True)
+    for seconds in LENGTHS_S:
+        found = _stretches(sessions, sensor, int(seconds * sessions[0].rate))
+        if len(found) >= FEWEST:
+            return found
+    return []
 
 
 def _stretches(sessions, sensor, length, whole=False):
@@ -134,6 +139,17 @@ def scatter(stretches, axis, k):
     return float(power.std(ddof=1) / max(power.mean(), 1e-300))
 
 
+def _rings_out(stretches, axis, cycles):
+    """Whether a line of so many cycles a sample fades within the stretches, as what was just put
+    down does."""
+    x = np.array([s[:, axis] - s[:, axis].mean() for s in stretches])
+    half = x.shape[1] // 2
+    wave = np.hanning(half) * np.exp(-2j * np.pi * cycles * np.arange(half))
+    early, late = (float((np.abs(part @ wave) ** 2).mean()) for part in (
+        x[:, :half], x[:, -half:]))
+    return late < GOES_ON * early
+
+
 def strongest(sessions, sensor, axis):
     """The Line that is strongest in the spectrum of short stretches, or None."""
     stretches = rests(sessions, sensor)
@@ -144,7 +160,8 @@ def strongest(sessions, sensor, axis):
     if not resting:  # what shakes a sensor in use comes and goes
         mean = plain
     rate, n = sessions[0].rate, len(stretches[0])
-    first = int((LOWEST_HZ if resting else LOWEST_MOVING_HZ) * n / rate) + 1
+    lowest_hz = max(LOWEST_HZ, LEAST_CYCLES * rate / n) if resting else LOWEST_MOVING_HZ
+    first = int(lowest_hz * n / rate) + 1
     band = mean[first:-1]
     if len(band) < 20 or not band.any():
         return None
@@ -161,6 +178,8 @@ def strongest(sessions, sensor, axis):
     doubt = 1.0 + 2.0 * 1.25 / math.sqrt(width * number)  # the floor is a median itself
     nats = -(log_beyond(ratio[k] * number / doubt, number) + math.log(3.0 * len(band)))
     if nats < -math.log(CHANCE):
+        return None
+    if resting and n < BRIEF_S * rate and _rings_out(stretches, axis, (first + k) / n):
         return None
     near = slice(max(0, k - 2), k + 3)
     whole = plain[first:-1]
