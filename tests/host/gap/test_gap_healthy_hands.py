@@ -212,3 +212,22 @@ def test_a_line_shows_in_rests_of_less_than_two_seconds():
 def test_what_rings_out_after_a_box_is_put_down_is_no_line(hz, tau):
     assert spectral_lines.findings([short_rests(
         lambda t, start: 500.0 * np.exp(-t / tau) * np.sin(2.0 * np.pi * hz * t))]) == []
+
+
+def test_a_slow_line_shows_in_many_short_rests_together():
+    """8 mg at 1 Hz were "no gap" where no rest held two periods."""
+    found, = spectral_lines.findings([short_rests(
+        lambda t, start: 131.0 * np.sin(2.0 * np.pi * 1.0 * (start + t)), n=12000)])
+    assert found.hz["x"] == pytest.approx(1.0, abs=0.005)
+    assert found.value["x"] == pytest.approx(8.0, rel=0.1)
+
+
+def test_what_each_rest_does_for_itself_is_no_slow_line():
+    """A course since the box was put down, the same in every rest, comes as often as they do; a
+    sway of the bench keeps no phase."""
+    generator = np.random.default_rng(7)
+
+    def sways(t, start):
+        phase = generator.uniform(0.0, 2.0 * np.pi)
+        return 200.0 * np.exp(-t / 0.6) + 100.0 * np.sin(2.0 * np.pi * 0.9 * t + phase)
+    assert spectral_lines.findings([short_rests(sways, n=12000)]) == []

@@ -12,7 +12,7 @@ from scipy import ndimage, special
 
 from ...capture.registers import steps
 from .. import odds
-from . import line_frequency
+from . import line_across_rests, line_frequency
 from .detection import Finding
 from .line_frequency import Line
 
@@ -56,8 +56,16 @@ def of_axis(sessions, sensor, axis):
     found = [strongest(some, sensor, axis) for some in groups]
     found = [line_frequency.refined(line, sessions, sensor) for line in found if line]
     found = [line for line in found if line]
+    if found:
+        return max(found, key=lambda line: line.nats)
     slow = line_frequency.slow(sessions, sensor, axis)
-    return max(found, key=lambda line: line.nats, default=slow)
+    if slow:
+        return slow
+    stretches = rests(sessions, sensor)
+    fastest = max(LOWEST_HZ, LEAST_CYCLES * sessions[0].rate / len(stretches[0])) \
+        if stretches else LOWEST_MOVING_HZ
+    across = [line_across_rests.strongest(s, sensor, axis, fastest) for s in sessions if s.runs]
+    return max((line for line in across if line), key=lambda line: line.nats, default=None)
 
 
 def _told(lines, sensor, rate):

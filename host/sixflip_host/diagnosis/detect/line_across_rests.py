@@ -1,0 +1,117 @@
+"""A line too slow for the rests that a capture has, by all of them together: a sine goes on in
+phase from rest to rest, which neither what settles after a move nor a hand does.
+
+A periodogram of samples with gaps between them, what each rest has for itself taken off [Lomb,
+Astrophysics and Space Science 39 (1976) 447; Scargle, Astrophysical Journal 263 (1982) 835].
+"""
+import math
+
+import numpy as np
+from scipy import ndimage
+
+from .. import odds
+from .line_frequency import HALVES, MEDIAN_ERROR, SLOW_CHANCE, SLOW_SHARE, Line, peak
+
+FEWEST, SHORTEST_S, EDGE_S = 12, 1.0, 0.1  # rests, and what is left off at both ends of each
+LONGEST_S = 600.0  # from the first rest on: a line of 0.7 Hz has 400 periods there
+LEAST_CYCLES = 0.5  # of a line in a rest: less is a course that is taken off
+RATE_HZ = 10.0  # of the means that are looked at
+GRID_HZ = 40.0  # of the times that they are taken to be at: a tenth of a radian at most
+OVER = 4  # frequencies for each that rests so far apart can tell
+WIDTH = 41  # frequencies of the floor's running median: ten lobes of a line
+
+
+def strongest(session, sensor, axis, fastest_hz):
+    """The strongest Line of a Session's axis up to a frequency, or None."""
+    t, x, rest, lengths = _means(session, sensor, axis)
+    if len(lengths) < FEWEST:
+        return None
+    span = t[-1] - t[0]
+    slowest = LEAST_CYCLES / np.median(lengths)
+    x, weight = _left(t, x, rest)
+    hz, power = _spectrum(t, _for_itself(t, weight ** 2 * x, rest), slowest, fastest_hz)
+    if len(hz) < 2 * WIDTH:
+        return None
+    floor = ndimage.median_filter(power, WIDTH, mode="reflect") / math.log(2.0)
+    ratio = power / np.maximum(floor, 1e-300)
+    k = int(ratio.argmax())
+    doubt = 1.0 + odds.Z_90 * MEDIAN_ERROR / math.sqrt(WIDTH / OVER)
+    nats = float(ratio[k]) / doubt - math.log(3.0 * len(hz))
+    size = _fitted(t, x, rest, weight, hz[k])
+    amplitude = float(np.hypot(*size))
+    halves = [_fitted(t[part], x[part], rest[part], weight[part], hz[k])
+              for part in (rest < rest.max() / 2, rest >= rest.max() / 2)]
+    if nats < -math.log(SLOW_CHANCE) or amplitude < SLOW_SHARE * float(np.std(x * weight)) \
+            or halves[0] @ halves[1] < HALVES ** 2 * amplitude ** 2:
+        return None
+    found = hz[0] + (hz[1] - hz[0]) * peak(power, k)
+    # Of a frequency [Rife & Boorstyn, IEEE Trans. IT 20 (1974) 591], the samples being gaps apart.
+    half = odds.Z_90 * math.sqrt(12.0 * float(np.var(x * weight)) / len(x)) / (
+        2.0 * math.pi * span * amplitude)
+    return Line(axis, float(found), 1.0 / span, min(nats, 999.0), amplitude,
+                1.0 / math.sqrt(2.0 * ratio[k]), steady=True, low=float(found - half),
+                high=float(found + half), files=((session.name, float(found), float(found - half),
+                                                  float(found + half)),))
+
+
+def _spectrum(t, x, slowest, fastest):
+    """(frequencies (k,), power (k,)) of x (n,) at times t (n,), by a transform on a fine grid."""
+    place = np.rint((t - t[0]) * GRID_HZ).astype(int)
+    number = OVER * int((t[-1] - t[0]) * GRID_HZ + 1.0)
+    whole = np.abs(np.fft.rfft(np.bincount(place, x), number)) ** 2
+    first, end = (int(f * number / GRID_HZ) for f in (slowest, fastest))
+    return np.arange(first, end) * GRID_HZ / number, whole[first:end]
+
+
+def _means(session, sensor, axis):
+    """(t (n,) s, means (n,) in mg or deg/s, number of the rest (n,), seconds of each rest)."""
+    meta, m = session.capture.meta, max(1, int(session.rate / RATE_HZ))
+    scale = 1000.0 / meta["accel_lsb_per_g"] if sensor == "accel" else \
+        1.0 / meta["gyro_lsb_per_dps"]
+    counts, edge = getattr(session.capture, sensor)[:, axis], int(EDGE_S * session.rate)
+    t, x, rest, lengths = [], [], [], []
+    last = int(np.searchsorted(session.t_s, session.t_s[0] + LONGEST_S))
+    for _, first, end in session.runs:
+        first, n = first + edge, (min(end, last) - first - 2 * edge) // m
+        if n * m < SHORTEST_S * session.rate:
+            continue
+        one = slice(first, first + n * m)
+        t.append(session.t_s[one].reshape(n, m).mean(axis=1))
+        x.append(counts[one].reshape(n, m).mean(axis=1) * scale)
+        rest.append(np.full(n, len(rest)))
+        lengths.append(n * m / session.rate)
+    return (*(np.concatenate(v) if v else np.zeros(0) for v in (t, x, rest)), lengths)
+
+
+def _left(t, x, rest):
+    """(x (n,) less what a rest has for itself and less the course that all rests have since they
+    began; weight (n,): rests that are louder than most count as much less)."""
+    x = _for_itself(t, x, rest)
+    since = np.concatenate([np.arange(n) for n in np.bincount(rest.astype(int))])
+    course = np.bincount(since, x) / np.bincount(since)
+    x = _for_itself(t, x - course[since], rest)
+    spread = np.sqrt(np.bincount(rest.astype(int), x ** 2) / np.bincount(rest.astype(int)))
+    spread = np.maximum(spread, 1e-12)
+    return x, np.minimum(1.0, np.median(spread) / spread)[rest.astype(int)]
+
+
+def _for_itself(t, x, rest):
+    """x (n,) or (n, k) less a straight line through each rest."""
+    place = rest.astype(int)
+    count = np.maximum(np.bincount(place), 1)
+
+    def mean(values):
+        return (np.bincount(place, values) / count)[place]
+    t = t - mean(t)
+    slope = np.bincount(place, t * t)
+    x = x - mean(x)
+    return x - t * (np.bincount(place, t * x) / np.maximum(slope, 1e-12))[place]
+
+
+def _fitted(t, x, rest, weight, hz):
+    """(2,) sine and cosine of the sine of a frequency that is nearest to x."""
+    phase = 2.0 * np.pi * hz * (t - t[0])
+    design = np.stack([weight * _for_itself(t, wave, rest)
+                       for wave in (np.sin(phase), np.cos(phase))], 1)
+    gram, inner = design.T @ design, design.T @ (weight * x)
+    return np.linalg.solve(gram + 1e-9 * np.trace(gram) * np.eye(2), inner)
