@@ -128,3 +128,14 @@ def test_a_rover_with_a_biased_accelerometer_has_no_scale_of_its_gyro():
     part = defects.real_part(np.random.default_rng(108))
     off = np.abs(np.linalg.inv(own.gyro) - part.gyro)
     assert (off < 4.0 * own.gyro_sigma).all()
+
+
+@pytest.mark.parametrize("counts,differs", [(0, set()), (245, {("bias", "accel", "x")})])
+def test_a_log_made_of_the_real_ones_own_samples_has_its_noise_as_well(counts, differs):
+    """Such a log has no other scale for having the same noise, and no other time step."""
+    text = defects.pair("healthy", motion("box", 1), motion("box", 1), 21, own=False)[0]
+    real, sim = (capture_file.parse("log", text.encode()) for _ in range(2))
+    real.accel = real.accel + np.array([counts, 0, 0], np.int16)
+    found = comparison.compare([("real.csv", real)], "sim.csv", sim)
+    assert not found.conventions
+    assert {(p.name, p.sensor, p.axis) for p in found.differs} == differs

@@ -1,6 +1,6 @@
 """Layer one: what the simulator's numbers mean. Both logs of one motion, hypothesis against
 hypothesis on the same samples; a nameless one stands beside those that have a name."""
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,6 +13,7 @@ PRIOR_HEALTHY, PRIOR_EACH, PRIOR_NAMELESS = 0.9, 0.02, 0.005
 CERTAIN = 0.99  # probability from which on a convention is named
 HELD_BAND = 12.0  # readings in a period, below which a straight line between them is no curve
 OWN_SHARES = (1.0, 0.3, 0.1, 0.03, 0.01)  # of what datasheets allow
+SHARED = 0.5  # of the noise that two logs of their own differ by: with less, they share some
 LATE_SIGMA = 4.0  # of a delay's standard error, from which on it is one
 
 
@@ -51,23 +52,27 @@ def same_motion(real, sim, alignment, motion, live, fresh_hz):
 
 def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
     """SensorFit of one sensor."""
-    noise = single_log.noise(real, real.force if kind == "accel" else real.rate)
+    noise, theirs = (single_log.noise(log, log.force if kind == "accel" else log.rate)
+                     for log in (real, sim))
 
     def asked(pair):
-        if kind == "accel":
-            return pair.sim_force, hypotheses.accelerometer(
-                reliable(pair.force, noise, pair.band_hz), pair.motion, real.g)
-        return pair.sim_rate, hypotheses.gyro(reliable(pair.rate, noise, pair.band_hz),
-                                              pair.motion, pair.force, real.g)
+        values, measured = (pair.force, pair.sim_force) if kind == "accel" else (
+            pair.rate, pair.sim_rate)
+        share = own_noise(values, measured, noise, theirs, pair.band_hz)
+        if (share < 1.0).any():
+            measured = measured + rounding(kind, real, sim, pair)
+            pair = replace(pair, **{"sim_force" if kind == "accel" else "sim_rate": measured})
+        values = reliable(values, noise, pair.band_hz, share)
+        return pair, measured, hypotheses.accelerometer(
+            values, pair.motion, real.g) if kind == "accel" else hypotheses.gyro(
+                values, pair.motion, pair.force, real.g)
 
-    pair = pairing.paired(real, sim, alignment, motion)
-    measured, tried = asked(pair)
+    pair, measured, tried = asked(pairing.paired(real, sim, alignment, motion))
     nameless = tried[-1]
     band = min(fresh_hz / HELD_BAND, pairing.coherent_band(
         measured, np.concatenate([nameless.signal, nameless.free], 1)))
     if band < pair.band_hz:
-        pair = pairing.paired(real, sim, alignment, motion, band)
-        measured, tried = asked(pair)
+        pair, measured, tried = asked(pairing.paired(real, sim, alignment, motion, band))
 
     own = hypotheses.own_effects(kind, pair.t, pair.celsius, pair.force, pair.motion.rate, real.g)
 
@@ -85,17 +90,43 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
     return SensorFit(kind, found, fit, inflation, pair, fit.hypothesis, own, live)
 
 
-def reliable(values, noise, band_hz):
+def own_noise(values, measured, noise, theirs, band_hz):
+    """Share (3,) of the real log's noise that the simulator's log has not as well: all of it, but
+    for a simulator that was made out of the real log's samples. What they differ by has the noise
+    of both, or the simulator's says what the real noise was; noise, theirs: single_log.Noise."""
+    if noise is None or theirs is None:
+        return np.ones(3)
+    design = np.column_stack([values, np.gradient(values, axis=0), np.ones(len(values))])
+    found = np.linalg.lstsq(design, measured, rcond=None)[0]
+    left = (measured - design @ found) ** 2
+    wide = max(1, int(pairing.GRID_HZ))
+    calm = np.median(left[:len(left) // wide * wide].reshape(-1, wide, 3).mean(axis=1), axis=0) \
+        if len(left) >= wide else left.mean(axis=0)
+    expected = 2.0 * band_hz * ((found[:3].T ** 2) @ noise.density ** 2 + theirs.density ** 2)
+    share = calm / np.maximum(expected, 1e-30)
+    return np.where(share > SHARED, 1.0, share)
+
+
+def rounding(kind, real, sim, pair):
+    """(n, 3) of as much noise as the rounding of both logs leaves in the band: two that were made
+    of the same samples do not say that they agree any better."""
+    power = sum((log.quantum[kind == "gyro"] or 0.0) ** 2 / 12.0 * min(
+        1.0, 2.0 * pair.band_hz / log.rate_hz) for log in (real, sim))
+    return np.sqrt(power) * np.random.default_rng(20200517).standard_normal((len(pair.t), 3))
+
+
+def reliable(values, noise, band_hz, own=1.0):
     """values (n, 3) of the real log, each channel drawn to its mean by the share of its variance
     that its noise makes up in the band: what is expected of the motion, given the reading. What
     follows from the motion alone is then fitted without being made too small, and a channel that
     reads nothing but noise says nothing of the simulator's [Fuller, Measurement Error Models
     (1987), section 1.1; Carroll et al., Measurement Error in Nonlinear Models (2006), chapter 4].
-    noise: single_log.Noise, None where it is not known."""
+    noise: single_log.Noise, None where it is not known; own: the share of it that is not in the
+    simulator's log as well."""
     if noise is None:
         return values
     mean, variance = values.mean(axis=0), values.var(axis=0)
-    share = 1.0 - 2.0 * band_hz * noise.density ** 2 / np.maximum(variance, 1e-30)
+    share = 1.0 - 2.0 * band_hz * own * noise.density ** 2 / np.maximum(variance, 1e-30)
     return mean + np.clip(share, 0.0, 1.0) * (values - mean)
 
 
