@@ -163,6 +163,8 @@ class FewGrams(Whitened):
     def _solved(self, point, x, transposed):
         """x (r, R) in the order of Fortran whitened at a point (1), or whitened back (0)."""
         # Read in the order of Fortran the lower factor is an upper one.
+        if not len(x):  # all of it was projected out
+            return x
         return lapack.dtrtrs(self._lower[point].T, x, trans=transposed)[0]
 
 

@@ -144,7 +144,7 @@ def of(answer):
 
 
 def narrow(numbers):
-    """Sentences on ranges that nothing behind the simulator can take back."""
+    """Sentences on ranges and steps that nothing behind the simulator can take back."""
     out = []
     for kind, who in SENSORS.items():
         stops = [a for a, p in numbers.get(kind, {}).get("range", {}).items()
@@ -152,6 +152,11 @@ def narrow(numbers):
         if stops:
             out.append("the simulator's %s stops short on %s, where the real one goes on: set its "
                        "range" % (who, " and ".join(stops)))
+        coarse = [a for a, p in numbers.get(kind, {}).get("step", {}).items()
+                  if p["differs"] and p["difference"] < 0]
+        if coarse:
+            out.append("the simulator's %s has coarser steps on %s than the real one: set its "
+                       "step" % (who, " and ".join(coarse)))
     return out
 
 

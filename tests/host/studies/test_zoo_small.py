@@ -130,12 +130,28 @@ def test_a_rover_with_a_biased_accelerometer_has_no_scale_of_its_gyro():
     assert (off < 4.0 * own.gyro_sigma).all()
 
 
-@pytest.mark.parametrize("counts,differs", [(0, set()), (245, {("bias", "accel", "x")})])
-def test_a_log_made_of_the_real_ones_own_samples_has_its_noise_as_well(counts, differs):
+def late(sim):
+    sim.gyro = np.roll(sim.gyro, 4, axis=0)
+
+
+def coarse(sim):
+    sim.accel = (np.rint(sim.accel / 64.0) * 64).astype(np.int16)
+
+
+def offset(sim):
+    sim.accel = sim.accel - np.array([245, 0, 0], np.int16)
+
+
+@pytest.mark.parametrize("change,conventions,differs", [
+    (lambda sim: None, set(), set()), (offset, set(), {("bias", "accel", "x")}),
+    (late, {"gyro_delay"}, {("delay", "gyro", "")}),
+    (coarse, set(), {("step", "accel", axis) for axis in "xyz"})])
+def test_a_log_made_of_the_real_ones_own_samples_has_its_noise_as_well(
+        change, conventions, differs):
     """Such a log has no other scale for having the same noise, and no other time step."""
     text = defects.pair("healthy", motion("box", 1), motion("box", 1), 21, own=False)[0]
     real, sim = (capture_file.parse("log", text.encode()) for _ in range(2))
-    real.accel = real.accel + np.array([counts, 0, 0], np.int16)
+    change(sim)
     found = comparison.compare([("real.csv", real)], "sim.csv", sim)
-    assert not found.conventions
+    assert {c.name for c in found.conventions} == conventions
     assert {(p.name, p.sensor, p.axis) for p in found.differs} == differs

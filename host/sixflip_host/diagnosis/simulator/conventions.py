@@ -13,6 +13,7 @@ PRIOR_HEALTHY, PRIOR_EACH, PRIOR_NAMELESS = 0.9, 0.02, 0.005
 CERTAIN = 0.99  # probability from which on a convention is named
 HELD_BAND = 12.0  # readings in a period, below which a straight line between them is no curve
 OWN_SHARES = (1.0, 0.3, 0.1, 0.03, 0.01)  # of what datasheets allow
+DELAY_ROUNDS = 4  # of two rows, to a hundredth of one
 SHARED = 0.5  # of the noise that two logs of their own differ by: with less, they share some
 LATE_SIGMA = 4.0  # of a delay's standard error, from which on it is one
 
@@ -96,8 +97,14 @@ def own_noise(values, measured, noise, theirs, band_hz):
     of both, or the simulator's says what the real noise was; noise, theirs: single_log.Noise."""
     if noise is None or theirs is None:
         return np.ones(3)
-    design = np.column_stack([values, np.gradient(values, axis=0), np.ones(len(values))])
-    found = np.linalg.lstsq(design, measured, rcond=None)[0]
+    delay = 0.0  # in rows
+    for _ in range(DELAY_ROUNDS):
+        moved = evidence_of_logs.shifted(values, delay)
+        slope = -np.gradient(moved, axis=0)
+        design = np.column_stack([moved, slope, np.ones(len(values))])
+        found = np.linalg.lstsq(design, measured, rcond=None)[0]
+        # A late simulator has the slope of what it has, in the same proportions.
+        delay += float((found[:3] * found[3:6]).sum() / max((found[:3] ** 2).sum(), 1e-12))
     left = (measured - design @ found) ** 2
     wide = max(1, int(pairing.GRID_HZ))
     calm = np.median(left[:len(left) // wide * wide].reshape(-1, wide, 3).mean(axis=1), axis=0) \

@@ -17,6 +17,7 @@ from . import convention_findings, conventions, single_log, traces
 # difference that is none (Bonferroni, normal).
 DIFFERS = 4.0
 MG, DEG = 1000.0 / STANDARD_G, 180.0 / np.pi
+COARSER = 1.5  # times the other's step: registers differ by factors of two
 RANGE_APART = 1.01  # times the other's: a range that differs; full scales are twofold apart
 
 
@@ -125,6 +126,9 @@ def own(sensor, kind):
 def registers(real, sim):
     """Step, range and rate."""
     out = []
+    noises = {kind: single_log.noise(real, values) for kind, values in (
+        ("accel", real.force), ("gyro", real.rate)) if values is not None}
+    noises = {kind: found.per_sample for kind, found in noises.items() if found is not None}
     for kind, name, index in (("accel", "force", 0), ("gyro", "rate", 1)):
         a, b = (getattr(x, name) for x in (real, sim))
         if a is None or b is None:
@@ -135,7 +139,11 @@ def registers(real, sim):
             steps = [float(single_log.step(v, x.quantum[index])[i]) * scale
                      for v, x in ((a, real), (b, sim))]
             if steps[0] > 0 and steps[1] > 0:
-                coarse = steps[0] > 1.5 * max(steps[1], real.quantum[index] * scale)
+                coarse = steps[0] > COARSER * max(steps[1], real.quantum[index] * scale)
+                # A simulator's may be its printed digits, which matter where noise does not
+                # drown them.
+                coarse |= steps[1] > COARSER * steps[0] and steps[1] > scale * (
+                    noises[kind][i] if kind in noises else np.inf)
                 out.append(Parameter("step", kind, axis, unit, steps[0], None, steps[1], None,
                                      steps[0] - steps[1], None, bool(coarse),
                                      steps[0] if coarse else None))
