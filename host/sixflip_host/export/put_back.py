@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from sixflip import STANDARD_G as G
+from sixflip_sim.effects.library import of_the_moment
 
 from ..errors import BadFile, UsageError
 
@@ -18,11 +19,8 @@ AXES = "xyz"
 SENSORS = {"accel": "accelerometer", "gyro": "gyro"}
 # How a value of an effect becomes SI units where it is not mg or deg/s.
 PERCENT = {("thermal_scale", "accel"), ("thermal_scale", "gyro"), ("asymmetry", "gyro")}
-BY_KIND = {  # effects that the generated class can express
-    "accel": ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic", "cubic",
-              "cross_quadratic", "asymmetry", "vibration"),
-    "gyro": ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic", "cubic",
-             "asymmetry", "g_sensitivity", "vibration")}
+# effects that the generated class can express
+BY_KIND = {kind: (*of_the_moment(kind), "vibration") for kind in SENSORS}
 
 
 @dataclass(frozen=True)

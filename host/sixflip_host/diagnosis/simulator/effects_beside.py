@@ -10,21 +10,16 @@ import numpy as np
 
 from sixflip import STANDARD_G
 from sixflip.poses import faces
-from sixflip_sim.effects.library import EFFECTS
+from sixflip_sim.effects.library import EFFECTS, of_the_moment
 from sixflip_sim.effects.moment import Moment
 
 from ...experiment import noise_arrays, terms
 from .. import closed_loop, odds
 from . import conventions, hypotheses, pairing, parameters
 
-# Effects that are a function of what stands in a pair of logs.
-SHOWN = {"accel": ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic",
-                   "cubic", "cross_quadratic", "asymmetry"),
-         "gyro": ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic",
-                  "cubic", "asymmetry", "g_sensitivity")}
 BOTH = 3.0  # standard errors within which an effect is in both logs, and beyond which in one
 FLAT, RESTS_DPS = 0.966, 2.0  # cosine of 15 deg, as the simulator has a face; slower is a rest
-SAME = 1e-5  # of a scale that does not differ: a hundredth of a count at 1 g
+SAME = 1e-5  # of a scale that does not differ: a tenth of a count at 1 g
 MOST_SETS = 16  # of names that classes may stand for, tried
 WARMING_S = 10.0  # over which the temperature's rate is taken: a thermometer has steps
 
@@ -104,7 +99,7 @@ def _coefficients(gap, cause):
 
 
 def _is_in_both(kind, found, cause, diagnosis):
-    names = (*SHOWN[kind], "box_tilt")
+    names = (*of_the_moment(kind), "box_tilt")
     if found.hypothesis.name == "" or cause.effect not in names or not cause.value:
         return False
     design = _design(kind, cause.effect, cause, found.pair, diagnosis)
@@ -117,11 +112,11 @@ def _is_in_both(kind, found, cause, diagnosis):
 
 def _likeliest(kind, found, causes, diagnosis):
     """[(name, Cause)]: of each cause the name in whose form both logs bear it out best."""
-    causes = [c for c in causes if any(name in SHOWN[kind] for name in c.names)]
+    causes = [c for c in causes if any(name in of_the_moment(kind) for name in c.names)]
     if found.hypothesis.name == "" or not causes:
         return []
     sets = [list(zip(names, causes)) for names in islice(product(
-        *([n for n in c.names if n in SHOWN[kind]] for c in causes)), MOST_SETS)
+        *([n for n in c.names if n in of_the_moment(kind)] for c in causes)), MOST_SETS)
         if len(set(names)) == len(names)]
     if len(sets) < 2:
         return sets[0] if sets else []
