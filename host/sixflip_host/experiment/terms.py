@@ -32,6 +32,15 @@ DOMAIN = {  # where an effect shows itself
     "dead_band": "amplitude", "saturation": "amplitude", "sample_rate": "timing",
     "dropped_samples": "timing", "filter_lag": "motion", "lever_arm": "motion",
     "torn_reads": "noise", "axis_swap": "orientation"}
+# Functions of what acts at a moment, the temperature and the time since power-up.
+OF_THE_MOMENT = ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic", "cubic",
+                 "cross_quadratic", "asymmetry", "g_sensitivity")
+
+
+def of_the_moment(sensor):
+    """Names of OF_THE_MOMENT that a sensor ("accel", "gyro") can have."""
+    return tuple(name for name in OF_THE_MOMENT if sensor in EFFECTS[name].units)
+
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from sixflip import STANDARD_G as G
-from sixflip_sim.effects.library import of_the_moment
 
 from ..errors import BadFile, UsageError
+from ..experiment.terms import of_the_moment
 
 DEG = np.pi / 180.0
 MARK = "put back by sixflip export"  # in every file that is made from a diagnosis

@@ -22,14 +22,6 @@ CLASSES = (
     registers.TornReads, coupling.Supply, registers.AxisSwap, coupling.EarthRate)
 EFFECTS = {cls.name: cls for cls in CLASSES}
 NAMES = tuple(cls.name for cls in CLASSES)
-# Those that are a function of what acts at a moment, the temperature and the time since power-up.
-OF_THE_MOMENT = ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic", "cubic",
-                 "cross_quadratic", "asymmetry", "g_sensitivity")
-
-
-def of_the_moment(sensor):
-    """Names of OF_THE_MOMENT that a sensor ("accel", "gyro") can have."""
-    return tuple(name for name in OF_THE_MOMENT if sensor in EFFECTS[name].units)
 
 
 def make(spec):

@@ -10,7 +10,7 @@ import numpy as np
 
 from sixflip import STANDARD_G
 from sixflip.poses import faces
-from sixflip_sim.effects.library import EFFECTS, of_the_moment
+from sixflip_sim.effects.library import EFFECTS
 from sixflip_sim.effects.moment import Moment
 
 from ...experiment import noise_arrays, terms
@@ -99,7 +99,7 @@ def _coefficients(gap, cause):
 
 
 def _is_in_both(kind, found, cause, diagnosis):
-    names = (*of_the_moment(kind), "box_tilt")
+    names = (*terms.of_the_moment(kind), "box_tilt")
     if found.hypothesis.name == "" or cause.effect not in names or not cause.value:
         return False
     design = _design(kind, cause.effect, cause, found.pair, diagnosis)
@@ -112,11 +112,11 @@ def _is_in_both(kind, found, cause, diagnosis):
 
 def _likeliest(kind, found, causes, diagnosis):
     """[(name, Cause)]: of each cause the name in whose form both logs bear it out best."""
-    causes = [c for c in causes if any(name in of_the_moment(kind) for name in c.names)]
+    causes = [c for c in causes if any(name in terms.of_the_moment(kind) for name in c.names)]
     if found.hypothesis.name == "" or not causes:
         return []
     sets = [list(zip(names, causes)) for names in islice(product(
-        *([n for n in c.names if n in of_the_moment(kind)] for c in causes)), MOST_SETS)
+        *([n for n in c.names if n in terms.of_the_moment(kind)] for c in causes)), MOST_SETS)
         if len(set(names)) == len(names)]
     if len(sets) < 2:
         return sets[0] if sets else []
