@@ -46,10 +46,10 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
             own = against_simulator.read(list(simulated), list(names), settings)
             settings = replace(settings, simulated=own.known)
     found = diagnosis.of(sessions, settings, own, comparisons, damages)
-    return _beyond(found, own, sessions) if comparisons else found
+    return _beyond(found, own, sessions, damages) if comparisons else found
 
 
-def _beyond(found, own, sessions):
+def _beyond(found, own, sessions, damages):
     """The Diagnosis without what two logs of one motion show to be in both, and with the
     simulator's parameters beside the effects that it lacks."""
     from .simulator import effects_beside
@@ -61,7 +61,7 @@ def _beyond(found, own, sessions):
         known = found.settings.simulated
         settings = replace(found.settings, simulated={
             **known, **{kind: [*known.get(kind, ()), *more] for kind, more in both.items()}})
-        found = diagnosis.of(sessions, settings, own, found.comparisons, found.damages)
+        found = diagnosis.of(sessions, settings, own, found.comparisons, damages)
     return effects_beside.beyond(found)
 
 

@@ -126,8 +126,7 @@ def of(answer):
         sized = paired.get((kind, tuple(names)), {**cause, "effect": cause.get(
             "value_of", cause["effect"])})
         name = sized["effect"] if cause["plausible"] else None
-        if name not in BY_KIND.get(kind, ()) or name in effects[kind] or (
-                name == "vibration" and not cause.get("hz")):  # a shake is no line
+        if name not in BY_KIND.get(kind, ()) or name in effects[kind] or not whole(name, sized):
             left.append("%s (%s)" % (cause["effect"] or " or ".join(names), kind))
             continue
         effects[kind][name] = added(name, kind, sized)
@@ -136,9 +135,19 @@ def of(answer):
                 name, SENSORS[kind], " or ".join(n for n in names if n != name)))
     accel, gyro = (triad(kind, numbers.get(kind, {}), effects[kind], lags[kind], delays[kind],
                          float(rate.get("real") or 100.0)) for kind in ("accel", "gyro"))
+    # Slopes are about the temperature that the diagnosis took them about, and biases beside them.
+    about = [one.shape["reference_c"] for side in (accel, gyro)
+             for one in side.effects.values() if "reference_c" in one.shape]
     return PutBack(accel, gyro, lever, float(rate.get("real") or 100.0),
-                   float(simulator.get("reference_c") or 25.0), tuple(first), tuple(instead),
-                   tuple(left))
+                   about[0] if about else float(simulator.get("reference_c") or 25.0),
+                   tuple(first), tuple(instead), tuple(left))
+
+
+def whole(name, cause):
+    """Whether all is there that an effect is made of: a shake at no steady frequency is no line,
+    and a warming-up without its time constant no course."""
+    return bool(cause.get("hz")) if name == "vibration" else (
+        name != "warm_up" or "tau_s" in cause.get("shape", {}))
 
 
 def narrow(numbers):

@@ -76,6 +76,7 @@ def test_two_logs_of_one_motion_know_the_size_better():
 
 @pytest.mark.parametrize("one", [
     cause("creep", "accel", {"x": 3.0}), cause("vibration", "accel", {"x": 3.0}),
+    cause("warm_up", "accel", {"x": 3.0}, shape={}),
     cause("quadratic", "accel", {"x": 3.0}, plausible=False),
     cause(None, "accel", {"Z+x": 3.0}, **{"class": ["box_tilt", "quadratic"],
                                           "value_of": "box_tilt"})])
@@ -83,3 +84,11 @@ def test_what_a_step_cannot_know_is_left_and_said(one):
     found = put_back.of(answer([one]))
     assert not found.accel.effects and len(found.left) == 1
     assert "found, and not in here: " + found.left[0] in put_back_numpy.text(found)
+
+
+def test_a_slope_is_about_the_temperature_that_it_was_taken_about():
+    """The log's mean was taken: a bias beside 2 mg a degree was wrong by 2 mg for each between."""
+    said = answer([cause("thermal_bias", "accel", {"x": 2.0})])
+    said["simulator"]["reference_c"] = 30.0
+    model = made(said)
+    assert model.step(np.zeros(3), np.zeros(3), 21.0)[0] == pytest.approx(np.zeros(3))

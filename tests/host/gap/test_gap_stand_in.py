@@ -30,3 +30,6 @@ def test_a_play_along_the_whole_way_is_hysteresis_whatever_its_form():
     found = diagnosis.of(sessions, diagnosis.Settings())
     assert {name for _, cause in found.causes for name in cause.names} <= {"hysteresis", "creep"}
     assert found.verdict in ("explained", "partly explained")
+    one = diagnosis.of(sessions[:1], diagnosis.Settings())
+    assert one.verdict != "no gap"
+    assert len(one.gaps["accel"].causes) <= 2
