@@ -38,7 +38,9 @@ def causes(diagnosis):
     found = [_finding(f) for f in diagnosis.findings]
     found += [_cause(kind, c, diagnosis.conditions.reference_c) for kind, c in diagnosis.causes]
     found += [_drift(kind, gap) for kind, gap in diagnosis.gaps.items() if gap.drift]
-    found = [_with_strangers(cause, diagnosis) for cause in found]
+    known = {(e.sensor, e.stands_for): e for one in diagnosis.comparisons for e in one.effects}
+    found = [_by_both_logs(_with_strangers(cause, diagnosis), known.get(
+        (cause["sensor"], tuple(cause["class"])))) for cause in found]
     return sorted(found, key=lambda c: -(c["share"] or 0.0) - 1e-3 * c["score_nats"])
 
 
@@ -109,6 +111,19 @@ def _cause(kind, c, reference_c):
         found["value_of"] = c.effect
     shape = closed_loop.shape(c.effect, c.variant, reference_c)
     return {**found, "shape": shape} if shape else found
+
+
+def _by_both_logs(cause, effect):
+    """A cause with the size that two logs of one motion show (effects_beside.Beside or None): the
+    rests of a short log hardly tell a bend from where the box lay."""
+    if effect is None:
+        return cause
+    there = {key for key, (low, high) in effect.interval.items() if low > 0.0 or high < 0.0}
+    axes = sorted({key[0] for key in there}) or cause["axes"]
+    named = {"value_of": effect.effect} if len(cause["class"]) > 1 else {}
+    return {**cause, **named, "axes": axes, "value": _sizes(effect.value),
+            "interval_90": _intervals(effect.interval), "unit": spelled(effect.unit),
+            "shape": effect.shape}
 
 
 def _finding(f):

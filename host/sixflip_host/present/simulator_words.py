@@ -103,7 +103,7 @@ def parameter_rows(simulator, all_of_them=False):
 
 def effect_rows(simulator):
     """Rows of EFFECTS."""
-    return [(e["effect"].replace("_", " "), SENSOR[e["sensor"]], "\n".join(
+    return [(e["effect"].replace("_", " "), SENSOR[e["sensor"]], ", ".join(
                  "%s %s" % (key, valued(value, e["interval_90"][key], e["unit"]))
                  for key, value in e["value"].items()),
              ", ".join(n.replace("_", " ") for n in e["class"] if n != e["effect"]))
