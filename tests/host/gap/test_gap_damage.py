@@ -16,6 +16,7 @@ from sixflip_host.diagnosis.detect import (
 )
 from sixflip_host.experiment import attitude_fit, blocks
 from sixflip_host.simulation import scenario, simulated_session
+from tests.studies.blind.generator.case import Case, Specification
 
 
 @pytest.fixture(scope="module")
@@ -190,3 +191,15 @@ def test_bytes_are_told_by_the_steps_that_a_rule_changes_not_by_how_quiet_the_re
     kind, words, back, _ = byte_faults.of_column(np.where(sound & 255 >= 128, sound - 256, sound))
     assert kind == "sign_extension" and words.startswith("the low byte has a sign of its own")
     assert np.array_equal(back(np.where(sound & 255 >= 128, sound - 256, sound)), sound)
+
+
+@pytest.mark.parametrize("seed, session", [(477873858, 0), (1279343444, 1)])
+def test_a_hands_turns_mirrored_are_no_sign_with_a_magnitude(seed, session):
+    """A gyro of the blind generator that rests below zero: most of its course is as likely the
+    other way up, so that it tells nothing of bytes."""
+    rates = Case(Specification(seed)).counts(session).counts[:, 4].astype(np.int64)
+    assert byte_faults.of_column(rates) is None
+    told = np.where(rates < 0, -32768 - rates, rates)
+    _, words, back, _ = byte_faults.of_column(told)
+    assert words.startswith("negative readings are a sign and a magnitude")
+    assert np.array_equal(back(told), rates)

@@ -118,10 +118,11 @@ def _magnitude(y):
 
 def _told(x, y):
     """(n - 2,) whether a rule that takes y to x changed a step to a sample or to the one before.
-    The others go on alike in both: that a width or a foresight which suits the moves better suits
-    the rests less says nothing about bytes."""
-    same = np.diff(x) == np.diff(y)
-    return ~(same[1:] & same[:-1])
+    The others go on alike in both, those that are mirrored too: that a width or a foresight which
+    suits the moves better suits the rests less says nothing about bytes."""
+    before, after = np.diff(y), np.diff(x)
+    same, mirrored = after == before, after == -before
+    return ~((same[1:] & same[:-1]) | (mirrored[1:] & mirrored[:-1]))
 
 
 def _unfolded(y, size):
