@@ -175,7 +175,7 @@ def _told(gap):
     for name in gap.chosen:
         one = _finding(name, sizes, np.sqrt(np.diag(spread)), gap.scores[name],
                        gap.posterior.places[name])
-        if not plausible.believable(name, gap.chip, "accel", one.value):
+        if not plausible.believable(name, gap.chip, one.sensor, one.value):
             remarks.append("in motion %s would help, but at an impossible size: something else "
                            "acts" % name.replace("_", " "))
             nameless.append(localisation.Place("accel", None, "motion", 1.0,
