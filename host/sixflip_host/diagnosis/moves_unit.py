@@ -39,6 +39,9 @@ class MovesUnit:
         self.silent = power <= 1e-9 * max(power.max(), 1e-300)
         self.freedom = len(gram)
 
+    def tried(self, likelihood):
+        return self.coarse
+
     def around(self, point, reach=1):
         return self.coarse
 

@@ -19,6 +19,9 @@ MOST, BEAM = 4, 3  # members of a set (GAP stage 3); sets that the search goes o
 FORM_COST = 1.0  # nats
 AS_WELL = 3.0  # nats, GAP stage 4
 NOISE_FORM = 0.2  # of a name's gain, that its true form may leave to noise that wanders
+# Of what a set must gain to be gone on with, what a discrepancy adds at most: it is half of what
+# the form itself is, so that where that gains nothing there is nothing for it to be a part of.
+MOST_OF_A_FORM = 0.75
 WORTH_TRYING = 0.5  # of what a member must gain: two that need each other may share it unevenly
 
 
@@ -62,10 +65,13 @@ def search(model, forms, cost, most=MOST):
             for _, one in model.best(base, _free(forms, base)):
                 if one.names not in found or worth(one) > worth(found[one.names]):
                     found[one.names] = one
-        ordered = sorted(found.values(), key=worth, reverse=True)
-        grown = sorted((_with_discrepancy(model, forms, one, cost) for one in ordered[:BEAM]),
+        ordered = sorted(found.values(), key=worth, reverse=True)[:BEAM]
+        reach = least + max(s.score for s in beam)
+        if max((s.score for s in ordered), default=-np.inf) < reach - MOST_OF_A_FORM * least:
+            break
+        grown = sorted((_with_discrepancy(model, forms, one, cost) for one in ordered),
                        key=worth, reverse=True)
-        if max((s.score for s in grown), default=-np.inf) < least + max(s.score for s in beam):
+        if max(s.score for s in grown) < reach:
             break
         beam = grown
         reached += grown

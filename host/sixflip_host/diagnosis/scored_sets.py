@@ -39,7 +39,7 @@ class Model:
     def __init__(self, units, statistics, levels):
         self.units, self.statistics, self.levels = units, statistics, levels
         self._known, self._looked_at, self._priors = {}, {}, {}
-        self._eliminations = {}
+        self._eliminations, self._tried = {}, {}
 
     def scored(self, forms):
         """Scored of a tuple of Forms."""
@@ -79,7 +79,8 @@ class Model:
             index, prior = (np.stack([getattr(shared[k], name) for k in places])
                             for name in ("index", "prior"))
             fits = [forms_at_once.fit(
-                unit, statistics, index, prior, self._prior(number, free), unit.coarse,
+                unit, statistics, index, prior, self._prior(number, free),
+                self._levels_tried(number, free),
                 self._elimination(number, base.private[number]))
                 for number, (unit, statistics) in enumerate(zip(self.units, self.statistics))]
             scores = evidence.score(fits, evidence.Columns(index, prior), self.units[0].apart)
@@ -98,13 +99,13 @@ class Model:
         fits, privates = [], []
         chances = 0.0 if base is None else base.chances
         for place, (unit, statistics) in enumerate(zip(self.units, self.statistics)):
-            level = self._prior(place, free)
             private = NONE if base is None else base.private[place]
             if form is not None and form.choices and not unit.between:
-                private, nats = self._chosen(place, shared, private, form, level)
+                private, nats = self._chosen(place, shared, private, form, free)
                 chances += float(np.log(len(form.choices))) - nats
-            fits.append(evidence.fit(unit, statistics, shared, private, level, evidence.COARSE,
-                                     self._elimination(place, private)))
+            fits.append(evidence.fit(
+                unit, statistics, shared, private, self._prior(place, free),
+                self._levels_tried(place, free), self._elimination(place, private)))
             privates.append(private)
         score = float(evidence.score(fits, shared, self.units[0].apart)[0])
         return Scored(forms, score - chances, tuple(fits), tuple(privates), chances)
@@ -126,6 +127,14 @@ class Model:
             self._priors[place, free] = self.levels.prior(self.units[place], free)
         return self._priors[place, free]
 
+    def _levels_tried(self, place, free):
+        """Points of one unit's grid that a set is first looked at with."""
+        if (place, free) not in self._tried:
+            unit, (quadratic, _) = self.units[place], self.statistics[place]
+            self._tried[place, free] = unit.tried(
+                -0.5 * quadratic[:, 0] - unit.logdet + self._prior(place, free))
+        return self._tried[place, free]
+
     def _elimination(self, place, private):
         """evidence.Elimination of private columns from one unit, made once."""
         if not len(private):
@@ -138,7 +147,7 @@ class Model:
                 self.units[place], self.statistics[place], private)
         return self._eliminations[key]
 
-    def _chosen(self, place, shared, private, form, level):
+    def _chosen(self, place, shared, private, form, free):
         """(private Columns with the likeliest choice of a form, nats that what the rests show
         within themselves says for it)."""
         unit, found = self.units[place], []
@@ -148,8 +157,8 @@ class Model:
         for numbers in forms_at_once.by_size(together).values():
             likelihoods = forms_at_once.fit(
                 unit, self.statistics[place], np.stack([together[n].index for n in numbers]),
-                np.stack([together[n].prior for n in numbers]), level, unit.coarse,
-                elimination).evidence
+                np.stack([together[n].prior for n in numbers]), self._prior(place, free),
+                self._levels_tried(place, free), elimination).evidence
             for number, likelihood in zip(numbers, likelihoods.tolist()):
                 within = unit.within.get((form.effect, number), 0.0)
                 found.append((likelihood + within, number, within))

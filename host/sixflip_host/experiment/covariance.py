@@ -226,9 +226,8 @@ def together(groups):
     """[Group] of the same readings: one where they are few, which takes less time than many."""
     if groups[-1].rows.stop > FEW or len(groups) == 1:
         return groups
-    base = dense(groups, 0.0, 0.0)
-    return alone(base, linalg.block_diag(*(g.lateral for g in groups)),
-                 dense(groups, 0.0, 1.0) - base)
+    base, _, kernel = components(groups)
+    return alone(base, linalg.block_diag(*(g.lateral for g in groups)), kernel)
 
 
 def energies(groups, basis):
@@ -245,16 +244,21 @@ def energies(groups, basis):
     return total
 
 
-def dense(groups, placement, flicker):
-    """(n, n) the covariance itself, for what is small."""
+def components(groups):
+    """(3, n, n): base, lateral lateral' and kernel of all readings, for what is small."""
     n = groups[-1].rows.stop
-    out, state = np.zeros((n, n)), np.zeros((len(groups[0].decay), n))
+    out, state = np.zeros((3, n, n)), np.zeros((len(groups[0].decay), n))
     for g in groups:
         own, before = g.rows, slice(g.rows.start)
-        out[own, own] = g.base + placement ** 2 * g.lateral @ g.lateral.T \
-            + flicker ** 2 * g.kernel
-        out[own, before] = flicker ** 2 * g.from_before @ state[:, before]
-        out[before, own] = out[own, before].T
+        out[:, own, own] = g.base, g.lateral @ g.lateral.T, g.kernel
+        felt = g.from_before @ state[:, before]
+        out[2, own, before], out[2, before, own] = felt, felt.T
         state[:, before] *= g.decay[:, None]
         state[:, own] = g.to_later.T
     return out
+
+
+def dense(groups, placement, flicker):
+    """(n, n) the covariance itself, for what is small."""
+    base, lateral, kernel = components(groups)
+    return base + placement ** 2 * lateral + flicker ** 2 * kernel

@@ -65,7 +65,7 @@ class Whitened(Products):
     def rows(self, points, rows):
         self._fill(points)
         own = self._chosen(points[:, None], rows)
-        return np.stack([self._every(one @ self.values[point].T)
+        return np.stack([self._every(one @ self._at(point).T)
                          for point, one in zip(points, own)])
 
     def each(self, points, index):
@@ -80,6 +80,10 @@ class Whitened(Products):
     def _chosen(self, points, columns):
         return self.values[points, columns]
 
+    def _at(self, point):
+        """(l, r) what is kept of a point."""
+        return self.values[point]
+
     def _every(self, kept):
         """(r, K) of what is kept for (r, l) columns."""
         return kept
@@ -87,7 +91,10 @@ class Whitened(Products):
 
 class FewGrams(Whitened):
     """The same as Grams of few readings: one matrix of all of them, across what is projected out.
-    values (G, l + 1, r): the columns that say anything, whitened, and zero for all others."""
+    values (P, l + 1, r): the columns that say anything, whitened, and zero for all others, at the
+    points asked for so far, in their order: room for half of all at first, which is more than a
+    search needs, since memory that was just given back costs nothing to take again, and a larger
+    piece is always new."""
 
     def __init__(self, groups, grid, space, common, columns):
         self.grid = grid
@@ -97,9 +104,8 @@ class FewGrams(Whitened):
         self._given = np.asfortranarray(self._columns[:, loud])
         self._place = np.full(columns.shape[1], len(loud))
         self._place[loud] = np.arange(len(loud))
-        # Memory that is never written to is never taken.
-        super().__init__(np.empty((len(grid), len(loud) + 1, len(self._columns))))
-        self._done = np.zeros(len(grid), bool)
+        super().__init__(np.empty(((len(grid) + 1) // 2, len(loud) + 1, len(self._columns))))
+        self._slot, self._number = np.full(len(grid), -1), 0
         self._lower = self._factors(groups, common)
 
     def at(self, point, columns=None):
@@ -109,12 +115,9 @@ class FewGrams(Whitened):
     def _factors(self, groups, common):
         """(G, r, r) lower factors of the covariance at all points; what is above them is not
         zero, but not read."""
-        def turned(covariances):
-            return self._across.T @ covariances @ self._across
-        base = covariance.dense(groups, 0.0, 0.0)
-        lateral = turned(covariance.dense(groups, 1.0, 0.0) - base)
-        kernel = turned(covariance.dense(groups, 0.0, 1.0) - base)
-        base = turned(base + common @ common.T)
+        base, lateral, kernel = covariance.components(groups)
+        base, lateral, kernel = (self._across.T @ part @ self._across
+                                 for part in (base + common @ common.T, lateral, kernel))
         out, slow = np.empty((len(self.grid), *base.shape)), np.empty_like(base)
         for own, (placement, flicker) in zip(out, self.grid):
             np.multiply(lateral, placement ** 2, out=own)
@@ -127,13 +130,20 @@ class FewGrams(Whitened):
         return out
 
     def _fill(self, points):
-        for point in points[~self._done[points]]:
-            self.values[point, :-1] = self._solved(point, self._given, 1).T
-            self.values[point, -1] = 0.0
-            self._done[point] = True
+        for point in points[self._slot[points] < 0]:
+            if self._number == len(self.values):
+                self.values = np.concatenate([self.values, np.empty_like(self.values)])
+            one = self.values[self._number]
+            one[:-1] = self._solved(point, self._given, 1).T
+            one[-1] = 0.0
+            self._slot[point] = self._number
+            self._number += 1
 
     def _chosen(self, points, columns):
-        return self.values[points, self._place[columns]]
+        return self.values[self._slot[points], self._place[columns]]
+
+    def _at(self, point):
+        return self.values[self._slot[point]]
 
     def _every(self, kept):
         return kept[:, self._place]

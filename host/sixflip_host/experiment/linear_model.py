@@ -21,6 +21,7 @@ from .nominal_rows import Rows
 AT_A_TIME = 256  # columns of a unit matrix that are there at once: memory, not time
 LOOSE = 10.0  # times the largest level of placement that is looked at: as good as any
 NOTHING = 1e-7  # share of its energy below which a column is silent
+HOPELESS = 10.0  # nats that a level of noise is behind a quieter one
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +65,14 @@ class Unit:
     def coarse(self):
         """Every other level of placement and of flicker, as indices of the grid."""
         return np.arange(len(self.grid)).reshape(self.shape)[::2, ::2].ravel()
+
+    def tried(self, likelihood):
+        """Of the coarse selection the points that are worth a look, where there may be more than
+        noise: without those that by noise alone, log likelihood (G,), are far behind a quieter
+        one, since whatever there is shows more and gains more there."""
+        grid, alone = np.array(self.grid)[self.coarse], likelihood[self.coarse]
+        quieter = (grid <= grid[:, None]).all(axis=2)
+        return self.coarse[~(quieter & (alone > alone[:, None] + HOPELESS)).any(axis=1)]
 
     def around(self, point, reach=1):
         """Indices of a point of the grid and its neighbours, so many steps off at most."""

@@ -109,7 +109,7 @@ def averaged(unit, columns, prior, usual):
     Estimates and covariances at the points of the coarse grid and around its best one are
     averaged by their restricted likelihood, what they differ by among themselves is added.
     """
-    first = unit.coarse
+    first = unit.tried(_alone(unit, usual))
     best = first[int(np.argmax(_likelihood(unit, first, columns, prior, usual)))]
     points = np.union1d(first, unit.around(best))
     likelihood = _likelihood(unit, points, columns, prior, usual)
@@ -129,10 +129,14 @@ def averaged(unit, columns, prior, usual):
 def _likelihood(unit, points, columns, prior, usual):
     """Restricted log likelihood at points of the grid [Patterson & Thompson 1971], and the prior
     of the flicker."""
-    flicker = np.array([unit.grid[k][1] for k in points])
-    known = -0.5 * (np.log(flicker / usual) / np.log(evidence.USUAL_FACTOR["flicker"])) ** 2
     full = unit.gram.blocks(points, columns, columns) + np.diag(prior ** -2.0)
     inner = unit.inner[points][:, columns]
     taken = (inner * np.linalg.solve(full, inner[:, :, None])[:, :, 0]).sum(axis=1)
-    return (known - 0.5 * unit.quadratic[points] - unit.logdet[points] + 0.5 * taken
-            - 0.5 * np.linalg.slogdet(full)[1])
+    return _alone(unit, usual)[points] + 0.5 * taken - 0.5 * np.linalg.slogdet(full)[1]
+
+
+def _alone(unit, usual):
+    """(G,) the same at every point without any effect."""
+    flicker = np.array([level for _, level in unit.grid])
+    known = -0.5 * (np.log(flicker / usual) / np.log(evidence.USUAL_FACTOR["flicker"])) ** 2
+    return known - 0.5 * unit.quadratic - unit.logdet

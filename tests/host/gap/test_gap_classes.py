@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sixflip_host.diagnosis import answer, diagnosis
-from sixflip_host.experiment import blocks
+from sixflip_host.experiment import blocks, linear_model
 from sixflip_host.simulation import scenario, simulated_session
 
 LSB_G = 16384.0
@@ -51,6 +51,17 @@ def test_the_right_class_gains_with_the_size(captures):
         assert set(cause["class_probabilities"]) == set(cause["class"])
         scores.append(cause["score_nats"])
     assert scores == sorted(scores) and scores[2] > 3.0 * scores[0]
+
+
+@pytest.mark.parametrize("change", [
+    lambda t, warm, g: on_z(9.0 * np.tanh(0.15 * warm)),
+    lambda t, warm, g: on_z(8.0 * (g[:, 2] ** 2 + (t > 300.0)))], ids=["slope", "bend and step"])
+def test_levels_of_noise_that_are_far_behind_change_no_answer(captures, change, monkeypatch):
+    """A large cause passes for noise until it is found: the levels that it leads to are tried."""
+    short = causes(captures, change)
+    assert short
+    monkeypatch.setattr(linear_model, "HOPELESS", np.inf)
+    assert causes(captures, change) == short
 
 
 # Beside it in the class: what has the same variable, and the box that spans all even functions.

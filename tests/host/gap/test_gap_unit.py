@@ -106,6 +106,13 @@ def test_points_that_are_not_asked_for_say_so(plain):
     assert projections[unit.coarse, :, 0] == pytest.approx(unit.inner[unit.coarse])
 
 
+@pytest.mark.parametrize("likelihood, kept", [
+    ((0, 0, 0, 0, -9, 0), (0, 4)), ((0, 0, 0, 0, -11, 0), (0,)), ((-50, 0, 0, 0, 0, 0), (0, 4))])
+def test_a_louder_level_far_behind_a_quieter_one_is_not_tried(plain, likelihood, kept):
+    assert plain.unit.coarse.tolist() == [0, 4]  # the quietest, and the same flicker with leaning
+    assert plain.unit.tried(np.array(likelihood, float)).tolist() == list(kept)
+
+
 def test_contrasts_have_the_size_of_what_the_nuisance_leaves(plain):
     left = plain.across @ (plain.across.T @ plain.y)
     assert plain.unit.z @ plain.unit.z == pytest.approx(left @ left)
