@@ -66,6 +66,21 @@ def of_counts(sessions, sensor):
     return [s for s in sessions if s.capture.meta.get(sensor + "_values") != "float"]
 
 
+def fixed_bits(x):
+    """[(bit, value)] of single low bits of a column (n,) of int64 that never change while those
+    around them do."""
+    if len(x) < FEWEST_SAMPLES:
+        return []
+    ever, always = np.bitwise_or.reduce(x), np.bitwise_and.reduce(x)
+    step, found = max(1, steps(x[:, None])[0]), []
+    for bit in range(LOW_BITS):
+        weight = 1 << bit
+        fixed = not ever & weight or bool(always & weight)
+        if fixed and step < 2 * weight and np.ptp(x) > MOVED * weight * 2:
+            found.append((bit, int(bool(always & weight))))
+    return found
+
+
 def stuck_bits(sessions):
     """[(sensor, axis, bit, value)] of single low bits that never change while those around
     them do (bits stuck from the lowest on are steps, see quantisation)."""
@@ -77,15 +92,7 @@ def stuck_bits(sessions):
         for i in range(3 if counted else 0):
             x = np.concatenate([getattr(s.capture, sensor)[:, i] for s in counted]).astype(
                 np.int64)
-            if len(x) < FEWEST_SAMPLES:
-                continue
-            ever, always = np.bitwise_or.reduce(x), np.bitwise_and.reduce(x)
-            step = max(1, steps(x[:, None])[0])
-            for bit in range(LOW_BITS):
-                weight = 1 << bit
-                fixed = not ever & weight or bool(always & weight)
-                if fixed and step < 2 * weight and np.ptp(x) > MOVED * weight * 2:
-                    found.append((sensor, "xyz"[i], bit, int(bool(always & weight))))
+            found += [(sensor, "xyz"[i], bit, value) for bit, value in fixed_bits(x)]
     return found
 
 

@@ -52,13 +52,14 @@ def of(sessions, without=(), damages=()):
     findings = [f for f in integrity.findings(sessions) + spectral_lines.findings(sessions)
                 if f.effect not in without]
     damages = [*damages, *held_values.findings(sessions), *wrong_scale.findings(sessions)]
-    noisy = {f.sensor for f in findings if f.effect in NOISY}
+    bits = registers.stuck_bits(sessions)
+    leaping = {sensor for sensor, *_ in bits}
+    noisy = leaping | {f.sensor for f in findings if f.effect in NOISY}
     jumpy = {f.sensor for f in findings if f.effect in ("torn_reads", "dead_band")}
-    without_spikes, wild = noise_bursts.without_spikes(sessions)
+    without_spikes, wild = noise_bursts.without_spikes(sessions, leaping)
     unsteady = [one for one in [*noise_bursts.found(without_spikes), *wild]
                 if one[0] not in noisy]
     unsteady += torn_reads.jumps(sessions, jumpy)
-    bits = registers.stuck_bits(sessions)
     remarks = [one.words for one in damages]
     remarks += ["bit %d of the %s axis of the %s always reads %d"
                % (bit, axis, SENSOR[sensor], value) for sensor, axis, bit, value in bits]

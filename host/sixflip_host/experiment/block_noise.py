@@ -3,9 +3,11 @@
 counts (N, 3) of all samples; first, end (n,): which of them each block holds.
 """
 import numpy as np
+from scipy import optimize
 
-from ..capture.registers import steps
+from ..capture.registers import fixed_bits, steps
 
+ALL, ODD = np.arange(1, 9), np.arange(1, 200, 2)  # harmonics of rounding and of a square wave
 SUBMEAN_S = 0.25  # white noise is judged on means this long, so that a filter's colour is in it
 
 
@@ -13,14 +15,36 @@ def rounding(counts, first, end):
     """Counts (3,): standard deviation of what rounding to steps leaves in the mean of a
     rest. Noise much wider than a step averages it out: the k-th harmonic of the rounding
     error, step / (pi k), is damped by exp(-2 pi^2 k^2 (noise / step)^2) [Widrow & Kollar,
-    Quantization Noise (2008), chapter 5]."""
+    Quantization Noise (2008), chapter 5]. A bit that never changes takes a square wave of the
+    value off, of twice its weight as period and as step, which has the odd harmonics only."""
     step = steps(counts)
     changes = np.concatenate([np.diff(counts[a:b].astype(float), axis=0)
                               for a, b in zip(first, end)])
-    noise = np.sqrt(np.maximum(changes.var(axis=0) / 2.0 - step ** 2 / 12.0, 0.0))
-    k = np.arange(1, 9)[:, None]
-    harmonics = step / (np.pi * k) * np.exp(-2.0 * (np.pi * k * noise / step) ** 2)
-    return np.sqrt((harmonics ** 2).sum(axis=0) / 2.0)
+    seen = np.sqrt(np.maximum(changes.var(axis=0) / 2.0 - step ** 2 / 12.0, 0.0))
+    left = _of_mean(step, ALL, seen)
+    for axis, column in enumerate(counts.T):
+        waves = [2.0 ** (bit + 1) for bit, _ in fixed_bits(column.astype(np.int64))]
+        if waves:
+            left[axis] += _of_waves(np.array(waves), seen[axis])
+    return np.sqrt(left)
+
+
+def _of_waves(periods, seen):
+    """Variance that square waves leave in a mean, of the standard deviation seen in samples,
+    which has in it what they do not leave there: the noise is less than that."""
+    whole = (periods ** 2).sum() / 16.0
+
+    def excess(noise):
+        return noise ** 2 + whole - _of_mean(periods, ODD, noise).sum() - seen ** 2
+    noise = optimize.brentq(excess, 0.0, seen) if excess(0.0) < 0.0 else 0.0
+    return _of_mean(periods, ODD, noise).sum()
+
+
+def _of_mean(step, orders, noise):
+    """Variance in the mean of what has so much noise of these harmonics of a rounding error."""
+    k = orders[:, None]
+    return ((step / (np.pi * k) * np.exp(-2.0 * (np.pi * k * noise / step) ** 2)) ** 2
+            ).sum(axis=0) / 2.0
 
 
 def white(counts, first, end, rate):

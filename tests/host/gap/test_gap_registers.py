@@ -8,7 +8,7 @@ from sixflip_host.capture import capture_file
 from sixflip_host.capture import registers as counts
 from sixflip_host.diagnosis import answer, diagnosis
 from sixflip_host.diagnosis.detect import integrity, noise_bursts, saturation, torn_reads
-from sixflip_host.experiment import blocks
+from sixflip_host.experiment import block_noise, blocks
 from sixflip_host.present import gap_words
 from sixflip_host.simulation import scenario, simulated_session
 
@@ -132,13 +132,31 @@ def test_spikes_that_are_no_torn_reads():
     assert integrity.findings(sessions) == []
 
 
-def test_a_bit_that_sticks_is_said_and_not_named():
-    two = captures(seed=7)
+@pytest.mark.parametrize("noise", [0.2, 0.5, 1.0])
+@pytest.mark.parametrize("bit", [1, 3])
+def test_what_a_bit_that_sticks_leaves_of_a_mean(bit, noise):
+    """Against readings without it, at levels spread over twice its weight and far apart."""
+    weight, generator, errors, columns = 1 << bit, np.random.default_rng(4), [], []
+    for level in 2 * weight * (np.arange(64) * 16 + np.arange(64) / 64):
+        x = np.rint(level + noise * weight * generator.standard_normal(2000)).astype(np.int16)
+        columns.append(x & ~weight)
+        errors.append(columns[-1].mean() - level)
+    ends = 2000 * np.arange(1, 65)
+    got = block_noise.rounding(np.repeat(np.concatenate(columns)[:, None], 3, axis=1),
+                               ends - 2000, ends)
+    assert got == pytest.approx(np.full(3, np.std(errors)), rel=0.25, abs=0.03 * weight)
+
+
+@pytest.mark.parametrize("sensor, bit, value", [("mpu6050", 3, 1), ("gy85", 1, 0)])
+def test_a_bit_that_sticks_is_said_and_what_it_does_has_no_other_name(sensor, bit, value):
+    two = captures(seed=7, sensor=sensor)
     for capture in two:
-        capture.accel[:, 1] |= 8
+        capture.accel[:, 1] &= ~(1 << bit)
+        capture.accel[:, 1] |= value << bit
     found = diagnosed(two)
-    assert counts.stuck_bits(found.sessions) == [("accel", "y", 3, 1)]
-    assert found.verdict in ("unexplained", "partly explained")
+    assert counts.stuck_bits(found.sessions) == [("accel", "y", bit, value)]
+    assert found.verdict == "unexplained"
+    assert answer.of(found)["causes"] == []
     assert ("accel", "y", "amplitude") in [(w.sensor, w.axis, w.domain) for w in found.where]
 
 

@@ -8,6 +8,7 @@ from .statsmath import above, wilson
 
 NAMEABLE = ("single", "power", "share", "stranger", "held out")
 SHOWN = ("unexplained", "partly explained")
+UNSEEN = ("silent", "faint", "other form")  # see scoring.expected
 
 
 class Rows:
@@ -93,6 +94,9 @@ def report(results):
     pairs = suites["pair"]
     rows.share("pairs: both classes", [all(e["class_right"] for e in r["effects"])
                                        for r in pairs], 0.95)
+    rows.share("  both of them to be seen",
+               [all(e["class_right"] for e in r["effects"]) for r in pairs
+                if all(e["expected"] not in UNSEEN for e in r["effects"])], 0.95)
     if pairs:
         false = sum(len(r["false"]) for r in pairs) / len(pairs)
         rows.number("pairs: false classes a run", "<= 0.1", "%.2f" % false, len(pairs),

@@ -90,13 +90,13 @@ def _deviation(off):
     return np.maximum(np.sqrt(0.5 * np.pi) * np.minimum(off, widest).mean(axis=0), 1.0)
 
 
-def without_spikes(sessions):
+def without_spikes(sessions, leaping=()):
     """(sessions, [(sensor, sentence, p)]): where single samples are far off more often than noise
     has them, they read as those beside them do. What is wild says nothing of where a rest lies,
-    and as much as all others of a mean."""
+    and as much as all others of a mean. leaping: sensors whose counts leap anyhow."""
     out = []
     for sensor, words in WORDS.items():
-        if any(getattr(s.capture, sensor) is None for s in sessions):
+        if sensor in leaping or any(getattr(s.capture, sensor) is None for s in sessions):
             continue
         each = [spikes(s, sensor) for s in sessions]
         number, looked = sum(one.number for one in each), sum(one.looked for one in each)
