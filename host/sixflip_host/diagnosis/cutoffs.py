@@ -22,13 +22,14 @@ from .evidence import NONE
 from .odds import CHANCE
 
 RUNS = 160  # of which the upper tenth, 16, tell the scale of the tail to a quarter
+FIRST = 16  # of them, which tell the levels of noise that all are likely at
 REACH = 3  # steps of the grid about the levels simulated: costs as of all of it to 0.1 nats
 UPPER = 0.1  # of them: a tail is exponential [Pickands, Annals of Statistics 3 (1975) 119]
 TIMES_USUAL = 1.6  # of the usual levels, that a null has at most
 SMALLEST_SCALE = 1e-6  # nats: all nulls gain the same
 MARGIN_NATS = 1.0  # noise is not quite what it is simulated as
 LEAST_NATS = 4.0  # GAP: 95 % of the prototype's nulls in one search with the noise known exactly
-FORMAT = 13  # of the cache: another one where what is kept, or how it is made, has changed
+FORMAT = 14  # of the cache: another one where what is kept, or how it is made, has changed
 STRANGERS = 3  # simulated for each nameless hypothesis
 STRANGE_CHI2 = 200.0  # of a simulated stranger: ten times what a cost amounts to
 SURE = 0.9  # share of the strangers beside which no name may be taken in
@@ -140,15 +141,21 @@ def of_each(units, forms, levels, points):
 def _by_chance(units, forms, levels, points):
     """(forms, RUNS) nats that each form gains alone in nulls."""
     generator = np.random.default_rng(20190919)
-    near = [u.around(k, REACH) for u, k in zip(units, points)]
-    statistics = [u.statistics(u.draw(k, generator, RUNS), own)
-                  for u, k, own in zip(units, points, near)]
     prior = [levels.prior(u, ()) for u in units]
+    drawn = [u.draw(k, generator, RUNS) for u, k in zip(units, points)]
+    near = [_tried(u, u.statistics(z[:, :FIRST], own), level, own) for u, z, level, own in zip(
+        units, drawn, prior, (u.around(k, REACH) for u, k in zip(units, points)))]
+    statistics = [u.statistics(z, own) for u, z, own in zip(units, drawn, near)]
     base = [evidence.fit(u, s, NONE, NONE, p, own)
             for u, s, p, own in zip(units, statistics, prior, near)]
     nothing = evidence.score(base, NONE)
     return np.array([_gain(form, units, statistics, prior, near, levels, base) - nothing
                      for form in progress.steps(forms, "what chance alone shows")])
+
+
+def _tried(unit, statistics, level, points):
+    """Points of a unit's grid, of these, that any of the data sets is likely at."""
+    return unit.tried(level[:, None] - 0.5 * statistics[0] - unit.logdet[:, None], points)
 
 
 def _gain(form, units, statistics, prior, near, levels, base):
@@ -181,10 +188,11 @@ def left_to_names(units, forms, levels, points):
     data = _strange(units, nameless, points, generator)
     every = [u.statistics(z, u.coarse) for u, z in zip(units, data)]
     prior = [levels.prior(u, ()) for u in units]
+    near = [_tried(u, one, level, u.coarse) for u, one, level in zip(units, every, prior)]
 
     def scored(shared, statistics=every):
-        fits = [evidence.fit(u, one, shared, NONE, level, evidence.COARSE)
-                for u, one, level in zip(units, statistics, prior)]
+        fits = [evidence.fit(u, one, shared, NONE, level, own)
+                for u, one, level, own in zip(units, statistics, prior, near)]
         return evidence.score(fits, shared)
     nothing = scored(NONE)
     gains = np.array([scored(f.shared) for f in nameless]) - nothing

@@ -39,7 +39,7 @@ class MovesUnit:
         self.silent = power <= 1e-9 * max(power.max(), 1e-300)
         self.freedom = len(gram)
 
-    def tried(self, likelihood):
+    def tried(self, likelihood, points=None):
         return self.coarse
 
     def around(self, point, reach=1):

@@ -159,7 +159,7 @@ class FewGrams(Whitened):
         z = np.asfortranarray(self._across.T @ z)
         wanted = np.arange(len(self.grid)) if points is None else points
         quadratic = np.full((len(self.grid), z.shape[1]), np.nan)
-        inner = np.full((len(self.grid), len(self._place), z.shape[1]), np.nan)
+        inner = np.zeros((len(self.grid), len(self._place), z.shape[1]))
         logdet = np.full(len(self.grid), np.nan)
         back = np.empty((len(wanted), *z.shape))
         for place, point in enumerate(wanted):
@@ -231,15 +231,14 @@ class Grams(Whitened):
     def statistics(self, z, points=None):
         """(quadratic (G, R), inner (G, K, R), logdet (G,)) of contrasts z (m, R), what is fixed
         projected out in the metric of each point of the grid; points: which are asked for (None:
-        all), the others are NaN. z is whitened, and whitened back: the columns need not be."""
+        all), at the others quadratic and logdet are NaN, inner is 0. z is whitened, and whitened
+        back: the columns need not be."""
         size, number = self._columns.shape[1], z.shape[1]
-        quadratic, logdet = np.empty((len(self), number)), np.empty(len(self))
-        inner = np.empty((len(self), size, number))
+        quadratic, logdet = np.full((len(self), number), np.nan), np.full(len(self), np.nan)
+        inner = np.zeros((len(self), size, number))
         loud = self._columns[:, self.loud].T
         given = np.hstack([self.space, self.common, z])
         wanted = np.arange(len(self)) if points is None else points
-        for one in (quadratic, inner, logdet):
-            one[np.setdiff1d(np.arange(len(self)), wanted)] = np.nan
         for chosen, factor in steps(self._of_flicker(wanted), "levels of noise"):
             white = factor.whitened(given)
             fixed, data = white[:, :, :self.fixed], white[:, :, self.fixed:]

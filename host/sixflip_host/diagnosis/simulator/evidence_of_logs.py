@@ -163,6 +163,7 @@ def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,
     gram_shared = [one.T @ one * k_rows for one in columns]
     right_own = (own.T @ y * k_rows).T
     right_shared = [one.T @ y[:, c] * k_rows for c, one in enumerate(columns)]
+    power, looked = (y ** 2).sum(axis=0) * k_rows, len(y) * k_rows
     for _ in range(ROUNDS):
         gram, right = np.diag(1.0 / prior ** 2), np.zeros(size)
         for c in range(3):
@@ -179,8 +180,14 @@ def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,
         scale = np.sqrt(np.diag(gram))
         solved = np.linalg.solve(gram / np.outer(scale, scale), right / scale) / scale
         beta, shared = solved[:3 * p].reshape(3, p), solved[3 * p:]
-        left = y - own @ beta.T - (columns @ shared).T
-        variance = np.maximum((left ** 2).mean(axis=0), LEAST_LEFT)
+        # What is left, from the products: the rows themselves are gone through once, at the end.
+        explained = [b @ (2.0 * own_c - gram_own @ b - 2.0 * cross_c @ shared)
+                     + shared @ (2.0 * right_c - gram_c @ shared)
+                     for b, own_c, cross_c, right_c, gram_c in zip(
+                         beta, right_own, cross, right_shared, gram_shared)]
+        variance = np.maximum((power - explained) / looked, LEAST_LEFT)
+    left = y - own @ beta.T - (columns @ shared).T
+    variance = np.maximum((left ** 2).mean(axis=0), LEAST_LEFT)
     effective = n / inflation
     log = -0.5 * effective * np.log(variance[live]).sum()
     log -= 0.5 * ((solved / prior) ** 2).sum()
