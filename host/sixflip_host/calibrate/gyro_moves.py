@@ -105,7 +105,7 @@ class GyroMoves(ReadOnlyArrays):
         # there and added up.
         before = np.concatenate([np.broadcast_to([1.0, 0, 0, 0], q[:, :1].shape), q[:, :-1]], 1)
         middle = matrix(multiply(before, exponential(0.5 * steps)))
-        carried = np.einsum("mba,mkbc->mkac", matrix(total), middle)
+        carried = matrix(total).swapaxes(1, 2)[:, None] @ middle
         weighted = 0.5 * (self.before + self.after) * self.dt[..., None]
         change = np.einsum("mkac,mkx->macx", carried, weighted, optimize=True)
         return total, change

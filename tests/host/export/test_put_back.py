@@ -10,6 +10,7 @@ G, DEG = 9.80665, np.pi / 180.0
 SHAPES = {"thermal_bias": {"reference_c": 21.0}, "thermal_scale": {"reference_c": 21.0},
           "warm_up": {"tau_s": 90.0}}
 LINE_HZ = {"vibration": 31.7}
+STEP_S = 0.1
 EVERY = [(kind, name) for kind, names in put_back.BY_KIND.items() for name in names]
 
 
@@ -40,12 +41,12 @@ def test_a_step_adds_what_the_library_adds(kind, name):
     model = made(answer([cause(name, kind, value, **line)]))
     plain = made(answer([]))
     force, rate = rng.normal(0.0, 6.0, 3), rng.normal(0.0, 2.0, 3)
-    for k in range(12000):
-        warm = 24.0 + 0.02 * k * 0.01
-        got, none = (one.step(force, rate, warm, 0.01) for one in (model, plain))
+    for t in STEP_S * np.arange(1200):
+        warm = 24.0 + 0.02 * t
+        got, none = (one.step(force, rate, warm, STEP_S) for one in (model, plain))
     added = (got[kind == "gyro"] - none[kind == "gyro"]) / (DEG if kind == "gyro" else G / 1000.0)
     m = Moment()
-    m.t, m.temperature, m.temperature_rate = 119.99, warm, 0.02
+    m.t, m.temperature, m.temperature_rate = t, warm, 0.02
     m.f, m.w = tuple(force / G), tuple(rate / DEG)
     wanted = [0.0, 0.0, 0.0]
     steady = {"frequency_hz": LINE_HZ[name]} if line else {}

@@ -8,7 +8,6 @@ makes all samples likelier than the same jumps do without a name.
 """
 import math
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -95,14 +94,13 @@ def paged(samples):
     whole, other, number = [], [], len(samples)
     for freedom in FREEDOM:
         densities = Densities(samples, freedom)
-        alone = densities.alone
-        gain, share = densities.best(densities.moved, number)
+        alone, ((gain, share), *rivals) = densities.best(
+            (moved, number), (anywhere, number),
+            *((densities.louder(times), number) for times in LOUD))
         whole.append((alone + gain, densities, share))
-        other += [alone, alone + densities.best(densities.anywhere, number)[0]]
-        other += [alone + densities.best(densities.louder(times), number)[0] for times in LOUD]
+        other += [alone, *(alone + gain for gain, _ in rivals)]
     score, densities, share = max(whole, key=lambda one: one[0])
-    return (score - max(other) - math.log(len(SHARES)),
-            densities.held(densities.moved, share))
+    return score - max(other) - math.log(len(SHARES)), densities.held(moved, share)
 
 
 def competed(samples):
@@ -112,20 +110,19 @@ def competed(samples):
     sake is paid."""
     chances = {side: float(len(samples) - getattr(samples, side).sum())
                for side in ("before", "after")}
-    named, nameless = [], []
+    number, named, nameless = len(samples), [], []
     for freedom in FREEDOM:
-        plain = Densities(samples, freedom)
-        wide, share = plain.best(plain.anywhere, len(samples))
-        nameless += [plain.alone, plain.alone + wide,
-                     plain.alone + plain.best(plain.moved, len(samples))[0]]
-        beside = Densities(samples, freedom, share)  # beside the torn ones there may be others
-        nameless.append(beside.alone + beside.best(beside.moved, len(samples))[0])
-        for side, chance in chances.items():
-            for densities in (plain, beside):
-                torn, own = densities.best(densities.torn(side), chance)
-                named.append((densities.alone + torn, densities, side, own))
+        share = 0.0
+        for _ in range(2):  # without others, and beside the likeliest share of them
+            densities = Densities(samples, freedom, share)
+            alone, ((gain, _), (wide, share), *torn) = densities.best(
+                (moved, number), (anywhere, number),
+                *((torn_by(side), among) for side, among in chances.items()))
+            nameless += [alone, alone + gain, *([alone + wide] if not densities.share else [])]
+            named += [(alone + gain, densities, side, own)
+                      for side, (gain, own) in zip(chances, torn)]
     score, densities, side, own = max(named, key=lambda one: one[0])
-    torn = densities.torn(side)
+    torn = torn_by(side)
     return (score - max(nameless) - math.log(2.0 * len(SHARES)), densities.held(torn, own),
             densities.jumping(torn, own))
 
@@ -140,55 +137,65 @@ class Densities:
     share: float = 0.0
 
     def _parts(self):
-        """Pairs of Samples, some at a time, and their density (n,) when none jumps by pages."""
+        """Triples of Samples, some at a time, their density (n,) when none jumps by pages, and
+        (n,) when all do."""
         for first in range(0, len(self.samples), AT_A_TIME):
             part = self.samples.of(slice(first, first + AT_A_TIME))
-            yield part, self._sound(part) + self.share * self.anywhere(part)
+            yield (part, self._sound(part) + self.share * anywhere(part, None),
+                   student(part.moved, self.freedom) / part.sigma)
 
     def _sound(self, part):
         return student(part.off, self.freedom) / part.sigma
 
-    def anywhere(self, part):
-        return 0.5 / WIDE
-
-    def moved(self, part):
-        return student(part.moved, self.freedom) / part.sigma
-
-    def torn(self, side):
-        """Function of a part: by a page that the sample before, or after, does not have."""
-        return lambda part: self.moved(part) * getattr(part, side)
-
     def louder(self, times):
-        """Function of a part: noise so many times as wide."""
-        return lambda part: student(part.off / times, self.freedom) / (part.sigma * times)
+        """A jump: noise so many times as wide."""
+        return lambda part, _: student(part.off / times, self.freedom) / (part.sigma * times)
 
-    @cached_property
-    def alone(self):
-        """Log likelihood when none jumps by pages."""
-        return len(self.samples) * math.log1p(-self.share) + sum(
-            float(np.log(density).sum()) for _, density in self._parts())
-
-    def best(self, jump, among):
-        """(gain in nats, share) of the likeliest share of SHARES of samples that jump; `among`
-        of them could. To samples that are not far off a jump adds to first order only."""
-        gains = np.array([among * math.log1p(-share) for share in SHARES])
-        for part, density in self._parts():
-            ratio, far = jump(part) / density, np.abs(part.off) > NEAR
-            gains += np.array(SHARES) * ratio[~far].sum()
-            ratio = ratio[far]
-            ratio = ratio[ratio > 0.0]
-            gains += [np.log1p(share * ratio).sum() for share in SHARES]
-        place = int(gains.argmax())
-        return float(gains[place]), SHARES[place]
+    def best(self, *jumps):
+        """(log likelihood when none jumps by pages, [(gain in nats, share)] of the likeliest share
+        of SHARES of samples that jump as each of jumps says, pairs of a function of a part and
+        of its density moved by pages, and among how many of them). To samples that are not far
+        off a jump adds to first order only."""
+        alone = len(self.samples) * math.log1p(-self.share)
+        gains = [np.array([among * math.log1p(-share) for share in SHARES])
+                 for _, among in jumps]
+        for part, density, paged_by in self._parts():
+            alone += float(np.log(density).sum())
+            far = np.abs(part.off) > NEAR
+            for gain, (jump, _) in zip(gains, jumps):
+                ratio = jump(part, paged_by) / density
+                gain += np.array(SHARES) * ratio[~far].sum()
+                ratio = ratio[far]
+                ratio = ratio[ratio > 0.0]
+                gain += [np.log1p(share * ratio).sum() for share in SHARES]
+        places = [int(gain.argmax()) for gain in gains]
+        return alone, [(float(gain[k]), SHARES[k]) for gain, k in zip(gains, places)]
 
     def held(self, jump, share):
         """Expected number of samples that jump."""
-        return float(sum(_held(density, share * jump(part)) for part, density in self._parts()))
+        return float(sum(_held(density, share * jump(part, paged_by))
+                         for part, density, paged_by in self._parts()))
 
     def jumping(self, jump, share):
         """Expected number of samples that jump by any amount beside a share that jumps so."""
-        return float(sum(_held(self._sound(part) + share * jump(part),
-                               self.share * self.anywhere(part)) for part, _ in self._parts()))
+        return float(sum(_held(self._sound(part) + share * jump(part, paged_by),
+                               self.share * anywhere(part, paged_by))
+                         for part, _, paged_by in self._parts()))
+
+
+def anywhere(part, paged_by):
+    """A jump of any size."""
+    return 0.5 / WIDE
+
+
+def moved(part, paged_by):
+    """A jump by pages."""
+    return paged_by
+
+
+def torn_by(side):
+    """A jump by a page that the sample before, or after, does not have."""
+    return lambda part, paged_by: paged_by * getattr(part, side)
 
 
 def _held(sound, jump):
