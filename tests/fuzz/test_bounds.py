@@ -37,11 +37,16 @@ MILLION = 1 << 20
 
 
 def bomb(text, repeat):
-    """gzip of text and then a gigabyte or more of the same row."""
-    member = zlib.compressobj(9, wbits=31)
-    out = member.compress(text)
-    block = b"0,1,2,3\n" * (MILLION // 8)
-    return out + b"".join(member.compress(block) for _ in range(repeat)) + member.flush()
+    """gzip of text and then a gigabyte or more of the same row. What follows a full flush knows
+    nothing of what was before it, so that one block's bytes are those of every other."""
+    packer, block = zlib.compressobj(9, wbits=-zlib.MAX_WBITS), b"0,1,2,3\n" * (MILLION // 8)
+    first, again = (packer.compress(part) + packer.flush(zlib.Z_FULL_FLUSH)
+                    for part in (text, block))
+    crc = crc32(text)
+    for _ in range(repeat):
+        crc = crc32(block, crc)
+    return b"\x1f\x8b\x08\0\0\0\0\0\0\xff" + first + again * repeat + packer.flush() \
+        + struct.pack("<II", crc, len(text) + repeat * len(block) & 0xFFFFFFFF)
 
 
 def zstd_of_zeros(size):

@@ -29,7 +29,7 @@ TIMES_USUAL = 1.6  # of the usual levels, that a null has at most
 SMALLEST_SCALE = 1e-6  # nats: all nulls gain the same
 MARGIN_NATS = 1.0  # noise is not quite what it is simulated as
 LEAST_NATS = 4.0  # GAP: 95 % of the prototype's nulls in one search with the noise known exactly
-FORMAT = 14  # of the cache: another one where what is kept, or how it is made, has changed
+FORMAT = 15  # of the cache: another one where what is kept, or how it is made, has changed
 STRANGERS = 3  # simulated for each nameless hypothesis
 STRANGE_CHI2 = 200.0  # of a simulated stranger: ten times what a cost amounts to
 SURE = 0.9  # share of the strangers beside which no name may be taken in
@@ -163,8 +163,9 @@ def _gain(form, units, statistics, prior, near, levels, base):
     if form.free:
         prior = [levels.prior(u, form.free) for u in units]
     if not form.choices:
-        return evidence.score([evidence.fit(u, s, form.shared, NONE, p, own) for u, s, p, own in
-                               zip(units, statistics, prior, near)], form.shared, units[0].apart)
+        fits = [evidence.fit(u, s, form.shared, NONE, p, own)
+                for u, s, p, own in zip(units, statistics, prior, near)]
+        return evidence.score(fits, form.shared, units[0].apart, evidence.positive(units))
     total = 0.0
     for unit, one, level, own, plain in zip(units, statistics, prior, near, base):
         if unit.between:

@@ -18,6 +18,7 @@ All functions take R data sets at once (null simulation), R = 1 for the real one
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import special
 
 from ..experiment import gram
 
@@ -258,20 +259,38 @@ def predictive(fit, theta, covariance):
             - 0.5 * np.linalg.slogdet(widened)[1])
 
 
-def score(fits, shared, apart=False):
+def positive(units):
+    """(K,) which of all columns have coefficients that are not less than nothing."""
+    return np.concatenate([np.full(len(d.keys), d.positive) for d in units[0].designs])
+
+
+def score(fits, shared, apart=False, bounded=None):
     """(R,) log predictive likelihood of all units, and how plausible the sizes are; shared:
     Columns, of which each of the R may have its own (R, k); apart: the units have no coefficient
-    in common, nothing is learned from one for the other."""
+    in common, nothing is learned from one for the other; bounded (K,): which of all columns'
+    coefficients are positive, with half of the prior, twice as dense."""
+    bounded = None if bounded is None or not bounded[shared.index].any() else bounded[shared.index]
     number, k = len(fits[0].quadratic), shared.index.shape[-1]
     if not k:
         return sum(predictive(f, np.zeros((number, 0)), np.zeros((number, 0, 0))) for f in fits)
     if apart or len(fits) == 1:
         wide = np.broadcast_to(diagonal(shared.prior ** 2), (number, k, k))
-        return sum(predictive(f, np.zeros((number, k)), wide) for f in fits)
+        return sum(predictive(f, np.zeros((number, k)), wide)
+                   + (0.0 if bounded is None else _half(*coefficients([f], shared), bounded))
+                   for f in fits)
     total = np.zeros(number)
     for held, one in enumerate(fits):
         total += predictive(one, *coefficients(fits[:held] + fits[held + 1:], shared))
     theta, covariance = coefficients(fits, shared)
     sigma = np.sqrt(np.einsum("rii->ri", covariance))
     beyond = np.maximum(np.abs(theta) - 2.0 * sigma, 0.0) / shared.prior
+    if bounded is not None:
+        total += _half(theta, covariance, bounded)
     return total - np.log1p(beyond ** 2).sum(axis=1)  # Cauchy: typical sizes are rough
+
+
+def _half(theta, covariance, bounded):
+    """(R,) what it adds that the bounded coefficients are positive: the share of their posterior
+    that is, of the half that their prior is."""
+    sigma = np.sqrt(np.einsum("rii->ri", covariance))
+    return np.where(bounded, np.log(2.0) + special.log_ndtr(theta / sigma), 0.0).sum(axis=1)

@@ -6,7 +6,6 @@ LOOSE = {"warm_up": 10.0, "drift": 10.0, "vibration": 1e9, "sample_rate": 10.0,
          "dropped_samples": 1e9, "saturation": 1e9, "torn_reads": 1e9, "axis_swap": 1e9,
          "quantisation": 1e9, "dead_band": 1e9, "box_tilt": 20.0, "creep": 5.0,
          "lever_arm": 10.0, "filter_lag": 20.0}
-POSITIVE = ("dead_band",)  # a band has a width; what is less than nothing is something else
 
 
 # What a part's drift with temperature amounts to while it warms up, and in what follows the
@@ -35,7 +34,5 @@ def believable(effect, chip, sensor, values, sigmas=None):
         top = limit(effect, chip, sensor, key)
         slack = 2.0 * sigmas[key] if sigmas else 0.0
         if top is not None and abs(value) - slack > top:
-            return False
-        if effect in POSITIVE and value + slack < 0.0:
             return False
     return True

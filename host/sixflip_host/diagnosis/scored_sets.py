@@ -40,6 +40,7 @@ class Model:
         self.units, self.statistics, self.levels = units, statistics, levels
         self._known, self._looked_at, self._priors = {}, {}, {}
         self._eliminations, self._tried = {}, {}
+        self._positive = evidence.positive(units)
 
     def scored(self, forms):
         """Scored of a tuple of Forms."""
@@ -83,7 +84,7 @@ class Model:
                 self._levels_tried(number, free),
                 self._elimination(number, base.private[number]))
                 for number, (unit, statistics) in enumerate(zip(self.units, self.statistics))]
-            scores = evidence.score(fits, evidence.Columns(index, prior), self.units[0].apart)
+            scores = self._score(fits, evidence.Columns(index, prior))
             for number, k in enumerate(places):
                 found[plain[k]] = Scored(
                     (*base.forms, forms[plain[k]]), float(scores[number]) - base.chances,
@@ -107,7 +108,7 @@ class Model:
                 unit, statistics, shared, private, self._prior(place, free),
                 self._levels_tried(place, free), self._elimination(place, private)))
             privates.append(private)
-        score = float(evidence.score(fits, shared, self.units[0].apart)[0])
+        score = float(self._score(fits, shared)[0])
         return Scored(forms, score - chances, tuple(fits), tuple(privates), chances)
 
     def _closer(self, rough):
@@ -118,8 +119,11 @@ class Model:
             fits.append(evidence.fit(
                 unit, self.statistics[place], rough.shared, private, self._prior(place, free),
                 unit.around(int(fit.index[0])), self._elimination(place, private)))
-        score = float(evidence.score(fits, rough.shared, self.units[0].apart)[0])
+        score = float(self._score(fits, rough.shared)[0])
         return replace(rough, score=score - rough.chances, fits=tuple(fits))
+
+    def _score(self, fits, shared):
+        return evidence.score(fits, shared, self.units[0].apart, self._positive)
 
     def _prior(self, place, free):
         """(G,) log prior of one unit's grid, made once for what is free."""

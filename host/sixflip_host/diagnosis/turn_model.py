@@ -1,5 +1,6 @@
 """The gyro in motion: what the turns between the rests (experiment/turns.py) leave unexplained."""
 import itertools
+from dataclasses import replace
 
 import numpy as np
 
@@ -118,7 +119,8 @@ def banded(chosen, width, times, lsb, chip):
     def less(turn):
         return [-turn.middle / np.sqrt(turn.middle ** 2 + width ** 2) / lsb]
     prior = 10.0 * times * typical.size("dead_band", chip, "gyro")[0]
-    return _of_rates("dead_band", "%g times, over %g deg/s" % (times, width), chosen, less, prior)
+    return replace(_of_rates("dead_band", "%g times, over %g deg/s" % (times, width), chosen, less,
+                             prior), positive=True)
 
 
 def _of_rates(effect, variant, chosen, functions, prior):

@@ -51,7 +51,8 @@ class Design:
     size ten times the typical one; choices: tuples of columns of which a session has one for its
     own; powers (k,): 1 for the effect's own columns, 2 and 3 for a square and a cube of them, as
     a bend beside a slope; record: it is there because a record of the board has that form;
-    beside: it is no hypothesis, but what others may have as a discrepancy.
+    beside: it is no hypothesis, but what others may have as a discrepancy; positive: none of its
+    coefficients is less than nothing, as a width is not.
     """
 
     effect: str
@@ -64,6 +65,7 @@ class Design:
     powers: tuple = ()
     record: bool = False
     beside: bool = False
+    positive: bool = False
 
     def __post_init__(self):
         for name in ("keys", "axes", "choices"):

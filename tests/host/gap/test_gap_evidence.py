@@ -1,7 +1,7 @@
 """The score of sets of hypotheses on small made-up problems whose answer is known."""
 import numpy as np
 import pytest
-from scipy import linalg, stats
+from scipy import integrate, linalg, stats
 
 from sixflip_host.diagnosis import (
     cutoffs,
@@ -86,6 +86,22 @@ def test_a_size_beyond_what_parts_have_is_unlikely_however_well_it_fits():
                                     for u in units], one)[0]
                     for one in (Columns(np.array([0]), np.array([size])) for size in (1.0, 100.0)))
     assert wide - narrow > 0.9 * np.log1p(50.0 ** 2)
+
+
+@pytest.mark.parametrize("theta", [0.6, -0.6])
+def test_of_what_is_positive_the_half_of_the_prior_is_integrated(theta):
+    one = unit(np.random.default_rng(9), theta)
+    shared = Columns(np.array([0, 1]), np.array([2.0, 3.0]))
+    fit = evidence.fit(one, one.statistics(), shared, NONE, np.zeros(len(one.grid)))
+    plain, half = (evidence.score([fit], shared, bounded=np.array(bounded))[0] for bounded in (
+        [False, False, False, False, False], [True, False, False, False, False]))
+    z, s, noise = contrasts(one, int(fit.index[0]))
+    noise = noise + 9.0 * np.outer(s[:, 1], s[:, 1])
+
+    def density(x):
+        return stats.norm.pdf(x, 0.0, 2.0) * stats.multivariate_normal.pdf(z, x * s[:, 0], noise)
+    below, above = (integrate.quad(density, *span, epsabs=0.0)[0] for span in ((-9, 0), (0, 9)))
+    assert half - plain == pytest.approx(np.log(2.0 * above / (above + below)), abs=1e-6)
 
 
 def test_private_columns_are_integrated_out_with_their_prior():

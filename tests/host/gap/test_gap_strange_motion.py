@@ -54,6 +54,16 @@ def test_a_band_that_the_gyro_reads_less_by_is_a_dead_band(captures, band_dps):
         assert 0.8 < counts / (band_dps * LSB_DPS) < 2.2  # what was turned within it is lost, too
 
 
+def test_a_gyro_that_reads_more_by_a_band_has_no_dead_band(captures):
+    """A band has a width: what is less than nothing is something else."""
+    def more(t, accel, gyro):
+        centred = gyro - np.rint(np.median(gyro, axis=0))
+        return accel, gyro + np.rint(LSB_DPS * np.tanh(centred / LSB_DPS / 5.0))
+    found = diagnosed(captures, more)
+    assert found["verdict"] in ("unexplained", "partly explained", "explained")
+    assert "dead_band" not in [name for c in found["causes"] for name in c["class"]]
+
+
 @pytest.mark.parametrize("sensor", ["accel", "gyro"])
 def test_a_reading_that_follows_the_size_of_the_rate_has_no_name(captures, sensor):
     def follows(t, accel, gyro):
