@@ -3,7 +3,6 @@
 counts (N, 3) of all samples; first, end (n,): which of them each block holds.
 """
 import numpy as np
-from scipy import optimize
 
 from ..capture.registers import fixed_bits, steps
 
@@ -32,6 +31,7 @@ def rounding(counts, first, end):
 def _of_waves(periods, seen):
     """Variance that square waves leave in a mean, of the standard deviation seen in samples,
     which has in it what they do not leave there: the noise is less than that."""
+    from scipy import optimize  # of a stuck bit only: without it scipy takes no start-up time
     whole = (periods ** 2).sum() / 16.0
 
     def excess(noise):
