@@ -90,29 +90,30 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
     target = measured / unit
     turned = np.einsum("ij,njk->nik", axes, h.columns)
     for last in (False, False, True):
-        shift = shifted(h.signal, delay * grid_hz)
-        signal = shift @ axes.T
+        every = 1 if last else max(1, n // MOST_ROWS)  # to find the delay a few rows will do
+        some = slice(None, None, every)
+        signal = shifted(h.signal, delay * grid_hz) @ axes.T
         slope = -np.gradient(signal, axis=0) * grid_hz
         bend = -np.gradient(slope, axis=0) * grid_hz
-        columns = np.concatenate([shifted(turned, delay * grid_hz), slope[:, :, None],
-                                  bend[:, :, None]], 2)
+        columns = np.concatenate([shifted(turned, delay * grid_hz, every),
+                                  slope[some, :, None], bend[some, :, None]], 2)
         mean = np.concatenate([h.mean, [-delay, 0.0]])
         sd = np.concatenate([h.sd, [DELAY_S, SMOOTH_S2]])
-        own = [signal, np.ones((n, 1))]
+        own = [signal[some], np.ones((len(columns), 1))]
         own_sd = [np.full(3, SHAPE) if h.shape_sd is None else h.shape_sd,
                   [h.bias_sd or BIAS[kind]]]
         if h.free is not None:
             scale = np.maximum(h.free.std(axis=0), 1e-9)
-            own.append(h.free)
+            own.append(h.free[some])
             own_sd.append(FREE * max(signal.std(), 1e-9) / scale)
         if real_own is not None:
-            own.append(real_own[0])
+            own.append(real_own[0][some])
             own_sd.append(real_own[1])
-        result = regression(target - signal, np.concatenate(own, 1), np.concatenate(
+        result = regression((target - signal)[some], np.concatenate(own, 1), np.concatenate(
                                 [np.broadcast_to(one, (3, np.shape(one)[-1])) for one in own_sd],
                                 axis=1),
-                            columns, mean, sd, inflation, live, rows,
-                            residuals=last)
+                            columns, mean, sd, inflation, live, rows if rows is None else
+                            rows[some], residuals=last, every=every)
         delay += float(np.clip(result[2][k], -0.05, 0.05))
     log, beta, shared, sigma, left, beta_sigma = result
     log += 0.5 * n / inflation * np.minimum(0.0, np.log(gains(h, beta, shared, unit)))[live].sum()
@@ -139,9 +140,10 @@ def gains(h, beta, shared, unit):
 
 
 def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,
-               covariance=False, residuals=True):
+               covariance=False, residuals=True, every=1):
     """Linear regression of y (n, 3) = own (n, p) · beta of each channel + columns (n, 3, k) ·
-    shared, with priors own_sd (p,) or (3, p) about 0 and sd (k,) about mean (k,).
+    shared, with priors own_sd (p,) or (3, p) about 0 and sd (k,) about mean (k,). every: of how
+    many rows each of the n is one.
 
     Returns (log evidence, own coefficients (3, p), shared (k,), its sigma (k,), residuals (n, 3),
     sigma of the own coefficients (3, p)); with covariance also that of the shared ones (k, k).
@@ -150,8 +152,9 @@ def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,
     n, p = own.shape
     k = columns.shape[2]
     weight = np.ones(n) if rows is None else 1.0 / rows
-    raw, k_rows = (y, own, columns), max(1, n // MOST_ROWS)
-    weight, y, own, columns = (x[::k_rows] for x in (weight, y, own, columns))
+    raw, fewer = (y, own, columns), max(1, n // MOST_ROWS) if every == 1 else 1
+    weight, y, own, columns = (x[::fewer] for x in (weight, y, own, columns))
+    n, k_rows = n * every, every * fewer
     y = y - columns @ mean
     y, own, columns = y * weight[:, None], own * weight[:, None], columns * weight[:, None, None]
     columns = np.ascontiguousarray(columns.transpose(1, 0, 2))  # of each channel: products' speed
@@ -221,12 +224,12 @@ def scattered(inverse, left, own, columns, weights, live):
     return np.sqrt(STRETCHES / (STRETCHES - 1.0) * (pulls ** 2).sum(axis=0))
 
 
-def shifted(x, rows):
-    """x (n, …) later by so many rows, its ends held."""
+def shifted(x, rows, every=1):
+    """x (n, …) later by so many rows, its ends held; of so many rows one."""
     if abs(rows) < 1e-6 or not x.size:
-        return x
+        return x[::every]
     n = len(x)
-    at = np.clip(np.arange(n) - rows, 0, n - 1)
+    at = np.clip(np.arange(0, n, every) - rows, 0, n - 1)
     low = np.minimum(at.astype(int), n - 2)
     part = (at - low).reshape((-1,) + (1,) * (x.ndim - 1))
     return x[low] * (1 - part) + x[low + 1] * part
