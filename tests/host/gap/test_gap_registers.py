@@ -8,6 +8,7 @@ from sixflip_host.capture import capture_file
 from sixflip_host.capture import registers as counts
 from sixflip_host.diagnosis import answer, diagnosis
 from sixflip_host.diagnosis.detect import integrity, noise_bursts, saturation, torn_reads
+from sixflip_host.diagnosis.detect.detection import present
 from sixflip_host.experiment import block_noise, blocks
 from sixflip_host.present import gap_words
 from sixflip_host.simulation import scenario, simulated_session
@@ -62,6 +63,42 @@ def test_coarse_steps_are_no_bend():
     assert [f.effect for f in found.findings] == ["quantisation"]
     assert found.findings[0].value == {"x": 8, "y": 8, "z": 8}
     assert found.causes == []
+
+
+def faces(rng, noise, size=256.0):
+    """Six rests of 600 samples of one axis, in counts."""
+    level = rng.uniform(0.98, 1.13, 6) * size * np.array([1.0, -1.0, 0.0, 0.0, 0.0, 0.0])
+    return np.rint(np.repeat(level, 600) + noise * rng.normal(size=3600)).astype(int)
+
+
+def stepped(x):
+    return 3 * np.rint(x / 3.0).astype(int)
+
+
+def stuck(x):
+    return x & ~8
+
+
+def slow(x):
+    return np.repeat(x, 3)[:len(x)]
+
+
+@pytest.mark.parametrize("spoilt", [stepped, stuck, slow])
+def test_values_that_repeat_everywhere_are_no_peaks_cut_off(spoilt):
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        x = spoilt(faces(rng, rng.uniform(1.5, 5.0)))
+        for side in (x, -x):
+            assert not present(saturation.cut_off_nats(side)), seed
+
+
+@pytest.mark.parametrize("spoilt", [np.array, stepped, slow])
+def test_peaks_cut_off_are_found_whatever_else_repeats(spoilt):
+    for seed in range(10):
+        rng = np.random.default_rng(seed)
+        turns = 900.0 * np.sin(np.linspace(0.0, 60.0, 3600)) * rng.uniform(0.6, 1.0, 3600)
+        x = spoilt(np.clip(faces(rng, 3.0) + np.rint(turns).astype(int), -520, 520))
+        assert all(present(saturation.cut_off_nats(side)) for side in (x, -x)), seed
 
 
 def resting(noise, seed=5, **meta):

@@ -6,11 +6,13 @@ level than if the readings thin out towards their largest one as they do everywh
 import math
 
 import numpy as np
+from scipy import special
 
-from ...capture.registers import RAIL, steps
+from ...capture.registers import RAIL, fixed_bits, steps
 from .detection import BELOW, RANGE, Finding, present
 
 RAIL_CODES = 4  # the last codes of a range: scales that are rounded end a few short of 2^15
+LOOKED_AT = 6  # ends of a sensor's three axes, each of which could be cut off
 SPREAD_SHARE = 0.02  # of the span of the readings, just inside their largest one
 
 
@@ -82,33 +84,44 @@ def _range_rail(session, sensor):
 
 def cut_off_nats(x):
     """level_nats of the largest value of x; the one sample that is the largest anyhow is no
-    evidence."""
+    evidence, and the largest values that were looked at are taken off."""
     at = x == x.max()
-    return 0.0 if at.all() else level_nats(x, at, 1, 1)
+    return 0.0 if at.all() else level_nats(x, at, 1, 1) - math.log(LOOKED_AT)
 
 
 def level_nats(x, at, width, free=0):
     """Log likelihood ratio (nats) of readings x being held at their largest `width` codes, where
     `at` is True, against readings whose peaks end anywhere in the last part of their span. That
-    noise does not move the next sample at the level counts for as much as the noise is wide.
-    free: peaks that end there anyhow."""
+    the next sample stays at the level counts for as much as it does so more often than noise and
+    the other readings let it. free: peaks that end there anyhow."""
     step, spread = _spread(x)
     reached, inside = peaks(x, at)
     runs = max(reached - free, 0)
     # A rail is known beforehand: what jumps there alone could have jumped anywhere.
     known = not free and not inside
     share = width / float(RAIL + 1) if known else width * step / spread
-    held = int((at[1:] & at[:-1]).sum())
+    return _oftener(runs, inside, share) + _held_nats(x, at, step)
+
+
+def _held_nats(x, at, step):
+    """Nats of the next sample's staying at the level where `at` is True."""
+    among, stays = at[:-1], at[1:] & at[:-1]
     bends = np.abs(np.diff(x[~at], n=2)) if (~at).sum() > 3 else np.zeros(1)
     sigma = 1.4826 / math.sqrt(6.0) * float(np.median(bends)) / step  # of a sample, in steps
-    nats = held * math.log(max(math.sqrt(2.0 * math.pi) * sigma, 1.0))
-    if not runs:
-        return nats
-    found = runs / (runs + inside)
-    if found <= share:
-        return 0.0  # readings as they thin out anyhow: what repeats there does so everywhere
-    nats += runs * math.log(found / share)
-    return nats + (inside * math.log((1.0 - found) / (1.0 - share)) if inside else 0.0)
+    by_noise = 1.0 / max(math.sqrt(2.0 * math.pi) * sigma, 1.0)
+    others = ~among
+    repeats = (int((x[1:] == x[:-1])[others].sum()) + 1.0) / (int(others.sum()) + 2.0)
+    return _oftener(int(stays.sum()), int(among.sum() - stays.sum()), max(by_noise, repeats))
+
+
+def _oftener(hits, misses, chance):
+    """Nats of hits being more frequent than `chance`, by any amount alike; nil where they are
+    not [Jeffreys, Theory of Probability (1961), section 5.1]."""
+    if hits <= chance * (hits + misses) or chance >= 1.0:
+        return 0.0
+    more = special.betaincc(hits + 1.0, misses + 1.0, chance) / (1.0 - chance)
+    return max(0.0, math.log(more) + float(special.betaln(hits + 1.0, misses + 1.0))
+               - hits * math.log(chance) - misses * math.log1p(-chance))
 
 
 def peaks(x, at):
@@ -119,8 +132,10 @@ def peaks(x, at):
 
 
 def _spread(x):
-    """(step of the counts, width of the last part of their span)."""
-    step = int(steps(x[:, None])[0])
+    """(step of the counts, width of the last part of their span). Where a bit sticks, of x or of
+    what x is the negative of, what is on either side of it reads alike: a step of two weights."""
+    stuck = fixed_bits(x) + fixed_bits(-x)
+    step = max([int(steps(x[:, None])[0]), *(2 << bit for bit, _ in stuck)])
     return step, max(4.0, 3.0 * step, SPREAD_SHARE * float(np.ptp(x)))
 
 
