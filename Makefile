@@ -3,6 +3,9 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 export SIXFLIP_CACHE ?= $(CURDIR)/.cache
+# Hundreds of programs are started here: where compiled files may not be kept, each of them
+# compiles scipy anew, which is a tenth of a whole test run.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help setup micropython demo test test-qemu test-pico size check bench bench-accuracy bench-fleet fidelity real blind \
 	blind-studies zoo reproduce pictures box package.json clean
