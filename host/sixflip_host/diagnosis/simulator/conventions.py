@@ -81,13 +81,18 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
         return [f for h in tried for f in evidence_of_logs.fits(
             h, measured, kind, pairing.GRID_HZ, inflation, own, live, rows)]
 
-    first = max(judged(1.0), key=lambda f: f.log)
+    def whole(fit, inflation, rows=None):
+        return evidence_of_logs.fit_one(fit.hypothesis, measured, fit.axes, fit.unit,
+                                        pairing.GRID_HZ, kind, inflation, own, live, rows)
+
+    first = whole(max(judged(1.0), key=lambda f: f.log), 1.0)
     rows = local_noise(first.left[:, live])
     inflation = align_by.independent(first.left[:, live] / rows[:, None])
     own = sized(own, lambda sizes: evidence_of_logs.fit_one(
         first.hypothesis, measured, first.axes, first.unit, pairing.GRID_HZ, kind, inflation,
-        (own[0], sizes), live, rows).log)
+        (own[0], sizes), live, rows, left=False).log)
     found, fit = posterior(kind, judged(inflation, rows), live)
+    fit = whole(fit, inflation, rows)
     return SensorFit(kind, found, fit, inflation, pair, fit.hypothesis, own, live)
 
 

@@ -25,7 +25,8 @@ class Fit:
     signal + bias + …; axes (3, 3) and unit: S; extra (k,) with its sigma; delay_s of the
     simulator against the signal, and its sigma; smooth_s2: half the square of the time
     constant by which the simulator is smoother than the signal (negative: less smooth); shape
-    (3, 3): E, with its sigma; left (n, 3): what is not predicted."""
+    (3, 3): E, with its sigma; left (n, 3): what is not predicted, None of a fit that is one of
+    many."""
 
     hypothesis: object
     name: str
@@ -49,14 +50,14 @@ class Fit:
 def fits(hypothesis, measured, kind, grid_hz, inflation=1.0, own=None, live=None,
          rows=None):
     """Fits of a Hypothesis, one for each S that may be: none, and the nearest signed permutation
-    and unit; measured (n, 3); own (columns (n, q), sizes (q,)): what the real sensor adds of
-    itself to each channel; live (3,): channels that are not constant;
+    and unit, without what they leave; measured (n, 3); own (columns (n, q), sizes (q,)): what
+    the real sensor adds of itself to each channel; live (3,): channels that are not constant;
     rows (n,): the noise of each sample, in units of the average."""
     live = np.ones(3, bool) if live is None else live
     found = []
     for axes, unit in candidates(hypothesis, measured, kind, live):
         found.append(fit_one(hypothesis, measured, axes, unit, grid_hz, kind, inflation, own,
-                             live, rows))
+                             live, rows, left=False))
     return found
 
 
@@ -83,14 +84,14 @@ def candidates(hypothesis, measured, kind, live):
     return out
 
 
-def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, rows):
-    """The Fit of a Hypothesis with one S."""
+def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, rows, left=True):
+    """The Fit of a Hypothesis with one S; left: with what it does not predict of every sample."""
     n = len(measured)
     delay, k = 0.0, h.columns.shape[2]
     target = measured / unit
     turned = np.einsum("ij,njk->nik", axes, h.columns)
     for last in (False, False, True):
-        every = 1 if last else max(1, n // MOST_ROWS)  # to find the delay a few rows will do
+        every = 1 if last and left else max(1, n // MOST_ROWS)  # a few rows will do for the rest
         some = slice(None, None, every)
         signal = shifted(h.signal, delay * grid_hz) @ axes.T
         slope = -np.gradient(signal, axis=0) * grid_hz
@@ -115,14 +116,14 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
                             columns, mean, sd, inflation, live, rows if rows is None else
                             rows[some], residuals=last, every=every)
         delay += float(np.clip(result[2][k], -0.05, 0.05))
-    log, beta, shared, sigma, left, beta_sigma = result
+    log, beta, shared, sigma, rest, beta_sigma = result
     log += 0.5 * n / inflation * np.minimum(0.0, np.log(gains(h, beta, shared, unit)))[live].sum()
     matrix = (np.eye(3) + beta[:, :3]) @ axes * unit
     log -= live.sum() * n / inflation * np.log(unit)
     return Fit(h, h.name, log, matrix, beta[:, 3] * unit, axes, unit,
                shared[:k], sigma[:k], delay, float(sigma[k]), float(shared[k + 1]),
                float(sigma[k + 1]), beta[:, :3], beta_sigma[:, :3], beta_sigma[:, 3] * unit,
-               left * unit)
+               rest * unit if left else None)
 
 
 def gains(h, beta, shared, unit):
