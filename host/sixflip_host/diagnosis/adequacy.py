@@ -11,7 +11,7 @@ from scipy import special
 
 from sixflip_sim.effects import typical
 
-from . import evidence, session_offsets
+from . import evidence, odds, session_offsets
 from .evidence import Levels
 
 PLACEMENT = {"accel": 0.87, "gyro": 0.003}  # 0.05 deg across gravity, mg; the Earth's rate
@@ -56,9 +56,10 @@ class Adequacy:
     odd: str = ""
 
 
-def of(units, statistics, scored, shaken=(), by_hand=False):
-    """Adequacy of a scored_sets.Scored; shaken: axes (0..2) that a line of the spectrum is on;
-    by_hand: what a placement adds is the hand's doing, which has any distribution."""
+def of(units, statistics, scored, usual_noise, shaken=(), by_hand=False):
+    """Adequacy of a scored_sets.Scored; usual_noise: evidence.Levels; shaken: axes (0..2) that a
+    line of the spectrum is on; by_hand: what a placement adds is the hand's doing, which has any
+    distribution."""
     shared = scored.shared
     theta = evidence.coefficients(scored.fits, shared)[0][0]
     index, parts, before = [], [], 0.0
@@ -77,10 +78,29 @@ def of(units, statistics, scored, shaken=(), by_hand=False):
     largest = max([chi2 / freedom] + [c / f for c, f in parts])
     looks = len(parts) + 1  # at each of them, and at all together [Bonferroni]
     ok = not (looks * min(p, worst) < DOUBTFUL_P and largest > DOUBTFUL_RATIO)
-    odd, chance = _odd(units, scored, theta, shaken, by_hand)
+    # Noise of the usual size may have any shape: that of parts is not the same on all axes, and
+    # a table sways along several.
+    wanders = wandering_nats(units, statistics, scored, usual_noise) > odds.COST
+    odd, chance = _odd(units, scored, theta, shaken, by_hand) if wanders else ("", 1.0)
     p = min(p, looks * worst if not ok else 1.0, chance if odd else 1.0)
     return Adequacy(ok and not odd, chi2 / freedom, p, tuple(index), chi2 - freedom, before,
                     tuple(parts), odd)
+
+
+def wandering_nats(units, statistics, scored, usual_noise):
+    """Nats by which the readings are likelier with more flicker than evidence.Levels say than
+    with no more than that, beside a scored_sets.Scored."""
+    nats = 0.0
+    for unit, one, private in zip(units, statistics, scored.private):
+        if unit.between or unit.turns:
+            continue
+        flicker = np.array(unit.grid)[:, 1]
+        within = np.flatnonzero(flicker <= max(usual_noise.flicker, flicker.min()))
+        flat = np.zeros(len(unit.grid))
+        every, few = (evidence.fit(unit, one, scored.shared, private, flat, points)
+                      for points in (evidence.EVERY, within))
+        nats += float(every.evidence[0] - few.evidence[0])
+    return nats
 
 
 def _by_chance(chi2, freedom, known):

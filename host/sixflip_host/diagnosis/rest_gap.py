@@ -127,7 +127,7 @@ def _sensor(rest, kind, chip, settings):
              if several or f.effect != SETTLED]
     model = scored_sets.Model(units, data.statistics, levels)
     found = posterior.search(model, forms, cutoffs.of(units, forms, levels))
-    fits = adequacy.of(units, data.statistics, found.best)
+    fits = adequacy.of(units, data.statistics, found.best, levels)
     chosen = [f for f in found.best.forms if not f.generic and len(f.shared)]
     strange = [(f, ["xyz"[axis] for axis, _ in posterior.axes_of(model, found, f)])
                for f in found.best.forms if f.generic and not _settled(f, units, fits, kind)]

@@ -58,7 +58,7 @@ class RestModel:
         best = found.best
         causes = [replace(c, other_axes=posterior.rival_axes(model, forms, found, c.chosen[0]))
                   for c in aliases.causes(found, units, forms)]
-        fitted = adequacy.of(units, data.statistics, best,
+        fitted = adequacy.of(units, data.statistics, best, noise,
                              self.conditions.shaken.get(self.kind, ()), self.kind == "accel")
         added = posterior.domains_left(found)
         if fitted.odd and "drift" in best.names:

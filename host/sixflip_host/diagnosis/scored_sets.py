@@ -11,18 +11,33 @@ from .evidence import NONE
 
 KEPT = 8  # eliminations of each unit that are kept
 NEAR = 14  # forms that are looked at with all levels of noise
+LEAST_GAIN = 1e-6  # nats of a choice made again: rounding has less
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Which of a form's choices a unit takes: number, and what that is worth by itself, nats: what
+    the rests show within themselves less the logarithm of how many there are to choose from."""
+
+    form: object
+    number: int
+    nats: float
+
+    @property
+    def columns(self):
+        """Private Columns."""
+        return self.form.choices[self.number]
 
 
 @dataclass(frozen=True)
 class Scored:
-    """A tuple of Forms with its score (nats), Fit of each unit, private Columns of each unit;
-    chances: what choosing those cost, nats (in the score already)."""
+    """A tuple of Forms with its score (nats), Fit of each unit, and a tuple of Choice of each unit
+    (what those are worth is in the score)."""
 
     forms: tuple
     score: float
     fits: tuple
-    private: tuple
-    chances: float
+    chosen: tuple
 
     @property
     def shared(self):
@@ -31,6 +46,11 @@ class Scored:
     @property
     def names(self):
         return frozenset(f.effect for f in self.forms)
+
+    @property
+    def private(self):
+        """[Columns] of each unit."""
+        return [_private(choices) for choices in self.chosen]
 
 
 class Model:
@@ -50,10 +70,12 @@ class Model:
         return found
 
     def extended(self, base, form):
-        """Scored of a Scored set with one more Form; what is private in it stays as it is."""
+        """Scored of a Scored set with one more Form; what each session chooses for the others is
+        chosen again beside it."""
         key = frozenset((*base.forms, form))
         if key not in self._known:
-            self._known[key] = self._closer(self._looked_at.get(key) or self._rough(base, form))
+            rough = self._looked_at.get(key) or self._rough(base, form)
+            self._known[key] = self._closer(self._chosen_again(rough))
         return self._known[key]
 
     def best(self, base, forms):
@@ -74,7 +96,7 @@ class Model:
         together."""
         found = [self._rough(base, one) if one.choices or one.free else None for one in forms]
         plain = [place for place, one in enumerate(found) if one is None]
-        free = _free(base.forms)
+        free, private = _free(base.forms), base.private
         shared = [_distinct((*base.forms, forms[place])) for place in plain]
         for places in forms_at_once.by_size(shared).values():
             index, prior = (np.stack([getattr(shared[k], name) for k in places])
@@ -82,34 +104,62 @@ class Model:
             fits = [forms_at_once.fit(
                 unit, statistics, index, prior, self._prior(number, free),
                 self._levels_tried(number, free),
-                self._elimination(number, base.private[number]))
+                self._elimination(number, private[number]))
                 for number, (unit, statistics) in enumerate(zip(self.units, self.statistics))]
-            scores = self._score(fits, evidence.Columns(index, prior))
+            scores = self._score(fits, evidence.Columns(index, prior)) + _worth(base.chosen)
             for number, k in enumerate(places):
                 found[plain[k]] = Scored(
-                    (*base.forms, forms[plain[k]]), float(scores[number]) - base.chances,
-                    tuple(forms_at_once.one(fit, number) for fit in fits), base.private,
-                    base.chances)
+                    (*base.forms, forms[plain[k]]), float(scores[number]),
+                    tuple(forms_at_once.one(fit, number) for fit in fits), base.chosen)
         return found
 
     def _rough(self, base, form):
         """Scored of a base with one more Form (both None: of no form), looked at with few levels
-        of noise."""
+        of noise; what is private in the base stays as it is."""
         forms = () if base is None else (*base.forms, form)
-        shared, free = _distinct(forms), _free(forms)
-        fits, privates = [], []
-        chances = 0.0 if base is None else base.chances
-        for place, (unit, statistics) in enumerate(zip(self.units, self.statistics)):
-            private = NONE if base is None else base.private[place]
+        shared, free, chosen = _distinct(forms), _free(forms), []
+        for place, unit in enumerate(self.units):
+            choices = () if base is None else base.chosen[place]
             if form is not None and form.choices and not unit.between:
-                private, nats = self._chosen(place, shared, private, form, free)
-                chances += float(np.log(len(form.choices))) - nats
+                choices = (*choices, self._choice(place, shared, choices, form, free))
+            chosen.append(choices)
+        return self._fitted(forms, shared, free, tuple(chosen))
+
+    def _fitted(self, forms, shared, free, chosen):
+        """Scored of forms with these choices, looked at with few levels of noise."""
+        fits = []
+        for place, (unit, statistics) in enumerate(zip(self.units, self.statistics)):
+            private = _private(chosen[place])
             fits.append(evidence.fit(
                 unit, statistics, shared, private, self._prior(place, free),
                 self._levels_tried(place, free), self._elimination(place, private)))
-            privates.append(private)
-        score = float(self._score(fits, shared)[0])
-        return Scored(forms, score - chances, tuple(fits), tuple(privates), chances)
+        score = float(self._score(fits, shared)[0]) + _worth(chosen)
+        return Scored(forms, score, tuple(fits), chosen)
+
+    def _chosen_again(self, rough):
+        """The Scored set with every session's choices made again beside all the others, as long
+        as that makes it likelier: where a jump is depends on what else there is."""
+        changed = len(rough.forms) > 1
+        while changed:
+            changed = False
+            for form in (f for f in rough.forms if f.choices):
+                chosen = tuple(self._with_choice(place, rough, form)
+                               for place in range(len(self.units)))
+                if chosen == rough.chosen:
+                    continue
+                other = self._fitted(rough.forms, rough.shared, _free(rough.forms), chosen)
+                if other.score > rough.score + LEAST_GAIN:
+                    rough, changed = other, True
+        return rough
+
+    def _with_choice(self, place, scored, form):
+        """The choices of one unit with that of a form made again."""
+        choices = scored.chosen[place]
+        others = tuple(one for one in choices if one.form != form)
+        if len(others) == len(choices):
+            return choices
+        best = self._choice(place, scored.shared, others, form, _free(scored.forms))
+        return tuple(best if one.form == form else one for one in choices)
 
     def _closer(self, rough):
         """The Scored set looked at with all levels of noise around its likeliest."""
@@ -119,8 +169,8 @@ class Model:
             fits.append(evidence.fit(
                 unit, self.statistics[place], rough.shared, private, self._prior(place, free),
                 unit.around(int(fit.index[0])), self._elimination(place, private)))
-        score = float(self._score(fits, rough.shared)[0])
-        return replace(rough, score=score - rough.chances, fits=tuple(fits))
+        score = float(self._score(fits, rough.shared)[0]) + _worth(rough.chosen)
+        return replace(rough, score=score, fits=tuple(fits))
 
     def _score(self, fits, shared):
         return evidence.score(fits, shared, self.units[0].apart, self._positive)
@@ -151,11 +201,10 @@ class Model:
                 self.units[place], self.statistics[place], private)
         return self._eliminations[key]
 
-    def _chosen(self, place, shared, private, form, free):
-        """(private Columns with the likeliest choice of a form, nats that what the rests show
-        within themselves says for it)."""
+    def _choice(self, place, shared, beside, form, free):
+        """The likeliest Choice of a form in one unit, beside a tuple of Choice of the others."""
         unit, found = self.units[place], []
-        elimination = self._elimination(place, private)
+        elimination = self._elimination(place, _private(beside))
         # Integrated out by its prior a column is the same, shared or private.
         together = [shared + one for one in form.choices]
         for numbers in forms_at_once.by_size(together).values():
@@ -167,7 +216,17 @@ class Model:
                 within = unit.within.get((form.effect, number), 0.0)
                 found.append((likelihood + within, number, within))
         _, number, within = max(found)
-        return private + form.choices[number], within
+        return Choice(form, number, within - float(np.log(len(form.choices))))
+
+
+def _private(choices):
+    """Columns of a tuple of Choice."""
+    return sum((one.columns for one in choices), NONE)
+
+
+def _worth(chosen):
+    """Nats of all units' choices by themselves."""
+    return sum(one.nats for choices in chosen for one in choices)
 
 
 def _free(forms):

@@ -1,11 +1,13 @@
 """Rests of real recordings, cut into pieces: the noise of synthetic poses.
 
 There is less of it than a session needs, and a piece that comes again and again would make a
-line of every chance peak of its spectrum. So each time it is played a little faster or slower.
+line of every chance peak of its spectrum. So each time it is played a little faster or slower. A
+piece with a knock in it is left out, which would come again every minute. What lines a recording
+has is computed here by scipy's spectrogram alone: a diagnosis that finds one finds what is there.
 """
 
 import numpy as np
-from scipy import signal
+from scipy import signal, special
 
 from . import real_captures
 
@@ -14,6 +16,9 @@ FASTER = 0.1  # share by which a piece is played faster or slower at most
 RATE = 100.0  # what they are played at; recorded at 100, 102.4 and 333 / 3 Hz
 SUAREZ_REST = (50, 3600)
 SETTLING = 4.0  # times what white noise lets means over a second scatter: it is no rest yet
+KNOCK = 6.0  # robust deviations of a sample off those beside it; a normal one in 5e8 has it
+LINE_N, LINE_P = 256, 1e-6  # samples of a stretch of a spectrum; chance of a peak in all of it
+WIDEST = 41  # bins of the median that a peak stands out of, odd
 STILL_MG, STILL_DPS = 8.0, 0.6  # RMS over a second of an Xsens at rest; it reads some 2.5, 0.3
 
 
@@ -29,8 +34,34 @@ def pieces(place):
              "xsens": [_scaled(xsens)[a:b] for a, b in still(xsens)],
              "imucal": [_scaled(ferraris)[a:b] for a, b in labelled(ferraris)],
              "tree": tree}  # its board has no gyro: that of the other MPU6050
-    return {name: [piece for rest in rests for piece in _cut(rest) if not settling(piece)]
-            for name, rests in found.items()}
+    return {name: [piece for rest in rests for piece in _cut(rest)
+                   if not (settling(piece) or knocked(piece))] for name, rests in found.items()}
+
+
+def knocked(piece):
+    """True when a single sample lies further off those beside it than noise has it."""
+    beside = np.median([piece[:-4], piece[1:-3], piece[3:-1], piece[4:]], axis=0)
+    off = np.abs(piece[2:-2] - beside)
+    return bool((off > KNOCK * 1.4826 * np.maximum(np.median(off, axis=0), 1e-9)).any())
+
+
+def lines(cut):
+    """{(sensor, axis letter): [Hz]} of the peaks in the mean spectrum of pieces (n, 6) that stand
+    out of its running median: the mean of R periodograms is Gamma distributed."""
+    found = {}
+    for channel in range(6):
+        power = [signal.spectrogram(piece[:, channel], RATE, "hann", LINE_N, 0,
+                                    detrend="linear")[2] for piece in cut if len(piece) >= LINE_N]
+        power = np.concatenate(power, axis=1)
+        mean, number = (power / np.median(power, axis=0)).mean(axis=1), power.shape[1]
+        floor = signal.medfilt(np.pad(mean, WIDEST // 2, "reflect"), WIDEST)[
+            WIDEST // 2:-(WIDEST // 2)]
+        chance = special.gammaincc(number, number * mean / floor)
+        peaks = np.flatnonzero(chance < LINE_P / len(mean))
+        if len(peaks):
+            found["accel" if channel < 3 else "gyro", "xyz"[channel % 3]] = [
+                RATE / LINE_N * float(k) for k in peaks]
+    return found
 
 
 def settling(piece):

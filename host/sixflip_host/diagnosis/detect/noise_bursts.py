@@ -10,6 +10,9 @@ import numpy as np
 from scipy import special
 
 from ...capture import registers
+from .. import odds
+from .detection import present
+from .torn_reads import student
 
 WORDS = {"accel": "accelerometer", "gyro": "gyro"}
 
@@ -39,23 +42,27 @@ def loud(session, sensor):
 
 SPIKE = 4.5  # standard deviations of a single sample off its neighbours, which agree
 AGREE = 4.0  # standard deviations that the four neighbours may differ by
-# Of such a sample in noise by Student's t with some 25 degrees of freedom; by simulation 9e-5 with
-# 20, 4e-5 with 30, 7e-6 in normal noise.
-SPIKE_CHANCE = 5e-5
 LEAST_SPIKES = 10  # knocks on a table come singly
+# How heavy the tails of noise are, Student's t: rests of the recordings have 6 and more
+# (`python -m tests.studies.robustness.tails`). Jumps: so many times the noise wide.
+TAILS, WIDTHS = (5.0, 8.0, 15.0, 40.0, 200.0), (10.0, 30.0, 100.0, 1000.0)
+SHARES = tuple(10.0 ** np.arange(-4.0, -0.9, 0.25))  # of samples that jump, tried
+SCALES = tuple(np.arange(0.7, 1.31, 0.05))  # of the noise, about what its middle says
+FINE = 50.0  # steps of the inverse hyperbolic sine in which sizes are counted
 PASSES = 6  # of three side by side the one between is seen when the others are gone
-SPIKES_P = 1e-6  # so rare that in 100,000 samples a tail half as heavy again is no find either
 
 
 @dataclass(frozen=True, eq=False)
 class Spikes:
     """Single samples far off the two before and the two after in a session's rests: wild (N, 3),
-    which they are; middle (N, 3) counts, what those beside them read; looked: samples looked at.
-    Counts within a few steps of their neighbours never are."""
+    which they are; middle (N, 3) counts, what those beside them read; looked: samples looked at;
+    sizes (n,): how far off all of those are whose neighbours agree, in standard deviations.
+    Counts within a few steps of their neighbours never are wild."""
 
     wild: np.ndarray
     middle: np.ndarray
     looked: int
+    sizes: np.ndarray
 
     @property
     def number(self):
@@ -65,7 +72,7 @@ class Spikes:
 def spikes(session, sensor, agreeing=4):
     """Spikes of one sensor of a session; agreeing: of the four samples beside one, those that have
     to agree."""
-    counts, looked = getattr(session.capture, sensor), 0
+    counts, looked, sizes = getattr(session.capture, sensor), 0, [np.zeros(0)]
     wild, between = np.zeros(counts.shape, bool), np.array(counts, dtype=float)
     narrowest = registers.steps(counts)
     for _, first, end in session.runs:
@@ -80,7 +87,25 @@ def spikes(session, sensor, agreeing=4):
         wild[first + 2:end - 2] = (off > SPIKE * sigma) & agree
         between[first + 2:end - 2] = middle
         looked += len(off)
-    return Spikes(wild, between, looked)
+        sizes.append((off / sigma)[agree])
+    return Spikes(wild, between, looked, np.concatenate(sizes))
+
+
+def jump_nats(sizes):
+    """Nats of some samples jumping over noise with tails alone, of how far samples are off, (n,)
+    standard deviations: the likeliest tails and scale in either, what was tried paid."""
+    if not len(sizes):
+        return 0.0
+    place, number = np.unique(np.rint(np.arcsinh(sizes) * FINE), return_counts=True)
+    z, plain, jumping = np.sinh(place / FINE), [], []
+    wide = [np.exp(-0.5 * (z / width) ** 2) / (width * np.sqrt(2.0 * np.pi)) for width in WIDTHS]
+    for freedom in TAILS:
+        for scale in SCALES:
+            sound = student(z / scale, freedom) / scale
+            plain.append(number @ np.log(sound))
+            jumping += [number @ np.log((1.0 - share) * sound + share * jump)
+                        for share in SHARES for jump in wide]
+    return float(max(jumping) - max(plain) - np.log(len(SHARES) * len(WIDTHS)))
 
 
 def _deviation(off):
@@ -91,20 +116,20 @@ def _deviation(off):
 
 
 def without_spikes(sessions, leaping=()):
-    """(sessions, [(sensor, sentence, p)]): where single samples are far off more often than noise
-    has them, they read as those beside them do. What is wild says nothing of where a rest lies,
-    and as much as all others of a mean. leaping: sensors whose counts leap anyhow."""
+    """(sessions, [(sensor, sentence, p)]): where single samples are far off more often than the
+    tails of noise have them, they read as those beside them do. What is wild says nothing of where
+    a rest lies, and as much as all others of a mean. leaping: sensors whose counts leap anyhow."""
     out = []
     for sensor, words in WORDS.items():
         if sensor in leaping or any(getattr(s.capture, sensor) is None for s in sessions):
             continue
         each = [spikes(s, sensor) for s in sessions]
         number, looked = sum(one.number for one in each), sum(one.looked for one in each)
-        p = float(special.bdtrc(number - 1, looked, 3.0 * SPIKE_CHANCE)) if looked else 1.0
-        if number < LEAST_SPIKES or p >= SPIKES_P:
+        nats = jump_nats(np.concatenate([one.sizes for one in each]))
+        if number < LEAST_SPIKES or not present(nats):
             continue
         out.append((sensor, "%d of %d samples of the %s at rest are far off those before and "
-                    "after them: spikes" % (number, looked, words), p))
+                    "after them: spikes" % (number, looked, words), odds.chance(nats)))
         sessions = [_put_right(s, sensor) for s in sessions]
     return sessions, out
 
