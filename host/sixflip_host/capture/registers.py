@@ -43,8 +43,39 @@ def spacing(size, least):
     return float(np.median(np.diff(values))) if len(values) > 2 else float(least)
 
 
+FEWEST_NEAR, LEAST_NOISE = 50, 0.3  # samples beside 0; steps: with less noise 0 may be all
+WINDOW, FEWEST_WINDOWS, QUIET = 32, 8, 0.1  # samples; windows away from 0; share that is at rest
+
+
+def zeros_beyond_noise(column):
+    """(zeros, how many there would be by the codes beside 0 at most) of a column (n,) of counts,
+    or None where that cannot be told. Noise of a standard deviation s makes a code more frequent
+    than the two beside it by exp(1 / (2 s^2)) at most, wherever its mean is; s is known where the
+    column rests away from 0."""
+    x, step = column.astype(np.int64), int(steps(column[:, None])[0])
+    beside = int(((x != 0) & (np.abs(x) <= 2 * step)).sum())
+    windows = x[:len(x) // WINDOW * WINDOW].reshape(-1, WINDOW)
+    away = windows[(np.abs(windows) > 2 * step).all(axis=1)]
+    if beside < FEWEST_NEAR or len(away) < FEWEST_WINDOWS:
+        return None
+    noise = float(np.quantile(np.diff(away, axis=1).std(axis=1), QUIET)) / np.sqrt(2.0) / step
+    if noise < LEAST_NOISE:
+        return None
+    return int((x == 0).sum()), beside / 4.0 * float(np.exp(0.5 / noise ** 2))
+
+
+def _flat(column):
+    """Half the width (counts) of a band that reads 0 and that what is beyond it begins at 0
+    again, so that no code is missing; 0 where 0 is as frequent as the codes beside it."""
+    told = zeros_beyond_noise(column)
+    if told is None or told[0] <= 3.0 * told[1]:  # one step to either side: rounding towards 0
+        return 0
+    return round(0.5 * (told[0] / told[1] - 1.0) * int(steps(column[:, None])[0]))
+
+
 def dead_band(counts):
-    """(3,) smallest count that is not 0, where many more near 0 were to be expected."""
+    """(3,) counts up to which an axis reads 0: the smallest that is not 0, where many more near 0
+    were to be expected; or by how often 0 is read, where no code is missing."""
     out = []
     for column in counts.T:
         small = np.abs(column.astype(np.int64))
@@ -56,7 +87,7 @@ def dead_band(counts):
         step = max(1, steps(column[:, None])[0], spacing(small, least))
         near = int((others < 2 * least).sum())
         expected = near * (least / step - 1.0) / max(least / step, 1.0)
-        out.append(least if zeros > 20 and least > 2 * step and expected > 40 else 0)
+        out.append(least if zeros > 20 and least > 2 * step and expected > 40 else _flat(column))
     return np.array(out)
 
 

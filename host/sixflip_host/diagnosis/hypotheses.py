@@ -180,8 +180,19 @@ def _variable(effect):
 def alike(form, other):
     """Whether two named effects are functions of one variable, on an axis that both have: another
     form of the one is then some of the other."""
-    return bool(set(_variable(form.effect)) & set(_variable(other.effect))
-                and set(form.axes) & set(other.axes))
+    return _meet(form, other, set(_variable(other.effect)))
+
+
+def may_be_left_by(form, other):
+    """Whether a named effect may be what the form of another one leaves: it is a function of that
+    one's variable, or of time, of which every temperature is a function."""
+    variables = set(_variable(other.effect))
+    return _meet(form, other, variables | ({"time"} if "temperature" in variables else set()))
+
+
+def _meet(form, other, variables):
+    return bool(variables.intersection(_variable(form.effect)) and set(form.axes) & set(
+        other.axes))
 
 
 def _of_variable(designs, forms, names):

@@ -132,7 +132,7 @@ def _pruned(model, best, cost):
         needed = {form: cost.of(form) + PRESENT + max(
             [_unknown(form, f, cost) * (
                 alone if f.generic or form.effect == "drift"
-                else energy if hypotheses.alike(form, f) else gains)[f]
+                else energy if hypotheses.may_be_left_by(form, f) else gains)[f]
              for f in best.forms if f is not form], default=0.0) for form in best.forms}
         weakest = min(best.forms, key=lambda f: gains[f] - needed[f])
         if gains[weakest] >= needed[weakest]:
@@ -181,31 +181,41 @@ def _energies(best):
 
 
 def _place(model, forms, best, form, cost):
-    """({effect or "": probability}, gain in nats) of one member's place."""
+    """({effect or "": probability}, gain in nats) of one member's place. Names compete with their
+    discrepancy there, as they do in the set; but not those of time for a stranger's place, of
+    which everything is a function."""
     others = tuple(f for f in best.forms if f is not form)
     empty = model.scored(others)
     scores = {"": empty.score, form.effect: best.score - cost.of(form)}
     for rival, one in model.best(empty, _free(forms, empty)):
-        scores[rival.effect] = max(one.score - cost.of(rival),
-                                   scores.get(rival.effect, -np.inf))
+        if not (form.generic and hypotheses.domain(rival.effect) == "time"):
+            one = _wider(model, forms, one, cost, rival)
+        there = next(f for f in one.forms if f.effect == rival.effect)
+        scores[rival.effect] = max(one.score - cost.of(there), scores.get(rival.effect, -np.inf))
     return odds.shares(scores), best.score - empty.score
 
 
 def _with_discrepancy(model, forms, scored, cost):
     """The set with a discrepancy beside those named members that are likelier with one: another
     functional form of the same cause is neither a second name nor a stranger."""
-    for place, form in enumerate(scored.forms):
-        others = scored.forms[:place] + scored.forms[place + 1:]
-        for one in forms:
-            if form.generic or (one.effect, one.axis) != (form.effect, form.axis):
-                continue
-            plain = model.scored((*others, one))
-            wider = hypotheses.with_discrepancy(model, forms, plain, one)
-            if wider is None:
-                break
-            found = model.scored((*others, wider))
-            if _worth(found, cost) > _worth(scored, cost) + FORM_COST:
-                scored = found
+    for form in scored.forms:
+        scored = _wider(model, forms, scored, cost, form)
+    return scored
+
+
+def _wider(model, forms, scored, cost, form):
+    """The set with a discrepancy beside this member where that is likelier."""
+    others = tuple(f for f in scored.forms if f != form)
+    for one in forms:
+        if form.generic or (one.effect, one.axis) != (form.effect, form.axis):
+            continue
+        plain = model.scored((*others, one))
+        wider = hypotheses.with_discrepancy(model, forms, plain, one)
+        if wider is None:
+            break
+        found = model.scored((*others, wider))
+        if _worth(found, cost) > _worth(scored, cost) + FORM_COST:
+            scored = found
     return scored
 
 

@@ -16,7 +16,8 @@ from .detect import (
 from .settings import Conditions
 
 COARSE = ("quantisation", "dead_band", "saturation", "torn_reads")
-NOISY = ("vibration", "torn_reads", "saturation")  # what makes some seconds louder
+# What makes some seconds louder, and some samples leap.
+NOISY = ("vibration", "torn_reads", "saturation", "dead_band")
 SCALES = ("full_scale", "gravity")  # damages that every reading of a sensor has
 SENSOR = {"accel": "accelerometer", "gyro": "gyro"}
 
@@ -53,7 +54,8 @@ def of(sessions, without=(), damages=()):
                 if f.effect not in without]
     damages = [*damages, *held_values.findings(sessions), *wrong_scale.findings(sessions)]
     bits = registers.stuck_bits(sessions)
-    leaping = {sensor for sensor, *_ in bits}
+    leaping = {sensor for sensor, *_ in bits} | {
+        f.sensor for f in findings if f.effect == "dead_band"}
     noisy = leaping | {f.sensor for f in findings if f.effect in NOISY}
     jumpy = {f.sensor for f in findings if f.effect in ("torn_reads", "dead_band")}
     without_spikes, wild = noise_bursts.without_spikes(sessions, leaping)

@@ -12,7 +12,7 @@ from numpy.polynomial import legendre
 
 from sixflip.poses import faces
 
-from ..experiment.terms import Design, harmonics
+from ..experiment.terms import LAGS_S, Design, harmonics
 
 SCALE = {"accel": 5.0, "gyro": 0.05}  # mg, deg/s: as large as the library's effects are
 HATS = 6  # corners of what is smooth in time and repeats in every session
@@ -50,8 +50,13 @@ def shared(session, up, sensor, reference_c):
     scale = SCALE[sensor]
     found = [_smooth("time", hats(session.t, HATS), n, scale)]
     if session.thermal:
+        # A part may lag behind its thermometer by itself, too: to first order that is a share of
+        # the temperature's rate, which else would be named. Without a lag last: see hypotheses.
+        for lag in sorted((lag for lag in LAGS_S if lag >= 0.0), reverse=True):
+            t = (session.thermometer.lagged(session.t, lag) - reference_c) / 5.0
+            found.append(_smooth("temperature", [t, t ** 2, t ** 3], n, scale,
+                                 "lag %g s" % lag if lag else ""))
         t = (session.temperature - reference_c) / 5.0
-        found.append(_smooth("temperature", [t, t ** 2, t ** 3], n, scale))
         found.append(_smooth("thermal_orientation", [t * f[:, i] for i in range(3)], n, scale))
     before = np.stack(m.before, 1)
     history = [before[:, i] for i in range(3)] + [before[:, i] * before[:, j] for i in range(3)

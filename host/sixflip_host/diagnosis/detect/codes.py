@@ -3,7 +3,7 @@ import math
 
 import numpy as np
 
-from ...capture.registers import LOW_BITS, RAIL, codes, spacing, steps
+from ...capture.registers import LOW_BITS, RAIL, codes, spacing, steps, zeros_beyond_noise
 
 STEPS_TRIED = 1 << LOW_BITS
 
@@ -32,14 +32,14 @@ def zeros(counts):
 def band_nats(counts):
     """(3,) log likelihood ratio (nats) of readings near 0 being 0: how often the readings just
     outside of the band would have gone inside (Poisson), and how much more often 0 is read than
-    a code beside it. A run of samples counts once."""
+    a code beside it; where no code is missing that alone. A run of samples counts once."""
     out = []
     for column in counts.T:
         size = np.abs(column.astype(np.int64))
         least = int(size[size > 0].min()) if size.any() else 0
         step = max(1, steps(column[:, None])[0], spacing(size, least)) if least else 1
         if least <= step:
-            out.append(0.0)
+            out.append(_flat_nats(column))
             continue
         beside = _runs((size > 0) & (size < 2 * least))
         missed = beside * (1.0 - step / least)
@@ -47,6 +47,16 @@ def band_nats(counts):
         piled = zeros * math.log(max(zeros / expected, 1.0)) - max(zeros - expected, 0.0)
         out.append(missed + piled - math.log(len(codes(size))) if zeros else 0.0)
     return np.array(out)
+
+
+def _flat_nats(column):
+    """Nats of 0 being read more often than the codes beside it let noise do."""
+    told = zeros_beyond_noise(column)
+    if told is None or told[0] <= told[1]:
+        return 0.0
+    number, expected = told
+    return (number * math.log(number / expected) - (number - expected)) * _runs(
+        column == 0) / number
 
 
 def bit_nats(columns):

@@ -12,7 +12,7 @@ from .detection import present
 
 FEWEST = 200  # rows
 STRETCH = 256  # rows
-HELD = 0.05  # share of rows that are held: fewer are no way of working
+HELD = 0.05  # share of rows that are held: fewer are single rows, not a rate
 WORDS = {"accel": "accelerometer", "gyro": "gyro"}
 TIMES = {2: "twice", 3: "three times", 4: "four times"}
 
@@ -27,7 +27,13 @@ def findings(sessions):
         parts = [repeats(c) for c in columns]
         nats, held, rows = (sum(v) for v in zip(*parts))
         share = held / max(rows, 1)
-        if share < HELD or not present(nats):
+        if not present(nats):
+            continue
+        if share < HELD:
+            said = "about %.0f rows of the %s are the row before once more: read again" % (
+                held, words)
+            found.append(Damage("repeats", sensor, (), "timing", said, nats,
+                                {"rows": round(held)}))
             continue
         times = 1.0 / (1.0 - min(share, 0.999))
         whole = TIMES.get(round(times)) if abs(times - round(times)) < 0.1 else None

@@ -45,10 +45,11 @@ def together(tables):
                      for f in fields(Samples)))
 
 
-def tabled(column, banded, at_rest=None):
+def tabled(column, banded, at_rest=None, again=None):
     """Samples of a column (n,) of whole numbers that are not at its ends, or None where noise
     hides a page; banded: a reading of 0 says nothing; at_rest (n,): which of them are in a rest,
-    None: all."""
+    None: all; again (n,): which are rows read again: where the box turns,
+    their page is that of the row before."""
     around = np.lib.stride_tricks.sliding_window_view(column, 7)
     noise = 1.4826 / np.sqrt(2.0) * float(np.median(np.abs(np.diff(column))))
     span, middle = _beside(around)
@@ -63,10 +64,15 @@ def tabled(column, banded, at_rest=None):
     for mask in (known, calm & ~known, ~calm):
         if mask.any():
             sigma[mask] = max(1.4826 * float(np.median(np.abs(off[mask]))), 1.0)
+    # A hand is steady in one move and jerky in the next: there more is usual, for tails are not.
+    here = 1.4826 * ndimage.median_filter(np.abs(off), 2 * LONG + 1, mode="nearest")
+    sigma = np.where(calm, sigma, np.maximum(sigma, here))
     widest = np.where(known & _white(off / sigma, known), BLURRED, BLURRED_MOVING)
     keep = sigma < widest
     if banded:
         keep &= (around != 0).all(axis=1)
+    if again is not None:
+        keep &= calm | ~np.lib.stride_tricks.sliding_window_view(again, 7).any(axis=1)
     if keep.sum() < FEWEST:
         return None
     off, sigma, page = off[keep], sigma[keep], column // PAGE

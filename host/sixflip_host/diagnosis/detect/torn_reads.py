@@ -35,7 +35,8 @@ LEAST = 1e-200  # of a density: what a float still divides by
 def finding(sessions, sensor, banded=()):
     """[Finding] of torn reads in a sensor, or []; banded: axes on which readings near 0 read 0,
     which are jumps with a name."""
-    tables = [tabled(counts[:, axis].astype(np.int64), axis in banded, _at_rest(s, len(counts)))
+    tables = [tabled(counts[:, axis].astype(np.int64), axis in banded, _at_rest(s, len(counts)),
+                     _again(counts))
               for s in registers.of_counts(sessions, sensor)
               for counts in [getattr(s.capture, sensor)] if len(counts) >= FEWEST
               for axis in range(3)]
@@ -62,6 +63,11 @@ def _at_rest(session, number):
     for run in session.runs:
         rests[run.first:run.end] = True
     return rests
+
+
+def _again(counts):
+    """(n,) which rows of counts (n, 3) are the same as the one before."""
+    return np.concatenate([[False], (counts[1:] == counts[:-1]).all(axis=1)])
 
 
 def jumps(sessions, without=()):
