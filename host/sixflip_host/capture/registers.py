@@ -51,7 +51,8 @@ def zeros_beyond_noise(column):
     """(zeros, how many there would be by the codes beside 0 at most) of a column (n,) of counts,
     or None where that cannot be told. Noise of a standard deviation s makes a code more frequent
     than the two beside it by exp(1 / (2 s^2)) at most, wherever its mean is; s is known where the
-    column rests away from 0."""
+    column rests away from 0. What reads 0 for longer than a window may have rested there: that
+    says nothing of how wide a band is."""
     x, step = column.astype(np.int64), int(steps(column[:, None])[0])
     beside = int(((x != 0) & (np.abs(x) <= 2 * step)).sum())
     windows = x[:len(x) // WINDOW * WINDOW].reshape(-1, WINDOW)
@@ -61,7 +62,9 @@ def zeros_beyond_noise(column):
     noise = float(np.quantile(np.diff(away, axis=1).std(axis=1), QUIET)) / np.sqrt(2.0) / step
     if noise < LEAST_NOISE:
         return None
-    return int((x == 0).sum()), beside / 4.0 * float(np.exp(0.5 / noise ** 2))
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], (x == 0).astype(int), [0]])))
+    lasts = edges[1::2] - edges[::2]
+    return int(lasts[lasts <= WINDOW].sum()), beside / 4.0 * float(np.exp(0.5 / noise ** 2))
 
 
 def _flat(column):

@@ -6,6 +6,7 @@ and flicker, the twelve parameters fitted. What is compared are the contrasts, s
 nominal is in the difference.
 """
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -26,16 +27,20 @@ from . import coefficient_fits, effect_estimates
 TAUS_S = (30.0, 60.0, 120.0, 200.0, 300.0, 400.0, 600.0, 1000.0, 3000.0)
 
 
+@dataclass(frozen=True, eq=False)
 class ReplayScene:
-    """The attitudes of a session's placements at their times; a move holds the one before."""
+    """The attitudes of a session's placements at their times; a move holds the one before.
 
-    lever_arm = None
+    starts (n,) s and attitudes (n, 9) of the placements, body to table by rows; the temperature as
+    sensor_model.SensorModel asks for it: end, change (degC) and time constant (s); g in m/s^2."""
 
-    def __init__(self, session, up, g=STANDARD_G):
-        self.g = g
-        self.starts = np.array([session.t_s[first] for _, first, _ in session.runs])
-        self.attitudes = np.array([body_to_table(u, 0.0).ravel() for u in up])
-        self.temperature_c, self.warm_c, self.warm_tau_s = cooling(session)
+    starts: np.ndarray
+    attitudes: np.ndarray
+    temperature_c: float
+    warm_c: float
+    warm_tau_s: float
+    g: float = STANDARD_G
+    lever_arm: object = None
 
     def fill(self, found, t_us):
         """Fill a scene_arrays.Motion."""
@@ -46,6 +51,13 @@ class ReplayScene:
         found.before[:] = self.g * self.attitudes[np.maximum(place - 1, 0)][:, 6:9].T
         found.resting[:] = True
         found.since[:] = np.maximum(t - self.starts[place], 0.0)
+
+
+def replayed(session, up):
+    """ReplayScene of a blocks.Session whose placements feel up (n, 3), unit vectors."""
+    starts = np.array([session.t_s[first] for _, first, _ in session.runs])
+    attitudes = np.array([body_to_table(u, 0.0).ravel() for u in up])
+    return ReplayScene(starts, attitudes, *cooling(session))
 
 
 def cooling(session):
@@ -105,7 +117,7 @@ def shape(effect, variant, reference_c):
 def simulated(session, nominal, level, effects, seed):
     """Capture of the simulated twin of a session. level: {sensor: flicker}; effects: specs."""
     capture = session.capture
-    scene = ReplayScene(session, nominal.up)
+    scene = replayed(session, nominal.up)
     inverse = np.linalg.inv(nominal.matrix)
     rate = session.rate
     sigma = session.noise_accel * math.sqrt(rate) * 1e-3 * STANDARD_G
@@ -142,9 +154,19 @@ def _checked(spec):
     return spec
 
 
+@dataclass(frozen=True, eq=False)
 class Loop:
-    """For one sensor: before, after, floor (RMS of real less simulated), share; effects: the
-    specs added, from all sessions; before_twin, after_twin: contrasts of the last session."""
+    """For one sensor: before, after, floor (RMS of real less simulated, mg or deg/s), share of the
+    gap that closes or None; effects: the specs added, from all sessions; before_twin, after_twin:
+    blocks.Session of the last session's twin at rest, without and with them, or None."""
+
+    before: float
+    after: float
+    floor: float
+    share: float | None
+    effects: list
+    before_twin: object = None
+    after_twin: object = None
 
 
 def close(gap, reference_c):
@@ -154,21 +176,21 @@ def close(gap, reference_c):
     columns = np.concatenate([c.columns for c in gap.chosen])
     prior = np.concatenate([c.prior for c in gap.chosen])
     fits = coefficient_fits.fits(gap.data, columns, prior)
-    loop = Loop()
-    loop.effects = specs(gap, coefficient_fits.coefficients(fits, prior)[0][0], reference_c)
-    sums = np.zeros(4)
+    sums, twins = np.zeros(4), ()
     for held, unit in enumerate(gap.units[:len(gap.parts)]):
         others = fits[:held] + fits[held + 1:] or fits
         theta = coefficient_fits.coefficients(others, prior)[0][0]
-        sums += _session(gap, held, unit, specs(gap, theta, reference_c), loop)
-    loop.before, loop.after, loop.floor = (float(np.sqrt(v / sums[3])) for v in sums[:3])
+        added, twins = _session(gap, held, unit, specs(gap, theta, reference_c))
+        sums += added
     gap_square = sums[0] - sums[2]
-    loop.share = float((sums[0] - sums[1]) / gap_square) if gap_square > 0.1 * sums[2] else None
-    return loop
+    return Loop(*(float(np.sqrt(v / sums[3])) for v in sums[:3]),
+                float((sums[0] - sums[1]) / gap_square) if gap_square > 0.1 * sums[2] else None,
+                specs(gap, coefficient_fits.coefficients(fits, prior)[0][0], reference_c), *twins)
 
 
-def _session(gap, held, unit, effects, loop):
-    """Sums of squares (before, after, floor) and the number of contrasts of one session."""
+def _session(gap, held, unit, effects):
+    """(sums of squares (before, after, floor) and the number of contrasts of one session, its
+    twins without and with the effects)."""
     session, nominal = gap.parts[held]
     if gap.kind == "accel":
         nominal = uncovered(gap, session, unit, nominal)
@@ -176,16 +198,15 @@ def _session(gap, held, unit, effects, loop):
     level = {gap.kind: point[1]}
     # The twin lies as the real box lay: placement is in neither.
     floor = unit.noise_energy(unit.grid[0][0], point[1])
-    out = []
-    for number, added in enumerate(([], effects)):
-        twin = blocks.of(session.name, simulated(session, nominal, level, added,
-                                                            1000 + held))
+    out, twins = [], []
+    for added in ([], effects):
+        twin = blocks.of(session.name, simulated(session, nominal, level, added, 1000 + held))
         y = nominal_rows.accel_rows(twin, gap.parts[held][1]) if gap.kind == "accel" else \
             twin.gyro.reshape(-1)
         difference = unit.z - unit.contrasts(y)
         out.append(float(difference @ difference))
-        setattr(loop, ("before_twin", "after_twin")[number], twin)
-    return np.array([*out, 2.0 * float(floor), float(unit.freedom)])
+        twins.append(twin)
+    return np.array([*out, 2.0 * float(floor), float(unit.freedom)]), twins
 
 
 def uncovered(gap, session, unit, nominal):

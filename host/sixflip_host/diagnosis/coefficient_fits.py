@@ -6,46 +6,54 @@ with the effects in [Patterson & Thompson, Biometrika 58 (1971) 545].
 
 All functions take R data sets at once, R = 1 for the real one.
 """
+from dataclasses import dataclass
+
 import numpy as np
 
 
+@dataclass(frozen=True, eq=False)
 class Data:
-    """Statistics of R data sets in every unit: lists of (quadratic (G, R), projections)."""
+    """Units with the statistics of R data sets in every one: lists of Unit and of (quadratic
+    (G, R), projections (G, K, R))."""
 
-    def __init__(self, units, contrasts=None):
-        self.units = units
-        self.statistics = [u.statistics(None if contrasts is None else contrasts[i])
-                           for i, u in enumerate(units)]
+    units: list
+    statistics: list
 
 
+def data_of(units, contrasts=None):
+    """Data of these units, or of other contrasts (m, R) in each of them."""
+    return Data(units, [u.statistics(None if contrasts is None else contrasts[i])
+                        for i, u in enumerate(units)])
+
+
+@dataclass(frozen=True, eq=False)
 class Fit:
     """Restricted maximum likelihood in one unit: index of the grid (R,), course (G, R) of the log
-    likelihood over it, sums for pooling."""
+    likelihood over it, inner (R, k) and gram (R, k, k) there, for pooling."""
 
-    def __init__(self, unit, statistics, columns, prior):
-        quadratic, projections = statistics
-        k = len(columns)
-        precision = np.diag(1.0 / prior ** 2) if k else np.zeros((0, 0))
-        gram = unit.gram.of(columns)
-        inner = projections[:, columns]
-        loglik = -0.5 * quadratic - unit.logdet[:, None]
-        if k:
-            full = gram + precision
-            solved = np.linalg.solve(full, inner)
-            loglik = loglik + 0.5 * (inner * solved).sum(axis=1)
-            loglik = loglik - 0.5 * np.linalg.slogdet(full)[1][:, None]
-        self.course, self.index = loglik, loglik.argmax(axis=0)
-        self.loglik = loglik.max(axis=0)
-        every = np.arange(quadratic.shape[1])
-        self.quadratic = quadratic[self.index, every]
-        self.inner = inner[self.index, :, every]  # (R, k)
-        self.gram = gram[self.index]  # (R, k, k)
-        self.logdet = unit.logdet[self.index]
+    index: np.ndarray
+    course: np.ndarray
+    inner: np.ndarray
+    gram: np.ndarray
+
+
+def fit(unit, statistics, columns, prior):
+    """Fit of columns (k,) with the standard deviations prior (k,) of their coefficients."""
+    quadratic, projections = statistics
+    gram, inner = unit.gram.of(columns), projections[:, columns]
+    course = -0.5 * quadratic - unit.logdet[:, None]
+    if len(columns):
+        full = gram + np.diag(1.0 / prior ** 2)
+        solved = np.linalg.solve(full, inner)
+        course = course + 0.5 * (inner * solved).sum(axis=1)
+        course = course - 0.5 * np.linalg.slogdet(full)[1][:, None]
+    index = course.argmax(axis=0)
+    return Fit(index, course, inner[index, :, np.arange(quadratic.shape[1])], gram[index])
 
 
 def fits(data, columns, prior):
     """Fit of every unit."""
-    return [Fit(u, s, columns, prior) for u, s in zip(data.units, data.statistics)]
+    return [fit(u, s, columns, prior) for u, s in zip(data.units, data.statistics)]
 
 
 def coefficients(found, prior):

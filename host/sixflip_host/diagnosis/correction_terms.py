@@ -16,8 +16,7 @@ from sixflip.record.record import following
 from .. import record_terms
 from ..calibrate import term_words
 from ..errors import CheckFailed
-from . import coefficient_fits
-from .term_gain import Gains
+from . import coefficient_fits, term_gain
 
 TERMS = {("accel", "thermal_bias"): "accel_thermal_bias",
          ("gyro", "thermal_bias"): "gyro_thermal_bias",
@@ -94,13 +93,13 @@ def _reason(gap, cause, record):
 
 def _shown(gap, terms, record, diagnosis):
     """([Term] of one gap that show a gain, [(sensor, names, reason)] of the others)."""
-    gains = Gains(gap, record, diagnosis.settings.certified)
+    gains = term_gain.gains(gap, record, diagnosis.settings.certified)
     if not gains.parts:
         return [], [(gap.kind, t.cause.names, "nothing to hold out: one session, too short to be "
                      "halved") for t in terms]
     kept, left_out = list(terms), []
     while kept:
-        fit = Fit(gap, kept, gains.data, diagnosis)
+        fit = fitted(gap, kept, gains.data, diagnosis)
         gain, share = _gained(gains, fit, kept)
         weakest = min(kept, key=share.get)
         if share[weakest] >= CLOSED:
@@ -130,32 +129,19 @@ def rms(values):
     return float(np.sqrt(np.mean(values ** 2)))
 
 
+@dataclass(frozen=True, eq=False)
 class Fit:
-    """Coefficients of the terms of one gap as the board can apply them: of all sessions, and
-    without each one that is held out."""
+    """Coefficients of the terms of one gap as the board can apply them: columns (k,) with theta
+    and sigma (k,) of all sessions, held: a theta for each one that is held out, of the others;
+    candidates {Term: its Forms}."""
 
-    def __init__(self, gap, terms, data, diagnosis):
-        self.gap, self.diagnosis = gap, diagnosis
-        self.candidates = {term: plain(gap, term.cause) for term in terms}
-        mine = [c for term in terms for c in self.candidates[term]]
-        named = {id(c) for term in terms for c in term.cause.chosen}
-        chosen = list(mine)
-        for candidate in gap.chosen:
-            taken = np.concatenate([c.columns for c in chosen])
-            if id(candidate) not in named and not np.isin(candidate.columns, taken).any():
-                chosen.append(candidate)
-        self.columns = np.concatenate([c.columns for c in chosen])
-        prior = np.concatenate([c.prior for c in chosen])
-        fits = coefficient_fits.fits(data, self.columns, prior)
-        theta, covariance = coefficient_fits.coefficients(
-            coefficient_fits.fits(gap.data, self.columns, prior), prior)
-        self.theta, self.sigma = theta[0], np.sqrt(np.diag(covariance[0]))
-        between = [getattr(u, "between", False) for u in data.units]
-        self.held = []
-        for held in range(between.count(False)):
-            # What lies between the sessions knows of the one held out.
-            others = [f for k, f in enumerate(fits) if k != held and not between[k]]
-            self.held.append(coefficient_fits.coefficients(others, prior)[0][0])
+    gap: object
+    diagnosis: object
+    candidates: dict
+    columns: np.ndarray
+    theta: np.ndarray
+    sigma: np.ndarray
+    held: list
 
     def sections(self, terms, held):
         """{name: fields} as the other sessions have them."""
@@ -192,6 +178,29 @@ class Fit:
         return fields
 
 
+def fitted(gap, terms, data, diagnosis):
+    """Fit of the Terms of a gap, those held out being the units of a coefficient_fits.Data."""
+    candidates = {term: plain(gap, term.cause) for term in terms}
+    named = {id(c) for term in terms for c in term.cause.chosen}
+    chosen = [c for term in terms for c in candidates[term]]
+    for candidate in gap.chosen:
+        taken = np.concatenate([c.columns for c in chosen])
+        if id(candidate) not in named and not np.isin(candidate.columns, taken).any():
+            chosen.append(candidate)
+    columns = np.concatenate([c.columns for c in chosen])
+    prior = np.concatenate([c.prior for c in chosen])
+    theta, covariance = coefficient_fits.coefficients(
+        coefficient_fits.fits(gap.data, columns, prior), prior)
+    fits = coefficient_fits.fits(data, columns, prior)
+    between, held = [getattr(u, "between", False) for u in data.units], []
+    for place in range(between.count(False)):
+        # What lies between the sessions knows of the one held out.
+        others = [f for k, f in enumerate(fits) if k != place and not between[k]]
+        held.append(coefficient_fits.coefficients(others, prior)[0][0])
+    return Fit(gap, diagnosis, candidates, columns, theta[0],
+               np.sqrt(np.diag(covariance[0])), held)
+
+
 def plain(gap, cause):
     """The candidates of a cause in the form that the board can take out."""
     out = []
@@ -205,11 +214,10 @@ def plain(gap, cause):
 
 def fitting(sessions, record, path):
     """CheckFailed unless the record is of the sensor that was captured."""
-    from .term_gain import corrected
     for session in sessions:
         if not session.n:
             continue
-        off = rms(np.linalg.norm(corrected(session, record).accel, axis=1) * 1e-3 - 1.0)
+        off = rms(np.linalg.norm(term_gain.corrected(session, record).accel, axis=1) * 1e-3 - 1.0)
         if not off <= OTHER_PART_G:
             raise CheckFailed("%s: at rest |a| of %s comes out %.0f mg off, expected at most "
                               "%.0f: it is the record of another part" % (

@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from sixflip_sim.effects import typical
 from sixflip_sim.effects.library import EFFECTS
 
 from ..experiment import terms
-from . import odds, plausible
+from . import odds
 
 SIGNIFICANT = 3.0  # standard deviations at which an axis is said to have the effect
 FORM = 0.05  # of a size, standard deviation: parts do not have the library's very curves
@@ -28,7 +29,7 @@ def sized(cause, data, levels, chip, kind, share=None):
         shown = sorted({*shown, *("xyz"[a] for a in cause.other_axes)})
     return replace(cause, value=value, interval=interval, letters=shown, share=share,
                    variant=_own(cause, gram)[0].variant,
-                   plausible=plausible.believable(cause.effect, chip, kind, value, sigma),
+                   plausible=believable(cause.effect, chip, kind, value, sigma),
                    domain=terms.DOMAIN[cause.effect], unit=EFFECTS[cause.effect].units[kind])
 
 
@@ -89,3 +90,40 @@ def _energy(candidate, cause, gram):
         if one is candidate:
             return float(theta @ gram[np.ix_(one.columns, one.columns)] @ theta)
     return 0.0
+
+
+TIMES = 5.0  # the typical size, that is believed: more is numerically helpful only (GAP stage 3)
+LOOSE = {"warm_up": 10.0, "drift": 10.0, "vibration": 1e9, "sample_rate": 10.0,
+         "dropped_samples": 1e9, "saturation": 1e9, "torn_reads": 1e9, "axis_swap": 1e9,
+         "quantisation": 1e9, "dead_band": 1e9, "box_tilt": 20.0, "creep": 5.0,
+         "lever_arm": 10.0, "filter_lag": 20.0}
+
+
+# What a part's drift with temperature amounts to while it warms up, and in what follows the
+# thermometer by a minute: no data sheet gives these two by themselves.
+BY_TEMPERATURE = {"warm_up": 10.0, "thermal_rate": 1.0}  # degC, minutes
+
+
+def limit(effect, chip, sensor, key):
+    """Largest size that is believed, or None where there is no typical one."""
+    kind = "accel" if sensor == "device" else sensor
+    size = typical.size(effect, chip, kind, key)[0]
+    if size is None:
+        size = typical.size(effect, chip, kind)[0]
+    if size is None:
+        return None
+    top = LOOSE.get(effect, TIMES) * abs(size)
+    if effect in BY_TEMPERATURE:
+        slope = typical.size("thermal_bias", chip, kind, key)[0]
+        top = max(top, TIMES * abs(slope) * BY_TEMPERATURE[effect])
+    return top
+
+
+def believable(effect, chip, sensor, values, sigmas=None):
+    """True when no coefficient exceeds its limit by more than twice its own uncertainty."""
+    for key, value in values.items():
+        top = limit(effect, chip, sensor, key)
+        slack = 2.0 * sigmas[key] if sigmas else 0.0
+        if top is not None and abs(value) - slack > top:
+            return False
+    return True

@@ -195,15 +195,17 @@ def _meet(form, other, variables):
         other.axes))
 
 
-def _of_variable(designs, forms, names):
+def _of_variable(designs, forms, names, variant):
     """[(column, axis)] of the designs of these names: of those that compete, and of what is there
-    to stand beside them; the last variant of each."""
+    to stand beside them; of each the variant, of the same lag for instance, or else the last."""
     known, found, start = {form.effect for form in forms}, {}, 0
     for design in designs:
-        if design.effect in names and (design.beside or design.effect in known):
-            found[design.effect] = list(zip(range(start, start + len(design.keys)), design.axes))
+        stands = design.effect in names and (design.beside or design.effect in known)
+        if stands and (not variant or found.get(design.effect, ("",))[0] != variant):
+            found[design.effect] = design.variant, list(zip(
+                range(start, start + len(design.keys)), design.axes))
         start += len(design.keys)
-    return [pair for pairs in found.values() for pair in pairs]
+    return [pair for _, pairs in found.values() for pair in pairs]
 
 
 def with_discrepancy(model, forms, scored, form):
@@ -211,7 +213,7 @@ def with_discrepancy(model, forms, scored, form):
     RELATIVE of the size that the form has in a Scored set; None where there is none."""
     if form.generic or not len(form.shared) or form.discrepancy:
         return None
-    free = _of_variable(model.units[0].designs, forms, _variable(form.effect))
+    free = _of_variable(model.units[0].designs, forms, _variable(form.effect), form.variant)
     shared = scored.shared
     theta = evidence.coefficients(scored.fits, shared)[0][0]
     rms = np.sqrt(np.mean([u.energy for u in model.units if not u.between], axis=0))

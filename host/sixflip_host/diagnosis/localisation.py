@@ -6,7 +6,7 @@ import numpy as np
 from scipy import special
 
 from ..experiment import covariance, linear_model
-from . import face_squareness, hypotheses, odds, session_offsets
+from . import box_tilt_test, hypotheses, odds, session_offsets
 
 FALSE_DISCOVERIES = 0.01  # one in a hundred of the places shown is there by chance: a stated rate
 LEAST_SHARE = 0.01  # of the excess: less is no place to look at
@@ -116,7 +116,7 @@ def across(gap):
     if gap.kind != "accel":
         return []
     levels = [u.grid[i][0] for u, i in zip(gap.units, gap.adequacy.index) if not u.between]
-    off = [c.worst * face_squareness.MG_A_DEG for c in gap.crooked if c and c.remark()]
+    off = [c.worst * box_tilt_test.MG_A_DEG for c in gap.crooked if c and c.remark()]
     worst = max(levels + off)
     if worst <= ORDINARY_PLACEMENT_MG:
         return []

@@ -16,14 +16,13 @@ from ..experiment import inertial_fit
 from ..planning import detectable
 from . import (
     cutoffs,
+    effect_estimates,
     hypotheses,
     localisation,
     motion_holdout,
     moves_fit,
-    moves_of_sessions,
     moves_unit,
     odds,
-    plausible,
     posterior,
     scored_sets,
 )
@@ -118,7 +117,7 @@ def of(sessions, usable, nominal, gyro, settings):
 def judged(sessions, models, turned, chip, without=()):
     """MotionGap of sessions, the first len(models) with poses; models: their NominalSensor;
     turned: their calibrated turns; without: effects left out of the library."""
-    moves = moves_of_sessions.of(sessions, models, turned)
+    moves = moves_unit.moves(sessions, models, turned)
     if len(moves) < FEWEST_MOVES:
         return MotionGap(chip, None)
     fit = moves_fit.fit(moves, chip)
@@ -136,7 +135,7 @@ def _searched(fit, without):
     designs = moves_unit.designs(fit.prior)
     bins = sum(len(m.table) for m in fit.moves)
     energy = sum((m.table[:, :, competing] ** 2).sum(axis=(0, 1)) for m in fit.moves) / bins
-    units = [moves_unit.MovesUnit(
+    units = [moves_unit.unit(
         fit.gram[fit.folds == f], fit.inner[fit.folds == f], left[fit.folds == f], competing,
         everything[len(competing):], fit.prior, energy, designs) for f in np.unique(fit.folds)]
     forms = [f for f in hypotheses.of(units, without, drift=False)
@@ -175,7 +174,7 @@ def _told(gap):
     for name in gap.chosen:
         one = _finding(name, sizes, np.sqrt(np.diag(spread)), gap.scores[name],
                        gap.posterior.places[name])
-        if not plausible.believable(name, gap.chip, one.sensor, one.value):
+        if not effect_estimates.believable(name, gap.chip, one.sensor, one.value):
             remarks.append("in motion %s would help, but at an impossible size: something else "
                            "acts" % name.replace("_", " "))
             nameless.append(localisation.Place("accel", None, "motion", 1.0,

@@ -1,43 +1,44 @@
-"""The moves of one session, or of a half of one, as a unit of the posterior: what they say of the
+"""The moves from rest to rest of all sessions, those with poses and those of a robot that drives,
+and those of one session, or of a half of one, as a unit of the posterior: what they say of the
 effects and of the strangers of motion, all else integrated out with its prior.
 
 A null is made of the moves themselves: what all hypotheses together leave of each, by the sizes
 that the others give, with its sign by lot. That leaves the hand as it is, and takes away what it
 has in common with an effect [ter Braak, Permutation versus bootstrap significance tests (1992)].
 """
+from dataclasses import dataclass
+from types import MappingProxyType
+
 import numpy as np
 
-from ..experiment import inertial_fit
+from ..experiment import blocks, inertial_fit, turns
+from ..experiment.attitude_fit import NominalSensor
 from ..experiment.gram import Products
 from ..experiment.terms import Design
+from .detect import saturation
 from .evidence import Levels
 
 NO_LEVELS = Levels(1.0, 1.0, 1.0)  # of noise to choose from: the moves' own spectra are taken
 
 
+@dataclass(frozen=True, eq=False)
 class MovesUnit:
     """What scored_sets.Model asks of a unit, over the hypotheses' columns (K,): gram
-    (Products), logdet (1,), silent (K,), energy (K,), designs; one point of a grid of levels."""
+    (Products), logdet (1,), silent (K,), energy (K,), designs; one point of a grid of levels.
+    freedom: n moves, of which inner and left (n, K) are what they say of the columns as they are
+    and as nulls are made of."""
 
-    between, turns, apart, within, rows = False, False, False, {}, None
-    grid, shape, coarse = [(0.0, 0.0)], (1, 1), np.array([0])
+    gram: Products
+    inner: np.ndarray
+    left: np.ndarray
+    energy: np.ndarray
+    designs: list
+    silent: np.ndarray
+    logdet: np.ndarray
+    freedom: int
 
-    def __init__(self, gram, inner, left, columns, nuisance, prior, energy, designs):
-        """gram (n, k, k), inner and left (n, k) of the moves; columns, nuisance: indices of the
-        hypotheses' and of the other columns, of prior (k,)."""
-        total = gram.sum(axis=0)
-        block = total[np.ix_(nuisance, nuisance)] + np.diag(prior[nuisance] ** -2.0)
-        self._taken = np.linalg.solve(block, total[np.ix_(nuisance, columns)])
-        own = (total[np.ix_(columns, columns)]
-               - total[np.ix_(columns, nuisance)] @ self._taken)
-        self.gram = Products(own[None])
-        self._inner, self._left = (one[:, columns] - one[:, nuisance] @ self._taken
-                                   for one in (inner, left))
-        self.logdet = np.zeros(1)
-        self.energy, self.designs = energy, designs
-        power = np.diag(own)
-        self.silent = power <= 1e-9 * max(power.max(), 1e-300)
-        self.freedom = len(gram)
+    between, turns, apart, within, rows = False, False, False, MappingProxyType({}), None
+    grid, shape, coarse = ((0.0, 0.0),), (1, 1), np.array([0])
 
     def tried(self, likelihood, points=None):
         return self.coarse
@@ -49,11 +50,24 @@ class MovesUnit:
         """(quadratic (1, R), projections (1, K, R)) of the moves as they are, or with their
         signs (n, R) drawn, at the one point of the grid; what no hypothesis changes is left out of
         the quadratic."""
-        sums = self._inner.sum(axis=0)[:, None] if signs is None else self._left.T @ signs
+        sums = self.inner.sum(axis=0)[:, None] if signs is None else self.left.T @ signs
         return np.zeros((1, sums.shape[1])), sums[None]
 
     def draw(self, index, generator, number):
         return generator.choice([-1.0, 1.0], (self.freedom, number))
+
+
+def unit(gram, inner, left, columns, nuisance, prior, energy, designs):
+    """MovesUnit of the products of n moves: gram (n, k, k), inner and left (n, k); columns,
+    nuisance: indices of the hypotheses' and of the other columns, of prior (k,)."""
+    total = gram.sum(axis=0)
+    block = total[np.ix_(nuisance, nuisance)] + np.diag(prior[nuisance] ** -2.0)
+    taken = np.linalg.solve(block, total[np.ix_(nuisance, columns)])
+    own = total[np.ix_(columns, columns)] - total[np.ix_(columns, nuisance)] @ taken
+    power = np.diag(own)
+    return MovesUnit(Products(own[None]), *(one[:, columns] - one[:, nuisance] @ taken
+                                            for one in (inner, left)), energy, designs,
+                     power <= 1e-9 * max(power.max(), 1e-300), np.zeros(1), len(gram))
 
 
 def designs(prior):
@@ -67,3 +81,59 @@ def designs(prior):
         found.append(Design(effect, variant, keys, axes, np.zeros((0, len(axes))), prior[part]))
         start += len(axes)
     return found
+
+
+def moves(sessions, models, turned):
+    """list of inertial_fit.Move. sessions: list of blocks.Session, the first len(models) with
+    poses; models: their NominalSensor; turned: their calibrated turns."""
+    found = []
+    for number, session in enumerate(sessions):
+        if number < len(models):
+            chosen, sensor, runs = turned[number], models[number], session.runs
+        else:
+            chosen, sensor, runs = _driven(session, models, found)
+        if not chosen:
+            continue
+        course, white = _course(session.t_s), _white(session.capture, runs)
+        railed = saturation.railed(session)
+        found += [inertial_fit.move(turn, session.capture, sensor, course, number,
+                                    number < len(models), white)
+                  for turn in chosen if railed[turn.first:turn.last].mean() <= blocks.MOST_BAD]
+    return found
+
+
+def _driven(session, models, known):
+    """(turns, NominalSensor, runs) of a session without poses: calibrated by the others."""
+    runs = session.runs
+    if len(runs) < 2 or not known:
+        return [], None, []
+    scale = 1000.0 / session.capture.meta["accel_lsb_per_g"]
+    sensor = NominalSensor(np.mean([m.matrix for m in models], axis=0),
+                           np.mean([m.offset for m in models], axis=0), None)
+    felt = sensor.corrected(np.array([session.capture.accel[a:b].mean(axis=0) * scale
+                                      for _, a, b in runs]))
+    up = felt / np.linalg.norm(felt, axis=1)[:, None]
+    bias = np.array([session.capture.gyro[a:b].mean(axis=0) for _, a, b in runs]
+                    ) / session.capture.meta["gyro_lsb_per_dps"]
+    matrix = np.mean([m.turn.matrix for m in known], axis=0)
+    found = [turns.between(session, up, 0.5 * (bias[place] + bias[place + 1]), place)
+             for place in range(len(runs) - 1)]
+    found = [turn.corrected(matrix, np.zeros(3)) for turn in found if turn.usable(session.rate)]
+    return found, sensor, runs
+
+
+def _course(t):
+    """(HATS, n) straight pieces over a session."""
+    u = (t - t[0]) / max(t[-1] - t[0], 1e-9) * (inertial_fit.HATS - 1)
+    return np.clip(1.0 - np.abs(u - np.arange(inertial_fit.HATS)[:, None]), 0.0, None)
+
+
+def _white(capture, runs):
+    """mg: standard deviation of the accelerometer's mean over one second, of all axes."""
+    differences = np.concatenate([np.diff(capture.accel[a:b].astype(float), axis=0)
+                                  for _, a, b in runs if b - a > 2])
+    # A squared difference of two normal samples has a median of 0.4549 times its mean, twice
+    # their variance; rounding adds a twelfth.
+    counts = np.sqrt(np.median(differences ** 2, axis=0) / 0.4549 / 2.0 + 1.0 / 12.0)
+    return float(counts.mean()) * 1000.0 / capture.meta["accel_lsb_per_g"] / np.sqrt(
+        capture.meta["rate_hz"])

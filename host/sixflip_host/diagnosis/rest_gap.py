@@ -16,7 +16,6 @@ from . import (
     coefficient_fits,
     cutoffs,
     effect_estimates,
-    flicker_profile,
     hypotheses,
     odds,
     posterior,
@@ -24,6 +23,7 @@ from . import (
     rest_units,
     scored_sets,
     session_offsets,
+    wandering,
 )
 from .localisation import Place
 
@@ -118,7 +118,7 @@ def _sensor(rest, kind, chip, settings):
     """RestGap: posterior, classes, adequacy, held-out figures."""
     progress.doing("the %s at rest" % ("gyro" if kind == "gyro" else "accelerometer"))
     units = rest_units.of(rest, kind, chip, settings)
-    data = coefficient_fits.Data(units)
+    data = coefficient_fits.data_of(units)
     flicker, reference = adequacy.usual(chip, kind), settings.reference.get(kind)
     levels = rest_units.RestLevels(rest_units.OFFSET[kind], flicker if reference is None
                         else max(reference, flicker / 4.0), reference is not None)
@@ -210,9 +210,9 @@ def _drift(found, units, data, levels, kind, chosen, index):
         return []
     value, interval, free = {}, {}, frozenset(["flicker"])
     for key, unit, statistics in zip("xyz", units, data.statistics):
-        course = flicker_profile.by_flicker(unit, statistics, found.best.shared,
+        course = wandering.by_flicker(unit, statistics, found.best.shared,
                                             levels.prior(unit, free))
-        level, low, high = flicker_profile.profile(sorted({b for _, b in unit.grid}), course)
+        level, low, high = wandering.profile(sorted({b for _, b in unit.grid}), course)
         if low > levels.flicker:
             value[key] = level * FLOOR_OF_KERNEL
             interval[key] = (low * FLOOR_OF_KERNEL, high * FLOOR_OF_KERNEL)

@@ -13,8 +13,6 @@ from . import (
     cutoffs,
     effect_estimates,
     evidence,
-    face_squareness,
-    flicker_profile,
     holdout_gain,
     hypotheses,
     posterior,
@@ -65,7 +63,8 @@ class RestModel:
             added["time"] = found.gains["drift"]
         nameless = [f for f in best.forms if f.generic]
         doubted = any(found.stranger_share(c.effect) > DOUBT for c in causes)
-        crooked = [face_squareness.of(*part) for part in parts] if self.kind == "accel" else []
+        crooked = [box_tilt_test.squareness(*part) for part in parts
+                   if self.kind == "accel"]
         chosen = [f for f in best.forms if not f.generic and len(f.shared)]
         gap = SensorGap(
             self, parts, units, data, options, forms, noise, cost, found,
@@ -81,7 +80,7 @@ class RestModel:
         the set that was found at other poses."""
         units = [self.unit(*part, self.settings.certified) for part in parts]
         units += self.between(units, [nominal for _, nominal in parts])
-        data = coefficient_fits.Data(units)
+        data = coefficient_fits.data_of(units)
         options = hypotheses.by_fleet(hypotheses.of(units, self.settings.without, self.drifts),
                                       self.kind, self.settings.prior)
         noise = self.usual()
@@ -147,7 +146,7 @@ class RestModel:
             parts = halves(self.kind, *gap.parts[0], certified)
             if parts:
                 wanted = np.concatenate([form.columns for form in gap.chosen])
-                data = coefficient_fits.Data([self.unit(*part, certified, wanted)
+                data = coefficient_fits.data_of([self.unit(*part, certified, wanted)
                                               for part in parts])
                 index = gap.halved_levels(data)
         return replace(gap, shrinkage=holdout_gain.of(
@@ -210,11 +209,11 @@ def _drift(units, data, noise, found, fitted, chosen):
     if "drift" not in found.best.names or fitted.odd:
         return None
     free = frozenset(["flicker"])
-    course = sum(flicker_profile.by_flicker(unit, statistics, found.best.shared,
+    course = sum(wandering.by_flicker(unit, statistics, found.best.shared,
                                             noise.prior(unit, free))
                  for unit, statistics in zip(units, data.statistics) if not unit.between)
     levels = sorted({b for _, b in units[0].grid})
-    return Drift(*flicker_profile.profile(levels, course), found.gains["drift"],
+    return Drift(*wandering.profile(levels, course), found.gains["drift"],
                  adequacy.share_of_drift(units, data.statistics, chosen, fitted.index, noise))
 
 

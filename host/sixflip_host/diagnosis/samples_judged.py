@@ -2,17 +2,23 @@
 and without."""
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..capture import registers
 from . import localisation, odds
 from .detect import (
+    axis_order,
     codes,
     held_values,
-    integrity,
     noise_bursts,
+    ringing,
+    sample_clock,
+    saturation,
     spectral_lines,
     torn_reads,
     wrong_scale,
 )
+from .detect.detection import Finding, present
 from .settings import Conditions
 
 COARSE = ("quantisation", "dead_band", "saturation", "torn_reads")
@@ -50,8 +56,9 @@ class SamplesJudged:
 def of(sessions, without=(), damages=()):
     """SamplesJudged of all sessions; without: effects left out of the library; damages: those
     that were put right before."""
-    findings = [f for f in integrity.findings(sessions) + spectral_lines.findings(sessions)
-                if f.effect not in without]
+    rings = ringing.found(sessions)
+    findings = [f for f in of_registers(sessions) + spectral_lines.findings(
+        sessions, [(sensor, axis) for sensor, axis, _, _ in rings]) if f.effect not in without]
     damages = [*damages, *held_values.findings(sessions), *wrong_scale.findings(sessions)]
     bits = registers.stuck_bits(sessions)
     leaping = {sensor for sensor, *_ in bits} | {
@@ -65,7 +72,10 @@ def of(sessions, without=(), damages=()):
     remarks = [one.words for one in damages]
     remarks += ["bit %d of the %s axis of the %s always reads %d"
                % (bit, axis, SENSOR[sensor], value) for sensor, axis, bit, value in bits]
+    remarks += [words for _, _, words, _ in rings]
     nameless = [localisation.Place(sensor, None, "noise", 1.0, p) for sensor, _, p in unsteady]
+    nameless += [localisation.Place(sensor, axis, "time_since_move", 1.0, odds.chance(nats))
+                 for sensor, axis, _, nats in rings]
     nameless += [localisation.Place(one.sensor, axis, one.domain, 1.0, odds.chance(one.score))
                  for one in damages for axis in one.axes or (None,)]
     nameless += [localisation.Place(sensor, axis, "amplitude", 1.0, odds.chance(codes.bit_nats(
@@ -73,3 +83,39 @@ def of(sessions, without=(), damages=()):
         for sensor, axis, _, _ in bits]
     return SamplesJudged(tuple(without_spikes), tuple(findings), tuple(damages), tuple(nameless),
                          (*remarks, *(words for _, words, _ in unsteady)))
+
+
+def of_registers(sessions):
+    """list of Finding of the registers and the clock over all sessions: steps (common divisor), a
+    dead band, torn reads, rails, clipped peaks, repeated and dropped samples, the true rate, axes
+    swapped or inverted."""
+    found = []
+    for sensor in ("accel", "gyro"):
+        columns = [getattr(s.capture, sensor) for s in sessions]
+        if any(c is None for c in columns):
+            continue
+        found += _per_axis("quantisation", sensor, [registers.steps(c) for c in columns],
+                           [codes.step_nats(c) for c in columns], "counts come in steps",
+                           [codes.distinct(c) for c in columns])
+        band = _per_axis("dead_band", sensor, [registers.dead_band(c) for c in columns],
+                         [codes.band_nats(c) for c in columns], "counts near 0 read 0",
+                         [codes.zeros(c) for c in columns])
+        found += band + saturation.saturation(sessions, sensor, columns)
+        found += torn_reads.finding(sessions, sensor,
+                                    ["xyz".index(a) for f in band for a in f.axes])
+    return found + sample_clock.findings(sessions) + axis_order.swapped(sessions)
+
+
+def _per_axis(effect, sensor, sizes, nats, words, numbers):
+    """One Finding of what all sessions agree on, axis by axis (3,) in counts; 0 is nothing;
+    nats (3,) of each session; numbers (3,): of codes, or of runs of zeros. There is no sample
+    that does otherwise: it is all of the gap."""
+    least, total = np.min(sizes, axis=0), np.sum(nats, axis=0)
+    axes = [i for i in range(3) if least[i] > 1 and present(total[i])]
+    if not axes:
+        return []
+    value = {"xyz"[i]: int(least[i]) for i in axes}
+    number = int(np.sum(numbers, axis=0)[axes].sum())
+    return [Finding(effect, sensor, ["xyz"[i] for i in axes], value, "counts",
+                    sum(total[i] for i in axes), "amplitude", words,
+                    {k: (v, v) for k, v in value.items()}, share=1.0, number=number)]

@@ -24,7 +24,7 @@ class SensorGap:
     options (all Forms), forms (those that compete), noise (evidence.Levels), cost
     (cutoffs.Cutoffs); found (Posterior), chosen (its named Forms), strangers (its nameless ones),
     causes, adequacy, shrinkage; unexplained: bool; added: {domain: nats} of the strangers,
-    strange_axes: {effect: axes}; drift: Drift or None; crooked: face_squareness.Crooked or None
+    strange_axes: {effect: axes}; drift: Drift or None; crooked: box_tilt_test.Crooked or None
     of each session, none of it where something bends the reading."""
 
     model: object

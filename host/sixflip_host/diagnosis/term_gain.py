@@ -1,6 +1,7 @@
 """How much a record's terms take away on what was held out: the raw counts go through the code
 that the board runs (sixflip.record.correction), what comes out is judged as any capture is."""
 import copy
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,28 +27,23 @@ def corrected(session, record):
     return session.reading(capture)
 
 
+@dataclass(frozen=True, eq=False)
 class Gains:
-    """parts [(whole Session, its placements or None for all)]; data (which.Data) with one unit
-    for each; floor: RMS a contrast of noise alone, mg or deg/s. No parts: nothing to hold out."""
+    """What is left of the parts held out: gap, record; parts [(whole Session, its placements or
+    None for all)], none where there is nothing to hold out; data (coefficient_fits.Data) with one
+    unit for each; floor: RMS a contrast of noise alone, mg or deg/s."""
 
-    def __init__(self, gap, record, certified):
-        self.gap, self.record, self.certified = gap, record, certified
-        self.turning = isinstance(gap.model, turn_model.TurnModel)
-        self.parts = [(s, None) for s, _ in gap.parts]
-        self.data, index = gap.data, gap.adequacy.index
-        if gap.same_session:
-            session, model = gap.parts[0]
-            # of turns there are no halves: they lie between the placements
-            halves = [] if self.turning else rest_model.halves(gap.kind, session, model, certified)
-            self.parts = [(session, set(p.placement.tolist())) for p, _ in halves]
-            if not halves:
-                return
-            self.data = coefficient_fits.Data([gap.unit(p, m, certified) for p, m in halves])
-            index = gap.halved_levels(self.data)
-        self.units = [u for u in self.data.units if not getattr(u, "between", False)]
-        self.floor = float(np.sqrt(sum(u.noise_energy(*u.grid[k])
-                                       for u, k in zip(self.units, index))
-                                   / sum(u.freedom for u in self.units)))
+    gap: object
+    record: object
+    certified: bool
+    parts: list
+    data: object
+    floor: float
+
+    @property
+    def units(self):
+        """The units of the parts, without what lies between the sessions."""
+        return [u for u in self.data.units if not getattr(u, "between", False)]
 
     def left(self, sections):
         """All contrasts (m,) with the terms {name: fields} of each part in the record."""
@@ -62,8 +58,29 @@ class Gains:
     def _contrasts(self, session, placements, unit):
         model = attitude_fit.fit(session)
         part = session if placements is None else session.part(placements)
-        if self.turning:
+        if _turning(self.gap):
             return self.gap.unit(part, model, self.certified).z
         y = nominal_rows.accel_rows(part, model) if self.gap.kind == "accel" \
             else part.gyro.reshape(-1)
         return unit.contrasts(y)
+
+
+def gains(gap, record, certified):
+    """Gains of a SensorGap: whole sessions, each held out in turn, or the halves of the only one;
+    of turns there are no halves, since they lie between the placements."""
+    parts, data, index = [(s, None) for s, _ in gap.parts], gap.data, gap.adequacy.index
+    if gap.same_session:
+        session, model = gap.parts[0]
+        halves = [] if _turning(gap) else rest_model.halves(gap.kind, session, model, certified)
+        if not halves:
+            return Gains(gap, record, certified, [], data, 0.0)
+        parts = [(session, set(p.placement.tolist())) for p, _ in halves]
+        data = coefficient_fits.data_of([gap.unit(p, m, certified) for p, m in halves])
+        index = gap.halved_levels(data)
+    found = Gains(gap, record, certified, parts, data, 0.0)
+    energy = sum(u.noise_energy(*u.grid[k]) for u, k in zip(found.units, index))
+    return replace(found, floor=float(np.sqrt(energy / sum(u.freedom for u in found.units))))
+
+
+def _turning(gap):
+    return isinstance(gap.model, turn_model.TurnModel)

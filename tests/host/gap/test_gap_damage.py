@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture import registers
-from sixflip_host.diagnosis import turn_model
+from sixflip_host.diagnosis import samples_judged, turn_model
 from sixflip_host.diagnosis.detect import (
     byte_faults,
     codes,
     held_values,
-    integrity,
     wrong_scale,
 )
 from sixflip_host.experiment import attitude_fit, blocks
@@ -71,7 +70,7 @@ def test_bytes_put_together_wrongly_are_named_and_put_right(sound, name):
     again = getattr(session.capture, sensor)[:, axis].astype(int)
     true = getattr(sound, sensor)[:, axis].astype(int)
     assert (again == true).mean() > (0.9 if "or-ed" in name else 0.9999)
-    assert integrity.findings([session]) == []
+    assert samples_judged.of_registers([session]) == []
 
 
 WIDE = {"white": lambda g: 300 * g.standard_normal(2000),

@@ -175,7 +175,7 @@ def moves(generator, lag):
         prior = np.array([30.0, 30.0])
         designs = [Design(*names, [key], (0,), np.zeros((0, 1)), prior[:1]) for *names, key in (
             ("filter_lag", "", "tau"), ("motion", "rates", "x0"))]
-        units.append(moves_unit.MovesUnit(
+        units.append(moves_unit.unit(
             np.tile(np.eye(2), (12, 1, 1)), inner, left, np.arange(2), np.zeros(0, int), prior,
             np.ones(2), designs))
     return units

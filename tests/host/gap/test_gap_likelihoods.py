@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from sixflip_host.diagnosis import aliases, odds, verdict
+from sixflip_host.diagnosis import aliases, odds, samples_judged, verdict
 from sixflip_host.diagnosis.detect import (
     axis_order,
     codes,
-    integrity,
     sample_clock,
     sample_neighbours,
     spectral_lines,
@@ -29,7 +28,7 @@ def found(effects=(), change=None, seed=5):
         if change:
             change(capture, np.random.default_rng(number))
         sessions.append(blocks.of(str(number), capture))
-    return {(f.effect, f.sensor): f for f in integrity.findings(sessions)}
+    return {(f.effect, f.sensor): f for f in samples_judged.of_registers(sessions)}
 
 
 def torn(column, share, generator):

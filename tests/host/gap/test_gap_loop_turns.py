@@ -2,7 +2,7 @@
 turns alone are judged: a tenth of a whole diagnosis."""
 import pytest
 
-from sixflip_host.diagnosis import closed_loop_turns, diagnosis, turn_model
+from sixflip_host.diagnosis import closed_loops, diagnosis, turn_model
 from sixflip_host.experiment import attitude_fit, blocks
 from sixflip_host.simulation import scenario, simulated_session
 
@@ -17,7 +17,7 @@ def judged(effects, seed):
 
 def test_scales_that_differ_by_direction_close_the_gap_when_simulated_again():
     turns = judged([{"effect": "asymmetry", "sensor": "gyro", "x": 3.0}], 4)
-    loop = closed_loop_turns.close(turns, turns.model.conditions.reference_c)
+    loop = closed_loops.of_turns(turns, turns.model.conditions.reference_c)
     assert [e["effect"] for e in loop.effects] == ["asymmetry"]
     assert loop.effects[0]["x"] == pytest.approx(3.0, abs=0.2)
     assert loop.before > 3.0 * loop.floor
@@ -28,4 +28,4 @@ def test_scales_that_differ_by_direction_close_the_gap_when_simulated_again():
 def test_nothing_found_is_nothing_to_add():
     turns = judged([], 5)
     assert turns.units[0].turns and not turns.chosen
-    assert closed_loop_turns.close(turns, 25.0) is None
+    assert closed_loops.of_turns(turns, 25.0) is None

@@ -7,7 +7,7 @@ import pytest
 from sixflip_host import cli
 from sixflip_host.capture import capture_file, rests
 from sixflip_host.capture.capture_file import Capture
-from sixflip_host.diagnosis import closed_loop_motion, handling_noise, motion_model
+from sixflip_host.diagnosis import closed_loops, handling_noise, motion_model
 from sixflip_host.experiment import attitude_fit, blocks, turns
 from sixflip_host.simulation import scenario, simulated_session
 
@@ -83,7 +83,7 @@ def test_the_arm_is_found_where_it_is_and_nothing_else(off_axis):
 
 
 def test_the_loop_closes_when_the_moves_are_felt_again_with_the_arm(off_axis):
-    loop = closed_loop_motion.close(off_axis)
+    loop = closed_loops.of_moves(off_axis)
     assert [e["effect"] for e in loop.effects] == ["lever_arm"]
     assert loop.share > 0.9
     assert loop.after < 1.01 * loop.floor < loop.before
@@ -96,7 +96,7 @@ def test_the_one_that_is_behind_is_named_with_the_delay_between_them(sensor, chi
     found = judged(captures([{"effect": "filter_lag", "sensor": sensor, "tau": tau}], chip))
     assert [(f.effect, f.sensor) for f in found.found] == [("filter_lag", sensor)]
     assert inside(found.found[0], "tau", tau)
-    loop = closed_loop_motion.close(found)
+    loop = closed_loops.of_moves(found)
     assert loop.effects[0]["sensor"] == sensor
     assert loop.share > 0.8
 
@@ -105,7 +105,7 @@ def test_nothing_is_found_where_nothing_is(plain):
     found = judged(plain)
     assert found.seen
     assert found.found == []
-    assert closed_loop_motion.close(found) is None
+    assert closed_loops.of_moves(found) is None
     assert np.abs(found.theta[:3]).max() < 1.2
     assert found.least("lever_arm") < 3.0
 

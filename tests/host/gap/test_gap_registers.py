@@ -6,8 +6,8 @@ import pytest
 
 from sixflip_host.capture import capture_file
 from sixflip_host.capture import registers as counts
-from sixflip_host.diagnosis import answer, diagnosis
-from sixflip_host.diagnosis.detect import integrity, noise_bursts, saturation, torn_reads
+from sixflip_host.diagnosis import answer, diagnosis, samples_judged
+from sixflip_host.diagnosis.detect import noise_bursts, saturation, torn_reads
 from sixflip_host.diagnosis.detect.detection import present
 from sixflip_host.experiment import block_noise, blocks
 from sixflip_host.present import gap_words
@@ -153,10 +153,10 @@ def test_what_rounding_leaves_of_a_mean(noise):
 def test_torn_reads_in_noise_of_a_fifth_of_a_page():
     torn = captures([{"effect": "torn_reads", "sensor": "accel", "chance": 0.5}], seed=5)
     sessions = [blocks.of(str(k), c) for k, c in enumerate(torn)]
-    assert [(f.effect, f.sensor) for f in integrity.findings(sessions)] == [
+    assert [(f.effect, f.sensor) for f in samples_judged.of_registers(sessions)] == [
         ("torn_reads", "accel")]
     sound = [blocks.of(str(k), c) for k, c in enumerate(captures(seed=5))]
-    assert integrity.findings(sound) == []
+    assert samples_judged.of_registers(sound) == []
 
 
 def test_spikes_that_are_no_torn_reads():
@@ -166,7 +166,7 @@ def test_spikes_that_are_no_torn_reads():
         at = generator.choice(len(capture), 400, replace=False)
         capture.accel[at] += generator.integers(-600, 600, (400, 3)).astype(np.int16)
     sessions = [blocks.of(str(k), c) for k, c in enumerate(two)]
-    assert integrity.findings(sessions) == []
+    assert samples_judged.of_registers(sessions) == []
 
 
 @pytest.mark.parametrize("noise", [0.2, 0.5, 1.0])

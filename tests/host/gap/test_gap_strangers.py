@@ -12,6 +12,7 @@ def session(temperature):
     still = [np.zeros(n), np.zeros(n), np.ones(n)]
     return SimpleNamespace(
         n=n, t=np.arange(n) * 10.0, since=np.ones(n), temperature=temperature, thermal=True,
+        thermometer=SimpleNamespace(lagged=lambda t, lag: temperature),
         face=np.zeros(n, int), code=np.ones(n, int),
         moment=lambda up: SimpleNamespace(f=still, before=still))
 
@@ -21,8 +22,8 @@ def test_what_is_smooth_in_temperature_is_one_function_of_it_in_every_session():
     on average than the other: each had powers about its own mean."""
     sessions = [session(np.linspace(25.0, 33.0, 12)), session(np.linspace(40.0, 30.0, 12))]
     felt = np.concatenate([one.temperature for one in sessions])
-    columns = np.vstack([next(d for d in strangers.shared(one, None, "accel", felt.mean())
-                              if d.effect == "temperature").columns[2::3] for one in sessions])
+    columns = np.vstack([next(d for d in strangers.shared(one, None, "accel", felt.mean()) if (
+        d.effect, d.variant) == ("temperature", "")).columns[2::3] for one in sessions])
     constant = np.ones((len(felt), 1))
     bias = 8.0 * np.tanh((felt - 25.0) / 8.0)
     design = np.hstack([constant, columns])

@@ -72,7 +72,7 @@ def case(seed):
     name, kind = effects[0]["effect"], effects[0]["sensor"]
     model = RestModel(kind, CHIP, Settings(jobs=1))
     whole, without = units(model, seed, effects, scatter), units(model, seed, [{}, {}], scatter)
-    data = coefficient_fits.Data(whole)
+    data = coefficient_fits.data_of(whole)
     forms = hypotheses.of(whole, (), True)
     scores = scored_sets.Model(whole, data.statistics, model.usual())
     form = max((f for f in forms if f.effect == name and f.axis is None and not f.record),

@@ -12,7 +12,7 @@ from scipy import ndimage, special
 
 from ...capture.registers import steps
 from .. import odds
-from . import line_across_rests, line_frequency
+from . import line_across_rests, line_frequency, ringing
 from .detection import Finding
 from .line_frequency import Line
 
@@ -37,13 +37,16 @@ LEAST_SHARE = 0.25  # of the standard deviation of the noise: smaller is no matt
 STEADY, STRONG_SHARE = 0.6, 0.4
 
 
-def findings(sessions):
-    """list of Finding: at most one vibration a sensor."""
+def findings(sessions, rings=()):
+    """list of Finding: at most one vibration a sensor; rings: (sensor, axis letter) that are
+    louder after each move, whose line has to go on over the rests."""
     out = []
     for sensor in ("accel", "gyro"):
         if any(getattr(s.capture, sensor) is None for s in sessions):
             continue
         lines = [line for line in (of_axis(sessions, sensor, i) for i in range(3)) if line]
+        lines = [line for line in lines if not ((sensor, line.letter) in rings and ringing.fades(
+            sessions, sensor, line.axis, line.hz))]
         if lines:
             out.append(_told(lines, sensor, sessions[0].rate))
     return out
