@@ -17,7 +17,7 @@ from .. import progress
 from ..capture import clock, rests, rests_by_variance
 from ..capture.capture_file import Capture
 from ..capture.find_poses import HELD_BY_HAND, by_a_person, find_poses
-from . import block_means, noise_arrays, thermometer
+from . import block_measures, noise_arrays, thermometer
 from .read_only import ReadOnlyArrays
 
 SHORTEST_S, FEWEST_SAMPLES = 0.8, 8
@@ -114,7 +114,7 @@ class Session(ReadOnlyArrays):
                               if bad[run.first:run.end].mean() <= MOST_BAD])
 
     def _of_runs(self, runs):
-        return replace(self, runs=tuple(runs), **block_means.of_runs(
+        return replace(self, runs=tuple(runs), **block_measures.of_runs(
             self.capture, tuple(runs), self.rate, self.t_s, self.labelled, self.thermometer))
 
     def of_capture(self, capture):
@@ -123,7 +123,7 @@ class Session(ReadOnlyArrays):
 
     def reading(self, capture):
         """The same blocks and noise with the means of another capture of the same samples."""
-        accel, gyro = block_means.readings(capture, self.first, self.end)
+        accel, gyro = block_measures.readings(capture, self.first, self.end)
         return replace(self, capture=capture, accel=accel, gyro=gyro)
 
     def with_gyro_axes(self, read):
@@ -214,7 +214,7 @@ def of(name, capture, runs=None):
     runs = tuple(runs_of(capture) if runs is None else runs)
     smooth = thermometer.of(capture, t_s)
     return Session(name, capture, rate, t_s, timeless, labelled, runs, smooth,
-                   **block_means.of_runs(capture, runs, rate, t_s, labelled, smooth))
+                   **block_measures.of_runs(capture, runs, rate, t_s, labelled, smooth))
 
 
 def runs_of(capture, by_hand=False):

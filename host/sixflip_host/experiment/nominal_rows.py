@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from . import block_noise, covariance
+from . import block_measures, covariance
 from .attitude_fit import face_axes
 from .projection import lateral_basis
 
@@ -186,7 +186,7 @@ def _gyro_rows(session, nominal):
 
 
 def _known(session):
-    return block_noise.freedom(session.first, session.end, session.rate)
+    return block_measures.freedom(session.first, session.end, session.rate)
 
 
 def signature(session):

@@ -9,10 +9,11 @@ import math
 import numpy as np
 from scipy import ndimage
 
+from ...experiment.block_measures import EDGE_S
 from .. import odds
 from .line_frequency import HALVES, MEDIAN_ERROR, SLOW_CHANCE, SLOW_SHARE, Line, peak
 
-FEWEST, SHORTEST_S, EDGE_S = 12, 1.0, 0.1  # rests, and what is left off at both ends of each
+FEWEST, SHORTEST_S = 12, 1.0  # rests, and seconds of each (a protocol has twelve poses or more)
 LONGEST_S = 600.0  # from the first rest on: a line of 0.7 Hz has 400 periods there
 LEAST_CYCLES = 0.5  # of a line in a rest: less is a course that is taken off
 RATE_HZ = 10.0  # of the means that are looked at

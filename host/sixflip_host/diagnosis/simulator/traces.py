@@ -12,12 +12,12 @@ from sixflip.poses import faces
 from ...capture import rests as rest_finder
 from ...capture import rests_by_variance
 from ...capture.attitude import _between, _rotation
+from ...experiment.block_measures import EDGE_S
 
 SHORTEST_REST_S = 0.5
 WINDOW_S = 0.3
 LOUDER, SLOW_DPS = 2.5, 1.5  # of the quietest tenth; a turn slower than any robot's
 COUNT_VARIANCE = 0.25  # counts: a channel that toggles between two of them
-EDGE_S = 0.1  # of a rest that is left out at both ends: a label is never exact
 DPS = np.pi / 180.0
 
 
