@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..capture.attitude import _rotation, carried
-from . import moves
+from . import blocks
 from .projection import cross, lateral_basis
-from .read_only import ReadOnlyArrays
+from .session import ReadOnlyArrays
 
 ROUNDS = 2  # of fits that begin with what the one before left
 PULL_DPS = 0.1  # deg/s per g, typical (effects/typical.py: g_sensitivity)
@@ -97,7 +97,7 @@ class Turn(ReadOnlyArrays):
 def between(session, up, bias, place, wander=None):
     """Turn from a placement of a Session to the next, not integrated. up (placements, 3): unit
     vectors against gravity; bias (3,) deg/s; wander as Turn has it."""
-    move = moves.after(session, place)
+    move = blocks.move_after(session, place)
     t = _even(session.t_s[move.first:move.end], session.period_s)
     rate = session.capture.gyro[move.first:move.end] / session.capture.meta[
         "gyro_lsb_per_dps"] - bias
