@@ -2,8 +2,9 @@
 the gyro as the rests have calibrated it, and the accelerometer on the way."""
 import numpy as np
 
-from ..experiment import blocks, inertial_fit, turns
+from ..experiment import inertial_fit, turns
 from ..experiment.attitude_fit import NominalSensor
+from ..experiment.session import MOST_BAD
 from .detect import saturation
 
 
@@ -22,7 +23,7 @@ def of(sessions, models, turned):
         railed = saturation.railed(session)
         found += [inertial_fit.move(turn, session.capture, sensor, course, number,
                                     number < len(models), white)
-                  for turn in chosen if railed[turn.first:turn.last].mean() <= blocks.MOST_BAD]
+                  for turn in chosen if railed[turn.first:turn.last].mean() <= MOST_BAD]
     return found
 
 
