@@ -17,7 +17,7 @@ from ..capture.capture_file import Capture
 from . import block_measures, noise_arrays, thermometer
 
 # s, step at which hysteresis follows the way: a hand takes a second and more from pose to pose, so
-# the reading changes by less than the narrowest width (terms.PLAY_G) within it.
+# the reading changes by about the narrowest width (terms.PLAY_G) within it, at most.
 PLAY_S = 0.1
 # Share of bad samples up to which a rest is kept: two of a protocol's rest of 500. What they add
 # to its mean is then at most that share of what is wrong with them.

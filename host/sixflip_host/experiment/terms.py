@@ -19,7 +19,7 @@ LAGS_S = (0.0, 15.0, 30.0, 60.0, -30.0)  # GAP: a neighbouring thermometer, 10-6
 WARM_UP_S = (30.0, 60.0, 120.0, 240.0, 480.0)  # GAP: 60-300 s, and an octave to both sides
 CREEP_S = (5.0, 15.0, 30.0, 60.0, 120.0)  # GAP: 60-70 s seen on Z; down to a rest's length
 LONG_MEMORY_S = 30.0  # longer than two rests with the move between them
-PLAY_G = (0.1, 0.2, 0.4)  # widths of a play operator
+PLAY_G = (0.1, 0.2, 0.4)  # widths of a play operator: octaves below half of what a pose changes by
 LEAST_VIBRATION_MG = 5.0  # above the quietest rest: more than the noise of a chip (typical.NOISE)
 DOMAIN = {  # where an effect shows itself
     "thermal_bias": "temperature", "thermal_scale": "temperature", "thermal_rate": "temperature",
@@ -40,7 +40,6 @@ OF_THE_MOMENT = ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "qu
 def of_the_moment(sensor):
     """Names of OF_THE_MOMENT that a sensor ("accel", "gyro") can have."""
     return tuple(name for name in OF_THE_MOMENT if sensor in EFFECTS[name].units)
-
 
 
 @dataclass(frozen=True, eq=False)

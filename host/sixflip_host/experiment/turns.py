@@ -16,7 +16,9 @@ from . import blocks
 from .projection import cross, lateral_basis
 from .session import ReadOnlyArrays
 
-ROUNDS = 2  # of fits that begin with what the one before left
+# Fits that begin with what the one before left: what a scale of 3 % leaves after the first is its
+# square, 0.1 %, and after the second less than a hand's error of a turn.
+ROUNDS = 2
 PULL_DPS = 0.1  # deg/s per g, typical (effects/typical.py: g_sensitivity)
 # Of a turn: a hand is not faster; over more than a minute a bias that is off by 0.01 deg/s turns
 # the end by as much as a hand does (METHOD section 2); less than that is no turn to another pose.

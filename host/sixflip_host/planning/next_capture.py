@@ -10,7 +10,7 @@ from ..experiment.session_rows import rows_of
 from . import alias, protocols
 from .plan_findings import SAME_CLASS
 
-MOST_MINUTES = 10.0  # of a capture that somebody is asked for beside those that are there
+MOST_MINUTES = 10.0  # of a capture that somebody is asked for, by hand (GAP stage 7)
 WORDS = {
     "cooling": "one cooling session, 12 poses", "warm": "one session started warm, 12 poses",
     "backward": "12 poses, then the same backward", "random": "12 poses in random order",

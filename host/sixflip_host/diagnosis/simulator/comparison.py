@@ -4,8 +4,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sixflip import STANDARD_G
-
 from . import (
     alignment,
     convention_findings,
@@ -22,10 +20,13 @@ from . import (
     task,
     traces,
 )
+from .parameters import DEG, MG
 
+# s of a block that is held out as a whole: longer than what neighbouring samples have in common, a
+# move of a robot for instance, and short enough that half of a log of a minute has several.
 FOLD_S = 5.0
-RAILED = 0.5  # of a log: what is left of it is no motion any more
-MG, DEG = 1000.0 / STANDARD_G, 180.0 / np.pi
+RAILED = 0.5  # share of a log at the end of its range: what is left of it is no motion any more
+UNSEEN = 1e6  # noise of a sample that a fit must not see, in units of the average
 
 
 @dataclass(frozen=True)
@@ -181,9 +182,6 @@ def held_out(fits, real, sim):
             np.sqrt(((theirs - ours) ** 2).mean()), np.sqrt((left ** 2).mean()),
             np.sqrt(noise)))
     return out
-
-
-UNSEEN = 1e6  # noise of a sample that a fit must not see, in units of the average
 
 
 def tasked(real, sim, own_real, own_sim, fits, remarks):

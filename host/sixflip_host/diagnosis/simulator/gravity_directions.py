@@ -6,8 +6,10 @@ from ...capture.attitude import _rotation
 from . import traces
 
 SIGMA = np.radians(4.0)  # of a direction: bias of 60 mg, scale of the gyro 3 % of a half turn
-ASTRAY = 0.02  # of moves and rests that follow nothing
-POSE = np.radians(15.0)  # how alike the rests of two runs of one robot are
+# Share of moves and rests that follow nothing at all: a log of fifty moves may have one in which
+# the gyro was cut off or the robot slid, which then costs a hypothesis no more than ln 50 nats.
+ASTRAY = 0.02
+POSE = np.radians(15.0)  # how alike the rests of two runs of one robot are: ramps and slopes
 POSES_COUNT = 4  # runs of one robot stand alike: that many of its rests say something new
 STEPS_HZ = 25.0  # a robot turns below 5 Hz: five steps a period
 HEADINGS = 48  # each 7.5 degrees: within SIGMA of the true one

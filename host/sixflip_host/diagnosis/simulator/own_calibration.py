@@ -4,7 +4,7 @@ between two rests takes gravity before to gravity after [Tedaldi et al., ICRA 20
 Maximum a posteriori with priors of datasheet size, so that a log with two rests is answered as
 honestly as one with twenty: what it cannot see keeps its prior's interval.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,18 +12,18 @@ from ...capture.attitude import _rotation
 from . import traces
 from .hypotheses import BIAS, SHAPE
 
-ROUNDS = 8
+ROUNDS = 8  # Gauss-Newton steps: after five the next change a matrix by 1e-9
 CARRY_RAD = np.radians(0.3)  # of a placement's tilt by handling, and of the attitude carried
 FREEDOM = 4.0  # of Student's t [Lange et al., J. Am. Stat. Assoc. 84 (1989), 881]
 MEDIAN_OF_TWO = np.log(2.0)  # of half the sum of two squares of unit variance
-NORM = 0.005  # m/s2: how well |force| repeats between rests, flicker included
+NORM = 0.005  # m/s2: how well |force| repeats between rests, 0.5 mg with flicker and rounding
 
 
 @dataclass(frozen=True)
 class OwnSensor:
     """true force = accel (force - bias), accel (3, 3) symmetric (its turn cannot be seen); true
     rate = gyro (rate - bias at rest); sigmas of accel (3, 3), bias (3,), gyro (3, 3); gyro_bias
-    (3,) rad/s with its sigma; rests; seen: whether rests lie all round."""
+    (3,) rad/s with its sigma; rests: how many there were."""
 
     accel: np.ndarray
     bias: np.ndarray
@@ -37,7 +37,6 @@ class OwnSensor:
 
     def applied(self, trace):
         """The Trace as this sensor's true force and rate."""
-        from dataclasses import replace
         line = traces.rest_line(trace, trace.rate)
         return replace(trace, force=(trace.force - self.bias) @ self.accel.T,
                        rate=(trace.rate - line) @ self.gyro.T)

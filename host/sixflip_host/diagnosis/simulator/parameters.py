@@ -19,6 +19,10 @@ DIFFERS = 4.0
 MG, DEG = 1000.0 / STANDARD_G, 180.0 / np.pi
 COARSER = 1.5  # times the other's step: registers differ by factors of two
 RANGE_APART = 1.01  # times the other's: a range that differs; full scales are twofold apart
+# An engine whose rates are half a physics step older than its forces (MuJoCo, Featherstone's
+# semi-implicit step) differs from itself by as much at two step sizes of 1 and 2 ms.
+LEAST_DELAY_MS = 0.5
+LEAST_SMOOTH_MS2 = 3.0
 
 
 @dataclass(frozen=True)
@@ -209,12 +213,6 @@ def smoother(ms2):
 
 def faster(percent):
     return "multiply its times by %.6g" % (1.0 - percent / 100.0)
-
-
-# An engine whose rates are half a physics step older than its forces (MuJoCo, Featherstone's
-# semi-implicit step) differs from itself by as much at two step sizes of 1 and 2 ms.
-LEAST_DELAY_MS = 0.5
-LEAST_SMOOTH_MS2 = 3.0
 
 
 def bias_sign(parameters):

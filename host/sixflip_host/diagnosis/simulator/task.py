@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-LEAST_S = 5.0
 SETTLE_S = 3.0  # the filter's own start-up ramp
 
 

@@ -14,9 +14,11 @@ from ...capture import rests_by_variance
 from ...capture.attitude import _between, _rotation
 from ...experiment.block_measures import EDGE_S
 
-SHORTEST_REST_S = 0.5
-WINDOW_S = 0.3
-LOUDER, SLOW_DPS = 2.5, 1.5  # of the quietest tenth; a turn slower than any robot's
+SHORTEST_REST_S = 0.5  # of a robot that stops between two moves
+WINDOW_S = 0.3  # over which a log is still: shorter than such a stop with its edges
+# Times the noise of the quietest tenth up to which a log is still; deg/s of a turn that is slower
+# than any robot's, and more than a gyro's bias changes by within a log (20 deg/s over 60 degC).
+LOUDER, SLOW_DPS = 2.5, 1.5
 COUNT_VARIANCE = 0.25  # counts: a channel that toggles between two of them
 DPS = np.pi / 180.0
 
