@@ -1,7 +1,7 @@
 """Which way each placement lay: nominal sensor and gravity's direction, fitted together.
 
 Twelve parameters take counts to g. All placements give |f| = 1; those on a labelled face also
-say, loosely (a table may be tilted, a box crooked), which way. Source: METHOD section 1, and
+say, loosely (a table may be tilted, a box not square), which way. Source: METHOD section 1, and
 Tedaldi et al. (ICRA 2014) for what lies in between.
 """
 from dataclasses import dataclass

@@ -25,7 +25,9 @@ PULL_DPS = 0.1  # deg/s per g, typical (effects/typical.py: g_sensitivity)
 SHORTEST_S, LONGEST_S, LEAST_DEG = 0.3, 60.0, 20.0
 WHOLE = 0.7  # samples: half of one that is missing, and what the stamps of both ends scatter by
 LEAST_STEP = 0.05  # periods between two samples, whatever their stamps
-_known = weakref.WeakKeyDictionary()  # {Session: {up: turns}}: what was integrated is not again
+# {Session: {up: turns}}: turns are values, so that what was integrated once is kept for as long as
+# the session lives; nobody can change it.
+_known = weakref.WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,9 +228,9 @@ def nuisance(chosen):
 
 def squareness(chosen):
     """Columns (m, 3), deg: the angles xy, xz and yz between the accelerometer's axes, by which all
-    gravity of a session was read. Faces of a crooked box, or half turns that a hand made not quite
-    half on a table that leans, are read as such angles, and alike in each session; the part that
-    turns all axes together is the gyro's misalignment."""
+    gravity of a session was read. Faces of a box that is not square are read as such angles, and
+    so are half turns that were not quite half on a table that leans, alike in each session; the
+    part that turns all axes together is the gyro's misalignment."""
     parts = []
     for turn in chosen:
         first, second = lateral_basis(turn.before)

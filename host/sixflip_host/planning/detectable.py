@@ -1,8 +1,8 @@
 """The smallest size of each effect that a planned capture would show, at 80 % power.
 
-Generalised least squares with known variances: white noise over the samples of a row,
-placement (two small turns a placement, by hand), flicker as the diagnosis has it.
-The unit of replication is the placement, never the sample (GAP finding 3).
+Generalised least squares with known variances: white noise over the samples of a row, the scatter
+of a placement by hand (two small turns), flicker as the diagnosis has it. The unit of replication
+is the placement, never the sample (GAP finding 3).
 """
 import math
 from dataclasses import dataclass

@@ -1,4 +1,5 @@
-"""Stage 7: the capture, by hand and within ten minutes, that tells the most apart."""
+"""What to capture next: of the captures that can be made by hand within ten minutes, those that
+tell the most unresolved pairs of effects apart per minute (GAP stage 7)."""
 import copy
 
 import numpy as np

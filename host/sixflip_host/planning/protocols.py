@@ -1,6 +1,8 @@
-"""The sessions that can be asked for: which pose, how long, how warm, in which order.
+"""The sessions that a person can be asked to capture: which pose, how long, how warm, in which
+order.
 
-Their numbers are those of the findings: 5 s rests, 10 s moves, 8-9 degC with tau = 300 s.
+Their numbers are those that GAP's figures are given for: rests of 5 s, moves of 10 s, a change of
+temperature of 8-9 degC with a time constant of 300 s.
 """
 import math
 import random
@@ -82,8 +84,9 @@ def leaning_rests(count, seed, **timing):
 
 def order_of(name, seed=7):
     """Pose codes of one pass: "fixed"; "random"; or "pairs", the faces in random order, each
-    with its flip. Pairs give the gyro its half turns, but a single pass of them lets a crooked
-    box reproduce most of a drift (0.86 on average, 0.25 for "random"): go backward after it."""
+    with its flip. Pairs give the gyro its half turns, but a single pass of them lets a box
+    that is not square reproduce most of a drift (alias index 0.86 on average, 0.25 for "random"):
+    go backward after it."""
     codes = list(range(1, 13))
     draw = random.Random(seed)
     if name == "random":

@@ -69,7 +69,7 @@ def sections(page, answer, drawn):
     if answer["causes"]:
         page.heading("Which effect")
         page.table(gap_words.WHICH, [gap_words.row(c) for c in answer["causes"]])
-    lines = [gap_words.shrinkage_line(k, g, answer["held_out"]) for k, g in answer["gap"].items()]
+    lines = [gap_words.holdout_line(k, g, answer["held_out"]) for k, g in answer["gap"].items()]
     lines += [gap_words.loop_line(k, g) for k, g in answer.get("simulated", {}).items()]
     if lines:
         page.heading("How far")

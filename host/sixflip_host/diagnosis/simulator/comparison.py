@@ -185,7 +185,7 @@ def held_out(fits, real, sim):
         left = np.empty_like(theirs)
         for k in (0, 1):
             rows = np.where(fold == k, UNSEEN, 1.0)
-            fit = found.again(rows)
+            fit = found.refitted(rows)
             left[fold == k] = fit.left[fold == k] / fit.unit
         noise = 0.0
         for trace in (real, sim):

@@ -37,7 +37,7 @@ class SensorFit:
     own: tuple
     live: np.ndarray
 
-    def again(self, rows):
+    def refitted(self, rows):
         """The Fit of the same hypothesis with other noise of each sample, rows (n,)."""
         measured = self.pair.sim_force if self.kind == "accel" else self.pair.sim_rate
         return evidence_of_logs.fit_one(self.hypothesis, measured, self.fit.axes, self.fit.unit,

@@ -198,7 +198,7 @@ def _fit(kind, found, designs):
                    mean=np.concatenate([h.mean, *(np.zeros(len(d.keys)) for d in designs)]),
                    sd=np.concatenate([h.sd, *(d.prior for d in designs)]))
     rows = conventions.local_noise(found.fit.left[:, found.live])
-    return replace(found, hypothesis=wide, own=None).again(rows)
+    return replace(found, hypothesis=wide, own=None).refitted(rows)
 
 
 def _sizes(kind, fit, designs, names, diagnosis):
