@@ -21,9 +21,11 @@ PLACEMENT_MG = (0.1, 0.45, 0.8, 1.4, 3.0, 8.0, 40.0)
 # Levels of flicker tried: factors of 1.4 apart where parts are (typical.FLICKER), two and more
 # beyond.
 FLICKER_MG = (0.005, 0.02, 0.033, 0.05, 0.075, 0.11, 0.15, 0.22, 0.4, 0.8, 1.6, 4.0)
-EARTH_DPS = (0.0005, 0.003)  # the Earth's horizontal rate, the box at an unknown azimuth
 FLICKER_DPS = (0.0002, 0.0007, 0.0014, 0.002, 0.003, 0.0045, 0.008, 0.016, 0.03, 0.1)
 EARTH_UP_DPS = 0.003  # 15 deg/h at a latitude of 45 degrees
+# Levels tried of the Earth's horizontal rate, the box at an unknown azimuth: as much as upward,
+# and what is left of it where the box nearly always lies the same way.
+EARTH_DPS = (0.0005, EARTH_UP_DPS)
 # Pairs of blocks from which on an axis' flicker is told from the others': twelve differences know
 # a variance to 41 %, and no axis is taken to have more or less than twice what all have.
 FEWEST_PAIRS, MOST_UNLIKE = 12, 2.0

@@ -1,7 +1,5 @@
 """What to capture next: of the captures that can be made by hand within ten minutes, those that
 tell the most unresolved pairs of effects apart per minute (GAP stage 7)."""
-import copy
-
 import numpy as np
 
 from sixflip.poses import faces
@@ -89,9 +87,7 @@ def _by_design(diagnosis, wanted):
     for name, plan in candidates().items():
         if plan.minutes > MOST_MINUTES:
             continue
-        protocol = present(diagnosis)
-        protocol.sessions = [*protocol.sessions, copy.deepcopy(plan)]
-        rows = rows_of(protocol, 2)
+        rows = rows_of(protocols.Protocol("added", [*present(diagnosis).sessions, plan]), 2)
         found = []
         for kind in sorted({kind for kind, _, _ in wanted}):
             design = alias.PlannedModel(rows, kind, diagnosis.settings.certified)

@@ -9,7 +9,7 @@ SENSOR = {"accel": "accelerometer", "gyro": "gyro", "device": "device",
 STYLE = {"no gap": "bold green", "explained": "bold green", "partly explained": "bold yellow",
          "unexplained": "bold red", "cannot tell": "bold yellow"}
 WHICH = ("effect", "sensor", "probability", "share", "size (90 % interval)")
-SUREST = 0.99
+SUREST = 0.99  # the most that is said of a probability: the model is no surer of itself
 DOES = {  # what a part with this effect does
     "thermal_bias": "drifts with temperature", "thermal_scale": "changes its scale with "
     "temperature", "warm_up": "drifts after it is switched on", "thermal_rate": "follows how fast "

@@ -16,7 +16,9 @@ from .hypotheses import BIAS, DEAD, DEG, DELAY_S, FREE, SHAPE, SIGNED, SMOOTH_S2
 ROUNDS = 4  # of the noise of each channel: more change the evidence by some thousandths of a nat
 LEAST_LEFT = 1e-9  # of a variance, (m/s2)2 or (rad/s)2: a simulator without noise has none
 MOST_ROWS = 4000  # of a log that a fit looks at; each stands for those around it
-STRETCHES = 20  # of a log, each of them one observation of what its coefficients are worth
+# Stretches of a log, each of them one observation of what its coefficients are worth: a standard
+# error by twenty is known to a sixth, and of a minute's log each holds about one move.
+STRETCHES = 20
 
 
 @dataclass(frozen=True)

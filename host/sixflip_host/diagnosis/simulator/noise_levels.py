@@ -13,8 +13,9 @@ ANY = 2.0  # natural logarithm, of a noise that was set to anything: a factor of
 # Probability from which on a noise is said to be the density's number. Less than elsewhere
 # (conventions.CERTAIN), since it is said only where the densities differ anyhow.
 LIKELY = 0.95
-COARSE = 1.5  # times its noise: a step in which noise is not seen any more
-DROWNED = 0.3  # of a step: noise below it does not show
+# Times its noise, a step in which noise is not told any more: the differences of neighbouring
+# samples are then mostly 0 or a whole step. Noise below DROWNED of a step hardly ever crosses one.
+COARSE, DROWNED = 1.5, 0.3
 
 
 def noises(real, sim):

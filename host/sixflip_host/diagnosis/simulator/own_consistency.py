@@ -16,7 +16,9 @@ from .hypotheses import DEG, SIGNED
 
 NORM_SIGMA = 0.12  # of |force| / g at rest: 80 mg of offset, 3 % of scale [MPU-6000 PS table 6.2]
 RATIO_SIGMA = 1.0  # how alike two runs are in the size of their turn rates, natural logarithm
-TURNED = 0.3  # rad: less than that says nothing on where gravity should have gone
+# rad that a move has to turn to say where gravity should have gone: four times the error of a
+# direction (gravity_directions.SIGMA).
+TURNED = 0.3
 MOVES = 10.0  # times its noise at rest: a gyro that turns at all
 
 
