@@ -191,6 +191,7 @@ def posterior(kind, fits, live):
 
 
 def prior(name):
+    """Probability of one thing that a simulator may do otherwise, before looking."""
     return PRIOR_NAMELESS if name == "unknown" else PRIOR_EACH
 
 

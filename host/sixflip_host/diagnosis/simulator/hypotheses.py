@@ -96,6 +96,7 @@ def gyro(rate, motion, force, g):
 
 
 def nameless(signal, everything, copies):
+    """The Hypothesis without a name: the reading with everything (n, f) beside it."""
     return Hypothesis("", signal, *none(len(signal)), free=everything, copies=copies)
 
 

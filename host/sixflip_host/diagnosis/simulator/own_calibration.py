@@ -97,6 +97,7 @@ def by_norm(means, g):
 
 
 def matrix_of(p):
+    """((3, 3) symmetric matrix, (3,) bias) of nine parameters, zero for a sensor without error."""
     out = np.eye(3)
     for value, (i, j) in zip(p, SYMMETRIC):
         out[i, j] += value

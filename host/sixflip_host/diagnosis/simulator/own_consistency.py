@@ -138,6 +138,7 @@ def unit_by_size(real, sim):
 
 
 def gyro_unit(unit, probability, nats):
+    """The Convention of a gyro that reads in another unit."""
     return convention_findings.finding(
         "gyro_unit", "gyro", probability, nats, "multiply by %.5g: %s" % (
             1.0 / unit, convention_findings.unit_words("gyro", unit)),

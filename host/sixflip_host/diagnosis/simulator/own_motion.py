@@ -128,6 +128,7 @@ def compared(real, sim, row_s):
 
 
 def chi_of(x, covariance):
+    """Chi-squared of x (n,) being zero, by its covariance (n, n)."""
     return float(x @ np.linalg.solve(covariance, x))
 
 

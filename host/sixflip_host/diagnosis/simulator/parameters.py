@@ -199,6 +199,7 @@ def with_how(parameter, how):
 
 
 def later(ms):
+    """What to do about a delay between the sensors: gyro after accelerometer, or the reverse."""
     return "output the %s %.3g ms later" % ("gyro" if ms > 0 else "accelerometer", abs(ms))
 
 
@@ -212,6 +213,7 @@ def smoother(ms2):
 
 
 def faster(percent):
+    """What to do about a clock that runs this much faster than the real one."""
     return "multiply its times by %.6g" % (1.0 - percent / 100.0)
 
 

@@ -85,6 +85,7 @@ def of_own(real, sim, own_real, own_sim):
 
 
 def made(against, results):
+    """Task of ((tilt, heading) before, after), degrees."""
     (tilt, heading), (tilt_after, heading_after) = results
     return Task("imufusion", against,
                 {"before": abs(float(tilt)), "after": abs(float(tilt_after))},
