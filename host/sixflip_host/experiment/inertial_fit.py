@@ -15,7 +15,7 @@ from sixflip_sim.effects import typical
 from sixflip_sim.effects.library import EFFECTS
 from sixflip_sim.effects.moment import Moment
 
-from ..capture.attitude import _rotation
+from ..capture.attitude import rotations
 from . import noise_arrays, projection, terms
 from .turns import Turn
 
@@ -182,7 +182,7 @@ def pinned(turn):
     if size < 1e-12:
         return body
     angle = np.arctan2(size, carried @ turn.before)
-    return _rotation(np.outer(path(turn), off / size * angle)) @ body
+    return rotations(np.outer(path(turn), off / size * angle)) @ body
 
 
 @dataclass(frozen=True, eq=False)

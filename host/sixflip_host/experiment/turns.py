@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..capture.attitude import _rotation, carried
+from ..capture.attitude import carried, rotations
 from . import blocks
 from .projection import cross, lateral_basis
 from .session import ReadOnlyArrays
@@ -74,7 +74,7 @@ class Turn(ReadOnlyArrays):
     def integrated(self, matrix=None):
         """The turn with its attitude, of the rates as they are or turned by a matrix (3, 3)."""
         rate = self.middle if matrix is None else self.middle @ matrix.T
-        way = carried(_rotation(np.radians(rate) * self.dt[:, None]))
+        way = carried(rotations(np.radians(rate) * self.dt[:, None]))
         return replace(self, attitude=way[:-1], end=way[-1])
 
     def corrected(self, matrix, shift):

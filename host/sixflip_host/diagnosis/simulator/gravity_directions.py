@@ -2,7 +2,7 @@
 rests have them, and from each rest to the next, as the gyro carries them."""
 import numpy as np
 
-from ...capture.attitude import _rotation
+from ...capture.attitude import rotation_between, rotations
 from . import traces
 
 SIGMA = np.radians(4.0)  # of a direction: bias of 60 mg, scale of the gyro 3 % of a half turn
@@ -44,7 +44,7 @@ def carried_log(body, ways, gyro):
     total = 0.0
     matrix = np.linalg.inv(gyro)
     for before, after, steps in ways:
-        turn = traces.chained(_rotation(steps @ matrix.T))[-1]
+        turn = traces.chained(rotations(steps @ matrix.T))[-1]
         total += closeness(body[after], turn.T @ body[before])
     return float(total)
 
@@ -57,16 +57,16 @@ def world_log(body, ways):
     best = []
     for psi in np.linspace(0.0, 2.0 * np.pi, HEADINGS, endpoint=False):
         c, s = np.cos(psi), np.sin(psi)
-        attitude = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]) @ traces._between(body[0], z)
+        attitude = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]) @ rotation_between(body[0], z)
         total = 0.0
         for _, after, steps in ways:
-            turns = _rotation(steps)
+            turns = rotations(steps)
             whole = np.eye(3)
             for one in turns:
                 whole = one @ whole
             attitude = whole @ attitude
             total += closeness(body[after], attitude[2])
-            attitude = traces._between(attitude @ body[after], z) @ attitude
+            attitude = rotation_between(attitude @ body[after], z) @ attitude
         best.append(total)
     top = max(best)
     return float(top + np.log(np.mean(np.exp(np.array(best) - top))))

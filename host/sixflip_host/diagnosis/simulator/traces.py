@@ -11,7 +11,7 @@ from sixflip.poses import faces
 
 from ...capture import rests as rest_finder
 from ...capture import rests_by_variance
-from ...capture.attitude import _between, _rotation
+from ...capture.attitude import rotation_between, rotations
 from ...experiment.block_measures import EDGE_S
 
 SHORTEST_REST_S = 0.5  # of a robot that stops between two moves
@@ -166,12 +166,12 @@ def motion(trace):
     ups = [_unit(v) for v in trace.rest_means(trace.force)]
     n = len(trace.t)
     middle = 0.5 * (rate[1:] + rate[:-1]) * np.diff(trace.t)[:, None]
-    steps = np.concatenate([np.eye(3)[None], _rotation(middle)])
+    steps = np.concatenate([np.eye(3)[None], rotations(middle)])
     turn = np.empty((n, 3, 3))
     carried = []
     first, end = trace.rests[0]
     # The first rest says where the world's vertical is; before it time runs backwards.
-    start = _between(ups[0], np.array([0.0, 0.0, 1.0]))
+    start = rotation_between(ups[0], np.array([0.0, 0.0, 1.0]))
     turn[first:end] = start
     if first:
         back = chained(np.concatenate([np.eye(3)[None], np.swapaxes(
@@ -205,7 +205,7 @@ def levelled(way, up, steps):
     angle = np.arctan2(size, there[2])
     path = np.concatenate([[0.0], np.cumsum(np.linalg.norm(steps, axis=1))])
     share = path / path[-1] if path[-1] > 0 else np.linspace(0, 1, len(way))
-    return _rotation(np.outer(share, off / size * angle)) @ way, float(np.degrees(angle))
+    return rotations(np.outer(share, off / size * angle)) @ way, float(np.degrees(angle))
 
 
 def chained(steps):
