@@ -1,8 +1,8 @@
 """One long rest, or several in one attitude, as short means over time.
 
-Where a capture has no poses to speak of, what is left is how its readings go on while nothing
-moves: with temperature, with time, by jumps. The means are short against what wanders and long
-against the noise; their white noise is known from what differs within them.
+Where a capture has too few poses for the linear model, what it can still show is how its readings
+change while nothing moves: with temperature, with time, by jumps. The means are short against what
+wanders and long against the noise; their white noise is known from what differs within them.
 """
 from dataclasses import dataclass
 

@@ -1,8 +1,9 @@
-"""The library's effects, and generic discrepancies, as columns over the blocks of a session.
+"""The library's effects as columns over the blocks of a session: one column a coefficient, what
+the reading changes by for a coefficient of 1.
 
-Effects come from sixflip_sim's one definition: an effect's terms at the moments measured. Where
-an effect has a shape (a time constant, a lag) or a bend (a square beside the slope) it has
-several variants; they compete, and all go by the effect's one name.
+The columns are an effect's terms at the moments measured, by the one definition that the simulator
+has of it too (sixflip_sim/effects). An effect with a shape (a time constant, a lag) or a bend (a
+square beside the slope) has several variants; they compete, and all go by the effect's one name.
 """
 import copy
 from dataclasses import dataclass, replace

@@ -1,10 +1,10 @@
-"""The box's turns between two rests: gravity before and after against the rotation integrated.
+"""The turn of the box in each move: gravity before and after against the gyro's rate integrated.
 
 With R(t) the attitude since the start of a move, an error e(t) of the rate turns the end by
 phi = int R(t) e(t) dt, and gravity carried back to the start is off by phi x up [Tedaldi et al.,
 ICRA 2014, eq. 13-18, linearised]. Flips of one face also say that the turn was half a circle.
-Everything is divided by the length of the move: deg/s, as the causes are. Turns are values:
-what takes something out of their rates answers others.
+Everything is divided by the length of the move, so that it is in deg/s, as the effects are. Turns
+are values: to take something out of their rates is to make other turns.
 """
 import weakref
 from dataclasses import dataclass, replace

@@ -1,8 +1,9 @@
 """The user's own simulator: the gap is what the real sensor has and that simulator lacks.
 
-SIM.csv is diagnosed like a real capture. What it models is taken off the real sessions at their
-own poses, times and temperatures, so scenes need not be the same; what both have in their
-registers, timing or spectrum is no gap. What it has and the real sensor lacks is a gap as well.
+The simulator's log is diagnosed like a real capture. What it models is taken off the real sessions
+at their own poses, times and temperatures, so that the scenes need not be the same; what both have
+in their registers, timing or spectrum is no gap. What the simulator has and the real sensor lacks
+is a gap as well.
 """
 from dataclasses import dataclass
 

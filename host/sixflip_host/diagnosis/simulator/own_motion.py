@@ -1,5 +1,6 @@
-"""Where a log's sensor sits and how late it is, by the log's own motion: force less gravity as the
-gyro carries it, against the turning. What the hand or the wheels do besides is noise.
+"""Where a log's sensor sits and how late it is, by the log's own motion: what the force is beside
+the gravity that the gyro carries along, against how the sensor turns. What the hand or the wheels
+do besides is noise.
 """
 from dataclasses import dataclass
 
