@@ -43,11 +43,8 @@ def findings(name, protocol, sensor, rate_hz, make, ranges=(None, None)):
         smallest, how = rule(protocol, rate_hz, sigma, kind)
         if name in ("filter_lag", "lever_arm") and sensor in ("adxl345", "itg3205"):
             smallest, how = math.inf, "the other sensor, which is not there"
-        finding = make(name, kind, EFFECTS[name].units[kind], smallest, size, source)
-        finding.how = how
-        if math.isinf(smallest):
-            finding.absorbed = how
-        found.append(finding)
+        found.append(make(name, kind, EFFECTS[name].units[kind], smallest, size, source, how=how,
+                          absorbed=how if math.isinf(smallest) else ""))
     return found
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..experiment.read_only import ReadOnlyArrays
+from ..experiment.session import ReadOnlyArrays
 
 COLUMNS = 7
 RAD = np.pi / 180.0
@@ -112,7 +112,7 @@ class GyroMoves(ReadOnlyArrays):
 
 
 def of(session, moves):
-    """GyroMoves of some of the moves (moves.Move) of a blocks.Session, by the nominal scale."""
+    """GyroMoves of some of the moves (blocks.Move) of a blocks.Session, by the nominal scale."""
     meta = session.capture.meta
     return of_samples(session.capture.gyro * (RAD / meta["gyro_lsb_per_dps"]),
                       session.capture.accel / meta["accel_lsb_per_g"], session.t_s,

@@ -4,7 +4,7 @@ import numpy as np
 
 from sixflip.accelerometer.scale_form import scale_form
 
-from ..planning import observability
+from . import observability
 from .joint_refinement import ACCEL_NAMES, GYRO_PER_G, GYRO_SCALE, N_ACCEL, N_GYRO
 from .refinement_residuals import LEVEL, SCATTER
 

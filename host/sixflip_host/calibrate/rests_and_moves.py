@@ -9,8 +9,8 @@ from sixflip.poses.faces import AXIS, SIGN, face_of_code, is_b, pose_name
 from sixflip.poses.placement import GAP_US
 
 from ..errors import BadFile, CheckFailed
-from ..experiment import blocks, moves
-from ..experiment.read_only import ReadOnlyArrays
+from ..experiment import blocks
+from ..experiment.session import ReadOnlyArrays
 from . import gyro_moves
 
 FLOOR_G = 5e-5  # standard error a mean is never better than: a chip's own flicker noise
@@ -116,10 +116,10 @@ def _error(session, noise, floor):
 
 
 def _usable(session):
-    """(tuple of moves.Move that can be integrated, tuple of sentences on the others)."""
+    """(tuple of blocks.Move that can be integrated, tuple of sentences on the others)."""
     usual = float(np.median(np.diff(session.t_s)))
     found, left_out = [], []
-    for move in moves.of(session):
+    for move in blocks.moves_of(session):
         name = "%s to %s" % tuple(pose_name(run.code)
                                   for run in session.runs[move.place:move.place + 2])
         if move.railed:

@@ -27,7 +27,7 @@ def heading_change(capture, rests, bias, axis, sign):
         move = slice(before.end - first, rest.first - first)
         for turn in _turns(capture, gyro, gaps, bias, move):
             attitude = attitude @ turn
-        attitude = _between(attitude @ _unit(rest.mean), up) @ attitude
+        attitude = rotation_between(attitude @ _unit(rest.mean), up) @ attitude
     # twist about the face's axis, up: what is left once gravity agrees
     i, j = (axis + 1) % 3, (axis + 2) % 3
     return sign * float(np.degrees(np.arctan2(attitude[j, i] - attitude[i, j],
@@ -41,7 +41,7 @@ def _turns(capture, gyro, gaps, bias, move):
         counts = gyro[first:end + 1].astype(float)
         middle = (counts[1:] + counts[:-1]) / 2
         rate = np.radians((middle - bias) / capture.meta["gyro_lsb_per_dps"])
-        yield from _rotation(rate * gaps[first:end, None])
+        yield from rotations(rate * gaps[first:end, None])
 
 
 def _unit(vector):
@@ -65,16 +65,16 @@ def carried(steps):
     return np.concatenate([np.eye(3)[None], square.reshape(-1, 3, 3)[:n]])
 
 
-def _rotation(vectors):
+def rotations(vectors):
     """Rotation matrices (n, 3, 3) of rotation vectors (n, 3), rad."""
     from scipy.spatial.transform import Rotation  # takes a while to load
     return Rotation.from_rotvec(vectors).as_matrix()
 
 
-def _between(a, b):
+def rotation_between(a, b):
     """The smallest rotation that takes unit vector a to unit vector b."""
     axis = np.cross(a, b)
     sine = np.linalg.norm(axis)
     if sine < 1e-12:
         return np.eye(3)
-    return _rotation((axis / sine * np.arctan2(sine, a @ b))[None])[0]
+    return rotations((axis / sine * np.arctan2(sine, a @ b))[None])[0]

@@ -45,26 +45,33 @@ def spacing(size, least):
 
 FEWEST_NEAR, LEAST_NOISE = 50, 0.3  # samples beside 0; steps: with less noise 0 may be all
 WINDOW, FEWEST_WINDOWS, QUIET = 32, 8, 0.1  # samples; windows away from 0; share that is at rest
+CROSSINGS = 4  # of 0 in a window that noise makes: what passes through has one
 
 
 def zeros_beyond_noise(column):
-    """(zeros, how many there would be by the codes beside 0 at most) of a column (n,) of counts,
-    or None where that cannot be told. Noise of a standard deviation s makes a code more frequent
-    than the two beside it by exp(1 / (2 s^2)) at most, wherever its mean is; s is known where the
-    column rests away from 0. What reads 0 for longer than a window may have rested there: that
-    says nothing of how wide a band is."""
+    """(zeros, how many there would be by the codes beside 0 at most) of a column (n,) of counts
+    where noise takes it to both sides of 0, or None where that is not so often enough. Noise of a
+    standard deviation s makes a code more frequent than the two beside it by exp(1 / (2 s^2)) at
+    most, wherever its mean is; s is known where the column rests away from 0."""
     x, step = column.astype(np.int64), int(steps(column[:, None])[0])
-    beside = int(((x != 0) & (np.abs(x) <= 2 * step)).sum())
     windows = x[:len(x) // WINDOW * WINDOW].reshape(-1, WINDOW)
     away = windows[(np.abs(windows) > 2 * step).all(axis=1)]
+    about = windows[_crossings(windows) >= CROSSINGS]
+    beside = int(((about != 0) & (np.abs(about) <= 2 * step)).sum())
     if beside < FEWEST_NEAR or len(away) < FEWEST_WINDOWS:
         return None
     noise = float(np.quantile(np.diff(away, axis=1).std(axis=1), QUIET)) / np.sqrt(2.0) / step
     if noise < LEAST_NOISE:
         return None
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], (x == 0).astype(int), [0]])))
-    lasts = edges[1::2] - edges[::2]
-    return int(lasts[lasts <= WINDOW].sum()), beside / 4.0 * float(np.exp(0.5 / noise ** 2))
+    return int((about == 0).sum()), beside / 4.0 * float(np.exp(0.5 / noise ** 2))
+
+
+def _crossings(windows):
+    """(n,) how often the signs of the readings that are not 0 change, row by row."""
+    sign = np.sign(windows)
+    last = np.maximum.accumulate(np.where(sign != 0, np.arange(sign.shape[1]), 0), axis=1)
+    held = np.take_along_axis(sign, last, axis=1)
+    return (held[:, 1:] * held[:, :-1] < 0).sum(axis=1)
 
 
 def _flat(column):

@@ -11,9 +11,10 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ..experiment import blocks, inertial_fit, turns
+from ..experiment import inertial_fit, turns
 from ..experiment.attitude_fit import NominalSensor
 from ..experiment.gram import Products
+from ..experiment.session import MOST_BAD
 from ..experiment.terms import Design
 from .detect import saturation
 from .evidence import Levels
@@ -98,7 +99,7 @@ def moves(sessions, models, turned):
         railed = saturation.railed(session)
         found += [inertial_fit.move(turn, session.capture, sensor, course, number,
                                     number < len(models), white)
-                  for turn in chosen if railed[turn.first:turn.last].mean() <= blocks.MOST_BAD]
+                  for turn in chosen if railed[turn.first:turn.last].mean() <= MOST_BAD]
     return found
 
 

@@ -1,1 +1,16 @@
-"""A capture as an experiment: its blocks, their linear model, terms and covariance."""
+"""A capture as an experiment: what plan, diagnose, refine and verify share.
+
+blocks, session (block_measures, thermometer)
+                          a capture cut into rests and moves; what is measured of each part
+attitude_fit              which way each placement lay
+turns, inertial_fit       how the gyro turned in a move, and what the accelerometer read in it
+long_rest, noise_spectrum rests in one attitude, and the noise in them
+session_rows              the moments of a session that is only planned
+nominal_rows, covariance (flicker)
+                          rest readings as rows: what is unknown in them, and how they err
+terms, fleet_prior        the columns of every effect, and what a fleet knows of their sizes
+linear_model (gram, dense_gram, factored_gram)
+                          rows and columns reduced to what all later questions need
+projection, signal_measures, noise_arrays
+                          the arithmetic of columns, of recordings and of noise
+"""

@@ -1,7 +1,7 @@
 """Which way each placement lay: nominal sensor and gravity's direction, fitted together.
 
 Twelve parameters take counts to g. All placements give |f| = 1; those on a labelled face also
-say, loosely (a table may be tilted, a box crooked), which way. Source: METHOD section 1, and
+say, loosely (a table may be tilted, a box not square), which way. Source: METHOD section 1, and
 Tedaldi et al. (ICRA 2014) for what lies in between.
 """
 from dataclasses import dataclass
@@ -11,9 +11,14 @@ from scipy.optimize import least_squares
 
 from sixflip.poses import faces
 
-ALONG = 0.3e-3  # g: how well |f| = 1 holds
-ACROSS = 30e-3  # g: a table's tilt
-SHAPE = 0.02  # off-diagonals where nothing else says
+# g, standard deviations: how well |f| = 1 holds, and a table's tilt (30 mg are 1.7 degrees). They
+# are a hundred apart, so that the length of gravity decides wherever it says anything, and the
+# labels only choose among the turned sensors that fit it alike.
+ALONG = 0.3e-3
+ACROSS = 30e-3
+# Cross-axis sensitivity and scale where nothing else says, and offset, g [MPU-6000 PS rev 3.4,
+# table 6.2: 2 %, 3 %, 80 mg]; SHAPE is let go to LEEWAY times that, the offset to six times.
+SHAPE, LEEWAY, OFFSET = 0.02, 5.0, 0.5
 
 
 def face_axes(face):
@@ -39,8 +44,8 @@ class NominalSensor:
 
 
 def fit(session, added=0.0):
-    """NominalSensor of a Session; placements in the order of session.runs. added (n, 3) mg: of
-    its readings, what something else than a nominal sensor adds."""
+    """NominalSensor of a Session; placements in the order of session.runs. added (n, 3) mg: what
+    something else than a nominal sensor adds to its readings."""
     number, accel = session.placements(), session.accel - added
     mean = np.array([accel[session.placement == p].mean(axis=0) * 1e-3
                      if (session.placement == p).any() else np.array([0.0, 0.0, 1.0])
@@ -55,7 +60,7 @@ def fit(session, added=0.0):
         along = (np.linalg.norm(f, axis=1) - 1.0) / ALONG
         across = (f - axes)[on_face]
         across -= axes[on_face] * (across * axes[on_face]).sum(axis=1)[:, None]
-        prior = np.concatenate([(p[:9] - start[:9]) / SHAPE / 5.0, p[9:] / 0.5])
+        prior = np.concatenate([(p[:9] - start[:9]) / SHAPE / LEEWAY, p[9:] / OFFSET])
         return np.concatenate([along, across.ravel() / ACROSS, prior])
 
     found = least_squares(residual, start, x_scale=0.01, method="trf", max_nfev=60).x

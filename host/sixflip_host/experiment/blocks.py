@@ -1,201 +1,42 @@
-"""A capture reduced to what the gap is looked for in: means over parts of each rest.
+"""A capture cut into what an experiment is made of: rests in poses, and the moves between them.
 
-The unit of replication is the placement, never the sample. A placement is cut into a few
-blocks so that what fades within it (creep) or wanders (flicker) shows between them. Everything
-here is a value: a part of a session, or one without some of its rests, is another Session.
+of() makes the Session of a capture, whose rests are cut into blocks. The moves have one definition
+for all who integrate the gyro over them: the diagnosis' turns (turns.py) and the refinement's
+rotations (calibrate/gyro_moves.py).
 """
 import copy
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass
 
 import numpy as np
 
 from sixflip.poses import faces
-from sixflip_sim.effects.moment import Moment
 
 from .. import progress
-from ..capture import clock, rests, rests_by_variance
-from ..capture.capture_file import Capture
+from ..capture import registers, rests, rests_by_variance
 from ..capture.find_poses import HELD_BY_HAND, by_a_person, find_poses
-from . import block_means, noise_arrays, thermometer
-from .read_only import ReadOnlyArrays
+from . import block_measures, thermometer
+from .session import Session
 
+# Of a labelled rest: without its edges it has two short means, whose difference tells its noise
+# (block_measures.white); in a log of few rows a second, samples enough for a mean of its own.
 SHORTEST_S, FEWEST_SAMPLES = 0.8, 8
-PLAY_S = 0.1  # step at which hysteresis follows the way
-MOST_BAD = 0.005  # share of a rest's samples
-FAR_OFF_DEG = 25.0  # a label that gravity contradicts
-OF_BLOCKS = ("placement", "code", "first", "end", "face", "t", "since", "seconds", "accel", "gyro",
-             "temperature", "temperature_rate", "vibration")
+LATE_S = 0.1  # the longest delay of the library's filter_lag
 
 
-@dataclass(frozen=True, eq=False)
-class Session(ReadOnlyArrays):
-    """One capture as n blocks; arrays are read only.
+@dataclass(frozen=True)
+class Move:
+    """Samples first..end-1 from placement number `place` to the next, both ends at rest.
 
-    name; capture, labelled; rate (Hz); t_s (N,) s of every sample; timeless: the timestamps
-    stand still; labelled: by whoever captured it; runs: tuple of rests.Run, the placements;
-    thermometer or None. Of the blocks (n,): placement (number of its run), code, face (-1:
-    leaning), first, end (samples), t and since (s, since the capture's and the rest's begin),
-    seconds; accel (n, 3) mg and gyro (n, 3) deg/s as the chip gave them, None of a
-    sensor that there is not; temperature
-    and temperature_rate or None; vibration mg rms above the quietest. Of the sensor (3,):
-    noise_accel, noise_gyro of a mean over one second, mg and deg/s; rounding_accel,
-    rounding_gyro of the mean of a rest, by steps of the counts; None without a gyro.
-    thermal, shaken: what sessions that are judged together agreed to look for, see terms.
+    flip: from one pose of a face to its other; railed: the gyro was cut off in it; longest_s: the
+    longest step between two samples, s.
     """
 
-    name: str
-    capture: Capture
-    rate: float
-    t_s: np.ndarray
-    timeless: bool
-    labelled: bool
-    runs: tuple
-    thermometer: thermometer.Thermometer | None
-    placement: np.ndarray
-    code: np.ndarray
-    first: np.ndarray
-    end: np.ndarray
-    face: np.ndarray
-    t: np.ndarray
-    since: np.ndarray
-    seconds: np.ndarray
-    accel: np.ndarray
-    gyro: np.ndarray | None
-    temperature: np.ndarray | None
-    temperature_rate: np.ndarray | None
-    vibration: np.ndarray
-    noise_accel: np.ndarray | None
-    noise_gyro: np.ndarray | None
-    rounding_accel: np.ndarray | None
-    rounding_gyro: np.ndarray | None
-    thermal: bool = False
-    shaken: bool = False
-
-    @property
-    def n(self):
-        return len(self.placement)
-
-    @property
-    def leaning(self):
-        return self.face < 0
-
-    def placements(self):
-        return len(self.runs)
-
-    def part(self, placements):
-        """The same session with the blocks of some of its placements only."""
-        keep = np.isin(self.placement, list(placements))
-        values = {name: getattr(self, name) for name in OF_BLOCKS}
-        return replace(self, **{name: value if value is None else value[keep]
-                                for name, value in values.items()})
-
-    def rest_means(self, values):
-        """(placements, k): values (n, k) of the blocks, averaged over each placement."""
-        weight = np.bincount(self.placement, self.seconds, self.placements())
-        sums = [np.bincount(self.placement, self.seconds * column, self.placements())
-                for column in values.T]
-        return np.stack(sums, axis=1) / weight[:, None]
-
-    def without_poses(self, labels):
-        """The same session without the placements with these labels."""
-        codes = {faces.pose_code(label) for label in labels}
-        return self._of_runs([run for run in self.runs if run.code not in codes])
-
-    @cached_property
-    def period_s(self):
-        """Seconds between two samples, by the clock where it runs."""
-        measured = None if self.timeless else clock.of(self.capture)
-        return 1.0 / (measured.rate_hz if measured else self.rate)
-
-    def without_samples(self, bad):
-        """The same session without the placements with more than a few bad samples; bad (N,)."""
-        return self._of_runs([run for run in self.runs
-                              if bad[run.first:run.end].mean() <= MOST_BAD])
-
-    def _of_runs(self, runs):
-        return replace(self, runs=tuple(runs), **block_means.of_runs(
-            self.capture, tuple(runs), self.rate, self.t_s, self.labelled, self.thermometer))
-
-    def of_capture(self, capture):
-        """The same rests of another capture of the same samples, measured anew."""
-        return replace(self, capture=capture)._of_runs(self.runs)
-
-    def reading(self, capture):
-        """The same blocks and noise with the means of another capture of the same samples."""
-        accel, gyro = block_means.readings(capture, self.first, self.end)
-        return replace(self, capture=capture, accel=accel, gyro=gyro)
-
-    def with_gyro_axes(self, read):
-        """The same session with its gyro's means turned by a signed permutation (3, 3)."""
-        return replace(self, gyro=self.gyro @ read, noise_gyro=self.noise_gyro @ np.abs(read),
-                       rounding_gyro=self.rounding_gyro @ np.abs(read))
-
-    def before(self, up):
-        """(n, 3): up of the placement before each block's, its own at the first."""
-        index = np.maximum(self.placement - 1, 0)
-        return up[index]
-
-    def remembered(self, up, tau_s):
-        """(n, 3): where something that follows the attitude with a time constant stands when
-        each block's placement begins; settled at the first."""
-        starts = np.array([self.t_s[run[1]] for run in self.runs])
-        return fading(starts, up, tau_s)[self.placement]
-
-    def played(self, widths_g):
-        """[(n, 3)] a width: how far a play operator of that width (g) lags behind the specific
-        force of each axis, over the whole way that the box was taken, -1 to 1 [Krejci,
-        Hysteresis, Convexity and Dissipation in Hyperbolic Equations (1996), chapter II]."""
-        step = max(1, int(PLAY_S * self.rate))
-        counts = self.capture.accel[:len(self.capture.accel) // step * step]
-        f = counts.reshape(-1, step, 3).mean(axis=1) / self.capture.meta["accel_lsb_per_g"]
-        width = np.array(widths_g)[:, None]
-        state, behind = np.repeat(f[:1], len(widths_g), axis=0), np.empty(
-            (len(f), len(widths_g), 3))
-        for k, now in enumerate(f):
-            state = np.minimum(np.maximum(state, now - width), now + width)
-            behind[k] = (state - now) / width
-        middle = np.minimum((self.first + self.end) // 2 // step, len(f) - 1)
-        return [behind[middle, k] for k in range(len(widths_g))]
-
-    def moment(self, up, number=0):
-        """moment.Moment of all blocks; up (placements, 3): unit vectors against gravity."""
-        m = Moment(np.exp, np.sin, np.floor, noise_arrays.gauss)
-        m.t, m.since_move, m.face = self.t, self.since, self.face
-        m.temperature = np.full(self.n, 25.0) if self.temperature is None else self.temperature
-        m.temperature_rate = np.zeros(self.n) if self.temperature is None \
-            else self.temperature_rate
-        m.f = m.up = tuple(up[self.placement].T)
-        m.before = tuple(self.before(up).T)
-        still = np.zeros(self.n)
-        m.w = m.w_rate = (still, still, still)
-        m.session = np.full(self.n, number)
-        m.vibration_mg = self.vibration
-        return m
-
-    def contradicted(self):
-        """Names of labels that gravity contradicts: [(label, degrees off), ...]."""
-        found = {}
-        for place, (code, _, _) in enumerate(self.runs):
-            face, mine = faces.face_of_code(code), self.placement == place
-            if face < 0 or not mine.any():
-                continue
-            mean = self.accel[mine].mean(axis=0)
-            cosine = faces.SIGN[face] * mean[faces.AXIS[face]] / max(np.linalg.norm(mean), 1e-9)
-            off = float(np.degrees(np.arccos(np.clip(cosine, -1, 1))))
-            if off > FAR_OFF_DEG:
-                found[faces.pose_name(code)] = off
-        return sorted(found.items())
-
-
-def fading(starts, up, tau_s):
-    """(placements, 3): where something that follows the attitude up (placements, 3) with a time
-    constant stands when each placement begins, starts (placements,) s; settled at the first."""
-    state = np.array(up[:len(starts)], float)
-    for k in range(1, len(starts)):
-        fade = np.exp(-(starts[k] - starts[k - 1]) / tau_s)
-        state[k] = up[k - 1] + (state[k - 1] - up[k - 1]) * fade
-    return state
+    place: int
+    first: int
+    end: int
+    flip: bool
+    railed: bool
+    longest_s: float
 
 
 def of(name, capture, runs=None):
@@ -214,7 +55,7 @@ def of(name, capture, runs=None):
     runs = tuple(runs_of(capture) if runs is None else runs)
     smooth = thermometer.of(capture, t_s)
     return Session(name, capture, rate, t_s, timeless, labelled, runs, smooth,
-                   **block_means.of_runs(capture, runs, rate, t_s, labelled, smooth))
+                   **block_measures.of_runs(capture, runs, rate, t_s, labelled, smooth))
 
 
 def runs_of(capture, by_hand=False):
@@ -256,3 +97,21 @@ def same_chip(sessions):
     chip = sessions[0].capture.meta["sensor"]
     return ([s for s in sessions if s.capture.meta["sensor"] == chip],
             [s for s in sessions if s.capture.meta["sensor"] != chip])
+
+
+def moves_of(session):
+    """tuple of Move: one between each two neighbouring placements of a Session."""
+    return tuple(move_after(session, place) for place in range(len(session.runs) - 1))
+
+
+def move_after(session, place):
+    """The Move from placement number `place` of a Session to the next."""
+    run, following = session.runs[place], session.runs[place + 1]
+    # What is read late is still read when the box lies still again.
+    longer = int(LATE_S * session.rate)
+    first = run.end - 1 - min(longer, (run.end - run.first) // 4)
+    end = following.first + 1 + min(longer, (following.end - following.first) // 4)
+    face = faces.face_of_code(run.code)
+    flip = face >= 0 and run.code != following.code and face == faces.face_of_code(following.code)
+    return Move(place, first, end, flip, registers.gyro_railed(session.capture, first, end),
+                float(np.diff(session.t_s[first:end]).max()))

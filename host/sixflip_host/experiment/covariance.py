@@ -1,4 +1,4 @@
-"""The covariance of a session's readings, factored in time that grows as the session does.
+"""The covariance of a session's readings, factored so that time and memory grow as the session.
 
 Readings come in groups, one a placement (or a turn), in the order of time. Within a group the
 covariance may be anything: white noise and what is fixed, the group's lateral directions times
@@ -17,7 +17,8 @@ from scipy.linalg import lapack
 
 from .flicker import ALL_TIMES_S, flicker_kernel
 
-AT_A_TIME = 512  # whitened rows that are there at once
+AT_A_TIME = 512  # whitened rows that are there at once: memory, not time
+# Time alone decides these two (python -m tests.studies.bench.diagnose_cost --cores 1).
 FEW = 300  # readings up to which one matrix of all of them takes less time than many small ones
 SMALL = 24  # rows of a matrix up to which many at once take less time than each by itself
 

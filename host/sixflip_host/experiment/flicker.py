@@ -3,9 +3,10 @@ import numpy as np
 
 from sixflip_sim.effects.drift import FLOOR_OF_UNIT, TIMES_S
 
-# Flicker has neither a shortest nor a longest time: beside the library's 10 to 1000 s.
+# s, of the exponentials. The library's go from 10 to 1000 s; flicker has neither a shortest nor a
+# longest time, so that half-decades go on to what a block (2.5 s) and hours can show.
 ALL_TIMES_S = (0.3, 1.0, 3.0, *TIMES_S, 3000.0, 10000.0)
-FEW = 64  # stretches up to which all times are taken at once: memory
+FEW = 64  # stretches up to which all times are taken at once: in 64 x 64 x 10 numbers, 330 KB
 # Allan floor of the five exponentials of unit level, by numerical integration of their kernel.
 FLOOR_OF_KERNEL = 0.78 / FLOOR_OF_UNIT
 

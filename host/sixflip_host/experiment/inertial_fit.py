@@ -1,9 +1,10 @@
 """The accelerometer in motion: what it reads on the way from one rest to the next, less gravity.
 
-The gyro, as the rests and turns have calibrated it, says where gravity is on the way; gravity at
-both ends pins it. What is left is seen from the table, as frequencies over the move (a cosine
-transform): the hand's own acceleration is large there and can be anything, but its mean is zero,
-for the box rests at both ends; and what is fixed to the box or to the sensor turns with it.
+The gyro, as the rests and turns have calibrated it, says where gravity is on the way, and gravity
+at the rests before and after corrects it at both ends. What is left of the readings is expressed
+in the frame of the table, as frequencies over the move (a cosine transform). The hand's own
+acceleration is large there and may have any course, but its mean is zero, since the box rests at
+both ends; what is fixed to the box or to the sensor turns with it, and is told from it by that.
 """
 from dataclasses import dataclass
 
@@ -14,7 +15,7 @@ from sixflip_sim.effects import typical
 from sixflip_sim.effects.library import EFFECTS
 from sixflip_sim.effects.moment import Moment
 
-from ..capture.attitude import _rotation
+from ..capture.attitude import rotations
 from . import noise_arrays, projection, terms
 from .turns import Turn
 
@@ -28,19 +29,28 @@ COMPETING = (("lever_arm", "", EACH), ("filter_lag", "", (0,)), ("motion", "spee
              ("motion", "changes", EACH * 3), ("motion", "scale", EACH))
 EFFECTS_NUMBER = 4  # columns of those with a name
 COMPETING_NUMBER = sum(len(axes) for _, _, axes in COMPETING)
-FAST_DPS, FAST_DPS2 = 100.0, 300.0  # a hand's rate, and its change
+# deg/s and deg/s2 of a hand that turns a box over in one to two seconds: the nameless functions
+# are in units of them, so that PRIOR_MG is what one of them adds in a quick move.
+FAST_DPS, FAST_DPS2 = 100.0, 300.0
 FEWEST_BINS, MOST_BINS = 12, 60  # five samples each in between: a hand moves below 10 Hz
-FLAT_DEG = 15.0  # a move that leaves the vertical where it was, in the box
-HATS = 4  # of the bias's course over a session
+# A move that leaves the vertical within so many degrees of where it was in the box is a turn on
+# the table: there a hand does not lift the box, and the board takes what leans as little for a
+# face.
+FLAT_DEG = 15.0
+HATS = 4  # of the bias's course over a session: a straight line, or one that bends twice
 HABITS = 4  # cosines that hands have in common when they turn a box over, see handling_noise.py
 BENDS = 39  # columns of what bends with the attitude, or remembers the one before
 # Standard deviations: of a hand's way, of a centre of turning in a box as large as a hand, and of
 # what has no name (strangers.SCALE: as large as the library's effects are).
 PRIOR_METRES, PRIOR_CM, PRIOR_MG = 0.1, 10.0, 5.0
-BIAS_MG, STRANGE_BIAS_MG = 10.0, 60.0  # a session calibrated by its own poses, or by others'
-HAND_CM, WHEELS_CM = 0.3, 0.03  # how well the same hand, the same axle hold their centre
+# mg of the bias in a session that is calibrated by its own poses, which leaves a warm-up of it
+# (typical.py: 4 mg), or by another session's: the zero level of a part moves by tens.
+BIAS_MG, STRANGE_BIAS_MG = 10.0, 60.0
+# cm, how well the same hand, the same axle hold their centre of turning from move to move. Less
+# would claim a lever arm where a hand only turns about another point, more would hide a small one.
+HAND_CM, WHEELS_CM = 0.3, 0.03
 MG_PER_METRE_S2 = 1000.0 / STANDARD_G  # mg
-SMALL_DEG = 10.0  # of turning: less has no axis of its own
+SMALL_DEG = 10.0  # of turning: in less the axis is as much the hand's wobble as the turn's
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,7 +182,7 @@ def pinned(turn):
     if size < 1e-12:
         return body
     angle = np.arctan2(size, carried @ turn.before)
-    return _rotation(np.outer(path(turn), off / size * angle)) @ body
+    return rotations(np.outer(path(turn), off / size * angle)) @ body
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,27 +1,34 @@
-"""Stage 1: the nominal model of one session by generalised least squares.
+"""The nominal model of one session by generalised least squares: a session becomes a Unit.
 
-What is left of the rows (nominal_rows.py) after projection is the contrasts z. Their covariance
-is white / n + placement + flicker, the two last levels by restricted maximum likelihood
-[Patterson & Thompson, Biometrika 58 (1971) 545] on a grid.
+The nominal model's nuisance is projected out of the rows (nominal_rows.py); what is left of the
+readings is the contrasts z. Their covariance C is white / n + placement + flicker. The levels of
+the last two are found on a grid by restricted maximum likelihood [Patterson & Thompson, Biometrika
+58 (1971) 545].
 
-Everything later needs only z' C^-1 z, S' C^-1 z and S' C^-1 S for the points of the grid (S: the
-columns of all effects), so that is all that is kept, the last only where it was asked for
-(gram.py): any subset of effects is an indexing. What is a nuisance of one placement only is
-projected out there, and the covariance is factored in time (covariance.py), so that all of it
-grows as the session does.
+Everything later needs only z' C^-1 z, S' C^-1 z and S' C^-1 S at the points of the grid (S: the
+columns of all effects), so these are what a Unit holds, the last only where it is asked for
+(gram.py): to try a set of effects is to take some of their rows and columns. What is a nuisance of
+one placement only is projected out there, and the covariance is factored in time (covariance.py),
+so that time and memory grow as the session does.
 """
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
-from . import covariance, gram
+from . import covariance, dense_gram, factored_gram, gram
 from .nominal_rows import Rows
 
 AT_A_TIME = 256  # columns of a unit matrix that are there at once: memory, not time
-LOOSE = 10.0  # times the largest level of placement that is looked at: as good as any
-NOTHING = 1e-7  # share of its energy below which a column is silent
-HOPELESS = 10.0  # nats that a level of noise is behind a quieter one
+# Times the largest level of placement that is looked at: a hundredth is left of what such a
+# placement says of where it lies.
+LOOSE = 10.0
+# Share of its energy below which a column is silent: rounding leaves 1e-22 of it, the weakest
+# column that says anything in a session of the paper's or the recommended protocol 2e-6.
+NOTHING = 1e-7
+# Nats that a level of noise may be behind a quieter one and still be looked at: exp(-10) is
+# 1 in 20,000, which no prior here makes up for (diagnosis/odds.py).
+HOPELESS = 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +66,7 @@ class Unit:
     between: bool = False
     turns: tuple = ()
     apart: bool = False
-    _factors: dict = field(default_factory=dict, repr=False)
+    _factors: dict = field(default_factory=dict, init=False, repr=False)
 
     @property
     def coarse(self):
@@ -109,7 +116,8 @@ class Unit:
 
     def statistics(self, z=None, points=None):
         """(quadratic (G, R), projections (G, K, R)) of contrasts z (m, R), default the data's;
-        points: which of the grid are asked for, see gram.Grams."""
+        points: which of the grid are asked for, see
+        factored_gram.FactoredGram."""
         if z is None:
             return self.quadratic[:, None], self.inner[:, :, None]
         return self.gram.statistics(z, points)[:2]
@@ -207,7 +215,8 @@ def unit(rows, designs, wanted=None, **about):
         placements = placements[:1]
     grid = [(a, b) for a in placements for b in flickers]
     shape = len(placements), len(flickers)
-    grams = gram.of(groups, grid, space, _common(rows), columns)
+    kind = dense_gram.of if len(columns) <= covariance.FEW else factored_gram.FactoredGram
+    grams = kind(groups, grid, space, _common(rows), columns)
     quadratic, inner, logdet = grams.statistics(z)
     return Unit(rows, designs, grid, shape, groups, space, z[:, 0],
                 columns, len(z) - space.shape[1], 3.0 * (raw ** 2).mean(axis=0), silent, grams,

@@ -1,8 +1,8 @@
 """One long rest, or several in one attitude, as short means over time.
 
-Where a capture has no poses to speak of, what is left is how its readings go on while nothing
-moves: with temperature, with time, by jumps. The means are short against what wanders and long
-against the noise; their white noise is known from what differs within them.
+Where a capture has too few poses for the linear model, what it can still show is how its readings
+change while nothing moves: with temperature, with time, by jumps. The means are short against what
+wanders and long against the noise; their white noise is known from what differs within them.
 """
 from dataclasses import dataclass
 
@@ -10,13 +10,18 @@ import numpy as np
 
 from sixflip_sim.effects.moment import Moment
 
-from . import block_noise, noise_arrays
+from . import block_measures, noise_arrays
 
-SAME_DEG = 3.0  # rests that lie apart by no more are in one attitude
-MEANS = 96  # of all rests together
-SHORTEST_S, FEWEST_SAMPLES = 0.5, 4  # of a mean
+# Rests that lie apart by no more are in one attitude: a robot that stops leans by its suspension
+# and the floor, while the next pose of what stands on another face is 90 degrees away.
+SAME_DEG = 3.0
+# Means of all rests together: the covariance of them all is one matrix that is factored at every
+# level of noise tried, which takes the third power of their number.
+MEANS = 96
+# Of a mean: two submeans of block_measures.white, by whose difference its noise is known; in a log
+# of few rows a second, two samples in each half.
+SHORTEST_S, FEWEST_SAMPLES = 2.0 * block_measures.SUBMEAN_S, 4
 SHORTEST_REST_S = 4.0 * SHORTEST_S  # fewer means have no course
-EDGE_S = 0.1  # left out at both ends of a rest: where it begins is never exact
 
 
 def longest(session):
@@ -131,7 +136,7 @@ def of(sessions, lines=()):
 
 def _inner(session):
     """(first, end) of a session's rests without their edges."""
-    edge = int(EDGE_S * session.rate)
+    edge = int(block_measures.EDGE_S * session.rate)
     return [(first + edge, end - edge) for _, first, end in session.runs
             if end - first - 2 * edge >= SHORTEST_REST_S * session.rate]
 
@@ -174,10 +179,10 @@ def _measured(sensor, sessions, runs, table, lines):
             for a, b in [(a, b) for number, a, b in runs if number == k]:
                 read[a:b, axis] = without_line(read[a:b, axis], session.t_s[a:b], hertz)
         values[where] = scale * np.array([read[a:b].mean(axis=0) for a, b in zip(first, end)])
-        white = block_noise.white(read, first, end, session.rate)
+        white = block_measures.white(read, first, end, session.rate)
         seconds = (end - first)[:, None] / session.rate
         noise[where] = scale * np.sqrt(white ** 2 / seconds
-                                       + block_noise.rounding(counts, first, end) ** 2)
+                                       + block_measures.rounding(counts, first, end) ** 2)
     return values, noise
 
 

@@ -1,4 +1,5 @@
-"""sixflip_sim.noise for whole arrays: the same deviates, bit for bit, a hundred times as fast."""
+"""The deviates of sixflip_sim/noise.py for whole arrays of sample numbers: the same bit for bit,
+and a hundred times as fast."""
 import numpy as np
 
 from sixflip_sim import noise
@@ -23,8 +24,8 @@ def gauss_int(stream, k):
 
 
 def gauss(stream, k):
-    """Standard normal deviates of samples k. Where the same few numbers come again and again,
-    as the corners of slow noise do, each is made once."""
+    """(n,) standard normal deviates of sample numbers k (n,). Where the same few numbers come
+    again and again, as the corners of slow noise do, each is made once."""
     k = np.atleast_1d(k).astype(np.int64)
     if len(k) > 64:
         low = int(k.min())
@@ -35,5 +36,5 @@ def gauss(stream, k):
 
 
 def uniform(stream, k):
-    """Uniform deviates in [-1, 1) of samples k."""
+    """(n,) uniform deviates in [-1, 1) of sample numbers k (n,)."""
     return noise.uniform(stream, np.asarray(k).astype(np.int64))

@@ -16,9 +16,14 @@ from scipy import optimize
 
 TAPERS = 4  # eight degrees of freedom a frequency; more of them blur it
 HIGHEST = 0.1  # of the sample rate: above that a chip's own filter takes noise away
-GROUPS = 80  # of frequencies, equally spaced in their logarithm
-PARTS, FEWEST = 20, 9  # of the frequencies, whose medians a line is held against; in each
-LINE = 6.0  # times its neighbourhood: no noise, but a line, for a mean of four tapers
+# Groups of frequencies, equally spaced in their logarithm: over the four decades of half an hour
+# at 100 Hz each is a sixth of an octave wide, in which not even the power of a random walk changes
+# by more than a fifth.
+GROUPS = 80
+# Parts of the frequencies, whose medians a line is held against, and how many are in each at
+# least: as many as the tapers spread a line over.
+PARTS, FEWEST = 20, 2 * TAPERS + 1
+LINE = 6.0  # times the median of its part: noise is as loud in one of 1.7 million frequencies
 HALF_OF_90 = 1.353  # nats below the maximum at the ends of a 90 % interval: half of chi2(0.9, 1)
 ROUNDS = 200  # of halved steps, which settle in 30 but where a square goes to zero
 

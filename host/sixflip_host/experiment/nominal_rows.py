@@ -1,4 +1,5 @@
-"""Readings at rest as rows of the nominal model: what they say, what is unknown, how they err.
+"""Readings at rest as rows of the nominal model: the readings, the columns of what is unknown (the
+nuisance), and the covariance of what they err by.
 
 Nuisance of the accelerometer: twelve parameters; the lateral position of every pose (table and
 box; with a certified box only what changes sign with the flip); two free angles of each leaning
@@ -9,21 +10,29 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from . import block_noise, covariance
+from . import block_measures, covariance
 from .attitude_fit import face_axes
 from .projection import lateral_basis
 
-PLACEMENT_MG = (0.1, 0.45, 0.8, 1.4, 3.0, 8.0, 40.0)  # per direction; 0.05 deg: 0.87
-# Levels tried: factors of 1.4 apart where parts are (typical.FLICKER), two and more beyond.
+# Levels that are tried of what a hand scatters a placement by, mg in each direction across
+# gravity: closest about 0.05 degrees (0.87 mg), from a jig's hundredth of a degree to a careless
+# two degrees.
+PLACEMENT_MG = (0.1, 0.45, 0.8, 1.4, 3.0, 8.0, 40.0)
+# Levels of flicker tried: factors of 1.4 apart where parts are (typical.FLICKER), two and more
+# beyond.
 FLICKER_MG = (0.005, 0.02, 0.033, 0.05, 0.075, 0.11, 0.15, 0.22, 0.4, 0.8, 1.6, 4.0)
-EARTH_DPS = (0.0005, 0.003)  # the Earth's horizontal rate, the box at an unknown azimuth
 FLICKER_DPS = (0.0002, 0.0007, 0.0014, 0.002, 0.003, 0.0045, 0.008, 0.016, 0.03, 0.1)
 EARTH_UP_DPS = 0.003  # 15 deg/h at a latitude of 45 degrees
-FEWEST_PAIRS, MOST_UNLIKE = 12, 2.0  # of blocks; an axis' flicker against all, at most
-STILL = 1e-6  # of an axis that does not wander at all
-COARSE_MG = 0.5  # of what rounding leaves in the mean of a rest
-
-
+# Levels tried of the Earth's horizontal rate, the box at an unknown azimuth: as much as upward,
+# and what is left of it where the box nearly always lies the same way.
+EARTH_DPS = (0.0005, EARTH_UP_DPS)
+# Pairs of blocks from which on an axis' flicker is told from the others': twelve differences know
+# a variance to 41 %, and no axis is taken to have more or less than twice what all have.
+FEWEST_PAIRS, MOST_UNLIKE = 12, 2.0
+STILL = 1e-6  # share of an axis that does not wander at all: not 0, which has no logarithm
+# mg that rounding leaves in the mean of a rest from which on it is a nuisance of the face: half of
+# what a hand scatters a placement by (0.87 mg), below which that hides it.
+COARSE_MG = 0.5
 
 
 def _columns(n):
@@ -186,7 +195,7 @@ def _gyro_rows(session, nominal):
 
 
 def _known(session):
-    return block_noise.freedom(session.first, session.end, session.rate)
+    return block_measures.freedom(session.first, session.end, session.rate)
 
 
 def signature(session):

@@ -4,6 +4,8 @@ A rest is cut into blocks (effects that fade within it show between them); each 
 two poses of one face adds one row for the gyro. Nothing is measured here: attitude, time and
 temperature are what the plan says.
 """
+from dataclasses import dataclass
+
 import numpy as np
 
 from sixflip.poses import faces
@@ -14,24 +16,28 @@ from . import noise_arrays
 FLIP_DPS = 60.0  # a half turn by hand in 3 s
 
 
+@dataclass(frozen=True, eq=False)
 class Rows:
     """n rows; the Moment in `at`, and the arrays (n,) that say where each row comes from.
 
     placement: number over all sessions; session; leaning, rest (False: a turn): bool;
-    seconds: how long the row is averaged; faces: face index or -1.
+    seconds: how long the row is averaged.
     """
 
-    def __init__(self, columns):
-        self.placement = np.array([c["placement"] for c in columns])
-        self.session = np.array([c["session"] for c in columns])
-        self.leaning = np.array([c["leaning"] for c in columns], dtype=bool)
-        self.rest = np.array([c["rest"] for c in columns], dtype=bool)
-        self.seconds = np.array([c["seconds"] for c in columns])
-        self.n = len(columns)
-        self.at = _moment(columns)
+    placement: np.ndarray
+    session: np.ndarray
+    leaning: np.ndarray
+    rest: np.ndarray
+    seconds: np.ndarray
+    at: Moment
+
+    @property
+    def n(self):
+        return len(self.placement)
 
     @property
     def face(self):
+        """(n,) face index, -1 of a pose that leans."""
         return self.at.face
 
 
@@ -48,7 +54,7 @@ def body_to_table(up, yaw_deg):
 
 
 def rows_of(protocol, blocks=1, turns=False):
-    """Rows of a protocol: `blocks` to each rest, and one to each flip when turns is True."""
+    """Rows of a Protocol: `blocks` to each rest, and one to each flip when turns is True."""
     columns, placement = [], 0
     for number, session in enumerate(protocol.sessions):
         clock, before = session.rest_s, np.asarray(session.rests[0].up, float)
@@ -70,7 +76,9 @@ def rows_of(protocol, blocks=1, turns=False):
                                     seconds=rest.dwell_s / blocks))
             clock += rest.dwell_s + rest.move_s
             before, previous, placement = attitude[2], rest.pose, placement + 1
-    return Rows(columns)
+    fields = {"placement": int, "session": int, "leaning": bool, "rest": bool, "seconds": float}
+    return Rows(*(np.array([c[name] for c in columns], dtype=kind)
+                  for name, kind in fields.items()), _moment(columns))
 
 
 def _moment(columns):

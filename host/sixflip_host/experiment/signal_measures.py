@@ -1,4 +1,8 @@
-"""What two recordings of one sensor are compared by: noise, Allan deviation, spectrum, steps."""
+"""What recordings of one sensor are compared by: white noise, Allan deviation, amplitude spectrum,
+steps of the counts, the strongest line.
+
+x is (n, k), n samples of k channels, in any unit, which the results are in as well.
+"""
 import numpy as np
 
 

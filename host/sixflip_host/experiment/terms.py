@@ -1,10 +1,10 @@
-"""The library's effects, and generic discrepancies, as columns over the blocks of a session.
+"""The library's effects as columns over the blocks of a session: one column a coefficient, what
+the reading changes by for a coefficient of 1.
 
-Effects come from sixflip_sim's one definition: an effect's terms at the moments measured. Where
-an effect has a shape (a time constant, a lag) or a bend (a square beside the slope) it has
-several variants; they compete, and all go by the effect's one name.
+The columns are an effect's terms at the moments measured, by the one definition that the simulator
+has of it too (sixflip_sim/effects). An effect with a shape (a time constant, a lag) or a bend (a
+square beside the slope) has several variants; they compete, and all go by the effect's one name.
 """
-
 import copy
 from dataclasses import dataclass, replace
 
@@ -19,7 +19,7 @@ LAGS_S = (0.0, 15.0, 30.0, 60.0, -30.0)  # GAP: a neighbouring thermometer, 10-6
 WARM_UP_S = (30.0, 60.0, 120.0, 240.0, 480.0)  # GAP: 60-300 s, and an octave to both sides
 CREEP_S = (5.0, 15.0, 30.0, 60.0, 120.0)  # GAP: 60-70 s seen on Z; down to a rest's length
 LONG_MEMORY_S = 30.0  # longer than two rests with the move between them
-PLAY_G = (0.1, 0.2, 0.4)  # widths of a play operator
+PLAY_G = (0.1, 0.2, 0.4)  # widths of a play operator: octaves below half of what a pose changes by
 LEAST_VIBRATION_MG = 5.0  # above the quietest rest: more than the noise of a chip (typical.NOISE)
 DOMAIN = {  # where an effect shows itself
     "thermal_bias": "temperature", "thermal_scale": "temperature", "thermal_rate": "temperature",
@@ -40,7 +40,6 @@ OF_THE_MOMENT = ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "qu
 def of_the_moment(sensor):
     """Names of OF_THE_MOMENT that a sensor ("accel", "gyro") can have."""
     return tuple(name for name in OF_THE_MOMENT if sensor in EFFECTS[name].units)
-
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,39 +126,26 @@ def agreed(sessions):
 
 def library(session, up, sensor, reference_c, chip):
     """list of Design: every variant of every effect that the rests of the sessions agreed on
-    can show; columns of zeros where this one shows nothing of it."""
+    can show; columns of zeros where this one shows nothing of it. up (placements, 3): unit vectors
+    against gravity; reference_c: temperature about which slopes are taken."""
     m, n = session.moment(up), session.n
-    found = []
 
-    def terms(name, variant="", moment=m, **options):
-        found.append(of_terms(name, sensor, moment, n, variant, chip=chip, **options))
-        return found[-1]
+    def design(name, variant="", moment=m, **options):
+        return of_terms(name, sensor, moment, n, variant, chip=chip, **options)
 
-    if session.thermal:
-        _thermal(session, m, terms, found, sensor, reference_c)
-    for tau in WARM_UP_S:
-        terms("warm_up", "tau %g s" % tau, shape={"tau_s": tau})
-    terms("hysteresis")
-    if sensor == "accel":
-        found += remembered(session, m, found[-1])
+    found = _thermal(session, m, design, sensor, reference_c) if session.thermal else []
+    found += [design("warm_up", "tau %g s" % tau, shape={"tau_s": tau}) for tau in WARM_UP_S]
+    plain = design("hysteresis")
     if sensor == "gyro":
-        terms("g_sensitivity")
-        return found
-    terms("quadratic")
-    terms("cubic")
-    cross = terms("cross_quadratic")
-    terms("cross_quadratic", "squares", only=[k for k in cross.keys if k[1] == k[2]])
-    terms("cross_quadratic", "products", only=[k for k in cross.keys if k[1] != k[2]])
-    terms("asymmetry")
-    for tau in CREEP_S:
-        terms("creep", "tau %g s" % tau, shape={"tau_s": tau})
-        if tau >= LONG_MEMORY_S:  # what came before the placement before is not forgotten yet
-            felt = copy.copy(m)
-            felt.before = tuple(session.remembered(up, tau).T)
-            terms("creep", "tau %g s, all placements" % tau, felt, shape={"tau_s": tau})
+        return [*found, plain, design("g_sensitivity")]
+    cross = design("cross_quadratic")
+    found += [plain, *remembered(session, m, plain), design("quadratic"), design("cubic"), cross,
+              design("cross_quadratic", "squares", only=[k for k in cross.keys if k[1] == k[2]]),
+              design("cross_quadratic", "products", only=[k for k in cross.keys if k[1] != k[2]]),
+              design("asymmetry"), *_creep(session, up, m, design)]
     if session.shaken:
-        terms("vibration_rectification", "vertical", shape={"vertical": 1})
-        terms("vibration_rectification", "all round", shape={"vertical": 0})
+        found += [design("vibration_rectification", words, shape={"vertical": vertical})
+                  for words, vertical in (("vertical", 1), ("all round", 0))]
     return found
 
 
@@ -187,25 +173,41 @@ def remembered(session, m, plain):
     return found
 
 
-def _thermal(session, m, terms, found, sensor, reference_c):
-    """Slopes over the temperature with and without a lag."""
+def _creep(session, up, m, design):
+    """Designs of creep since the move from the placement before, and of what all have left."""
+    found = []
+    for tau in CREEP_S:
+        found.append(design("creep", "tau %g s" % tau, shape={"tau_s": tau}))
+        if tau >= LONG_MEMORY_S:  # what came before the placement before is not forgotten yet
+            felt = copy.copy(m)
+            felt.before = tuple(session.remembered(up, tau).T)
+            found.append(design("creep", "tau %g s, all placements" % tau, felt,
+                                shape={"tau_s": tau}))
+    return found
+
+
+def _thermal(session, m, design, sensor, reference_c):
+    """Designs of slopes over the temperature with and without a lag."""
+    found = []
     for lag in LAGS_S:
         felt = copy.copy(m)
         felt.temperature = session.thermometer.lagged(session.t, lag)
         felt.temperature_rate = session.thermometer.lagged_rate(session.t, lag)
         label = "lag %g s" % lag if lag else ""
         shape = {"reference_c": reference_c}
-        bias = terms("thermal_bias", label, felt, only=("x", "y", "z"), shape=shape)
+        bias = design("thermal_bias", label, felt, only=("x", "y", "z"), shape=shape)
+        found.append(bias)
         if not lag:  # a record of the board holds a square, too
             dt = np.repeat(felt.temperature - reference_c, 3)[:, None]
             found.append(squared(bias, bias.columns * dt, 0.1 * bias.prior[0]))
         if sensor == "accel":
-            terms("thermal_scale", label, felt, shape=shape)
-        terms("thermal_rate", label, felt)
+            found.append(design("thermal_scale", label, felt, shape=shape))
+        found.append(design("thermal_rate", label, felt))
+    return found
 
 
 def harmonics(f, sensor):
-    """Functions of the direction of gravity: degrees 2 and 3 (gyro: 1, too)."""
+    """[(n,)]: harmonics of degree 2 and 3 (of the gyro 1, too) of gravity's direction f (n, 3)."""
     x, y, z = f.T
     second = [x * x, y * y, x * y, x * z, y * z]
     third = [x ** 3, y ** 3, z ** 3, x * y * z, x * y * y, y * z * z, z * x * x]

@@ -1,29 +1,33 @@
-"""The box's turns between two rests: gravity before and after against the rotation integrated.
+"""The turn of the box in each move: gravity before and after against the gyro's rate integrated.
 
 With R(t) the attitude since the start of a move, an error e(t) of the rate turns the end by
 phi = int R(t) e(t) dt, and gravity carried back to the start is off by phi x up [Tedaldi et al.,
 ICRA 2014, eq. 13-18, linearised]. Flips of one face also say that the turn was half a circle.
-Everything is divided by the length of the move: deg/s, as the causes are. Turns are values:
-what takes something out of their rates answers others.
+Everything is divided by the length of the move, so that it is in deg/s, as the effects are. Turns
+are values: to take something out of their rates is to make other turns.
 """
 import weakref
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..capture.attitude import _rotation, carried
-from . import moves
+from ..capture.attitude import carried, rotations
+from . import blocks
 from .projection import cross, lateral_basis
-from .read_only import ReadOnlyArrays
+from .session import ReadOnlyArrays
 
-ROUNDS = 2  # of fits that begin with what the one before left
+# Fits that begin with what the one before left: what a scale of 3 % leaves after the first is its
+# square, 0.1 %, and after the second less than a hand's error of a turn.
+ROUNDS = 2
 PULL_DPS = 0.1  # deg/s per g, typical (effects/typical.py: g_sensitivity)
 # Of a turn: a hand is not faster; over more than a minute a bias that is off by 0.01 deg/s turns
 # the end by as much as a hand does (METHOD section 2); less than that is no turn to another pose.
 SHORTEST_S, LONGEST_S, LEAST_DEG = 0.3, 60.0, 20.0
 WHOLE = 0.7  # samples: half of one that is missing, and what the stamps of both ends scatter by
 LEAST_STEP = 0.05  # periods between two samples, whatever their stamps
-_known = weakref.WeakKeyDictionary()  # {Session: {up: turns}}: what was integrated is not again
+# {Session: {up: turns}}: turns are values, so that what was integrated once is kept for as long as
+# the session lives; nobody can change it.
+_known = weakref.WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +74,7 @@ class Turn(ReadOnlyArrays):
     def integrated(self, matrix=None):
         """The turn with its attitude, of the rates as they are or turned by a matrix (3, 3)."""
         rate = self.middle if matrix is None else self.middle @ matrix.T
-        way = carried(_rotation(np.radians(rate) * self.dt[:, None]))
+        way = carried(rotations(np.radians(rate) * self.dt[:, None]))
         return replace(self, attitude=way[:-1], end=way[-1])
 
     def corrected(self, matrix, shift):
@@ -97,7 +101,7 @@ class Turn(ReadOnlyArrays):
 def between(session, up, bias, place, wander=None):
     """Turn from a placement of a Session to the next, not integrated. up (placements, 3): unit
     vectors against gravity; bias (3,) deg/s; wander as Turn has it."""
-    move = moves.after(session, place)
+    move = blocks.move_after(session, place)
     t = _even(session.t_s[move.first:move.end], session.period_s)
     rate = session.capture.gyro[move.first:move.end] / session.capture.meta[
         "gyro_lsb_per_dps"] - bias
@@ -224,9 +228,9 @@ def nuisance(chosen):
 
 def squareness(chosen):
     """Columns (m, 3), deg: the angles xy, xz and yz between the accelerometer's axes, by which all
-    gravity of a session was read. Faces of a crooked box, or half turns that a hand made not quite
-    half on a table that leans, are read as such angles, and alike in each session; the part that
-    turns all axes together is the gyro's misalignment."""
+    gravity of a session was read. Faces of a box that is not square are read as such angles, and
+    so are half turns that were not quite half on a table that leans, alike in each session; the
+    part that turns all axes together is the gyro's misalignment."""
     parts = []
     for turn in chosen:
         first, second = lateral_basis(turn.before)

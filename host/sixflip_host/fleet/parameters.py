@@ -20,7 +20,7 @@ for _sensor, _unit in (("accel", "mg"), ("gyro", "dps")):
     BLOCKS[_sensor + "_noise"] = tuple("%s_noise_%s_%s" % (_sensor, a, _unit) for a in "xyz")
 NAMES = tuple(name for names in BLOCKS.values() for name in names)
 PLACE = {name: k for k, name in enumerate(NAMES)}
-SUBMEANS_HZ = 4.0  # of block_noise.white: how many values a second its estimate is made of
+SUBMEANS_HZ = 4.0  # of block_measures.white: how many values a second its estimate is made of
 STEP = 1e-6  # of the numerical derivatives
 
 

@@ -18,8 +18,9 @@ from ..capture.find_poses import find_poses
 from ..diagnosis import samples_judged
 from ..diagnosis.detect import saturation
 from ..experiment import blocks, terms, thermometer
+from ..experiment.session import OF_BLOCKS, Session, fading
 
-OF_SESSION = (*blocks.OF_BLOCKS, "noise_accel", "noise_gyro", "rounding_accel", "rounding_gyro")
+OF_SESSION = (*OF_BLOCKS, "noise_accel", "noise_gyro", "rounding_accel", "rounding_gyro")
 PATH = 36  # numbers of Move.path
 KEPT = ("sensor", "rate_hz", "rate", "accel_lsb_per_g", "gyro_lsb_per_dps", "temp_lsb_per_c",
         "temp_offset_c", "accel_range_g", "gyro_range_dps", "g", "device_id", "session", "time",
@@ -43,8 +44,8 @@ class SummarisedCapture(Capture):
 
 
 @dataclass(frozen=True, eq=False)
-class SummarySession(blocks.Session):
-    """A blocks.Session without samples. starts (placements,): s since the capture's begin at
+class SummarySession(Session):
+    """A Session without samples. starts (placements,): s since the capture's begin at
     which each began; play (n, widths, 3): what played() says at terms.PLAY_G."""
 
     starts: np.ndarray = None
@@ -59,14 +60,14 @@ class SummarySession(blocks.Session):
         keep = np.isin(self.placement, places)
         number = np.full(len(self.runs), -1)
         number[places] = np.arange(len(places))
-        cut = {name: getattr(self, name) for name in blocks.OF_BLOCKS}
+        cut = {name: getattr(self, name) for name in OF_BLOCKS}
         cut = {name: value if value is None else value[keep] for name, value in cut.items()}
         cut["placement"] = number[cut["placement"]]
         return replace(self, runs=tuple(runs), starts=self.starts[places], play=self.play[keep],
                        **cut)
 
     def remembered(self, up, tau_s):
-        return blocks.fading(self.starts, up, tau_s)[self.placement]
+        return fading(self.starts, up, tau_s)[self.placement]
 
     def played(self, widths_g):
         return [self.play[:, terms.PLAY_G.index(width)] for width in widths_g]
@@ -122,7 +123,7 @@ class Summary:
         if "thermometer" in a:
             t0 = float(a["thermometer"][0])
             c = a["thermometer"][1:]
-            smooth = thermometer.Thermometer(t0 + thermometer.STEP_S * np.arange(len(c)), c)
+            smooth = thermometer.of_course(t0 + thermometer.STEP_S * np.arange(len(c)), c)
         runs = tuple(rests.Run(*row) for row in a["runs"][:, :3].tolist())
         return SummarySession(
             self.about["name"], self.capture(), float(self.meta["rate_hz"]),

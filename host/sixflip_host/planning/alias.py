@@ -1,10 +1,9 @@
-"""What a planned capture can tell apart: projection, ranks and the alias index.
+"""The nominal model of a planned capture, and what it leaves of each effect: its signature.
 
-Everything is linear algebra on the rows of a plan. The signature of an effect is its columns
-(one a coefficient) after the nominal parameters have been projected out; an effect without
-anything left is silent. The alias index A(a|b) = |P_b S_a|^2 / |S_a|^2 is the share of a's
-signature that b can reproduce, averaged over a's coefficients with equal weight.
+Everything is linear algebra on the rows of a plan (experiment/session_rows.py). Signatures, silent
+effects and the alias index between two signatures are defined in experiment/projection.py.
 """
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -13,6 +12,7 @@ from sixflip.poses import faces
 from sixflip_sim.effects.library import EFFECTS
 
 from ..experiment.projection import NEGLIGIBLE, basis, rank, without
+from ..experiment.session_rows import Rows
 from . import protocols
 
 # Which effects have a signature in rests and turns; the order is that of the printed table.
@@ -21,14 +21,15 @@ ACCEL = ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic"
          "hysteresis", "creep", "box_tilt", "table_tilt", "local_gravity", "supply")
 GYRO = ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic", "cubic",
         "asymmetry", "saturation", "g_sensitivity", "hysteresis", "earth_rate", "supply")
-# Shapes at which a signature is looked at: a supply that differs, a rail below 1 g, a vibration.
+# Shapes at which a signature is looked at: a supply that differs from the 3.3 V of a board, a rail
+# below the 1 g that a face reads, a vibration. A signature does not depend on their sizes.
 SHAPES = {"supply": {"volts": 3.4}, "saturation": {"level": 0.95},
           "vibration_rectification": {"vibration_mg": protocols.SHAKE_MG}}
 GYRO_SHAPES = {"saturation": {"level": 50.0}}  # deg/s, below session_rows.FLIP_DPS
 
 
 def effect_columns(effect, moment, n):
-    """Regressor form: keys and the matrix (3n, k), rows in the order x y z of each moment."""
+    """(keys (k,), columns (3n, k)) of an effect at n moments, rows in the order x y z of each."""
     found = {}
     for key, axis, value in effect.terms(moment):
         column = found.setdefault(key, np.zeros((n, 3)))
@@ -44,19 +45,26 @@ def blocks_of(rows, values, mask):
     return out.reshape(3 * rows.n, 3)
 
 
+@dataclass(frozen=True, eq=False)
 class PlannedModel:
-    """Nominal columns of one sensor for the rows of a plan, and the signatures of the effects.
+    """Nominal columns of one sensor for the rows (session_rows.Rows) of a plan, and the signatures
+    of the effects beside them.
 
-    sensor "accel": a 3x3 matrix common to all sessions; a bias, the table's tilt and two free
-    angles of each leaning pose per session; the box's tilt unless it is certified.
-    sensor "gyro": the 3x3 matrix of the turns, a bias per session and the horizontal Earth rate.
+    sensor "accel": a 3x3 matrix common to all sessions; a bias, the table's tilt (unless tilt is
+    False) and two free angles of each leaning pose per session; the box's tilt unless it is
+    certified. sensor "gyro": the 3x3 matrix of the turns, a bias per session and the horizontal
+    Earth rate.
     """
 
-    def __init__(self, rows, sensor="accel", certified_box=False, tilt=True):
-        self.rows, self.sensor, self.certified_box, self.tilt = rows, sensor, certified_box, tilt
-        self._reduced = {}
-        # Nuisances that are effects too: they are looked at beside the other nuisances.
-        self.own = ("table_tilt",) if certified_box else ("table_tilt", "box_tilt")
+    rows: Rows
+    sensor: str = "accel"
+    certified_box: bool = False
+    tilt: bool = True
+
+    @property
+    def own(self):
+        """Nuisances that are effects too: they are looked at beside the other nuisances."""
+        return ("table_tilt",) if self.certified_box else ("table_tilt", "box_tilt")
 
     @cached_property
     def space(self):
@@ -127,12 +135,17 @@ class PlannedModel:
             out[mask, :, k] = np.stack(direction, 1)[mask]
         return out.reshape(3 * self.rows.n, 2)
 
+    @cached_property
+    def _without_box(self):
+        return PlannedModel(self.rows, self.sensor, True)
+
+    @cached_property
+    def _without_table(self):
+        return PlannedModel(self.rows, self.sensor, self.certified_box, False)
+
     def without_own(self, name):
-        """The same design without the nuisance that `name` is."""
-        if name not in self._reduced:
-            self._reduced[name] = PlannedModel(self.rows, self.sensor, self.certified_box
-                                         or name == "box_tilt", name != "table_tilt")
-        return self._reduced[name]
+        """The PlannedModel without the nuisance that `name`, box_tilt or table_tilt, is."""
+        return self._without_table if name == "table_tilt" else self._without_box
 
     @property
     def freedom(self):

@@ -1,10 +1,11 @@
 """The smallest size of each effect that a planned capture would show, at 80 % power.
 
-Generalised least squares with known variances: white noise over the samples of a row,
-placement (two small turns a placement, by hand), flicker as the diagnosis has it.
-The unit of replication is the placement, never the sample (GAP finding 3).
+Generalised least squares with known variances: white noise over the samples of a row, the scatter
+of a placement by hand (two small turns), flicker as the diagnosis has it. The unit of replication
+is the placement, never the sample (GAP finding 3).
 """
 import math
+from dataclasses import dataclass
 from statistics import NormalDist
 
 import numpy as np
@@ -13,6 +14,7 @@ from sixflip_sim.effects import typical
 
 from ..experiment.flicker import flicker_kernel
 from ..experiment.projection import basis, without
+from .alias import PlannedModel
 
 PLACEMENT_DEG = 0.05  # scatter of placing a box by hand (METHOD section 1)
 FLIP_DEG = 0.4  # error of a half turn by hand (METHOD section 2)
@@ -23,15 +25,14 @@ SILENT = math.inf
 MG_PER_RAD = 1000.0  # of gravity, across it
 
 
+@dataclass(frozen=True, eq=False)
 class Power:
-    """Whitened design of one sensor; smallest(name) -> {key: size} at 80 % power."""
+    """A PlannedModel (design) in rows of equal, independent noise: whitener (3n, 3n) takes rows
+    there, space (3n, r) is an orthonormal basis of what the nominal parameters take up there."""
 
-    def __init__(self, design, chip, rate_hz=100.0, placement_deg=PLACEMENT_DEG,
-                 step=0.0):
-        self.design = design
-        cov = covariance(design, chip, rate_hz, placement_deg, step)
-        self.whitener = np.linalg.inv(np.linalg.cholesky(cov))
-        self.space = basis(self._white(design.space))
+    design: PlannedModel
+    whitener: np.ndarray
+    space: np.ndarray
 
     def _white(self, columns):
         return self.whitener @ columns
@@ -61,6 +62,14 @@ class Power:
         left = left - (left @ self.space) @ self.space.T
         information = 0.5 * (left ** 2).sum()
         return math.sqrt(QUANTILE / math.sqrt(information)) if information > 0 else SILENT
+
+
+def power_of(design, chip, rate_hz=100.0, placement_deg=PLACEMENT_DEG, step=0.0):
+    """Power of a PlannedModel read by a chip (a key of typical.NOISE) at rate_hz; placement_deg:
+    scatter of a placement; step: size of a count, mg or deg/s."""
+    noise = covariance(design, chip, rate_hz, placement_deg, step)
+    whitener = np.linalg.inv(np.linalg.cholesky(noise))
+    return Power(design, whitener, basis(whitener @ design.space))
 
 
 def flicker(rows):

@@ -1,6 +1,5 @@
-"""Stage 7: the capture, by hand and within ten minutes, that tells the most apart."""
-import copy
-
+"""What to capture next: of the captures that can be made by hand within ten minutes, those that
+tell the most unresolved pairs of effects apart per minute (GAP stage 7)."""
 import numpy as np
 
 from sixflip.poses import faces
@@ -10,7 +9,7 @@ from ..experiment.session_rows import rows_of
 from . import alias, protocols
 from .plan_findings import SAME_CLASS
 
-MOST_MINUTES = 10.0  # of a capture that somebody is asked for beside those that are there
+MOST_MINUTES = 10.0  # of a capture that somebody is asked for, by hand (GAP stage 7)
 WORDS = {
     "cooling": "one cooling session, 12 poses", "warm": "one session started warm, 12 poses",
     "backward": "12 poses, then the same backward", "random": "12 poses in random order",
@@ -88,9 +87,7 @@ def _by_design(diagnosis, wanted):
     for name, plan in candidates().items():
         if plan.minutes > MOST_MINUTES:
             continue
-        protocol = present(diagnosis)
-        protocol.sessions = [*protocol.sessions, copy.deepcopy(plan)]
-        rows = rows_of(protocol, 2)
+        rows = rows_of(protocols.Protocol("added", [*present(diagnosis).sessions, plan]), 2)
         found = []
         for kind in sorted({kind for kind, _, _ in wanted}):
             design = alias.PlannedModel(rows, kind, diagnosis.settings.certified)

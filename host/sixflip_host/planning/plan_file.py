@@ -45,6 +45,7 @@ def to_plan(protocol):
 
 
 def write(path, protocol):
+    """Write a Protocol into a plan file."""
     write_text(path, json.dumps(to_plan(protocol), indent=1) + "\n")
 
 

@@ -1,5 +1,6 @@
 """What a protocol can say about each effect: silent, in a class, or seen from which size on."""
 import math
+from dataclasses import dataclass, field, replace
 
 from sixflip_sim.effects import datasheets, typical
 from sixflip_sim.effects.library import EFFECTS, NAMES
@@ -10,6 +11,9 @@ from ..experiment.session_rows import rows_of
 from . import alias, detectable
 
 SAME_CLASS = 0.9  # alias index above which two effects get one name (GAP stage 4)
+# Rests of a protocol up to which each is cut into three blocks, of more into two: the design's
+# matrices grow with the square of the rows. The paper's protocol has 12, the recommended one 78.
+FEW_RESTS = 40
 NOT_DETERMINED = "too little of it happens for a size to be determined"
 # What takes up an effect that leaves no residual, by sensor.
 TAKEN_UP_BY = {
@@ -22,14 +26,22 @@ TAKEN_UP_BY = {
 }
 
 
+@dataclass(frozen=True)
 class Finding:
-    """One effect of one sensor. smallest: at 80 % power (inf: silent); members: {effect:
-    index} of those that reproduce more than 0.9 of it; absorbed: what takes it up, if silent."""
+    """What a protocol says of one effect of one sensor. smallest: the size seen at 80 % power, in
+    unit (inf: silent); typical: the usual size or None, by its source; aliases: {effect: alias
+    index} of those that reproduce more than SAME_CLASS of it; absorbed: what takes it up, if it is
+    silent; how: by what it shows, or why it does not, in words."""
 
-    def __init__(self, effect, sensor, unit, smallest, typical_size, source):
-        self.effect, self.sensor, self.unit = effect, sensor, unit
-        self.smallest, self.typical, self.source = smallest, typical_size, source
-        self.members, self.absorbed, self.how = {}, "", ""
+    effect: str
+    sensor: str
+    unit: str
+    smallest: float
+    typical: float | None
+    source: str
+    aliases: dict = field(default_factory=dict)
+    absorbed: str = ""
+    how: str = ""
 
     @property
     def silent(self):
@@ -41,62 +53,81 @@ class Finding:
         return not self.silent and self.typical is not None and self.smallest <= self.typical
 
 
+@dataclass(frozen=True)
 class Findings:
-    """All of a protocol: .list of Finding, .matrices {sensor: (names, A)} for a square box."""
+    """What a protocol says of every effect: list of Finding in the order of the library, and
+    matrices {sensor: (names, alias index (k, k))} for a square box."""
 
-    def __init__(self, protocol, sensor="mpu6050", certified_box=False, rate_hz=100.0,
-                 ranges=(None, None), prior=None):
-        self.list, self.matrices = [], {}
-        blocks = 3 if sum(len(s.rests) for s in protocol.sessions) <= 40 else 2
-        rows = rows_of(protocol, blocks)
-        for kind in kinds_of(sensor):
-            if kind == "gyro":
-                rows = rows_of(protocol, 1, turns=True)
-            design = alias.PlannedModel(rows, kind, certified_box)
-            self._of_rests(design, sensor, kind, rate_hz, ranges[kind == "gyro"])
-        self.list += [found for name in NAMES
-                      for found in events_seen.findings(name, protocol, sensor, rate_hz,
-                                                        Finding, ranges)]
-        for found in self.list if prior else ():
-            size = prior.size(found.sensor, found.effect)
-            if size is not None:
-                found.typical, found.source = size, prior.source
-        self.list.sort(key=lambda f: (NAMES.index(f.effect), f.sensor))
-
-    def _of_rests(self, design, sensor, kind, rate_hz, full_scale):
-        power = detectable.Power(design, typical.chip_of(sensor, kind), rate_hz,
-                                 step=typical.step_of(sensor, kind, full_scale))
-        names = alias.ACCEL if kind == "accel" else alias.GYRO
-        matrix = projection.alias_matrix({name: design.signature(name) for name in names})
-        tables = [matrix]
-        if "box_tilt" in design.own:  # the box as one effect among others, too
-            square = design.without_own("box_tilt")
-            tables.append(projection.alias_matrix(
-                {name: square.signature(name) for name in names}))
-        self.matrices[kind] = tables[-1]
-        for name in names:
-            size, source = typical.size(name, sensor, kind)
-            sizes = power.smallest(name)
-            # Of the Earth rate only the vertical part is an effect, the rest a nuisance.
-            smallest = sizes["up"] if name == "earth_rate" else detectable.middle(sizes)
-            if name not in matrix[0]:
-                smallest = detectable.SILENT
-            known = typical.determined(smallest, size)
-            finding = Finding(name, kind, EFFECTS[name].units[kind],
-                              smallest if known else detectable.SILENT, size, source)
-            if not known and smallest < detectable.SILENT:
-                finding.absorbed = finding.how = NOT_DETERMINED
-            elif not known:
-                finding.absorbed = taken_up(design, name)
-            finding.members = members(name, tables)
-            self.list.append(finding)
-        size, source = typical.size("drift", sensor, kind)
-        self.list.append(Finding("drift", kind, EFFECTS["drift"].units[kind],
-                                 power.smallest_flicker(), size, source))
+    list: list
+    matrices: dict
 
 
-def members(name, tables):
-    """{other: index} of those that reproduce more than 0.9 of it in any of the tables."""
+def findings_of(protocol, sensor="mpu6050", certified_box=False, rate_hz=100.0,
+                ranges=(None, None), prior=None):
+    """Findings of a Protocol for a sensor's name. rate_hz: of the samples; ranges: full scales in
+    g and deg/s, None: the chip's usual ones; prior: FleetPrior, whose sizes stand for the data
+    sheets'."""
+    found, matrices = [], {}
+    blocks = 3 if sum(len(s.rests) for s in protocol.sessions) <= FEW_RESTS else 2
+    rows = rows_of(protocol, blocks)
+    for kind in kinds_of(sensor):
+        if kind == "gyro":
+            rows = rows_of(protocol, 1, turns=True)
+        design = alias.PlannedModel(rows, kind, certified_box)
+        more, matrices[kind] = _of_rests(design, sensor, kind, rate_hz, ranges[kind == "gyro"])
+        found += more
+    found += [one for name in NAMES
+              for one in events_seen.findings(name, protocol, sensor, rate_hz, Finding, ranges)]
+    if prior:
+        found = [_by_fleet(one, prior) for one in found]
+    return Findings(sorted(found, key=lambda f: (NAMES.index(f.effect), f.sensor)), matrices)
+
+
+def _by_fleet(finding, prior):
+    """The Finding with the typical size that a FleetPrior has, where it has one."""
+    size = prior.size(finding.sensor, finding.effect)
+    return finding if size is None else replace(finding, typical=size, source=prior.source)
+
+
+def _of_rests(design, sensor, kind, rate_hz, full_scale):
+    """([Finding], (names, alias index (k, k)) for a square box) of the effects of one kind of a
+    sensor that show in the means of rests and turns."""
+    power = detectable.power_of(design, typical.chip_of(sensor, kind), rate_hz,
+                                step=typical.step_of(sensor, kind, full_scale))
+    names = alias.ACCEL if kind == "accel" else alias.GYRO
+    tables = [projection.alias_matrix({name: design.signature(name) for name in names})]
+    if "box_tilt" in design.own:  # the box as one effect among others, too
+        square = design.without_own("box_tilt")
+        tables.append(projection.alias_matrix({name: square.signature(name) for name in names}))
+    found = [_of_effect(design, power, name, sensor, tables) for name in names]
+    size, source = typical.size("drift", sensor, kind)
+    found.append(Finding("drift", kind, EFFECTS["drift"].units[kind], power.smallest_flicker(),
+                         size, source))
+    return found, tables[-1]
+
+
+def _of_effect(design, power, name, sensor, tables):
+    """Finding of one effect that shows in the means of rests and turns."""
+    kind = design.sensor
+    size, source = typical.size(name, sensor, kind)
+    sizes = power.smallest(name)
+    # Of the Earth rate only the vertical part is an effect, the rest a nuisance.
+    smallest = sizes["up"] if name == "earth_rate" else detectable.middle(sizes)
+    if name not in tables[0][0]:
+        smallest = detectable.SILENT
+    known = typical.determined(smallest, size)
+    absorbed = how = ""
+    if not known and smallest < detectable.SILENT:
+        absorbed = how = NOT_DETERMINED
+    elif not known:
+        absorbed = taken_up(design, name)
+    return Finding(name, kind, EFFECTS[name].units[kind], smallest if known else detectable.SILENT,
+                   size, source, aliased_with(name, tables), absorbed, how)
+
+
+def aliased_with(name, tables):
+    """{other: alias index} of those that reproduce more than SAME_CLASS of an effect in any of the
+    tables [(names, index), ...]."""
     found = {}
     for names, index in tables:
         if name in names:

@@ -1,9 +1,12 @@
-"""The sessions that can be asked for: which pose, how long, how warm, in which order.
+"""The sessions that a person can be asked to capture: which pose, how long, how warm, in which
+order.
 
-Their numbers are those of the findings: 5 s rests, 10 s moves, 8-9 degC with tau = 300 s.
+Their numbers are those that GAP's figures are given for: rests of 5 s, moves of 10 s, a change of
+temperature of 8-9 degC with a time constant of 300 s.
 """
 import math
 import random
+from dataclasses import dataclass
 
 from sixflip.poses import faces
 
@@ -12,47 +15,54 @@ NAMES = ("paper", "return", "random", "backward", "recommended", "thermal", "soa
 STILL = ("paper", "return", "random", "backward", "thermal", "recommended")  # poses, no motion
 DWELL_S, MOVE_S = 5.0, 10.0  # METHOD section 1: a pose has 3-5 s; a move, its prompt included
 LONG_DWELL_S = 60.0  # creep of 60 s (terms.CREEP_S) goes most of its way in it
-SHAKE_MG = 300.0  # a motor on the table
+SHAKE_MG = 300.0  # mg rms of a motor on the table; where an effect shows does not depend on it
 OFF_FACES = math.cos(math.radians(22.0))  # the board takes what leans 15 degrees for a face
 STATES = {"warming": (22.0, 9.0, 300.0), "warm": (31.0, 2.0, 200.0),
           "cooling": (31.0, -9.0, 400.0)}  # back from where the warm one stood, somewhere cool
 
 
+@dataclass(eq=False)
 class Rest:
-    """One still pose. up: unit vector against gravity in the box; yaw_deg on the table; turn:
+    """One still pose. up (3,): unit vector against gravity in the box; yaw_deg on the table; turn:
     the way the box is turned (left: anticlockwise from above) when it comes from its flip."""
 
-    def __init__(self, pose, up, yaw_deg=0.0, dwell_s=DWELL_S, move_s=MOVE_S, turn="left"):
-        self.pose, self.up, self.yaw_deg = pose, up, yaw_deg
-        self.dwell_s, self.move_s, self.turn = dwell_s, move_s, turn
+    pose: str
+    up: tuple
+    yaw_deg: float = 0.0
+    dwell_s: float = DWELL_S
+    move_s: float = MOVE_S
+    turn: str = "left"
 
     @property
     def leaning(self):
         return self.pose.startswith("L")
 
 
+@dataclass(eq=False)
 class SessionPlan:
-    """Rests in one thermal state: T(t) = start_c + change_c (1 - exp(-t / tau_s));
+    """A list of Rest in one thermal state: T(t) = start_c + change_c (1 - exp(-t / tau_s));
     rest_s of stillness before the first pose and after the last; vibration_mg: rms of a
     vibration that is switched on for this session."""
 
-    vibration_mg = 0.0
-
-    def __init__(self, rests, state="warming", start_c=25.0, change_c=8.0, tau_s=300.0,
-                 rest_s=0.0):
-        self.rests, self.state, self.rest_s = rests, state, rest_s
-        self.start_c, self.change_c, self.tau_s = start_c, change_c, tau_s
+    rests: list
+    state: str = "warming"
+    start_c: float = 25.0
+    change_c: float = 8.0
+    tau_s: float = 300.0
+    rest_s: float = 0.0
+    vibration_mg: float = 0.0
 
     @property
     def minutes(self):
         return (sum(r.dwell_s + r.move_s for r in self.rests) + 2 * self.rest_s) / 60.0
 
 
+@dataclass(frozen=True, eq=False)
 class Protocol:
-    """Named sessions, to be captured in this order."""
+    """Named sessions (list of SessionPlan), to be captured in this order."""
 
-    def __init__(self, name, sessions):
-        self.name, self.sessions = name, sessions
+    name: str
+    sessions: list
 
     @property
     def minutes(self):
@@ -82,8 +92,9 @@ def leaning_rests(count, seed, **timing):
 
 def order_of(name, seed=7):
     """Pose codes of one pass: "fixed"; "random"; or "pairs", the faces in random order, each
-    with its flip. Pairs give the gyro its half turns, but a single pass of them lets a crooked
-    box reproduce most of a drift (0.86 on average, 0.25 for "random"): go backward after it."""
+    with its flip. Pairs give the gyro its half turns, but a single pass of them lets a box
+    that is not square reproduce most of a drift (alias index 0.86 on average, 0.25 for "random"):
+    go backward after it."""
     codes = list(range(1, 13))
     draw = random.Random(seed)
     if name == "random":

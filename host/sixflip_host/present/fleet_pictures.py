@@ -3,7 +3,7 @@ import numpy as np
 
 from ..figures import COLOURS, canvas, png
 
-BINS = 24
+BINS = 24  # of a histogram: as many as a picture of this width shows
 AXES = "xyz"
 LIMIT = 3.0  # sigmas of a control chart's limits [Shewhart 1931]
 MOST = 12  # blocks of three axes that are drawn

@@ -3,7 +3,7 @@ import os
 
 from ..terminal import console, plain, styled, table
 
-MOST_ROWS = 20
+MOST_ROWS = 20  # of a table in a terminal; fleet.json and the page have all of them
 SAYS = {"batch": "systematic", "individual": "individual", "both": "both", "neither": "-"}
 
 

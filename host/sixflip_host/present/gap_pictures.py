@@ -1,4 +1,5 @@
-"""The pictures of the report, one function each; all take a Diagnosis and write a PNG."""
+"""The pictures of a diagnosis, one function each: where the gap lies, what is left of the
+readings, their noise, and which effects look alike. All write a PNG."""
 import numpy as np
 
 from ..diagnosis import aliases, coefficient_fits
@@ -136,7 +137,6 @@ def _noise_curves(axes, x, rate, words, style):
 
 def alias_matrix(diagnosis, path):
     """How much of each effect another could be, for the captures at hand."""
-    from .alias_picture import draw
     tables = {}
     for kind, gap in diagnosis.gaps.items():
         gram = sum(u.gram.at(i) for u, i in zip(gap.units, gap.levels()))
@@ -144,8 +144,35 @@ def alias_matrix(diagnosis, path):
         if names:
             tables[kind] = names, np.nan_to_num(table)
     if tables:
-        draw(tables, path, "captures at hand")
+        draw_alias(tables, path, "captures at hand")
     return bool(tables)
+
+
+def draw_alias(matrices, path, title):
+    """The alias index as a picture: row a, column b, how much of a could be b. matrices: {sensor:
+    (names, index (n, n))}."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    sizes = [max(len(names), 2) for names, _ in matrices.values()]
+    figure = Figure(figsize=(2.6 + 0.55 * sum(sizes) + 1.8 * len(sizes), 2.4 + 0.5 * max(sizes)),
+                    layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(1, len(matrices), squeeze=False, width_ratios=sizes)[0]
+    for ax, (sensor, (names, index)) in zip(axes, matrices.items()):
+        image = ax.imshow(index, cmap="Blues", vmin=0.0, vmax=1.0)
+        ax.set_xticks(range(len(names)), names, rotation=60, ha="right", rotation_mode="anchor")
+        ax.set_yticks(range(len(names)), names)
+        ax.set_title(NAME[sensor])
+        ax.set_xlabel("could be reproduced by")
+        for i in range(len(names)):
+            for j in range(len(names)):
+                if index[i, j] >= 0.05:
+                    ax.text(j, i, "%.2f" % index[i, j], ha="center", va="center", fontsize=7,
+                            color="white" if index[i, j] > 0.6 else "black")
+    axes[0].set_ylabel("share of this effect")
+    figure.colorbar(image, ax=list(axes), shrink=0.7, label="alias index")
+    figure.suptitle("Alias matrix, %s; silent effects are left out" % title)
+    save(figure, path)
 
 
 def poses(gap, path):

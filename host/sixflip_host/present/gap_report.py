@@ -1,5 +1,7 @@
-"""The report: one page that needs nothing else, and its pictures."""
+"""What a diagnosis leaves in files: a page that needs nothing else, its pictures, and its checks
+for JUnit."""
 from pathlib import Path
+from xml.sax.saxutils import quoteattr
 
 from .. import atomic_write
 from ..errors import UsageError
@@ -67,7 +69,7 @@ def sections(page, answer, drawn):
     if answer["causes"]:
         page.heading("Which effect")
         page.table(gap_words.WHICH, [gap_words.row(c) for c in answer["causes"]])
-    lines = [gap_words.shrinkage_line(k, g, answer["held_out"]) for k, g in answer["gap"].items()]
+    lines = [gap_words.holdout_line(k, g, answer["held_out"]) for k, g in answer["gap"].items()]
     lines += [gap_words.loop_line(k, g) for k, g in answer.get("simulated", {}).items()]
     if lines:
         page.heading("How far")
@@ -111,3 +113,16 @@ def simulator_sections(page, simulator):
         page.paragraph("As code or in a simulator's own format: sixflip diagnose with --json into "
                        "a file, then sixflip export FILE --to numpy, gz, mujoco, genesis, "
                        "isaaclab, matlab or kalibr.", note=True)
+
+
+def write_junit(path, checks):
+    """Write the checks of a diagnosis as a JUnit file; checks: {name: failure or ""}."""
+    lines = ['<?xml version="1.0" encoding="UTF-8"?>',
+             '<testsuite name="sixflip diagnose" tests="%d" failures="%d">'
+             % (len(checks), sum(bool(f) for f in checks.values()))]
+    for name, failure in checks.items():
+        lines.append("  <testcase classname=\"sixflip.diagnose\" name=%s%s" % (
+            quoteattr(name), "/>" if not failure else "><failure message=%s/></testcase>"
+            % quoteattr(failure)))
+    lines.append("</testsuite>\n")
+    atomic_write.write_bytes(path, "\n".join(lines).encode())

@@ -9,7 +9,7 @@ SENSOR = {"accel": "accelerometer", "gyro": "gyro", "device": "device",
 STYLE = {"no gap": "bold green", "explained": "bold green", "partly explained": "bold yellow",
          "unexplained": "bold red", "cannot tell": "bold yellow"}
 WHICH = ("effect", "sensor", "probability", "share", "size (90 % interval)")
-SUREST = 0.99
+SUREST = 0.99  # the most that is said of a probability: the model is no surer of itself
 DOES = {  # what a part with this effect does
     "thermal_bias": "drifts with temperature", "thermal_scale": "changes its scale with "
     "temperature", "warm_up": "drifts after it is switched on", "thermal_rate": "follows how fast "
@@ -137,7 +137,7 @@ def show(answer):
     if answer["causes"]:
         out.print(table("Which", WHICH, [row(c) for c in answer["causes"]], prose=True))
     for kind, gap in answer["gap"].items():
-        out.print(plain(shrinkage_line(kind, gap, answer["held_out"])))
+        out.print(plain(holdout_line(kind, gap, answer["held_out"])))
         if "axes" in gap:
             out.print(plain("  " + axes_line(gap)))
     for kind, loop in answer.get("simulated", {}).items():
@@ -181,7 +181,8 @@ def row(c):
             ", ".join(sizes) + " " + c["unit"])
 
 
-def shrinkage_line(kind, gap, held):
+def holdout_line(kind, gap, held):
+    """How far the gap of a sensor shrinks on what is held out, in a sentence."""
     text = "How far, %s (%s): %.3g %s before" % (SENSOR[kind], held, gap["before"], gap["unit"])
     if gap["explained_share"] is None:
         return text + ", noise alone %.3g." % gap["floor"]

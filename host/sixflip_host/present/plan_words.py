@@ -60,6 +60,7 @@ def add_this(answer):
 
 
 def minutes(addition):
+    """How much longer an addition makes the capture."""
     return "no more time" if addition["minutes"] < 0.05 else "%.1f minutes" % addition["minutes"]
 
 
@@ -79,6 +80,7 @@ def resolved(addition):
 
 
 def overview(answer):
+    """The protocol in a paragraph: placements, sessions, time, equations, noise."""
     accel = answer["accel"]
     sessions = len(answer["sessions"])
     return ("%s: %d placements in %d session%s (%s), %.1f minutes, %s, box %s. %d accelerometer "
@@ -112,6 +114,7 @@ def effect_row(effect):
 
 
 def addition_lines(out, addition):
+    """Print an addition: its price, and below it what it resolves."""
     out.print(plain("  %s: %s, resolves %.2g per minute" % (
         addition["add"], minutes(addition), addition["per_minute"])))
     out.print(plain("    " + resolved(addition)))

@@ -8,7 +8,6 @@ from ..figures import png
 from ..history import drift, parameters, store, tables
 from . import calibration_pictures as pictures
 from . import solve_words
-from .drift_picture import draw as draw_drift
 
 LONGEST = 200           # of a text that a file says of itself
 
@@ -123,7 +122,7 @@ def board_history(page, board):
     head, checks = tables.check_rows(rows)
     if checks:
         page.table(head, checks)
-    figure = draw_drift(own) if len(own) > 1 else None
+    figure = pictures.drift(own) if len(own) > 1 else None
     if figure is not None:
         page.picture("Its parameters since the first calibration", png(figure), 3)
     drifts = drift.drifts(own)

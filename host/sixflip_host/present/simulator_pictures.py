@@ -6,7 +6,7 @@ from scipy.signal import welch
 from ..diagnosis.simulator import pairing
 from ..figures import COLOURS, canvas, save
 
-SHOWN_S = 12.0
+SHOWN_S = 12.0  # of a log, in which a move can still be seen
 UNIT = {"accel": "m/s²", "gyro": "rad/s"}
 NAME = {"accel": "accelerometer", "gyro": "gyro"}
 BEFORE, AFTER, REAL = COLOURS[0], COLOURS[2], "0.35"

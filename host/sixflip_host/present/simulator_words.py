@@ -32,6 +32,7 @@ def sentence(answer, effects):
 
 
 def capital(text):
+    """The text with its first letter as a capital."""
     return text[:1].upper() + text[1:]
 
 
@@ -77,6 +78,7 @@ def lines(simulator):
 
 
 def convention_rows(simulator):
+    """Rows of CONVENTIONS."""
     several = len(simulator["logs"]) > 1
     return [(c["words"].replace("the simulator's ", "").replace("the simulator ", "")
              + (" (%s)" % c["log"] if several else ""), SENSOR[c["sensor"]],
@@ -117,6 +119,7 @@ def settings(simulator):
 
 
 def valued(value, interval, unit):
+    """A value with its interval and unit, or - for nothing."""
     if value is None:
         return "-"
     text = "%.3g" % value

@@ -179,8 +179,8 @@ def checked(result, wanted, args):
     """Exit code 0, or CheckFailed with the first failure; the JUnit file where asked for."""
     checks = failures(result, wanted, args.max_gap)
     if args.junit:
-        from ..present import junit
-        junit.write(args.junit, checks or {"verdict": ""})
+        from ..present import gap_report
+        gap_report.write_junit(args.junit, checks or {"verdict": ""})
     for name, failure in checks.items():
         if failure:
             raise CheckFailed("%s: %s" % (name, failure))

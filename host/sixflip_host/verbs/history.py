@@ -45,8 +45,8 @@ def run(args):
 
 def _plot(path, calibrations):
     from ..figures import save
-    from ..present.drift_picture import draw
-    figure = draw(calibrations)
+    from ..present.calibration_pictures import drift
+    figure = drift(calibrations)
     if figure is None:
         raise CheckFailed("%s: not drawn, no calibration of this board says its parameters" % path)
     save(figure, path)

@@ -64,8 +64,8 @@ def run(args):
                                                fleet_prior.read(args.prior, args.sensor)
                                                if args.prior else None)
     if args.plot:
-        from ..present.alias_picture import draw
-        draw(findings.matrices, args.plot, protocol.name)
+        from ..present.gap_pictures import draw_alias
+        draw_alias(findings.matrices, args.plot, protocol.name)
     if args.save:
         plan_file.write(args.save, protocol)
     if args.json:

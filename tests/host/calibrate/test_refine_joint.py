@@ -5,7 +5,7 @@ import pytest
 
 from sixflip.accelerometer import solver as accelerometer
 from sixflip_host.calibrate import joint_refinement, refinement, refinement_answer
-from sixflip_host.experiment import blocks, moves, turns
+from sixflip_host.experiment import blocks, turns
 from tests.worlds import hand_session, xsens_recording
 from tests.worlds.hand_session import RAD
 
@@ -59,7 +59,8 @@ def test_the_refinement_and_the_diagnosis_see_the_same_rests_and_moves_and_neith
     capture = hand_session.session(hand_session.Sensor(1), hand_session.free_poses(1, 6), 1)
     session, _ = refinement.session_of(capture)
     seen = turns.of(session.session, session.force)
-    assert [turn.first for turn in seen] == [move.first for move in moves.of(session.session)]
+    assert [turn.first for turn in seen] == [
+        move.first for move in blocks.moves_of(session.session)]
     assert session.moves.seconds.tolist() == pytest.approx([turn.seconds for turn in seen])
     assert blocks.of("the same", capture).runs == session.session.runs
     for array in (session.force, session.rate_error, session.move_error, session.moves.dt,

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from sixflip_host.calibrate import multiposition
+from sixflip_host.calibrate import multiposition, observability
 from sixflip_host.capture import rests_by_variance
-from sixflip_host.planning import observability
 from tests.worlds import hand_session, xsens_recording
 
 

@@ -9,6 +9,7 @@ from sixflip_host.capture import capture_file
 from sixflip_host.diagnosis import rest_model, settings, usable_rests
 from sixflip_host.errors import BadFile
 from sixflip_host.experiment import attitude_fit, blocks, terms
+from sixflip_host.experiment.session import OF_BLOCKS
 from sixflip_host.fleet import analysis, diagnosed, effects, sources, summary, summary_file
 from sixflip_host.simulation import scenario, simulated_session
 
@@ -46,7 +47,7 @@ def test_a_part_and_fewer_poses_are_those_of_the_capture(captured):
     both = blocks.of("s", capture), one.session()
     for change in (lambda s: s.part(range(3, 9)), lambda s: s.without_poses(["Z-a", "X+b"])):
         mine, kept = (change(session) for session in both)
-        for name in blocks.OF_BLOCKS:
+        for name in OF_BLOCKS:
             assert np.array_equal(getattr(mine, name), getattr(kept, name)), name
         for a, b in zip(mine.played(terms.PLAY_G), kept.played(terms.PLAY_G)):
             assert np.array_equal(a, b)

@@ -9,7 +9,7 @@ from sixflip_host.capture.capture_file import Capture
 from sixflip_host.diagnosis import diagnosis, hypotheses, stray_turns, turn_model
 from sixflip_host.diagnosis.detect import sample_neighbours, spectral_lines, torn_reads
 from sixflip_host.diagnosis.detect.detection import present
-from sixflip_host.experiment import attitude_fit, block_noise, blocks, nominal_rows
+from sixflip_host.experiment import attitude_fit, block_measures, blocks, nominal_rows
 from sixflip_host.experiment.attitude_fit import face_axes
 from sixflip_host.experiment.projection import lateral_basis
 from sixflip_host.simulation import scenario, simulated_session
@@ -64,10 +64,11 @@ def test_noise_near_the_edge_of_a_page_is_no_torn_read():
 def test_white_noise_is_known_as_well_as_its_degrees_of_freedom_say():
     generator = np.random.default_rng(5)
     first = np.arange(0, 20000, 250)
-    found = np.array([block_noise.white(generator.standard_normal((20000, 3)), first, first + 250,
-                                        100.0) for _ in range(60)])
+    found = np.array([block_measures.white(generator.standard_normal((20000, 3)), first,
+                                           first + 250, 100.0) for _ in range(60)])
     scatter = (100.0 * found ** 2).mean(axis=1).var()
-    assert 2.0 / scatter == pytest.approx(block_noise.freedom(first, first + 250, 100.0), rel=0.5)
+    assert 2.0 / scatter == pytest.approx(
+        block_measures.freedom(first, first + 250, 100.0), rel=0.5)
 
 
 def test_an_axis_that_never_changes_says_nothing_of_how_the_others_wander():

@@ -9,7 +9,7 @@ from sixflip_host.capture import registers as counts
 from sixflip_host.diagnosis import answer, diagnosis, samples_judged
 from sixflip_host.diagnosis.detect import noise_bursts, saturation, torn_reads
 from sixflip_host.diagnosis.detect.detection import present
-from sixflip_host.experiment import block_noise, blocks
+from sixflip_host.experiment import block_measures, blocks
 from sixflip_host.present import gap_words
 from sixflip_host.simulation import scenario, simulated_session
 
@@ -179,7 +179,7 @@ def test_what_a_bit_that_sticks_leaves_of_a_mean(bit, noise):
         columns.append(x & ~weight)
         errors.append(columns[-1].mean() - level)
     ends = 2000 * np.arange(1, 65)
-    got = block_noise.rounding(np.repeat(np.concatenate(columns)[:, None], 3, axis=1),
+    got = block_measures.rounding(np.repeat(np.concatenate(columns)[:, None], 3, axis=1),
                                ends - 2000, ends)
     assert got == pytest.approx(np.full(3, np.std(errors)), rel=0.25, abs=0.03 * weight)
 

@@ -39,11 +39,11 @@ def test_false_discoveries_are_held_down():
 def test_a_lag_is_a_lag_and_a_lead_undoes_it_to_first_order():
     t = np.arange(0.0, 900.0)
     felt = 22.0 + 9.0 * (1.0 - np.exp(-t / 300.0))
-    meter = thermometer.Thermometer(t, felt)
+    meter = thermometer.of_course(t, felt)
     late = meter.lagged(t, 20.0)
     true = felt - 9.0 * np.exp(-t / 300.0) * 20.0 / 300.0
     assert np.abs(late - true)[150:].max() < 0.05
-    again = thermometer.Thermometer(t, late).lagged(t, -20.0)
+    again = thermometer.of_course(t, late).lagged(t, -20.0)
     assert np.abs(again - felt)[150:].max() < 0.08
 
 

@@ -15,6 +15,7 @@ from sixflip_host.diagnosis import (
     turn_model,
 )
 from sixflip_host.experiment import attitude_fit, blocks, turns
+from sixflip_host.experiment.session import OF_BLOCKS
 from sixflip_host.present import gap_words
 from sixflip_host.simulation import scenario, simulated_session
 
@@ -37,7 +38,7 @@ def test_blocks_cannot_be_changed(capture):
     whole = blocks.of("s", capture)
     with pytest.raises(dataclasses.FrozenInstanceError):
         whole.accel = None
-    for name in (*blocks.OF_BLOCKS, "t_s", "noise_accel", "rounding_gyro"):
+    for name in (*OF_BLOCKS, "t_s", "noise_accel", "rounding_gyro"):
         with pytest.raises(ValueError, match="read-only"):
             getattr(whole, name)[0] = 0
     fewer = whole.without_poses(["Z+a"])

@@ -6,9 +6,9 @@ import pytest
 from sixflip_host.cli import Parser, main
 from sixflip_host.errors import BadFile, UsageError
 from sixflip_host.experiment.session_rows import rows_of
-from sixflip_host.planning import detectable, plan_additions, plan_file, protocols
+from sixflip_host.planning import detectable, plan_answer, plan_file, protocols
 from sixflip_host.planning.alias import PlannedModel
-from sixflip_host.planning.plan_findings import Findings
+from sixflip_host.planning.plan_findings import findings_of
 from sixflip_host.verbs import plan
 from sixflip_sim.effects.library import NAMES
 
@@ -67,7 +67,7 @@ def test_smallest_sizes_agree_with_the_prototype():
                 "backward": {"thermal_bias": 0.178, "quadratic": 0.871, "hysteresis": 0.254}}
     for name, sizes in expected.items():
         design = PlannedModel(rows_of(protocols.named(name)), certified_box=True)
-        power = detectable.Power(design, "mpu6050-accel")
+        power = detectable.power_of(design, "mpu6050-accel")
         for effect, size in sizes.items():
             found = detectable.middle(power.smallest(effect))
             assert found == pytest.approx(size, rel=0.1), (name, effect)
@@ -76,7 +76,7 @@ def test_smallest_sizes_agree_with_the_prototype():
 def test_a_simulated_drift_of_the_smallest_size_is_seen_four_times_in_five():
     import numpy as np
     design = PlannedModel(rows_of(protocols.named("backward")), certified_box=True)
-    power = detectable.Power(design, "mpu6050-accel")
+    power = detectable.power_of(design, "mpu6050-accel")
     size = power.smallest("quadratic")["x"]
     column = design.raw("quadratic")[1][:, 0]
     from sixflip_host.experiment.projection import without
@@ -91,15 +91,15 @@ def test_a_simulated_drift_of_the_smallest_size_is_seen_four_times_in_five():
 
 def test_additions_resolve_something_and_are_ranked():
     protocol = protocols.named("paper")
-    base = Findings(protocol)
-    additions = plan_additions.ranked(protocol, base, "mpu6050", False, 100.0)
+    base = findings_of(protocol)
+    additions = plan_answer.ranked(protocol, base, "mpu6050", False, 100.0)
     rates = [a.per_minute for a in additions]
     assert rates == sorted(rates, reverse=True) and min(rates) > 0
     named = {a.name: a for a in additions}
     assert ("accel", "creep", "hysteresis") in named["dwell of 60 s"].pairs
     assert ("accel", "thermal_bias", "warm_up") in named["a cooling session"].pairs
     assert ("accel", "cubic") in named["12 leaning poses"].shown
-    short = plan_additions.ranked(protocol, base, "mpu6050", False, 100.0, most_minutes=4.0)
+    short = plan_answer.ranked(protocol, base, "mpu6050", False, 100.0, most_minutes=4.0)
     assert {a.name for a in short} <= {"random order", "return to the first pose",
                                        "turns both ways"}
 

@@ -18,12 +18,14 @@ from . import course_likelihood
 from .damage import Damage
 from .detection import present
 
-FEWEST = 50  # samples
+FEWEST = 50  # samples, of which a width, its tails and a share of leaps are told
 FEWEST_CHANGED = 8  # steps that a rule must change: a recording whose moves were cut out leaps
-HOPELESS = 0.05  # nats a sample that no finer foresight makes up for
-LONGEST = 200_000  # samples that are looked at
-WIDTHS = range(8, 16)  # bits of a reading whose sign may be lost
-AROUND = (3, 9, 33)  # samples around one, whose level tells its lost high byte
+# Nats a sample by which a rule's coarse likelihood may be behind that of the counts as read: the
+# finer foresight, which is tried then, gains less. It saves time and decides nothing else.
+HOPELESS = 0.05
+LONGEST = 200_000  # samples that are looked at: half an hour at 100 Hz
+WIDTHS = range(8, 16)  # bits of a reading whose sign may be lost: a byte, to all but one of 16
+AROUND = (3, 9, 33)  # samples around one whose level tells its lost high byte: fast, slow, still
 WORDS = {"accel": "accelerometer", "gyro": "gyro"}
 
 

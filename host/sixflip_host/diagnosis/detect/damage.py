@@ -1,8 +1,8 @@
-"""What a recording or its scales suffered, which no effect of a sensor is: it has a sentence of
-its own, a place, and no name of the library.
+"""What a recording or its scales suffered, which is no effect of a sensor: it has a sentence of
+its own, a domain, and no name of the library.
 
-Its score is, as a Finding's, the log likelihood ratio of the samples against the likeliest of
-what has no name; what was tried to find it is taken off.
+Its score is, as a detection.Finding's, the log likelihood ratio of the samples against the
+likeliest explanation that has no name, less what was tried to find it.
 """
 from dataclasses import dataclass, field
 
@@ -23,7 +23,7 @@ class Damage:
 
 
 def answer(found):
-    """For --json."""
+    """[Damage] as a list of dictionaries for --json."""
     return [{"kind": one.kind, "sensor": one.sensor, "axes": list(one.axes),
              "domain": one.domain, "score_nats": round(min(one.score, 1e6), 2),
              "value": dict(one.value), "words": one.words} for one in found]

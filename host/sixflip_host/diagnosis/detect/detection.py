@@ -1,8 +1,9 @@
 """An effect read off the samples themselves: registers, timing, spectrum.
 
-Its score is the log likelihood ratio of the samples with the effect against the likeliest of what
-has no name: no effect at all, or the stranger of its domain (jumps of any size, codes that are
-missing anywhere, gaps of any length, any matrix). What was tried to find it is taken off.
+Its score is the log likelihood ratio of the samples with the effect against the likeliest
+explanation that has no name: no effect at all, or the stranger of its domain (jumps of any size,
+codes that are missing anywhere, gaps of any length, any matrix). What was tried to find it is
+taken off.
 """
 from dataclasses import dataclass, field
 

@@ -9,13 +9,16 @@ import math
 import numpy as np
 from scipy import ndimage
 
+from ...experiment.block_measures import EDGE_S
 from .. import odds
 from .line_frequency import HALVES, MEDIAN_ERROR, SLOW_CHANCE, SLOW_SHARE, Line, peak
 
-FEWEST, SHORTEST_S, EDGE_S = 12, 1.0, 0.1  # rests, and what is left off at both ends of each
-LONGEST_S = 600.0  # from the first rest on: a line of 0.7 Hz has 400 periods there
+FEWEST, SHORTEST_S = 12, 1.0  # rests, and seconds of each (a protocol has twelve poses or more)
+# s from the first rest on that are looked at: a line of 0.7 Hz has 400 periods there, and more
+# would ask of a fan or a pump that it keeps its frequency to better than a part in a thousand.
+LONGEST_S = 600.0
 LEAST_CYCLES = 0.5  # of a line in a rest: less is a course that is taken off
-RATE_HZ = 10.0  # of the means that are looked at
+RATE_HZ = 10.0  # of the means that are looked at: ten times line_frequency.FASTEST_HZ
 GRID_HZ = 40.0  # of the times that they are taken to be at: a tenth of a radian at most
 OVER = 4  # frequencies for each that rests so far apart can tell
 WIDTH = 41  # frequencies of the floor's running median: ten lobes of a line

@@ -13,18 +13,24 @@ from scipy import linalg, ndimage
 
 from .. import odds
 
-STEADY = 0.5  # of the power of short stretches that has to go on in phase over the whole
+# Share of the power of short stretches that has to go on in phase over the whole. All of a sine's
+# does; of what wanders by a bin of the short stretches, over two of them and more, half at most.
+STEADY = 0.5
 PADDED = 4  # times its length: the transform in which a peak is looked for
 PAIRED = 1000  # points, half a million pairs: their number grows with the square
-SHORT_BINS = 1.5  # bins of a short stretch within which the line lies
-SLOW_S = 40.0  # a rest that shows lines slower than LOWEST_HZ
+SHORT_BINS = 1.5  # bins of a short stretch within which the line lies: Hann's lobe has two
+# s of a rest that shows lines slower than spectral_lines.LOWEST_HZ: the slowest has SLOWEST
+# periods in it, and up to FASTEST_HZ there are more bins than the floor's median is wide.
+SLOW_S = 40.0
 SLOWEST, FASTEST_HZ = 8.0, 1.0  # periods in the rest, and what short stretches see
 SLOW_RATE = 4.0  # Hz of the means that slow lines are looked for in: four times FASTEST_HZ
 SLOW_CHANCE = 1e-6  # of a peak: the floor below it is a guess, noise that is slow has no flat one
 SLOW_SHARE = 0.5  # of the standard deviation, as an amplitude: an eighth of the variance
 SLOW_WIDTH = 25  # bins of the floor's running median: five times the five of a sine's lobe
 MEDIAN_ERROR = 1.0 / math.log(2.0)  # of the median of n exponentials, relative: times 1 / sqrt(n)
-HALVES = 0.5  # of the amplitude that either half of a rest has, in phase with the other
+# Share of the amplitude that either half of a rest has, in phase with the other: a sine has all of
+# it in both, a peak of what wanders is mostly one swing, in one of them.
+HALVES = 0.5
 LOBE = 0.8  # of the power around a peak in a lobe that has 0.999 of a sine's: the rest is noise
 
 

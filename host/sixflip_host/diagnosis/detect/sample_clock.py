@@ -13,14 +13,16 @@ from ...capture import clock, clock_words
 from .axis_order import explained
 from .detection import Finding, present
 
-FEWEST = 200  # samples
+FEWEST = 200  # samples: two seconds at 100 Hz, over which stamps late by 0.5 ms tell 2 % from none
 CRYSTAL = 2e-4  # standard deviation of a clock that is as it says: crystal and driver together
 OSCILLATOR = 0.02  # and of a sensor's own oscillator [ITG-3205 PS rev 1.0, table 3.1: 2 %]
-WANDERS = 0.15  # of its error, from session to session: an oscillator follows the temperature
+# Share of its error that an oscillator changes by from session to session, as it follows the
+# temperature, which differs by some 9 degC between a warming and a cooling session.
+WANDERS = 0.15
 APART = 3.0  # nats by which sessions may differ and still have one clock, GAP stage 4
-HICCUP = 1e-5  # chance of an interval that a sound recorder leaves too long
-LONGEST = 50.0  # periods: gaps without a name may have any length up to that
-LATE = 0.02  # periods, at least: how exactly the time of a sample is known
+HICCUP = 1e-5  # chance of an interval that a sound recorder leaves too long: at 100 Hz, 17 minutes
+LONGEST = 50.0  # periods: gaps without a name may have any length up to that, half a second
+LATE = 0.02  # periods, at least: how exactly a stamp tells the time of a sample, 0.2 ms at 100 Hz
 
 
 def clocks(sessions):

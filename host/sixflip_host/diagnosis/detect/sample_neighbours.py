@@ -5,8 +5,10 @@ import numpy as np
 from scipy import ndimage
 
 PAGE = 256  # counts that share a high byte
-FEWEST = 50  # samples before the noise of a column is known
-CALM = 8.0  # standard deviations that the neighbours of a sample at rest may span
+FEWEST = 50  # samples before the noise of a column is known, to a sixth
+# Standard deviations that the six neighbours of a sample at rest may span: of normal noise they
+# span 2.5 on average, and more than 8 in less than one of a million.
+CALM = 8.0
 LONG = 25  # samples on each side: their median errs by a sixth of the noise
 BLURRED = 100.0  # counts: with wider noise a page more or less tells nothing
 # The same where a hand or a slow wave moves the level: what is foreseen there is off with the very

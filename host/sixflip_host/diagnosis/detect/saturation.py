@@ -1,4 +1,4 @@
-"""Samples on a rail, and peaks that are cut off below it.
+"""Samples at the end of a chip's range (on a rail), and peaks that are cut off below it.
 
 What counts is how much likelier the samples at one level are if everything beyond it reads that
 level than if the readings thin out towards their largest one as they do everywhere.
@@ -13,7 +13,9 @@ from .detection import BELOW, RANGE, Finding, present
 
 RAIL_CODES = 4  # the last codes of a range: scales that are rounded end a few short of 2^15
 LOOKED_AT = 6  # ends of a sensor's three axes, each of which could be cut off
-SPREAD_SHARE = 0.02  # of the span of the readings, just inside their largest one
+# Share of the span of the readings just inside their largest one, in which peaks that are not cut
+# off end as well: less holds too few of them, in more they thin out by themselves.
+SPREAD_SHARE = 0.02
 
 
 def saturation(sessions, sensor, columns):

@@ -19,10 +19,14 @@ SOUND_GYRO = 0.05  # ±3 % of scale [table 6.1], and a misaligned axis
 MOVING = 3.0  # times that, where a hand or wheels pull at the accelerometer, or the gyro is late
 # Full scales of a chip are octaves apart, and there are up to five.
 RANGES = (0.0625, 0.125, 0.25, 0.5, 2.0, 4.0, 8.0, 16.0)
-WIDEST = 64.0  # any factor without a name lies within that and its inverse
-ALIKE = 0.8  # correlation of gravity's turning and the gyro's that tells a factor
-HAND_DEG = 12.0  # of a half turn by hand, at worst
-PARTS = 8  # of a recording, whose factors give the error of the whole
+# Any factor without a name lies within that and its inverse: degrees for radians (57.3), m/s2 for
+# g.
+WIDEST = 64.0
+# Correlation of gravity's turning and the gyro's that tells a factor: with less a third of the
+# turning is something else, which draws the factor towards 0.
+ALIKE = 0.8
+HAND_DEG = 12.0  # of a half turn by hand, at worst; with care 0.4 (METHOD section 2)
+PARTS = 8  # of a recording, whose factors give the error of the whole, to a quarter
 
 
 def findings(sessions):

@@ -1,1 +1,17 @@
-"""The user's own simulator against the real sensor."""
+"""The user's own simulator beside the real sensor: which conventions, numbers and effects differ.
+
+traces, single_log, held_readings  what one log says of itself
+alignment, pairing                 two logs of one motion on one clock and one grid
+hypotheses, evidence_of_logs, conventions, convention_findings
+                                   layer 1: what the simulator's numbers mean, by the same motion
+own_calibration, own_motion, own_consistency, gravity_directions
+                                   layer 1 where the motions differ: each log by its own rests
+put_right                          a log with the conventions found put right
+parameters, noise_levels           layer 2: the numbers to set
+against_simulator, effects_beside  layer 3: the effects that one has and the other lacks
+task                               layer 4: what the difference does to a robot
+comparison, simulator_answer       all layers in their order, and the JSON of them
+
+Thresholds that neither a data sheet nor a formula gives trade names that are found for healthy
+simulators that are accused; `make zoo` prints both.
+"""

@@ -1,8 +1,9 @@
 """The user's own simulator: the gap is what the real sensor has and that simulator lacks.
 
-SIM.csv is diagnosed like a real capture. What it models is taken off the real sessions at their
-own poses, times and temperatures, so scenes need not be the same; what both have in their
-registers, timing or spectrum is no gap. What it has and the real sensor lacks is a gap as well.
+The simulator's log is diagnosed like a real capture. What it models is taken off the real sessions
+at their own poses, times and temperatures, so that the scenes need not be the same; what both have
+in their registers, timing or spectrum is no gap. What the simulator has and the real sensor lacks
+is a gap as well.
 """
 from dataclasses import dataclass
 
@@ -12,8 +13,13 @@ from ...experiment import blocks
 from .. import coefficient_fits, detectability, odds
 from .. import diagnosis as stages
 
-APART = 3.0  # standard errors between two sizes from which on they are two effects
-RAW = 0.1  # of a size without an interval: how well two logs repeat a line, a step or a clock
+# Standard errors between two sizes from which on they are two effects: two of one size are as far
+# apart in one of 370 pairs (normal).
+APART = 3.0
+# Standard error of a size that has no interval, as a share of it: as well as two logs repeat a
+# line, a step or a clock. Less accuses healthy simulators, more hides a difference of a third
+# (make zoo).
+RAW = 0.1
 
 
 @dataclass(frozen=True, eq=False)

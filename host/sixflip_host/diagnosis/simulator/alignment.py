@@ -1,5 +1,8 @@
-"""Whether two logs are of one motion, and how their clocks lie: by the size of the turn rate,
-which is the same in every frame, with axes swapped and in any unit."""
+"""Whether two logs are of one motion, and how the clock of one lies to that of the other.
+
+Both are told by the size of the turn rate, which is the same in every frame, with axes swapped and
+in any unit: its correlation where they match best, and the offset and drift at which they do.
+"""
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,12 +10,14 @@ from scipy.signal import butter, sosfiltfilt
 
 GRID_HZ = 100.0  # sixteen steps in a period of the band: the first offset, before it is refined
 BAND_HZ = 6.0  # of what is compared: beyond it a simulator's contacts are not repeatable
-ALIKE = 0.85  # correlation from which on two logs are of one motion
+# Correlation from which on two logs are of one motion. Less takes two runs of one schedule for one
+# motion, which pairing.one_motion has to tell apart; more loses a simulator whose wheels slip.
+ALIKE = 0.85
 # Clocks of chips were seen within 1 % (99.3 and 100.3 Hz for 100); a simulator's real-time factor
 # is off by more. By half a step of 0.1 % a log of a minute is 30 ms off at its end, a fifth of a
 # period of the band.
 DRIFTS = np.linspace(-0.03, 0.03, 61)
-LEAST_S = 8.0
+LEAST_S = 8.0  # of a log: its turn rate has a hundred independent values in BAND_HZ
 
 
 @dataclass(frozen=True)
@@ -43,7 +48,7 @@ def align(real, sim):
     a, b = (turn_rate(x) if turns else force_off(x) for x in (real, sim))
     if a[1].std() <= 0 or b[1].std() <= 0:
         return none
-    best = max((coarse(a, b, drift) + (drift,) for drift in (0.0,)), key=lambda x: x[0])
+    best = coarse(a, b, 0.0) + (0.0,)
     if best[0] < ALIKE:
         best = max((coarse(a, b, drift) + (drift,) for drift in DRIFTS), key=lambda x: x[0])
     return refined(a, b, *best[1:])

@@ -4,8 +4,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sixflip import STANDARD_G
-
 from . import (
     alignment,
     convention_findings,
@@ -22,10 +20,13 @@ from . import (
     task,
     traces,
 )
+from .parameters import DEG, MG
 
+# s of a block that is held out as a whole: longer than what neighbouring samples have in common, a
+# move of a robot for instance, and short enough that half of a log of a minute has several.
 FOLD_S = 5.0
-RAILED = 0.5  # of a log: what is left of it is no motion any more
-MG, DEG = 1000.0 / STANDARD_G, 180.0 / np.pi
+RAILED = 0.5  # share of a log at the end of its range: what is left of it is no motion any more
+UNSEEN = 1e6  # noise of a sample that a fit must not see, in units of the average
 
 
 @dataclass(frozen=True)
@@ -78,25 +79,17 @@ def compare(real_logs, name, capture):
 
 
 def of_traces(real, sim, aligned):
-    """Comparison of two Traces."""
-    remarks, unseen, found = [], [], []
+    """Comparison of two Traces, whose clocks lie as the Alignment says."""
+    unseen = []
     holds = {"real": held_readings.of(real), "sim": held_readings.of(sim)}
-    found += held_readings.findings(real, sim, holds["real"], holds["sim"])
+    found = held_readings.findings(real, sim, holds["real"], holds["sim"])
     sim_free = held_readings.free(sim, holds["sim"])
     real_free = held_readings.free(real, holds["real"])
-    live, dead = single_log.live(sim), single_log.dead(real, sim)
-    for kind, mask in dead.items():
-        still = mask | ~live[kind] & (kind == "accel" or sim.rate is not None)
-        if still.any():
-            axes = [a for a, x in zip("xyz", still) if x]
-            found.append(convention_findings.finding(
-                "constant_channel", kind, 1.0, 100.0, "its %s says nothing of the motion" %
-                " and ".join(axes), value=dict.fromkeys(axes, 0.0), unit="1"))
-            live[kind] = live[kind] & ~still
+    live, constant = constant_channels(real, sim)
+    found += constant
     own_real = own_calibration.fitted(real_free)
     fits, late, late_sigma, judged = {}, None, None, False
     row_s = 1.0 / min(real.rate_hz, sim.rate_hz)
-    constant = any(c.name == "constant_channel" for c in found)
     motion = None
     if aligned.same and own_real is not None:
         motion = traces.motion(own_real.applied(real_free))
@@ -123,23 +116,45 @@ def of_traces(real, sim, aligned):
     found = convention_findings.merged(found)
     mended = put_right.trace(sim_free, found)
     own_sim = own_calibration.fitted(mended)
-    usable = {k: not any(c.name in put_right.SPOILED and c.sensor in (k, "device") for c in found)
-              for k in ("accel", "gyro")}
-    numbers = parameters.shapes(own_real, own_sim, fits, usable)
-    noise_numbers, noise_found = noise_levels.noises(real, mended)
-    numbers += noise_numbers + parameters.registers(real, sim)
+    numbers, of_numbers = numbers_of(real, sim, mended, (own_real, own_sim), fits, found)
     numbers += parameters.timing(late, late_sigma, fits, aligned)
-    found += noise_found + parameters.bias_sign(numbers)
+    found += of_numbers + parameters.bias_sign(numbers)
     if any(c.name == "noise_per_sample" for c in found):
         numbers = [p for p in numbers if p.name != "noise_density"]
-    remarks += said_of(real, sim, aligned)
-    return Comparison(sim.name, real.name, aligned, tuple(found), tuple(numbers),
-                      tasked(real_free, mended, own_real, own_sim, fits, remarks),
+    tried, why_not = tasked(real_free, mended, own_real, own_sim, fits)
+    return Comparison(sim.name, real.name, aligned, tuple(found), tuple(numbers), tried,
                       held_out(fits, real, sim), fits, own_real, own_sim,
                       {k: single_log.noise(real, getattr(real, v)) for k, v in (
                           ("accel", "force"), ("gyro", "rate")) if getattr(real, v) is not None},
-                      tuple(remarks), tuple(unseen), judged or put_right.only_in_motion(found),
+                      (*said_of(real, sim, aligned), *why_not), tuple(unseen),
+                      judged or put_right.only_in_motion(found),
                       None if real.celsius is None else float(real.celsius.mean()))
+
+
+def constant_channels(real, sim):
+    """({sensor: (3,) bool} of the simulator's channels that change and answer, [Convention] of
+    those that do not)."""
+    live, dead = single_log.live(sim), single_log.dead(real, sim)
+    found = []
+    for kind, mask in dead.items():
+        still = mask | ~live[kind] & (kind == "accel" or sim.rate is not None)
+        if still.any():
+            axes = [a for a, x in zip("xyz", still) if x]
+            found.append(convention_findings.finding(
+                "constant_channel", kind, 1.0, 100.0, "its %s says nothing of the motion" %
+                " and ".join(axes), value=dict.fromkeys(axes, 0.0), unit="1"))
+            live[kind] = live[kind] & ~still
+    return live, found
+
+
+def numbers_of(real, sim, mended, own, fits, found):
+    """([Parameter], [Convention] on the noise) of two Traces; mended: that of the simulator with
+    the conventions found put right; own: OwnSensor or None of the real one, of the simulator."""
+    usable = {k: not any(c.name in put_right.SPOILED and c.sensor in (k, "device") for c in found)
+              for k in ("accel", "gyro")}
+    densities, on_noise = noise_levels.noises(real, mended)
+    return (parameters.shapes(*own, fits, usable) + densities + parameters.registers(real, sim),
+            on_noise)
 
 
 def different_motion(real, sim, own_real, row_s):
@@ -170,7 +185,7 @@ def held_out(fits, real, sim):
         left = np.empty_like(theirs)
         for k in (0, 1):
             rows = np.where(fold == k, UNSEEN, 1.0)
-            fit = found.again(rows)
+            fit = found.refitted(rows)
             left[fold == k] = fit.left[fold == k] / fit.unit
         noise = 0.0
         for trace in (real, sim):
@@ -183,21 +198,15 @@ def held_out(fits, real, sim):
     return out
 
 
-UNSEEN = 1e6  # noise of a sample that a fit must not see, in units of the average
-
-
-def tasked(real, sim, own_real, own_sim, fits, remarks):
-    """Task of the logs, None with a remark where it cannot be asked."""
+def tasked(real, sim, own_real, own_sim, fits):
+    """(Task of the logs, or None where it cannot be tried; [sentence on why])."""
     if own_real is None or own_sim is None:
-        remarks.append("the task was not tried: it needs a gyro and a rest in both logs")
-        return None
+        return None, ["the task was not tried: it needs a gyro and a rest in both logs"]
     if not task.available():
-        remarks.append("the task was not tried: imufusion is not installed (pip install "
-                       "imufusion)")
-        return None
+        return None, ["the task was not tried: imufusion is not installed (pip install imufusion)"]
     if len(fits) == 2:
-        return task.of_pair(fits["accel"], fits["gyro"], real.g)
-    return task.of_own(real, sim, own_real, own_sim)
+        return task.of_pair(fits["accel"], fits["gyro"], real.g), []
+    return task.of_own(real, sim, own_real, own_sim), []
 
 
 def said_of(real, sim, aligned):

@@ -72,6 +72,7 @@ def one_of(sensor, candidates, probability, nats):
 
 
 def finding(name, sensor, probability, nats, set_to="", **more):
+    """The Convention of a name with its sentence; set_to: what to set, else the usual words."""
     who = "the simulator" if sensor == "device" else "the simulator's " + WHO[sensor]
     return Convention(name, sensor, probability, nats, "%s %s" % (who, WORDS[name]),
                       set_to or SET.get(name, ""), **more)
@@ -116,6 +117,7 @@ def signed(row):
 
 
 def unit_words(kind, unit):
+    """What a factor between two units stands for, in words."""
     if kind == "gyro":
         return "it gives degrees where radians are expected" if unit > 1.0 else \
             "it gives radians where degrees are expected"

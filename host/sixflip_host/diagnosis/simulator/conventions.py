@@ -10,12 +10,16 @@ from . import convention_findings, evidence_of_logs, hypotheses, pairing, single
 # Before looking: nine simulators in ten are right about each sensor, and every single thing that
 # public reports name is one in some fifty of them.
 PRIOR_HEALTHY, PRIOR_EACH, PRIOR_NAMELESS = 0.9, 0.02, 0.005
-CERTAIN = 0.99  # probability from which on a convention is named
+# Probability from which on a convention is named: whoever reads it changes a simulator, so that
+# one wrong name in a hundred is the most that is allowed.
+CERTAIN = 0.99
 HELD_BAND = 12.0  # readings in a period, below which a straight line between them is no curve
-OWN_SHARES = (1.0, 0.3, 0.1, 0.03, 0.01)  # of what datasheets allow
+OWN_SHARES = (1.0, 0.3, 0.1, 0.03, 0.01)  # tried, of what datasheets allow: half-decades
 DELAY_ROUNDS = 4  # of two rows, to a hundredth of one
-SHARED = 0.5  # of the noise that two logs of their own differ by: with less, they share some
-LATE_SIGMA = 4.0  # of a delay's standard error, from which on it is one
+# Share of the noise expected in the difference of two logs below which they share some of it: logs
+# of their own have all of it, a log that was made of the other's samples next to none.
+SHARED = 0.5
+LATE_SIGMA = 4.0  # standard errors from which on a delay is one: by chance in 1 of 16,000 (normal)
 
 
 @dataclass(frozen=True)
@@ -33,7 +37,7 @@ class SensorFit:
     own: tuple
     live: np.ndarray
 
-    def again(self, rows):
+    def refitted(self, rows):
         """The Fit of the same hypothesis with other noise of each sample, rows (n,)."""
         measured = self.pair.sim_force if self.kind == "accel" else self.pair.sim_rate
         return evidence_of_logs.fit_one(self.hypothesis, measured, self.fit.axes, self.fit.unit,
@@ -187,6 +191,7 @@ def posterior(kind, fits, live):
 
 
 def prior(name):
+    """Probability of one thing that a simulator may do otherwise, before looking."""
     return PRIOR_NAMELESS if name == "unknown" else PRIOR_EACH
 
 

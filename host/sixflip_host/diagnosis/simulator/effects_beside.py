@@ -17,10 +17,12 @@ from ...experiment import noise_arrays, terms
 from .. import closed_loop, odds
 from . import conventions, hypotheses, pairing, parameters
 
-BOTH = 3.0  # standard errors within which an effect is in both logs, and beyond which in one
+# Standard errors within which the share of an effect in the difference is none, so that both logs
+# have it, if it is also as far from all of it: either is wrong in one of 370 (normal).
+BOTH = 3.0
 FLAT, RESTS_DPS = 0.966, 2.0  # cosine of 15 deg, as the simulator has a face; slower is a rest
 SAME = 1e-5  # of a scale that does not differ: a tenth of a count at 1 g
-MOST_SETS = 16  # of names that classes may stand for, tried
+MOST_SETS = 16  # of names that classes may stand for, tried: each takes a fit of the whole log
 WARMING_S = 10.0  # over which the temperature's rate is taken: a thermometer has steps
 
 
@@ -196,7 +198,7 @@ def _fit(kind, found, designs):
                    mean=np.concatenate([h.mean, *(np.zeros(len(d.keys)) for d in designs)]),
                    sd=np.concatenate([h.sd, *(d.prior for d in designs)]))
     rows = conventions.local_noise(found.fit.left[:, found.live])
-    return replace(found, hypothesis=wide, own=None).again(rows)
+    return replace(found, hypothesis=wide, own=None).refitted(rows)
 
 
 def _sizes(kind, fit, designs, names, diagnosis):

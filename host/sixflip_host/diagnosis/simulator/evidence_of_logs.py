@@ -13,20 +13,22 @@ from sixflip import STANDARD_G
 
 from .hypotheses import BIAS, DEAD, DEG, DELAY_S, FREE, SHAPE, SIGNED, SMOOTH_S2
 
-ROUNDS = 4
-LEAST_LEFT = 1e-9
+ROUNDS = 4  # of the noise of each channel: more change the evidence by some thousandths of a nat
+LEAST_LEFT = 1e-9  # of a variance, (m/s2)2 or (rad/s)2: a simulator without noise has none
 MOST_ROWS = 4000  # of a log that a fit looks at; each stands for those around it
-STRETCHES = 20  # of a log, each of them one observation of what its coefficients are worth
+# Stretches of a log, each of them one observation of what its coefficients are worth: a standard
+# error by twenty is known to a sixth, and of a minute's log each holds about one move.
+STRETCHES = 20
 
 
 @dataclass(frozen=True)
 class Fit:
-    """log: marginal log likelihood; matrix (3, 3) = S (1 + E) and bias (3,): simulator = matrix ·
-    signal + bias + …; axes (3, 3) and unit: S; extra (k,) with its sigma; delay_s of the
-    simulator against the signal, and its sigma; smooth_s2: half the square of the time
-    constant by which the simulator is smoother than the signal (negative: less smooth); shape
-    (3, 3): E, with its sigma; left (n, 3): what is not predicted, None of a fit that is one of
-    many."""
+    """One hypothesis fitted. log: marginal log likelihood; matrix (3, 3) = S (1 + E) and bias
+    (3,): simulator = matrix · signal + bias + columns · extra; axes (3, 3) and unit: S; extra (k,)
+    with its sigma; delay_s of the simulator against the signal, and its sigma; smooth_s2: half the
+    square of the time constant by which the simulator is smoother than the signal (negative: less
+    smooth); shape (3, 3): E, with its sigma; left (n, 3): what is not predicted, None of one of
+    many fits."""
 
     hypothesis: object
     name: str

@@ -2,12 +2,14 @@
 rests have them, and from each rest to the next, as the gyro carries them."""
 import numpy as np
 
-from ...capture.attitude import _rotation
+from ...capture.attitude import rotation_between, rotations
 from . import traces
 
 SIGMA = np.radians(4.0)  # of a direction: bias of 60 mg, scale of the gyro 3 % of a half turn
-ASTRAY = 0.02  # of moves and rests that follow nothing
-POSE = np.radians(15.0)  # how alike the rests of two runs of one robot are
+# Share of moves and rests that follow nothing at all: a log of fifty moves may have one in which
+# the gyro was cut off or the robot slid, which then costs a hypothesis no more than ln 50 nats.
+ASTRAY = 0.02
+POSE = np.radians(15.0)  # how alike the rests of two runs of one robot are: ramps and slopes
 POSES_COUNT = 4  # runs of one robot stand alike: that many of its rests say something new
 STEPS_HZ = 25.0  # a robot turns below 5 Hz: five steps a period
 HEADINGS = 48  # each 7.5 degrees: within SIGMA of the true one
@@ -42,7 +44,7 @@ def carried_log(body, ways, gyro):
     total = 0.0
     matrix = np.linalg.inv(gyro)
     for before, after, steps in ways:
-        turn = traces.chained(_rotation(steps @ matrix.T))[-1]
+        turn = traces.chained(rotations(steps @ matrix.T))[-1]
         total += closeness(body[after], turn.T @ body[before])
     return float(total)
 
@@ -55,16 +57,16 @@ def world_log(body, ways):
     best = []
     for psi in np.linspace(0.0, 2.0 * np.pi, HEADINGS, endpoint=False):
         c, s = np.cos(psi), np.sin(psi)
-        attitude = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]) @ traces._between(body[0], z)
+        attitude = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]) @ rotation_between(body[0], z)
         total = 0.0
         for _, after, steps in ways:
-            turns = _rotation(steps)
+            turns = rotations(steps)
             whole = np.eye(3)
             for one in turns:
                 whole = one @ whole
             attitude = whole @ attitude
             total += closeness(body[after], attitude[2])
-            attitude = traces._between(attitude @ body[after], z) @ attitude
+            attitude = rotation_between(attitude @ body[after], z) @ attitude
         best.append(total)
     top = max(best)
     return float(top + np.log(np.mean(np.exp(np.array(best) - top))))

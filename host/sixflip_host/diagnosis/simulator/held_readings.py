@@ -10,11 +10,13 @@ import numpy as np
 
 from . import convention_findings, conventions
 
-WINDOW_ROWS = 40
-MOVING = 8.0  # steps by which a reading has to change over a window to be seen to repeat
-LONGEST = 25  # rows that a reading is looked for to be held under noise
-LEAST = 1.5  # rows from which on a reading is held at all
-SLOWER = 0.8  # of the real log's own rate of new readings
+WINDOW_ROWS = 40  # over which it is told whether a sensor moves: more than LONGEST
+# Eighths of a step that a reading has to change by, a row on average over a window: with less, two
+# rows of a moving sensor are often alike without being held.
+MOVING = 8.0
+LONGEST = 25  # rows that a reading is looked for to be held under noise: 4 Hz at 100 rows a second
+LEAST = 1.5  # rows from which on a reading is held at all: half of the rows say nothing new
+SLOWER = 0.8  # of the real log's own rate of new readings: oscillators differ by 2 % (ITG-3205)
 
 
 @dataclass(frozen=True)

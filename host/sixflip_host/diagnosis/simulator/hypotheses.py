@@ -15,20 +15,20 @@ import numpy as np
 SHAPE = 0.04
 BIAS = {"accel": 0.8, "gyro": 0.35}
 FREE = 0.3  # of the nameless one's coefficients: a third of a signal where it should not be
-LEVER_M = 0.1
-DELAY_S = 0.05
+LEVER_M = 0.1  # m: a sensor sits somewhere in a robot of some tens of centimetres
+DELAY_S = 0.05  # s: GAP has 1 to 19 ms of chips; logs made elsewhere had 40 to 80 ms
 SMOOTH_S2 = 2e-4  # half the square of a pole of 8 Hz
 DEAD = 0.1  # of the other channels' gain: below it a channel does not answer
 # Steps of physics in one of the sensor, or the reverse, and how far a factor may be off.
 TIMES = (0.05, 0.1, 0.2, 0.25, 0.33, 0.5, 2.0, 3.0, 4.0, 5.0, 10.0, 20.0)
-TIMES_SPREAD = 0.1
+TIMES_SPREAD = 0.1  # relative standard deviation of each
 # What a real part does of itself, at three times the size that datasheets give: MPU-6050 PS rev
 # 3.4, tables 6.1 and 6.2 (35 mg and 20 deg/s over 60 degC, 0.5 % and 0.2 % nonlinearity, 0.1
 # deg/s/g). m/s2 and rad/s for each unit of the column.
 OWN = {"accel": {"celsius": 0.03, "fading": 0.3, "line": 0.15, "pairs": 0.15, "force": 0.0},
        "gyro": {"celsius": 0.017, "fading": 0.017, "line": 0.017, "pairs": 0.006,
                 "force": 0.006}}
-FADES_S = (30.0, 120.0)
+FADES_S = (30.0, 120.0)  # time constants of what fades: of a minute's log, and of warming up
 SIGNED = [np.eye(3)[list(p)] * np.array(s)[:, None]
           for p in permutations(range(3)) for s in product((1.0, -1.0), repeat=3)]
 DEG = 180.0 / np.pi
@@ -36,11 +36,10 @@ DEG = 180.0 / np.pi
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """name; signal (n, 3); columns (n, 3, k) with prior
-    sizes mean (k,) and sd (k,); heading: S is a turn about the vertical; units: factors that are
-    tried; free (n, f): further columns of each channel with prior FREE; bias_sd; copies: the
-    first so many triples of free, and (scaled) the first of columns, carry the signal's noise;
-    shape_sd (3, 3): of E, None for SHAPE."""
+    """name ("": the nameless one); signal (n, 3); columns (n, 3, k) with prior sizes mean (k,) and
+    sd (k,); heading: S is a turn about the vertical; free (n, f): further columns of each channel
+    with prior FREE; bias_sd; copies: the first so many triples of free, and (scaled) the first of
+    columns, carry the signal's noise; shape_sd (3, 3): of E, None for SHAPE."""
 
     name: str
     signal: np.ndarray
@@ -56,6 +55,7 @@ class Hypothesis:
 
 
 def none(n):
+    """No columns (n, 3, 0) beside the signal, with no priors."""
     return np.zeros((n, 3, 0)), np.zeros(0), np.zeros(0)
 
 
@@ -72,8 +72,7 @@ def accelerometer(force, motion, g):
         Hypothesis("no_gravity", moved, *none(n)),
         Hypothesis("gravity_sign", moved - up, *none(n)),
         Hypothesis("gravity_after_rotation", moved, *none(n), bias_sd=g),
-        Hypothesis("world_frame_forces", world, *none(n),
-                   heading=True),
+        Hypothesis("world_frame_forces", world, *none(n), heading=True),
         Hypothesis("no_centripetal_term", force, transport, np.ones(1), np.full(1, 0.1)),
         Hypothesis("no_centripetal_term", force, -spin, *arm),
         Hypothesis("lever_arm_missing", force, -lever, *arm),
@@ -97,6 +96,7 @@ def gyro(rate, motion, force, g):
 
 
 def nameless(signal, everything, copies):
+    """The Hypothesis without a name: the reading with everything (n, f) beside it."""
     return Hypothesis("", signal, *none(len(signal)), free=everything, copies=copies)
 
 

@@ -6,11 +6,16 @@ from .. import odds
 from . import convention_findings, conventions, single_log
 from .parameters import DEG, MG, compared
 
-SETTING = 0.2  # how far a noise that was set by hand may be off, natural logarithm
+# How far a noise that was set by hand may be off, natural logarithm: whoever reads a density off a
+# data sheet, typical for the part's, is taken to be right to a fifth.
+SETTING = 0.2
 ANY = 2.0  # natural logarithm, of a noise that was set to anything: a factor of seven
-LIKELY = 0.95  # probability from which on a noise is said to be the density's number
-COARSE = 1.5  # times its noise: a step in which noise is not seen any more
-DROWNED = 0.3  # of a step: noise below it does not show
+# Probability from which on a noise is said to be the density's number. Less than elsewhere
+# (conventions.CERTAIN), since it is said only where the densities differ anyhow.
+LIKELY = 0.95
+# Times its noise, a step in which noise is not told any more: the differences of neighbouring
+# samples are then mostly 0 or a whole step. Noise below DROWNED of a step hardly ever crosses one.
+COARSE, DROWNED = 1.5, 0.3
 
 
 def noises(real, sim):

@@ -4,26 +4,26 @@ between two rests takes gravity before to gravity after [Tedaldi et al., ICRA 20
 Maximum a posteriori with priors of datasheet size, so that a log with two rests is answered as
 honestly as one with twenty: what it cannot see keeps its prior's interval.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...capture.attitude import _rotation
+from ...capture.attitude import rotations
 from . import traces
 from .hypotheses import BIAS, SHAPE
 
-ROUNDS = 8
+ROUNDS = 8  # Gauss-Newton steps: after five the next change a matrix by 1e-9
 CARRY_RAD = np.radians(0.3)  # of a placement's tilt by handling, and of the attitude carried
 FREEDOM = 4.0  # of Student's t [Lange et al., J. Am. Stat. Assoc. 84 (1989), 881]
 MEDIAN_OF_TWO = np.log(2.0)  # of half the sum of two squares of unit variance
-NORM = 0.005  # m/s2: how well |force| repeats between rests, flicker included
+NORM = 0.005  # m/s2: how well |force| repeats between rests, 0.5 mg with flicker and rounding
 
 
 @dataclass(frozen=True)
 class OwnSensor:
     """true force = accel (force - bias), accel (3, 3) symmetric (its turn cannot be seen); true
     rate = gyro (rate - bias at rest); sigmas of accel (3, 3), bias (3,), gyro (3, 3); gyro_bias
-    (3,) rad/s with its sigma; rests; seen: whether rests lie all round."""
+    (3,) rad/s with its sigma; rests: how many there were."""
 
     accel: np.ndarray
     bias: np.ndarray
@@ -37,7 +37,6 @@ class OwnSensor:
 
     def applied(self, trace):
         """The Trace as this sensor's true force and rate."""
-        from dataclasses import replace
         line = traces.rest_line(trace, trace.rate)
         return replace(trace, force=(trace.force - self.bias) @ self.accel.T,
                        rate=(trace.rate - line) @ self.gyro.T)
@@ -98,6 +97,7 @@ def by_norm(means, g):
 
 
 def matrix_of(p):
+    """((3, 3) symmetric matrix, (3,) bias) of nine parameters, zero for a sensor without error."""
     out = np.eye(3)
     for value, (i, j) in zip(p, SYMMETRIC):
         out[i, j] += value
@@ -126,7 +126,7 @@ def by_carry(trace, rate, ups, tilt):
             true = rate[first:last + 1] @ matrix.T
             dt = np.diff(trace.t[first:last + 1])[:, None]
             middle = 0.5 * (true[1:] + true[:-1])
-            turns = traces.chained(np.concatenate([np.eye(3)[None], _rotation(middle * dt)]))
+            turns = traces.chained(np.concatenate([np.eye(3)[None], rotations(middle * dt)]))
             raw = 0.5 * (rate[first + 1:last + 1] + rate[first:last]) * dt
             # d(turn) = sum over samples of R(t) dM w dt, in the frame of the start
             spread = np.einsum("nij,nk->ijk", turns[:-1], raw).reshape(3, 9)
@@ -159,6 +159,6 @@ def astray(trace, rate, up, k):
     for every in (1, 2):
         t, w = trace.t[first:last + 1:every], rate[first:last + 1:every]
         steps = 0.5 * (w[1:] + w[:-1]) * np.diff(t)[:, None]
-        ends.append(traces.chained(np.concatenate([np.eye(3)[None], _rotation(steps)]))[-1].T
+        ends.append(traces.chained(np.concatenate([np.eye(3)[None], rotations(steps)]))[-1].T
                     @ up)
     return float(np.linalg.norm(ends[0] - ends[1]))

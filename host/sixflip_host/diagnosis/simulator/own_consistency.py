@@ -14,22 +14,24 @@ from . import convention_findings, conventions, traces
 from . import gravity_directions as directions
 from .hypotheses import DEG, SIGNED
 
-NORM_SIGMA = 0.12  # of |force| / g at rest: bias and scale
+NORM_SIGMA = 0.12  # of |force| / g at rest: 80 mg of offset, 3 % of scale [MPU-6000 PS table 6.2]
 RATIO_SIGMA = 1.0  # how alike two runs are in the size of their turn rates, natural logarithm
-TURNED = 0.3  # rad: less than that says nothing on where gravity should have gone
+# rad that a move has to turn to say where gravity should have gone: four times the error of a
+# direction (gravity_directions.SIGMA).
+TURNED = 0.3
+POSSIBLE = 0.002  # probability from which on a name is one of those that it may be
 MOVES = 10.0  # times its noise at rest: a gyro that turns at all
 
 
 @dataclass(frozen=True)
 class Reading:
-    """A hypothesis on both sensors: accel (3, 3) signed permutation, gyro (3, 3), units, constant
-    (gravity always along one axis of the sensor), world (rates along the world's axes)."""
+    """A hypothesis on both sensors: accel and gyro, signed permutations (3, 3), the gyro's unit,
+    constant (gravity always along one axis of the sensor), world (rates along the world's
+    axes)."""
 
     accel: np.ndarray
     gyro: np.ndarray
-    accel_unit: float = 1.0
     gyro_unit: float = 1.0
-    none: bool = False
     constant: bool = False
     world: bool = False
 
@@ -137,68 +139,73 @@ def unit_by_size(real, sim):
 
 
 def gyro_unit(unit, probability, nats):
+    """The Convention of a gyro that reads in another unit."""
     return convention_findings.finding(
         "gyro_unit", "gyro", probability, nats, "multiply by %.5g: %s" % (
             1.0 / unit, convention_findings.unit_words("gyro", unit)),
         value={"factor": unit}, unit="1")
 
 
-def judged(tried):
-    """Conventions of the most probable Reading."""
-    def labels(r):
-        out = []
-        eye = np.eye(3)
-        if r.constant:
-            return ["gravity_after_rotation"]
-        if r.world:
-            out.append("world_frame_rates")
-        same = np.array_equal(r.accel, r.gyro) and not np.array_equal(r.accel, eye)
-        if same:
-            out.append("both_axes")
-        else:
-            if np.array_equal(r.accel, -eye):
-                out.append("gravity_sign")
-            elif not np.array_equal(r.accel, eye):
-                out.append("accel_axes")
-            if not np.array_equal(r.gyro, eye):
-                out.append("gyro_axes")
-        if r.gyro_unit != 1.0:
-            out.append("gyro_unit")
-        return out
+def names_of(reading):
+    """What a Reading says the simulator does other than a sensor, by name: [] is healthy."""
+    eye = np.eye(3)
+    if reading.constant:
+        return ["gravity_after_rotation"]
+    out = ["world_frame_rates"] if reading.world else []
+    if np.array_equal(reading.accel, reading.gyro) and not np.array_equal(reading.accel, eye):
+        out.append("both_axes")
+    else:
+        if np.array_equal(reading.accel, -eye):
+            out.append("gravity_sign")
+        elif not np.array_equal(reading.accel, eye):
+            out.append("accel_axes")
+        if not np.array_equal(reading.gyro, eye):
+            out.append("gyro_axes")
+    if reading.gyro_unit != 1.0:
+        out.append("gyro_unit")
+    return out
 
-    logs = []
-    for reading, log in tried:
-        names = labels(reading)
-        prior = sum(np.log(conventions.PRIOR_EACH / (47.0 if n.endswith("_axes") else 1.0))
-                    for n in names) if names else np.log(conventions.PRIOR_HEALTHY)
-        logs.append(log + prior)
-    logs = np.array(logs)
+
+def log_prior(names):
+    """Log probability of what a simulator does, by names, before looking; axes may be any of the
+    47 signed permutations that are none."""
+    if not names:
+        return np.log(conventions.PRIOR_HEALTHY)
+    return sum(np.log(conventions.PRIOR_EACH / (47.0 if name.endswith("_axes") else 1.0))
+               for name in names)
+
+
+def judged(tried):
+    """[Convention] of the most probable Reading; tried: [(Reading, log likelihood), ...]."""
+    named = [names_of(reading) for reading, _ in tried]
+    logs = np.array([log + log_prior(names) for (_, log), names in zip(tried, named)])
     weights = np.exp(logs - logs.max())
     weights /= weights.sum()
-    best = tried[int(logs.argmax())][0]
-    healthy = max(v for (r, _), v in zip(tried, logs) if not labels(r))
-    nats = float(logs.max() - healthy)
-    out, sure = [], []
-    for name in labels(best):
-        probability = float(sum(w for (r, _), w in zip(tried, weights) if name in labels(r)))
-        if probability < conventions.CERTAIN:
-            continue
-        sure.append(name)
-        sensor = "gyro" if name in ("world_frame_rates", "gyro_axes") else \
-            "device" if name == "both_axes" else "accel"
-        if name == "gyro_unit":
-            out.append(gyro_unit(best.gyro_unit, probability, nats))
-        elif name.endswith("_axes"):
-            axes = best.gyro if name == "gyro_axes" else best.accel
-            value = {a: convention_findings.signed(row) for a, row in zip("xyz", axes)}
-            out.append(convention_findings.finding(
-                name, sensor, probability, nats, "its axes are the sensor's so: " + ", ".join(
-                    "%s = %s" % pair for pair in value.items()), value=value, unit="axis"))
-        else:
-            out.append(convention_findings.finding(name, sensor, probability, nats))
-    quiet = float(sum(w for (r, _), w in zip(tried, weights) if not labels(r)))
-    if labels(best) and not sure and quiet < 1.0 - conventions.CERTAIN:
-        candidates = sorted({n for (r, _), w in zip(tried, weights) if w > 0.002
-                             for n in labels(r)})
+    top = int(logs.argmax())
+    best = tried[top][0]
+    nats = float(logs.max() - max(v for names, v in zip(named, logs) if not names))
+    out = []
+    for name in named[top]:
+        probability = float(sum(w for names, w in zip(named, weights) if name in names))
+        if probability >= conventions.CERTAIN:
+            out.append(found_as(name, best, probability, nats))
+    quiet = float(sum(w for names, w in zip(named, weights) if not names))
+    if named[top] and not out and quiet < 1.0 - conventions.CERTAIN:
+        candidates = sorted({n for names, w in zip(named, weights) if w > POSSIBLE for n in names})
         out.append(convention_findings.one_of("device", candidates, 1.0 - quiet, nats))
     return out
+
+
+def found_as(name, reading, probability, nats):
+    """The Convention of a name that a Reading has."""
+    if name == "gyro_unit":
+        return gyro_unit(reading.gyro_unit, probability, nats)
+    sensor = "gyro" if name in ("world_frame_rates", "gyro_axes") else \
+        "device" if name == "both_axes" else "accel"
+    if not name.endswith("_axes"):
+        return convention_findings.finding(name, sensor, probability, nats)
+    axes = reading.gyro if name == "gyro_axes" else reading.accel
+    value = {a: convention_findings.signed(row) for a, row in zip("xyz", axes)}
+    return convention_findings.finding(
+        name, sensor, probability, nats, "its axes are the sensor's so: " + ", ".join(
+            "%s = %s" % pair for pair in value.items()), value=value, unit="axis")

@@ -1,5 +1,6 @@
-"""Where a log's sensor sits and how late it is, by the log's own motion: force less gravity as the
-gyro carries it, against the turning. What the hand or the wheels do besides is noise.
+"""Where a log's sensor sits and how late it is, by the log's own motion: what the force is beside
+the gravity that the gyro carries along, against how the sensor turns. What the hand or the wheels
+do besides is noise.
 """
 from dataclasses import dataclass
 
@@ -11,9 +12,11 @@ from .pairing import GRID_HZ, increasing
 
 ARM_M = 0.3  # prior of a lever arm in a log: of the sensor, and of the point it is turned about
 BAND_HZ = align_by.BAND_HZ
-FEWEST_MOVES = 8
-CHI_OF_THREE = 10.0  # more than APART ** 2 by which chi-squared of three is as rare
-APART = 4.5  # standard errors between two logs from which on they differ
+FEWEST_MOVES = 8  # of which the jackknife takes one after the other away: it errs by a quarter
+# Standard errors between two logs from which on they differ: 1 of 150,000 by chance (normal),
+# since the errors of eight moves have heavier tails. Chi-squared of three numbers is as rare 6.5
+# above the square of that; the rest is for the same tails.
+APART, CHI_OF_THREE = 4.5, 10.0
 
 
 @dataclass(frozen=True)
@@ -126,6 +129,7 @@ def compared(real, sim, row_s):
 
 
 def chi_of(x, covariance):
+    """Chi-squared of x (n,) being zero, by its covariance (n, n)."""
     return float(x @ np.linalg.solve(covariance, x))
 
 

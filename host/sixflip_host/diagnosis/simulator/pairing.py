@@ -1,8 +1,8 @@
-"""Both logs of one motion on one grid, in the band in which they agree on anything at all.
+"""Both logs of one motion on one grid of times, in the band of frequencies in which they agree.
 
-Contacts, wheels and a hand's tremor are not repeated by a simulator; and what one log has alone
-is noise in the other's prediction. The band ends where the simulator's output is no longer
-coherent with anything that the real log says.
+Contacts, wheels and a hand's tremor are not repeated by a simulator, and what only one log has is
+noise in the other's prediction. The band ends where the simulator's output is no longer coherent
+with anything that the real log says.
 """
 from dataclasses import dataclass
 
@@ -13,12 +13,14 @@ from scipy.signal import coherence
 from . import alignment as align_by
 from .traces import Motion
 
-GRID_HZ = 50.0
-EDGE_S = 0.4
-COHERENT = 0.9  # of a frequency that is used
-BANDS = (6.0, 4.0, 2.5, 1.6, 1.0, 0.7)  # Hz
-SEGMENT_S = 6.0
-ONE_MOTION = 0.8  # of the variance that follows from the other log
+GRID_HZ = 50.0  # eight points in a period of the widest band
+EDGE_S = 0.4  # left out at both ends, where the low-pass (alignment.smooth) has one side only
+COHERENT = 0.9  # of a frequency that is used: noise is then a tenth of the power there at most
+BANDS = (align_by.BAND_HZ, 4.0, 2.5, 1.6, 1.0, 0.7)  # Hz, each two thirds of the one before
+SEGMENT_S = 6.0  # of which the coherence is a mean: four periods of the narrowest band
+# Share of the variance that follows from the other log in one motion: two runs of one schedule
+# agree in when they turn, and not about which axes.
+ONE_MOTION = 0.8
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,10 @@ DIFFERS = 4.0
 MG, DEG = 1000.0 / STANDARD_G, 180.0 / np.pi
 COARSER = 1.5  # times the other's step: registers differ by factors of two
 RANGE_APART = 1.01  # times the other's: a range that differs; full scales are twofold apart
+# An engine whose rates are half a physics step older than its forces (MuJoCo, Featherstone's
+# semi-implicit step) differs from itself by as much at two step sizes of 1 and 2 ms.
+LEAST_DELAY_MS = 0.5
+LEAST_SMOOTH_MS2 = 3.0
 
 
 @dataclass(frozen=True)
@@ -195,6 +199,7 @@ def with_how(parameter, how):
 
 
 def later(ms):
+    """What to do about a delay between the sensors: gyro after accelerometer, or the reverse."""
     return "output the %s %.3g ms later" % ("gyro" if ms > 0 else "accelerometer", abs(ms))
 
 
@@ -208,13 +213,8 @@ def smoother(ms2):
 
 
 def faster(percent):
+    """What to do about a clock that runs this much faster than the real one."""
     return "multiply its times by %.6g" % (1.0 - percent / 100.0)
-
-
-# An engine whose rates are half a physics step older than its forces (MuJoCo, Featherstone's
-# semi-implicit step) differs from itself by as much at two step sizes of 1 and 2 ms.
-LEAST_DELAY_MS = 0.5
-LEAST_SMOOTH_MS2 = 3.0
 
 
 def bias_sign(parameters):

@@ -27,6 +27,7 @@ def main(comparisons):
 
 
 def log(x):
+    """One log of the simulator: against which real one, whether of one motion, clock, remarks."""
     a = x.alignment
     return {"log": x.log, "against": x.against, "same_motion": a.same,
             "correlation": digits(a.correlation),
@@ -37,6 +38,7 @@ def log(x):
 
 
 def convention(c, name):
+    """A Convention found in the log of this name."""
     return {"name": c.name, "sensor": c.sensor, "class": list(c.one_of or (c.name,)),
             "probability": digits(c.probability), "score_nats": digits(min(c.nats, 1e6)),
             "value": {k: v if isinstance(v, str) else digits(v) for k, v in c.value.items()},
@@ -75,10 +77,12 @@ def whole(parameter):
 
 
 def span(interval):
+    """[low, high] of an interval, or None."""
     return None if interval is None else [digits(x) for x in interval]
 
 
 def rounded(values):
+    """{key: number} to four digits."""
     return {k: digits(v) for k, v in values.items()}
 
 

@@ -4,16 +4,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
-SUBMEAN_S = 0.25  # noise density is taken from means this long: a filter's colour is in it
+from ...experiment.block_measures import SUBMEAN_S
+
 # Of a standard normal: the median of its square, and the standard error of a deviation that is
 # taken from it, times the root of the number [Rousseeuw, Croux, J. Am. Stat. Assoc. 88 (1993)].
 MEDIAN_OF_SQUARE, MEDIAN_SIGMA = 0.4549, 1.17
 SETTLING = 4.0  # times the usual power: five means of one noise differ by as much in 0.3 %
+# Share of the liveliest channel's standard deviation: a channel that says nothing varies by less
+# than DEAD, where the real one varies by more than ALIVE, five times as much.
+DEAD, ALIVE = 0.03, 0.15
+# Times its power at rest: on its way a channel that says nothing has that (SAME: the power of a
+# hundred independent samples errs by 14 %), and what moves a robot moves its other channels by
+# MORE.
+SAME, MORE = 1.3, 10.0
 
 
 @dataclass(frozen=True)
 class Noise:
-    """Of each axis (3,): density per root Hz, its relative standard error; per_sample."""
+    """Of each axis (3,): density (unit per root Hz) with its relative standard error, and
+    per_sample, the standard deviation of a sample."""
 
     density: np.ndarray
     relative_sigma: float
@@ -25,12 +34,6 @@ def live(trace):
     out = {"accel": np.ptp(trace.force, axis=0) > 0}
     out["gyro"] = np.zeros(3, bool) if trace.rate is None else np.ptp(trace.rate, axis=0) > 0
     return out
-
-
-DEAD, ALIVE = 0.03, 0.15  # of the liveliest channel: what a channel that says nothing varies by
-# Of its power at rest: on its way a channel that says nothing has that and no more, and what moves
-# a robot moves its other channels.
-SAME, MORE = 1.3, 10.0
 
 
 def dead(real, sim):

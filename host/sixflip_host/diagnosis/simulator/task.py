@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-LEAST_S = 5.0
 SETTLE_S = 3.0  # the filter's own start-up ramp
 
 
@@ -86,6 +85,7 @@ def of_own(real, sim, own_real, own_sim):
 
 
 def made(against, results):
+    """Task of ((tilt, heading) before, after), degrees."""
     (tilt, heading), (tilt_after, heading_after) = results
     return Task("imufusion", against,
                 {"before": abs(float(tilt)), "after": abs(float(tilt_after))},

@@ -11,13 +11,15 @@ from sixflip.poses import faces
 
 from ...capture import rests as rest_finder
 from ...capture import rests_by_variance
-from ...capture.attitude import _between, _rotation
+from ...capture.attitude import rotation_between, rotations
+from ...experiment.block_measures import EDGE_S
 
-SHORTEST_REST_S = 0.5
-WINDOW_S = 0.3
-LOUDER, SLOW_DPS = 2.5, 1.5  # of the quietest tenth; a turn slower than any robot's
+SHORTEST_REST_S = 0.5  # of a robot that stops between two moves
+WINDOW_S = 0.3  # over which a log is still: shorter than such a stop with its edges
+# Times the noise of the quietest tenth up to which a log is still; deg/s of a turn that is slower
+# than any robot's, and more than a gyro's bias changes by within a log (20 deg/s over 60 degC).
+LOUDER, SLOW_DPS = 2.5, 1.5
 COUNT_VARIANCE = 0.25  # counts: a channel that toggles between two of them
-EDGE_S = 0.1  # of a rest that is left out at both ends: a label is never exact
 DPS = np.pi / 180.0
 
 
@@ -164,12 +166,12 @@ def motion(trace):
     ups = [_unit(v) for v in trace.rest_means(trace.force)]
     n = len(trace.t)
     middle = 0.5 * (rate[1:] + rate[:-1]) * np.diff(trace.t)[:, None]
-    steps = np.concatenate([np.eye(3)[None], _rotation(middle)])
+    steps = np.concatenate([np.eye(3)[None], rotations(middle)])
     turn = np.empty((n, 3, 3))
     carried = []
     first, end = trace.rests[0]
     # The first rest says where the world's vertical is; before it time runs backwards.
-    start = _between(ups[0], np.array([0.0, 0.0, 1.0]))
+    start = rotation_between(ups[0], np.array([0.0, 0.0, 1.0]))
     turn[first:end] = start
     if first:
         back = chained(np.concatenate([np.eye(3)[None], np.swapaxes(
@@ -203,7 +205,7 @@ def levelled(way, up, steps):
     angle = np.arctan2(size, there[2])
     path = np.concatenate([[0.0], np.cumsum(np.linalg.norm(steps, axis=1))])
     share = path / path[-1] if path[-1] > 0 else np.linspace(0, 1, len(way))
-    return _rotation(np.outer(share, off / size * angle)) @ way, float(np.degrees(angle))
+    return rotations(np.outer(share, off / size * angle)) @ way, float(np.degrees(angle))
 
 
 def chained(steps):

@@ -1,0 +1,208 @@
+"""One capture as a value: its blocks (parts of the rests) with what was measured of each.
+
+The unit of replication is the placement, never the sample. A placement is cut into a few blocks so
+that what fades within it (creep) or wanders (flicker) shows between them. A part of a session, or
+one without some of its rests, is another Session: nothing is changed in place.
+"""
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from sixflip.poses import faces
+from sixflip_sim.effects.moment import Moment
+
+from ..capture import clock
+from ..capture.capture_file import Capture
+from . import block_measures, noise_arrays, thermometer
+
+# s, step at which hysteresis follows the way: a hand takes a second and more from pose to pose, so
+# the reading changes by about the narrowest width (terms.PLAY_G) within it, at most.
+PLAY_S = 0.1
+# Share of bad samples up to which a rest is kept: two of a protocol's rest of 500. What they add
+# to its mean is then at most that share of what is wrong with them.
+MOST_BAD = 0.005
+FAR_OFF_DEG = 25.0  # a label that gravity contradicts: a table does not lean by half of that
+USUAL_C = 25.0  # temperature where no thermometer tells it: of the effects' own reference
+OF_BLOCKS = ("placement", "code", "first", "end", "face", "t", "since", "seconds", "accel", "gyro",
+             "temperature", "temperature_rate", "vibration")
+
+
+class ReadOnlyArrays:
+    """Base of a frozen dataclass whose arrays are made read-only as it is made: what one of its
+    readers wrote, all others would read."""
+
+    def __post_init__(self):
+        for value in self.__dict__.values():
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+
+
+@dataclass(frozen=True, eq=False)
+class Session(ReadOnlyArrays):
+    """One capture as n blocks; arrays are read only.
+
+    name; capture, labelled; rate (Hz); t_s (N,) s of every sample; timeless: the timestamps
+    stand still; labelled: by whoever captured it; runs: tuple of rests.Run, the placements;
+    thermometer or None. Of the blocks (n,): placement (number of its run), code, face (-1:
+    leaning), first, end (samples), t and since (s, since the capture's and the rest's begin),
+    seconds; accel (n, 3) mg and gyro (n, 3) deg/s as the chip gave them, None of a
+    sensor that there is not; temperature
+    and temperature_rate or None; vibration mg rms above the quietest. Of the sensor (3,):
+    noise_accel, noise_gyro of a mean over one second, mg and deg/s; rounding_accel,
+    rounding_gyro of the mean of a rest, by steps of the counts; None without a gyro.
+    thermal, shaken: what sessions that are judged together agreed to look for, see terms.
+    """
+
+    name: str
+    capture: Capture
+    rate: float
+    t_s: np.ndarray
+    timeless: bool
+    labelled: bool
+    runs: tuple
+    thermometer: thermometer.Thermometer | None
+    placement: np.ndarray
+    code: np.ndarray
+    first: np.ndarray
+    end: np.ndarray
+    face: np.ndarray
+    t: np.ndarray
+    since: np.ndarray
+    seconds: np.ndarray
+    accel: np.ndarray
+    gyro: np.ndarray | None
+    temperature: np.ndarray | None
+    temperature_rate: np.ndarray | None
+    vibration: np.ndarray
+    noise_accel: np.ndarray | None
+    noise_gyro: np.ndarray | None
+    rounding_accel: np.ndarray | None
+    rounding_gyro: np.ndarray | None
+    thermal: bool = False
+    shaken: bool = False
+
+    @property
+    def n(self):
+        return len(self.placement)
+
+    @property
+    def leaning(self):
+        return self.face < 0
+
+    def placements(self):
+        return len(self.runs)
+
+    def part(self, placements):
+        """The same session with the blocks of some of its placements only."""
+        keep = np.isin(self.placement, list(placements))
+        values = {name: getattr(self, name) for name in OF_BLOCKS}
+        return replace(self, **{name: value if value is None else value[keep]
+                                for name, value in values.items()})
+
+    def rest_means(self, values):
+        """(placements, k): values (n, k) of the blocks, averaged over each placement."""
+        weight = np.bincount(self.placement, self.seconds, self.placements())
+        sums = [np.bincount(self.placement, self.seconds * column, self.placements())
+                for column in values.T]
+        return np.stack(sums, axis=1) / weight[:, None]
+
+    def without_poses(self, labels):
+        """The same session without the placements with these labels."""
+        codes = {faces.pose_code(label) for label in labels}
+        return self._of_runs([run for run in self.runs if run.code not in codes])
+
+    @cached_property
+    def period_s(self):
+        """Seconds between two samples, by the clock where it runs."""
+        measured = None if self.timeless else clock.of(self.capture)
+        return 1.0 / (measured.rate_hz if measured else self.rate)
+
+    def without_samples(self, bad):
+        """The same session without the placements with more than a few bad samples; bad (N,)."""
+        return self._of_runs([run for run in self.runs
+                              if bad[run.first:run.end].mean() <= MOST_BAD])
+
+    def _of_runs(self, runs):
+        return replace(self, runs=tuple(runs), **block_measures.of_runs(
+            self.capture, tuple(runs), self.rate, self.t_s, self.labelled, self.thermometer))
+
+    def of_capture(self, capture):
+        """The same rests of another capture of the same samples, measured anew."""
+        return replace(self, capture=capture)._of_runs(self.runs)
+
+    def reading(self, capture):
+        """The same blocks and noise with the means of another capture of the same samples."""
+        accel, gyro = block_measures.readings(capture, self.first, self.end)
+        return replace(self, capture=capture, accel=accel, gyro=gyro)
+
+    def with_gyro_axes(self, read):
+        """The same session with its gyro's means turned by a signed permutation (3, 3)."""
+        return replace(self, gyro=self.gyro @ read, noise_gyro=self.noise_gyro @ np.abs(read),
+                       rounding_gyro=self.rounding_gyro @ np.abs(read))
+
+    def before(self, up):
+        """(n, 3): up of the placement before each block's, its own at the first."""
+        index = np.maximum(self.placement - 1, 0)
+        return up[index]
+
+    def remembered(self, up, tau_s):
+        """(n, 3): where something that follows the attitude with a time constant stands when
+        each block's placement begins; settled at the first."""
+        starts = np.array([self.t_s[run[1]] for run in self.runs])
+        return fading(starts, up, tau_s)[self.placement]
+
+    def played(self, widths_g):
+        """[(n, 3)] a width: how far a play operator of that width (g) lags behind the specific
+        force of each axis, over the whole way that the box was taken, -1 to 1 [Krejci,
+        Hysteresis, Convexity and Dissipation in Hyperbolic Equations (1996), chapter II]."""
+        step = max(1, int(PLAY_S * self.rate))
+        counts = self.capture.accel[:len(self.capture.accel) // step * step]
+        f = counts.reshape(-1, step, 3).mean(axis=1) / self.capture.meta["accel_lsb_per_g"]
+        width = np.array(widths_g)[:, None]
+        state, behind = np.repeat(f[:1], len(widths_g), axis=0), np.empty(
+            (len(f), len(widths_g), 3))
+        for k, now in enumerate(f):
+            state = np.minimum(np.maximum(state, now - width), now + width)
+            behind[k] = (state - now) / width
+        middle = np.minimum((self.first + self.end) // 2 // step, len(f) - 1)
+        return [behind[middle, k] for k in range(len(widths_g))]
+
+    def moment(self, up, number=0):
+        """moment.Moment of all blocks; up (placements, 3): unit vectors against gravity."""
+        m = Moment(np.exp, np.sin, np.floor, noise_arrays.gauss)
+        m.t, m.since_move, m.face = self.t, self.since, self.face
+        m.temperature = np.full(self.n, USUAL_C) if self.temperature is None else self.temperature
+        m.temperature_rate = np.zeros(self.n) if self.temperature is None \
+            else self.temperature_rate
+        m.f = m.up = tuple(up[self.placement].T)
+        m.before = tuple(self.before(up).T)
+        still = np.zeros(self.n)
+        m.w = m.w_rate = (still, still, still)
+        m.session = np.full(self.n, number)
+        m.vibration_mg = self.vibration
+        return m
+
+    def contradicted(self):
+        """Names of labels that gravity contradicts: [(label, degrees off), ...]."""
+        found = {}
+        for place, (code, _, _) in enumerate(self.runs):
+            face, mine = faces.face_of_code(code), self.placement == place
+            if face < 0 or not mine.any():
+                continue
+            mean = self.accel[mine].mean(axis=0)
+            cosine = faces.SIGN[face] * mean[faces.AXIS[face]] / max(np.linalg.norm(mean), 1e-9)
+            off = float(np.degrees(np.arccos(np.clip(cosine, -1, 1))))
+            if off > FAR_OFF_DEG:
+                found[faces.pose_name(code)] = off
+        return sorted(found.items())
+
+
+def fading(starts, up, tau_s):
+    """(placements, 3): where something that follows the attitude up (placements, 3) with a time
+    constant stands when each placement begins, starts (placements,) s; settled at the first."""
+    state = np.array(up[:len(starts)], float)
+    for k in range(1, len(starts)):
+        fade = np.exp(-(starts[k] - starts[k - 1]) / tau_s)
+        state[k] = up[k - 1] + (state[k - 1] - up[k - 1]) * fade
+    return state
