@@ -171,9 +171,21 @@ class RestModel:
         if self.settings.certified:
             designs = [d for d in designs if d.effect != "box_tilt"]
         rows = nominal_rows.rows(self.kind, part, model, certified)
+        rows = self._banded(rows, part)
         return linear_model.unit(self._less_known(rows, designs), designs, wanted,
                                  signature=nominal_rows.signature(part),
                                  within=self._within(part))
+
+    def _banded(self, rows, part):
+        """The rows where what a dead band takes off on either side of 0, known to some counts
+        only, is a nuisance of its axes."""
+        axes = self.conditions.banded.get(self.kind, ()) if self.kind == "accel" else ()
+        if not axes:
+            return rows
+        columns = np.zeros((part.n, 3, len(axes)))
+        for number, axis in enumerate(axes):
+            columns[:, axis, number] = np.sign(np.rint(part.accel[:, axis]))
+        return replace(rows, nuisance=np.hstack([rows.nuisance, columns.reshape(-1, len(axes))]))
 
     def _within(self, part):
         """{(effect, number of its choice): nats}: what the rests say of walks of each width."""

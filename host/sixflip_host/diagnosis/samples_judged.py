@@ -1,14 +1,18 @@
 """The first stage: what registers, clock and spectra say of the samples themselves, with a name
 and without."""
+import copy
 from dataclasses import dataclass
 
 import numpy as np
+
+from sixflip import RAIL
 
 from ..capture import registers
 from . import localisation, odds
 from .detect import (
     axis_order,
     codes,
+    dead_band,
     held_values,
     noise_bursts,
     ringing,
@@ -48,9 +52,10 @@ class SamplesJudged:
     def conditions(self, reference_c):
         """settings.Conditions that hold for the rests of the same captures."""
         coarse = any(f.sensor == "accel" and f.effect in COARSE for f in self.findings)
-        return Conditions(reference_c, coarse, {
-            f.sensor: ["xyz".index(a) for a in f.axes] for f in self.findings
-            if f.effect == "vibration"})
+        def axes(effect):
+            return {f.sensor: ["xyz".index(a) for a in f.axes] for f in self.findings
+                    if f.effect == effect}
+        return Conditions(reference_c, coarse, axes("vibration"), axes("dead_band"))
 
 
 def of(sessions, without=(), damages=()):
@@ -65,6 +70,7 @@ def of(sessions, without=(), damages=()):
         f.sensor for f in findings if f.effect == "dead_band"}
     noisy = leaping | {f.sensor for f in findings if f.effect in NOISY}
     jumpy = {f.sensor for f in findings if f.effect in ("torn_reads", "dead_band")}
+    sessions = [_without_bands(s, findings) for s in sessions]
     without_spikes, wild = noise_bursts.without_spikes(sessions, leaping)
     unsteady = [one for one in [*noise_bursts.found(without_spikes), *wild]
                 if one[0] not in noisy]
@@ -85,6 +91,22 @@ def of(sessions, without=(), damages=()):
                          (*remarks, *(words for _, words, _ in unsteady)))
 
 
+def _without_bands(session, findings):
+    """The session with what a dead band takes off put back on: where no code is missing, all that
+    is read beyond the band is less by it, which bends every axis as no other effect does."""
+    capture = copy.copy(session.capture)
+    for found in (f for f in findings if f.effect == "dead_band"):
+        counts = np.array(getattr(capture, found.sensor))
+        for axis, band in found.value.items():
+            column = counts[:, "xyz".index(axis)].astype(np.int64)
+            if np.abs(column[column != 0]).min(initial=band) < band:
+                counts[:, "xyz".index(axis)] = np.clip(
+                    column + band * np.sign(column), -RAIL - 1, RAIL)
+        setattr(capture, found.sensor, counts)
+    return session.of_capture(capture) if any(
+        f.effect == "dead_band" for f in findings) else session
+
+
 def of_registers(sessions):
     """list of Finding of the registers and the clock over all sessions: steps (common divisor), a
     dead band, torn reads, rails, clipped peaks, repeated and dropped samples, the true rate, axes
@@ -97,9 +119,7 @@ def of_registers(sessions):
         found += _per_axis("quantisation", sensor, [registers.steps(c) for c in columns],
                            [codes.step_nats(c) for c in columns], "counts come in steps",
                            [codes.distinct(c) for c in columns])
-        band = _per_axis("dead_band", sensor, [registers.dead_band(c) for c in columns],
-                         [codes.band_nats(c) for c in columns], "counts near 0 read 0",
-                         [codes.zeros(c) for c in columns])
+        band = _dead_band(sensor, columns)
         found += band + saturation.saturation(sessions, sensor, columns)
         found += torn_reads.finding(sessions, sensor,
                                     ["xyz".index(a) for f in band for a in f.axes])
@@ -119,3 +139,27 @@ def _per_axis(effect, sensor, sizes, nats, words, numbers):
     return [Finding(effect, sensor, ["xyz"[i] for i in axes], value, "counts",
                     sum(total[i] for i in axes), "amplitude", words,
                     {k: (v, v) for k, v in value.items()}, share=1.0, number=number)]
+
+
+def _dead_band(sensor, columns):
+    """[Finding] of readings near 0 that are 0, by the codes that are missing or too frequent; on
+    other axes by how the readings pass through 0."""
+    words = "counts near 0 read 0"
+    found = _per_axis("dead_band", sensor, [registers.dead_band(c) for c in columns],
+                      [codes.band_nats(c) for c in columns], words,
+                      [codes.zeros(c) for c in columns])
+    bands = {axis: dead_band.of_columns([c[:, k] for c in columns])
+             for k, axis in enumerate("xyz")}
+    known = {axis for f in found for axis in f.axes}
+    bands = {axis: band for axis, band in bands.items()
+             if axis not in known and band.counts > 1.0 and present(band.nats)}
+    if not bands:
+        return found
+    value = {axis: round(band.counts) for axis, band in bands.items()}
+    interval = {axis: band.interval for axis, band in bands.items()}
+    score, number = (sum(getattr(b, name) for b in bands.values()) for name in ("nats", "number"))
+    for f in found:
+        value, interval = {**f.value, **value}, {**f.interval, **interval}
+        score, number = score + f.score, number + f.number
+    return [Finding("dead_band", sensor, sorted(value), value, "counts", score, "amplitude", words,
+                    interval, share=1.0, number=number)]

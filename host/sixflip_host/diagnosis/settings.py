@@ -26,9 +26,10 @@ class Settings:
 @dataclass(frozen=True, eq=False)
 class Conditions:
     """reference_c: temperature that slopes are taken about; coarse: registers move what the
-    accelerometer reads near zero; shaken: {sensor: axes (0..2) that a line of the spectrum is
-    on}."""
+    accelerometer reads near zero; shaken, banded: {sensor: axes (0..2) that a line of the spectrum
+    is on, that have a dead band}."""
 
     reference_c: float = 25.0
     coarse: bool = False
     shaken: dict = field(default_factory=dict)
+    banded: dict = field(default_factory=dict)

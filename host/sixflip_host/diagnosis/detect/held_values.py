@@ -3,9 +3,12 @@
 Three axes that do not change from a row to the next may do so by chance: where each of them
 repeats with a chance of its own, all three do with the product of the three. Those chances are
 seen in the rows in which another axis changed, in short stretches of their own, for a sensor at
-rest repeats more often than one that moves. Held values repeat all three at once.
+rest repeats more often than one that moves. Held values repeat all three at once. Single rows
+that were read again are looked for where the sensor moves on before and after them.
 """
 import math
+
+import numpy as np
 
 from .damage import Damage
 from .detection import present
@@ -13,6 +16,7 @@ from .detection import present
 FEWEST = 200  # rows
 STRETCH = 256  # rows
 HELD = 0.05  # share of rows that are held: fewer are single rows, not a rate
+MOVES, QUIET = 4.0, 0.5  # times the step of half of the rows: nearly none at rest
 WORDS = {"accel": "accelerometer", "gyro": "gyro"}
 TIMES = {2: "twice", 3: "three times", 4: "four times"}
 
@@ -27,6 +31,8 @@ def findings(sessions):
         parts = [repeats(c) for c in columns]
         nats, held, rows = (sum(v) for v in zip(*parts))
         share = held / max(rows, 1)
+        if share < HELD:
+            nats, held = (sum(v) for v in zip(*(read_again(c) for c in columns)))
         if not present(nats):
             continue
         if share < HELD:
@@ -44,25 +50,42 @@ def findings(sessions):
     return found
 
 
+def read_again(counts):
+    """(nats of rows that are the row before once more over repeating by chance, how many) of
+    counts (n, 3), among the rows before and after which an axis moves further than noise does."""
+    steps = np.abs(np.diff(counts.astype(np.int64), axis=0))
+    far = (steps > MOVES * np.maximum(np.quantile(steps, QUIET, axis=0), 1.0)).any(axis=1)
+    same = (steps[1:-1] == 0)[far[:-2] & far[2:]]
+    if len(same) < FEWEST:
+        return 0.0, 0.0
+    nats, held = _stretch(same)
+    return nats, held
+
+
 def repeats(counts):
     """(nats of rows being held over repeating by chance, rows held, rows) of counts (n, 3)."""
-    same = counts[1:] == counts[:-1]
+    # All three at 0 is what a dead band reads at rest.
+    same = (counts[1:] == counts[:-1])[counts[1:].any(axis=1)]
     number = len(same) // STRETCH
     nats = held = 0.0
     if not number:
         return 0.0, 0.0, len(same)
     parts = same[:number * STRETCH].reshape(number, STRETCH, 3)
     for part in parts:
-        all_three = int(part.all(axis=1).sum())
-        chance = 1.0
-        for axis in range(3):
-            others = ~part[:, [k for k in range(3) if k != axis]].all(axis=1)
-            chance *= (part[others, axis].sum() + 1.0) / (others.sum() + 1.0)
-        chance = min(max(chance, 1e-4), 1.0 - 1e-4)
-        share = min(max(all_three / STRETCH, 1e-4), 1.0 - 1e-4)
-        if share <= chance:
-            continue
-        nats += all_three * math.log(share / chance) + (STRETCH - all_three) * math.log(
-            (1.0 - share) / (1.0 - chance)) - 0.5 * math.log(STRETCH)
-        held += STRETCH * (share - chance) / (1.0 - chance)
+        more, rows = _stretch(part)
+        nats, held = nats + more, held + rows
     return nats, held, number * STRETCH
+
+
+def _stretch(same):
+    """(nats, rows held) of one stretch: same (n, 3) bool, which axes repeat in a row."""
+    n, all_three, chance = len(same), int(same.all(axis=1).sum()), 1.0
+    for axis in range(3):
+        others = ~same[:, [k for k in range(3) if k != axis]].all(axis=1)
+        chance *= (same[others, axis].sum() + 1.0) / (others.sum() + 1.0)
+    chance, share = (min(max(p, 1e-4), 1.0 - 1e-4) for p in (chance, all_three / n))
+    if share <= chance:
+        return 0.0, 0.0
+    nats = all_three * math.log(share / chance) + (n - all_three) * math.log(
+        (1.0 - share) / (1.0 - chance)) - 0.5 * math.log(n)
+    return nats, n * (share - chance) / (1.0 - chance)

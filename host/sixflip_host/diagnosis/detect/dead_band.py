@@ -1,0 +1,77 @@
+"""A dead band at whose edges readings begin at 0, so that no code is missing: what passes through
+0 stays there for as long as the band takes.
+
+Each time a column goes through 0 its rate before and after says how far it has come, and the
+readings say how far it seems to have come: what is missing is twice the band. Only what moves much
+faster than the noise is asked, and a pause at 0 is no band.
+"""
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...capture.registers import LEAST_NOISE, QUIET, WINDOW
+from ..odds import Z_90
+
+FASTER = 3.0  # than the noise, from a sample to the next: its sign is that of the motion
+LONGEST = 8  # samples at 0 while something passes; more is a pause
+FEWEST = 20  # passages, whose median is known to a fifth of their scatter
+# Standard deviation of a median over that of a mean, and of a normal one over the median of its
+# sizes [Kendall & Stuart, The Advanced Theory of Statistics 1, section 10.10].
+OF_MEDIAN, OF_SIZES = 1.2533, 1.4826
+
+
+@dataclass(frozen=True)
+class Band:
+    """counts: half the width, with its standard error; number of passages it is told from."""
+
+    counts: float
+    error: float
+    number: int
+
+    @property
+    def nats(self):
+        """Log likelihood ratio over no band; one that is less than nothing has none."""
+        return 0.5 * max(self.counts / self.error, 0.0) ** 2 if self.number else 0.0
+
+    @property
+    def interval(self):
+        """(low, high) of 90 %."""
+        return self.counts - Z_90 * self.error, self.counts + Z_90 * self.error
+
+
+NOTHING = Band(0.0, 1.0, 0)
+
+
+def of_columns(columns):
+    """Band of one axis, columns (n,) of counts of all sessions."""
+    missing = np.concatenate([passages(column.astype(np.int64)) for column in columns])
+    if len(missing) < FEWEST:
+        return NOTHING
+    middle = float(np.median(missing))
+    scatter = OF_SIZES * float(np.median(np.abs(missing - middle)))
+    # Readings are whole numbers: a median of them is known to a fraction of one at best.
+    return Band(middle, OF_MEDIAN * max(scatter, 0.5) / np.sqrt(len(missing)), len(missing))
+
+
+def passages(x):
+    """(k,) counts that are missing on each side of 0 at each of the k passages of a column x (n,)
+    through it."""
+    windows = x[:len(x) // WINDOW * WINDOW].reshape(-1, WINDOW)
+    away = windows[(windows != 0).all(axis=1)]
+    noise = float(np.quantile(np.diff(away, axis=1).std(axis=1), QUIET)) / np.sqrt(2.0) if len(
+        away) else 0.0
+    if noise < LEAST_NOISE:  # what has none pauses at 0 exactly
+        return np.zeros(0)
+    seen = np.flatnonzero(x)
+    last, first = seen[:-1], seen[1:]
+    through = (np.sign(x[last]) != np.sign(x[first])) & (first - last <= LONGEST) & (last > 0) & (
+        first < len(x) - 1)
+    last, first = last[through], first[through]
+    sign = np.sign(x[first])
+    before, after = (x[last] - x[last - 1]) * sign, (x[first + 1] - x[first]) * sign
+    fast = np.minimum(before, after) > FASTER * noise
+    rate = 0.5 * (before + after)[fast]
+    came = (first - last)[fast] * rate - (np.abs(x[last]) + np.abs(x[first]))[fast]
+    # The larger a step is by its noise, the likelier it is the one that goes through 0: by the
+    # variance of the difference of two samples over the rate.
+    return 0.5 * (came + 2.0 * noise ** 2 / rate)
