@@ -22,6 +22,7 @@ FROZEN = 1e-6  # of a standard deviation: rounding of a reading that never chang
 # Standard deviations of a kurtosis that chance reaches once in 30,000; how much one axis' noise
 # may be above another's in a chip as it is [ADXL345 rev. E, table 1: Z 1.1 LSB, X and Y 0.75].
 KURTOSIS_SIGMAS, UNLIKE = 4.0, 1.5
+STEP_S, FEWEST_STEPS, KNOCKS = (0.5, 1.0, 2.0, 4.0, 8.0), 60, 3
 # Both sensors, turns, tails and axes share odds.CHANCE; covariances are true to some 15 %.
 DOUBTFUL_P, DOUBTFUL_RATIO = 1e-3, 1.3
 
@@ -149,6 +150,23 @@ def oddity(x, shaken=()):
             return "axes move together", 6.0 * float(special.ndtr(
                 -np.arctanh(together - 0.1) * np.sqrt(number)))
     return "", 1.0
+
+
+def jumps(x, rate):
+    """Probability of such heavy tails in the noise of samples x (n,) of one rest, which wander: a
+    walk's steps from a short mean to the next are normal, those of what jumps between
+    levels are mostly none. The KNOCKS largest are left out: a knock is no way of wandering."""
+    best = 1.0
+    for seconds in STEP_S:
+        m = max(1, int(seconds * rate))
+        step = np.diff(x[:len(x) // m * m].reshape(-1, m).mean(axis=1))
+        if len(step) < FEWEST_STEPS:
+            break
+        step = step[np.argsort(np.abs(step))[:-KNOCKS]]
+        tails, error = _kurtosis(step), np.sqrt(24.0 / len(step))
+        if tails > KURTOSIS_SIGMAS * error + 0.5:
+            best = min(best, len(STEP_S) * float(special.ndtr(-(tails - 0.5) / error)))
+    return best
 
 
 def _kurtosis(x):

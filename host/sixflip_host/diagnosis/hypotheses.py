@@ -208,12 +208,25 @@ def _of_variable(designs, forms, names, variant):
     return [pair for _, pairs in found.values() for pair in pairs]
 
 
+def _of_effect(designs, form):
+    """[(column, axis)] of a form's other variants. Of time everything is a function: what is not
+    a warm-up is no part of one, another mixture of exponentials is."""
+    found, start = [], 0
+    for design in designs:
+        if design.effect == form.effect and design.variant != form.variant:
+            found += zip(range(start, start + len(design.keys)), design.axes)
+        start += len(design.keys)
+    return found
+
+
 def with_discrepancy(model, forms, scored, form):
     """The form with a discrepancy in its own variable beside it, whose standard deviation is
     RELATIVE of the size that the form has in a Scored set; None where there is none."""
     if form.generic or not len(form.shared) or form.discrepancy:
         return None
-    free = _of_variable(model.units[0].designs, forms, _variable(form.effect), form.variant)
+    designs, variables = model.units[0].designs, _variable(form.effect)
+    free = _of_effect(designs, form) if variables == ("time",) else _of_variable(
+        designs, forms, variables, form.variant)
     shared = scored.shared
     theta = evidence.coefficients(scored.fits, shared)[0][0]
     rms = np.sqrt(np.mean([u.energy for u in model.units if not u.between], axis=0))

@@ -111,10 +111,19 @@ def of(sessions, settings, lines=(), least_s=0.0):
     if rest is None or rest.n < MEANS or np.bincount(rest.rest, rest.seconds).max() < least_s:
         return {}
     chip = sessions[0].capture.meta["sensor"]
-    return {kind: _sensor(rest, kind, chip, settings) for kind in rest.values}
+    return {kind: _sensor(rest, kind, chip, settings, _jumps(sessions, kind))
+            for kind in rest.values}
 
 
-def _sensor(rest, kind, chip, settings):
+def _jumps(sessions, kind):
+    """(3,) probability of the longest rest's axes having tails as heavy as they have by noise."""
+    session = max(sessions, key=lambda s: np.subtract(*(long_rest.longest(s) or (0, 0))[::-1])
+                  / s.rate)
+    first, end = long_rest.longest(session)
+    return [adequacy.jumps(x, session.rate) for x in long_rest.scaled(session, kind)[first:end].T]
+
+
+def _sensor(rest, kind, chip, settings, jumps):
     """RestGap: posterior, classes, adequacy, held-out figures."""
     progress.doing("the %s at rest" % ("gyro" if kind == "gyro" else "accelerometer"))
     units = rest_units.of(rest, kind, chip, settings)
@@ -136,18 +145,22 @@ def _sensor(rest, kind, chip, settings):
     beaten = [c for c, one in zip(causes, told) if _beaten(one, strange, found)]
     chosen = [f for f in chosen if not any(f in c.chosen for c in beaten)]
     told = [one for c, one in zip(causes, told) if c not in beaten]
-    told += _drift(found, units, data, levels, kind, chosen, fits.index)
+    # What goes to and fro between levels wanders, but is no drift.
+    leaps = {"xyz"[axis]: p for axis, p in enumerate(jumps)
+             if p < odds.CHANCE and "drift" in found.best.names}
+    told += _drift(found, units, data, levels, kind, chosen, fits.index, leaps)
     places = [Place(kind, letter, c.domain, 1.0 if c.share is None else c.share,
                     np.exp(-min(c.score, 600.0))) for c in told for letter in c.letters]
     for form, letters in strange:
         gain = np.exp(-min(found.gains[form.effect], 600.0))
         places += [Place(kind, k, hypotheses.domain(form.effect), 1.0, gain)
                    for k in letters or [None]]
+    places += [Place(kind, letter, "time", 1.0, p) for letter, p in leaps.items()]
     if not fits.ok and not places:
         places = [Place(kind, None, "time", 1.0, fits.p)]
     return RestGap(kind, rest, tuple(told), tuple(places),
                    (*(1.0 - found.places[f.effect].get("", 0.0) for f, _ in strange),
-                    *([] if fits.ok else [1.0 - fits.p])),
+                    *([] if fits.ok else [1.0 - fits.p]), *(1.0 - p for p in leaps.values())),
                    tuple(rest_units.held_out(rest, unit, chosen, point, levels)
                          for unit, point in zip(units, fits.index)),
                    frozenset(f.effect for f in forms))
@@ -166,14 +179,17 @@ def _told(cause, data, fits, chip, kind, chosen, found):
     cause = _with_bent(effect_estimates.sized(cause, data, list(fits.index), chip, kind), data,
                        list(fits.index))
     names = cause.names
-    if found.places[cause.effect].get(SETTLED, 0.0) > 1.0 - posterior.HOLDS:
+    place = found.places[cause.effect]
+    if place.get("drift", 0.0) + place.get("walk", 0.0) > 1.0 - posterior.HOLDS:
+        names = [*names, "drift"]  # one walk in many goes the way of a warm-up
+    if place.get(SETTLED, 0.0) > 1.0 - posterior.HOLDS:
         names = [*names, "drift", *(["table_tilt"] if kind == "accel" else [])]
     rest = [form for form in chosen if form not in cause.chosen]
     share = adequacy.share(data.units, data.statistics, fits.index, (rest, fits.index),
                            (chosen, fits.index))
-    place = dict(found.places[cause.effect])
-    return RestCause(tuple(names), place, cause.score, cause.value, cause.interval, cause.unit,
-                     cause.plausible, share, terms.DOMAIN[cause.effect], cause.variant)
+    return RestCause(tuple(dict.fromkeys(names)), dict(place), cause.score, cause.value,
+                     cause.interval, cause.unit, cause.plausible, share,
+                     terms.DOMAIN[cause.effect], cause.variant)
 
 
 def _beaten(cause, strange, found):
@@ -203,9 +219,9 @@ def _with_bent(cause, data, index):
                        for key in half}}, letters=sorted({*cause.letters, *half}))
 
 
-def _drift(found, units, data, levels, kind, chosen, index):
+def _drift(found, units, data, levels, kind, chosen, index, leaps):
     """[RestCause] of a drift in the likeliest set: its Allan floor on the axes that wander more
-    than is usual, with a 90 % interval by the profile of the likelihood."""
+    than is usual and do not leap, with a 90 % interval by the profile of the likelihood."""
     if "drift" not in found.best.names:
         return []
     value, interval, free = {}, {}, frozenset(["flicker"])
@@ -213,7 +229,7 @@ def _drift(found, units, data, levels, kind, chosen, index):
         course = wandering.by_flicker(unit, statistics, found.best.shared,
                                             levels.prior(unit, free))
         level, low, high = wandering.profile(sorted({b for _, b in unit.grid}), course)
-        if low > levels.flicker:
+        if low > levels.flicker and key not in leaps:
             value[key] = level * FLOOR_OF_KERNEL
             interval[key] = (low * FLOOR_OF_KERNEL, high * FLOOR_OF_KERNEL)
     if not value:

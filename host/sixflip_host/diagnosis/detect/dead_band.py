@@ -14,6 +14,7 @@ from ..odds import Z_90
 
 FASTER = 3.0  # than the noise, from a sample to the next: its sign is that of the motion
 LONGEST = 8  # samples at 0 while something passes; more is a pause
+LEVELS, APART = (0.2, 0.3, 0.4, 0.6, 0.7, 0.8), 4.0  # quantiles of the readings; bands off 0
 FEWEST = 20  # passages, whose median is known to a fifth of their scatter
 # Standard deviation of a median over that of a mean, and of a normal one over the median of its
 # sizes [Kendall & Stuart, The Advanced Theory of Statistics 1, section 10.10].
@@ -43,8 +44,26 @@ NOTHING = Band(0.0, 1.0, 0)
 
 
 def of_columns(columns):
-    """Band of one axis, columns (n,) of counts of all sessions."""
-    missing = np.concatenate([passages(column.astype(np.int64)) for column in columns])
+    """Band of one axis, columns (n,) of counts of all sessions: what is missing about 0 beyond
+    what seems to be about levels where no band can be, as far as the motion goes to and fro."""
+    columns = [column.astype(np.int64) for column in columns]
+    found = _about(columns, 0)
+    if not found.number or found.counts <= 0.0:
+        return NOTHING
+    every = np.concatenate(columns)
+    levels = {int(level) for level in np.quantile(every, LEVELS)
+              if abs(level) > APART * (found.counts + found.error)}
+    others = [one for one in (_about(columns, level) for level in levels) if one.number]
+    if not others:
+        return NOTHING
+    usual = float(np.median([one.counts for one in others]))
+    error = float(np.median([one.error for one in others]))
+    return Band(found.counts - max(usual, 0.0), float(np.hypot(found.error, error)), found.number)
+
+
+def _about(columns, level):
+    """Band about a level (counts), NOTHING where too little passes through it."""
+    missing = np.concatenate([passages(column - level) for column in columns])
     if len(missing) < FEWEST:
         return NOTHING
     middle = float(np.median(missing))

@@ -47,11 +47,11 @@ def together(tables):
                      for f in fields(Samples)))
 
 
-def tabled(column, banded, at_rest=None, again=None):
+def tabled(column, banded, at_rest=None, again=None, width=PAGE):
     """Samples of a column (n,) of whole numbers that are not at its ends, or None where noise
     hides a page; banded: a reading of 0 says nothing; at_rest (n,): which of them are in a rest,
-    None: all; again (n,): which are rows read again: where the box turns,
-    their page is that of the row before."""
+    None: all; again (n,): which are rows read again: where the box turns, their page is that of
+    the row before; width: counts of a page."""
     around = np.lib.stride_tricks.sliding_window_view(column, 7)
     noise = 1.4826 / np.sqrt(2.0) * float(np.median(np.abs(np.diff(column))))
     span, middle = _beside(around)
@@ -77,11 +77,11 @@ def tabled(column, banded, at_rest=None, again=None):
         keep &= calm | ~np.lib.stride_tricks.sliding_window_view(again, 7).any(axis=1)
     if keep.sum() < FEWEST:
         return None
-    off, sigma, page = off[keep], sigma[keep], column // PAGE
-    pages = np.rint(off / PAGE)
+    off, sigma, page = off[keep], sigma[keep], column // width
+    pages = np.rint(off / width)
     pages = np.where(pages == 0.0, np.where(off < 0.0, -1.0, 1.0), pages)
     before, after = ((page[3:-3] == page[3 + k:len(page) - 3 + k])[keep] for k in (-1, 1))
-    return Samples(off / sigma, (off - PAGE * pages) / sigma, sigma, calm[keep], before, after)
+    return Samples(off / sigma, (off - width * pages) / sigma, sigma, calm[keep], before, after)
 
 
 def _beside(around):
