@@ -91,14 +91,25 @@ def of(units, statistics, scored, usual_noise, shaken=(), by_hand=False):
 def wandering_nats(units, statistics, scored, usual_noise):
     """Nats by which the readings are likelier with more flicker than evidence.Levels say than
     with no more than that, beside a scored_sets.Scored."""
+    return _beyond([(one, *rest) for one, *rest in zip(units, statistics, scored.private)
+                    if not (one.between or one.turns)], scored.shared, 1, usual_noise.flicker)
+
+
+def placement_nats(units, statistics, scored, usual_noise):
+    """The same of placement: of turns, how far their ends are off."""
+    return _beyond(list(zip(units, statistics, scored.private)), scored.shared, 0,
+                   usual_noise.placement)
+
+
+def _beyond(sessions, shared, column, usual):
+    """Nats of levels beyond a usual one over those within it, sum over [(Unit, statistics, private
+    Columns)]; column: of the grid."""
     nats = 0.0
-    for unit, one, private in zip(units, statistics, scored.private):
-        if unit.between or unit.turns:
-            continue
-        flicker = np.array(unit.grid)[:, 1]
-        within = np.flatnonzero(flicker <= max(usual_noise.flicker, flicker.min()))
+    for unit, one, private in sessions:
+        level = np.array(unit.grid)[:, column]
+        within = np.flatnonzero(level <= max(usual, level.min()))
         flat = np.zeros(len(unit.grid))
-        every, few = (evidence.fit(unit, one, scored.shared, private, flat, points)
+        every, few = (evidence.fit(unit, one, shared, private, flat, points)
                       for points in (evidence.EVERY, within))
         nats += float(every.evidence[0] - few.evidence[0])
     return nats

@@ -3,7 +3,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 from .. import progress
-from . import localisation, motion_model, odds, stray_turns, turn_model
+from . import adequacy, localisation, motion_model, odds, stray_turns, turn_model
 from .detect.detection import present
 from .rest_model import RestModel
 
@@ -70,6 +70,13 @@ def _astray(turns):
     steady clock."""
     nats, number = stray_turns.nats([stray_turns.ends(
         unit, turns.chosen, turn_model.ATTITUDE_DEG) for unit in turns.units])
+    scattered = adequacy.placement_nats(turns.units, turns.data.statistics, turns.found.best,
+                                        turns.noise)
+    if present(scattered):
+        degrees = max(u.grid[k][0] for u, k in zip(turns.units, turns.adequacy.index))
+        return [(localisation.Place("gyro", None, "motion", 1.0, odds.chance(scattered)),
+                 "the turns end about %.1f deg from where gravity says, each by itself: samples "
+                 "may be lost although their times are steady" % degrees)]
     if not present(nats):
         return []
     return [(localisation.Place("gyro", None, "motion", 1.0, odds.chance(nats)),

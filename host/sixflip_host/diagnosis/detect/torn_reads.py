@@ -45,8 +45,8 @@ def finding(sessions, sensor, banded=()):
         return []
     nats, number, others = competed(samples)
     if present(nats):
-        others = [_samples(sessions, sensor, banded, width) for width in NO_PAGES]
-        gains = np.maximum([competed(one)[0] for one in others if len(one)], 0.0)
+        unlike = [_samples(sessions, sensor, banded, width) for width in NO_PAGES]
+        gains = np.maximum([competed(one)[0] for one in unlike if len(one)], 0.0)
         nats -= float(gains.mean() + SURE * gains.std(ddof=1)) if len(gains) > 1 else 0.0
     if not present(nats):
         return []
