@@ -116,6 +116,7 @@ class Diagnosis:
     def _nameless(self):
         """Probabilities that something without a name is there."""
         found = [p for g in self.judged for p in verdict.of_gap(g.found, g.adequacy)]
+        found += [verdict.not_closed(g.shrinkage) for g in [*self.judged, *self.rest.values()]]
         found += [p for gap in self.rest.values() for p in gap.nameless]
         found += [1.0 - place.p for place in self.nameless]
         # A size that no part has is a name for something else.

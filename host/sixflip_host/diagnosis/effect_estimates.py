@@ -93,6 +93,7 @@ def _energy(candidate, cause, gram):
 
 
 TIMES = 5.0  # the typical size, that is believed: more is numerically helpful only (GAP stage 3)
+TAIL = 2.0
 LOOSE = {"warm_up": 10.0, "drift": 10.0, "vibration": 1e9, "sample_rate": 10.0,
          "dropped_samples": 1e9, "saturation": 1e9, "torn_reads": 1e9, "axis_swap": 1e9,
          "quantisation": 1e9, "dead_band": 1e9, "box_tilt": 20.0, "creep": 5.0,
@@ -120,10 +121,12 @@ def limit(effect, chip, sensor, key):
 
 
 def believable(effect, chip, sensor, values, sigmas=None):
-    """True when no coefficient exceeds its limit by more than twice its own uncertainty."""
+    """True when no coefficient exceeds TAIL times its limit by more than twice its own
+    uncertainty: of parts beyond the limit, as rough as typical sizes are, half have more than that
+    [a Cauchy tail, as in evidence.score]. Below, what the prior says is in the score already."""
     for key, value in values.items():
         top = limit(effect, chip, sensor, key)
         slack = 2.0 * sigmas[key] if sigmas else 0.0
-        if top is not None and abs(value) - slack > top:
+        if top is not None and abs(value) - slack > TAIL * top:
             return False
     return True

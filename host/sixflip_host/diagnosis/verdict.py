@@ -8,6 +8,7 @@ told       of what is named: whether it is known where it comes from; of nothing
 from dataclasses import dataclass
 
 LIKELY = 0.5  # likelier than not
+CLOSED, UPPER_END = 0.9, 0.95  # share of a gap that is all of it; of a 90 % interval, one-sided
 ROWS = (  # named, nameless, told: verdict
     (False, True, None, "unexplained"),
     (True, True, None, "partly explained"),
@@ -43,6 +44,14 @@ def of(claims, nameless, seen):
 def any_of(probabilities):
     """Largest probability: the tests look at the same samples, and are not independent."""
     return max(probabilities, default=0.0)
+
+
+def not_closed(shrinkage):
+    """Probability that a tenth of the gap and more stays where what was named is taken off: that
+    of the upper end of the share's interval, where that lies below (GAP's targets: at least 0.90
+    of the explainable gap is closed)."""
+    interval = shrinkage.interval if shrinkage else None
+    return UPPER_END if interval and interval[1] < CLOSED else 0.0
 
 
 def of_gap(found, adequacy):
