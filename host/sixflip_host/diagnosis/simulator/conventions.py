@@ -13,6 +13,9 @@ PRIOR_HEALTHY, PRIOR_EACH, PRIOR_NAMELESS = 0.9, 0.02, 0.005
 # Probability from which on a convention is named: whoever reads it changes a simulator, so that
 # one wrong name in a hundred is the most that is allowed.
 CERTAIN = 0.99
+# Of a factor from 1 that is a wrong time step: rates that are mistaken for each other, 50, 60, 100
+# and 120 Hz, are 1.2 apart and more; by less a scale is wrong, or gravity.
+LEAST_STEP = 0.1
 HELD_BAND = 12.0  # readings in a period, below which a straight line between them is no curve
 OWN_SHARES = (1.0, 0.3, 0.1, 0.03, 0.01)  # tried, of what datasheets allow: half-decades
 DELAY_ROUNDS = 4  # of two rows, to a hundredth of one
@@ -200,7 +203,8 @@ def names(fit, kind, live):
     out = []
     if fit.name == "":
         out.append("unknown")
-    elif fit.name != "healthy":
+    elif fit.name != "healthy" and not (fit.name == "time_step"
+                                        and abs(fit.extra[0]) < LEAST_STEP):
         out.append(fit.name)
     dead = live & ~fit.axes.any(axis=1)
     if dead.any():

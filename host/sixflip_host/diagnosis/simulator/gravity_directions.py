@@ -98,6 +98,15 @@ def direction_log(body, real, sim):
     return float(density.mean() * min(len(body), POSES_COUNT))
 
 
+def should_turn(ups, ways):
+    """rad: how far the gyro says that gravity moves in the sensor in a move, at most."""
+    found = [0.0]
+    for before, _, steps in ways:
+        turn = traces.chained(rotations(steps))[-1]
+        found.append(float(np.arccos(np.clip(ups[before] @ (turn.T @ ups[before]), -1.0, 1.0))))
+    return max(found)
+
+
 def turned(ups, ways):
     """Angles by which gravity moved in the sensor."""
     return [float(np.arccos(np.clip(ups[a] @ ups[b], -1, 1))) for a, b, _ in ways] or [0.0]

@@ -20,6 +20,8 @@ RATIO_SIGMA = 1.0  # how alike two runs are in the size of their turn rates, nat
 # direction (gravity_directions.SIGMA).
 TURNED = 0.3
 POSSIBLE = 0.002  # probability from which on a name is one of those that it may be
+LEVEL_DEG = 20.0  # that gravity moves in the sensor where its axes can be told: five SIGMA
+NONE = 0.0  # of gravity
 MOVES = 10.0  # times its noise at rest: a gyro that turns at all
 
 
@@ -44,20 +46,25 @@ def conventions_of(real, sim):
         return [], ["no rest in %s: gravity, axes and frame of its readings cannot be checked "
                     "against another motion" % sim.name] + unseen
     norms = np.linalg.norm(sim.rest_means(sim.force), axis=1) / sim.g
-    unit, none = by_norm(norms)
-    eye = np.eye(3)
-    if none > conventions.CERTAIN:
-        found = [convention_findings.finding("no_gravity", "accel", none,
-                                             -np.log(max(1 - none, 1e-300)))]
-        return found + unit_by_size(real, sim), unseen + [
-            "axes and frame of %s: without gravity a log of another motion does not show them"
+    chances, eye = by_norm(norms, moved_ratio(real, sim)), np.eye(3)
+    none, small, large = (chances[one] for one in (NONE, 1.0 / STANDARD_G, STANDARD_G))
+    nothing = convention_findings.finding("no_gravity", "accel", none,
+                                          -np.log(max(1.0 - none, 1e-300)))
+    axes = ["axes and frame of %s: without gravity a log of another motion does not show them"
             % sim.name]
+    if none > conventions.CERTAIN:
+        return [nothing] + unit_by_size(real, sim), unseen + axes
+    if none + small > conventions.CERTAIN > small:
+        return [convention_findings.one_of("accel", ["accel_unit", "no_gravity"], none + small,
+                                           -np.log(max(1.0 - none - small, 1e-300)))], \
+            unseen + axes
     found = []
-    if unit != 1.0:
-        found.append(convention_findings.finding(
-            "accel_unit", "accel", 1.0, 100.0, "multiply by %.5g: %s" % (
-                1.0 / unit, convention_findings.unit_words("accel", unit)), value={"factor": unit},
-            unit="1"))
+    for unit, chance in ((1.0 / STANDARD_G, small), (STANDARD_G, large)):
+        if chance > conventions.CERTAIN:
+            found.append(convention_findings.finding(
+                "accel_unit", "accel", chance, -np.log(max(1.0 - chance, 1e-300)),
+                "multiply by %.5g: %s" % (1.0 / unit, convention_findings.unit_words(
+                    "accel", unit)), value={"factor": unit}, unit="1"))
     ups = sim.rest_means(sim.force)
     ups = ups / np.maximum(np.linalg.norm(ups, axis=1), 1e-12)[:, None]
     ways = directions.moves(sim)
@@ -68,47 +75,57 @@ def conventions_of(real, sim):
     best = max(v for _, v in choices)
     accels = [(r.accel, v) for r, v in choices if v > best - 12.0 or np.array_equal(r.accel, eye)]
     tried = []
-    rate_units = units_of(real, sim)
+    planar = not ways or max(directions.turned(ups, ways)) < np.radians(LEVEL_DEG)
+    # Where gravity stays where it is, no reading of the gyro carries it anywhere else.
+    rate_units, gyros = ([(0.0, 1.0)], [eye]) if planar else (units_of(real, sim), SIGNED)
     for accel, seen in accels:
         body = ups @ accel
         for unit_log, rate_unit in rate_units:
-            for gyro in SIGNED:
+            for gyro in gyros:
                 tried.append((Reading(accel, gyro, gyro_unit=rate_unit),
                               seen + unit_log + directions.carried_log(
                                   body, ways, gyro * rate_unit)))
-        if np.array_equal(accel, eye):
+        if np.array_equal(accel, eye) and not planar:
             tried.append((Reading(accel, eye, world=True),
                           seen + directions.world_log(body, ways)))
-    if max((np.linalg.norm(steps.sum(axis=0)) for _, _, steps in ways), default=0.0) > TURNED:
+    if directions.should_turn(ups, ways) > TURNED:
         tried.append((Reading(eye, eye, constant=True), directions.constant_log(ups, ways, sim)))
     more = judged(tried)
     if len(sim.rests) < 2 or not ways:
         unseen.append("axes and frame of the gyro of %s: no move between two rests" % sim.name)
-    elif max(directions.turned(ups, ways)) < np.radians(20.0):
+    elif planar:
         unseen.append("axes and frame of the gyro of %s: gravity stays where it is in the sensor"
                       % sim.name)
     return found + more, unseen
 
 
-def by_norm(norms):
-    """(unit of the accelerometer, probability that gravity is missing)."""
+def by_norm(norms, moved=None):
+    """{1.0, NONE, or a unit of the accelerometer: probability} of what reads |force| / g = norms
+    (n,) at rest. moved: moved_ratio(): a bias of a tenth of g at rest is both no gravity and one
+    in m/s2, and what moves it says which."""
     def log(mean):
         off = (norms - mean) / (NORM_SIGMA * max(mean, 0.5))
         return np.log((1 - directions.ASTRAY) * np.exp(-0.5 * off ** 2)
                       + directions.ASTRAY * 1e-2).sum()
 
-    logs = {"healthy": log(1.0) + np.log(conventions.PRIOR_HEALTHY),
-            "none": log(0.0) + np.log(conventions.PRIOR_EACH),
-            1.0 / STANDARD_G: log(1.0 / STANDARD_G) + np.log(conventions.PRIOR_EACH),
-            STANDARD_G: log(STANDARD_G) + np.log(conventions.PRIOR_EACH)}
-    # A tenth of g at rest is both nothing and one in m/s2: then what moves it says which.
-    spread = norms.std() if len(norms) > 1 else 0.0
-    if norms.mean() > 0.07 and norms.mean() < 0.13 and spread < 0.02:
-        logs["none"] -= 20.0
-    top = max(logs, key=logs.get)
-    total = sum(np.exp(v - logs[top]) for v in logs.values())
-    none = float(np.exp(logs["none"] - logs[top]) / total)
-    return (top if isinstance(top, float) else 1.0), none
+    def by_motion(unit):
+        return 0.0 if moved is None else -0.5 * (np.log(moved / unit) / RATIO_SIGMA) ** 2
+    each = np.log(conventions.PRIOR_EACH)
+    logs = {1.0: log(1.0) + by_motion(1.0) + np.log(conventions.PRIOR_HEALTHY),
+            NONE: log(0.0) + by_motion(1.0) + each,
+            1.0 / STANDARD_G: log(1.0 / STANDARD_G) + by_motion(1.0 / STANDARD_G) + each,
+            STANDARD_G: log(STANDARD_G) + by_motion(STANDARD_G) + each}
+    top = max(logs.values())
+    total = sum(np.exp(v - top) for v in logs.values())
+    return {one: float(np.exp(v - top) / total) for one, v in logs.items()}
+
+
+def moved_ratio(real, sim):
+    """How much the simulator's force changes from row to row beside the real one's, or None: what
+    shakes a robot on its way has gravity in neither."""
+    sizes = [float(np.sqrt((np.diff(x.force, axis=0) ** 2).sum(axis=1).mean()) * x.rate_hz)
+             for x in (real, sim)]
+    return sizes[1] / sizes[0] if min(sizes) > 0.0 else None
 
 
 def units_of(real, sim):

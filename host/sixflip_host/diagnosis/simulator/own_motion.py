@@ -1,32 +1,28 @@
-"""Where a log's sensor sits and how late it is, by the log's own motion: what the force is beside
-the gravity that the gyro carries along, against how the sensor turns. What the hand or the wheels
-do besides is noise.
+"""How late one sensor of a log is behind the other, by the log's own motion: what the force is
+beside the gravity that the gyro carries along, against how the sensor turns. What the hand or the
+wheels do besides is noise.
 """
 from dataclasses import dataclass
 
 import numpy as np
 
 from . import alignment as align_by
-from . import convention_findings, conventions, evidence_of_logs, hypotheses, traces
+from . import conventions, evidence_of_logs, hypotheses, traces
 from .pairing import GRID_HZ, increasing
 
 ARM_M = 0.3  # prior of a lever arm in a log: of the sensor, and of the point it is turned about
 BAND_HZ = align_by.BAND_HZ
 FEWEST_MOVES = 8  # of which the jackknife takes one after the other away: it errs by a quarter
 # Standard errors between two logs from which on they differ: 1 of 150,000 by chance (normal),
-# since the errors of eight moves have heavier tails. Chi-squared of three numbers is as rare 6.5
-# above the square of that; the rest is for the same tails.
-APART, CHI_OF_THREE = 4.5, 10.0
+# since the errors of eight moves have heavier tails.
+APART = 4.5
 
 
 @dataclass(frozen=True)
 class OwnMotion:
-    """tangential, spinning (3,) m: what multiplies dw/dt x and w x (w x) in the force; their
-    covariance (6, 6); delay_s of the force behind the rate and its sigma."""
+    """delay_s of the force behind the rate and its sigma, beside the arms that multiply dw/dt x
+    and w x (w x) in the force."""
 
-    tangential: np.ndarray
-    spinning: np.ndarray
-    covariance: np.ndarray
     delay_s: float
     delay_sigma_s: float
 
@@ -78,8 +74,7 @@ def fitted(trace, sensor):
     parts = np.array(parts)
     apart = parts - parts.mean(axis=0)
     covariance = result[6] + (len(parts) - 1.0) / len(parts) * apart.T @ apart
-    return OwnMotion(shared[:3], shared[3:6], covariance[:6, :6], float(shared[6]),
-                     float(np.sqrt(covariance[6, 6])))
+    return OwnMotion(float(shared[6]), float(np.sqrt(covariance[6, 6])))
 
 
 def moves_of(trace, t):
@@ -91,58 +86,18 @@ def moves_of(trace, t):
 
 
 def compared(real, sim, row_s):
-    """Conventions by which two OwnMotions differ."""
-    out = []
-    late = -(sim.delay_s - real.delay_s)
+    """[Convention] of a simulator one of whose sensors is late where the real one's is not, by two
+    OwnMotions. One that lacks a delay of the real sensor has it to learn, not to lose; and where a
+    sensor seems to sit follows from what else a hand or a robot does, which is not the same in
+    another motion."""
+    late = real.delay_s - sim.delay_s
     sigma = float(np.hypot(real.delay_sigma_s, sim.delay_sigma_s))
-    if abs(late) > APART * sigma and abs(late) >= row_s:
-        return [conventions.late_one(late, sigma)]
-    both = real.covariance + sim.covariance
-    apart = np.concatenate([sim.tangential - real.tangential, sim.spinning - real.spinning])
-    chi = [float(apart[k] @ np.linalg.solve(both[k, k], apart[k])) for k in (
-        slice(0, 3), slice(3, 6))]
-    limit = APART ** 2 + CHI_OF_THREE
-    if max(chi) < limit:
-        return out
-    arm = chi_of(np.concatenate([sim.tangential, sim.spinning]), sim.covariance)
-    factor, scaled = scaled_by(real, sim)
-    names = []
-    if chi[1] > limit and chi[0] < limit / 3 and spinless(sim):
-        names = ["no_centripetal_term"]
-    elif arm < limit:
-        names = ["lever_arm_missing"]
-    elif scaled:
-        names = ["time_step", "lever_arm_missing"]
-    else:
-        names = ["lever_arm_missing", "no_centripetal_term", "time_step"]
-    nats = 0.5 * max(chi)
-    if len(names) == 1:
-        r = real.tangential - sim.tangential
-        value = {a: float(100 * v) for a, v in zip("xyz", r)} \
-            if names[0] == "lever_arm_missing" else {}
-        out.append(convention_findings.finding(
-            names[0], "accel", conventions.CERTAIN, nats, value=value,
-            unit="cm" if value else ""))
-    else:
-        out.append(convention_findings.one_of("accel", names, conventions.CERTAIN, nats))
-    return out
+    if abs(late) <= APART * sigma or abs(late) < row_s or not late_itself(sim, late):
+        return []
+    return [conventions.late_one(late, sigma)]
 
 
-def chi_of(x, covariance):
-    """Chi-squared of x (n,) being zero, by its covariance (n, n)."""
-    return float(x @ np.linalg.solve(covariance, x))
-
-
-def spinless(sim):
-    """True when the simulator's spinning arm is nothing while its tangential one is something."""
-    return chi_of(sim.spinning, sim.covariance[3:, 3:]) < APART ** 2 + CHI_OF_THREE
-
-
-def scaled_by(real, sim):
-    """(factor, whether the simulator's arms are that factor times the real ones)."""
-    a = np.concatenate([real.tangential, real.spinning])
-    b = np.concatenate([sim.tangential, sim.spinning])
-    factor = float(a @ b / max(a @ a, 1e-12))
-    left = b - factor * a
-    covariance = sim.covariance + factor ** 2 * real.covariance
-    return factor, chi_of(left, covariance) < APART ** 2 + CHI_OF_THREE and abs(factor - 1.0) > 0.3
+def late_itself(sim, late):
+    """Whether the simulator's own motion shows most of a delay against the real log (s)."""
+    return abs(sim.delay_s) > max(APART * sim.delay_sigma_s, 0.5 * abs(late)) \
+        and sim.delay_s * late < 0.0
