@@ -76,7 +76,7 @@ class Comparison:
         one motion. Where a range differs the readings at its end are left, and said."""
         cut = {p.sensor for p in self.parameters if p.name == "range" and p.differs}
         return [kind for kind, (before, after, noise) in self.gap.items()
-                if kind not in cut and after > ABOVE * noise
+                if kind not in cut and min(before, after) > ABOVE * noise > 0.0
                 and before ** 2 - after ** 2 < verdict.CLOSED * (before ** 2 - noise ** 2)]
 
 
@@ -198,7 +198,8 @@ def different_motion(real, sim, own_real, row_s):
 
 def held_out(fits, real, sim):
     """{sensor: (before, after, noise alone)}: root mean square of simulator less real, mg and
-    deg/s, in the band compared; conventions and parameters fitted on the other half's blocks."""
+    deg/s, in the band compared; conventions and parameters fitted on the other half's blocks.
+    Noise is 0 where a log without a rest does not tell it."""
     out = {}
     for kind, found in fits.items():
         pair, scale = found.pair, MG if kind == "accel" else DEG
@@ -210,11 +211,11 @@ def held_out(fits, real, sim):
             rows = np.where(fold == k, UNSEEN, 1.0)
             fit = found.refitted(rows)
             left[fold == k] = fit.left[fold == k] / fit.unit
-        noise = 0.0
-        for trace in (real, sim):
-            level = single_log.noise(trace, trace.force if kind == "accel" else trace.rate)
-            if level is not None:
-                noise += (level.density ** 2).mean() * 2.0 * min(pair.band_hz, trace.rate_hz / 2)
+        levels = [single_log.noise(trace, trace.force if kind == "accel" else trace.rate)
+                  for trace in (real, sim)]
+        noise = 0.0 if None in levels else sum(
+            (level.density ** 2).mean() * 2.0 * min(pair.band_hz, trace.rate_hz / 2)
+            for level, trace in zip(levels, (real, sim)))
         out[kind] = tuple(float(scale * x) for x in (
             np.sqrt(((theirs - ours) ** 2).mean()), np.sqrt((left ** 2).mean()),
             np.sqrt(noise)))
