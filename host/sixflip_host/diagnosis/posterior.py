@@ -113,7 +113,7 @@ def _refined(model, forms, best, cost):
         best, changed = _pruned(model, best, cost), False
         for form in best.forms:
             fewer = model.scored(tuple(f for f in best.forms if f is not form))
-            better = max((one for _, one in model.best(fewer, _free(forms, fewer))),
+            better = max((one for _, one in _rivals(model, forms, fewer, form, cost)),
                          key=lambda s: _worth(s, cost))
             if _worth(better, cost) > _worth(best, cost) + 1e-3:
                 best, changed = _with_discrepancy(model, forms, better, cost), True
@@ -181,18 +181,28 @@ def _energies(best):
 
 
 def _place(model, forms, best, form, cost):
-    """({effect or "": probability}, gain in nats) of one member's place. Names compete with their
-    discrepancy there, as they do in the set; but not those of time for a stranger's place, of
-    which everything is a function."""
+    """({effect or "": probability}, gain in nats) of one member's place."""
     others = tuple(f for f in best.forms if f is not form)
     empty = model.scored(others)
     scores = {"": empty.score, form.effect: best.score - cost.of(form)}
-    for rival, one in model.best(empty, _free(forms, empty)):
-        if not (form.generic and hypotheses.domain(rival.effect) == "time"):
-            one = _wider(model, forms, one, cost, rival)
+    for rival, one in _rivals(model, forms, empty, form, cost):
         there = next(f for f in one.forms if f.effect == rival.effect)
         scores[rival.effect] = max(one.score - cost.of(there), scores.get(rival.effect, -np.inf))
     return odds.shares(scores), best.score - empty.score
+
+
+def _rivals(model, forms, fewer, form, cost):
+    """[(Form, Scored of the set with it in the place of a member)] of those Forms that
+    come near to the best one. Names compete with their discrepancy there, as they do in the set,
+    but not those of time for a stranger's place, of which everything is a function."""
+    found, seen = [], set()
+    for rival, one in model.best(fewer, _free(forms, fewer)):
+        if (rival.effect, rival.axis) not in seen and not (
+                form.generic and hypotheses.domain(rival.effect) == "time"):
+            seen.add((rival.effect, rival.axis))
+            one = _wider(model, forms, one, cost, rival)
+        found.append((rival, one))
+    return found
 
 
 def _with_discrepancy(model, forms, scored, cost):

@@ -50,7 +50,8 @@ def of(rests, findings, settings, conditions):
     if swapped is not None and swapped.effect not in settings.without:
         found.append(swapped)
     if turns:
-        astray = _astray(turns)
+        sound = not (gaps["accel"].causes or gaps["accel"].unexplained)
+        astray = _astray(turns, sound)
         nameless += [place for place, _ in astray]
         remarks += [words for _, words in astray]
     # What the rests do not explain would be carried into the moves.
@@ -65,14 +66,14 @@ def of(rests, findings, settings, conditions):
     return RestsJudged(gaps, turns, motion, tuple(found), tuple(nameless), tuple(remarks))
 
 
-def _astray(turns):
+def _astray(turns, sound):
     """[(Place, sentence)] of turns that end far from where gravity says: samples lost under a
-    steady clock."""
+    steady clock; sound: the accelerometer says rightly where gravity is."""
     nats, number = stray_turns.nats([stray_turns.ends(
         unit, turns.chosen, turn_model.ATTITUDE_DEG) for unit in turns.units])
     scattered = adequacy.placement_nats(turns.units, turns.data.statistics, turns.found.best,
                                         turns.noise)
-    if present(scattered):
+    if sound and present(scattered):
         degrees = max(u.grid[k][0] for u, k in zip(turns.units, turns.adequacy.index))
         return [(localisation.Place("gyro", None, "motion", 1.0, odds.chance(scattered)),
                  "the turns end about %.1f deg from where gravity says, each by itself: samples "
