@@ -215,3 +215,50 @@ def test_a_channel_that_hears_nothing_but_noise_has_no_scale_and_no_axes(tmp_pat
     found = comparison.compare([("real", real)], "sim", sim)
     assert found.alignment.same
     assert not found.conventions and not found.differs
+
+
+def names(answer):
+    return [c["name"] for c in answer["simulator"]["conventions"]]
+
+
+def test_another_drive_on_a_floor_tells_no_frame_of_the_gyro(tmp_path, capsys):
+    """About the vertical a rate is the same in the body and in the world."""
+    answer = diagnosed(capsys, capture(tmp_path / "real.csv", *driving(1)),
+                       capture(tmp_path / "sim.csv", *driving(2), seed=5))
+    assert names(answer) == [] and answer["verdict"] in ("no gap", "cannot tell")
+    assert any("gravity stays where it is" in said for said in answer["simulator"]["unseen"])
+
+
+def test_what_two_logs_of_one_motion_leave_far_above_noise_is_said(tmp_path, capsys):
+    """A simulator whose attitude drifts: the clock differed, and that explained all."""
+    t, force, rate = turning(1, 60.0)
+    drifts = np.stack([np.zeros_like(t), np.sin(0.002 * t), np.cos(0.002 * t)], 1)
+    tilt = np.cumsum(0.004 * np.sin(0.5 * t))[:, None] * 0.05 * drifts
+    answer = diagnosed(capsys, capture(tmp_path / "real.csv", t, force, rate),
+                       capture(tmp_path / "sim.csv", t, force + np.cross(tilt, force), rate,
+                               seed=5))
+    gap = answer["simulator"]["gap"]["accel"]
+    assert gap["after"] > 1.5 * gap["floor"]
+    assert answer["verdict"] in ("unexplained", "partly explained")
+
+
+def test_gravity_of_another_strength_is_no_wrong_time_step(tmp_path, capsys):
+    t, force, rate = turning(1, 60.0)
+    push = 2.0 * np.abs(rate) ** 2
+    answer = diagnosed(capsys, capture(tmp_path / "real.csv", t, force + push, rate),
+                       capture(tmp_path / "sim.csv", t, 1.03 * force + push, rate, seed=5))
+    assert "time_step" not in names(answer)
+
+
+def test_a_delay_of_the_real_gyro_is_no_delay_of_the_simulator(tmp_path, capsys):
+    """The pair of logs does not say which is late; each by itself does."""
+    t, force, rate = turning(1, 80.0)
+    late = np.stack([np.interp(t - 0.04, t, w) for w in rate.T], 1)
+    lacks = diagnosed(capsys, capture(tmp_path / "real.csv", t, force, late),
+                      capture(tmp_path / "sim.csv", t, force, rate, seed=5))
+    assert names(lacks) == []
+    delay = lacks["simulator"]["parameters"]["gyro"]["delay"]["all"]
+    assert delay["differs"] and delay["difference"] == pytest.approx(40.0, rel=0.1)
+    has = diagnosed(capsys, capture(tmp_path / "real2.csv", t, force, rate),
+                    capture(tmp_path / "sim2.csv", t, force, late, seed=5))
+    assert names(has) == ["gyro_delay"]

@@ -57,3 +57,29 @@ def test_spikes_in_one_percent_of_the_samples_are_a_gap(captures):
 def test_without_either_there_is_no_gap(captures):
     found = diagnosed(captures, lambda t, counts, generator: None)
     assert found["verdict"] == "no gap" and not found["where"]
+
+
+def test_what_rings_out_after_each_move_is_no_vibration(captures):
+    """Three times as large it was a vibration and explained all, smaller it was no gap."""
+    def ringing(mg):
+        def change(t, counts, generator):
+            for run in runs[len(counts)]:
+                since = t[run.first:run.end] - t[run.first]
+                counts[run.first:run.end, 0] += mg * 16.384 * np.exp(-since / 1.2) * np.sin(
+                    2.0 * np.pi * 2.0 * since)
+        return change
+    runs = {len(c): blocks.of("", c).runs for c in captures}
+    for mg in (15.0, 45.0):
+        found = diagnosed(captures, ringing(mg))
+        assert found["verdict"] == "unexplained" and found["causes"] == []
+        assert {(w["axis"], w["domain"]) for w in found["where"]} >= {("x", "time_since_move")}
+        assert any("rings" in remark for remark in found["remarks"])
+
+
+def test_noise_of_the_usual_size_may_have_any_shape(captures):
+    """A supply that two axes share moves them together: that was a gap without a name, although
+    what was left was no more than the samples' own noise."""
+    def shared(t, counts, generator):
+        counts += 60.0 * generator.standard_normal(len(t))[:, None] * np.array([1.0, 1.0, 0.0])
+    found = diagnosed(captures, shared)
+    assert found["verdict"] == "no gap" and not found["where"]

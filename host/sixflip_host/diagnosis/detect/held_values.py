@@ -16,7 +16,7 @@ from .detection import present
 FEWEST = 200  # rows
 STRETCH = 256  # rows
 HELD = 0.05  # share of rows that are held: fewer are single rows, not a rate
-MOVES, QUIET = 4.0, 0.5  # times the step of half of the rows: nearly none at rest
+MOVES = 8.0  # times the noise, from a row to the next: six deviations of a difference at rest
 WORDS = {"accel": "accelerometer", "gyro": "gyro"}
 TIMES = {2: "twice", 3: "three times", 4: "four times"}
 
@@ -54,7 +54,10 @@ def read_again(counts):
     """(nats of rows that are the row before once more over repeating by chance, how many) of
     counts (n, 3), among the rows before and after which an axis moves further than noise does."""
     steps = np.abs(np.diff(counts.astype(np.int64), axis=0))
-    far = (steps > MOVES * np.maximum(np.quantile(steps, QUIET, axis=0), 1.0)).any(axis=1)
+    # What moves smoothly has no second difference: its noise has, of six times its variance.
+    second = np.median(np.abs(np.diff(counts.astype(np.int64), n=2, axis=0)), axis=0)
+    noise = 1.4826 / np.sqrt(6.0) * np.maximum(second, 1.0)
+    far = (steps > MOVES * noise).any(axis=1)
     same = (steps[1:-1] == 0)[far[:-2] & far[2:]]
     if len(same) < FEWEST:
         return 0.0, 0.0
