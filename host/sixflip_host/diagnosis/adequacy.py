@@ -95,10 +95,9 @@ def wandering_nats(units, statistics, scored, usual_noise):
                     if not (one.between or one.turns)], scored.shared, 1, usual_noise.flicker)
 
 
-def placement_nats(units, statistics, scored, usual_noise):
-    """The same of placement: of turns, how far their ends are off."""
-    return _beyond(list(zip(units, statistics, scored.private)), scored.shared, 0,
-                   usual_noise.placement)
+def placement_nats(units, statistics, scored, usual):
+    """The same of placement beyond a level: of turns, degrees that their ends are off."""
+    return _beyond(list(zip(units, statistics, scored.private)), scored.shared, 0, usual)
 
 
 def _beyond(sessions, shared, column, usual):

@@ -173,6 +173,11 @@ VARIABLE = {"thermal_scale": ("thermal_orientation",),
             "amplitude": ("amplitude",)}
 
 
+# Of time everything is a function, and of a temperature's rate the temperature is the integral:
+# what is another form of these effects is made of their own time constants and lags.
+OWN_FORMS = ("warm_up", "thermal_rate")
+
+
 def _variable(effect):
     return VARIABLE.get(effect) or VARIABLE.get(domain(effect), ())
 
@@ -209,8 +214,7 @@ def _of_variable(designs, forms, names, variant):
 
 
 def _of_effect(designs, form):
-    """[(column, axis)] of a form's other variants. Of time everything is a function: what is not
-    a warm-up is no part of one, another mixture of exponentials is."""
+    """[(column, axis)] of a form's other variants."""
     found, start = [], 0
     for design in designs:
         if design.effect == form.effect and design.variant != form.variant:
@@ -225,7 +229,7 @@ def with_discrepancy(model, forms, scored, form):
     if form.generic or not len(form.shared) or form.discrepancy:
         return None
     designs, variables = model.units[0].designs, _variable(form.effect)
-    free = _of_effect(designs, form) if variables == ("time",) else _of_variable(
+    free = _of_effect(designs, form) if form.effect in OWN_FORMS else _of_variable(
         designs, forms, variables, form.variant)
     shared = scored.shared
     theta = evidence.coefficients(scored.fits, shared)[0][0]

@@ -15,11 +15,12 @@ from . import adequacy, evidence, holdout_gain, rest_forms
 # From one rest to the next where nothing was moved, beyond flicker: the Allan floor of the parts
 # (typical.FLOOR); a gyro's is the Earth's rate, should the box have been put down again.
 OFFSET = {"accel": 0.1, "gyro": 0.003}
-# Levels tried, about half a decade apart: of the offset from the usual one up; of flicker from a
-# quiet part's (typical.FLICKER) up, closest together where parts are.
+# Levels tried: of the offset from the usual one up, about half a decade apart; of flicker from a
+# quiet part's (typical.FLICKER) up, where parts are so close that what is left beside the nearest
+# is not doubtful for that (adequacy.DOUBTFUL_RATIO, of squares).
 OFFSETS = {"accel": (0.1, 0.3, 1.0, 3.0, 12.0), "gyro": (0.003, 0.01, 0.05, 0.3, 1.0)}
-FLICKERS = {"accel": (0.005, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 4.0, 12.0, 40.0),
-            "gyro": (0.0002, 0.001, 0.002, 0.004, 0.008, 0.016, 0.03, 0.1, 0.3, 1.0)}
+FLICKERS = {"accel": (0.005, *np.geomspace(0.02, 0.8, 15).tolist(), 1.6, 4.0, 12.0, 40.0),
+            "gyro": (0.0002, *np.geomspace(0.0005, 0.03, 17).tolist(), 0.1, 0.3, 1.0)}
 PIECES, FOLDS = 12, 4  # three pieces, far apart, are foretold by the nine beside them
 
 

@@ -7,6 +7,10 @@ from . import adequacy, localisation, motion_model, odds, stray_turns, turn_mode
 from .detect.detection import present
 from .rest_model import RestModel
 
+# Of the ends of turns, that is no matter of the gyro: 17 mg of an accelerometer that bends more
+# than any does (typical.SIZES), without showing it in a few poses.
+SCATTERED_DEG = 1.0
+
 
 @dataclass(frozen=True, eq=False)
 class RestsJudged:
@@ -55,7 +59,8 @@ def of(rests, findings, settings, conditions):
         nameless += [place for place, _ in astray]
         remarks += [words for _, words in astray]
     # What the rests do not explain would be carried into the moves.
-    if motion and not any(gap.unexplained for gap in gaps.values()):
+    carried = [*gaps.values(), *([turns] if turns else [])]
+    if motion and not any(gap.unexplained for gap in carried):
         found += motion.found
         remarks += motion.remarks
         if not turns.found.best.forms:  # a gyro that bends carries gravity wrongly, too
@@ -72,7 +77,7 @@ def _astray(turns, sound):
     nats, number = stray_turns.nats([stray_turns.ends(
         unit, turns.chosen, turn_model.ATTITUDE_DEG) for unit in turns.units])
     scattered = adequacy.placement_nats(turns.units, turns.data.statistics, turns.found.best,
-                                        turns.noise)
+                                        SCATTERED_DEG)
     if sound and present(scattered):
         degrees = max(u.grid[k][0] for u, k in zip(turns.units, turns.adequacy.index))
         return [(localisation.Place("gyro", None, "motion", 1.0, odds.chance(scattered)),

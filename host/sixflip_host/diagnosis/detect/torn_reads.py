@@ -31,9 +31,8 @@ FREEDOM = (5.0, 15.0, 200.0)  # of Student's t: how heavy the tails of the noise
 LOUD = (2.0, 3.0, 5.0)  # times the noise, of samples that are louder without a name
 KNOCKED = (5.0, 15.0, 50.0)  # and of those that knocks, gaits and chattering contacts make
 # Counts that no byte is wide: what speaks for pages of these too is the motion of legs, wheels or
-# a knock, not the bytes. As far from a page as two samples differ where a page is looked at. SURE:
-# standard deviations beyond what they gain; Student's t of six has that by chance in CHANCE.
-NO_PAGES, SURE = (150, 163, 181, 300, 337, 367), 5.0
+# a knock, not the bytes. As far from a page as two samples differ where a page is looked at.
+NO_PAGES = (150, 163, 181, 300, 337, 367)
 LEAST = 1e-200  # of a density: what a float still divides by
 
 
@@ -46,8 +45,9 @@ def finding(sessions, sensor, banded=()):
     nats, number, others = competed(samples)
     if present(nats):
         unlike = [_samples(sessions, sensor, banded, width) for width in NO_PAGES]
-        gains = np.maximum([competed(one)[0] for one in unlike if len(one)], 0.0)
-        nats -= float(gains.mean() + SURE * gains.std(ddof=1)) if len(gains) > 1 else 0.0
+        most = max((competed(one)[0] for one in unlike if len(one)), default=0.0)
+        # In standard deviations, of which nats are half the square.
+        nats = 0.5 * max(math.sqrt(2.0 * nats) - math.sqrt(2.0 * max(most, 0.0)), 0.0) ** 2
     if not present(nats):
         return []
     # Of the samples looked at: whose page changed, and whose change the tear hid.
