@@ -27,9 +27,10 @@ from .parameters import DEG, MG
 # move of a robot for instance, and short enough that half of a log of a minute has several.
 FOLD_S = 5.0
 RAILED = 0.5  # share of a log at the end of its range: what is left of it is no motion any more
-# Times the noise, root mean square, of what is left of two logs of one motion; of healthy pairs,
-# which differ in nothing but noise, it is 0.8 to 1.2 times that (`make zoo KINDS=box,rover`).
-ABOVE = 1.5
+# Times the noise, root mean square, of what is left of two logs of one motion: 0.8 to 1.2 where
+# they differ in nothing but noise, 2.8 of a rover that bumps shake otherwise in each (`make zoo`).
+# What such shaking leaves over seconds is 1.1 to 1.8 times slow() of noise.
+ABOVE, SLOW = 1.5, 3.0
 UNSEEN = 1e6  # noise of a sample that a fit must not see, in units of the average
 
 
@@ -42,7 +43,8 @@ class Comparison:
     single_log.Noise of the real log}; remarks; unseen; motion_judged: lever arm and delay of the
     two logs were compared, or what is wrong with the simulator's hides them; reference_c: mean
     temperature of the real log or None; effects (tuple of effects_beside.Beside): those found,
-    as far as two logs of one motion show their size."""
+    as far as two logs of one motion show their size; wanders: sensors of which what is left of one
+    motion goes on for seconds: it is no shaking, which each log has of its own."""
 
     log: str
     against: str
@@ -60,6 +62,7 @@ class Comparison:
     motion_judged: bool
     reference_c: float
     effects: tuple = ()
+    wanders: frozenset = frozenset()
 
     @property
     def differs(self):
@@ -73,10 +76,10 @@ class Comparison:
     @property
     def left(self):
         """Sensors of which more is left than noise, and than a tenth of the gap of two logs of
-        one motion. Where a range differs the readings at its end are left, and said."""
+        one motion, and wanders. Where a range differs the readings at its end are left."""
         cut = {p.sensor for p in self.parameters if p.name == "range" and p.differs}
         return [kind for kind, (before, after, noise) in self.gap.items()
-                if kind not in cut and min(before, after) > ABOVE * noise > 0.0
+                if kind in self.wanders - cut and min(before, after) > ABOVE * noise > 0.0
                 and before ** 2 - after ** 2 < verdict.CLOSED * (before ** 2 - noise ** 2)]
 
 
@@ -137,13 +140,16 @@ def of_traces(real, sim, aligned):
     if any(c.name == "noise_per_sample" for c in found):
         numbers = [p for p in numbers if p.name != "noise_density"]
     tried, why_not = tasked(real_free, mended, own_real, own_sim, fits)
+    left = {kind: not_foretold(one) for kind, one in fits.items()}
     return Comparison(sim.name, real.name, aligned, tuple(found), tuple(numbers), tried,
-                      held_out(fits, real, sim), fits, own_real, own_sim,
+                      held_out(fits, left, real, sim), fits, own_real, own_sim,
                       {k: single_log.noise(real, getattr(real, v)) for k, v in (
                           ("accel", "force"), ("gyro", "rate")) if getattr(real, v) is not None},
                       (*said_of(real, sim, aligned), *why_not), tuple(unseen),
                       judged or put_right.only_in_motion(found),
-                      None if real.celsius is None else float(real.celsius.mean()))
+                      None if real.celsius is None else float(real.celsius.mean()),
+                      wanders=frozenset(kind for kind, one in fits.items()
+                                        if slow(left[kind], one.pair.band_hz) > SLOW))
 
 
 def _late_itself(sim, late):
@@ -196,21 +202,38 @@ def different_motion(real, sim, own_real, row_s):
     return own_motion.compared(*moved, row_s), unseen, True
 
 
-def held_out(fits, real, sim):
+def not_foretold(found):
+    """(n, 3) of the simulator's log that conventions and parameters fitted on the other half's
+    blocks do not foretell, of a SensorFit."""
+    pair = found.pair
+    fold = ((pair.t - pair.t[0]) / FOLD_S).astype(int) % 2
+    left = np.empty((len(pair.t), 3))
+    for k in (0, 1):
+        fit = found.refitted(np.where(fold == k, UNSEEN, 1.0))
+        left[fold == k] = fit.left[fold == k] / fit.unit
+    return left
+
+
+def slow(left, band_hz):
+    """How large the means of what is left (n, 3) over a second are, root mean square, beside those
+    of noise in a band that is as large within the seconds: 1 of noise."""
+    second = int(pairing.GRID_HZ)
+    parts = left[:len(left) // second * second].reshape(-1, second, 3)
+    means = parts.mean(axis=1)
+    within = float(((parts - means[:, None]) ** 2).mean()) / max(2.0 * band_hz - 1.0, 0.2)
+    return float(np.sqrt((means ** 2).mean() / max(within, 1e-300)))
+
+
+def held_out(fits, not_explained, real, sim):
     """{sensor: (before, after, noise alone)}: root mean square of simulator less real, mg and
-    deg/s, in the band compared; conventions and parameters fitted on the other half's blocks.
-    Noise is 0 where a log without a rest does not tell it."""
+    deg/s, in the band compared; not_explained {sensor: not_foretold()}. Noise is 0 where a log
+    without a rest does not tell it."""
     out = {}
     for kind, found in fits.items():
         pair, scale = found.pair, MG if kind == "accel" else DEG
         theirs = pair.sim_force if kind == "accel" else pair.sim_rate
         ours = pair.force if kind == "accel" else pair.rate
-        fold = ((pair.t - pair.t[0]) / FOLD_S).astype(int) % 2
-        left = np.empty_like(theirs)
-        for k in (0, 1):
-            rows = np.where(fold == k, UNSEEN, 1.0)
-            fit = found.refitted(rows)
-            left[fold == k] = fit.left[fold == k] / fit.unit
+        left = not_explained[kind]
         levels = [single_log.noise(trace, trace.force if kind == "accel" else trace.rate)
                   for trace in (real, sim)]
         noise = 0.0 if None in levels else sum(
