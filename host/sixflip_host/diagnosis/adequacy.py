@@ -67,8 +67,7 @@ def of(units, statistics, scored, usual_noise, shaken=(), by_hand=False):
     for unit, one, fit, private in zip(units, statistics, scored.fits, scored.private):
         point = int(fit.index[0])
         index.append(point)
-        chi2 = float(fit.quadratic[0] - 2.0 * theta @ fit.inner[0]
-                     + theta @ fit.gram[0] @ theta)
+        chi2 = _between_levels(unit, one, shared, private, theta, fit)
         freedom = unit.freedom - len(shared) / len(units) - _taken(unit, point, private)
         parts.append((chi2, max(freedom, 1.0)))
         before += float(one[0][point, 0]) - unit.freedom
@@ -86,6 +85,30 @@ def of(units, statistics, scored, usual_noise, shaken=(), by_hand=False):
     p = min(p, looks * worst if not ok else 1.0, chance if odd else 1.0)
     return Adequacy(ok and not odd, chi2 / freedom, p, tuple(index), chi2 - freedom, before,
                     tuple(parts), odd)
+
+
+def _chi2(fit, theta):
+    """Of a unit's contrasts with these coefficients of the shared columns."""
+    return float(fit.quadratic[0] - 2.0 * theta @ fit.inner[0] + theta @ fit.gram[0] @ theta)
+
+
+def _between_levels(unit, statistics, shared, private, theta, fit):
+    """chi2 at the likeliest flicker, which lies between the levels that are tried: where these are
+    a factor of two apart, chi2 beside the nearest is off by as much as doubts begin at."""
+    placement, flicker = divmod(int(fit.index[0]), unit.shape[1])
+    if unit.between or unit.turns or not 0 < flicker < unit.shape[1] - 1:
+        return _chi2(fit, theta)
+    points = placement * unit.shape[1] + flicker + np.array([-1, 0, 1])
+    flat = np.zeros(len(unit.grid))
+    fits = [evidence.fit(unit, statistics, shared, private, flat, points[k:k + 1])
+            for k in range(3)]
+    x = np.log([unit.grid[k][1] for k in points])
+    bend, slope, _ = np.polyfit(x - x[1], [f.evidence[0] - fits[1].evidence[0] for f in fits], 2)
+    if bend >= 0.0:
+        return _chi2(fit, theta)
+    likeliest = np.clip(x[1] - 0.5 * slope / bend, x[0], x[2])
+    return float(np.exp(np.interp(likeliest, x, np.log([
+        max(_chi2(f, theta), 1e-9) for f in fits]))))
 
 
 def wandering_nats(units, statistics, scored, usual_noise):

@@ -4,7 +4,7 @@ import copy
 import numpy as np
 import pytest
 
-from sixflip_host.diagnosis import diagnosis, localisation, rest_model
+from sixflip_host.diagnosis import answer, diagnosis, localisation, rest_model
 from sixflip_host.experiment import attitude_fit, blocks
 from sixflip_host.simulation import scenario, simulated_session
 
@@ -94,3 +94,22 @@ def test_what_is_no_random_walk_of_every_axis_is_not_called_drift(
     assert not gap.drift
     assert gap.unexplained
     assert any(place.domain == "time" for place in localisation.places(gap))
+
+
+def test_a_drift_between_the_levels_tried_is_explained_and_has_its_size():
+    """The levels of noise lie a factor of two apart there: what was left beside the nearest one
+    was half as much again as noise, and the interval did not hold the size."""
+    plan = scenario.from_dict({
+        "sensor": "mpu6050", "scene": "recommended", "seed": 1,
+        "world": {"placement_scatter_deg": 0.05}, "effects": [
+            {"effect": "drift", "sensor": "accel", "x": 0.6, "y": 0.6, "z": 0.6, "seed": 1}]})
+    sessions = []
+    for number in range(2):
+        capture = simulated_session.session(plan, number)
+        capture.gyro = None
+        sessions.append(blocks.of(str(number), capture))
+    found = answer.of(diagnosis.of(sessions, diagnosis.Settings(jobs=1)))
+    cause, = found["causes"]
+    assert found["verdict"] == "explained" and cause["effect"] == "drift"
+    for low, high in cause["interval_90"].values():
+        assert low < 0.6 < high
