@@ -75,8 +75,9 @@ def conventions_of(real, sim):
     best = max(v for _, v in choices)
     accels = [(r.accel, v) for r, v in choices if v > best - 12.0 or np.array_equal(r.accel, eye)]
     tried = []
-    planar = not ways or max(directions.turned(ups, ways)) < np.radians(LEVEL_DEG)
-    # Where gravity stays where it is, no reading of the gyro carries it anywhere else.
+    says = directions.should_turn(ups, ways)
+    planar = max(*directions.turned(ups, ways), says) < np.radians(LEVEL_DEG)
+    # Where gravity stays where it is, and the gyro says so, its axes and frame make no difference.
     rate_units, gyros = ([(0.0, 1.0)], [eye]) if planar else (units_of(real, sim), SIGNED)
     for accel, seen in accels:
         body = ups @ accel
@@ -88,7 +89,7 @@ def conventions_of(real, sim):
         if np.array_equal(accel, eye) and not planar:
             tried.append((Reading(accel, eye, world=True),
                           seen + directions.world_log(body, ways)))
-    if directions.should_turn(ups, ways) > TURNED:
+    if says > TURNED:
         tried.append((Reading(eye, eye, constant=True), directions.constant_log(ups, ways, sim)))
     more = judged(tried)
     if len(sim.rests) < 2 or not ways:
