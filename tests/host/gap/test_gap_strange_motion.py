@@ -2,6 +2,7 @@
 import numpy as np
 import pytest
 
+from sixflip_host.capture.capture_file import Capture
 from sixflip_host.diagnosis import answer, diagnosis
 from sixflip_host.experiment import blocks
 from sixflip_host.simulation import scenario, simulated_session
@@ -78,3 +79,20 @@ def test_a_reading_that_follows_the_size_of_the_rate_has_no_name(captures, senso
     first = found["where"][0]
     assert (first["sensor"], first["domain"]) == (sensor, "motion")
     assert first["axis"] == {"accel": "x", "gyro": "y"}[sensor]
+
+
+def test_samples_lost_in_every_turn_under_a_steady_clock_are_a_gap():
+    """All turns end degrees from where gravity says: alike, that was taken for their noise."""
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 4})
+    sessions = []
+    for number in range(2):
+        whole, generator = simulated_session.session(plan, number), np.random.default_rng(number)
+        keep = np.ones(len(whole.accel), bool)
+        for first in np.flatnonzero((whole.pose == 0) & (generator.random(len(keep)) < 0.01)):
+            keep[first:first + 8] = whole.pose[first:first + 8] != 0
+        lost = Capture(dict(whole.meta), whole.t_us[:keep.sum()], whole.accel[keep],
+                       whole.gyro[keep], whole.temp[keep], None, whole.pose[keep])
+        sessions.append(blocks.of(str(number), lost))
+    found = answer.of(diagnosis.of(sessions, diagnosis.Settings(jobs=1)))
+    assert found["verdict"] == "unexplained" and not found["causes"]
+    assert ("gyro", "motion") in {(w["sensor"], w["domain"]) for w in found["where"]}
