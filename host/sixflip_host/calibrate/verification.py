@@ -1,9 +1,20 @@
-"""Every comparison of a board's record against the same capture solved here."""
+"""Every comparison of a board's record against the same capture solved here, and the fields of
+a record that nobody can recompute from it."""
 
 from sixflip.accelerometer.solver import best_level
 from sixflip.poses.faces import face_of_code
 
-from . import solution, verify_checks, verify_flips, verify_gyro
+from ..record_terms import names_of
+from . import solution, verify_checks, verify_gyro
+
+# Why a field is not verifiable.
+SAVED = "the board counted or noted it when it saved the record"
+HEADER = "the capture's header does not say it"
+SUMS = "the board kept only the sums"
+EARLIER = "the record whose gyro measured the flips is not here"
+INSTALLED = "measured after the session, where the sensor is installed"
+OTHER_CAPTURES = "other captures than this one told it: sixflip diagnose --record"
+LATER = "this sixflip does not know the section"
 
 
 def verify(capture, record, before=None):
@@ -28,8 +39,8 @@ def verify(capture, record, before=None):
         return checks + [verify_checks.Check("accelerometer", "not in the record", "", False)], \
             remarks
     checks += verify_checks.accelerometer(record, placements, record.accel_lsb_per_g,
-                                          verify_flips.angles(record))
-    found, said = verify_flips.checks(capture, record, placements, before)
+                                          verify_gyro.flip_angles(record))
+    found, said = verify_gyro.flip_checks(capture, record, placements, before)
     checks += found
     remarks += said
     old_gyro = before and before.gyro["P"]
@@ -46,8 +57,8 @@ def verify(capture, record, before=None):
 def _verdict(capture, record, placements, old_gyro):
     """Level, and the verdict the shared judge gives now that the samples are at hand."""
     again = solution.judge(capture, placements, record.g, record.accel["level"],
-                           angles=verify_flips.angles(record))
-    verify_flips.doubts(capture, record, placements, again, old_gyro)
+                           angles=verify_gyro.flip_angles(record))
+    verify_gyro.doubt_flips(capture, record, placements, again, old_gyro)
     check = verify_checks.same("verdict", record.accel["verdict"], again.verdict)
     if capture.sums_only and (check.board, check.host) == ("doubtful", "good") \
             and "flip" in record.accel["reason"]:
@@ -60,3 +71,24 @@ def _verdict(capture, record, placements, old_gyro):
         checks.append(verify_checks.same_words("reason", record.accel["reason"], again.reason,
                                                record.float_bits))
     return checks
+
+
+def not_verifiable(capture, record, before):
+    """[(field, why)] of the record's fields that the capture does not determine, in their order.
+
+    before  the record in the other slot, or None
+    """
+    out = [("sequence", SAVED), ("time", SAVED)]
+    out += [(name, HEADER) for name in verify_checks.STATED if name not in capture.meta]
+    if capture.sums_only:
+        out += [("accel.reason", SUMS), ("gyro", SUMS)]
+    if record.flips is not None:
+        if capture.sums_only:
+            out.append(("flips", SUMS))
+        elif before is None or before.sequence != record.flips["sequence"]:
+            out += [("flips.scale_sigma", EARLIER), ("flips.sequence", EARLIER)]
+    if record.mounting is not None:
+        out.append(("mounting, roll %.4g pitch %.4g degrees" % (
+            record.mounting["roll_deg"], record.mounting["pitch_deg"]), INSTALLED))
+    out += [(name, OTHER_CAPTURES) for name in names_of(record)]
+    return out + [("section %d" % tag, LATER) for tag, _ in record.unknown]

@@ -2,7 +2,7 @@
 import json
 
 from .. import progress
-from ..calibrate import unverifiable, verification, verify_files
+from ..calibrate import verification, verify_files
 from ..errors import BadFile, UsageError
 from ..file_arguments import add_input
 from ..history import logbook
@@ -30,7 +30,7 @@ def run(args):
             raise BadFile("%s: no placement in it, cut short before the first one: nothing to "
                           "compare the record with" % capture_path)
         checks, remarks = verification.verify(capture, record, before)
-    others = unverifiable.fields(capture, record, before)
+    others = verification.not_verifiable(capture, record, before)
     failed = [check for check in checks if not check.ok]
     logbook.verified(capture, record, checks)
     if args.json:
@@ -43,10 +43,6 @@ def run(args):
         return 1 if failed else 0
     _words(capture_path, record_path, record, checks, failed, remarks, others)
     return 1 if failed else 0
-
-
-
-
 
 
 def _words(capture_path, record_path, record, checks, failed, remarks, others):
@@ -65,5 +61,3 @@ def _words(capture_path, record_path, record, checks, failed, remarks, others):
     rows = [check.row() for check in failed]
     out.print(table("what differs", ["", "board", "host", "limit"], rows))
     out.print(styled("%d of %d comparisons differ" % (len(failed), len(checks)), "bold red"))
-
-
