@@ -7,7 +7,7 @@ from ..calibrate.verification import verify
 from ..figures import png
 from ..history import drift, parameters, store, tables
 from . import calibration_pictures as pictures
-from . import solve_words
+from . import calibration_words
 
 LONGEST = 200           # of a text that a file says of itself
 
@@ -58,9 +58,9 @@ def calibration(page, solution, record):
     page.picture("The two captures of every face", png(
         pictures.flip_pairs(names, raw, corrected, true)), 3)
     page.picture("What is left over", png(pictures.residuals(solution)))
-    page.table(*solve_words.pose_rows(solution))
+    page.table(*calibration_words.pose_rows(solution))
     page.heading("The table's tilt")
-    page.paragraph(solve_words.tilt_line(solution.accel))
+    page.paragraph(calibration_words.tilt_line(solution.accel))
     if solution.accel.tilts:
         page.picture("As every face saw it", png(pictures.tilts(solution)), 3)
     _parameters(page, solution)
@@ -69,7 +69,7 @@ def calibration(page, solution, record):
 def _parameters(page, solution):
     r = solution.accel
     page.heading("Accelerometer (%s)" % r.level)
-    page.table(*solve_words.parameter_rows(solution))
+    page.table(*calibration_words.parameter_rows(solution))
     page.paragraph("true = T·S·(a + v), [a 1]·P = true, m/s²; ± is one standard error", note=True)
     page.table(("true x", "true y", "true z: P ± its standard error"), [
         ["%+.6f ± %.6f" % (r.P[i][j], r.sigma_P[i][j]) for j in range(3)] for i in range(4)])
@@ -78,9 +78,9 @@ def _parameters(page, solution):
         page.paragraph("not calibrated: " + solution.no_gyro)
         return
     page.verdict(solution.gyro.verdict, solution.gyro.reason)
-    page.table(*solve_words.gyro_rows(solution.gyro))
+    page.table(*calibration_words.gyro_rows(solution.gyro))
     if solution.gyro.flips:
-        page.table(*solve_words.flip_rows(solution.gyro, solution.flips))
+        page.table(*calibration_words.flip_rows(solution.gyro, solution.flips))
 
 
 def session(page, capture):

@@ -9,6 +9,7 @@ from ..capture import open_recording
 from ..errors import CheckFailed, UsageError
 from ..file_arguments import add_input, add_output
 from ..history import logbook
+from ..present import calibration_words
 from ..terminal import say
 
 EXAMPLE = ("sixflip refine capture.csv -o refined.bin\n"
@@ -34,7 +35,7 @@ def add_arguments(parser):
 
 def run(args):
     """Refine, print, write; 1 when the calibration is refused."""
-    from ..calibrate import refinement, refinement_record, refinement_report  # scipy
+    from ..calibrate import refinement, refinement_record  # scipy
     if args.free and args.record:
         raise UsageError("--free and --record: expected one of the two, a record has its axes")
     capture = open_recording.read_samples(args.capture)
@@ -50,18 +51,10 @@ def run(args):
         print(json.dumps(dict(found, **said), allow_nan=False))
     else:
         say(capture.assumed)
-        refinement_report.show(found)
+        calibration_words.show_refinement(found)
     if found["verdict"] == "refused":
         return CheckFailed.exit_code
     if args.output:
         data = correction_record.encode(refinement_record.build(capture, found, record))
         atomic_write.write_bytes(args.output, data)
     return 0
-
-
-
-
-
-
-
-

@@ -11,7 +11,7 @@ from ..capture import open_recording
 from ..errors import UsageError
 from ..file_arguments import add_input
 from ..json_numbers import finite
-from ..present import solve_words
+from ..present import calibration_words
 from ..terminal import say
 
 EXAMPLE = "sixflip solve capture.csv --lat 48.1 --height 520"
@@ -42,7 +42,7 @@ def run(args):
         print(json.dumps(dict(finite(solution_json.to_json(found)), **said), ensure_ascii=False))
     else:
         say(capture.assumed)
-        solve_words.show(found)
+        calibration_words.show(found)
     return 1 if found.verdict == "refused" else 0
 
 

@@ -10,9 +10,10 @@ import pytest
 
 from sixflip.record import correction_record
 from sixflip_host import record_terms
-from sixflip_host.calibrate import refinement, refinement_record, refinement_report
+from sixflip_host.calibrate import refinement, refinement_record
 from sixflip_host.capture import capture_file
 from sixflip_host.errors import SixflipError
+from sixflip_host.present import calibration_words
 from sixflip_host.verbs import refine
 from tests.worlds import hand_session
 from tests.worlds.hand_session import RAD, G
@@ -43,7 +44,7 @@ def written(tmp_path, capture, name="capture.csv"):
 def text(found):
     """What is printed of it."""
     with contextlib.redirect_stdout(io.StringIO()) as out:
-        refinement_report.show(found)
+        calibration_words.show_refinement(found)
     return out.getvalue()
 
 
