@@ -79,8 +79,8 @@ def norm_jacobian(parameters, measured, g):
 def solve(measured, g, start=None):
     """Nine parameters from samples or pose means of rests, measured (n, 3) in m/s^2.
 
-    Whether the poses determine all nine is for observability.py to say, from norm_jacobian at
-    NOMINAL: where they do not, the optimum itself may lie anywhere.
+    Whether the poses determine all nine is for refinement_answer.undetermined to say, from
+    norm_jacobian at NOMINAL: where they do not, the optimum itself may lie anywhere.
     Raises ValueError for fewer poses than parameters.
     """
     start = NOMINAL if start is None else start

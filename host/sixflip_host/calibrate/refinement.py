@@ -7,12 +7,14 @@ from sixflip.poses.faces import LEANING
 from ..capture import rests, rests_by_variance
 from ..errors import BadFile, CheckFailed
 from ..experiment import blocks
-from . import joint_refinement, kept_parameters, multiposition, rests_and_moves
+from . import joint_refinement, multiposition, refinement_record, rests_and_moves
 from . import refinement_answer as answer
+from .joint_refinement import GYRO_OFFSET, GYRO_PER_G, GYRO_SCALE, N_ACCEL, N_GYRO, SCALE
 
 LABELS = "labels"
 FEWEST_RESTS = 8        # from which the gyro's g-sensitivity is told from its bias
 WORTH_NINE_TERMS = 2.0  # chi2/dof must fall this many times over before they are believed
+TOLD = 0.5              # share of the prior variance a session must take away
 
 
 def refine(capture, free=False, record=None, g_sensitivity="auto"):
@@ -23,7 +25,7 @@ def refine(capture, free=False, record=None, g_sensitivity="auto"):
     session, source = session_of(capture, free)
     told, kept = None, None
     if record is not None:
-        result, told, kept = kept_parameters.refine(session, record)
+        result, told, kept = refine_from_record(session, record)
     else:
         per_g = g_sensitivity == "on" or (
             g_sensitivity == "auto" and pulled_by_gravity(session))
@@ -57,6 +59,53 @@ def pulled_by_gravity(session):
         return False
     without, with_it, _ = bias_of_rests(session)
     return bool(without.mean() > WORTH_NINE_TERMS * max(with_it.mean(), 1.0))
+
+
+def ageing(flips):
+    """How far a calibrated sensor may be off its record: biases drift, shapes hardly do."""
+    typical = np.full(N_ACCEL + N_GYRO + flips, 0.002)
+    typical[SCALE] = 0.003
+    typical[9:12] = 0.03  # g
+    typical[GYRO_SCALE] = 0.01
+    typical[GYRO_OFFSET] = np.radians(2.0)
+    typical[GYRO_PER_G] = 0.0
+    typical[N_ACCEL + N_GYRO :] = joint_refinement.FREE_FLIP
+    return typical
+
+
+def refine_from_record(session, record):
+    """The joint refinement of what this session tells; (Refinement, solved names, kept names).
+
+    For robots that cannot take all six faces. A vehicle can rest on the floor, turn on it, stand
+    on a ramp both ways. Whatever that determines is estimated, starting from a correction record;
+    a parameter the session does not narrow by half stays exactly as the record has it.
+    """
+    flips = len(session.flips)
+    centre, typical = refinement_record.parameters(record, flips, session.g), ageing(flips)
+    free = np.ones(len(centre), dtype=bool)
+    free[GYRO_PER_G] = False
+    if not session.has_gyro:
+        free[N_ACCEL : N_ACCEL + N_GYRO] = False
+    for k, flip in enumerate(session.flips):
+        free[N_ACCEL + N_GYRO + k] = flip.move is not None
+    sensor = np.arange(len(centre)) < N_ACCEL + N_GYRO
+    while True:
+        out = joint_refinement.refine(session, centre=centre, typical=typical, free=free)
+        share = 1.0 - (out.sigma() / np.where(typical > 0, typical, 1.0)) ** 2
+        weak = free & sensor & (share < TOLD)
+        if not weak.any():
+            break
+        free[weak & (share <= share[weak].min() + 0.1)] = False
+    # What is kept is as uncertain as its age, not certain because it was not touched.
+    held = np.flatnonzero(~free & sensor)
+    out.covariance[held, held] = typical[held] ** 2
+    told = [out.names[k] for k in np.flatnonzero(free & sensor)]
+    known = np.ones(len(centre), dtype=bool)
+    known[GYRO_PER_G] = False
+    if record.gyro is None and not session.has_gyro:
+        known[N_ACCEL:] = False
+    kept = [out.names[k] for k in np.flatnonzero(~free & sensor & known)]
+    return out, told, kept
 
 
 def session_of(capture, free=False, far_pairs=None):

@@ -4,7 +4,6 @@ import numpy as np
 
 from sixflip.accelerometer.scale_form import scale_form
 
-from . import observability
 from .joint_refinement import ACCEL_NAMES, GYRO_PER_G, GYRO_SCALE, N_ACCEL, N_GYRO
 from .refinement_residuals import LEVEL, SCATTER
 
@@ -13,6 +12,9 @@ OFF_HALF_TURN = 1.0  # degrees: a flip further off is flagged, when it is beyond
 WILD_SCALE = 0.2  # METHOD 1: refuse |scale - 1| above
 MOVES_DISAGREE = 3.0  # degrees rms
 POOR_FIT = 10.0  # residuals this many times the expected: something is wrong with a rest
+ENOUGH = 10.0  # times narrower than the data sheets' spread
+NAMED = 0.3  # share of a parameter in the open directions above which it is named
+LISTED = 9  # names in a sentence; more are counted
 
 
 def accelerometer(result, g):
@@ -104,10 +106,48 @@ def left_open(session, result):
                 jacobian[at : at + len(residual)] *= LEVEL / SCATTER
             at += len(residual)
     names = [result.names[k] for k in columns]
-    lost = observability.undetermined(jacobian, names, result.first.typical[columns])
+    lost = undetermined(jacobian, names, result.first.typical[columns])
     shares = lost[0][1] if lost else {}
     return ([d for d in lost if any(n in ACCEL_NAMES for n in shares)],
             [n for n in shares if n not in ACCEL_NAMES])
+
+
+def undetermined(jacobian, names, typical, enough=ENOUGH):
+    """Directions the residuals leave open: list of (singular value, {name: share}).
+
+    Singular values of the scaled Jacobian. Each column is divided by the residual's noise and
+    multiplied by what a sensor of the trade typically has in that parameter. A singular value of
+    s then says that the session narrows that direction s-fold; below ENOUGH it hardly says
+    anything, and a number quoted for it would be noise amplified (six faces and |a| = g alone:
+    16 mg, with a perfect cost).
+
+    jacobian (n, p) of whitened residuals; names and typical sizes of the p parameters.
+    """
+    scaled = np.asarray(jacobian) * np.asarray(typical)[None, :]
+    if len(scaled) < scaled.shape[1]:
+        scaled = np.vstack([scaled, np.zeros((scaled.shape[1] - len(scaled), scaled.shape[1]))])
+    _, values, right = np.linalg.svd(scaled, full_matrices=False)
+    weak = values < enough
+    if not weak.any():
+        return []
+    # The basis within the weak space is arbitrary; its projector is not.
+    share = np.sum(right[weak] ** 2, axis=0)
+    order = np.argsort(-share)
+    shares = {names[k]: float(share[k]) for k in order if share[k] > NAMED}
+    return [(float(value), shares) for value in values[weak]]
+
+
+def not_determined_words(lost, parameters):
+    """One line for a person: which parameters these poses cannot tell."""
+    if not lost:
+        return ""
+    names = sorted(lost[0][1], key=lambda name: not name.startswith("accelerometer"))
+    more = " and %d more" % (len(names) - LISTED) if len(names) > LISTED else ""
+    return (
+        "these poses determine %d of %d parameters; not determined: %s%s "
+        "(add poses leaning about 45 degrees between the faces, or label the faces and flip)"
+        % (parameters - len(lost), parameters, ", ".join(names[:LISTED]), more)
+    )
 
 
 def verdict(session, result, lost):
@@ -118,7 +158,7 @@ def verdict(session, result, lost):
         return "refused", ("gravity at the two ends of the moves and the gyro disagree by %.1f "
                            "deg: is a gyro axis swapped or inverted?" % off)
     if lost:
-        return "refused", observability.sentence(lost, int(result.free.sum()))
+        return "refused", not_determined_words(lost, int(result.free.sum()))
     if np.abs(np.diag(A) - 1.0).max() > WILD_SCALE:
         return "refused", "an axis has a scale of %.2f, expected 0.8 to 1.2" % (
             np.diag(A)[np.argmax(np.abs(np.diag(A) - 1.0))])

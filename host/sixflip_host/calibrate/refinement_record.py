@@ -1,4 +1,4 @@
-"""A refinement as the correction record a board loads."""
+"""Between a refinement's parameters and the correction record that a board loads."""
 
 import numpy as np
 
@@ -6,9 +6,29 @@ from sixflip.record.correction_record import Record
 from sixflip.record.record import following
 
 from .. import record_terms
-from ..errors import CheckFailed
+from ..errors import BadFile, CheckFailed
+from . import joint_refinement
+from .joint_refinement import N_ACCEL, N_GYRO
 
 BIASES = ["accelerometer %s bias" % axis for axis in "xyz"]
+RAD = np.pi / 180.0
+
+
+def parameters(record, flips, g):
+    """Parameters (see refinement_residuals) out of a correction Record."""
+    p = joint_refinement.nominal(flips)
+    if record.accel is None:
+        raise BadFile("the record holds no accelerometer, there is nothing to keep")
+    P = np.array(record.accel["P"])
+    p[:9] = P[:3, :3].T.ravel()
+    p[9:12] = P[3, :3] / record.g
+    W = p[N_ACCEL : N_ACCEL + N_GYRO].reshape(3, 7)
+    if record.gyro is not None:
+        P = np.array(record.gyro["P"])
+        W[:, :3], W[:, 3] = P[:3].T, P[3]
+    if record.gyro_bias is not None:
+        W[:, 3] = -W[:, :3] @ np.array(record.gyro_bias["bias_dps"]) * RAD
+    return p
 
 
 def build(capture, found, kept=None):

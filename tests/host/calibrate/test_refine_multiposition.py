@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sixflip_host.calibrate import multiposition, observability
+from sixflip_host.calibrate import multiposition, refinement_answer
 from sixflip_host.capture import rests_by_variance
 from tests.worlds import hand_session, xsens_recording
 
@@ -68,7 +68,7 @@ def test_a_known_sensor_comes_back():
 
 def open_directions(means):
     jacobian = multiposition.norm_jacobian(multiposition.NOMINAL, means, hand_session.G)
-    return observability.undetermined(
+    return refinement_answer.undetermined(
         jacobian / (0.15e-3 * hand_session.G), multiposition.NAMES, multiposition.TYPICAL)
 
 
@@ -78,7 +78,7 @@ def test_six_faces_alone_are_refused_by_name():
     means = np.array([capture.accel[capture.pose == code].mean(axis=0) for code in range(1, 13)])
     lost = open_directions(means / hand_session.LSB_G * hand_session.G)
     assert len(lost) == 3
-    sentence = observability.sentence(lost, 9)
+    sentence = refinement_answer.not_determined_words(lost, 9)
     assert "determine 6 of 9 parameters" in sentence
     for name in ("xy shear", "xz shear", "yz shear"):
         assert name in sentence
