@@ -1,33 +1,28 @@
 """sixflip mount: roll and pitch of an installed sensor from gravity at rest (Promrit)."""
 import json
-import math
 import os
 
-import numpy as np
-
-from sixflip.chips.catalogue import SENSORS
-from sixflip.record import correction_record, mounting
-from sixflip.record.correction import correction_of
+from sixflip.record import correction_record
 from sixflip.record.record import following
-from sixflip.record.still_valid import NOISE_TIMES
-from sixflip_sim.worlds import usual_noise
 
 from .. import atomic_write, file_kinds
+from ..board.board_events import wait_for
+from ..board.console import Console
 from ..board.ports import VARIABLE as PORT
+from ..board.ports import open_link
 from ..calibrate import verify_files
-from ..capture import capture_file, rests
+from ..capture import capture_file
 from ..errors import CheckFailed, UsageError
 from ..file_arguments import add_input, add_output
-from ..mounting import mount_board, mount_words, robot_axes
+from ..mounting import mounting_angles, robot_axes
 from ..terminal import say
 
 EXAMPLE = ("sixflip mount rest.csv --record record_a.bin --axes x=-y,y=x,z=z -o mounted.bin\n"
            "         sixflip mount --vector -0.2235 0.4937 0.8330 --both\n"
            "         sixflip mount --port /dev/ttyACM0 --axes ned")
-CALIBRATED_OFF = 0.02   # g: |a| of a calibrated sensor at rest
-RAW_OFF = 0.15          # g: what an uncalibrated one may show (ADXL345: 40 mg an axis, 4 %)
-TURNING_DPS = 5.0       # a bias changes by less from one switching-on to the next
-LARGEST_BIAS_DPS = 40.0     # ITG3205 data sheet, zero-rate output
+RULE = "|√(Gy²+Gz²)-1| = %.4f %s |√(Gx²+Gz²)-1| = %.4f"
+CHAIN = ("the sensor is corrected first, then turned: measured = (I+S+M) R a + b; the paper's "
+         "chain R (I+S+M) a + b puts its errors before the rotation")
 
 
 def add_arguments(parser):
@@ -56,7 +51,7 @@ def run(args):
         if args.capture or args.vector or args.record or args.output or args.both:
             raise UsageError("--port: the board measures with its own record; expected only "
                              "--axes, --order and --json with it")
-        return mount_board.run(args)
+        return run_on_board(args)
     if (args.capture is None) == (args.vector is None):
         raise UsageError("expected a capture, --vector GX GY GZ, or --port (or %s)" % PORT)
     if args.output and not args.record:
@@ -69,13 +64,14 @@ def run(args):
     if args.vector:
         G, rest = list(args.vector), None
     else:
-        G, rest = gravity_of(capture_file.read_samples(args.capture), record)
-    found = answer(G, axes, args.order, record, calibrated=record is not None or rest is None)
+        G, rest = mounting_angles.gravity_of(capture_file.read_samples(args.capture), record)
+    calibrated = record is not None or rest is None
+    found = mounting_angles.answer(G, axes, args.order, record, calibrated)
     found["rest"] = rest
     if args.json:
         print(json.dumps(found))
     else:
-        say(mount_words.lines(found, args.both))
+        say(lines(found, args.both))
     if args.output:
         record.mounting = found["mounting"]
         record.sequence = following(record.sequence)
@@ -83,113 +79,81 @@ def run(args):
     return 0
 
 
-def gravity_of(capture, record):
-    """(G in g, sensor axes; facts about the rest) or CheckFailed with the reason."""
-    rest = rests.longest(capture)
-    if rest.reason:
-        raise CheckFailed("no mounting measured, the vehicle is not at rest: %s" % rest.reason)
-    if record is not None:
-        verify_files.fits(record, capture)
-    noise, worst = rest.noise_mg(capture.meta["accel_lsb_per_g"])
-    usual = usual_noise_mg(record, capture.meta["sensor"])
-    # An engine shakes along one axis more than along the others.
-    if usual and worst > NOISE_TIMES * usual:
-        raise CheckFailed("no mounting measured, the sensor shakes: %.1f mg of noise, at rest it "
-                          "has %.1f, limit %.1f; stop the engine" % (
-                              worst, usual, NOISE_TIMES * usual))
-    _not_turning(rest, capture, record)
-    if record is None:
-        G = [x / capture.meta["accel_lsb_per_g"] for x in rest.means[:3]]
+def lines(found, both=False):
+    """A mounting in lines for a person."""
+    out = ["G = (%+.4f, %+.4f, %+.4f) g, length %.4f g%s" % (
+        *found["G"], found["G_size"], "" if found["calibrated"] else
+        ": not calibrated, its direction alone is used")]
+    rest = found["rest"]
+    if rest:
+        out.append("  %d samples at rest, noise %.2f mg: the angles are good to %.3f deg by "
+                   "noise alone" % (rest["samples"], rest["noise_mg"], rest["angle_sigma_deg"]))
+        if not found["calibrated"]:
+            out.append("  without --record the sensor's bias is in the angles: 10 mg are 0.6 deg")
+    rule = found["rule"]
+    out.append("paper's rule: R_%s, since %s" % (
+        rule["order"], RULE % (rule["left"], "<" if rule["left"] < rule["right"] else ">=",
+                               rule["right"])))
+    orders = ("xyz", "yxz") if both else (found["order"],)
+    for order in orders:
+        one = found["both"][order]
+        out.append("order R_%s: roll %.4f deg, pitch %.4f deg, yaw 0 (gravity does not show it)"
+                   "%s" % (order, one["roll_deg"], one["pitch_deg"],
+                           " <- taken" if both and order == found["order"] else ""))
+    out.append("axes: the robot's x y z lie along the sensor's %s%s" % (
+        found["axes"], "; the answer is in NED: forward, right, down"
+        if found["frame"] == "ned" else ""))
+    if found["left_handed"]:
+        out.append("  the axes asked for are left-handed, no way of mounting gives that: roll and "
+                   "pitch are for y turned round; rates need the matrix with its sign turned")
+    out.append("robot = C · sensor, C (order R_%s)" % found["order"])
+    out += ["  %+.6f  %+.6f  %+.6f" % tuple(row) for row in found["compensation"]]
+    out.append("G in the robot's axes: (%+.4f, %+.4f, %+.4f) g" % tuple(found["G_robot"]))
+    out.append(CHAIN + ("; with this sensor's errors that is %.1f mg"
+                        % found["chain_differs_mg"] if found["chain_differs_mg"] is not None
+                        else ", 10.6 mg at 30 and 15 deg with scale errors of +2, +0.5, -1 %"))
+    return out
+
+
+def board_command(args):
+    """The line for the board; UsageError where a board cannot do it."""
+    axes = robot_axes.parse(args.axes)
+    if axes.left_handed:
+        raise UsageError("--axes %s is left-handed: a board cannot hold it, expected right-handed "
+                         "axes" % args.axes)
+    asked = {"cmd": "mount", "axes": axes.axes, "frame": axes.frame}
+    if args.order:
+        asked["order"] = args.order
+    return asked
+
+
+def ask_board(args):
+    """The board's "mounted" event; CheckFailed with its reason."""
+    asked = board_command(args)
+    with open_link(args.port) as link:
+        link.reset()
+        started = wait_for(link, ("ready", "calibrating"))
+        if started["event"] == "calibrating":
+            raise CheckFailed("%s: no correction is in force, so the board is calibrating; a "
+                              "mounting needs a calibrated sensor" % link.port)
+        link.send(json.dumps(asked))
+        answer = wait_for(link, ("mounted", "not_mounted", "error"), silence_s=60)
+        while answer["event"] == "error" and "mount" not in answer["what"]:
+            answer = wait_for(link, ("mounted", "not_mounted", "error"), silence_s=60)
+    if answer["event"] == "error":
+        raise CheckFailed("%s; expected %s" % (answer["what"], answer.get("expected")))
+    if answer["event"] == "not_mounted":
+        raise CheckFailed("no mounting measured: %s; the board goes on with %s" % (
+            answer.get("reason"), "the one it has" if answer.get("mounting") == "stored"
+            else "none"))
+    return answer
+
+
+def run_on_board(args):
+    """Let the board measure it and keep it, and print what it answers."""
+    answer = ask_board(args)
+    if args.json:
+        print(json.dumps(answer))
     else:
-        # The mounting it may hold already must not turn what is to be measured.
-        held, record.mounting = record.mounting, None
-        G = [x / record.g for x in correction_of(record).apply(rest.means, [0.0] * 6)[:3]]
-        record.mounting = held
-    sigma = math.degrees(noise / 1e3 / math.sqrt(rest.n))
-    return G, {"samples": rest.n, "noise_mg": noise, "usual_noise_mg": usual,
-               "angle_sigma_deg": sigma}
-
-
-
-
-
-
-def usual_noise_mg(record, sensor):
-    """Noise of one sample at rest: what the calibration found, else what such a sensor has."""
-    if record is not None and record.accel and record.accel["noise_g"]:
-        return 1e3 * record.accel["noise_g"]
-    return usual_noise(sensor)[0] if sensor in SENSORS else None
-
-
-def _not_turning(rest, capture, record):
-    """A slow steady turn looks like a bias; a known bias tells them apart, or sheer size."""
-    if capture.gyro is None:
-        return
-    known = record is not None and record.gyro_bias is not None
-    then = record.gyro_bias["bias_dps"] if known else [0.0] * 3
-    limit = TURNING_DPS if known else LARGEST_BIAS_DPS
-    for k in range(3):
-        now = rest.means[3 + k] / capture.meta["gyro_lsb_per_dps"]
-        if abs(now - then[k]) > limit:
-            raise CheckFailed(
-                "no mounting measured, the vehicle turns or the gyro's bias has jumped: axis %s "
-                "reads %.1f deg/s, expected %.1f, give or take %.0f" % (
-                    "xyz"[k], now, then[k], limit))
-
-
-def answer(G, axes, order=None, record=None, calibrated=True):
-    """The answer as a dictionary: G in g in sensor axes, axes of robot_axes.parse.
-
-    CheckFailed when |G| is not gravity's.
-    """
-    size = math.sqrt(sum(x * x for x in G))
-    limit = CALIBRATED_OFF if calibrated else RAW_OFF
-    if not abs(size - 1.0) <= limit:
-        raise CheckFailed("gravity reads %.3f g, %.2f to %.2f is the limit: the vehicle moves, or "
-                          "%s" % (size, 1 - limit, 1 + limit, "the record is not this sensor's"
-                                  if record is not None else "the sensor is not calibrated"))
-    if not calibrated:
-        G = [x / size for x in G]       # an angle needs the direction alone
-    B = np.array(mounting.parse_axes(axes.axes))
-    chosen, left, right = mounting.choose(*(B @ G))
-    both = {one: _one(G, axes, one) for one in ("xyz", "yxz")}
-    order = order or chosen
-    here = both[order]
-    mirror = np.diag(axes.mirror)
-    C = mirror @ mounting.compensation(here)
-    return {"format": 1, "kind": "sixflip mounting", "G": list(G), "G_size": size,
-            "calibrated": calibrated, "order": order, "rule": {
-                "order": chosen, "left": left, "right": right},
-            "roll_deg": here["roll_deg"], "pitch_deg": here["pitch_deg"], "yaw_deg": 0.0,
-            "axes": axes.asked, "frame": axes.frame, "left_handed": axes.left_handed,
-            "mounting": here, "both": both, "compensation": C.tolist(),
-            # a rate is a pseudovector: mirrored axes turn its sign round
-            "gyro_compensation": (C * (-1 if axes.left_handed else 1)).tolist(),
-            "G_robot": (np.round(C @ G, 12) + 0.0).tolist(),      # no -0.0000 to look at
-            "chain_differs_mg": _record_chain_mg(record, B, here)}
-
-
-def _one(G, axes, order):
-    """The mounting section in one order."""
-    return mounting.estimate(*G, order=order, axes=axes.axes, frame=axes.frame)
-
-
-def _record_chain_mg(record, B, here):
-    if record is None:
-        return None
-    R = np.array(mounting.rotation(math.radians(here["roll_deg"]),
-                                   math.radians(here["pitch_deg"]), here["order"]))
-    A = np.array(record.accel["P"])[:3, :3].T       # true = A measured + o
-    return chain_difference_mg(np.linalg.inv(A) - np.eye(3), B.T @ R)
-
-
-def chain_difference_mg(E, R):
-    """Length of R (I+S+M) a - (I+S+M) R a for a = gravity on a level vehicle, mg.
-
-    The paper chains measured = R (I+S+M) a + b (IV, last equation): the sensor's errors before
-    the rotation. They are the chip's and act on what arrives in its axes, after it:
-    measured = (I+S+M) R a + b. E = S + M. With scale errors of +2, +0.5 and -1 % at roll 30 and
-    pitch 15 degrees the two differ by 10.6 mg.
-    """
-    E, R = np.asarray(E), np.asarray(R)
-    return 1e3 * float(np.linalg.norm((R @ E - E @ R) @ [0.0, 0.0, 1.0]))
+        Console().show(answer)
+    return 0

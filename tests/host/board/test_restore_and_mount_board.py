@@ -9,7 +9,7 @@ from sixflip_host import cli
 from sixflip_host.board import ports
 from sixflip_host.board.board_files import board_files
 from sixflip_host.board.local_link import LocalLink
-from sixflip_host.mounting import mount_board
+from sixflip_host.verbs import mount
 from sixflip_host.virtual.virtual_board import VirtualBoard
 from tests.worlds.board_session import leave_files, unlabelled
 
@@ -41,7 +41,7 @@ def board(tmp_path, monkeypatch):
 
     def opened(port=None):
         return LocalLink(folder, WORLD) if port == "local:flash" else real(port)
-    for module in ("sixflip_host.verbs.restore", "sixflip_host.mounting.mount_board"):
+    for module in ("sixflip_host.verbs.restore", "sixflip_host.verbs.mount"):
         monkeypatch.setattr(module + ".open_link", opened)
     return folder
 
@@ -114,7 +114,7 @@ class Spoken:
 
 
 def test_a_moving_vehicle(monkeypatch, capsys):
-    monkeypatch.setattr(mount_board, "open_link", lambda port: Spoken(
+    monkeypatch.setattr(mount, "open_link", lambda port: Spoken(
         {"event": "not_mounted", "reason": "not at rest: moving", "mounting": "stored"}))
     code, out, err = run(capsys, "mount", "--port", "x")
     assert (code, out) == (1, "")
@@ -131,7 +131,7 @@ def test_wrong_command_lines(words, capsys):
 
 def test_the_port_of_the_environment_is_the_board_where_no_file_is_given(monkeypatch, capsys):
     asked = []
-    monkeypatch.setattr(mount_board, "open_link", lambda port: asked.append(port) or Spoken(
+    monkeypatch.setattr(mount, "open_link", lambda port: asked.append(port) or Spoken(
         {"event": "not_mounted", "reason": "not at rest: moving"}))
     monkeypatch.delenv("SIXFLIP_PORT", raising=False)
     assert run(capsys, "mount")[0] == 2

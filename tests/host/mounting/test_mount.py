@@ -10,8 +10,7 @@ from sixflip.record import correction_record, mounting
 from sixflip_host import cli
 from sixflip_host.capture import capture_file
 from sixflip_host.errors import CheckFailed, UsageError
-from sixflip_host.mounting import robot_axes
-from sixflip_host.verbs import mount
+from sixflip_host.mounting import mounting_angles, robot_axes
 from tests.worlds.board_session import leave_files, unlabelled
 from tests.worlds.resting import rest
 
@@ -87,8 +86,9 @@ def test_words_name_the_order_and_the_rule(capsys):
 def test_the_chains_differ_by_10_6_mg():
     E = np.diag([0.02, 0.005, -0.01])
     R = mounting.rotation(math.radians(30), math.radians(15), "xyz")
-    assert abs(mount.chain_difference_mg(E, R) - 10.6) < 0.05
-    assert mount.chain_difference_mg(0.01 * np.eye(3), R) < 1e-9     # one scale for all commutes
+    assert abs(mounting_angles.chain_difference_mg(E, R) - 10.6) < 0.05
+    # one scale for all commutes
+    assert mounting_angles.chain_difference_mg(0.01 * np.eye(3), R) < 1e-9
 
 
 # -- all quadrants
@@ -101,7 +101,7 @@ def test_quadrants(order, roll, pitch):
     if order == "yxz":
         roll, pitch = pitch, roll       # in this order pitch goes all the way round
     G = gravity(roll, pitch, order)
-    found = mount.answer(G, STRAIGHT, order)
+    found = mounting_angles.answer(G, STRAIGHT, order)
     assert abs(found["roll_deg"] - roll) < 1e-9
     assert abs(found["pitch_deg"] - pitch) < 1e-9
     assert np.allclose(found["G_robot"], [0, 0, 1], atol=1e-12)
@@ -112,7 +112,7 @@ SIDES = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
 
 @pytest.mark.parametrize("G", SIDES)
 def test_every_side_down(G):
-    C = np.array(mount.answer(list(G), STRAIGHT)["compensation"])
+    C = np.array(mounting_angles.answer(list(G), STRAIGHT)["compensation"])
     assert np.allclose(C @ G, [0, 0, 1], atol=1e-12)
     assert np.allclose(C @ C.T, np.eye(3), atol=1e-12)
     assert np.linalg.det(C) > 0
@@ -124,19 +124,19 @@ def test_every_side_down(G):
 def test_axes_named_by_hand():
     axes = robot_axes.parse("x=-y, y=x, z=z")
     assert (axes.axes, axes.frame, axes.left_handed) == ("-y x z", "rep103", False)
-    found = mount.answer([0.0, 0.0, 1.0], axes)
+    found = mounting_angles.answer([0.0, 0.0, 1.0], axes)
     # What the sensor feels along its -y the robot feels forward.
     assert np.allclose(np.array(found["compensation"]) @ [0, -1, 0], [1, 0, 0])
     assert (found["roll_deg"], found["pitch_deg"]) == (0.0, 0.0)
 
 
 def test_ned_is_forward_right_down():
-    C = np.array(mount.answer([0.0, 0.0, 1.0], robot_axes.parse("NED"))["compensation"])
+    C = np.array(mounting_angles.answer([0.0, 0.0, 1.0], robot_axes.parse("NED"))["compensation"])
     assert np.array_equal(C, np.diag([1.0, -1.0, -1.0]))
 
 
 def test_left_handed_axes_are_named_and_rates_turn_their_sign(capsys, tmp_path, calibrated):
-    found = mount.answer([0.0, 0.0, 1.0], robot_axes.parse("x=y,y=x,z=z"))
+    found = mounting_angles.answer([0.0, 0.0, 1.0], robot_axes.parse("x=y,y=x,z=z"))
     C, W = np.array(found["compensation"]), np.array(found["gyro_compensation"])
     assert np.array_equal(C, [[0, 1, 0], [1, 0, 0], [0, 0, 1]])
     # Seen in a mirror a left turn is a right one.
@@ -171,7 +171,7 @@ def test_all_48_signed_permutations_bring_gravity_up():
             assert axes.left_handed == (np.linalg.det(B) < 0)
             left += axes.left_handed
             # Mounted just as named: nothing but the permutation is left to do.
-            found = mount.answer((B.T @ [0, 0, 1]).tolist(), axes)
+            found = mounting_angles.answer((B.T @ [0, 0, 1]).tolist(), axes)
             assert np.allclose(found["compensation"], B)
             assert abs(found["roll_deg"]) < 1e-12
     assert left == 24
@@ -250,4 +250,4 @@ def test_wrong_command_lines(capsys, words):
 @pytest.mark.parametrize("G", [(0, 0, 0), (0, 0, 0.5), (9.8, 0, 0), (math.nan, 0, 1)])
 def test_a_vector_that_is_not_gravity(G):
     with pytest.raises(CheckFailed, match="0.98 to 1.02 is the limit"):
-        mount.answer(list(map(float, G)), STRAIGHT)
+        mounting_angles.answer(list(map(float, G)), STRAIGHT)
