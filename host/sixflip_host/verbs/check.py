@@ -5,7 +5,6 @@ import json
 from sixflip.record import still_valid
 from sixflip.record.correction import correction_of
 
-from ..board import check_words
 from ..board.board_events import wait_for
 from ..board.ports import add_port, open_link
 from ..calibrate import verify_files
@@ -13,7 +12,7 @@ from ..capture import capture_file, rests
 from ..errors import CheckFailed, UsageError
 from ..file_arguments import add_input
 from ..history import logbook
-from ..terminal import say
+from ..terminal import plain, say
 from .solve import local_gravity
 
 EXAMPLE = ("sixflip check\n"
@@ -56,7 +55,7 @@ def run(args):
     if args.json:
         print(json.dumps(found))
     else:
-        say(check_words.lines(found))
+        say(lines(found))
     return 0 if found["valid"] else CheckFailed.exit_code
 
 
@@ -132,3 +131,32 @@ def ask_board(port):
         "temp_then_c": record.get("temp_c"), "record_verdict": record.get("verdict"),
         "record_reason": record.get("reason"),
         "bias_dps": event.get("bias_dps"), "bias_then_dps": None, "seconds": None}
+
+
+def lines(found):
+    """The answer for a person: each number beside the record's, then whether it is still valid."""
+    out = []
+    if found["a_error_mg"] is not None:
+        out.append("|a|          %+.2f mg off gravity (length only: it says nothing of "
+                   "directions)" % found["a_error_mg"])
+    out += _beside("noise", found["noise_mg"], found["noise_then_mg"], "%.2f mg")
+    out += _beside("temperature", found["temp_c"], found["temp_then_c"], "%.1f °C")
+    if found["bias_dps"]:
+        form = "%+.3f %+.3f %+.3f deg/s"
+        then = found["bias_then_dps"]
+        out += _beside("gyro bias", tuple(found["bias_dps"]), then and tuple(then), form)
+    if found["record_verdict"] == "doubtful":
+        out.append(plain("the calibration itself was doubtful: %s" % found["record_reason"]))
+    if found["valid"]:
+        out.append("still valid: nothing speaks against the record")
+    else:
+        out.append("no longer valid:")
+        out += ["  " + plain(one) for one in found["against"]]
+    return out
+
+
+def _beside(name, now, then, form):
+    if now is None:
+        return []
+    return ["%-12s " % name + form % now
+            + ("" if then is None else ", at the calibration " + form % then)]

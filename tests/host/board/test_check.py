@@ -6,7 +6,6 @@ import re
 import pytest
 
 from sixflip_host import cli
-from sixflip_host.board import check_words
 from sixflip_host.capture import capture_file
 from sixflip_host.verbs import check
 from sixflip_host.virtual.virtual_board import VirtualBoard
@@ -97,7 +96,7 @@ def test_words_of_a_board_are_made_harmless():
              "temp_then_c": None, "bias_dps": None, "bias_then_dps": None, "valid": False,
              "record_verdict": "doubtful", "record_reason": "\x1b[1mno flips",
              "against": ["\x1b[2Jgone"]}
-    lines = check_words.lines(found)
+    lines = check.lines(found)
     assert "\x1b" not in "".join(lines)
     assert "doubtful: \\x1b[1mno flips" in lines[0]
 
