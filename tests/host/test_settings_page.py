@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from sixflip_device import led, settings
-from sixflip_host.board import settings_help
+from sixflip_host.board import board_settings
 from sixflip_host.cli import main
 from sixflip_host.simulation import scenario, scenario_checks
 from sixflip_sim import worlds
@@ -54,14 +54,14 @@ def test_the_settings_have_the_defaults_and_ranges_of_the_code():
 
 
 def test_the_help_says_what_each_setting_does_and_its_limits(capsys):
-    assert settings_help.DOES.keys() == settings.KNOWN.keys()
+    assert board_settings.DOES.keys() == settings.KNOWN.keys()
     assert main(["provision", "--help"]) == 0
     said = capsys.readouterr().out
     for name, (default, kind, _, high) in settings.KNOWN.items():
         line = next(line for line in said.splitlines() if line.startswith("  %s " % name))
-        assert settings_help.DOES[name] in line
+        assert board_settings.DOES[name] in line
         assert default is None or str(default) in line
-        assert kind not in ("int", "float", "pin") or settings_help.number(high) in line
+        assert kind not in ("int", "float", "pin") or board_settings.number(high) in line
 
 
 def test_a_scenario_of_the_defaults_that_are_written_is_the_one_of_none():

@@ -9,44 +9,15 @@ from sixflip_sim import worlds
 
 from ..errors import NoBoard, SixflipError
 from ..terminal import plain
-from . import board_schema
 from .board_answers import NoSpace
 from .board_events import events, unusable
 from .board_files import board_files
+from .board_settings import SETTINGS, merged_settings, settings_line
 from .byte_progress import Bytes
 from .compiled_firmware import for_board
 from .on_board_scripts import STAGED, UPDATE
 
-PLATFORMS = {"rp2": "pico", "esp32": "esp32", "pyboard": "pyboard"}
-SETTINGS = "sixflip.json"
-
-
-def json_settings(data):
-    """The settings of a sixflip.json, {} where it is damaged: they are written anew then."""
-    try:
-        return board_schema.SETTINGS.take(json.loads(data))
-    except (ValueError, RecursionError):
-        return {}
-
-
-def merged_settings(link, present, wanted):
-    """Bytes of sixflip.json: what is on the board, changed where the command line says so."""
-    values = json_settings(link.get(SETTINGS)) if SETTINGS in present else {}
-    values.update(wanted)
-    if "board" not in values:
-        values["board"] = PLATFORMS.get(link.platform(), "pico")
-    return (json.dumps(values, indent=1, sort_keys=True) + "\n").encode()
-
-
-def settings_line(data, wanted):
-    """What sixflip.json on the board says from now on, and what of it was there before."""
-    values = json.loads(data)
-    kept = [name for name in sorted(values) if name not in wanted and name != "sensor"]
-    sensor = values.get("sensor", "auto")
-    line = "sensor: %s" % ("found out at power-up" if sensor == "auto" else sensor)
-    if "sensor" not in wanted and "sensor" in values:
-        line += ", as configured on the board (--sensor changes it)"
-    return line + "".join("; %s: %s" % (name, json.dumps(values[name])) for name in kept)
+NO_SENSOR = "no usable sensor"
 
 
 def copy(link, wanted, say=print):
@@ -142,7 +113,6 @@ def send(link, put, files, names, bar):
             raise NoBoard("%s; %d of %d files are copied, run the same command again and it "
                           "goes on from there" % (error, number, len(names))) from None
         done += len(files[name])
-NO_SENSOR = "no usable sensor"
 
 
 def self_test(link, say=print):

@@ -5,7 +5,7 @@ import sys
 from sixflip.chips import catalogue
 
 from .. import file_kinds, progress
-from ..board import chip_options
+from ..board import board_settings
 from ..did_you_mean import instead
 from ..errors import UsageError
 from ..experiment import fleet_prior
@@ -47,8 +47,8 @@ def run(args):
         raise UsageError("--rate is %g, expected 1 to 10000 Hz" % args.rate)
     if args.minutes is not None and not 0.0 < args.minutes <= 10000.0:
         raise UsageError("--minutes is %g, expected more than 0" % args.minutes)
-    wanted = chip_options.ranges(args.range) if args.range else {}
-    wanted, notes = chip_options.what_the_chip_offers(args.sensor, wanted)
+    wanted = board_settings.ranges(args.range) if args.range else {}
+    wanted, notes = board_settings.what_the_chip_offers(args.sensor, wanted)
     for note in notes:
         print("sixflip plan: " + plain(note), file=sys.stderr)
     protocol = protocol_of(args.protocol)

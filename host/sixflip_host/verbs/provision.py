@@ -5,7 +5,7 @@ from sixflip.chips import catalogue
 from sixflip_device import settings
 from sixflip_device.boards.spi_bus import KEYS
 
-from ..board import chip_options, firmware_update, settings_help
+from ..board import board_settings, firmware_update
 from ..board.ports import add_port, open_link
 from ..errors import UsageError
 from ..terminal import plain
@@ -17,7 +17,7 @@ BOARDS = ("pico", "esp32", "pyboard", "raspberry_pi")
 
 def more():
     """The settings, at the end of --help."""
-    return settings_help.lines() + "\n\n"
+    return board_settings.help_table() + "\n\n"
 
 
 def add_arguments(parser):
@@ -75,7 +75,7 @@ def spi_pins(text):
 def wanted_settings(args):
     """What the command line says for sixflip.json."""
     wanted = pins(args.pins) if args.pins else {}
-    wanted.update(chip_options.ranges(args.range) if args.range else {})
+    wanted.update(board_settings.ranges(args.range) if args.range else {})
     if args.spi:
         wanted["spi"] = spi_pins(args.spi)
     if args.rate is not None:
@@ -93,7 +93,7 @@ def run(args):
     wanted = wanted_settings(args)
     notes = []
     if wanted.get("sensor", "auto") != "auto":
-        wanted, notes = chip_options.what_the_chip_offers(wanted["sensor"], wanted)
+        wanted, notes = board_settings.what_the_chip_offers(wanted["sensor"], wanted)
     say = (lambda text: None) if args.json else print
     for note in notes:
         say(note)
