@@ -5,13 +5,14 @@ import json
 
 from ..errors import NoBoard, SixflipError
 from ..value_kinds import Misfit, Number
-from . import firmware_update
+from . import board_settings
 from .board_events import events
 
 FLAG = "calibrate.flag"
 RATE = Number(1, 1000)
 JOIN_S = 3
 STOP_S = 10
+ANSWER_S = 2.0
 
 
 class NoFirmware(NoBoard):
@@ -39,7 +40,7 @@ def ask_for_calibration(link, request=None):
 def rate_of(link):
     """rate_hz of the board's settings."""
     try:
-        return RATE.take(firmware_update.json_settings(link.get("sixflip.json")).get("rate_hz"))
+        return RATE.take(board_settings.json_settings(link.get("sixflip.json")).get("rate_hz"))
     except (SixflipError, OSError, Misfit):
         return 100
 
@@ -64,6 +65,18 @@ def join(link, face):
         return False
     link.send(json.dumps({"cmd": "redo", "face": face}))
     return True
+
+
+def unfinished(link):
+    """Whether a board holds a session that can be gone on with: one under way, or one whose
+    capture lacks poses. Nothing on the board is changed by asking."""
+    if under_way(link) is not None:
+        return True
+    link.send(json.dumps({"cmd": "info"}))
+    for event in events(link, ANSWER_S, ANSWER_S):
+        if event["event"] == "info":
+            return event.get("unfinished") is True
+    return False
 
 
 def stop(link, again="sixflip calibrate --continue"):

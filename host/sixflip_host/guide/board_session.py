@@ -4,8 +4,7 @@ import json
 import time
 
 from ..board.board_events import events
-from ..board.ending import Ending
-from ..board.session_deadline import SessionDeadline
+from ..board.session_end import Ending, SessionDeadline
 from ..errors import NoBoard
 from ..history import logbook
 from .session_state import CALIBRATING, State, after, logged

@@ -5,8 +5,8 @@ import queue
 import time
 
 from ..board import calibration_request
-from ..board.ending import Ending
 from ..board.raw_repl import PATIENCE, patience_of
+from ..board.session_end import Ending
 from ..history import logbook
 from . import leading, tray_events
 from .board_thread import HEARD, JOINED, LEFT, BoardThread

@@ -18,7 +18,7 @@ from ..guide.board_session import BoardSession
 from ..guide.session_state import CALIBRATING, OVER, State
 from ..narration import log
 from ..terminal import plain
-from . import snapshot, unfinished
+from . import snapshot
 
 TICK_S = 0.1
 ACTIONS = ("look", "start", "continue", "redo", "undo", "stop", "pull", "report")
@@ -151,7 +151,7 @@ class Bench:
         with contextlib.suppress(SixflipError, OSError):
             link = self.open_link()
             try:
-                self.left = unfinished.on_board(link)
+                self.left = calibration_request.unfinished(link)
                 self.found = link.port
             finally:
                 link.close()

@@ -4,11 +4,10 @@ import json
 from ..board import calibration_request, typed_lines
 from ..board.board_events import events
 from ..board.console import Console
-from ..board.ending import Ending
 from ..board.ports import HELP as PORT_HELP
 from ..board.ports import open_link
 from ..board.recording import Recording, RecordingLink
-from ..board.session_deadline import SessionDeadline
+from ..board.session_end import Ending, SessionDeadline
 from ..errors import Interrupted, UsageError
 from ..file_arguments import add_input, add_output
 from ..history import logbook
