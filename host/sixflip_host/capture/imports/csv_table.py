@@ -1,4 +1,4 @@
-"""Somebody else's CSV: its delimiter, its header lines, its columns of numbers and of labels.
+"""Somebody else's CSV as a table: its columns of numbers and of labels, block by block.
 
 What loggers and serial monitors leave in a file and means nothing is passed over and counted:
 comments, the header once more, NUL bytes, a last line without newline. What may mean something
@@ -14,8 +14,8 @@ import numpy as np
 from ...errors import BadFile
 from ..capture_rows import quoted
 from ..unpack import Source
-from . import column_names, csv_head, serial_monitor, text_lines, wall_clock
-from .csv_head import COMMENT, all_numbers, cells_of
+from . import column_names, csv_text, serial_monitor, wall_clock
+from .csv_text import COMMENT, all_numbers, cells_of
 
 DECIMAL_COMMA = re.compile(r"(^|[;\t ])[+-]?\d+,\d+([eE][+-]?\d+)?($|[;\t ])")
 
@@ -113,7 +113,7 @@ class Table:
 
     def _texts(self):
         """(number of the first line, text) of the file, without NULs, with decimal points."""
-        for line, text in text_lines.texts(self.path, self._source, self.said,
+        for line, text in csv_text.texts(self.path, self._source, self.said,
                                            self._first):
             if "\0" in text:
                 self._pass_over("NUL bytes",
@@ -221,7 +221,7 @@ def read_table(path, delimiter="auto", skip=None, names=None, is_header=None):
     is_header   function(list of names) -> bool, to find the line of names by itself
     """
     source = Source(path)
-    lines = csv_head.first_lines(path, source, (skip or 0) + csv_head.SEARCH)
+    lines = csv_text.first_lines(path, source, (skip or 0) + csv_text.SEARCH)
     dress = serial_monitor.told(lines[skip or 0:])
     if dress is not None:
         lines = dress.plain("\n".join(lines)).split("\n")
@@ -229,7 +229,7 @@ def read_table(path, delimiter="auto", skip=None, names=None, is_header=None):
         delimiter = dress.separator if dress.separator != " " else "blank"
         if dress.names:
             skip = (skip or 0) + dress.first
-    head, first, separator = csv_head.find(path, lines, delimiter, skip, is_header)
+    head, first, separator = csv_text.find_header(path, lines, delimiter, skip, is_header)
     found = None if head is None else cells_of(lines[head].lstrip("#"), separator)
     told = head is not None and first < len(lines) and column_names.with_units(
         found, cells_of(lines[first], separator))
