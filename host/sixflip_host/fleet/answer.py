@@ -1,10 +1,19 @@
-"""fleet.json: the population of every kind of board, and what stands out, as JSON."""
+"""What `sixflip fleet` leaves in files: fleet.json, the population of every kind of board and what
+stands out; estimates.parquet, what is known of each board."""
+import contextlib
+import os
+
+import numpy as np
+
+from .. import optional
+from ..errors import BadFile
 from ..json_numbers import finite
-from . import judgement, members
+from . import hierarchy, judgement, members
 
 FORMAT = 1
 KIND = "sixflip fleet"
 DIGITS = 6
+ESTIMATES = "estimates.parquet"
 
 
 def digits(value):
@@ -66,3 +75,43 @@ def judged(rows, keys=None):
         batches = judgement.batches(them)
         found.append((them, batches, judgement.lots(batches)))
     return found
+
+
+def write_estimates(folder, kinds):
+    """Write what the batch and a board's own captures say of each board together as a Parquet
+    file in a folder: a row a board, of every parameter the shrunk estimate and its standard
+    deviation (`NAME_sigma`). [(Members, [Batch], …)], a piece of a batch at a time; BadFile
+    where the disk is full."""
+    pa, pq = optional.need("sixflip fleet", "fleet", "pyarrow", "pyarrow.parquet")
+    names = list(dict.fromkeys(
+        name for _, batches, *_ in kinds for batch in batches
+        for block, _ in batch.populations.values() for name in block.names))
+    schema = pa.schema([*((name, pa.string()) for name in ("batch", "board", "chip")),
+                        *((part, pa.float64()) for name in names
+                          for part in (name, name + "_sigma"))])
+    path = os.path.join(folder, ESTIMATES)
+    try:
+        with pq.ParquetWriter(path + ".part", schema, compression="zstd") as file:
+            for them, batches, *_ in kinds:
+                for batch in batches:
+                    for cut in hierarchy.cuts(len(batch.boards)):
+                        file.write_table(pa.Table.from_pydict(
+                            _estimates(them, batch, cut, names), schema=schema))
+        os.replace(path + ".part", path)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            os.unlink(path + ".part")
+        why = os.strerror(error.errno) if error.errno else str(error)  # Arrow says it at length
+        raise BadFile("%s: cannot be written: %s" % (path, why)) from None
+
+
+def _estimates(them, batch, cut, names):
+    """{column: values} of some boards of a batch; what is not known of them is null."""
+    boards = batch.boards[cut]
+    found = {"board": boards, "batch": batch.lots[cut], "chip": [them.chip] * len(boards)}
+    for block, one in batch.populations.values():
+        values, sigmas = one.shrunk(block.y[cut], block.R[cut], one.belongs[cut])
+        for j, name in enumerate(block.names):
+            found[name], found[name + "_sigma"] = values[:, j], sigmas[:, j]
+    nothing = np.full(len(boards), None)
+    return {**{part: nothing for name in names for part in (name, name + "_sigma")}, **found}

@@ -37,9 +37,9 @@ def add_arguments(parser):
 
 def files(value, args):
     """What is written into the folder, beside the data set."""
-    from ..fleet import board_estimates
+    from ..fleet import answer
     found = [(os.path.join(value, JSON_NAME), (file_kinds.FLEET,)),
-             (os.path.join(value, board_estimates.NAME), (file_kinds.PARQUET,))]
+             (os.path.join(value, answer.ESTIMATES), (file_kinds.PARQUET,))]
     if args.report:
         found.append((os.path.join(value, PAGE_NAME), (file_kinds.PAGE,)))
     if args.randomise:
@@ -51,7 +51,7 @@ def files(value, args):
 
 def run(args):
     """Do what is not done, then judge all; 0 whatever single boards are like."""
-    from ..fleet import analysis, answer, board_estimates, cluster, members, run_fleet
+    from ..fleet import analysis, answer, cluster, members, run_fleet
     if args.workers < 0:
         raise UsageError("--workers is %d, expected 1 or more" % args.workers)
     if args.workers and args.scheduler:
@@ -66,7 +66,7 @@ def run(args):
     os.makedirs(args.output, exist_ok=True)
     atomic_write.write_text(os.path.join(args.output, JSON_NAME),
                             json.dumps(found, indent=1, ensure_ascii=False) + "\n")
-    board_estimates.write(args.output, kinds)
+    answer.write_estimates(args.output, kinds)
     if args.randomise and kinds:
         from ..fleet import randomisation
         for name, text in randomisation.files(*kinds[0][:2]).items():

@@ -8,7 +8,6 @@ import pytest
 from sixflip_host.errors import BadFile
 from sixflip_host.fleet import (
     answer,
-    board_estimates,
     effects,
     hierarchy,
     judgement,
@@ -69,9 +68,9 @@ def test_an_answer_is_json_with_everything_in_it(found):
 
 def test_every_board_has_its_shrunk_estimates_in_a_file(found, tmp_path):
     them, batch = found
-    board_estimates.write(tmp_path, [(them, [batch], [])])
+    answer.write_estimates(tmp_path, [(them, [batch], [])])
     rows = {row["board"]: row for row in pyarrow.parquet.read_table(
-        tmp_path / board_estimates.NAME).to_pylist()}
+        tmp_path / answer.ESTIMATES).to_pylist()}
     assert len(rows) == N
     slopes = np.array([row["accel.thermal_bias.z"] for row in rows.values()])
     block, one = batch.populations["accel.thermal_bias"]
@@ -209,5 +208,5 @@ def test_a_full_disk_is_one_sentence(found, tmp_path, monkeypatch):
         store.Stored(3, (2,))
     monkeypatch.setattr(pyarrow.parquet.ParquetWriter, "write_table", no_space)
     with pytest.raises(BadFile, match="estimates.parquet: cannot be written: No space left"):
-        board_estimates.write(tmp_path, [(*found[:1], [found[1]], [])])
+        answer.write_estimates(tmp_path, [(*found[:1], [found[1]], [])])
     assert list(tmp_path.iterdir()) == []
