@@ -12,7 +12,7 @@ import pytest
 from sixflip_host.board import calibration_request
 from sixflip_host.board.board_events import wait_for
 from sixflip_host.board.event_words import GUIDED_ORDER
-from sixflip_host.emulated import firmware_image
+from sixflip_host.emulated import emulated_pico
 from sixflip_host.errors import NoBoard
 from sixflip_host.verbs import calibrate
 
@@ -24,7 +24,7 @@ collect_ignore = [] if os.environ.get("SIXFLIP_PICO") == "whole" else ["test_pic
 def uf2():
     """Path of the firmware image, or a skip with one line, in CI too."""
     try:
-        return firmware_image.find()
+        return emulated_pico.find_image()
     except NoBoard as error:
         pytest.skip(str(error))
 

