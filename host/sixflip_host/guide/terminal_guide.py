@@ -1,14 +1,21 @@
 """The guided calibration on a terminal: a screen that follows the board, and keys."""
 
 import os
+import select
 import shutil
 import sys
 
 from ..board.event_words import ROUND
 from ..errors import SixflipError
 from ..terminal import console
-from . import keys, screen
+from . import screen
 from .session_state import CALIBRATING, OVER
+
+try:
+    import termios
+    import tty
+except ImportError:  # Windows: calibrate falls back to lines
+    termios = None
 
 TICK_S = 0.1
 SMALLEST = (80, 24)
@@ -16,7 +23,7 @@ SMALLEST = (80, 24)
 
 def possible():
     """Whether this terminal can show it: a person's, large enough, that moves its cursor."""
-    if not (sys.stdout.isatty() and keys.possible()):
+    if not (sys.stdout.isatty() and keys_possible()):
         return False
     if os.environ.get("TERM", "dumb") in ("dumb", "unknown", ""):
         return False
@@ -31,6 +38,53 @@ def unicode_shown():
         return True
     except (UnicodeError, LookupError):
         return False
+
+
+def keys_possible(stream=None):
+    """Whether keys can be read: a terminal, on a system that has termios."""
+    stream = sys.stdin if stream is None else stream
+    return termios is not None and stream is not None and stream.isatty()
+
+
+class Keys:
+    """Context manager: the terminal gives every key at once, without an Enter; Ctrl-C stays
+    Ctrl-C."""
+
+    def __init__(self, stream=None):
+        self.stream = sys.stdin if stream is None else stream
+        self.before = None
+
+    def __enter__(self):
+        self.descriptor = self.stream.fileno()
+        self.before = termios.tcgetattr(self.descriptor)
+        tty.setcbreak(self.descriptor)
+        return self
+
+    def __exit__(self, *error):
+        termios.tcsetattr(self.descriptor, termios.TCSADRAIN, self.before)
+
+    def read(self):
+        """The keys pressed since; "esc" and "enter" by name, arrows and the like not at all."""
+        found = []
+        while select.select([self.descriptor], [], [], 0)[0]:
+            data = os.read(self.descriptor, 64)
+            if not data:
+                break
+            found += key_names(data)
+        return found
+
+
+def key_names(data):
+    """Names of the keys in the bytes of one read."""
+    if data[:1] == b"\x1b":
+        return ["esc"] if len(data) == 1 else []
+    names = []
+    for letter in data.decode("ascii", "ignore"):
+        if letter in "\r\n":
+            names.append("enter")
+        elif letter.isprintable():
+            names.append(letter)
+    return names
 
 
 class Guide:
@@ -85,7 +139,7 @@ class Guide:
         from rich.text import Text
         ascii_only = not unicode_shown()
         shown = console()
-        with keys.Keys() as pressed, Live(console=shown, screen=True, auto_refresh=False,
+        with Keys() as pressed, Live(console=shown, screen=True, auto_refresh=False,
                                           vertical_overflow="crop") as live:
             before = None
             while not self.leave:

@@ -7,9 +7,8 @@ import pytest
 from sixflip_host.board import firmware_update
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.capture import capture_file
-from sixflip_host.guide import keys
 from sixflip_host.guide.session_state import State, after
-from sixflip_host.guide.terminal_guide import Guide
+from sixflip_host.guide.terminal_guide import Guide, key_names
 from sixflip_host.virtual.virtual_board import VirtualBoard
 from tests.worlds.board_session import unlabelled
 from tests.worlds.micropython_tier import SESSION
@@ -166,4 +165,4 @@ def test_what_keys_mean(events, pressed, asked, leave):
     (b"q", ["q"]), (b"\r", ["enter"]), (b"\x1b", ["esc"]), (b"\x1b[A", []), (b"r1", ["r", "1"]),
     (b"\x00\xff", [])])
 def test_names_of_keys(data, names):
-    assert keys.named(data) == names
+    assert key_names(data) == names
