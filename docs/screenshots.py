@@ -26,7 +26,7 @@ from selenium.webdriver.chrome.service import Service
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.guide import screen
 from sixflip_host.guide.board_session import BoardSession
-from sixflip_host.virtual.asked_hand import AskedHand
+from sixflip_host.virtual.board_hands import AskedHand
 from sixflip_host.virtual.virtual_board import VirtualBoard
 
 PICTURES = Path(__file__).resolve().parent / "pictures"

@@ -14,7 +14,7 @@ from sixflip.record import correction_record
 from sixflip_host import cli
 from sixflip_host.board import firmware_update
 from sixflip_host.board.board_link import MpremoteLink
-from sixflip_host.virtual.jig_hand import WAYS, JigHand
+from sixflip_host.virtual.board_hands import WAYS, JigHand
 from sixflip_host.virtual.virtual_board import VirtualBoard
 from tests.worlds.dds_loopback import LOOPBACK
 from tests.worlds.micropython_tier import SESSION

@@ -148,13 +148,8 @@ def judge(pulled, spec, counts, corrected, hz, folder):
 
 
 def plot(path, rows):
-    """The picture of raw against corrected, where matplotlib is installed."""
-    try:
-        from ..virtual.demo_plot import draw
-    except ImportError:
-        print("no plot: matplotlib is not installed")
-        return
-    draw(path, rows)
+    """The picture of raw against corrected."""
+    demo_truth.draw(path, rows)
     print(plain(path))
 
 

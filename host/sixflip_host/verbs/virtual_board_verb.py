@@ -74,8 +74,7 @@ def more_of_it(given, session):
 def boards_of(args, images, spec):
     """The VirtualBoards of a command line: one that is asked, several in one jig, or one that
     does as it was planned."""
-    from ..virtual.asked_hand import AskedHand
-    from ..virtual.jig_hand import WAYS, JigHand
+    from ..virtual.board_hands import WAYS, AskedHand, JigHand
     from ..virtual.virtual_board import VirtualBoard
     if len(images) == 1:
         hand = None if spec["order"] else AskedHand()

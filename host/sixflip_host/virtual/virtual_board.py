@@ -36,7 +36,7 @@ class VirtualBoard:
     heapsize    of MicroPython, the simulated world's own needs included
     wiring      {"scl_pin": 5, "button_pin": 15, "button_held": true}, as far as it matters
     speed       virtual seconds a real second; None: as fast as the processor
-    hand        an asked_hand.AskedHand that does what the board asks for; None: the world's
+    hand        a board_hands.AskedHand that does what the board asks for; None: the world's
                 operator does what was planned
     """
 

@@ -9,7 +9,7 @@ from sixflip_host.board import calibration_request, firmware_update
 from sixflip_host.board.board_events import wait_for
 from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.verbs import calibrate
-from sixflip_host.virtual.asked_hand import AskedHand
+from sixflip_host.virtual.board_hands import AskedHand
 from sixflip_host.virtual.virtual_board import VirtualBoard
 
 WORLD = {"sensor": "mpu6050", "seed": 3, "tilt_deg": 2.0, "order": []}

@@ -2,7 +2,7 @@
 
 import json
 
-from sixflip_host.virtual.jig_hand import WAYS, JigHand
+from sixflip_host.virtual.board_hands import WAYS, JigHand
 from sixflip_sim.operator import LOOKS_S, REACTS_S, Operator
 
 WINDOW_S = 0.25

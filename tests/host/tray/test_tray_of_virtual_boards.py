@@ -12,7 +12,7 @@ from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.errors import NoBoard, UsageError
 from sixflip_host.history import store
 from sixflip_host.tray import leading, tray_guide
-from sixflip_host.virtual.jig_hand import WAYS, JigHand
+from sixflip_host.virtual.board_hands import WAYS, JigHand
 from sixflip_host.virtual.virtual_board import VirtualBoard
 from tests.worlds.terminal import Terminal
 

@@ -16,7 +16,7 @@ from sixflip_host.errors import NoBoard
 from sixflip_host.tray import leading
 from sixflip_host.ui import tray_bench
 from sixflip_host.ui.tray_bench import TrayBench
-from sixflip_host.virtual.jig_hand import WAYS, JigHand
+from sixflip_host.virtual.board_hands import WAYS, JigHand
 from sixflip_host.virtual.virtual_board import VirtualBoard
 from tests.worlds.tray_rig import Rig, ScriptedBoard
 

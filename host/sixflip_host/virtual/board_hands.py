@@ -1,7 +1,10 @@
-"""The hand of several virtual boards in one jig: it turns all of them as they want it together.
+"""The hands of virtual boards: each asks the simulated operator for the pose that the board wants.
 
-It hears what the boards say as `sixflip calibrate --all` does, and by the same rules; every
-board is then brought to its own pose, which is the jig's through the way it lies in the jig.
+The hand of one board reads what a person at the board's terminal reads, and lets the box lie
+while it is measured. Several boards in one jig have one hand, which turns all of them as they
+want it together: it hears what the boards say as `sixflip calibrate --all` does, and by the same
+rules; every board is then brought to its own pose, which is the jig's through the way it lies in
+the jig.
 """
 
 import json
@@ -10,13 +13,58 @@ import time
 from dataclasses import replace
 
 from ..board import board_events
+from ..guide.board_values import poses
+from ..guide.next_step import following
 from ..tray import tray_events
 from ..tray.jig import AS_THE_JIG, jig_to_own, learned
 from ..tray.member import Member
 from ..tray.tray_value import tray
 
-LONGEST = 4096      # bytes of a line
-FIRST = "Z+a"       # how the jig lies in the beginning
+LEAN = (0.6, 0.64, 0.48)    # 50 degrees off the nearest face
+LONGEST = 4096              # bytes of a line
+FIRST = "Z+a"               # how the jig lies in the beginning
+
+
+class Heard:
+    """events(data) of every byte that a board sends: those whose lines are whole now."""
+
+    def __init__(self):
+        self.line = b""
+
+    def events(self, data):
+        *lines, self.line = (self.line + data).split(b"\n")
+        self.line = self.line[-LONGEST:]
+        found = (board_events.parse(line.decode("utf-8", "replace")) for line in lines)
+        return [event for event in found if event]
+
+
+class AskedHand:
+    """hear() every byte the board sends."""
+
+    def __init__(self):
+        self.heard = Heard()
+        self.wanted = ""
+
+    def hear(self, data):
+        """The commands for the simulated operator, a line of JSON each."""
+        return [self.command() for event in self.heard.events(data) if self.now(event)]
+
+    def now(self, event):
+        """Takes in what is wanted; whether the board waits for it with the box at rest."""
+        if isinstance(event.get("missing"), list):
+            missing = poses(event["missing"])
+            self.wanted = missing[0] if event.get("plan") and missing else following(missing)
+        elif "next" in event:
+            self.wanted = next(iter(poses(event["next"])), "")
+        return event["event"] == "state" and event.get("state") == "moving" and bool(self.wanted)
+
+    def command(self):
+        command = {"pose": self.wanted}
+        if self.wanted[0] == "L":
+            k = int(self.wanted[1:])
+            command["up"] = [LEAN[(axis + k) % 3] * (-1) ** (k >> axis) for axis in range(3)]
+        return json.dumps(command).encode() + b"\n"
+
 
 
 def mounted(pairs):
@@ -86,7 +134,7 @@ class JigHand:
 
 
 class JigHandOf:
-    """hear() every byte that one board sends, as asked_hand.AskedHand does.
+    """hear() every byte that one board sends, as AskedHand does.
 
     With every window that a board in its session tells of, its box is asked for into the pose
     that the jig is to have now; whether it lies so already, or is to be left alone yet, its own
@@ -95,17 +143,13 @@ class JigHandOf:
 
     def __init__(self, hand, name):
         self.hand, self.name = hand, name
-        self.line = b""
+        self.heard = Heard()
 
     def hear(self, data):
         """The commands for the simulated operator, a line of JSON each."""
         commands = []
-        *lines, self.line = (self.line + data).split(b"\n")
-        self.line = self.line[-LONGEST:]
-        for line in lines:
-            event = board_events.parse(line.decode("utf-8", "replace"))
-            if event:
-                pose = self.hand.hear(self.name, event)
-                if event["event"] == "state":
-                    commands.append(json.dumps({"pose": pose, "anew": False}).encode() + b"\n")
+        for event in self.heard.events(data):
+            pose = self.hand.hear(self.name, event)
+            if event["event"] == "state":
+                commands.append(json.dumps({"pose": pose, "anew": False}).encode() + b"\n")
         return commands
