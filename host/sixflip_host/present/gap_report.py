@@ -5,7 +5,7 @@ from xml.sax.saxutils import quoteattr
 
 from .. import atomic_write
 from ..errors import UsageError
-from . import gap_pictures, gap_words, simulator_pictures, simulator_words
+from . import gap_pictures, gap_words, simulator_report
 from .page import Page
 
 PAGE = "index.html"
@@ -36,8 +36,8 @@ def draw(folder, diagnosis, loops):
     compared = next((x for x in diagnosis.comparisons if x.fits), None)
     if compared is not None:
         picture("simulator_traces", "Real, simulated, and simulated with what was found",
-                simulator_pictures.traces, compared)
-        picture("simulator_spectra", "What is left, by frequency", simulator_pictures.spectra,
+                simulator_report.traces, compared)
+        picture("simulator_spectra", "What is left, by frequency", simulator_report.spectra,
                 compared)
     picture("where", "Where the gap lies", gap_pictures.heat_map, diagnosis)
     for kind, gap in diagnosis.gaps.items():
@@ -65,7 +65,7 @@ def sections(page, answer, drawn):
     for remark in answer["remarks"]:
         page.paragraph(remark, note=True)
     if "simulator" in answer:
-        simulator_sections(page, answer["simulator"])
+        simulator_report.sections(page, answer["simulator"])
     if answer["causes"]:
         page.heading("Which effect")
         page.table(gap_words.WHICH, [gap_words.row(c) for c in answer["causes"]])
@@ -86,33 +86,6 @@ def sections(page, answer, drawn):
         page.heading("What could not be seen")
         page.table(("effect", "sensor", "why"), [
             (u["effect"], gap_words.SENSOR[u["sensor"]], u["reason"]) for u in answer["unseen"]])
-
-
-def simulator_sections(page, simulator):
-    """The layers of the comparison with a simulator, for its author."""
-    for log in simulator["logs"]:
-        for remark in log["remarks"]:
-            page.paragraph(remark, note=True)
-    page.heading("The simulator's conventions")
-    if simulator["conventions"]:
-        page.table(simulator_words.CONVENTIONS, simulator_words.convention_rows(simulator))
-    else:
-        page.paragraph("None is other than a sensor's, as far as these logs can show.")
-    page.heading("Parameters side by side")
-    page.table(simulator_words.PARAMETERS, simulator_words.parameter_rows(simulator, True))
-    if simulator["effects"]:
-        page.heading("Effects by the difference of both logs")
-        page.table(simulator_words.EFFECTS, simulator_words.effect_rows(simulator))
-    page.heading("What it does to a robot")
-    for line in simulator_words.lines(simulator):
-        page.paragraph(line)
-    settings = simulator_words.settings(simulator)
-    if settings:
-        page.heading("Settings to paste")
-        page.table(("setting", "value"), settings)
-        page.paragraph("As code or in a simulator's own format: sixflip diagnose with --json into "
-                       "a file, then sixflip export FILE --to numpy, gz, mujoco, genesis, "
-                       "isaaclab, matlab or kalibr.", note=True)
 
 
 def write_junit(path, checks):

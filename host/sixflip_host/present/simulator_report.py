@@ -1,10 +1,11 @@
-"""The pictures of a comparison with a simulator; both take a Comparison of one motion and write a
-PNG."""
+"""The part of a gap's page that compares with a simulator: its pictures, which take a Comparison
+of one motion, and its sections."""
 import numpy as np
 from scipy.signal import welch
 
 from ..diagnosis.simulator import pairing
 from ..figures import COLOURS, canvas, save
+from . import simulator_words
 
 SHOWN_S = 12.0  # of a log, in which a move can still be seen
 UNIT = {"accel": "m/s²", "gyro": "rad/s"}
@@ -67,3 +68,30 @@ def spectra(comparison, path):
         ax.set_ylabel("%s/√Hz" % UNIT[kind])
         ax.legend(fontsize=8)
     save(figure, path)
+
+
+def sections(page, simulator):
+    """The layers of the comparison with a simulator, for its author."""
+    for log in simulator["logs"]:
+        for remark in log["remarks"]:
+            page.paragraph(remark, note=True)
+    page.heading("The simulator's conventions")
+    if simulator["conventions"]:
+        page.table(simulator_words.CONVENTIONS, simulator_words.convention_rows(simulator))
+    else:
+        page.paragraph("None is other than a sensor's, as far as these logs can show.")
+    page.heading("Parameters side by side")
+    page.table(simulator_words.PARAMETERS, simulator_words.parameter_rows(simulator, True))
+    if simulator["effects"]:
+        page.heading("Effects by the difference of both logs")
+        page.table(simulator_words.EFFECTS, simulator_words.effect_rows(simulator))
+    page.heading("What it does to a robot")
+    for line in simulator_words.lines(simulator):
+        page.paragraph(line)
+    settings = simulator_words.settings(simulator)
+    if settings:
+        page.heading("Settings to paste")
+        page.table(("setting", "value"), settings)
+        page.paragraph("As code or in a simulator's own format: sixflip diagnose with --json into "
+                       "a file, then sixflip export FILE --to numpy, gz, mujoco, genesis, "
+                       "isaaclab, matlab or kalibr.", note=True)
