@@ -7,7 +7,7 @@ import numpy as np
 
 from .. import progress
 from ..errors import UsageError
-from ..papers import heading_turns, paper_tables, repeated_calibrations
+from ..papers import li_tables
 from ..papers.corridor.claims import claim
 from ..terminal import console, plain, styled, table
 from . import reproduce_map
@@ -60,14 +60,14 @@ def run(args):
 
 def table_3(seed):
     """(rows of Table 3 as dictionaries, claims)."""
-    runs = repeated_calibrations.experiment(seed, repeated_calibrations.PLACING_DEG)
-    flush = repeated_calibrations.experiment(seed, 0.0)
+    runs = li_tables.repeated_calibrations(seed, li_tables.PLACING_DEG)
+    flush = li_tables.repeated_calibrations(seed, 0.0)
     mean, sd, exact = runs.mean(axis=0), runs.std(axis=0, ddof=1), flush.std(axis=0, ddof=1)
-    truth = np.array([row[1] for row in paper_tables.TABLE_3])
-    paper = np.array([row[2] for row in paper_tables.TABLE_3])
+    truth = np.array([row[1] for row in li_tables.TABLE_3])
+    paper = np.array([row[2] for row in li_tables.TABLE_3])
     rows = [{"parameter": name, "paper_mean": p, "paper_sd": s, "mean": m, "sd": o,
              "sd_flush": e} for (name, p, s), m, o, e in zip(
-                 paper_tables.TABLE_3, mean.tolist(), sd.tolist(), exact.tolist())]
+                 li_tables.TABLE_3, mean.tolist(), sd.tolist(), exact.tolist())]
     off = np.abs(mean - truth) / (sd / np.sqrt(len(runs)))
     claims = [claim("Table 3: every mean within %g standard errors of the sensor's true value"
                     % STANDARD_ERRORS, "%.1f at most" % off.max(), off.max() <= STANDARD_ERRORS)]
@@ -81,9 +81,9 @@ def table_3(seed):
 
 def table_4(sessions, seed):
     """(rows of Table 4 as dictionaries, claims)."""
-    before, after = heading_turns.experiment(sessions, 1000 * seed)
+    before, after = li_tables.heading_turns(sessions, 1000 * seed)
     rows, claims = [], []
-    for k, (turn, paper_before, paper_after) in enumerate(paper_tables.TABLE_4):
+    for k, (turn, paper_before, paper_after) in enumerate(li_tables.TABLE_4):
         was, now = np.abs(before[:, k] - turn), np.abs(after[:, k] - turn)
         rows.append({
             "turn_deg": turn, "paper_before": paper_before, "paper_after": paper_after,
@@ -91,7 +91,7 @@ def table_4(sessions, seed):
             "before_mean_error": float(was.mean()), "after_median_error": float(np.median(now)),
             "after_95_error": float(np.quantile(now, 0.95)), "repetitions": int(now.size)})
     was = float(np.mean([row["before_mean_error"] for row in rows]))
-    theirs = np.mean([abs(row[1] - row[0]) for row in paper_tables.TABLE_4])
+    theirs = np.mean([abs(row[1] - row[0]) for row in li_tables.TABLE_4])
     claims.append(claim("Table 4: before calibration the mean error is the paper's size, %g to "
                         "%g° (the paper's four: %.1f°)" % (*BEFORE, theirs), "%.2f°" % was,
                         BEFORE[0] <= was <= BEFORE[1]))
@@ -108,7 +108,7 @@ def show(found):
     """Both tables and the claims on the terminal."""
     out = console()
     out.print(table(
-        "Table 3: %d calibrations of one sensor" % repeated_calibrations.CALIBRATIONS,
+        "Table 3: %d calibrations of one sensor" % li_tables.CALIBRATIONS,
         ["parameter", "paper mean", "sd", "ours mean", "sd", "sd, flush"],
         [[row["parameter"], *("%.2f" % row[key] for key in ("paper_mean", "paper_sd")),
           *("%.3f" % row[key] for key in ("mean", "sd", "sd_flush"))]
@@ -135,8 +135,8 @@ def _about_table_3(rows):
     return ("  ×10⁻², v in m/s²; simulated: a GY-85 whose true parameters are the paper's means, "
             "table tilted by %g°, %g° of hand error in each flip, boxes laid down to %g° (flush: "
             "exactly); our sd is below the paper's in %d of 12, flush in %d" % (
-                repeated_calibrations.TILT_DEG, repeated_calibrations.HAND_DEG,
-                repeated_calibrations.PLACING_DEG, *better))
+                li_tables.TILT_DEG, li_tables.HAND_DEG,
+                li_tables.PLACING_DEG, *better))
 
 
 def _about_table_4(sessions, repetitions):
@@ -144,4 +144,4 @@ def _about_table_4(sessions, repetitions):
             "mean before, median and 95 %% after, of %d calibrations of as many gyros, %d "
             "repetitions of each turn, each counted by itself (those of one calibration share "
             "its error); %g° of hand error in each flip" % (
-                sessions, repetitions, heading_turns.HAND_DEG))
+                sessions, repetitions, li_tables.HAND_DEG))

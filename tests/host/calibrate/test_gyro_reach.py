@@ -2,7 +2,7 @@
 
 import math
 
-from sixflip_host.simulation.simulated_capture import capture
+from sixflip_host.simulation.simulated_session import capture_of
 from sixflip_sim import worlds
 from tests.studies.bench import gyro as bench
 
@@ -21,7 +21,7 @@ def test_a_claim_that_does_not_hold_is_exit_1(monkeypatch, capsys):
 
 
 def test_the_bound_is_what_two_flips_an_axis_leave():
-    taken = capture(worlds.make({"seed": 4, "tilt_deg": 1.0}))
+    taken = capture_of(worlds.make({"seed": 4, "tilt_deg": 1.0}))
     scale, bias = bench.bound(taken.placements(), taken.moves(), taken.meta["gyro_lsb_per_dps"])
     for one in scale:
         assert abs(one - 0.4 / 180 / math.sqrt(2)) < 1e-5
@@ -35,7 +35,7 @@ def test_the_bound_is_what_two_flips_an_axis_leave():
 
 def test_a_move_of_n_samples_spans_n_intervals():
     # one interval too many is 0.4 % of scale in a move of 2.5 s
-    taken = capture(worlds.make({"seed": 4}))
+    taken = capture_of(worlds.make({"seed": 4}))
     assert len(taken.moves()) == 11
     for move in taken.moves():
         assert move.duration_us == 10000 * move.n

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sixflip_host import cli
-from sixflip_host.papers import heading_turns, paper_tables
+from sixflip_host.papers import li_tables
 from sixflip_host.verbs import reproduce
 
 
@@ -21,20 +21,20 @@ def found():
 
 def test_the_papers_sensor_gives_the_papers_parameters():
     from sixflip.accelerometer.scale_form import scale_form
-    A, b = paper_tables.sensor()
+    A, b = li_tables.sensor()
     C = np.linalg.inv(A)
     P = np.zeros((4, 4))
     P[:3, :3], P[3, :3], P[3, 3] = C.T, -C @ b, 1
     T, scale, v, _ = scale_form(P.tolist())
-    want = [mean for _, mean, _ in paper_tables.TABLE_3]
-    assert np.allclose(paper_tables.parameters(T, scale, v), want, atol=1e-9)
+    want = [mean for _, mean, _ in li_tables.TABLE_3]
+    assert np.allclose(li_tables.parameters(T, scale, v), want, atol=1e-9)
 
 
 def test_t_is_laid_out_as_in_the_paper():
     # Li Eq. 5: first row 1, -a_yz, a_zy
     T = [[1, 2, 3], [4, 1, 5], [6, 7, 1]]
-    names = [name for name, _, _ in paper_tables.TABLE_3]
-    got = dict(zip(names, paper_tables.parameters(T, [1, 1, 1], [0, 0, 0])))
+    names = [name for name, _, _ in li_tables.TABLE_3]
+    got = dict(zip(names, li_tables.parameters(T, [1, 1, 1], [0, 0, 0])))
     assert [got[n] for n in ("β_yz", "β_zy", "β_xz", "β_zx", "β_xy", "β_yx")] == [
         -200, 300, 400, -500, -600, 700]
 
@@ -60,18 +60,18 @@ def test_the_error_after_is_what_the_hand_leaves(found):
 
 def test_table_3_repeats_better_than_the_paper_where_the_hand_allows(found):
     rows = {row["parameter"]: row for row in found["table_3"]}
-    assert list(rows) == [name for name, _, _ in paper_tables.TABLE_3]
+    assert list(rows) == [name for name, _, _ in li_tables.TABLE_3]
     for name in ("β_xz", "Scale x", "Scale y", "Scale z", "v z"):
         assert rows[name]["sd"] < 0.2 * rows[name]["paper_sd"]
     assert all(row["sd_flush"] < row["sd"] + 0.005 for row in rows.values())
 
 
 def test_without_the_bias_refreshed_the_turns_are_worse():
-    record, truth = heading_turns.calibrated(5)
-    taken, spans = heading_turns.floor(truth, 5, [90.0, -90.0, 90.0])
+    record, truth = li_tables.calibrated(5)
+    taken, spans = li_tables.floor(truth, 5, [90.0, -90.0, 90.0])
     turned = np.array([90.0, -90.0, 90.0])
-    fresh = np.abs(heading_turns.read(taken, spans, record, True) - turned)
-    stale = np.abs(heading_turns.read(taken, spans, record, False) - turned)
+    fresh = np.abs(li_tables.read(taken, spans, record, True) - turned)
+    stale = np.abs(li_tables.read(taken, spans, record, False) - turned)
     assert fresh.max() < stale.max()
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from sixflip.accelerometer import solver as accelerometer
 from sixflip.gyro import solver as gyroscope
 from sixflip.poses.faces import AXIS, face_of_code
-from sixflip_host.simulation.simulated_capture import capture
+from sixflip_host.simulation.simulated_session import capture_of
 from sixflip_sim import worlds
 
 HAND_DEG = 0.4
@@ -28,7 +28,7 @@ def session(sensor, seed):
     """(matrix error, bias error in deg/s, bound's standard errors) of one session."""
     world = worlds.make({"sensor": sensor, "seed": seed, "tilt_deg": TILT_DEG,
                          "tilt_dir_deg": 37.0 * seed, "flip_error_deg": HAND_DEG})
-    taken = capture(world)
+    taken = capture_of(world)
     placements, moves = taken.placements(), taken.moves()
     accel = accelerometer.solve(placements, taken.meta["accel_lsb_per_g"])
     found = gyroscope.solve(placements, moves, taken.meta["gyro_lsb_per_dps"], accel.P)

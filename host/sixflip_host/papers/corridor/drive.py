@@ -18,8 +18,8 @@ from sixflip_sim.effects import typical
 
 from ...experiment import noise_arrays
 from ...simulation import simulator
-from ...simulation.simulated_capture import capture
-from .. import heading_turns
+from ...simulation.simulated_session import capture_of
+from .. import li_tables
 from . import floor_plan
 
 REST_S = 8.0
@@ -118,13 +118,13 @@ class Route:
 def make(corridor, seed):
     """The Drive of a gyro; the seed is that of the part, its noise, the wheels and the lidar."""
     route = Route(corridor)
-    record, truth = heading_turns.calibrated(seed)
+    record, truth = li_tables.calibrated(seed)
     counts = _readings(route, truth, seed)
     t_s, scan = _updates(route)
     pose, leg, metres = route.at(t_s)
     scale = 1.0 + WHEELS * noise.gauss(noise.key(seed, _WHEELS), 0)
-    yaw = {"raw": _yaw(counts, heading_turns.nominal(counts.meta), False, t_s),
-           "rest": _yaw(counts, heading_turns.nominal(counts.meta), True, t_s),
+    yaw = {"raw": _yaw(counts, li_tables.nominal(counts.meta), False, t_s),
+           "rest": _yaw(counts, li_tables.nominal(counts.meta), True, t_s),
            "Sixflip": _yaw(counts, record, True, t_s)}
     return Drive(corridor, t_s, pose, scale * metres, _scans(corridor, route, t_s, scan, seed),
                  leg, yaw)
@@ -134,10 +134,10 @@ def _readings(route, truth, seed):
     """Capture of the gyro's counts over the drive, its bias moved by the switching-on."""
     stream = noise.key(seed, _SWITCH_ON)
     bias = [math.degrees(truth.gyro_bias[k])
-            + heading_turns.SWITCH_ON_DPS * noise.uniform(stream, k) for k in range(3)]
+            + li_tables.SWITCH_ON_DPS * noise.uniform(stream, k) for k in range(3)]
     floor = typical.FLOOR["itg3205"]
     world = worlds.make({
-        "sensor": heading_turns.SENSOR, "seed": seed + 700000, "order": [], "first_rest_s": 0.0,
+        "sensor": li_tables.SENSOR, "seed": seed + 700000, "order": [], "first_rest_s": 0.0,
         "accel_matrix": truth.accel_matrix, "gyro_matrix": truth.gyro_matrix,
         "accel_bias_mg": [1e3 * b / STANDARD_G for b in truth.accel_bias], "gyro_bias_dps": bias,
         "effects": [{"effect": "drift", "sensor": "gyro", "x": floor, "y": floor, "z": floor,
@@ -148,7 +148,7 @@ def _readings(route, truth, seed):
         else:
             world.scene.rest(int(seconds * 1e6))
     simulator.vectorise(world.model)
-    return capture(world)
+    return capture_of(world)
 
 
 def _updates(route):
@@ -189,8 +189,8 @@ def _yaw(counts, record, at_rest, t_s):
     if at_rest:
         still = counts.t_us < REST_S * 1e6
         correction.set_gyro_bias(counts.gyro[still].mean(axis=0).tolist())
-    a = heading_turns._affine(counts.accel, correction.accel)
-    w = heading_turns._affine(counts.gyro, correction.gyro)
+    a = li_tables.affine(counts.accel, correction.accel)
+    w = li_tables.affine(counts.gyro, correction.gyro)
     dt = np.diff(counts.t_us, prepend=counts.t_us[:1]) * 1e-6
     yaw = [heading.step(*sample)[2] for sample in zip(a.tolist(), w.tolist(), dt.tolist())]
     return np.interp(t_s, counts.t_us * 1e-6, yaw)
