@@ -7,7 +7,7 @@ from .. import atomic_write, file_kinds, progress
 from ..capture import recordings
 from ..errors import BadFile, UsageError
 from ..file_arguments import add_output
-from ..papers.corridor import botlab, claims, engine, experiment, measures, picture
+from ..papers.corridor import botlab, claims, engine, experiment
 from ..terminal import console, plain, styled, table
 
 GYROS, MOST = 10, 100
@@ -74,7 +74,7 @@ def run(args):
             found["claims"] += claims.real(found["recording"])
     if args.keep:
         args.keep.mkdir(parents=True, exist_ok=True)
-        picture.draw(args.keep / PICTURE, results[0])
+        experiment.draw(args.keep / PICTURE, results[0])
         atomic_write.write_text(args.keep / TABLE, json.dumps(found, ensure_ascii=False) + "\n")
     if args.json:
         print(json.dumps(found, ensure_ascii=False))
@@ -98,7 +98,7 @@ def show(found, keep):
     out.print(plain("  at the end; the worst of four corners; from the way round; from the real "
                     "ones; farther than %g m; within %g m of the start. raw: datasheet numbers; "
                     "rest: and the bias of the first rest; Sixflip: the record of a session of "
-                    "six flips and that bias" % (measures.OFF_M, measures.CLOSES_M)))
+                    "six flips and that bias" % (experiment.OFF_M, experiment.CLOSES_M)))
     out.print(plain(HONEST))
     out.print()
     if found["recording"]:

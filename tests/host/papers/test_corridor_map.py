@@ -17,7 +17,6 @@ from sixflip_host.papers.corridor import (
     engine,
     experiment,
     floor_plan,
-    measures,
     rawlog,
     slam,
 )
@@ -77,7 +76,7 @@ def test_the_robot_comes_round():
 
 def test_without_slam_the_path_is_the_odometry(small):
     for reading in drive.READINGS:
-        path = measures.placed(small.made, small.maps[PLAIN.name, reading].path)
+        path = experiment.placed(small.made, small.maps[PLAIN.name, reading].path)
         odometry = small.made.odometry(reading)
         assert np.abs(path[:, :2] - odometry[:, :2]).max() < 2e-3
         assert np.abs(floor_plan.wrapped(path[:, 2] - odometry[:, 2])).max() < 2e-3
@@ -86,7 +85,7 @@ def test_without_slam_the_path_is_the_odometry(small):
 def test_a_true_odometry_draws_the_walls_where_they_are(program, small):
     made = small.made
     found = slam.run(program, PLAIN, made.pose, made.scans, made.t_s, reach_m=drive.REACH_M)
-    quality = measures.of(made, found)
+    quality = experiment.measured(made, found)
     assert quality.wall_m < slam.RESOLUTION_M and quality.corner_deg < 0.1
     assert quality.closure_m < 2e-3 and quality.closes
 
@@ -132,7 +131,7 @@ def test_the_command_prints_checks_and_keeps(program, monkeypatch, tmp_path, cap
 def result(corner, closure):
     """A Result of one gyro whose maps are all as good as said, {reading: number}."""
     return experiment.Result(1, {
-        (step.name, reading): measures.Quality(0.0, corner[reading], closure[reading], 0.1, 0.1)
+        (step.name, reading): experiment.Quality(0.0, corner[reading], closure[reading], 0.1, 0.1)
         for step in slam.LADDER for reading in drive.READINGS})
 
 

@@ -10,7 +10,7 @@ from . import botlab, drive, slam
 # Degrees a corner before calibration: Li 2019, section 4.3, "about ±1° to ±3°".
 BEFORE = (1.0, 3.0)
 # What is claimed of the calibrated gyro. The limits were set before any map was made; what a
-# corner, a closure and a closed loop are was settled after trial runs (measures.py).
+# corner, a closure and a closed loop are was settled after trial runs (experiment.py).
 CORNER_DEG, HALF = 0.8, 0.5
 CLOSURE_M, BEFORE_CLOSURE_M = 0.7, 1.0
 RAW_CLOSES, SIXFLIP_CLOSES = 0.2, 0.8
