@@ -1,0 +1,162 @@
+"""The times of an imported table: told by name and value, put in order, or asked for."""
+
+import datetime
+
+import numpy as np
+import pytest
+
+from tests.worlds.imported_text import (
+    COUNTS,
+    ROWS,
+    SECONDS,
+    imported,
+    lines,
+    refused,
+    table,
+)
+
+
+def test_matlabs_writetable_has_the_months_name_in_its_times(tmp_path, capsys):
+    texts = [table(["31-%s-2024 12:00:%06.3f" % (month, t) for t in SECONDS], "Timestamp")
+             for month in ("Feb", "May")]
+    assert "31-Feb-2024" in refused(tmp_path, capsys, texts[0], "--accel-lsb", "16384")
+    capture, _ = imported(tmp_path, capsys, texts[1], "--accel-lsb", "16384")
+    assert capture.t_us[-1] - capture.t_us[0] == pytest.approx(3_990_000, abs=1)
+
+
+@pytest.mark.parametrize("head, times", [
+    ("t", ["%.3f" % t for t in SECONDS]), ("time", ["%d" % round(1e3 * t) for t in SECONDS]),
+    ("timestamp", ["%d" % round(1e6 * t) for t in SECONDS]),
+    ("%time", ["%d" % (1.6e18 + 1e9 * t) for t in SECONDS]),
+    ("timestamp_ms", ["%d" % round(1e3 * t) for t in SECONDS]),
+    ("header.stamp", ["%.2f" % (1.6e9 + t) for t in SECONDS]),
+    ("Time (s)", ["%.4e" % t for t in SECONDS]),
+    ("micros", ["%d" % round(1e6 * t) for t in SECONDS])])
+def test_times_by_name_and_value(tmp_path, capsys, head, times):
+    capture, said = imported(tmp_path, capsys, table(times, head))
+    assert capture.meta["rate_hz"] == pytest.approx(100, rel=1e-3)
+    assert capture.meta["rate"] == "measured" and "times are in the column " + head in said
+    assert np.abs(np.diff(capture.t_us) - 10000).max() < 2
+
+
+def test_times_that_two_units_would_do_for_are_asked_for(tmp_path, capsys):
+    said = refused(tmp_path, capsys, table([200 * k for k in range(ROWS)]))
+    assert "expected --time-unit with one of us (5000 Hz), ms (5 Hz)" in said
+    said = refused(tmp_path, capsys, table(range(ROWS)))
+    assert "t counts by 1, which may be samples" in said
+
+
+def test_the_rate_that_was_set_is_stated_and_not_measured(tmp_path, capsys):
+    capture, _ = imported(tmp_path, capsys, table(["%.3f" % t for t in SECONDS]), "--rate", "99",
+                          "--time-unit", "s")
+    assert (capture.meta["rate_hz"], capture.meta["rate"]) == (99, "stated")
+
+
+def test_a_rate_that_stands_before_the_names(tmp_path, capsys):
+    text = "Fs,104\nMode,2\nax,ay,az\n" + "\n".join(lines(COUNTS)) + "\n"
+    capture, said = imported(tmp_path, capsys, text)
+    assert (capture.meta["rate_hz"], capture.meta["rate"]) == (104, "stated")
+    assert "104 Hz, as the file says" in said
+
+
+def test_sort_says_what_it_moved(tmp_path, capsys):
+    times = ["%.2f" % t for t in SECONDS]
+    times[50], times[53] = times[53], times[50]
+    assert "line 53: t runs backwards" in refused(tmp_path, capsys, table(times))
+    _, said = imported(tmp_path, capsys, table(times), "--sort")
+    assert "3 rows moved to put t in order, the farthest by 3 rows" in said
+
+
+@pytest.mark.parametrize("row", [0, 200, ROWS - 1])
+def test_a_stamp_that_stretches_the_log_is_refused(tmp_path, capsys, row):
+    times = ["%.2f" % t for t in SECONDS]
+    times[row] = "86400.00" if row else "-86400.00"
+    said = refused(tmp_path, capsys, table(times), "--sort", "--time-unit", "s")
+    assert "in.csv line %d: t is" % (row + 2) in said and "which stretches 3.9" in said
+
+
+def clock(t, form):
+    """The time t seconds behind 23:59:58.5 on the last of February, in a form."""
+    day = datetime.datetime(2024, 2, 29, 23, 59, 58, 500000) + datetime.timedelta(seconds=t)
+    return day.strftime(form)
+
+
+@pytest.mark.parametrize("head, form", [
+    ("timestamp", "%Y-%m-%dT%H:%M:%S.%f"), ("time", "%Y-%m-%d %H:%M:%S.%fZ"),
+    ("datetime", "%Y-%m-%dT%H:%M:%S.%f+05:30"), ("timestamp", '"%Y-%m-%d %H:%M:%S,%f"')])
+def test_dates_and_times_of_day_are_times(tmp_path, capsys, head, form):
+    capture, said = imported(tmp_path, capsys, table([clock(t, form) for t in SECONDS], head))
+    assert "dates and times of day in the column %s" % head in said
+    assert capture.meta["rate_hz"] == pytest.approx(100.0, rel=1e-6)
+    assert capture.t_us[-1] == 10_000 * (ROWS - 1)
+
+
+def test_times_of_day_alone_and_a_date_beside_them(tmp_path, capsys):
+    times = ["2024-05-31,%s" % clock(t - 9e3, "%H:%M:%S.%f") for t in SECONDS]
+    capture, _ = imported(tmp_path, capsys, table(times, "date,time"))
+    assert capture.t_us[-1] == 10_000 * (ROWS - 1)
+
+
+@pytest.mark.parametrize("times, line", [
+    (["05/06/2024 10:00:0%d.%d" % divmod(k, 10) for k in range(50)], "day and month"),
+    (["2024-02-30T10:00:0%d.%d" % divmod(k, 10) for k in range(50)], "expected a number")])
+def test_dates_that_say_nothing_sure_are_refused(tmp_path, capsys, times, line):
+    assert line in refused(tmp_path, capsys, table(times, "t"), "--time-column", "t")
+
+
+def test_a_time_that_is_none_is_refused_with_what_was_expected(tmp_path, capsys):
+    rows = ["12h%03d,%s" % (k, one) for k, one in enumerate(lines(COUNTS))]
+    said = refused(tmp_path, capsys, "time,ax,ay,az\n" + "\n".join(rows) + "\n")
+    assert "the column time begins with \"12h000\", expected a number or ISO 8601" in said
+
+
+@pytest.mark.parametrize("name,size,step", [
+    ("micros", 2 ** 32, 10_000), ("millis", 2 ** 32, 10), ("t_ms", 2 ** 16, 10),
+    ("utc_ns", 10 ** 9, 10_000_000)])
+@pytest.mark.parametrize("sort", [(), ("--sort",)])
+def test_a_clock_that_begins_anew_goes_on(tmp_path, capsys, name, size, step, sort):
+    rows = ["%d,%s" % ((size + (k - 150) * step) % size, one)
+            for k, one in enumerate(lines(COUNTS))]
+    capture, said = imported(tmp_path, capsys, name + ",ax,ay,az\n" + "\n".join(rows) + "\n",
+                             *sort)
+    assert (np.diff(capture.t_us) == 10_000).all() and (capture.accel == COUNTS).all()
+    assert "%s begins anew at %.10g, first in line" % (name, size) in said
+
+
+def test_a_counter_with_a_sign_begins_anew_below_0(tmp_path, capsys):
+    rows = ["%d,%s" % ((2 ** 31 + (k - 150) * 10_000 + 2 ** 31) % 2 ** 32 - 2 ** 31, one)
+            for k, one in enumerate(lines(COUNTS))]
+    capture, _ = imported(tmp_path, capsys, "micros,ax,ay,az\n" + "\n".join(rows) + "\n")
+    assert (np.diff(capture.t_us) == 10_000).all()
+
+
+@pytest.mark.parametrize("name,seconds", [("time (min)", 60.0), ("time_h", 3600.0)])
+def test_minutes_and_hours_by_their_name(tmp_path, capsys, name, seconds):
+    rows = ["%.9f,%s" % (0.01 * k / seconds, one) for k, one in enumerate(lines(COUNTS))]
+    capture, _ = imported(tmp_path, capsys, name + ",ax,ay,az\n" + "\n".join(rows) + "\n")
+    assert capture.meta["rate_hz"] == pytest.approx(100.0, rel=1e-3)
+
+
+def test_a_log_goes_on_over_midnight(tmp_path, capsys):
+    day = ["%02d:%02d:%05.2f" % (23 if k < 200 else 0, 59 if k < 200 else 0,
+                                 58.0 + k / 100 if k < 200 else k / 100 - 2.0)
+           for k in range(ROWS)]
+    capture, _ = imported(tmp_path, capsys, "time,ax,ay,az\n" + "\n".join(
+        "%s,%s" % pair for pair in zip(day, lines(COUNTS))) + "\n")
+    assert np.diff(capture.t_us) == pytest.approx(10_000, abs=1)
+
+
+def test_a_board_that_began_again_is_no_clock_that_does(tmp_path, capsys):
+    rows = ["%d,%s" % (10 * (k % 200) + 5000, one) for k, one in enumerate(lines(COUNTS))]
+    said = refused(tmp_path, capsys, "t_ms,ax,ay,az\n" + "\n".join(rows) + "\n")
+    assert "line 202: t_ms runs backwards, from 6990 to 5000" in said
+
+
+def test_times_that_fit_the_stated_rate_in_no_unit_are_refused(tmp_path, capsys):
+    """Ticks of 100 µs, as one maker's stamps are, are a tenth of that rate in ms."""
+    rows = ["%d,%s" % (100 * k, one) for k, one in enumerate(lines(COUNTS))]
+    text = "// Update Rate: 100.0Hz\nSampleTimeFine,Acc_X,Acc_Y,Acc_Z\n" + "\n".join(rows) + "\n"
+    said = refused(tmp_path, capsys, text)
+    assert "SampleTimeFine taken as ms: 10 Hz, but the file says 100 Hz" in said
+    capture, _ = imported(tmp_path, capsys, text, "--rate", "100")
+    assert capture.meta["rate_hz"] == 100.0
