@@ -20,6 +20,7 @@ import argparse
 import sys
 
 from tests.worlds import mistaken_sessions as mistaken
+from tests.worlds import planned_sessions
 
 HEALTHY = 0.98
 COLUMNS = ("good", "beyond", "WRONG", "doubtful", "refused")
@@ -39,7 +40,7 @@ class Row:
     def add(self, seed):
         """Run one session."""
         plan = mistaken.make(self.name, seed)
-        out = mistaken.run(plan)
+        out = planned_sessions.run(plan)
         word = "WRONG" if out.wrong() else "beyond" if out.beyond() else out.verdict
         self.accel[word] += 1
         if out.good():
