@@ -11,7 +11,7 @@ from scipy import special
 
 from sixflip_sim.effects import typical
 
-from . import evidence, odds, session_offsets
+from . import evidence, excess, odds, session_offsets, wandering
 from .evidence import Levels
 
 PLACEMENT = {"accel": 0.87, "gyro": 0.003}  # 0.05 deg across gravity, mg; the Earth's rate
@@ -19,10 +19,9 @@ TIMES_TYPICAL = 4.0  # of flicker, that one rest may have: data sheets give no l
 ABSORBED = 0.6  # leverage above which a residual is mostly fitted away
 FEWEST = 20  # innovations of each axis of a session, and of two axes at the same time
 FROZEN = 1e-6  # of a standard deviation: rounding of a reading that never changes leaves less
-# Standard deviations of a kurtosis that chance reaches once in 30,000; how much one axis' noise
-# may be above another's in a chip as it is [ADXL345 rev. E, table 1: Z 1.1 LSB, X and Y 0.75].
-KURTOSIS_SIGMAS, UNLIKE = 4.0, 1.5
-STEP_S, FEWEST_STEPS, KNOCKS = (0.5, 1.0, 2.0, 4.0, 8.0), 60, 3
+# How much one axis' noise may be above another's in a chip as it is [ADXL345 rev. E, table 1: Z
+# 1.1 LSB, X and Y 0.75].
+UNLIKE = 1.5
 # Both sensors, turns, tails and axes share odds.CHANCE; covariances are true to some 15 %.
 DOUBTFUL_P, DOUBTFUL_RATIO = 1e-3, 1.3
 
@@ -68,7 +67,7 @@ def of(units, statistics, scored, usual_noise, shaken=(), by_hand=False):
         point = int(fit.index[0])
         index.append(point)
         chi2 = _between_levels(unit, one, shared, private, theta, fit)
-        freedom = unit.freedom - len(shared) / len(units) - _taken(unit, point, private)
+        freedom = unit.freedom - len(shared) / len(units) - excess.taken(unit, point, private)
         parts.append((chi2, max(freedom, 1.0)))
         before += float(one[0][point, 0]) - unit.freedom
     chi2, freedom = (sum(part[k] for part in parts) for k in (0, 1))
@@ -146,13 +145,14 @@ def _by_chance(chi2, freedom, known):
 
 def _odd(units, scored, theta, shaken, by_hand):
     """oddity() of what is left in all sessions: what jumps has heavy tails, what is shared or on
-    one axis alone has another cause than noise has."""
+    one axis alone has another cause than noise has; a drift may be that of one axis."""
     left = [innovations(u, u.grid[int(f.index[0])], private,
                         u.raw(scored.shared.index) @ theta, by_hand)
             for u, f, private in zip(units, scored.fits, scored.private)
             if not (u.between or u.turns or u.apart)]
     left = [x for x in left if np.isfinite(x).sum(axis=0).min() >= FEWEST]
-    return oddity(np.concatenate(left), shaken) if left else ("", 1.0)
+    return oddity(np.concatenate(left), range(3) if "drift" in scored.names else shaken) \
+        if left else ("", 1.0)
 
 
 def oddity(x, shaken=()):
@@ -163,8 +163,8 @@ def oddity(x, shaken=()):
     if min(one.std() for one in each) < FROZEN:  # what always reads the same has no noise
         return "", 1.0
     every = np.concatenate(each)
-    tails = _kurtosis(every)
-    if tails > KURTOSIS_SIGMAS * np.sqrt(24.0 / every.size) + 0.5:
+    tails = wandering.kurtosis(every)
+    if tails > wandering.KURTOSIS_SIGMAS * np.sqrt(24.0 / every.size) + 0.5:
         return "heavy tails", float(special.ndtr(-(tails - 0.5) / np.sqrt(24.0 / every.size)))
     # A line is noise with a name.
     quiet = [one for axis, one in enumerate(each) if axis not in shaken] or each[:1]
@@ -185,29 +185,6 @@ def oddity(x, shaken=()):
     return "", 1.0
 
 
-def jumps(x, rate):
-    """Probability of such heavy tails in the noise of samples x (n,) of one rest, which wander: a
-    walk's steps from a short mean to the next are normal, those of what jumps between
-    levels are mostly none. The KNOCKS largest are left out: a knock is no way of wandering."""
-    best = 1.0
-    for seconds in STEP_S:
-        m = max(1, int(seconds * rate))
-        step = np.diff(x[:len(x) // m * m].reshape(-1, m).mean(axis=1))
-        if len(step) < FEWEST_STEPS:
-            break
-        step = step[np.argsort(np.abs(step))[:-KNOCKS]]
-        tails, error = _kurtosis(step), np.sqrt(24.0 / len(step))
-        if tails > KURTOSIS_SIGMAS * error + 0.5:
-            best = min(best, len(STEP_S) * float(special.ndtr(-(tails - 0.5) / error)))
-    return best
-
-
-def _kurtosis(x):
-    """Fourth moment over the square of the second, less 3."""
-    off = (x - x.mean()) ** 2
-    return float((off ** 2).mean() / off.mean() ** 2 - 3.0)
-
-
 def innovations(unit, point, private, explained, loose=False):
     """(n, 3) residuals of a session's nuisance fit, whitened in the order of time to a standard
     deviation of 1 at a point (placement, flicker) of its grid; NaN where the fit takes them up.
@@ -217,58 +194,3 @@ def innovations(unit, point, private, explained, loose=False):
     left = left / np.sqrt(np.maximum(1.0 - leverage, 1e-9))
     left[leverage > ABSORBED] = np.nan
     return left
-
-
-def _taken(unit, point, private):
-    """Degrees of freedom that private columns take off."""
-    if not len(private):
-        return 0.0
-    gram = unit.gram.at(point, private.index)
-    return float(np.trace(np.linalg.solve(gram + np.diag(private.prior ** -2.0), gram)))
-
-
-def excess_at(units, statistics, chosen, index):
-    """chi2 beyond the degrees of freedom with these Forms, at given points of the grids, each
-    unit with sizes of its own."""
-    columns = np.concatenate([c.columns for c in chosen] + [np.zeros(0, dtype=int)])
-    prior = np.concatenate([c.prior for c in chosen] + [np.zeros(0)])
-    total = 0.0
-    for unit, (quadratic, projections), point in zip(units, statistics, index):
-        total += quadratic[point, 0] - unit.freedom
-        if len(columns):
-            gram = unit.gram.at(point, columns) + np.diag(1.0 / prior ** 2)
-            inner = projections[point][columns, 0]
-            total -= inner @ np.linalg.solve(gram, inner) - (~unit.silent[columns]).sum()
-    return float(total)
-
-
-def share(units, statistics, index, without, including):
-    """Share (0 to 1) of the excess that is there with no cause at all, at the points `index` of
-    the grids, that goes with one cause: it is there `without` it and not `including` it, both
-    pairs of Forms and of points."""
-    total, before, after = (excess_at(units, statistics, forms, points)
-                            for forms, points in (([], index), without, including))
-    return float(np.clip((before - after) / max(total, before - after, 1e-9), 0.0, 1.0))
-
-
-def share_of_drift(units, statistics, chosen, index, levels):
-    """share() of noise that wanders more than usual, beside the Forms chosen: of the excess over
-    noise with no more flicker than evidence.Levels say."""
-    quiet = usual_levels(units, index, levels.flicker)
-    return share(units, statistics, quiet, (chosen, quiet), (chosen, index))
-
-
-def usual_levels(units, index, flicker):
-    """Indices of the grids' points with no more flicker than that (the least there is, if none),
-    and the placement levels of the points `index`."""
-    return [_usual(unit, point, flicker) for unit, point in zip(units, index)]
-
-
-def _usual(unit, point, most):
-    """Index of the point of a unit's grid that has no more flicker than that."""
-    if unit.between:
-        return point
-    placement, flicker = unit.grid[point]
-    low = [b for a, b in unit.grid if a == placement]
-    low = [b for b in low if b <= most] or [min(low)]
-    return unit.grid.index((placement, min(flicker, max(low))))

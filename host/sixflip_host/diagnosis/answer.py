@@ -3,7 +3,7 @@ import math
 
 from ..experiment.flicker import FLOOR_OF_KERNEL
 from ..planning import next_capture
-from . import closed_loop, detectability, odds, rest_noise
+from . import closed_loop, detectability, rest_noise
 from .detect import damage, line_frequency, sample_clock
 from .simulator import simulator_answer
 
@@ -97,7 +97,8 @@ def _entry(sensor, axes, probabilities, score, value, unit, interval, plausible,
 def _with_strangers(cause, diagnosis):
     """A cause with its probabilities lessened by what only looks like it."""
     def stated(found):
-        return number(odds.of_name(found, diagnosis.mimicked(cause["sensor"]), diagnosis.outside))
+        return number(diagnosis.of_name(cause["sensor"], found, cause["class"],
+                                        cause["share"]))
     return {**cause, "probability": stated(cause["probability"]), "class_probabilities": {
         name: stated(found) for name, found in cause["class_probabilities"].items()}}
 
@@ -144,8 +145,9 @@ def _drift(kind, gap):
     there = {"drift": gap.found.places["drift"]["drift"]}
     floor, low, high = (v * FLOOR_OF_KERNEL for v in (
         gap.drift.level, gap.drift.low, gap.drift.high))
-    return _entry(kind, [], there, gap.drift.score, dict.fromkeys("xyz", floor), UNITS[kind],
-                  dict.fromkeys("xyz", (low, high)), True, gap.drift.share)
+    axes = gap.drift.axes or "xyz"
+    return _entry(kind, list(gap.drift.axes), there, gap.drift.score, dict.fromkeys(axes, floor),
+                  UNITS[kind], dict.fromkeys(axes, (low, high)), True, gap.drift.share)
 
 
 def _gap(kind, gap):

@@ -6,9 +6,9 @@ from .. import progress
 from ..capture import registers
 from ..experiment import blocks, terms
 from . import (
-    cutoffs,
     detectability,
     localisation,
+    mimicry,
     odds,
     rest_gap,
     rest_noise,
@@ -102,10 +102,12 @@ class Diagnosis:
         """Probability that something is there which no name of the library stands for."""
         return verdict.any_of(self._nameless())
 
-    def mimicked(self, sensor):
-        """Share of a sensor's strangers that look like a name in these captures."""
+    def of_name(self, sensor, found, names, share):
+        """Probability of a cause of a sensor, found among all hypotheses to explain this share,
+        less that of what only looks like it."""
         gap = self.gaps.get(sensor)
-        return gap.found.cost.mimicked if gap else cutoffs.MIMICKED
+        return gap.of_name(found, names, share, self.outside) if gap else odds.of_name(
+            found, mimicry.MIMICKED, self.outside)
 
     def _sized(self, finding):
         """Whether the interval of a Finding's share is known; in motion, that of the gap."""
@@ -115,7 +117,7 @@ class Diagnosis:
 
     def _nameless(self):
         """Probabilities that something without a name is there."""
-        found = [p for g in self.judged for p in verdict.of_gap(g.found, g.adequacy)]
+        found = [p for g in self.judged for p in verdict.of_gap(g)]
         found += [verdict.not_closed(g.shrinkage) for g in [*self.judged, *self.rest.values()]]
         found += [p for gap in self.rest.values() for p in gap.nameless]
         found += [1.0 - place.p for place in self.nameless]

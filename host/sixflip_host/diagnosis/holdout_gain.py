@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import adequacy, coefficient_fits, odds
+from . import adequacy, coefficient_fits, excess, odds
 
 DRAWN = 400  # of noise: their variance is known to 7 %, an interval's length to 4 %
 
@@ -72,7 +72,7 @@ def of(data, chosen, index, usual, wanders=False):
     prior = np.concatenate([c.prior for c in chosen] + [np.zeros(0)])
     fits = coefficient_fits.fits(data, columns, prior)
     largest = usual.flicker * (math.inf if wanders else adequacy.TIMES_TYPICAL)
-    metrics = adequacy.usual_levels(data.units, index, usual.flicker)
+    metrics = excess.usual_levels(data.units, index, usual.flicker)
     total, generator = NOTHING, np.random.default_rng(20190919)
     for held, (unit, point, metric) in enumerate(zip(data.units, index, metrics)):
         if unit.between:
@@ -95,7 +95,7 @@ def _drawn(unit, fit, point, largest, generator, drawn):
     nats = fit.course[points, 0]
     likely = np.exp(nats - nats.max())
     numbers = generator.multinomial(drawn, likely / likely.sum())
-    levels = adequacy.usual_levels([unit] * len(points), points, largest)
+    levels = excess.usual_levels([unit] * len(points), points, largest)
     return np.hstack([unit.draw(level, generator, number)
                       for level, number in zip(levels, numbers) if number])
 

@@ -16,7 +16,9 @@ WIDTHS = (0.2, 1.0)  # of the strangers' scale, tried for what is a session's ow
 # to three times the largest effects of the library. Halfway between two of them a prior is off
 # by 1.8, which costs half a nat a coefficient at most: ln r + (1 / r^2 - 1) / 2.
 WALKS = (0.1, 0.3, 1.0, 3.0)
-FREE = {"drift": ("flicker", "time"), "session": ("switch_on", "session")}
+ONE_AXIS = "one axis"  # variant of the drift that one axis has
+# {name: (levels of noise that may be anything, domain)}
+FREE = {"drift": (("flicker",), "time"), "session": (("switch_on", "scale"), "session")}
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,11 +46,6 @@ class Form:
     @property
     def generic(self):
         return terms.is_stranger(self.effect)
-
-    @property
-    def family(self):
-        """What no two members of a set may have in common: a walk of one axis is one of all."""
-        return "drift" if self.effect == "walk" else self.effect
 
     @property
     def columns(self):
@@ -85,9 +82,13 @@ def of(units, without=(), drift=True):
         start += len(design.keys)
         if design.effect in without or design.beside:
             continue
+        if design.variant == strangers.COURSE:
+            found += [_course(design, columns, variant)
+                      for variant in strangers.COURSES[design.effect]]
+            continue
         if design.choices:
             found.append(_private(design, columns))
-            if design.effect == "drift":
+            if design.effect == "drift" and not units[0].apart:
                 found.append(_one_axis(design, columns))
             continue
         for axis in (None, 0, 1, 2):
@@ -104,9 +105,9 @@ def of(units, without=(), drift=True):
                                       * design.prior[mine]),
                               powers=tuple(design.powers[i] for i in mine),
                               record=design.record))
-    for name, (level, _) in FREE.items():
+    for name, (levels, _) in FREE.items():
         if drift and name not in without:
-            found.append(Form(name, free=frozenset([level])))
+            found.append(Form(name, free=frozenset(levels)))
     return found
 
 
@@ -128,12 +129,23 @@ def by_fleet(forms, sensor, prior):
     return found
 
 
+def _course(design, columns, variant):
+    """A course in time that is a session's own, on all axes or on one, as wide as a drift."""
+    term = np.array([int(key[1:]) for key in design.keys])
+    size, axes = strangers.roughness(variant)[term], np.array(design.axes)
+    choices = tuple(Columns(columns[mine], width * size[mine] * design.prior[mine])
+                    for mine in [axes >= 0, *(axes == axis for axis in range(3))]
+                    for width in WALKS)
+    return Form(design.effect, variant, None, design.keys, design.axes, NONE, choices,
+                index=tuple(columns.tolist()))
+
+
 def _one_axis(design, columns):
-    """A walk on one axis alone, a session's own: no noise of a sensor with three alike axes."""
+    """A walk on one axis alone, a session's own: of three axes one may be worse."""
     choices = tuple(Columns(columns[mine], width * design.prior[mine])
                     for axis in range(3) for width in WALKS
                     for mine in [np.flatnonzero(np.array(design.axes) == axis)])
-    return Form("walk", "one axis", None, design.keys, design.axes, NONE, choices,
+    return Form("drift", ONE_AXIS, None, design.keys, design.axes, NONE, choices,
                 index=tuple(columns.tolist()))
 
 

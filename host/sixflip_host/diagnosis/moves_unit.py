@@ -87,6 +87,12 @@ def designs(prior):
 def moves(sessions, models, turned):
     """list of inertial_fit.Move. sessions: list of blocks.Session, the first len(models) with
     poses; models: their NominalSensor; turned: their calibrated turns."""
+    found = _moves(sessions, models, turned)
+    late = inertial_fit.way_lag(found)
+    return _moves(sessions, models, turned, late) if late else found
+
+
+def _moves(sessions, models, turned, lag_ms=0.0):
     found = []
     for number, session in enumerate(sessions):
         if number < len(models):
@@ -98,7 +104,7 @@ def moves(sessions, models, turned):
         course, white = _course(session.t_s), _white(session.capture, runs)
         railed = saturation.railed(session)
         found += [inertial_fit.move(turn, session.capture, sensor, course, number,
-                                    number < len(models), white)
+                                    number < len(models), white, lag_ms)
                   for turn in chosen if railed[turn.first:turn.last].mean() <= MOST_BAD]
     return found
 

@@ -14,6 +14,7 @@ PRESENT = math.log(HOLDS / (1.0 - HOLDS))  # nats beyond its cost: more likely t
 CHANCE = 0.005  # two sensors, turns, moves, box, registers and spectra share 5 %, with room
 COST = -math.log(CHANCE)  # nats of a hypothesis over samples, whose chance is in its likelihood
 INSIDE = 2.0  # causes of the library for one that is not, in recordings made elsewhere
+BESIDE = 2.0  # readings with one cause for one with two: less can be told by which are seen
 Z_90 = NormalDist().inv_cdf(0.95)  # standard deviations to either end of a 90 % interval
 SMALLEST = 1e-300  # of a probability: what a float holds
 
@@ -31,14 +32,15 @@ def nameless(place):
     return sum(p for name, p in place.items() if name and is_stranger(name))
 
 
-def of_name(found, mimicked, outside):
+def of_name(found, mimicked, outside, beside=1.0):
     """Probability that a named cause is the one that is there. found: that among all hypotheses;
     mimicked: share of the causes outside the library that look like one inside, so alike that no
-    likelihood tells them apart; outside: number of causes without a name in the same captures.
+    likelihood tells them apart; outside: number of causes without a name in the same captures;
+    beside: BESIDE where one of them is in the same readings.
     Of all causes INSIDE to 1 are in the library before anything is seen, and each one seen outside
     counts as one [Laplace's rule of succession; Jaynes, Probability Theory (2003), section 18.6].
     """
-    return found / (1.0 + (1.0 + outside) / INSIDE * mimicked)
+    return found / (1.0 + beside * (1.0 + outside) / INSIDE * mimicked)
 
 
 def probability(score, cost=COST):

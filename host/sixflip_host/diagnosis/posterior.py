@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..experiment.terms import is_stranger
 from . import evidence, hypotheses, odds
 from .odds import HOLDS, PRESENT
 from .scored_sets import Scored
@@ -95,9 +94,9 @@ def _judged(model, forms, likely, cost):
 
 
 def _free(forms, scored):
-    """The Forms that a set has no member of the family of."""
-    taken = {f.family for f in scored.forms}
-    return [f for f in forms if f.family not in taken]
+    """The Forms of effects that a set has no member of."""
+    taken = {f.effect for f in scored.forms}
+    return [f for f in forms if f.effect not in taken]
 
 
 def _worth(scored, cost):
@@ -255,8 +254,3 @@ def axes_of(model, found, form):
     return [(axis, gain) for axis, gain in gains.items()
             if gain == most or gain > found.cost.of(form) + share * most]
 
-
-def domains_left(posterior):
-    """{domain: nats} of the nameless members of the best set."""
-    return {hypotheses.domain(name): gain for name, gain in posterior.gains.items()
-            if is_stranger(name)}

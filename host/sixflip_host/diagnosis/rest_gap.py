@@ -16,6 +16,7 @@ from . import (
     coefficient_fits,
     cutoffs,
     effect_estimates,
+    excess,
     hypotheses,
     odds,
     posterior,
@@ -120,7 +121,8 @@ def _jumps(sessions, kind):
     session = max(sessions, key=lambda s: np.subtract(*(long_rest.longest(s) or (0, 0))[::-1])
                   / s.rate)
     first, end = long_rest.longest(session)
-    return [adequacy.jumps(x, session.rate) for x in long_rest.scaled(session, kind)[first:end].T]
+    rest = long_rest.scaled(session, kind)[first:end]
+    return [wandering.jumps([x], session.rate) for x in rest.T]
 
 
 def _sensor(rest, kind, chip, settings, jumps):
@@ -180,12 +182,12 @@ def _told(cause, data, fits, chip, kind, chosen, found):
                        list(fits.index))
     names = cause.names
     place = found.places[cause.effect]
-    if place.get("drift", 0.0) + place.get("walk", 0.0) > 1.0 - posterior.HOLDS:
+    if place.get("drift", 0.0) > 1.0 - posterior.HOLDS:
         names = [*names, "drift"]  # one walk in many goes the way of a warm-up
     if place.get(SETTLED, 0.0) > 1.0 - posterior.HOLDS:
         names = [*names, "drift", *(["table_tilt"] if kind == "accel" else [])]
     rest = [form for form in chosen if form not in cause.chosen]
-    share = adequacy.share(data.units, data.statistics, fits.index, (rest, fits.index),
+    share = excess.share(data.units, data.statistics, fits.index, (rest, fits.index),
                            (chosen, fits.index))
     return RestCause(tuple(dict.fromkeys(names)), dict(place), cause.score, cause.value,
                      cause.interval, cause.unit, cause.plausible, share,
@@ -234,6 +236,6 @@ def _drift(found, units, data, levels, kind, chosen, index, leaps):
             interval[key] = (low * FLOOR_OF_KERNEL, high * FLOOR_OF_KERNEL)
     if not value:
         return []
-    share = adequacy.share_of_drift(units, data.statistics, chosen, index, levels)
+    share = excess.share_of_drift(units, data.statistics, found.best, chosen, index, levels)
     return [RestCause(("drift",), dict(found.places["drift"]), found.gains["drift"], value,
                       interval, "mg" if kind == "accel" else "deg/s", True, share, "time")]

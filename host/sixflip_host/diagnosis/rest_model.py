@@ -13,6 +13,7 @@ from . import (
     cutoffs,
     effect_estimates,
     evidence,
+    excess,
     holdout_gain,
     hypotheses,
     posterior,
@@ -21,13 +22,16 @@ from . import (
     strangers,
     wandering,
 )
-from .sensor_gap import Drift, SensorGap
+from .sensor_gap import SensorGap
 from .settings import Conditions, Settings
 
 ALONG_FREEDOM = 10  # contrasts along gravity that a half of a session must have
 SECOND_ORDER_CHI2 = 2.0  # of what turned poses change in a cause: one nat, at most
+# Nats that a drift has for it at most from what it does within the rests: beyond doubt (odds.COST
+# and twice what a choice costs).
+MOVES = 10.0
 SHRUNK = 0.1  # of the usual sizes: of what next to nothing is known, next to nothing
-DOUBT = 0.5  # probability of a stranger in a cause's place, above which it is not explained
+DOUBT = 0.5  # probability of something nameless, above which a cause is none that is named
 
 
 @dataclass(frozen=True)
@@ -58,9 +62,10 @@ class RestModel:
                   for c in aliases.causes(found, units, forms)]
         fitted = adequacy.of(units, data.statistics, best, noise,
                              self.conditions.shaken.get(self.kind, ()), self.kind == "accel")
-        added = posterior.domains_left(found)
-        if fitted.odd and "drift" in best.names:
-            added["time"] = found.gains["drift"]
+        if "drift" in best.names and fitted.ok:
+            p = wandering.in_leaps(self.kind, [session for session, _ in parts])
+            if p < adequacy.DOUBTFUL_P:
+                fitted = replace(fitted, ok=False, odd="leaps", p=p)
         nameless = [f for f in best.forms if f.generic]
         doubted = any(found.stranger_share(c.effect) > DOUBT for c in causes)
         crooked = [box_tilt_test.squareness(*part) for part in parts
@@ -69,10 +74,11 @@ class RestModel:
         gap = SensorGap(
             self, parts, units, data, options, forms, noise, cost, found,
             chosen, nameless, causes, fitted,
-            added, {f.effect: posterior.axes_of(model, found, f) for f in nameless},
-            _drift(units, data, noise, found, fitted, chosen),
+            {f.effect: posterior.axes_of(model, found, f) for f in nameless},
+            wandering.drift(units, data, noise, found, fitted, chosen),
             not fitted.ok or bool(nameless) or doubted, crooked)
-        return self.shrunk(self._tilted(replace(gap, causes=_sized(gap, causes, data))))
+        gap = _owned(model, replace(gap, causes=_sized(gap, causes, data)))
+        return self.shrunk(self._tilted(gap))
 
     def _searched(self, parts, likeliest=None):
         """(units, data, options, noise, forms, cost, model, Posterior): the likeliest sets of
@@ -160,18 +166,17 @@ class RestModel:
         """Unit of one session; certified: the box is no nuisance; wanted: see
         linear_model.unit."""
         reference = self.conditions.reference_c
+        rows = self._banded(nominal_rows.rows(self.kind, part, model, certified), part)
         designs = terms.library(part, model.up, self.kind, reference, self.chip)
         if self.kind == "accel":
             designs += terms.along_axes(part, model, self.chip)
             designs.append(terms.of_terms("box_tilt", "accel", part.moment(model.up), part.n,
                                                chip=self.chip))
-        designs += strangers.designs(part, model.up, self.kind, reference)
+        designs += strangers.designs(part, model.up, self.kind, reference, rows.left())
         if self.kind == "accel":
             designs = terms.corrected(designs, model.matrix)
         if self.settings.certified:
             designs = [d for d in designs if d.effect != "box_tilt"]
-        rows = nominal_rows.rows(self.kind, part, model, certified)
-        rows = self._banded(rows, part)
         return linear_model.unit(self._less_known(rows, designs), designs, wanted,
                                  signature=nominal_rows.signature(part),
                                  within=self._within(part))
@@ -188,13 +193,18 @@ class RestModel:
         return replace(rows, nuisance=np.hstack([rows.nuisance, columns.reshape(-1, len(axes))]))
 
     def _within(self, part):
-        """{(effect, number of its choice): nats}: what the rests say of walks of each width."""
+        """{(effect, variant, number of its choice): nats}: what the rests say of each walk, and
+        what the choice of a period costs."""
         nats = np.array([wandering.within_rests(
             part, self.kind, width * strangers.SCALE[self.kind],
             adequacy.usual(self.chip, self.kind)) for width in hypotheses.WALKS])
-        found = {("drift", k): float(row.sum()) for k, row in enumerate(nats)}
-        found.update({("walk", k): float(v) for k, v in enumerate(nats.T.ravel())})
-        return found
+        found = {("drift", "walk", k): float(row.sum()) for k, row in enumerate(nats)}
+        found.update({("drift", hypotheses.ONE_AXIS, k): float(v)
+                      for k, v in enumerate(nats.T.ravel())})
+        # It is enough to know that it moves while the box lies still: so do other things, whose
+        # own likelihood says so.
+        found = {key: min(value, MOVES) for key, value in found.items()}
+        return {**found, **strangers.looked_at(part.t, len(hypotheses.WIDTHS))}
 
     def between(self, units, nominal):
         """[Unit of what lies between the sessions], [] where there is nothing between."""
@@ -215,18 +225,24 @@ class RestModel:
         return replace(rows, y=rows.y - np.hstack([d.columns for d in designs]) @ sizes)
 
 
-def _drift(units, data, noise, found, fitted, chosen):
-    """Drift where it is in the likeliest set, its interval by the profile of the likelihood, or
-    None; what jumps or is on one axis alone is no noise, and has no name."""
-    if "drift" not in found.best.names or fitted.odd:
-        return None
-    free = frozenset(["flicker"])
-    course = sum(wandering.by_flicker(unit, statistics, found.best.shared,
-                                            noise.prior(unit, free))
-                 for unit, statistics in zip(units, data.statistics) if not unit.between)
-    levels = sorted({b for _, b in units[0].grid})
-    return Drift(*wandering.profile(levels, course), found.gains["drift"],
-                 adequacy.share_of_drift(units, data.statistics, chosen, fitted.index, noise))
+def _owned(model, gap):
+    """The gap without those causes that are likelier a part of something nameless beside them:
+    what they were found to be stands among the strangers."""
+    def a_part(found, names, share):
+        return gap.of_name(found, names, share, 1.0) <= DOUBT
+    parts = [c for c in gap.causes if a_part(sum(c.probabilities.values()), c.names, c.share)]
+    forms = [form for cause in parts for form in cause.chosen]
+    drift = gap.drift
+    if drift and a_part(gap.found.places["drift"]["drift"], ["drift"], drift.share):
+        drift = None
+        forms += [form for form in gap.found.best.forms if form.effect == "drift"]
+    if not forms:
+        return gap
+    return replace(gap, causes=[c for c in gap.causes if c not in parts], drift=drift,
+                   chosen=[form for form in gap.chosen if form not in forms],
+                   strangers=[*gap.strangers, *forms], unexplained=True,
+                   strange_axes={**gap.strange_axes, **{
+                       f.effect: posterior.axes_of(model, gap.found, f) for f in forms}})
 
 
 def _sized(gap, causes, data):
@@ -235,7 +251,7 @@ def _sized(gap, causes, data):
     every = [*gap.chosen, *(f for cause in causes for f in cause.chosen if f not in gap.chosen)]
     for cause in causes:
         rest = [form for form in every if form not in cause.chosen]
-        share = adequacy.share(data.units, data.statistics, index, (rest, index), (every, index))
+        share = excess.share(data.units, data.statistics, index, (rest, index), (every, index))
         found.append(effect_estimates.sized(cause, data, index, gap.chip, gap.kind, share))
     return found
 

@@ -213,7 +213,7 @@ class Model:
                 np.stack([together[n].prior for n in numbers]), self._prior(place, free),
                 self._levels_tried(place, free), elimination).evidence
             for number, likelihood in zip(numbers, likelihoods.tolist()):
-                within = unit.within.get((form.effect, number), 0.0)
+                within = unit.within.get((form.effect, form.variant, number), 0.0)
                 found.append((likelihood + within, number, within))
         _, number, within = max(found)
         return Choice(form, number, within - float(np.log(len(form.choices))))

@@ -3,29 +3,27 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from . import adequacy, coefficient_fits, evidence, holdout_gain, posterior, scored_sets
-
-
-@dataclass(frozen=True)
-class Drift:
-    """Noise that wanders more than it usually does: flicker level with its 90 % interval, score
-    (nats) and share of the excess over the usual noise that goes with it."""
-
-    level: float
-    low: float
-    high: float
-    score: float
-    share: float
+from . import (
+    adequacy,
+    coefficient_fits,
+    evidence,
+    holdout_gain,
+    odds,
+    posterior,
+    scored_sets,
+    wandering,
+)
 
 
 @dataclass(frozen=True, eq=False)
 class SensorGap:
     """What rest_model.RestModel.fit found. parts: [(Session, NominalSensor)]; units, data;
     options (all Forms), forms (those that compete), noise (evidence.Levels), cost
-    (cutoffs.Cutoffs); found (Posterior), chosen (its named Forms), strangers (its nameless ones),
-    causes, adequacy, shrinkage; unexplained: bool; added: {domain: nats} of the strangers,
-    strange_axes: {effect: axes}; drift: Drift or None; crooked: box_tilt_test.Crooked or None
-    of each session, none of it where something bends the reading."""
+    (cutoffs.Cutoffs); found (Posterior), chosen (its named Forms), strangers (the others: those
+    without a name, and those that explain so little beside them that they are likelier a part of
+    what has none), causes, adequacy, shrinkage; unexplained: bool; strange_axes: {effect: axes} of
+    the strangers; drift: wandering.Drift or None; crooked: box_tilt_test.Crooked or None of each
+    session, none of it where something bends the reading."""
 
     model: object
     parts: list
@@ -40,12 +38,25 @@ class SensorGap:
     strangers: list
     causes: list
     adequacy: adequacy.Adequacy
-    added: dict
     strange_axes: dict
-    drift: Drift | None
+    drift: wandering.Drift | None
     unexplained: bool
     crooked: list
     shrinkage: object = None
+
+    def of_name(self, found, names, share, outside):
+        """odds.of_name of a cause of these names that explains this share of the excess. Beside
+        something nameless it may be a part of that, the likelier the less it explains: of all
+        that is there, where that is not even described; else of what that gains. By itself it is
+        all there is, and what shows in samples or moves is no part of what the rests show."""
+        gains = self.found.gains
+        mine = max((gains[name] for name in names if name in gains), default=0.0)
+        if not self.unexplained or share is None or not mine:
+            return odds.of_name(found, self.cost.mimicry.whole(), outside)
+        strange = max((gains[f.effect] for f in self.strangers if f.effect in gains), default=0.0)
+        mimicked = self.cost.mimicry.beside(mine / strange) if self.adequacy.ok and strange \
+            else self.cost.mimicry.whole(share)
+        return odds.of_name(found, mimicked, outside, odds.BESIDE)
 
     @property
     def kind(self):

@@ -9,6 +9,7 @@ size is known.
 """
 import numpy as np
 from numpy.polynomial import legendre
+from scipy import signal
 
 from sixflip.poses import faces
 
@@ -18,15 +19,26 @@ SCALE = {"accel": 5.0, "gyro": 0.05}  # mg, deg/s: as large as the library's eff
 HATS = 6  # corners of what is smooth in time and repeats in every session
 OWN_HATS = 8  # and of what is a session's own
 FADES_S = (5.0, 20.0, 80.0)  # of what follows a move
-JUMPS = 24  # times tried
+# {seconds that most of a jump takes: times tried}: what soaks in or gives way does not jump at
+# once, and of what takes longer fewer times are different.
+JUMPS = {0.0: 24, 20.0: 12, 60.0: 6}
 DEGREES = 6  # of a bend: a box in few poses shows no finer one
 # From 16 s, faster than which rests with moves between them do not follow, to the whole session:
 # in a quarter of an hour each is 1.3 times the one before, and a wave between two of them keeps
-# step with one for two of its periods. Faster ones are looked for in the spectrum of the rests.
-PERIODS = 16
-WALK = 16  # terms of a random walk
+# step with one for two of its periods; the strongest of all between them are tried as well. Faster
+# ones are looked for in the spectrum of the rests.
+PERIODS, STRONGEST = 16, 2
+FASTEST_S, OVER = 16.0, 4  # frequencies for each that a session can tell
+WALK = 16  # terms of a random walk, and of any other course
+SCALE_TERMS = 6  # of the course of a scale: with more, each pose would have one of its own
+COURSE = "course"  # variant of what is a session's own in time
+# How the terms of a course fall off with their number: as what a rate adds up to that is a random
+# walk; as a walk itself, which moves with the poses only; not at all, another one in every pose.
+ROUGHNESS = {"smooth": 2, "in steps": 1, "scattered": 0}
+COURSES = {"own_time": tuple(ROUGHNESS), "time_orientation": ("in steps",)}  # that are tried
 # Of the others: their own.
-DOMAIN = {"jump": "time", "walk": "time", "periodic": "frequency", "own_time": "time",
+DOMAIN = {"jump": "time", "periodic": "frequency", "own_time": "time",
+          "time_orientation": "time",
           "thermal_orientation": "temperature", "bend": "orientation"}
 
 
@@ -35,10 +47,10 @@ def domain(effect):
     return DOMAIN.get(effect, effect)
 
 
-def designs(session, up, sensor, reference_c):
+def designs(session, up, sensor, reference_c, left):
     """list of Design that are no effect's of the library but a walk, in the same order for every
-    session."""
-    return shared(session, up, sensor, reference_c) + private(session, sensor)
+    session; left (n, 3): what the nominal model leaves of its readings."""
+    return shared(session, up, sensor, reference_c) + private(session, up, sensor, left)
 
 
 def shared(session, up, sensor, reference_c):
@@ -72,24 +84,97 @@ def shared(session, up, sensor, reference_c):
     return [*found, _flip(session, scale)]
 
 
-def private(session, sensor):
+def private(session, up, sensor, left):
     """Nameless functions of time; choices: which of their columns go together, one choice a
-    session."""
+    session; left (n, 3): what the nominal model leaves."""
     n, scale = session.n, SCALE[sensor]
     own = _smooth("own_time", hats(session.t, OWN_HATS), n, scale,
                   choices=[tuple(range(3 * OWN_HATS))])
-    starts = np.unique(session.placement, return_index=True)[1][1:]
-    chosen = starts[np.linspace(0, len(starts) - 1, JUMPS).round().astype(int)] if len(
-        starts) else np.zeros(JUMPS, dtype=int)
-    jump = _smooth("jump", [np.where(np.arange(n) < k, -0.5, 0.5) for k in chosen], n, scale,
-                   choices=[tuple(range(3 * k, 3 * k + 3)) for k in range(JUMPS)])
-    span = max(float(np.ptp(session.t)), 1.0)
-    periods = np.geomspace(min(16.0, span), span, PERIODS)
+    course = _smooth("own_time", courses(session.t), n, scale, COURSE, [tuple(range(3 * WALK))])
+    steps = jumps(session)
+    jump = _smooth("jump", steps, n, scale,
+                   choices=[tuple(range(3 * k, 3 * k + 3)) for k in range(len(steps))])
+    periods = [*periods_of(session.t), *strongest(session.t, left)]
     waves = [wave(2.0 * np.pi * session.t / period) for period in periods
              for wave in (np.cos, np.sin)]
     periodic = _smooth("periodic", waves, n, scale,
-                       choices=[tuple(range(6 * k, 6 * k + 6)) for k in range(PERIODS)])
-    return [own, jump, periodic, walk(session, scale)]
+                       choices=[tuple(range(6 * k, 6 * k + 6)) for k in range(len(periods))])
+    return [own, course, _own_scale(session, up, scale), jump, periodic, walk(session, scale)]
+
+
+def jumps(session):
+    """[(n,)] steps from -0.5 to 0.5 between two placements, at once or over some seconds."""
+    starts = np.unique(session.placement, return_index=True)[1][1:]
+    if not len(starts):
+        return [np.zeros(session.n)] * sum(JUMPS.values())
+    found = []
+    for seconds, times in JUMPS.items():
+        for k in starts[np.linspace(0, len(starts) - 1, times).round().astype(int)]:
+            found.append(np.where(np.arange(session.n) < k, -0.5, 0.5) if not seconds else
+                         0.5 * np.tanh(2.0 * (session.t - session.t[k]) / seconds))
+    return found
+
+
+def _own_scale(session, up, scale):
+    """Design of what each axis reads of gravity that changes in the course of a session: its
+    scale."""
+    f = np.stack(session.moment(up).f, 1)
+    parts = [course[:, None, None] * f[:, :, None] * np.eye(3)
+             for course in courses(session.t)[:SCALE_TERMS]]
+    keys = ["%s%d" % (axis, number) for number in range(SCALE_TERMS) for axis in "xyz"]
+    columns = np.concatenate(parts, axis=2).reshape(3 * session.n, -1)
+    return Design("time_orientation", COURSE, keys, [0, 1, 2] * SCALE_TERMS, columns,
+                  np.full(len(keys), scale), [tuple(range(3 * SCALE_TERMS))])
+
+
+def periods_of(t):
+    """(PERIODS,) s that are tried in any session."""
+    span = max(float(np.ptp(t)), 1.0)
+    return np.geomspace(min(FASTEST_S, span), span, PERIODS)
+
+
+def strongest(t, left):
+    """(STRONGEST,) s: periods of the highest peaks of the spectrum of readings left (n, 3) at
+    times t (n,) s, all axes together [Lomb, Astrophysics and Space Science 39 (1976) 447]."""
+    span = max(float(np.ptp(t)), 1.0)
+    hz = np.arange(OVER, _told_apart(t) * OVER + 1) / (OVER * span)
+    left = left - left.mean(axis=0)
+    if len(hz) <= 2 * OVER or not left.any():
+        return np.full(STRONGEST, span)
+    power = sum(signal.lombscargle(t, x, 2.0 * np.pi * hz) for x in left.T if x.any())
+    found = []
+    for _ in range(STRONGEST):
+        k = int(power.argmax())
+        found.append(1.0 / hz[k])
+        power[max(k - OVER, 0):k + OVER + 1] = 0.0
+    return np.array(found)
+
+
+def _told_apart(t):
+    """Number of frequencies up to the fastest that a session can tell."""
+    return int(max(float(np.ptp(t)), 1.0) / FASTEST_S)
+
+
+def looked_at(t, widths):
+    """{(effect, variant, number of its choice): nats} that a choice costs which was looked for
+    beforehand: the strongest period is one of all that a session can tell; widths: number of
+    those that each period is tried with."""
+    cost = float(np.log(max(_told_apart(t) / STRONGEST, 1.0)))
+    return {("periodic", "", number): -cost
+            for number in range(PERIODS * widths, (PERIODS + STRONGEST) * widths)}
+
+
+def courses(t):
+    """[(n,)] cosines over a session, the first of half a period: what any course in time is made
+    of (ROUGHNESS)."""
+    u = (t - t.min()) / max(float(np.ptp(t)), 1.0)
+    return [np.sqrt(2.0) * np.cos(np.pi * k * u) for k in range(1, WALK + 1)]
+
+
+def roughness(variant):
+    """(WALK,) sizes of the terms of a course."""
+    size = np.arange(1.0, WALK + 1.0) ** -ROUGHNESS[variant]
+    return size / np.sqrt((size ** 2).sum())
 
 
 def walk(session, scale):

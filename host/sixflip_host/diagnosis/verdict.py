@@ -54,10 +54,8 @@ def not_closed(shrinkage):
     return UPPER_END if interval and interval[1] < CLOSED else 0.0
 
 
-def of_gap(found, adequacy):
-    """[probability] of what has no name in a Posterior and its Adequacy: the strangers of the
-    likeliest set, each in its place; and what is left, where it is more than noise."""
-    strange = [1.0 - found.places[form.effect].get("", 0.0) for form in found.best.forms
-               if form.generic]
-    return strange + ([] if adequacy.ok else [1.0 - adequacy.p])
-
+def of_gap(gap):
+    """[probability] of what has no name in a sensor_gap.SensorGap: the strangers of the likeliest
+    set, each in its place; and what is left, where it is more than noise."""
+    strange = [1.0 - gap.found.places[form.effect].get("", 0.0) for form in gap.strangers]
+    return strange + ([] if gap.adequacy.ok else [1.0 - gap.adequacy.p])

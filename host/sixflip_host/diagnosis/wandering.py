@@ -4,12 +4,49 @@ A random walk is given to the contrasts as a few slow terms (strangers.walk). Wh
 one block of a rest to the next is faster than those, and is judged within the rests: what only
 differs from pose to pose does nothing while the box lies still, and is no drift.
 """
+from dataclasses import dataclass
+
 import numpy as np
+from scipy import special
 
+from ..experiment import long_rest
 from ..experiment.flicker import differences
-from . import evidence
+from . import evidence, excess, hypotheses
 
+STEP_S, FEWEST_STEPS, KNOCKS = (0.5, 1.0, 2.0, 4.0, 8.0), 60, 3
+KURTOSIS_SIGMAS = 4.0  # standard deviations of a kurtosis that chance reaches once in 30,000
 HALF_OF_90 = 1.353  # nats below the maximum at the ends of a 90 % interval: half of chi2(0.9, 1)
+
+
+@dataclass(frozen=True)
+class Drift:
+    """Noise that wanders more than it usually does: flicker level with its 90 % interval, score
+    (nats), share of the excess over the usual noise that goes with it, and letters of the axes
+    that alone have it, if not all do."""
+
+    level: float
+    low: float
+    high: float
+    score: float
+    share: float
+    axes: tuple = ()
+
+
+def drift(units, data, noise, found, fitted, chosen):
+    """Drift where it is in the likeliest set, its interval by the profile of the likelihood, or
+    None; what jumps, or is the same on several axes, is no noise, and has no name."""
+    if "drift" not in found.best.names or fitted.odd:
+        return None
+    free = frozenset(["flicker"])
+    course = sum(by_flicker(unit, statistics, found.best.shared, noise.prior(unit, free))
+                 for unit, statistics in zip(units, data.statistics) if not unit.between)
+    levels = sorted({b for _, b in units[0].grid})
+    alone = {choice.form.axes[choice.form.index.index(column)] for choices in found.best.chosen
+             for choice in choices if choice.form.variant == hypotheses.ONE_AXIS
+             for column in choice.columns.index.tolist()}
+    return Drift(*profile(levels, course), found.gains["drift"],
+                 excess.share_of_drift(units, data.statistics, found.best, chosen, fitted.index,
+                                       noise), tuple("xyz"[axis] for axis in sorted(alone)))
 
 
 def by_flicker(unit, statistics, shared, level):
@@ -58,3 +95,35 @@ def within_rests(part, kind, size, flicker):
                   for v in (over, more))
     ratio = np.log(over / more) + apart ** 2 * (1.0 / over - 1.0 / more)
     return 0.5 * ratio.sum(axis=0)
+
+
+def jumps(rests, rate):
+    """Probability of such heavy tails in the noise of rests, list of (n,) samples, that wanders:
+    a walk's steps from a short mean to the next are normal, those of what jumps between levels
+    are mostly none. The KNOCKS largest are left out: a knock is no way of wandering."""
+    best = 1.0
+    for seconds in STEP_S:
+        m = max(1, int(seconds * rate))
+        step = np.concatenate([np.diff(x[:len(x) // m * m].reshape(-1, m).mean(axis=1))
+                               for x in rests])
+        if len(step) < FEWEST_STEPS:
+            break
+        step = step[np.argsort(np.abs(step))[:-KNOCKS]]
+        tails, error = kurtosis(step), np.sqrt(24.0 / len(step))
+        if tails > KURTOSIS_SIGMAS * error + 0.5:
+            best = min(best, len(STEP_S) * float(special.ndtr(-(tails - 0.5) / error)))
+    return best
+
+
+def in_leaps(kind, sessions):
+    """The least probability of that of all axes of the rests of sessions, as many as there are."""
+    p = min((jumps([values[run.first:run.end, axis] for run in session.runs], session.rate)
+             for session in sessions for values in [long_rest.scaled(session, kind)]
+             for axis in range(3)), default=1.0)
+    return min(3.0 * len(sessions) * p, 1.0)
+
+
+def kurtosis(x):
+    """Fourth moment over the square of the second, less 3."""
+    off = (x - x.mean()) ** 2
+    return float((off ** 2).mean() / off.mean() ** 2 - 3.0)

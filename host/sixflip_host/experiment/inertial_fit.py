@@ -38,7 +38,9 @@ FEWEST_BINS, MOST_BINS = 12, 60  # five samples each in between: a hand moves be
 # face.
 FLAT_DEG = 15.0
 HATS = 4  # of the bias's course over a session: a straight line, or one that bends twice
-HABITS = 4  # cosines that hands have in common when they turn a box over, see handling_noise.py
+# Cosines that hands have in common when they turn a box: most of a way is in four of them
+# (handling_noise.py), but what is alike in all moves is as strong evidence in the faster ones.
+HABITS = 10
 BENDS = 39  # columns of what bends with the attitude, or remembers the one before
 # Standard deviations: of a hand's way, of a centre of turning in a box as large as a hand, and of
 # what has no name (strangers.SCALE: as large as the library's effects are).
@@ -50,6 +52,10 @@ BIAS_MG, STRANGE_BIAS_MG = 10.0, 60.0
 # would claim a lever arm where a hand only turns about another point, more would hide a small one.
 HAND_CM, WHEELS_CM = 0.3, 0.03
 MG_PER_METRE_S2 = 1000.0 / STANDARD_G  # mg
+SLOW = 5  # frequencies that a way is in, and its mean
+# ms: a hand trembles at 10 Hz at most, of which this is a radian; buffers and drivers that read in
+# turns are some samples behind, a tenth of a second at most (GAP: a gyro 40 to 80 ms late).
+LINEAR_MS, MOST_LATE_MS = 15.0, 150.0
 SMALL_DEG = 10.0  # of turning: in less the axis is as much the hand's wobble as the turn's
 
 
@@ -76,8 +82,9 @@ class Move:
         return self.table[:, :, :self.shared]
 
 
-def move(turn, capture, nominal, course, session, by_hand, white):
-    """Move of a turn; nominal: NominalSensor; course (4, samples): hats over the session."""
+def move(turn, capture, nominal, course, session, by_hand, white, lag_ms=0.0):
+    """Move of a turn; nominal: NominalSensor; course (4, samples): hats over the session; lag_ms:
+    about how late the accelerometer is behind the gyro, see lagging()."""
     body, felt, rate = carried(turn)
     frame, flat = _frame(turn, body, rate)
     seen = Seen.of_turn(turn)
@@ -85,7 +92,10 @@ def move(turn, capture, nominal, course, session, by_hand, white):
     measured = nominal.corrected(capture.accel[turn.first:turn.last] * scale)
     y = seen.of(1000.0 * (measured - felt)[:, :, None])[:, :, 0]
     m = moment(turn)
-    own = seen.of(np.concatenate([spread(name, m) for name in EFFECT_NAMES], axis=2))
+    effects = np.concatenate([spread(name, m) for name in EFFECT_NAMES], axis=2)
+    if lag_ms:
+        effects[:, :, EFFECTS_NUMBER - 1] = lagging(turn.t, felt, lag_ms)
+    own = seen.of(effects)
     edge = own[:, :, :3] @ frame.T * (not flat)
     memory = np.zeros((len(felt), 3, 3))
     for i in range(3):
@@ -132,11 +142,14 @@ def _frame(turn, body, rate):
 
 
 def _habits(n, seconds, flat):
-    """Up and down, and onwards, in the same way whenever a box is turned over: metres."""
-    out = np.zeros((n, 3, 2 * HABITS))
-    if not flat:
-        size = MG_PER_METRE_S2 * (np.pi / seconds) ** 2 * np.sqrt(n / 2.0)
-        for k in range(1, HABITS + 1):
+    """Up and down, and onwards, in the same way whenever a box is turned over; up and down
+    whenever it is turned on the table: metres."""
+    out = np.zeros((n, 3, 3 * HABITS))
+    size = MG_PER_METRE_S2 * (np.pi / seconds) ** 2 * np.sqrt(n / 2.0)
+    for k in range(1, HABITS + 1):
+        if flat:
+            out[k, 2, 2 * HABITS + k - 1] = size
+        else:
             out[k, 2, k - 1] = out[k, 0, HABITS + k - 1] = size
     return out
 
@@ -147,7 +160,7 @@ def priors(chip):
     effect = [10.0 * typical.size(name, chip, "accel")[0] for name in EFFECT_NAMES
               for _ in EFFECTS[name].keys]
     strange = [PRIOR_MG] * (COMPETING_NUMBER - EFFECTS_NUMBER)
-    return np.concatenate([effect, strange, [PRIOR_CM] * 3, [PRIOR_METRES] * (2 * HABITS),
+    return np.concatenate([effect, strange, [PRIOR_CM] * 3, [PRIOR_METRES] * (3 * HABITS),
                            [PRIOR_MG] * BENDS])
 
 
@@ -165,6 +178,27 @@ def spread(name, moment):
     for key, axis, value in effect.terms(moment):
         out[:, axis, effect.keys.index(key)] = value
     return out
+
+
+def lagging(t, felt, lag_ms):
+    """(n, 3) mg a millisecond: what gravity felt (n, 3) g at times t (n,) s is more where it is
+    read late by lag_ms: of a delay as long as a hand's tremor the derivative is no measure."""
+    late = np.stack([np.interp(t - 0.001 * lag_ms, t, axis) for axis in felt.T], 1)
+    return (late - felt) * (1000.0 / lag_ms)
+
+
+def way_lag(moves):
+    """ms: how late the accelerometer is behind the gyro by the slowest frequencies of each move
+    that turns the box over, the median of all; nil where that is no more than a column of its
+    derivative shows as well."""
+    found = []
+    for one in moves:
+        slow = slice(0, SLOW)
+        column, y = one.table[slow, :, EFFECTS_NUMBER - 1], one.y[slow]
+        if not one.flat:
+            found.append(float((column * y).sum() / max(float((column ** 2).sum()), 1e-300)))
+    late = float(np.median(found)) if found else 0.0
+    return float(np.clip(late, -MOST_LATE_MS, MOST_LATE_MS)) if abs(late) > LINEAR_MS else 0.0
 
 
 def path(turn):

@@ -135,8 +135,8 @@ def _groups(session, values, noise, rounding, directions):
 @dataclass(frozen=True, eq=False)
 class Rows:
     """Readings of one session before projection: y (n,), groups (list of covariance.Group),
-    nuisance (n, p), bias: which of its columns are the sensor's, levels (of placement, of
-    flicker), common (n, c): columns whose coefficients have a standard deviation of 1, known:
+    nuisance (n, p), bias and scale: which of its columns are the sensor's, levels (of placement,
+    of flicker), common (n, c): columns whose coefficients have a standard deviation of 1, known:
     degrees of freedom with which the size of its noise is known."""
 
     y: np.ndarray
@@ -146,6 +146,12 @@ class Rows:
     bias: tuple = ()
     common: np.ndarray | None = None
     known: float = np.inf
+    scale: tuple = ()
+
+    def left(self):
+        """(n, 3) what the nuisance leaves of the readings, by plain least squares."""
+        taken = self.nuisance @ np.linalg.lstsq(self.nuisance, self.y, rcond=None)[0]
+        return (self.y - taken).reshape(-1, 3)
 
     def loosened(self):
         """The same rows where every placement is free across its lateral directions."""
@@ -168,7 +174,7 @@ def rows(kind, session, nominal, certified=False):
     groups = _groups(session, session.accel, session.noise_accel, session.rounding_accel,
                      directions)
     return Rows(accel_rows(session, nominal), groups, accel_nuisance(session, nominal, certified),
-                (PLACEMENT_MG, FLICKER_MG), (0, 4, 8), None, _known(session))
+                (PLACEMENT_MG, FLICKER_MG), (0, 4, 8), None, _known(session), (1, 6, 11))
 
 
 def _earth(session, up):

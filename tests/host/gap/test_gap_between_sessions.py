@@ -24,8 +24,9 @@ def test_a_bias_that_differs_from_session_to_session_is_found_there():
     between = found.gaps["accel"].units[-1]
     assert between.between
     # 1000 counts are 61 mg; the contrast is the difference over the root of two
-    changed = between.z
-    np.testing.assert_allclose(np.abs(changed), [0, 61.0 / np.sqrt(2), 0], atol=1.5)
+    bias, scale = between.z[:3], between.z[3:]
+    np.testing.assert_allclose(np.abs(bias), [0, 61.0 / np.sqrt(2), 0], atol=1.5)
+    np.testing.assert_allclose(scale, np.zeros(3), atol=0.5)
     assert found.verdict == "unexplained"
     assert not found.causes
     places = localisation.places(found.gaps["accel"])

@@ -1,4 +1,5 @@
-"""Drift: a random walk of every axis. What sways, jumps or moves them together is none."""
+"""Drift: a random walk of every axis, or of one. What sways, jumps or moves them together, or
+moves with the poses only, is none."""
 import copy
 
 import numpy as np
@@ -84,13 +85,39 @@ def test_a_slope_beside_a_walk_keeps_its_name(captures):
     assert low < 0.4 < high
 
 
-@pytest.mark.parametrize("course", [together, one_axis, sways, jumps])
-def test_what_is_no_random_walk_of_every_axis_is_not_called_drift(
-        course, captures):
-    """Asked of the gyro at rest alone: a third of the work."""
-    sessions = moved(captures, course)
-    gap = rest_model.RestModel("gyro", "mpu6050", diagnosis.Settings(jobs=1)).fit(
+def gyro_at_rest(sessions):
+    """SensorGap of the gyro at rest alone: a third of the work."""
+    return rest_model.RestModel("gyro", "mpu6050", diagnosis.Settings(jobs=1)).fit(
         sessions, [attitude_fit.fit(session) for session in sessions])
+
+
+def test_a_walk_of_one_axis_is_a_drift_of_that_axis(captures):
+    gap = gyro_at_rest(moved(captures, one_axis))
+    assert gap.drift.axes == ("y",) and not gap.unexplained
+    assert gap.drift.share > 0.9
+
+
+def test_what_moves_with_the_poses_only_is_not_called_drift(captures):
+    """Up or down by a notch with every move, and still while the box lies still: what a random
+    walk is from rest to rest."""
+    generator, sessions = np.random.default_rng(5), []
+    for number, capture in enumerate(captures):
+        session = blocks.of(str(number), capture)
+        course = np.zeros(len(capture))
+        for run in session.runs[1:]:
+            course[run.first:] += generator.choice([-1.0, 1.0]) * 0.05
+        changed = copy.copy(capture)
+        changed.gyro = np.rint(capture.gyro + course[:, None] * np.array([[0.0, 1.0, 0.0]])
+                               * capture.meta["gyro_lsb_per_dps"]).astype(np.int16)
+        sessions.append(blocks.of(str(number), changed))
+    gap = gyro_at_rest(sessions)
+    assert not gap.drift and gap.unexplained
+    assert gap.strangers and all(form.generic for form in gap.strangers)
+
+
+@pytest.mark.parametrize("course", [together, sways, jumps])
+def test_what_is_no_random_walk_is_not_called_drift(course, captures):
+    gap = gyro_at_rest(moved(captures, course))
     assert not gap.drift
     assert gap.unexplained
     assert any(place.domain == "time" for place in localisation.places(gap))

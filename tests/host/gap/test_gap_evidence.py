@@ -7,6 +7,7 @@ from sixflip_host.diagnosis import (
     cutoffs,
     evidence,
     hypotheses,
+    mimicry,
     moves_unit,
     odds,
     posterior,
@@ -140,7 +141,6 @@ def test_a_jump_of_each_sessions_own_is_a_stranger_beside_the_effect():
     generator = np.random.default_rng(10)
     said = found([unit(generator, 3.0, 4.0), unit(generator, 3.0, 4.0)])
     assert said.best.names == {"thermal_bias", "jump"}
-    assert posterior.domains_left(said).keys() == {"time"}
 
 
 def test_a_level_of_noise_beyond_the_usual_costs_unless_it_may_be_anything():
@@ -230,14 +230,18 @@ def smooth(named, n=40):
 
 
 def test_strangers_that_look_like_a_name_make_every_name_less_sure(monkeypatch):
-    monkeypatch.setattr(cutoffs, "STRANGERS", 30)
+    monkeypatch.setattr(mimicry, "STRANGERS", 30)
     taken = {}
     for name, form in (("alike", np.linspace(-1.0, 1.0, 40)), ("unlike", (-1.0) ** np.arange(40))):
         units = [smooth(form), smooth(form)]
-        taken[name] = cutoffs.left_to_names(units, hypotheses.of(units), USUAL, [0, 0])[1]
-    assert taken["unlike"] < 0.1 < 0.2 < taken["alike"]
+        found = mimicry.simulated(units, hypotheses.of(units), USUAL, [0, 0])
+        taken[name] = found.whole()
+        assert found.whole(0.1) >= found.whole(0.5) >= taken[name]
+        assert found.beside(0.1) >= found.beside(0.9)
+    assert 2.0 * taken["unlike"] < taken["alike"] > 0.1
     sure = [odds.of_name(0.99, mimicked, outside) for mimicked, outside in (
         (0.0, 1.0), (taken["unlike"], 0.0), (taken["unlike"], 1.0), (taken["alike"], 1.0))]
+    assert odds.of_name(0.99, 0.2, 1.0, odds.BESIDE) < odds.of_name(0.99, 0.2, 1.0)
     assert sure[0] == 0.99 and sure == sorted(sure, reverse=True) and len(set(sure)) == 4
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture import registers
-from sixflip_host.diagnosis import adequacy, verdict
+from sixflip_host.diagnosis import verdict, wandering
 from sixflip_host.diagnosis.detect import dead_band, held_values, noise_bursts, torn_reads
 from sixflip_host.diagnosis.detect.detection import present
 from sixflip_host.diagnosis.holdout_gain import Shrinkage
@@ -92,8 +92,8 @@ def test_what_leaps_between_levels_is_no_walk():
     noise = 4.0 * generator.standard_normal(90000)
     walk = noise + 0.02 * np.cumsum(generator.standard_normal(90000))
     telegraph = noise + 3.0 * (np.cumsum(generator.random(90000) < 1.0 / 6000.0) % 2)
-    assert adequacy.jumps(walk, 100.0) == 1.0
-    assert adequacy.jumps(telegraph, 100.0) < 1e-6
+    assert wandering.jumps([walk], 100.0) == 1.0
+    assert wandering.jumps([telegraph], 100.0) < 1e-6
 
 
 def test_a_gap_that_hardly_closes_is_not_explained():

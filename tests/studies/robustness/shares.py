@@ -14,8 +14,8 @@ import argparse
 import numpy as np
 
 from sixflip_host.diagnosis import (
-    adequacy,
     coefficient_fits,
+    excess,
     holdout_gain,
     hypotheses,
     posterior,
@@ -84,7 +84,7 @@ def case(seed):
     chosen = list(set_.forms)
     index = [int(fit.index[0]) for fit in set_.fits]
     shrinkage = holdout_gain.of(data, chosen, index, model.usual())
-    index = adequacy.usual_levels(whole, index, model.usual().flicker)
+    index = excess.usual_levels(whole, index, model.usual().flicker)
     times = SIZES[seed // len(EFFECTS) % len(SIZES)]
     if shrinkage.interval is None:
         return name, kind, times, shrinkage, None, None
