@@ -25,9 +25,9 @@ from ..experiment import gram
 # A standard deviation of each level's logarithm. Placement may be anything: a box that is put
 # down in any heading on a tilted table scatters by degrees.
 USUAL_FACTOR = {"placement": 8.0, "flicker": 2.0, "switch_on": 1.2, "scale": 1.2}
-# Of an accelerometer's scale, mg at 1 g, for each mg of a bias that switching on changes: 0.06 %
-# for 6 mg, what three degrees do to an MPU6050 (PS-MPU-6000A section 6.2).
-OF_SCALE = 0.1
+# Of an accelerometer's scale, mg at 1 g, for each mg of a bias that switching on changes: 0.02 %
+# for 6 mg, what one degree does to an MPU6050 (PS-MPU-6000A section 6.2).
+OF_SCALE = 0.03
 KNOWN_FACTOR = 1.4  # and where a capture of noise alone was given
 
 

@@ -29,7 +29,7 @@ KNOWN = 1e-6  # of a bias that the poses leave undetermined, at most
 
 
 SCALES = {"accel": (0.07, 0.2, 0.6, 2.0, 6.0, 20.0), "gyro": (0.0,)}  # mg at 1 g
-ORDINARY_SCALE = {"accel": 0.2, "gyro": 0.0}
+ORDINARY_SCALE = {"accel": 0.06, "gyro": 0.0}
 
 
 @dataclass(frozen=True, eq=False)

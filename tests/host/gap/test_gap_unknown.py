@@ -27,6 +27,25 @@ def test_a_step_at_another_time_in_each_session_is_unexplained(two_sessions):
     assert (found["where"][0]["sensor"], found["where"][0]["domain"]) == ("accel", "time")
 
 
+@pytest.mark.parametrize("course", [
+    lambda u: 1.0 * (u > 0.4), lambda u: 1.0 / (1.0 + np.exp((0.5 - u) * 30.0))],
+    ids=["a scale that steps", "what soaks in"])
+def test_what_changes_once_in_one_session_is_no_drift(two_sessions, course, request):
+    """Both were: the first of every axis by gravity, the second all at once on all axes."""
+    soaks = "soaks" in request.node.name
+    for number, capture in enumerate(two_sessions):
+        capture.gyro = None  # the accelerometer alone: half the work
+        if number == 0:
+            u = np.linspace(0.0, 1.0, len(capture))[:, None]
+            added = 150.0 * course(u) * (np.array([1.0, -0.7, 0.8]) if soaks
+                                         else capture.accel / 16384.0)
+            capture.accel = np.rint(capture.accel + added).astype(np.int16)
+    sessions = [blocks.of(str(k), c) for k, c in enumerate(two_sessions)]
+    found = answer.of(diagnosis.of(sessions, diagnosis.Settings()))
+    assert found["verdict"] == "unexplained" and not found["causes"]
+    assert (found["where"][0]["sensor"], found["where"][0]["domain"]) == ("accel", "time")
+
+
 def test_a_scale_that_follows_the_temperature_is_no_drift_where_the_library_lacks_it(two_sessions):
     for capture in two_sessions:
         warm = capture.temp / capture.meta["temp_lsb_per_c"] - 25.0
