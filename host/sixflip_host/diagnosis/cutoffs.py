@@ -27,7 +27,7 @@ TIMES_USUAL = 1.6  # of the usual levels, that a null has at most
 SMALLEST_SCALE = 1e-6  # nats: all nulls gain the same
 MARGIN_NATS = 1.0  # noise is not quite what it is simulated as
 LEAST_NATS = 4.0  # GAP: 95 % of the prototype's nulls in one search with the noise known exactly
-FORMAT = 19  # of the cache: another one where what is kept, or how it is made, has changed
+FORMAT = 22  # of the cache: another one where what is kept, or how it is made, has changed
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ def _usual(unit, point, levels):
     """The point of a unit's grid nearest to one that the data shows, with no more flicker and
     placement, or change from one switch-on to the next, than is usual: a null is what the chip
     and the hand do anyhow."""
-    top = (levels.switch_on, evidence.OF_SCALE * levels.switch_on) if unit.between else (
+    top = (levels.switch_on, 0.0) if unit.between else (
         TIMES_USUAL * levels.placement, TIMES_USUAL * levels.flicker)
     low = [k for k, pair in enumerate(unit.grid) if pair[0] <= top[0] and pair[1] <= top[1]]
     wanted = [min(a, b) for a, b in zip(unit.grid[point], top)]

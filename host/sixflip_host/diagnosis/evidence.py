@@ -24,10 +24,7 @@ from ..experiment import gram
 
 # A standard deviation of each level's logarithm. Placement may be anything: a box that is put
 # down in any heading on a tilted table scatters by degrees.
-USUAL_FACTOR = {"placement": 8.0, "flicker": 2.0, "switch_on": 1.2, "scale": 1.2}
-# Of an accelerometer's scale, mg at 1 g, for each mg of a bias that switching on changes: 0.02 %
-# for 6 mg, what one degree does to an MPU6050 (PS-MPU-6000A section 6.2).
-OF_SCALE = 0.03
+USUAL_FACTOR = {"placement": 8.0, "flicker": 2.0, "switch_on": 1.2}
 KNOWN_FACTOR = 1.4  # and where a capture of noise alone was given
 
 
@@ -46,8 +43,7 @@ class Levels:
         anything. Less than usual is as good as usual."""
         grid = np.array(unit.grid)
         if unit.between:
-            usual = {"switch_on": (grid[:, 0], self.switch_on),
-                     "scale": (grid[:, 1], OF_SCALE * self.switch_on)}
+            usual = {"switch_on": (grid[:, 0], self.switch_on)}
         else:
             usual = {"placement": (grid[:, 0], self.placement),
                      "flicker": (grid[:, 1], self.flicker)}

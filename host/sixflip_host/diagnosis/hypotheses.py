@@ -17,8 +17,7 @@ WIDTHS = (0.2, 1.0)  # of the strangers' scale, tried for what is a session's ow
 # by 1.8, which costs half a nat a coefficient at most: ln r + (1 / r^2 - 1) / 2.
 WALKS = (0.1, 0.3, 1.0, 3.0)
 ONE_AXIS = "one axis"  # variant of the drift that one axis has
-# {name: (levels of noise that may be anything, domain)}
-FREE = {"drift": (("flicker",), "time"), "session": (("switch_on", "scale"), "session")}
+FREE = {"drift": ("flicker", "time"), "session": ("switch_on", "session")}
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +26,8 @@ class Form:
     each session takes one for its own (index: all columns that are in them); free, names of
     levels that may be anything. effect, variant, axis, keys, axes, powers, record, columns and
     prior are those of the design behind it; discrepancy: columns of the strangers of its own
-    variable are beside those, with the power BESIDE; of_fleet: the prior is a population's."""
+    variable are beside those, with the power BESIDE; of_fleet: the prior is a population's;
+    instead: the effect in whose place alone it is tried."""
 
     effect: str
     variant: str = ""
@@ -42,6 +42,7 @@ class Form:
     record: bool = False
     discrepancy: bool = False
     of_fleet: bool = False
+    instead: str = ""
 
     @property
     def generic(self):
@@ -105,9 +106,9 @@ def of(units, without=(), drift=True):
                                       * design.prior[mine]),
                               powers=tuple(design.powers[i] for i in mine),
                               record=design.record))
-    for name, (levels, _) in FREE.items():
+    for name, (level, _) in FREE.items():
         if drift and name not in without:
-            found.append(Form(name, free=frozenset(levels)))
+            found.append(Form(name, free=frozenset([level])))
     return found
 
 
@@ -137,7 +138,8 @@ def _course(design, columns, variant):
                     for mine in [axes >= 0, *(axes == axis for axis in range(3))]
                     for width in WALKS)
     return Form(design.effect, variant, None, design.keys, design.axes, NONE, choices,
-                index=tuple(columns.tolist()))
+                index=tuple(columns.tolist()), instead=strangers.INSTEAD.get(
+                    (design.effect, variant), ""))
 
 
 def _one_axis(design, columns):

@@ -148,16 +148,14 @@ def along(gap):
 
 
 def session(gap):
-    """The biases and scales of the sessions against each other, beyond what switching on
-    changes."""
+    """The biases of the sessions against each other, beyond what switching on changes."""
     unit = gap.units[-1]
     if not unit.between:
         return []
     found = []
     z = unit.z.reshape(-1, 3)
     variance = np.diag(covariance.dense(
-        unit.groups, session_offsets.ORDINARY_CHANGE[gap.kind],
-        session_offsets.ORDINARY_SCALE[gap.kind])).reshape(-1, 3)
+        unit.groups, session_offsets.ORDINARY_CHANGE[gap.kind], 0.0)).reshape(-1, 3)
     excess = max(gap.adequacy.excess_before, 1e-9)
     for axis in range(3):
         chi2 = float((z[:, axis] ** 2 / variance[:, axis]).sum())

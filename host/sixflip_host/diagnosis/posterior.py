@@ -93,10 +93,11 @@ def _judged(model, forms, likely, cost):
     return Posterior(best, empty, cost, places, gains)
 
 
-def _free(forms, scored):
-    """The Forms of effects that a set has no member of."""
+def _free(forms, scored, instead=""):
+    """The Forms of effects that a set has no member of; instead: the effect whose place is
+    free."""
     taken = {f.effect for f in scored.forms}
-    return [f for f in forms if f.effect not in taken]
+    return [f for f in forms if f.effect not in taken and f.instead in ("", instead)]
 
 
 def _worth(scored, cost):
@@ -195,7 +196,7 @@ def _rivals(model, forms, fewer, form, cost):
     come near to the best one. Names compete with their discrepancy there, as they do in the set,
     but not those of time for a stranger's place, of which everything is a function."""
     found, seen = [], set()
-    for rival, one in model.best(fewer, _free(forms, fewer)):
+    for rival, one in model.best(fewer, _free(forms, fewer, form.effect)):
         if (rival.effect, rival.axis) not in seen and not (
                 form.generic and hypotheses.domain(rival.effect) == "time"):
             seen.add((rival.effect, rival.axis))

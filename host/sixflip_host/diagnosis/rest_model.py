@@ -92,7 +92,8 @@ class RestModel:
         noise = self.usual()
         # A square beside a slope is for the board's record; here a discrepancy stands for it.
         forms = [f for f in options if not f.record]
-        cost = replace(cutoffs.of(units, forms, noise), form=self.form)
+        cost = replace(cutoffs.of(units, [f for f in forms if not f.instead], noise),
+                       form=self.form)
         model = scored_sets.Model(units, data.statistics, noise)
         progress.doing("what explains it best")
         found = posterior.search(model, forms, cost) if likeliest is None \

@@ -1,15 +1,12 @@
-"""What lies between the sessions: the differences of their biases, and of an accelerometer's
-scales, beyond switching on.
+"""What lies between the sessions: the difference of their biases, beyond switching on.
 
 Within one session a bias is a nuisance, so an effect and its rate of change over one exponential
 look alike, however many sessions are laid side by side. Between a warming and a cooling session
 they do not: the temperatures that the two stand at differ by degrees. A chip's bias does change
 from one switch-on to the next, so the differences count with a standard deviation of their own,
-by restricted maximum likelihood as the levels of placement and flicker. A scale, which each
-session's poses tell as well as the bias, hardly changes: it takes up what depends on the order of
-the poses, which is another one in the next session.
+by restricted maximum likelihood as the levels of placement and flicker.
 
-Both of each session by generalised least squares at an ordinary point of the grid: its error
+The bias of each session by generalised least squares at an ordinary point of the grid: its error
 is then independent of the contrasts that are left in that session (Gauss-Markov), so this unit
 stands beside the others as one more session would.
 """
@@ -28,24 +25,19 @@ UNUSUAL = {"accel": 6.0, "gyro": 0.3}  # standard deviation beyond which a chang
 KNOWN = 1e-6  # of a bias that the poses leave undetermined, at most
 
 
-SCALES = {"accel": (0.07, 0.2, 0.6, 2.0, 6.0, 20.0), "gyro": (0.0,)}  # mg at 1 g
-ORDINARY_SCALE = {"accel": 0.06, "gyro": 0.0}
-
-
 @dataclass(frozen=True, eq=False)
-class Standing:
-    """What a session stands at, as it reads: value (k,) of its biases and, of an accelerometer,
-    its scales, mg or deg/s; covariance (k, k); columns (k, K) of all effects in them; determined
-    (k,): False where the poses do not determine one."""
+class Bias:
+    """A session's bias as it reads: value (3,), covariance (3, 3), columns (3, K) of all
+    effects in it; determined: False where the poses do not determine a bias."""
 
     value: np.ndarray
     covariance: np.ndarray
     columns: np.ndarray
-    determined: np.ndarray
+    determined: bool
 
 
-def standing(kind, rows, nominal, designs):
-    """Standing of one session by generalised least squares; rows as nominal_rows has them."""
+def bias(kind, rows, nominal, designs):
+    """Bias of one session by generalised least squares; rows as nominal_rows has them."""
     factor = covariance.Factor(covariance.reduced(rows.groups), ORDINARY[kind][:1],
                                ORDINARY[kind][1])
     # Strangers belong to one session: in the difference of two they have no coefficient.
@@ -57,45 +49,39 @@ def standing(kind, rows, nominal, designs):
         [rows.nuisance, common, raw, rows.y])))[0]
     # Coefficients known to a standard deviation of 1 are observed as 0 with that error.
     observed = np.vstack([white[:, :fitted], np.eye(fitted)[number:]])
-    wanted = [*rows.bias, *rows.scale]
+    wanted = list(rows.bias)
     back = np.linalg.pinv(observed, rcond=1e-9)[wanted]
-    determined = np.abs(back @ observed - np.eye(fitted)[wanted]).max(axis=1) < KNOWN
+    determined = np.abs(back @ observed - np.eye(fitted)[wanted]).max() < KNOWN
     spread, back = back @ back.T, back[:, :len(white)]
     value, columns = back @ white[:, -1], back @ white[:, fitted:-1]
     if kind == "accel":  # what the nominal fit took off already is in it, too
         reads = np.linalg.inv(nominal.matrix)
-        turned = linalg.block_diag(reads, np.diag(np.diag(reads)))
-        # A scale is what an axis reads of gravity along it, whichever way the axes are turned.
-        value = turned @ (value - 1000.0 * np.concatenate([nominal.offset, np.zeros(3)]))
-        value[3:] += 1000.0 * np.linalg.norm(reads, axis=1)
-        columns, spread = turned @ columns, turned @ spread @ turned.T
-    return Standing(value, spread, columns, determined)
+        value = reads @ (value - 1000.0 * nominal.offset)
+        columns, spread = reads @ columns, reads @ spread @ reads.T
+    return Bias(value, spread, columns, bool(determined))
 
 
 def unit(kind, rows, models, designs):
     """Unit of the differences between sessions (one Rows, model and list of Design each), or
-    None where there are none: k (S - 1) contrasts, each session against those before it."""
-    found = [standing(kind, r, m, d) for r, m, d in zip(rows, models, designs)]
-    determined = np.all([one.determined for one in found], axis=0)
-    if len(found) < 2 or not determined[:3].all():
+    None where there are none: 3 (S - 1) contrasts, each session against those before it."""
+    biases = [bias(kind, r, m, d) for r, m, d in zip(rows, models, designs)]
+    if len(biases) < 2 or not all(b.determined for b in biases):
         return None
-    kept = np.arange(len(determined) if determined.all() else 3)
-    number = len(found)
-    scales = np.diag(np.tile(1.0 * (kept >= 3), number - 1))
+    number = len(biases)
     helmert = np.zeros((number - 1, number))
     for k in range(1, number):
         helmert[k - 1, :k], helmert[k - 1, k] = -1.0 / k, 1.0
         helmert[k - 1] /= np.linalg.norm(helmert[k - 1])
-    spread = np.kron(helmert, np.eye(len(kept)))
-    errors = linalg.block_diag(*(one.covariance[np.ix_(kept, kept)] for one in found))
-    y = spread @ np.concatenate([one.value[kept] for one in found])
-    columns = spread @ np.vstack([one.columns[kept] for one in found])
+    spread = np.kron(helmert, np.eye(3))
+    errors = linalg.block_diag(*(b.covariance for b in biases))
+    y = spread @ np.concatenate([b.value for b in biases])
+    columns = spread @ np.vstack([b.columns for b in biases])
     own, start = [], 0
     for d in designs[0]:
         k = len(d.keys)
         own.append(replace(d, columns=columns[:, start:start + k], choices=()))
         start += k
-    rows = nominal_rows.Rows(
-        y, covariance.alone(spread @ errors @ spread.T, np.eye(len(y)) - scales, scales),
-        np.zeros((len(y), 1)), (SWITCH_ON[kind], SCALES[kind] if scales.any() else (0.0,)))
+    rows = nominal_rows.Rows(y, covariance.alone(spread @ errors @ spread.T, np.eye(len(y)),
+                                                 np.zeros((len(y), len(y)))),
+                             np.zeros((len(y), 1)), (SWITCH_ON[kind], (0.0,)))
     return linear_model.unit(rows, own, signature=("between", number), between=True)

@@ -35,6 +35,11 @@ COURSE = "course"  # variant of what is a session's own in time
 # How the terms of a course fall off with their number: as what a rate adds up to that is a random
 # walk; as a walk itself, which moves with the poses only; not at all, another one in every pose.
 ROUGHNESS = {"smooth": 2, "in steps": 1, "scattered": 0}
+# Everything that differs from pose to pose is a course of these, a memory of another form than the
+# library's as well. So they are only asked whether a drift is one: whether it moves with the poses
+# alone, or with gravity.
+INSTEAD = {("own_time", "in steps"): "drift", ("own_time", "scattered"): "drift",
+           ("time_orientation", "in steps"): "drift"}
 COURSES = {"own_time": tuple(ROUGHNESS), "time_orientation": ("in steps",)}  # that are tried
 # Of the others: their own.
 DOMAIN = {"jump": "time", "periodic": "frequency", "own_time": "time",

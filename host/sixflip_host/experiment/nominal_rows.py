@@ -135,8 +135,8 @@ def _groups(session, values, noise, rounding, directions):
 @dataclass(frozen=True, eq=False)
 class Rows:
     """Readings of one session before projection: y (n,), groups (list of covariance.Group),
-    nuisance (n, p), bias and scale: which of its columns are the sensor's, levels (of placement,
-    of flicker), common (n, c): columns whose coefficients have a standard deviation of 1, known:
+    nuisance (n, p), bias: which of its columns are the sensor's, levels (of placement, of
+    flicker), common (n, c): columns whose coefficients have a standard deviation of 1, known:
     degrees of freedom with which the size of its noise is known."""
 
     y: np.ndarray
@@ -146,7 +146,6 @@ class Rows:
     bias: tuple = ()
     common: np.ndarray | None = None
     known: float = np.inf
-    scale: tuple = ()
 
     def left(self):
         """(n, 3) what the nuisance leaves of the readings, by plain least squares."""
@@ -174,7 +173,7 @@ def rows(kind, session, nominal, certified=False):
     groups = _groups(session, session.accel, session.noise_accel, session.rounding_accel,
                      directions)
     return Rows(accel_rows(session, nominal), groups, accel_nuisance(session, nominal, certified),
-                (PLACEMENT_MG, FLICKER_MG), (0, 4, 8), None, _known(session), (1, 6, 11))
+                (PLACEMENT_MG, FLICKER_MG), (0, 4, 8), None, _known(session))
 
 
 def _earth(session, up):

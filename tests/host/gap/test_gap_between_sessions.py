@@ -24,26 +24,12 @@ def test_a_bias_that_differs_from_session_to_session_is_found_there():
     between = found.gaps["accel"].units[-1]
     assert between.between
     # 1000 counts are 61 mg; the contrast is the difference over the root of two
-    bias, scale = between.z[:3], between.z[3:]
-    np.testing.assert_allclose(np.abs(bias), [0, 61.0 / np.sqrt(2), 0], atol=1.5)
-    np.testing.assert_allclose(scale, np.zeros(3), atol=0.5)
+    changed = between.z
+    np.testing.assert_allclose(np.abs(changed), [0, 61.0 / np.sqrt(2), 0], atol=1.5)
     assert found.verdict == "unexplained"
     assert not found.causes
     places = localisation.places(found.gaps["accel"])
     assert (places[0].domain, places[0].axis) == ("session", "y")
-
-
-def test_a_scale_that_differs_from_session_to_session_is_found_there():
-    """0.4 % of one axis, 4 mg at 1 g: each session by itself calibrates it away."""
-    both = sessions()
-    capture = both[1].capture
-    capture.accel = np.rint(capture.accel * np.array([1.0, 1.0, 1.004])).astype(np.int16)
-    found = diagnosis.of([both[0], blocks.of("1", capture)], diagnosis.Settings())
-    scale = found.gaps["accel"].units[-1].z[3:]
-    np.testing.assert_allclose(np.abs(scale), [0.0, 0.0, 4.0 / np.sqrt(2)], atol=0.3)
-    assert found.verdict == "unexplained" and not found.causes
-    places = localisation.places(found.gaps["accel"])
-    assert (places[0].domain, places[0].axis) == ("session", "z")
 
 
 def test_an_ordinary_change_is_no_gap():
