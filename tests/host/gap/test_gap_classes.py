@@ -55,7 +55,8 @@ def test_the_right_class_gains_with_the_size(captures):
 
 @pytest.mark.parametrize("change", [
     lambda t, warm, g: on_z(9.0 * np.tanh(0.15 * warm)),
-    lambda t, warm, g: on_z(8.0 * g[:, 2] ** 2 + 4.0 * (t > 300.0))], ids=["slope", "bend and step"])
+    lambda t, warm, g: on_z(8.0 * g[:, 2] ** 2 + 4.0 * (t > 300.0))],
+    ids=["slope", "bend and step"])
 def test_levels_of_noise_that_are_far_behind_change_no_answer(captures, change, monkeypatch):
     """A large cause passes for noise until it is found: the levels that it leads to are tried."""
     short = causes(captures, change)
