@@ -7,11 +7,11 @@ capture shows, or as the chip's data sheet and published plots have.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import special
+from scipy import special, stats
 
 from sixflip_sim.effects import typical
 
-from . import evidence, excess, odds, session_offsets, wandering
+from . import evidence, excess, odds, session_offsets
 from .evidence import Levels
 
 PLACEMENT = {"accel": 0.87, "gyro": 0.003}  # 0.05 deg across gravity, mg; the Earth's rate
@@ -19,9 +19,9 @@ TIMES_TYPICAL = 4.0  # of flicker, that one rest may have: data sheets give no l
 ABSORBED = 0.6  # leverage above which a residual is mostly fitted away
 FEWEST = 20  # innovations of each axis of a session, and of two axes at the same time
 FROZEN = 1e-6  # of a standard deviation: rounding of a reading that never changes leaves less
-# How much one axis' noise may be above another's in a chip as it is [ADXL345 rev. E, table 1: Z
-# 1.1 LSB, X and Y 0.75].
-UNLIKE = 1.5
+# Standard deviations of a kurtosis that chance reaches once in 30,000; how much one axis' noise
+# may be above another's in a chip as it is [ADXL345 rev. E, table 1: Z 1.1 LSB, X and Y 0.75].
+KURTOSIS_SIGMAS, UNLIKE = 4.0, 1.5
 # Both sensors, turns, tails and axes share odds.CHANCE; covariances are true to some 15 %.
 DOUBTFUL_P, DOUBTFUL_RATIO = 1e-3, 1.3
 
@@ -151,28 +151,26 @@ def _odd(units, scored, theta, shaken, by_hand):
             for u, f, private in zip(units, scored.fits, scored.private)
             if not (u.between or u.turns or u.apart)]
     left = [x for x in left if np.isfinite(x).sum(axis=0).min() >= FEWEST]
-    return oddity(np.concatenate(left), range(3) if "drift" in scored.names else shaken) \
-        if left else ("", 1.0)
+    return oddity(np.concatenate(left), shaken, "drift" not in scored.names) if left else ("", 1.0)
 
 
-def oddity(x, shaken=()):
+def oddity(x, shaken=(), alike=True):
     """("" or how, p): how innovations x (n, 3), NaN where the fit takes them up, differ from noise
-    that is normal, of one size on all axes and independent between them; shaken: axes that a line
-    of the spectrum is on."""
+    that is normal, independent between the axes and, where they are alike, of one size on all;
+    shaken: axes that a line of the spectrum is on."""
     each = [column[np.isfinite(column)] for column in x.T]
     if min(one.std() for one in each) < FROZEN:  # what always reads the same has no noise
         return "", 1.0
-    every = np.concatenate(each)
-    tails = wandering.kurtosis(every)
-    if tails > wandering.KURTOSIS_SIGMAS * np.sqrt(24.0 / every.size) + 0.5:
-        return "heavy tails", float(special.ndtr(-(tails - 0.5) / np.sqrt(24.0 / every.size)))
+    # Of one axis that is louder than the others all together have tails.
+    p = tails(np.concatenate(each if alike else [stats.zscore(one) for one in each]))
+    if p < 1.0:
+        return "heavy tails", p
     # A line is noise with a name.
     quiet = [one for axis, one in enumerate(each) if axis not in shaken] or each[:1]
     small, large = (pick(quiet, key=lambda one: (one ** 2).mean()) for pick in (min, max))
-    ratio, numbers = (large ** 2).mean() / (small ** 2).mean(), (len(large), len(small))
-    if ratio > special.fdtri(*numbers, 1.0 - DOUBTFUL_P / 3.0) * UNLIKE ** 2:
-        return "one axis more than the others", 3.0 * float(special.fdtrc(
-            *numbers, ratio / UNLIKE ** 2))
+    p = louder(large, small)
+    if alike and p < DOUBTFUL_P:
+        return "one axis more than the others", p
     for a, b in ((0, 1), (0, 2), (1, 2)):
         both = np.isfinite(x[:, a]) & np.isfinite(x[:, b])
         number = np.count_nonzero(both)
@@ -183,6 +181,22 @@ def oddity(x, shaken=()):
             return "axes move together", 6.0 * float(special.ndtr(
                 -np.arctanh(together - 0.1) * np.sqrt(number)))
     return "", 1.0
+
+
+def tails(x):
+    """Probability of such heavy tails of a normal x (n,); 1.0 where they are not beyond what
+    chance and noise of not quite the kernel's colour have."""
+    beyond, error = float(stats.kurtosis(x)), np.sqrt(24.0 / len(x))
+    if beyond <= KURTOSIS_SIGMAS * error + 0.5:
+        return 1.0
+    return float(special.ndtr(-(beyond - 0.5) / error))
+
+
+def louder(x, than):
+    """Probability of noise x (n,) being so much more than that of another axis (m,) by chance
+    and by what chips have, one of three axes."""
+    ratio = (x ** 2).mean() / (than ** 2).mean()
+    return min(3.0 * float(special.fdtrc(len(x), len(than), ratio / UNLIKE ** 2)), 1.0)
 
 
 def innovations(unit, point, private, explained, loose=False):

@@ -44,8 +44,7 @@ def share_of_drift(units, statistics, scored, chosen, index, levels):
     walk that a Scored set has."""
     quiet = usual_levels(units, index, levels.flicker)
     total = at(units, statistics, [], quiet)
-    by_level = at(units, statistics, chosen, quiet) - at(
-        units, statistics, chosen, index)
+    by_level = at(units, statistics, chosen, quiet) - at(units, statistics, chosen, index)
     walked = sum(_walked(*unit, choice.columns) for *unit, choices in zip(
         units, statistics, index, scored.chosen) for choice in choices
         if choice.form.effect == "drift")

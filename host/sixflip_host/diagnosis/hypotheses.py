@@ -138,8 +138,8 @@ def _course(design, columns, variant):
                     for mine in [axes >= 0, *(axes == axis for axis in range(3))]
                     for width in WALKS)
     return Form(design.effect, variant, None, design.keys, design.axes, NONE, choices,
-                index=tuple(columns.tolist()), instead=strangers.INSTEAD.get(
-                    (design.effect, variant), ""))
+                index=tuple(columns.tolist()),
+                instead="" if variant == strangers.ASKED_OF_ALL else "drift")
 
 
 def _one_axis(design, columns):

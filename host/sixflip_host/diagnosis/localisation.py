@@ -44,7 +44,8 @@ def places(gap):
         named += _strange(gap, form, tested)
     if "drift" in gap.found.best.names:
         gain = gap.found.gains["drift"]
-        named.append(Place(gap.kind, None, "time", 1.0, odds.chance(gain)))
+        named += [Place(gap.kind, letter, "time", 1.0, odds.chance(gain))
+                  for letter in (gap.drift.axes if gap.drift else ()) or (None,)]
     named = [replace(place, named=True) for place in named]
     known = {(p.axis, p.domain) for p in named}
     return sorted(named + [t for t in tested if (t.axis, t.domain) not in known

@@ -254,4 +254,3 @@ def axes_of(model, found, form):
     share = found.cost.beside if form.generic else found.cost.form
     return [(axis, gain) for axis, gain in gains.items()
             if gain == most or gain > found.cost.of(form) + share * most]
-

@@ -75,7 +75,8 @@ class RestModel:
             self, parts, units, data, options, forms, noise, cost, found,
             chosen, nameless, causes, fitted,
             {f.effect: posterior.axes_of(model, found, f) for f in nameless},
-            wandering.drift(units, data, noise, found, fitted, chosen),
+            wandering.drift(self.kind, [session for session, _ in parts], units, data, noise,
+                            found, fitted, chosen),
             not fitted.ok or bool(nameless) or doubted, crooked)
         gap = _owned(model, replace(gap, causes=_sized(gap, causes, data)))
         return self.shrunk(self._tilted(gap))

@@ -3,9 +3,9 @@
 Shared ones have the same coefficients in every session: what is smooth in temperature, what
 gravity adds in proportion to it, what is even and odd in orientation, follows the pose before or
 the time since the move, changes sign with the flip, repeats with the time since switching on.
-Private ones have coefficients of each session's own: a jump at some time, something periodic,
-something smooth in time. The widths of their priors are tried over a decade: of a stranger no
-size is known.
+Private ones have coefficients of each session's own: a jump at some time, something periodic, a
+course in time, or of a scale in time. The widths of their priors are tried over a decade: of a
+stranger no size is known.
 """
 import numpy as np
 from numpy.polynomial import legendre
@@ -35,16 +35,15 @@ COURSE = "course"  # variant of what is a session's own in time
 # How the terms of a course fall off with their number: as what a rate adds up to that is a random
 # walk; as a walk itself, which moves with the poses only; not at all, another one in every pose.
 ROUGHNESS = {"smooth": 2, "in steps": 1, "scattered": 0}
-# Everything that differs from pose to pose is a course of these, a memory of another form than the
-# library's as well. So they are only asked whether a drift is one: whether it moves with the poses
-# alone, or with gravity.
-INSTEAD = {("own_time", "in steps"): "drift", ("own_time", "scattered"): "drift",
-           ("time_orientation", "in steps"): "drift"}
 COURSES = {"own_time": tuple(ROUGHNESS), "time_orientation": ("in steps",)}  # that are tried
+# Everything that differs from pose to pose is a course of the others, a memory of another form
+# than the library's as well. So they are only asked whether a drift is one: whether it moves with
+# the poses alone, or with gravity.
+ASKED_OF_ALL = "smooth"
 # Of the others: their own.
 DOMAIN = {"jump": "time", "periodic": "frequency", "own_time": "time",
-          "time_orientation": "time",
-          "thermal_orientation": "temperature", "bend": "orientation"}
+          "time_orientation": "time", "thermal_orientation": "temperature",
+          "bend": "orientation"}
 
 
 def domain(effect):

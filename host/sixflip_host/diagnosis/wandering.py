@@ -7,14 +7,14 @@ differs from pose to pose does nothing while the box lies still, and is no drift
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import special
 
-from ..experiment import long_rest
+from ..experiment import long_rest, nominal_rows
 from ..experiment.flicker import differences
-from . import evidence, excess, hypotheses
+from . import adequacy, evidence, excess
 
+# s of the short means whose steps are looked at; steps that their tails are known from; steps that
+# may be knocks.
 STEP_S, FEWEST_STEPS, KNOCKS = (0.5, 1.0, 2.0, 4.0, 8.0), 60, 3
-KURTOSIS_SIGMAS = 4.0  # standard deviations of a kurtosis that chance reaches once in 30,000
 HALF_OF_90 = 1.353  # nats below the maximum at the ends of a 90 % interval: half of chi2(0.9, 1)
 
 
@@ -32,7 +32,7 @@ class Drift:
     axes: tuple = ()
 
 
-def drift(units, data, noise, found, fitted, chosen):
+def drift(kind, sessions, units, data, noise, found, fitted, chosen):
     """Drift where it is in the likeliest set, its interval by the profile of the likelihood, or
     None; what jumps, or is the same on several axes, is no noise, and has no name."""
     if "drift" not in found.best.names or fitted.odd:
@@ -41,12 +41,63 @@ def drift(units, data, noise, found, fitted, chosen):
     course = sum(by_flicker(unit, statistics, found.best.shared, noise.prior(unit, free))
                  for unit, statistics in zip(units, data.statistics) if not unit.between)
     levels = sorted({b for _, b in units[0].grid})
-    alone = {choice.form.axes[choice.form.index.index(column)] for choices in found.best.chosen
-             for choice in choices if choice.form.variant == hypotheses.ONE_AXIS
-             for column in choice.columns.index.tolist()}
-    return Drift(*profile(levels, course), found.gains["drift"],
+    level, low, high = profile(levels, course)
+    left = _left(kind, units, data.statistics, found.best)
+    axes = _louder(left(level))
+    if axes:
+        # Of fewer axes less is known, in the logarithm of the level.
+        spread, whole = (3.0 / len(axes)) ** 0.5, level
+        level = _level_of(axes, left, levels) * _share_of(axes, kind, sessions)
+        low, high = (level * (end / whole) ** spread for end in (low, high))
+    return Drift(level, low, high, found.gains["drift"],
                  excess.share_of_drift(units, data.statistics, found.best, chosen, fitted.index,
-                                       noise), tuple("xyz"[axis] for axis in sorted(alone)))
+                                       noise), tuple("xyz"[k] for k in axes))
+
+
+def _left(kind, units, statistics, scored):
+    """Function of a flicker level: (n, 3) what it leaves of the readings of all sessions,
+    whitened, beside all that was found but the drift."""
+    theta = evidence.coefficients(scored.fits, scored.shared)[0][0]
+    parts = []
+    for unit, one, choices in zip(units, statistics, scored.chosen):
+        if not unit.between:
+            others = sum((c.columns for c in choices if c.form.effect != "drift"), evidence.NONE)
+            fit = evidence.fit(unit, one, scored.shared, others, np.zeros(len(unit.grid)))
+            parts.append((unit, unit.grid[int(fit.index[0])][0], others,
+                          unit.raw(scored.shared.index) @ theta))
+    return lambda level: np.concatenate([adequacy.innovations(
+        unit, (placement, level), others, explained, kind == "accel")
+        for unit, placement, others, explained in parts])
+
+
+def _louder(left):
+    """Axes (0..2) that wander more than the quietest one; () where all do alike."""
+    each = [x[np.isfinite(x)] for x in left.T]
+    if min(len(x) for x in each) < adequacy.FEWEST:
+        return ()
+    quiet = min(each, key=lambda x: (x ** 2).mean())
+    return tuple(k for k, x in enumerate(each)
+                 if adequacy.louder(x, quiet) < adequacy.DOUBTFUL_P)
+
+
+def _level_of(axes, left, levels):
+    """The flicker level that leaves of these axes a standard deviation of 1."""
+    power = np.array([float(np.nanmean(left(level)[:, axes] ** 2)) for level in levels])
+    # From the largest level down, along which what is left grows.
+    return float(np.exp(np.interp(0.0, np.log(power[::-1]), np.log(levels[::-1]))))
+
+
+def _share_of(axes, kind, sessions):
+    """What the level of these axes is of all three's, as the kernel of their noise has it."""
+    shares = [nominal_rows.axis_shares(session, *_readings(session, kind))[list(axes)]
+              for session in sessions]
+    return float(np.sqrt(np.mean(shares)))
+
+
+def _readings(session, kind):
+    """((n, 3) means of the blocks, (3,) noise of a mean over one second)."""
+    return (session.accel, session.noise_accel) if kind == "accel" else (
+        session.gyro, session.noise_gyro)
 
 
 def by_flicker(unit, statistics, shared, level):
@@ -77,8 +128,7 @@ def within_rests(part, kind, size, flicker):
     """(3,) log likelihood ratio (nats), axis by axis, of the differences between neighbouring
     blocks of the rests of a session: a random walk that ends `size` off on average, against
     noise and usual flicker alone. size, flicker in mg or deg/s."""
-    values, noise = (part.accel, part.noise_accel) if kind == "accel" else (
-        part.gyro, part.noise_gyro)
+    values, noise = _readings(part, kind)
     same = np.flatnonzero(np.diff(part.placement) == 0)
     if not len(same):
         return np.zeros(3)
@@ -109,9 +159,7 @@ def jumps(rests, rate):
         if len(step) < FEWEST_STEPS:
             break
         step = step[np.argsort(np.abs(step))[:-KNOCKS]]
-        tails, error = kurtosis(step), np.sqrt(24.0 / len(step))
-        if tails > KURTOSIS_SIGMAS * error + 0.5:
-            best = min(best, len(STEP_S) * float(special.ndtr(-(tails - 0.5) / error)))
+        best = min(best, len(STEP_S) * adequacy.tails(step))
     return best
 
 
@@ -121,9 +169,3 @@ def in_leaps(kind, sessions):
              for session in sessions for values in [long_rest.scaled(session, kind)]
              for axis in range(3)), default=1.0)
     return min(3.0 * len(sessions) * p, 1.0)
-
-
-def kurtosis(x):
-    """Fourth moment over the square of the second, less 3."""
-    off = (x - x.mean()) ** 2
-    return float((off ** 2).mean() / off.mean() ** 2 - 3.0)

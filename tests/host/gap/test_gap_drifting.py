@@ -97,6 +97,21 @@ def test_a_walk_of_one_axis_is_a_drift_of_that_axis(captures):
     assert gap.drift.share > 0.9
 
 
+@pytest.mark.parametrize("seed", [1, 3])
+def test_a_drift_of_one_axis_has_the_size_that_it_has_on_all(seed):
+    """The two quiet axes halved it, and their quiet beside the loud one passed for tails."""
+    found = {}
+    for axes in ("y", "xyz"):
+        plan = scenario.from_dict({
+            "sensor": "mpu6050", "scene": "recommended", "seed": 100 + seed, "effects": [
+                dict(dict.fromkeys(axes, 0.06), effect="drift", sensor="gyro", seed=seed)]})
+        found[axes] = gyro_at_rest([blocks.of(str(k), simulated_session.session(plan, k))
+                                    for k in range(2)]).drift
+    assert (found["y"].axes, found["xyz"].axes) == (("y",), ())
+    assert found["y"].low < found["xyz"].level < found["y"].high
+    assert found["y"].high / found["y"].low > found["xyz"].high / found["xyz"].low
+
+
 def test_what_moves_with_the_poses_only_is_not_called_drift(captures):
     """Up or down by a notch with every move, and still while the box lies still: what a random
     walk is from rest to rest."""
