@@ -1,7 +1,8 @@
 """The answer as JSON, in the words and with the keys of GAP.md."""
 import math
 
-from ..experiment.flicker import FLOOR_OF_KERNEL
+from sixflip_sim.effects.drift import FLOOR_OF_KERNEL
+
 from ..planning import next_capture
 from . import closed_loop, detectability, rest_noise
 from .detect import damage, line_frequency, sample_clock

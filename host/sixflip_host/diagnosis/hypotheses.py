@@ -178,7 +178,7 @@ def _private(design, columns):
 BESIDE = 0  # the power of a column that belongs to a stranger, see terms.Design
 RELATIVE = 0.5  # of an effect: how far a part's own form may be from the library's
 # What an effect, or all of a domain, is a function of: the strangers that have that variable.
-VARIABLE = {"thermal_scale": ("thermal_orientation",),
+VARIABLE = {"thermal_scale": ("thermal_orientation",), "vibration_rectification": ("shaking",),
             "temperature": ("temperature",), "time": ("time",),
             "history": ("history", "time_since_move"),
             "time_since_move": ("history", "time_since_move"),

@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sixflip_sim.effects.drift import FLOOR_OF_KERNEL
+
 from .. import progress
 from ..experiment import long_rest, terms
-from ..experiment.flicker import FLOOR_OF_KERNEL
 from . import (
     adequacy,
     aliases,

@@ -2,7 +2,8 @@
 
 Shared ones have the same coefficients in every session: what is smooth in temperature, what
 gravity adds in proportion to it, what is even and odd in orientation, follows the pose before or
-the time since the move, changes sign with the flip, repeats with the time since switching on.
+the time since the move, changes sign with the flip, repeats with the time since switching on,
+what is there while the sensor is shaken.
 Private ones have coefficients of each session's own: a jump at some time, something periodic, a
 course in time, or of a scale in time. The widths of their priors are tried over a decade: of a
 stranger no size is known.
@@ -13,7 +14,7 @@ from scipy import signal
 
 from sixflip.poses import faces
 
-from ..experiment.terms import LAGS_S, Design, harmonics
+from ..experiment.terms import LAGS_S, RECTIFIED, Design, harmonics
 
 SCALE = {"accel": 5.0, "gyro": 0.05}  # mg, deg/s: as large as the library's effects are
 HATS = 6  # corners of what is smooth in time and repeats in every session
@@ -43,7 +44,7 @@ ASKED_OF_ALL = "smooth"
 # Of the others: their own.
 DOMAIN = {"jump": "time", "periodic": "frequency", "own_time": "time",
           "time_orientation": "time", "thermal_orientation": "temperature",
-          "bend": "orientation"}
+          "bend": "orientation", "shaking": "amplitude"}
 
 
 def domain(effect):
@@ -85,6 +86,8 @@ def shared(session, up, sensor, reference_c):
     found.append(_smooth("orientation", harmonics(f, sensor), n, scale))
     if sensor == "accel":
         found.append(bend(f, scale))
+    if session.shaken_mg:
+        found.append(_shaking(session.vibration / session.shaken_mg, scale))
     return [*found, _flip(session, scale)]
 
 
@@ -189,6 +192,11 @@ def walk(session, scale):
     terms = (np.arange(WALK) + 0.5) * np.pi
     return _smooth("drift", [np.sqrt(2.0) * np.sin(k * u) / k for k in terms], session.n, scale,
                    "walk", [tuple(range(3 * WALK))])
+
+
+def _shaking(rms, scale):
+    """Design of what is there while a vibration of rms (n,) is, the strongest 1."""
+    return _smooth("shaking", [power(rms) for power in RECTIFIED.values()], len(rms), scale)
 
 
 def _flip(session, scale):

@@ -7,9 +7,6 @@ from sixflip_sim.effects.drift import TIMES_S
 # longest time, so that half-decades go on to what a block (2.5 s) and hours can show.
 ALL_TIMES_S = (0.3, 1.0, 3.0, *TIMES_S, 3000.0, 10000.0)
 FEW = 64  # stretches up to which all times are taken at once: in 64 x 64 x 10 numbers, 330 KB
-# Allan floor of the library's drift whose likeliest level is 1: captures with one of 0.6 mg have
-# 0.65 (tests/host/gap/test_gap_drifting.py holds it to that). The kernel's own floor is 1.09.
-FLOOR_OF_KERNEL = 0.92
 
 
 def flicker_kernel(t, seconds):

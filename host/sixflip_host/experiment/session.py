@@ -51,7 +51,7 @@ class Session(ReadOnlyArrays):
     and temperature_rate or None; vibration mg rms above the quietest. Of the sensor (3,):
     noise_accel, noise_gyro of a mean over one second, mg and deg/s; rounding_accel,
     rounding_gyro of the mean of a rest, by steps of the counts; None without a gyro.
-    thermal, shaken: what sessions that are judged together agreed to look for, see terms.
+    thermal, shaken_mg: what sessions that are judged together agreed to look for, see terms.
     """
 
     name: str
@@ -80,7 +80,7 @@ class Session(ReadOnlyArrays):
     rounding_accel: np.ndarray | None
     rounding_gyro: np.ndarray | None
     thermal: bool = False
-    shaken: bool = False
+    shaken_mg: float = 0.0
 
     @property
     def n(self):

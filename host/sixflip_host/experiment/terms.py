@@ -20,6 +20,11 @@ WARM_UP_S = (30.0, 60.0, 120.0, 240.0, 480.0)  # GAP: 60-300 s, and an octave to
 CREEP_S = (5.0, 15.0, 30.0, 60.0, 120.0)  # GAP: 60-70 s seen on Z; down to a rest's length
 LONG_MEMORY_S = 30.0  # longer than two rests with the move between them
 PLAY_G = (0.1, 0.2, 0.4)  # widths of a play operator: octaves below half of what a pose changes by
+SHIFT_MG = 5.0  # typical of what a vibration shifts, as of the library's other effects
+# What a vibration all round shifts by its rms, the strongest 1: as its power, as |f| rectifies it,
+# and all of it at once, as what rattles.
+RECTIFIED = {"power": np.square, "strength": np.asarray,
+             "at once": lambda rms: np.tanh(5.0 * rms ** 2)}
 LEAST_VIBRATION_MG = 5.0  # above the quietest rest: more than the noise of a chip (typical.NOISE)
 DOMAIN = {  # where an effect shows itself
     "thermal_bias": "temperature", "thermal_scale": "temperature", "thermal_rate": "temperature",
@@ -117,11 +122,12 @@ def squared(design, columns, prior):
 def agreed(sessions):
     """The sessions with what is looked for settled for all of them at once, so that the columns
     of one are those of the others: thermal (every one has a thermometer, and one of them
-    moved), shaken."""
+    moved), shaken_mg (the strongest vibration of any rest, 0 where none is shaken)."""
     thermal = all(s.thermometer is not None for s in sessions) and max(
         s.thermometer.moved for s in sessions) >= MOVES_C
-    shaken = max(s.vibration.max() for s in sessions) > LEAST_VIBRATION_MG
-    return [replace(session, thermal=thermal, shaken=shaken) for session in sessions]
+    strongest = max(float(s.vibration.max()) for s in sessions)
+    shaken_mg = strongest if strongest > LEAST_VIBRATION_MG else 0.0
+    return [replace(session, thermal=thermal, shaken_mg=shaken_mg) for session in sessions]
 
 
 def library(session, up, sensor, reference_c, chip):
@@ -143,10 +149,21 @@ def library(session, up, sensor, reference_c, chip):
               design("cross_quadratic", "squares", only=[k for k in cross.keys if k[1] == k[2]]),
               design("cross_quadratic", "products", only=[k for k in cross.keys if k[1] != k[2]]),
               design("asymmetry"), *_creep(session, up, m, design)]
-    if session.shaken:
-        found += [design("vibration_rectification", words, shape={"vertical": vertical})
-                  for words, vertical in (("vertical", 1), ("all round", 0))]
+    if session.shaken_mg:
+        found += _rectified(session, m, design)
     return found
+
+
+def _rectified(session, m, design):
+    """Designs of vibration rectification. What shakes a chip hardest may be far beyond its filter,
+    so that a coefficient is known by what the strongest vibration shifts, not by the bend."""
+    prior = 10.0 * SHIFT_MG / (session.shaken_mg * 0.001) ** 2
+    found = [design("vibration_rectification", "vertical", shape={"vertical": 1})]
+    for words, power in RECTIFIED.items():
+        m = copy.copy(m)
+        m.vibration_mg = session.shaken_mg * np.sqrt(power(session.vibration / session.shaken_mg))
+        found.append(design("vibration_rectification", words, m, shape={"vertical": 0}))
+    return [replace(one, prior=np.maximum(one.prior, prior)) for one in found]
 
 
 def along_axes(session, nominal, chip):
