@@ -8,7 +8,7 @@ from ..errors import BadFile
 from ..experiment import blocks, long_rest
 from ..experiment.signal_measures import allan
 from . import diagnosis
-from .detect import byte_faults
+from .detect import byte_faults, held_values
 from .settings import Settings
 
 MOST_AGAIN = 3  # times that what is in both logs is taken off
@@ -25,7 +25,7 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
     jobs       threads, 0: one a core
     prior      fleet_prior.FleetPrior of boards of this kind, None: the data sheets' sizes
     """
-    captures, damages = byte_faults.repaired(captures)
+    captures, damages = byte_faults.repaired(held_values.without_lost(captures))
     sessions = [blocks.of(name, capture) for name, capture in captures]
     noise = {}
     for name, capture in reference:

@@ -188,8 +188,10 @@ VARIABLE = {"thermal_scale": ("thermal_orientation",), "vibration_rectification"
 
 
 # Of time everything is a function, and of a temperature's rate the temperature is the integral:
-# what is another form of these effects is made of their own time constants and lags.
-OWN_FORMS = ("warm_up", "thermal_rate")
+# what is another form of these effects is made of their own time constants and lags. So is a
+# material's creep, of any course [Prony series], and the memory of what sticks and slips, of plays
+# [Prandtl-Ishlinskii].
+OWN_FORMS = ("warm_up", "thermal_rate", "creep", "hysteresis")
 
 
 def _variable(effect):

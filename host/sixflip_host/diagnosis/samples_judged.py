@@ -14,6 +14,7 @@ from .detect import (
     codes,
     dead_band,
     held_values,
+    line_across_rests,
     noise_bursts,
     ringing,
     sample_clock,
@@ -28,6 +29,7 @@ from .settings import Conditions
 COARSE = ("quantisation", "dead_band", "saturation", "torn_reads")
 # What makes some seconds louder, and some samples leap.
 NOISY = ("vibration", "torn_reads", "saturation", "dead_band")
+SLOW_HZ = 1.0  # of a line that the means of rests have something of
 SCALES = ("full_scale", "gravity")  # damages that every reading of a sensor has
 SENSOR = {"accel": "accelerometer", "gyro": "gyro"}
 
@@ -87,7 +89,8 @@ def of(sessions, without=(), damages=()):
     nameless += [localisation.Place(sensor, axis, "amplitude", 1.0, odds.chance(codes.bit_nats(
         [getattr(s.capture, sensor)[:, "xyz".index(axis)] for s in sessions])))
         for sensor, axis, _, _ in bits]
-    return SamplesJudged(tuple(without_spikes), tuple(findings), tuple(damages), tuple(nameless),
+    sessions = tuple(_without_lines(s, findings) for s in without_spikes)
+    return SamplesJudged(sessions, tuple(findings), tuple(damages), tuple(nameless),
                          (*remarks, *(words for _, words, _ in unsteady)))
 
 
@@ -105,6 +108,15 @@ def _without_bands(session, findings):
         setattr(capture, found.sensor, counts)
     return session.of_capture(capture) if any(
         f.effect == "dead_band" for f in findings) else session
+
+
+def _without_lines(session, findings):
+    """The session with the means of its blocks without the slow lines that were found."""
+    for found in (f for f in findings if f.effect == "vibration"):
+        for axis, hz in found.hz.items():
+            session = line_across_rests.without(session, found.sensor, "xyz".index(axis), hz,
+                                                SLOW_HZ)
+    return session
 
 
 def of_registers(sessions):

@@ -47,16 +47,17 @@ class SensorGap:
     def of_name(self, found, names, share, outside):
         """odds.of_name of a cause of these names that explains this share of the excess. Beside
         something nameless it may be a part of that, the likelier the less it explains: of all
-        that is there, where more than that is not even described; else of what that gains. By
-        itself it is all there is, and what shows in samples or moves is no part of what the rests
-        show."""
+        that is there, where more than that is not even described, or what is left is no noise;
+        else of what that gains. By itself it is all there is, and what shows in samples or moves
+        is no part of what the rests show."""
         gains = self.found.gains
         mine = max((gains[name] for name in names if name in gains), default=0.0)
         if not self.unexplained or share is None or not mine:
             return odds.of_name(found, self.cost.mimicry.whole(), outside)
         strange = max((gains[f.effect] for f in self.strangers if f.effect in gains), default=0.0)
         left = self.adequacy.excess / max(self.adequacy.excess_before, 1e-9)
-        mimicked = self.cost.mimicry.whole(share) if left > share or not strange \
+        undescribed = left > share or not strange or not self.adequacy.ok
+        mimicked = self.cost.mimicry.whole(share) if undescribed \
             else self.cost.mimicry.beside(mine / strange)
         return odds.of_name(found, mimicked, outside, odds.BESIDE)
 

@@ -97,7 +97,7 @@ def test_a_walk_of_one_axis_is_a_drift_of_that_axis(captures):
     assert gap.drift.share > 0.9
 
 
-@pytest.mark.parametrize("seed", [1, 3])
+@pytest.mark.parametrize("seed", [2, 3])
 def test_a_drift_of_one_axis_has_the_size_that_it_has_on_all(seed):
     """The two quiet axes halved it, and their quiet beside the loud one passed for tails."""
     found = {}

@@ -44,6 +44,17 @@ def test_a_slow_ripple_of_8_mg_is_a_line_at_its_frequency(captures):
     assert cause["hz"]["x"] == pytest.approx(1.03, abs=0.05)
 
 
+def test_a_ripple_as_slow_as_the_rests_is_a_line_and_no_drift(captures):
+    """It leaks all over the spectrum of rests with gaps between them, and moves their means."""
+    def ripple(t, counts, generator):
+        counts[:, 2] += 6e-3 * 16384 * np.sin(2.0 * np.pi * t / 6.4)
+    found = diagnosed(captures, ripple)
+    cause, = found["causes"]
+    assert cause["effect"] == "vibration" and cause["axes"] == ["z"]
+    assert cause["value"]["z"] == pytest.approx(6.0, rel=0.2)
+    assert cause["hz"]["z"] == pytest.approx(1.0 / 6.4, abs=0.002)
+
+
 def test_spikes_in_one_percent_of_the_samples_are_a_gap(captures):
     def spikes(t, counts, generator):
         hit = generator.random(len(t)) < 0.01

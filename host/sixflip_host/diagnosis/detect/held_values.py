@@ -4,8 +4,11 @@ Three axes that do not change from a row to the next may do so by chance: where 
 repeats with a chance of its own, all three do with the product of the three. Those chances are
 seen in the rows in which another axis changed, in short stretches of their own, for a sensor at
 rest repeats more often than one that moves. Held values repeat all three at once. Single rows
-that were read again are looked for where the sensor moves on before and after them.
+that were read again are looked for where the sensor moves on before and after them. Where both
+sensors repeat in the same rows, now and then, a sample was not read: it is lost like one that is
+missing.
 """
+import copy
 import math
 
 import numpy as np
@@ -16,6 +19,9 @@ from .detection import present
 FEWEST = 200  # rows
 STRETCH = 256  # rows
 HELD = 0.05  # share of rows that are held: fewer are single rows, not a rate
+# Standard deviation of the spacing of held rows, of its mean: of rows that are lost at random it
+# is 1, and of a sensor that is read faster than it measures half a row at most.
+AT_RANDOM = 0.5
 MOVES = 8.0  # times the noise, from a row to the next: six deviations of a difference at rest
 WORDS = {"accel": "accelerometer", "gyro": "gyro"}
 TIMES = {2: "twice", 3: "three times", 4: "four times"}
@@ -50,6 +56,31 @@ def findings(sessions):
     return found
 
 
+def without_lost(captures):
+    """[(name, Capture)] without the rows in which neither sensor was read anew: those samples are
+    lost, and what remains is a recording that they are missing in."""
+    return [(name, _taken_out(capture)) for name, capture in captures]
+
+
+def _taken_out(capture):
+    if capture.accel is None or capture.gyro is None or len(capture) < FEWEST:
+        return capture
+    counts = np.hstack([capture.accel, capture.gyro])
+    nats, held, _ = repeats(counts)
+    rows = np.flatnonzero((counts[1:] == counts[:-1]).all(axis=1)) + 1
+    spacing = np.diff(rows)
+    # As many as are held repeat: where some do by chance, nobody knows which.
+    if not present(nats) or held < 0.9 * len(rows) or len(rows) < 3 or (
+            spacing.std() < AT_RANDOM * spacing.mean()):
+        return capture
+    out, keep = copy.copy(capture), np.ones(len(capture), dtype=bool)
+    keep[rows] = False
+    for name in ("t_us", "accel", "gyro", "temp", "mag", "pose"):
+        if getattr(out, name) is not None:
+            setattr(out, name, getattr(out, name)[keep])
+    return out
+
+
 def read_again(counts):
     """(nats of rows that are the row before once more over repeating by chance, how many) of
     counts (n, 3), among the rows before and after which an axis moves further than noise does."""
@@ -66,14 +97,14 @@ def read_again(counts):
 
 
 def repeats(counts):
-    """(nats of rows being held over repeating by chance, rows held, rows) of counts (n, 3)."""
-    # All three at 0 is what a dead band reads at rest.
+    """(nats of rows being held over repeating by chance, rows held, rows) of counts (n, axes)."""
+    # All of them at 0 is what a dead band reads at rest.
     same = (counts[1:] == counts[:-1])[counts[1:].any(axis=1)]
     number = len(same) // STRETCH
     nats = held = 0.0
     if not number:
         return 0.0, 0.0, len(same)
-    parts = same[:number * STRETCH].reshape(number, STRETCH, 3)
+    parts = same[:number * STRETCH].reshape(number, STRETCH, -1)
     for part in parts:
         more, rows = _stretch(part)
         nats, held = nats + more, held + rows
@@ -81,14 +112,14 @@ def repeats(counts):
 
 
 def _stretch(same):
-    """(nats, rows held) of one stretch: same (n, 3) bool, which axes repeat in a row."""
-    n, all_three, chance = len(same), int(same.all(axis=1).sum()), 1.0
-    for axis in range(3):
-        others = ~same[:, [k for k in range(3) if k != axis]].all(axis=1)
+    """(nats, rows held) of one stretch: same (n, axes) bool, which of them repeat in a row."""
+    n, together, chance = len(same), int(same.all(axis=1).sum()), 1.0
+    for axis in range(same.shape[1]):
+        others = ~np.delete(same, axis, axis=1).all(axis=1)
         chance *= (same[others, axis].sum() + 1.0) / (others.sum() + 1.0)
-    chance, share = (min(max(p, 1e-4), 1.0 - 1e-4) for p in (chance, all_three / n))
+    chance, share = (min(max(p, 1e-4), 1.0 - 1e-4) for p in (chance, together / n))
     if share <= chance:
         return 0.0, 0.0
-    nats = all_three * math.log(share / chance) + (n - all_three) * math.log(
+    nats = together * math.log(share / chance) + (n - together) * math.log(
         (1.0 - share) / (1.0 - chance)) - 0.5 * math.log(n)
     return nats, n * (share - chance) / (1.0 - chance)

@@ -5,13 +5,14 @@ A periodogram of samples with gaps between them, what each rest has for itself t
 Astrophysics and Space Science 39 (1976) 447; Scargle, Astrophysical Journal 263 (1982) 835].
 """
 import math
+from dataclasses import replace
 
 import numpy as np
 from scipy import ndimage
 
 from ...experiment.block_measures import EDGE_S
 from .. import odds
-from .line_frequency import HALVES, MEDIAN_ERROR, SLOW_CHANCE, SLOW_SHARE, Line, peak
+from .line_frequency import HALVES, MEDIAN_ERROR, SLOW_CHANCE, SLOW_SHARE, Line
 
 FEWEST, SHORTEST_S = 12, 1.0  # rests, and seconds of each (a protocol has twelve poses or more)
 # s from the first rest on that are looked at: a line of 0.7 Hz has 400 periods there, and more
@@ -21,6 +22,8 @@ LEAST_CYCLES = 0.5  # of a line in a rest: less is a course that is taken off
 RATE_HZ = 10.0  # of the means that are looked at: ten times line_frequency.FASTEST_HZ
 GRID_HZ = 40.0  # of the times that they are taken to be at: a tenth of a radian at most
 OVER = 4  # frequencies for each that rests so far apart can tell
+FINER = 8  # of their distance, that a line's is told to
+SEEN_AT = 48  # frequencies: between two of them a rest has a twentieth of a period more
 WIDTH = 41  # frequencies of the floor's running median: ten lobes of a line
 
 
@@ -35,26 +38,53 @@ def strongest(session, sensor, axis, fastest_hz):
     hz, power = _spectrum(t, _for_itself(t, weight ** 2 * x, rest), slowest, fastest_hz)
     if len(hz) < 2 * WIDTH:
         return None
-    floor = ndimage.median_filter(power, WIDTH, mode="reflect") / math.log(2.0)
-    ratio = power / np.maximum(floor, 1e-300)
-    k = int(ratio.argmax())
+    # With gaps between the rests a line leaks all over the spectrum, so that what stands highest
+    # above its surroundings may be a part of it: it is what takes most of the power with it.
+    # Noise that is slow has most power where it is slowest, and no line. The floor is what is
+    # there without the line.
+    places = {int((power / _floor(power)).argmax()),
+              int((power / _passed(t, rest, weight, hz)).argmax())}
+    looked = []
+    for k in places:
+        size = _fitted(t, x, rest, weight, hz[k])
+        _, left = _spectrum(t, _for_itself(
+            t, weight ** 2 * (x - _wave(t, rest, hz[k]) @ size), rest), slowest, fastest_hz)
+        looked.append((power[k] / _floor(left)[k], k, size))
+    ratio, k, _ = max(looked, key=lambda one: one[0])
     doubt = 1.0 + odds.Z_90 * MEDIAN_ERROR / math.sqrt(WIDTH / OVER)
-    nats = float(ratio[k]) / doubt - math.log(3.0 * len(hz))
-    size = _fitted(t, x, rest, weight, hz[k])
+    nats = float(ratio) / doubt - math.log(3.0 * 2.0 * len(hz))
+    found, size = _nearest(t, x, rest, weight, hz[k])
     amplitude = float(np.hypot(*size))
-    halves = [_fitted(t[part], x[part], rest[part], weight[part], hz[k])
+    halves = [_fitted(t[part], x[part], rest[part], weight[part], found, t[0])
               for part in (rest < rest.max() / 2, rest >= rest.max() / 2)]
     if nats < -math.log(SLOW_CHANCE) or amplitude < SLOW_SHARE * float(np.std(x * weight)) \
             or halves[0] @ halves[1] < HALVES ** 2 * amplitude ** 2:
         return None
-    found = hz[0] + (hz[1] - hz[0]) * peak(power, k)
     # Of a frequency [Rife & Boorstyn, IEEE Trans. IT 20 (1974) 591], the samples being gaps apart.
     half = odds.Z_90 * math.sqrt(12.0 * float(np.var(x * weight)) / len(x)) / (
         2.0 * math.pi * span * amplitude)
     return Line(axis, float(found), 1.0 / span, min(nats, 999.0), amplitude,
-                1.0 / math.sqrt(2.0 * ratio[k]), steady=True, low=float(found - half),
+                1.0 / math.sqrt(2.0 * ratio), steady=True, low=float(found - half),
                 high=float(found + half), files=((session.name, float(found), float(found - half),
                                                   float(found + half)),))
+
+
+def without(session, sensor, axis, hz, fastest_hz):
+    """The Session whose blocks' means are without what a line of about this frequency leaves in
+    them: as slow as that it is in the means of some rests and not of others, which is no drift."""
+    if hz > fastest_hz or getattr(session, sensor) is None:
+        return session
+    t, x, rest, lengths = _means(session, sensor, axis)
+    if len(lengths) < FEWEST:
+        return session
+    x, weight = _left(t, x, rest)
+    hz, size = _nearest(t, x, rest, weight, hz)
+    phase = 2.0 * np.pi * hz * (session.t_s - t[0])
+    wave = np.concatenate([[0.0], np.cumsum(
+        np.stack([np.sin(phase), np.cos(phase)], 1) @ size)])
+    means = np.array(getattr(session, sensor))
+    means[:, axis] -= (wave[session.end] - wave[session.first]) / (session.end - session.first)
+    return replace(session, **{sensor: means})
 
 
 def _spectrum(t, x, slowest, fastest):
@@ -91,7 +121,10 @@ def _left(t, x, rest):
     began; weight (n,): rests that are louder than most count as much less)."""
     x = _for_itself(t, x, rest)
     since = np.concatenate([np.arange(n) for n in np.bincount(rest.astype(int))])
-    course = np.bincount(since, x) / np.bincount(since)
+    reach = np.bincount(since)
+    course = np.bincount(since, x) / reach
+    # So long as hardly any rest lasts it is a rest's own, and what settled has settled before.
+    course[reach < FEWEST] = course[np.flatnonzero(reach >= FEWEST)[-1]]
     x = _for_itself(t, x - course[since], rest)
     spread = np.sqrt(np.bincount(rest.astype(int), x ** 2) / np.bincount(rest.astype(int)))
     spread = np.maximum(spread, 1e-12)
@@ -111,10 +144,38 @@ def _for_itself(t, x, rest):
     return x - t * (np.bincount(place, t * x) / np.maximum(slope, 1e-12))[place]
 
 
-def _fitted(t, x, rest, weight, hz):
+def _floor(power):
+    """(k,) mean of the power of noise, where it is a spectrum's."""
+    return np.maximum(ndimage.median_filter(power, WIDTH, mode="reflect") / math.log(2.0), 1e-300)
+
+
+def _passed(t, rest, weight, hz):
+    """(k,) share of the power of a sine of each frequency that what is taken off each rest leaves,
+    smooth between SEEN_AT of them."""
+    at = np.linspace(hz[0], hz[-1], SEEN_AT)
+    return np.interp(hz, at, [float((weight[:, None] ** 2 * _wave(t, rest, one) ** 2).mean())
+                              for one in at])
+
+
+def _wave(t, rest, hz, start=None):
+    """(n, 2) sine and cosine of a frequency from start (None: the first time), less what a rest
+    has for itself."""
+    phase = 2.0 * np.pi * hz * (t - (t[0] if start is None else start))
+    return np.stack([_for_itself(t, wave, rest) for wave in (np.sin(phase), np.cos(phase))], 1)
+
+
+def _nearest(t, x, rest, weight, hz):
+    """(Hz, (2,) sine and cosine) of the sine next to a frequency that takes most of x with it."""
+    found = []
+    for one in hz + np.arange(-FINER, FINER + 1) / (OVER * FINER * (t[-1] - t[0])):
+        size = _fitted(t, x, rest, weight, one)
+        left = weight * (x - _wave(t, rest, one) @ size)
+        found.append((float(left @ left), float(one), size))
+    return min(found, key=lambda one: one[0])[1:]
+
+
+def _fitted(t, x, rest, weight, hz, start=None):
     """(2,) sine and cosine of the sine of a frequency that is nearest to x."""
-    phase = 2.0 * np.pi * hz * (t - t[0])
-    design = np.stack([weight * _for_itself(t, wave, rest)
-                       for wave in (np.sin(phase), np.cos(phase))], 1)
+    design = weight[:, None] * _wave(t, rest, hz, start)
     gram, inner = design.T @ design, design.T @ (weight * x)
     return np.linalg.solve(gram + 1e-9 * np.trace(gram) * np.eye(2), inner)
