@@ -202,3 +202,31 @@ def test_a_hands_turns_mirrored_are_no_sign_with_a_magnitude(seed, session):
     _, words, back, _ = byte_faults.of_column(told)
     assert words.startswith("negative readings are a sign and a magnitude")
     assert np.array_equal(back(told), rates)
+
+
+def test_rows_that_are_not_read_anew_are_lost_samples(sound):
+    """A logger that misses reads and writes the last sample once more: about ten such rows were
+    found, and what they do to turns had no name."""
+    generator, lost = np.random.default_rng(4), np.zeros(len(sound), bool)
+    for start in np.flatnonzero(generator.random(len(sound)) < 0.008):
+        lost[start + 1:start + 1 + generator.integers(1, 6)] = True
+    last = np.maximum.accumulate(np.where(lost, 0, np.arange(len(sound))))
+    held = copy.copy(sound)
+    held.accel, held.gyro = sound.accel[last], sound.gyro[last]
+    (_, plain), = held_values.without_lost([("one", held)])
+    assert np.array_equal(plain.t_us, sound.t_us[~lost])
+    finding, = [f for f in samples_judged.of_registers([blocks.of("one", plain)])
+                if f.effect == "dropped_samples"]
+    assert finding.value["chance"] == pytest.approx(100.0 * lost.mean(), rel=0.1)
+
+
+def test_a_sensor_read_faster_than_it_measures_loses_nothing(sound):
+    """Every tenth row of both is the row before: at regular times."""
+    last = np.maximum.accumulate(np.where(np.arange(len(sound)) % 10 == 9, 0,
+                                          np.arange(len(sound))))
+    held = copy.copy(sound)
+    held.accel, held.gyro = sound.accel[last], sound.gyro[last]
+    (_, plain), = held_values.without_lost([("one", held)])
+    assert len(plain) == len(held)
+    (_, plain), = held_values.without_lost([("one", sound)])
+    assert len(plain) == len(sound)

@@ -65,6 +65,16 @@ def test_spikes_in_one_percent_of_the_samples_are_a_gap(captures):
     assert any("spikes" in remark for remark in found["remarks"])
 
 
+def test_noise_that_grows_through_a_session_is_a_gap(captures):
+    def growing(t, counts, generator):
+        counts += (3e-3 * 16384 * 3.0 * t / t[-1])[:, None] * generator.standard_normal(
+            counts.shape)
+    found = diagnosed(captures, growing)
+    assert found["verdict"] in ("unexplained", "partly explained")
+    assert found["where"][0]["domain"] == "noise" and not found["causes"]
+    assert any("at the end of a session" in remark for remark in found["remarks"])
+
+
 def test_without_either_there_is_no_gap(captures):
     found = diagnosed(captures, lambda t, counts, generator: None)
     assert found["verdict"] == "no gap" and not found["where"]

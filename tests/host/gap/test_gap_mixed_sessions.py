@@ -9,9 +9,10 @@ from sixflip_host.simulation import scenario, simulated_session
 
 
 def captures():
-    """Two sessions of the paper's 12 poses, with a g-sensitivity."""
+    """Two sessions of the paper's 12 poses by one part, with a g-sensitivity."""
+    part = {"gyro_bias_dps": [0.5, -0.3, 0.2], "accel_bias_mg": [20.0, -15.0, 30.0]}
     return [simulated_session.session(scenario.from_dict({
-        "sensor": "mpu6050", "scene": "paper", "seed": seed,
+        "sensor": "mpu6050", "scene": "paper", "seed": seed, "world": dict(part),
         "effects": [{"effect": "g_sensitivity", "sensor": "gyro", "xy": 0.2}]}), 0)
         for seed in (5, 6)]
 

@@ -6,7 +6,6 @@ from sixflip_host.diagnosis import diagnosis, rest_model
 from sixflip_host.experiment import attitude_fit, blocks
 from sixflip_host.simulation import scenario, simulated_session
 
-
 EVERY = 10  # samples from which what plays is followed: it is slower than a hand
 
 

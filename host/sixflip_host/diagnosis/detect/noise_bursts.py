@@ -1,5 +1,5 @@
-"""How the samples of the rests are distributed: seconds far louder than the others, and single
-samples far off their neighbours.
+"""How the samples of the rests are distributed: seconds far louder than the others, noise that
+grows or dies down from rest to rest, and single samples far off their neighbours.
 
 No effect of the library does that, and no touch does it often: it is said where, not what.
 """
@@ -7,7 +7,7 @@ import copy
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import special
+from scipy import special, stats
 
 from ...capture import registers
 from .. import odds
@@ -19,6 +19,9 @@ WORDS = {"accel": "accelerometer", "gyro": "gyro"}
 WINDOW_S = 0.5  # a touch or a step on the floor rings for less
 LOUD = 9.0  # times the usual variance: three times as loud, which no touch is mistaken for
 FEWEST, FEWEST_RESTS = 4, 3  # windows, rests with one: a single event rings in one rest, or in two
+FEWEST_SAMPLES = 64  # of a rest, whose noise is known to a tenth
+GROWN = 1.5  # times as loud at one end of a session as at the other: a filter set otherwise
+FEWEST_COMPARED = 10  # rests whose noise is compared
 
 
 def loud(session, sensor):
@@ -152,8 +155,28 @@ def _without(session, sensor, found):
     return session.of_capture(capture)
 
 
+def growing(session, sensor):
+    """(times as loud at the end of a session as at its begin, p) of the axis that says most: the
+    noise of its rests against their order, which a loud one does not change by much [Kendall,
+    Biometrika 30 (1938) 81; Theil-Sen]."""
+    counts, best = getattr(session.capture, sensor), (1.0, 1.0)
+    rests = [(first, end) for _, first, end in session.runs if end - first >= FEWEST_SAMPLES]
+    if len(rests) < FEWEST_COMPARED:
+        return best
+    t = np.array([session.t_s[first] for first, _ in rests])
+    for axis in range(3):
+        power = np.array([(np.diff(counts[first:end, axis].astype(float)) ** 2).mean()
+                          for first, end in rests])
+        level = 0.5 * np.log(np.maximum(power, 1.0 / 6.0))  # counts: rounding alone
+        p = min(1.0, 3.0 * float(stats.kendalltau(t, level).pvalue))
+        times = float(np.exp(stats.theilslopes(level, t).slope * np.ptp(t)))
+        if p < best[1] and max(times, 1.0 / times) > GROWN:
+            best = times, p
+    return best
+
+
 def found(sessions):
-    """[(sensor, sentence, p)] of noise that comes in bursts."""
+    """[(sensor, sentence, p)] of noise that comes in bursts, or changes from rest to rest."""
     out = []
     for sensor, words in WORDS.items():
         if any(getattr(s.capture, sensor) is None for s in sessions):
@@ -165,4 +188,9 @@ def found(sessions):
             out.append((sensor, "the %s is far louder in %d of %d half seconds at rest: noise "
                         "that comes in bursts" % (words, sums[0], sums[2]),
                         float(special.bdtrc(sums[0] - 1, sums[2], min(chance, 1.0)))))
+            continue
+        times, p = min((growing(s, sensor) for s in sessions), key=lambda one: one[1])
+        if present(-np.log(max(p * len(sessions), odds.SMALLEST))):
+            out.append((sensor, "the noise of the %s at the end of a session is %.2g times what "
+                        "it was at its begin" % (words, times), p * len(sessions)))
     return out
