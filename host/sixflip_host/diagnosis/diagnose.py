@@ -25,7 +25,9 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
     jobs       threads, 0: one a core
     prior      fleet_prior.FleetPrior of boards of this kind, None: the data sheets' sizes
     """
-    captures, damages = byte_faults.repaired(held_values.without_lost(captures))
+    captures, held = held_values.as_read(captures)
+    captures, damages = byte_faults.repaired(captures)
+    damages = [*held, *damages]
     sessions = [blocks.of(name, capture) for name, capture in captures]
     noise = {}
     for name, capture in reference:

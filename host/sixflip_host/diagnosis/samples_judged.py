@@ -66,6 +66,8 @@ def of(sessions, without=(), damages=()):
     rings = ringing.found(sessions)
     findings = [f for f in of_registers(sessions) + spectral_lines.findings(
         sessions, [(sensor, axis) for sensor, axis, _, _ in rings]) if f.effect not in without]
+    if any(d.kind == held_values.NOT_READ for d in damages):
+        findings = [f for f in findings if f.effect != "dropped_samples"]
     damages = [*damages, *held_values.findings(sessions), *wrong_scale.findings(sessions)]
     bits = registers.stuck_bits(sessions)
     leaping = {sensor for sensor, *_ in bits} | {

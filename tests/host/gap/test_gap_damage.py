@@ -204,29 +204,29 @@ def test_a_hands_turns_mirrored_are_no_sign_with_a_magnitude(seed, session):
     assert np.array_equal(back(told), rates)
 
 
-def test_rows_that_are_not_read_anew_are_lost_samples(sound):
+def test_rows_that_are_not_read_anew_are_no_samples(sound):
     """A logger that misses reads and writes the last sample once more: about ten such rows were
-    found, and what they do to turns had no name."""
+    found, and what they do to turns was a stranger in motion."""
     generator, lost = np.random.default_rng(4), np.zeros(len(sound), bool)
     for start in np.flatnonzero(generator.random(len(sound)) < 0.008):
         lost[start + 1:start + 1 + generator.integers(1, 6)] = True
     last = np.maximum.accumulate(np.where(lost, 0, np.arange(len(sound))))
     held = copy.copy(sound)
     held.accel, held.gyro = sound.accel[last], sound.gyro[last]
-    (_, plain), = held_values.without_lost([("one", held)])
+    (_, plain), = held_values.as_read([("one", held)])[0]
+    damage, = held_values.as_read([("one", held)])[1]
+    assert (damage.sensor, damage.domain) == ("device", "timing")
+    assert damage.value["rows"] == lost.sum()
     assert np.array_equal(plain.t_us, sound.t_us[~lost])
-    finding, = [f for f in samples_judged.of_registers([blocks.of("one", plain)])
-                if f.effect == "dropped_samples"]
-    assert finding.value["chance"] == pytest.approx(100.0 * lost.mean(), rel=0.1)
+    assert np.array_equal(plain.pose, sound.pose[~lost])
+    judged = samples_judged.of([blocks.of("one", plain)], damages=[damage])
+    assert not judged.findings and any("not read" in remark for remark in judged.remarks)
 
 
-def test_a_sensor_read_faster_than_it_measures_loses_nothing(sound):
+def test_a_sensor_read_faster_than_it_measures_misses_nothing(sound):
     """Every tenth row of both is the row before: at regular times."""
     last = np.maximum.accumulate(np.where(np.arange(len(sound)) % 10 == 9, 0,
                                           np.arange(len(sound))))
     held = copy.copy(sound)
     held.accel, held.gyro = sound.accel[last], sound.gyro[last]
-    (_, plain), = held_values.without_lost([("one", held)])
-    assert len(plain) == len(held)
-    (_, plain), = held_values.without_lost([("one", sound)])
-    assert len(plain) == len(sound)
+    assert held_values.as_read([("one", held), ("two", sound)])[1] == []

@@ -11,8 +11,8 @@ def session(temperature):
     n = len(temperature)
     still = [np.zeros(n), np.zeros(n), np.ones(n)]
     return SimpleNamespace(
-        n=n, t=np.arange(n) * 10.0, since=np.ones(n), temperature=temperature, thermal=True, shaken_mg=0.0,
-        thermometer=SimpleNamespace(lagged=lambda t, lag: temperature),
+        n=n, t=np.arange(n) * 10.0, since=np.ones(n), temperature=temperature, thermal=True,
+        shaken_mg=0.0, thermometer=SimpleNamespace(lagged=lambda t, lag: temperature),
         face=np.zeros(n, int), code=np.ones(n, int),
         moment=lambda up: SimpleNamespace(f=still, before=still))
 

@@ -5,8 +5,7 @@ repeats with a chance of its own, all three do with the product of the three. Th
 seen in the rows in which another axis changed, in short stretches of their own, for a sensor at
 rest repeats more often than one that moves. Held values repeat all three at once. Single rows
 that were read again are looked for where the sensor moves on before and after them. Where both
-sensors repeat in the same rows, now and then, a sample was not read: it is lost like one that is
-missing.
+sensors repeat in the same rows, now and then, a sample was not read: there is none.
 """
 import copy
 import math
@@ -23,6 +22,7 @@ HELD = 0.05  # share of rows that are held: fewer are single rows, not a rate
 # is 1, and of a sensor that is read faster than it measures half a row at most.
 AT_RANDOM = 0.5
 MOVES = 8.0  # times the noise, from a row to the next: six deviations of a difference at rest
+NOT_READ = "not read"  # kind of the Damage of samples that are missing though rows are not
 WORDS = {"accel": "accelerometer", "gyro": "gyro"}
 TIMES = {2: "twice", 3: "three times", 4: "four times"}
 
@@ -56,15 +56,28 @@ def findings(sessions):
     return found
 
 
-def without_lost(captures):
-    """[(name, Capture)] without the rows in which neither sensor was read anew: those samples are
-    lost, and what remains is a recording that they are missing in."""
-    return [(name, _taken_out(capture)) for name, capture in captures]
+def as_read(captures):
+    """([(name, Capture)] without the rows in which neither sensor was read anew, [Damage]). The
+    captures given are not changed."""
+    out, nats, number = [], 0.0, 0
+    for name, capture in captures:
+        more, rows = _not_read(capture)
+        out.append((name, _without(capture, rows) if len(rows) else capture))
+        nats, number = nats + more, number + len(rows)
+    if not number:
+        return out, []
+    share = 100.0 * number / sum(len(capture) for _, capture in captures)
+    return out, [Damage(NOT_READ, "device", (), "timing", "%d rows (%.2g %%) are the row before "
+                        "once more, of both sensors: samples that were not read" % (
+                            number, share), nats, {"rows": number})]
 
 
-def _taken_out(capture):
+def _not_read(capture):
+    """(nats, (k,) rows that are the one before once more), none where that happens by chance, or
+    at regular times."""
+    none = 0.0, np.zeros(0, dtype=int)
     if capture.accel is None or capture.gyro is None or len(capture) < FEWEST:
-        return capture
+        return none
     counts = np.hstack([capture.accel, capture.gyro])
     nats, held, _ = repeats(counts)
     rows = np.flatnonzero((counts[1:] == counts[:-1]).all(axis=1)) + 1
@@ -72,12 +85,15 @@ def _taken_out(capture):
     # As many as are held repeat: where some do by chance, nobody knows which.
     if not present(nats) or held < 0.9 * len(rows) or len(rows) < 3 or (
             spacing.std() < AT_RANDOM * spacing.mean()):
-        return capture
-    out, keep = copy.copy(capture), np.ones(len(capture), dtype=bool)
-    keep[rows] = False
+        return none
+    return nats, rows
+
+
+def _without(capture, rows):
+    out = copy.copy(capture)
     for name in ("t_us", "accel", "gyro", "temp", "mag", "pose"):
         if getattr(out, name) is not None:
-            setattr(out, name, getattr(out, name)[keep])
+            setattr(out, name, np.delete(getattr(out, name), rows, axis=0))
     return out
 
 

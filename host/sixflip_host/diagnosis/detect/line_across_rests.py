@@ -19,6 +19,9 @@ FEWEST, SHORTEST_S = 12, 1.0  # rests, and seconds of each (a protocol has twelv
 # would ask of a fan or a pump that it keeps its frequency to better than a part in a thousand.
 LONGEST_S = 600.0
 LEAST_CYCLES = 0.5  # of a line in a rest: less is a course that is taken off
+# And in all rests together: half a cycle is a bend, of which each rest has one, and to a dozen of
+# them the sine of some frequency comes close whatever they are.
+ALL_CYCLES = 12.0
 RATE_HZ = 10.0  # of the means that are looked at: ten times line_frequency.FASTEST_HZ
 GRID_HZ = 40.0  # of the times that they are taken to be at: a tenth of a radian at most
 OVER = 4  # frequencies for each that rests so far apart can tell
@@ -33,7 +36,7 @@ def strongest(session, sensor, axis, fastest_hz):
     if len(lengths) < FEWEST:
         return None
     span = t[-1] - t[0]
-    slowest = LEAST_CYCLES / np.median(lengths)
+    slowest = max(LEAST_CYCLES, ALL_CYCLES / len(lengths)) / np.median(lengths)
     x, weight = _left(t, x, rest)
     hz, power = _spectrum(t, _for_itself(t, weight ** 2 * x, rest), slowest, fastest_hz)
     if len(hz) < 2 * WIDTH:
