@@ -28,7 +28,7 @@ DOUBTFUL_P, DOUBTFUL_RATIO = 1e-3, 1.3
 
 def usual(sensor, kind):
     """Typical flicker level of a chip, mg or deg/s."""
-    return typical.flicker(typical.chip_of(sensor, kind))
+    return typical.FLICKER[typical.chip_of(sensor, kind)]
 
 
 def levels(sensor, kind, reference=None):

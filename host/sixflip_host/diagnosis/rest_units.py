@@ -16,7 +16,7 @@ from . import adequacy, evidence, holdout_gain, rest_forms
 # (typical.FLOOR); a gyro's is the Earth's rate, should the box have been put down again.
 OFFSET = {"accel": 0.1, "gyro": 0.003}
 # Levels tried: of the offset from the usual one up, about half a decade apart; of flicker from a
-# quiet part's (typical.FLOOR) up, where parts are so close that what is left beside the nearest
+# quiet part's (typical.FLICKER) up, where parts are so close that what is left beside the nearest
 # is not doubtful for that (adequacy.DOUBTFUL_RATIO, of squares).
 OFFSETS = {"accel": (0.1, 0.3, 1.0, 3.0, 12.0), "gyro": (0.003, 0.01, 0.05, 0.3, 1.0)}
 FLICKERS = {"accel": (0.005, *np.geomspace(0.02, 0.8, 15).tolist(), 1.6, 4.0, 12.0, 40.0),

@@ -18,7 +18,7 @@ from .projection import lateral_basis
 # gravity: closest about 0.05 degrees (0.87 mg), from a jig's hundredth of a degree to a careless
 # two degrees.
 PLACEMENT_MG = (0.1, 0.45, 0.8, 1.4, 3.0, 8.0, 40.0)
-# Levels of flicker tried: factors of 1.4 apart where parts are (typical.FLOOR), two and more
+# Levels of flicker tried: factors of 1.4 apart where parts are (typical.FLICKER), two and more
 # beyond.
 FLICKER_MG = (0.005, 0.02, 0.033, 0.05, 0.075, 0.11, 0.15, 0.22, 0.4, 0.8, 1.6, 4.0)
 FLICKER_DPS = (0.0002, 0.001, 0.0018, 0.0026, 0.0037, 0.0053, 0.0075, 0.011, 0.016, 0.025, 0.04,

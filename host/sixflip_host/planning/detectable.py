@@ -83,7 +83,7 @@ def covariance(design, chip, rate_hz, placement_deg, step=0.0):
     rows = design.rows
     sigma = np.array(typical.noise_at(chip, rate_hz, step))
     white = sigma ** 2 / np.maximum(rows.seconds * rate_hz, 1.0)[:, None]
-    total = np.diag(white.reshape(-1)) + typical.flicker(chip) ** 2 * flicker(rows)
+    total = np.diag(white.reshape(-1)) + typical.FLICKER[chip] ** 2 * flicker(rows)
     if design.sensor == "accel":
         level = (math.radians(placement_deg) * MG_PER_RAD) ** 2
         for placement in np.unique(rows.placement):

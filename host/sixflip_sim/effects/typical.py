@@ -25,6 +25,12 @@ NOISE = {}      # standard deviation a sample at 100 Hz, (x, y, z), mg or deg/s;
 FLOOR = {
     "mpu6050-accel": 0.08, "mpu6050-gyro": 0.002, "adxl345": 0.08, "itg3205": 0.008,
 }
+FLICKER = {  # level of each of the exponentials of a typical part's flicker, mg or deg/s
+    "mpu6050-accel": 0.05, "adxl345": 0.05,  # as on recorded units
+    # no recorded rest of a gyro is long enough
+    "mpu6050-gyro": FLOOR["mpu6050-gyro"] / FLOOR_OF_KERNEL,
+    "itg3205": FLOOR["itg3205"] / FLOOR_OF_KERNEL,
+}
 SIZES = {"thermal_bias": {}, "thermal_scale": {}, "quadratic": {}, "cubic": {}, "filter_lag": {}}
 STANDS_IN = {
     "warm_up": {
@@ -96,11 +102,6 @@ STANDS_IN = {
         "mpu6050-gyro": (0.00295, "0.0042 deg/s at 45 deg of latitude"),
         "itg3205": (0.00295, "0.0042 deg/s at 45 deg of latitude")},
 }
-
-
-def flicker(chip):
-    """Level of each of the exponentials of a typical part's flicker, mg or deg/s."""
-    return FLOOR[chip] / FLOOR_OF_KERNEL
 
 
 def noise_at(chip, rate_hz, step=0.0):
@@ -181,6 +182,7 @@ def _add(sensor):
         density = datasheets.figures(sensor, kind, "density")
         NOISE[chip] = (sigma,) * 3, "recorded units; " * seen + source
         quieter = max(density) / datasheets.figure("mpu6050", kind, "density")
+        FLICKER.setdefault(chip, quieter * FLICKER[like])
         FLOOR.setdefault(chip, quieter * FLOOR[like])
         for effect, size_ in _of_the_data_sheet(sensor, kind, hz).items():
             SIZES[effect][chip] = size_, source
