@@ -7,7 +7,12 @@ import pytest
 
 from sixflip_host.capture.capture_file import Capture
 from sixflip_host.diagnosis import diagnosis, hypotheses, stray_turns, turn_model
-from sixflip_host.diagnosis.detect import sample_neighbours, spectral_lines, torn_reads
+from sixflip_host.diagnosis.detect import (
+    line_across_rests,
+    sample_neighbours,
+    spectral_lines,
+    torn_reads,
+)
 from sixflip_host.diagnosis.detect.detection import present
 from sixflip_host.experiment import attitude_fit, block_measures, blocks, nominal_rows
 from sixflip_host.experiment.attitude_fit import face_axes
@@ -232,3 +237,13 @@ def test_what_each_rest_does_for_itself_is_no_slow_line():
         phase = generator.uniform(0.0, 2.0 * np.pi)
         return 200.0 * np.exp(-t / 0.6) + 100.0 * np.sin(2.0 * np.pi * 0.9 * t + phase)
     assert spectral_lines.findings([short_rests(sways, n=12000)]) == []
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_dozen_rests_that_settle_each_in_its_own_way_are_no_slow_line(seed):
+    """The bends of twelve rests come close to the sine of some frequency, whatever they are."""
+    generator = np.random.default_rng(seed)
+    capture = short_rests(
+        lambda t, start: 600.0 * generator.standard_normal() * np.exp(-t / 2.5), 5.0, 580 * 12)
+    assert len(capture.runs) == 12
+    assert line_across_rests.strongest(capture, "accel", 0, 1.0) is None

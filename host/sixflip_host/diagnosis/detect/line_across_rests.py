@@ -38,25 +38,12 @@ def strongest(session, sensor, axis, fastest_hz):
     span = t[-1] - t[0]
     slowest = max(LEAST_CYCLES, ALL_CYCLES / len(lengths)) / np.median(lengths)
     x, weight = _left(t, x, rest)
-    hz, power = _spectrum(t, _for_itself(t, weight ** 2 * x, rest), slowest, fastest_hz)
-    if len(hz) < 2 * WIDTH:
+    ratio, near, looked_at = _highest(t, x, rest, weight, slowest, fastest_hz)
+    if not looked_at:
         return None
-    # With gaps between the rests a line leaks all over the spectrum, so that what stands highest
-    # above its surroundings may be a part of it: it is what takes most of the power with it.
-    # Noise that is slow has most power where it is slowest, and no line. The floor is what is
-    # there without the line.
-    places = {int((power / _floor(power)).argmax()),
-              int((power / _passed(t, rest, weight, hz)).argmax())}
-    looked = []
-    for k in places:
-        size = _fitted(t, x, rest, weight, hz[k])
-        _, left = _spectrum(t, _for_itself(
-            t, weight ** 2 * (x - _wave(t, rest, hz[k]) @ size), rest), slowest, fastest_hz)
-        looked.append((power[k] / _floor(left)[k], k, size))
-    ratio, k, _ = max(looked, key=lambda one: one[0])
     doubt = 1.0 + odds.Z_90 * MEDIAN_ERROR / math.sqrt(WIDTH / OVER)
-    nats = float(ratio) / doubt - math.log(3.0 * 2.0 * len(hz))
-    found, size = _nearest(t, x, rest, weight, hz[k])
+    nats = ratio / doubt - math.log(3.0 * looked_at)
+    found, size = _nearest(t, x, rest, weight, near)
     amplitude = float(np.hypot(*size))
     halves = [_fitted(t[part], x[part], rest[part], weight[part], found, t[0])
               for part in (rest < rest.max() / 2, rest >= rest.max() / 2)]
@@ -70,6 +57,26 @@ def strongest(session, sensor, axis, fastest_hz):
                 1.0 / math.sqrt(2.0 * ratio), steady=True, low=float(found - half),
                 high=float(found + half), files=((session.name, float(found), float(found - half),
                                                   float(found + half)),))
+
+
+def _highest(t, x, rest, weight, slowest, fastest):
+    """(power over the floor, Hz, peaks looked at) of the highest peak of x (n,), (0, 0, 0) where
+    there are too few frequencies for a floor.
+
+    With gaps between the rests a line leaks all over the spectrum, so that what stands highest
+    above its surroundings may be a part of it: it is what takes most of the power with it. Noise
+    that is slow has most power where it is slowest, and no line. The floor is what is there
+    without the line."""
+    hz, power = _spectrum(t, _for_itself(t, weight ** 2 * x, rest), slowest, fastest)
+    if len(hz) < 2 * WIDTH:
+        return 0.0, 0.0, 0
+    by = power / _floor(power), power / _passed(t, rest, weight, hz)
+    looked = []
+    for k in {int(one.argmax()) for one in by}:
+        left = x - _wave(t, rest, hz[k]) @ _fitted(t, x, rest, weight, hz[k])
+        _, floor = _spectrum(t, _for_itself(t, weight ** 2 * left, rest), slowest, fastest)
+        looked.append((float(power[k] / _floor(floor)[k]), float(hz[k])))
+    return (*max(looked), len(by) * len(hz))
 
 
 def without(session, sensor, axis, hz, fastest_hz):
