@@ -10,6 +10,7 @@ import numpy as np
 from scipy import special, stats
 
 from sixflip_sim.effects import typical
+from sixflip_sim.effects.drift import FLOOR_OF_KERNEL
 
 from . import evidence, excess, odds, session_offsets
 from .evidence import Levels
@@ -27,8 +28,9 @@ DOUBTFUL_P, DOUBTFUL_RATIO = 1e-3, 1.3
 
 
 def usual(sensor, kind):
-    """Typical flicker level of a chip, mg or deg/s."""
-    return typical.FLICKER[typical.chip_of(sensor, kind)]
+    """Flicker level of a chip that is still usual, mg or deg/s: by the Allan floor of published
+    plots. The recorded units that typical.FLICKER goes by are quieter."""
+    return typical.FLOOR[typical.chip_of(sensor, kind)] / FLOOR_OF_KERNEL
 
 
 def levels(sensor, kind, reference=None):

@@ -10,7 +10,6 @@ import math
 from sixflip.chips import catalogue
 from sixflip_sim import worlds
 from sixflip_sim.effects import datasheets
-from sixflip_sim.effects.drift import FLOOR_OF_KERNEL
 
 _MPU = "MPU-6050 PS rev 3.4, table 6."
 _ADXL = "ADXL345 rev E, table 1"
@@ -19,17 +18,15 @@ _SEEN = "not stated in the data sheet: seen on recorded units"
 _JUDGED = "not stated in the data sheet: judged from the range of published units"
 
 NOISE = {}      # standard deviation a sample at 100 Hz, (x, y, z), mg or deg/s; and its source
-# Slow noise is in no sheet. Floor of the Allan deviation (bias instability times 0.664) of a
-# typical part, mg or deg/s: ADXL345 rev E figure 53; the others of these four as seen on published
-# Allan plots of the parts; all others' as much less as their white noise is.
+# Slow noise is in no sheet: as on recorded units of these four, of the others as much less as
+# their white noise is.
+FLICKER = {  # level of each of the exponentials of 10...1000 s, mg or deg/s
+    "mpu6050-accel": 0.05, "mpu6050-gyro": 0.001, "adxl345": 0.05, "itg3205": 0.004,
+}
+# Floor of the Allan deviation (bias instability times 0.664) of a typical part, mg or deg/s:
+# ADXL345 rev E figure 53; the others as seen on published Allan plots of the parts.
 FLOOR = {
     "mpu6050-accel": 0.08, "mpu6050-gyro": 0.002, "adxl345": 0.08, "itg3205": 0.008,
-}
-FLICKER = {  # level of each of the exponentials of a typical part's flicker, mg or deg/s
-    "mpu6050-accel": 0.05, "adxl345": 0.05,  # as on recorded units
-    # no recorded rest of a gyro is long enough
-    "mpu6050-gyro": FLOOR["mpu6050-gyro"] / FLOOR_OF_KERNEL,
-    "itg3205": FLOOR["itg3205"] / FLOOR_OF_KERNEL,
 }
 SIZES = {"thermal_bias": {}, "thermal_scale": {}, "quadratic": {}, "cubic": {}, "filter_lag": {}}
 STANDS_IN = {
@@ -178,7 +175,7 @@ def _add(sensor):
         if datasheets.chips(sensor)[kind == "gyro"] is None:
             continue
         chip, source = chip_of(sensor, kind), datasheets.source(sensor, kind)
-        like = chip if chip in FLOOR else "mpu6050-" + kind
+        like = chip if chip in FLICKER else "mpu6050-" + kind
         density = datasheets.figures(sensor, kind, "density")
         NOISE[chip] = (sigma,) * 3, "recorded units; " * seen + source
         quieter = max(density) / datasheets.figure("mpu6050", kind, "density")
