@@ -188,11 +188,10 @@ VARIABLE = {"thermal_scale": ("thermal_orientation",), "vibration_rectification"
 
 
 # Of time everything is a function, and of a temperature's rate the temperature is the integral:
-# what is another form of these effects is made of their own time constants and lags alone.
-OF_THEIR_OWN = ("warm_up", "thermal_rate")
-# A material's creep is of several time constants, too [Prony series], and the memory of what
-# sticks and slips of several plays [Prandtl-Ishlinskii].
-OWN_FORMS = (*OF_THEIR_OWN, "creep", "hysteresis")
+# what is another form of these effects is made of their own time constants and lags. So is a
+# material's creep, of any course [Prony series], and the memory of what sticks and slips, of plays
+# [Prandtl-Ishlinskii].
+OWN_FORMS = ("warm_up", "thermal_rate", "creep", "hysteresis")
 
 
 def _variable(effect):
@@ -246,9 +245,8 @@ def with_discrepancy(model, forms, scored, form):
     if form.generic or not len(form.shared) or form.discrepancy:
         return None
     designs, variables = model.units[0].designs, _variable(form.effect)
-    free = _of_effect(designs, form) if form.effect in OWN_FORMS else []
-    free += _of_variable(designs, forms, variables, form.variant) \
-        if form.effect not in OF_THEIR_OWN else []
+    free = _of_effect(designs, form) if form.effect in OWN_FORMS else _of_variable(
+        designs, forms, variables, form.variant)
     shared = scored.shared
     theta = evidence.coefficients(scored.fits, shared)[0][0]
     rms = np.sqrt(np.mean([u.energy for u in model.units if not u.between], axis=0))
