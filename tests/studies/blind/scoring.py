@@ -26,9 +26,9 @@ UNITS = {"mg/°C": 1e-3, "mg/degC": 1e-3, "°/s/°C": 1.0, "deg/s/degC": 1.0, "%
          "mg/(°C/min)": 6e-2, "deg/s/(degC/min)": 60.0, "°/s/(°C/min)": 60.0}
 MISFIT = 4.0                        # sigma squared
 IN_MOTION = ("lever_arm", "filter_lag")
-# What can only be said to be there: nobody writes the voltage down; a vibration of 0.02 g shifts
-# by milli-g only with a bend a thousand times any sensor's; a bit that sticks has no name of its
-# own unless it is the lowest.
+# What can only be said to be there: nobody writes the voltage down; of a vibration rectified the
+# theory here has no column (it is named where some rests are shaken and others are not); a bit
+# that sticks has no name of its own unless it is the lowest.
 NO_COLUMN = ("supply", "vibration_rectification", "stuck_bit")
 WHEN_THERE = ("box_tilt", "table_tilt", "earth_rate")   # in every case's world
 
