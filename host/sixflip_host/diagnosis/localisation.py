@@ -48,8 +48,12 @@ def places(gap):
                   for letter in (gap.drift.axes if gap.drift else ()) or (None,)]
     named = [replace(place, named=True) for place in named]
     known = {(p.axis, p.domain) for p in named}
-    return sorted(named + [t for t in tested if (t.axis, t.domain) not in known
-                           and t.share >= LEAST_SHARE], key=order)
+    found = named + [t for t in tested if (t.axis, t.domain) not in known
+                     and t.share >= LEAST_SHARE]
+    if not found and not gap.adequacy.ok:
+        # More than noise in all, and nowhere more than elsewhere.
+        found = [Place(gap.kind, None, gap.model.left_in, 1.0, gap.adequacy.p)]
+    return sorted(found, key=order)
 
 
 def _strange(gap, form, tested):

@@ -44,6 +44,7 @@ class RestModel:
     settings: Settings
     conditions: Conditions = Conditions()
     drifts = True  # whether noise may wander
+    left_in = "noise"  # the domain of what is left that no hypothesis takes up
     form = 0.02  # cutoffs.Cutoffs.form
 
     def fit(self, sessions, nominal):

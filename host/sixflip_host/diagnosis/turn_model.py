@@ -16,7 +16,8 @@ from .rest_model import RestModel
 
 EFFECTS = ("asymmetry", "quadratic", "cubic", "thermal_scale")
 ATTITUDE_DEG = 0.03  # of gravity's direction at rest
-FLIPS_DEG = (0.2, 0.4, 0.8, 1.6, 3.2)  # of half a turn by hand: a level of its own
+# Of half a turn by hand, a level of its own: a careless one is five to ten degrees off.
+FLIPS_DEG = (0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8)
 FLIP_DEG = 0.4  # what is usual (METHOD section 2)
 FEWEST_MOVES = 6  # two equations each: as many as nine of the matrix and three of the bias
 WRONG_DEG = 25.0  # of a turn's end: as of a label that gravity contradicts (blocks.FAR_OFF_DEG)
@@ -46,6 +47,7 @@ class TurnModel(RestModel):
     by hand is off."""
 
     drifts = False
+    left_in = "motion"
     form = 0.06  # turns are linear in an effect only while it is small: a quarter of its size
 
     def unit(self, part, model, certified, wanted=None):

@@ -47,15 +47,16 @@ def test_turns_that_samples_were_lost_in_end_far_off():
     assert present(nats) and number == pytest.approx(3.0, abs=0.1)
 
 
-def test_a_hand_that_turns_by_half_a_circle_carelessly_is_no_gap_of_the_gyro():
+@pytest.mark.parametrize("off_deg", [1.6, 7.0])
+def test_a_hand_that_turns_by_half_a_circle_carelessly_is_no_gap_of_the_gyro(off_deg):
     plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 4,
-                               "world": {"flip_error_deg": 1.6}})
+                               "world": {"flip_error_deg": off_deg}})
     session = blocks.of("s", simulated_session.session(plan, 0))
     nominal = attitude_fit.fit(session)
     gap = turn_model.TurnModel("gyro", "mpu6050", diagnosis.Settings(jobs=1)).fit(
         [session], [nominal])
     assert gap.adequacy.ok and not gap.found.best.forms
-    assert gap.units[0].grid[gap.adequacy.index[0]][1] >= 0.8
+    assert gap.units[0].grid[gap.adequacy.index[0]][1] >= 0.5 * off_deg
 
 
 def test_noise_near_the_edge_of_a_page_is_no_torn_read():

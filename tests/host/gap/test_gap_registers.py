@@ -101,10 +101,22 @@ def test_peaks_cut_off_are_found_whatever_else_repeats(spoilt):
         assert all(present(saturation.cut_off_nats(side)) for side in (x, -x)), seed
 
 
-def resting(noise, seed=5, **meta):
-    """A session of six rests with noise of so many counts."""
+def test_a_pose_that_a_robot_comes_back_to_is_no_peak_cut_off():
+    """Each visit's largest reading is that of the same noise about the same mean."""
+    cut_off = 0
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        pose, way = np.full(600, 8310.0), 8310.0 * np.cos(np.linspace(0.0, 2.0 * np.pi, 200))
+        x = np.rint(np.tile(np.concatenate([pose, way]), 8) + rng.normal(0.0, 0.8, 6400))
+        moving = np.tile(np.arange(800) >= 600, 8)
+        cut_off += present(saturation.cut_off_nats(x.astype(int)))
+        assert not present(saturation.cut_off_nats(x.astype(int), moving)), seed
+    assert cut_off > 4  # where all of them count as peaks
+
+
+def resting(noise, seed=5, n=200, **meta):
+    """A session of six rests of n samples with noise of so many counts."""
     rng = np.random.default_rng(seed)
-    n = 200
     accel = np.round(np.repeat(8192.0 * np.vstack([np.eye(3), -np.eye(3)]), n, axis=0)
                      + noise * rng.normal(size=(6 * n, 3))).astype(np.int16)
     head = {"sensor": "other", "rate_hz": 100.0, "accel_lsb_per_g": 8192.0, **meta}
@@ -210,6 +222,18 @@ def test_bursts_of_noise_are_no_vibration():
     assert "vibration" not in [f.effect for f in found.findings]
     assert found.verdict in ("unexplained", "partly explained")
     assert ("accel", "noise") in [(w.sensor, w.domain) for w in found.where]
+
+
+def test_a_table_that_rings_under_a_box_put_down_is_no_burst_of_noise():
+    """Of the first second of a rest nothing is asked: the box has not settled."""
+    for settled in (0.0, 1.5):
+        session = resting(4.0, n=600)
+        for _, first, end in session.runs:
+            t = np.arange(end - first) / session.rate - settled
+            ring = 200.0 * np.exp(-t / 0.28) * np.sin(8.4 * np.pi * t) * (t >= 0.0)
+            session.capture.accel[first:end] += np.rint(ring).astype(np.int16)[:, None]
+        said = [sensor for sensor, _, _ in noise_bursts.found([session])]
+        assert said == (["accel"] if settled else [])
 
 
 @pytest.mark.parametrize("coarse, said", [

@@ -12,6 +12,7 @@ from scipy import special, stats
 from ...capture import registers
 from .. import odds
 from .detection import present
+from .ringing import SETTLES_S
 from .torn_reads import student
 
 WORDS = {"accel": "accelerometer", "gyro": "gyro"}
@@ -25,12 +26,13 @@ FEWEST_COMPARED = 10  # rests whose noise is compared
 
 
 def loud(session, sensor):
-    """(loud windows, rests with one, windows) of a session's rests."""
+    """(loud windows, rests with one, windows) of a session's rests, once the box has settled."""
     counts = getattr(session.capture, sensor)
     m = max(8, int(WINDOW_S * session.rate))
+    settles = int(SETTLES_S * session.rate)
     power, place = [], []
     for number, (_, first, end) in enumerate(session.runs):
-        x = np.diff(counts[first:end].astype(float), axis=0)
+        x = np.diff(counts[first + settles:end].astype(float), axis=0)
         k = len(x) // m
         if k:
             power.append((x[:k * m].reshape(k, m, 3) ** 2).mean(axis=1))

@@ -31,8 +31,9 @@ def saturation(sessions, sensor, columns):
                 said = "%d samples of the %s axis sit on the rail" % (on_rail.sum(), "xyz"[i])
                 size = int(np.abs(x).max())
             else:
-                nats, level = max(((cut_off_nats(y), (y, y == y.max())) for y in (x, -x)),
-                                  key=lambda pair: pair[0])
+                moving = in_motion(session)
+                nats, level = max(((cut_off_nats(y, moving), (y, y == y.max()))
+                                   for y in (x, -x)), key=lambda pair: pair[0])
                 size = int(np.abs(level[0].max()))
                 said = _below(session, sensor, "xyz"[i], level[0].max())
             if present(nats):
@@ -65,11 +66,11 @@ def railed(session, sensor="accel"):
     """(n,) True where a sample sits on a rail or on a level that peaks are cut off at."""
     counts = getattr(session.capture, sensor)
     rail = _range_rail(session, sensor)
-    found = np.zeros(len(counts), bool)
+    found, moving = np.zeros(len(counts), bool), in_motion(session)
     for column in counts.T.astype(np.int64):
         found |= np.abs(column) >= rail
         for sign in (1, -1):
-            if present(cut_off_nats(sign * column)):
+            if present(cut_off_nats(sign * column, moving)):
                 found |= sign * column == (sign * column).max()
     return found
 
@@ -84,20 +85,30 @@ def _range_rail(session, sensor):
     return min(RAIL - 3, int(meta[top] * meta[lsb]) - RAIL_CODES)
 
 
-def cut_off_nats(x):
+def in_motion(session):
+    """(n,) True where a sample is in no rest."""
+    moving = np.ones(len(session.capture), bool)
+    for _, first, end in session.runs:
+        moving[first:end] = False
+    return moving
+
+
+def cut_off_nats(x, moving=True):
     """level_nats of the largest value of x; the one sample that is the largest anyhow is no
-    evidence, and the largest values that were looked at are taken off."""
+    evidence, and the largest values that were looked at are taken off. What lies in the same pose
+    again reads the same again, so only peaks `moving` (n,) may end where they like."""
     at = x == x.max()
-    return 0.0 if at.all() else level_nats(x, at, 1, 1) - math.log(LOOKED_AT)
+    return 0.0 if at.all() else level_nats(x, at, 1, 1, moving) - math.log(LOOKED_AT)
 
 
-def level_nats(x, at, width, free=0):
+def level_nats(x, at, width, free=0, moving=True):
     """Log likelihood ratio (nats) of readings x being held at their largest `width` codes, where
     `at` is True, against readings whose peaks end anywhere in the last part of their span. That
     the next sample stays at the level counts for as much as it does so more often than noise and
-    the other readings let it. free: peaks that end there anyhow."""
+    the other readings let it. free: peaks that end there anyhow; moving (n,): which samples have
+    peaks that are counted."""
     step, spread = _spread(x)
-    reached, inside = peaks(x, at)
+    reached, inside = peaks(x, at, moving)
     runs = max(reached - free, 0)
     # A rail is known beforehand: what jumps there alone could have jumped anywhere.
     known = not free and not inside
@@ -126,9 +137,9 @@ def _oftener(hits, misses, chance):
                - hits * math.log(chance) - misses * math.log1p(-chance))
 
 
-def peaks(x, at):
+def peaks(x, at, moving=True):
     """(peaks that end at the level where `at` is True, those that end just inside of it)."""
-    near = x >= x[at].min() - _spread(x)[1]
+    near, at = (x >= x[at].min() - _spread(x)[1]) & moving, at & moving
     reached = _reached(near, at)
     return reached, _runs(near) - reached
 
