@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..experiment.terms import is_stranger
-from . import evidence, hypotheses, odds
+from . import discrepancy, evidence, odds
 
 SAME, SIGMAS = 0.9, 3.0  # GAP stage 4: alias index and distinguishability of one class
 
@@ -156,7 +156,7 @@ def _aliases(form, theta, known, forms, beside, grams, each):
             continue
         # A discrepancy is a part of what a name of another variable would have to reproduce; one
         # of the same variable could have the same discrepancy.
-        same = any(hypotheses.alike(form, rival) for rival in rivals)
+        same = any(discrepancy.alike(form, rival) for rival in rivals)
         columns, sizes = (mine, theta) if same else (every, whole)
         apart = reproduced(grams[0] + grams[1], columns, sizes, spaces,
                            others[~np.isin(others, columns)])[1]

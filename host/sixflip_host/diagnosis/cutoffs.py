@@ -15,7 +15,7 @@ import numpy as np
 
 from .. import atomic_write, progress
 from . import evidence, mimicry
-from .evidence import NONE
+from .elimination import NONE
 from .mimicry import Mimicry
 from .odds import CHANCE
 

@@ -4,6 +4,7 @@ a cause or with noise that wanders.
 import numpy as np
 
 from . import evidence
+from .elimination import NONE
 
 
 def taken(unit, point, private):
@@ -54,9 +55,9 @@ def share_of_drift(units, statistics, scored, chosen, index, levels):
 def _walked(unit, statistics, point, private):
     """chi2 that private columns take off beyond their degrees of freedom."""
     flat = np.zeros(len(unit.grid))
-    before, after = (evidence.fit(unit, statistics, evidence.NONE, columns, flat,
+    before, after = (evidence.fit(unit, statistics, NONE, columns, flat,
                                   np.array([point]))
-                     for columns in (evidence.NONE, private))
+                     for columns in (NONE, private))
     return float(before.quadratic[0] - after.quadratic[0]) - taken(unit, point, private)
 
 

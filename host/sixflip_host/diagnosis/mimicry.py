@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import progress
 from . import evidence
-from .evidence import NONE
+from .elimination import NONE, Columns
 
 STRANGERS = 3  # simulated for each nameless hypothesis
 STRANGE_CHI2 = 1000.0  # of a simulated stranger: what causes of a typical size come to
@@ -84,7 +84,7 @@ def simulated(units, forms, levels, points):
 def _together(one, other):
     """Columns of both, each once."""
     new = ~np.isin(other.index, one.index)
-    return one + evidence.Columns(other.index[new], other.prior[new])
+    return one + Columns(other.index[new], other.prior[new])
 
 
 def _strange(units, nameless, points, generator):

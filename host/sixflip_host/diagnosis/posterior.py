@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import evidence, hypotheses, odds
+from . import discrepancy, evidence, hypotheses, odds
 from .odds import HOLDS, PRESENT
 from .scored_sets import Scored
 
@@ -132,7 +132,7 @@ def _pruned(model, best, cost):
         needed = {form: cost.of(form) + PRESENT + max(
             [_unknown(form, f, cost) * (
                 alone if f.generic or form.effect == "drift"
-                else energy if hypotheses.may_be_left_by(form, f) else gains)[f]
+                else energy if discrepancy.may_be_left_by(form, f) else gains)[f]
              for f in best.forms if f is not form], default=0.0) for form in best.forms}
         weakest = min(best.forms, key=lambda f: gains[f] - needed[f])
         if gains[weakest] >= needed[weakest]:
@@ -220,7 +220,7 @@ def _wider(model, forms, scored, cost, form):
         if form.generic or (one.effect, one.axis) != (form.effect, form.axis):
             continue
         plain = model.scored((*others, one))
-        wider = hypotheses.with_discrepancy(model, forms, plain, one)
+        wider = discrepancy.with_discrepancy(model, forms, plain, one)
         if wider is None:
             break
         found = model.scored((*others, wider))

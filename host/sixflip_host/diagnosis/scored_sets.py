@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from . import evidence, forms_at_once
-from .evidence import NONE
+from .elimination import NONE, Columns, Elimination
 
 KEPT = 8  # eliminations of each unit that are kept
 NEAR = 14  # forms that are looked at with all levels of noise
@@ -106,7 +106,7 @@ class Model:
                 self._levels_tried(number, free),
                 self._elimination(number, private[number]))
                 for number, (unit, statistics) in enumerate(zip(self.units, self.statistics))]
-            scores = self._score(fits, evidence.Columns(index, prior)) + _worth(base.chosen)
+            scores = self._score(fits, Columns(index, prior)) + _worth(base.chosen)
             for number, k in enumerate(places):
                 found[plain[k]] = Scored(
                     (*base.forms, forms[plain[k]]), float(scores[number]),
@@ -190,14 +190,14 @@ class Model:
         return self._tried[place, free]
 
     def _elimination(self, place, private):
-        """evidence.Elimination of private columns from one unit, made once."""
+        """Elimination of private columns from one unit, made once."""
         if not len(private):
             return None
         key = (place, private.index.tobytes(), private.prior.tobytes())
         if key not in self._eliminations:
             while len(self._eliminations) >= KEPT * len(self.units):
                 del self._eliminations[next(iter(self._eliminations))]
-            self._eliminations[key] = evidence.Elimination(
+            self._eliminations[key] = Elimination(
                 self.units[place], self.statistics[place], private)
         return self._eliminations[key]
 
@@ -239,5 +239,5 @@ def _distinct(forms):
     shared = NONE
     for form in forms:
         new = ~np.isin(form.shared.index, shared.index)
-        shared = shared + evidence.Columns(form.shared.index[new], form.shared.prior[new])
+        shared = shared + Columns(form.shared.index[new], form.shared.prior[new])
     return shared

@@ -11,6 +11,7 @@ import numpy as np
 from ..experiment import long_rest, nominal_rows
 from ..experiment.flicker import differences
 from . import adequacy, evidence, excess
+from .elimination import NONE
 
 # s of the short means whose steps are looked at; steps that their tails are known from; steps that
 # may be knocks.
@@ -61,7 +62,7 @@ def _left(kind, units, statistics, scored):
     parts = []
     for unit, one, choices in zip(units, statistics, scored.chosen):
         if not unit.between:
-            others = sum((c.columns for c in choices if c.form.effect != "drift"), evidence.NONE)
+            others = sum((c.columns for c in choices if c.form.effect != "drift"), NONE)
             fit = evidence.fit(unit, one, scored.shared, others, np.zeros(len(unit.grid)))
             parts.append((unit, unit.grid[int(fit.index[0])][0], others,
                           unit.raw(scored.shared.index) @ theta))
@@ -106,7 +107,7 @@ def by_flicker(unit, statistics, shared, level):
     found = []
     for value in np.unique(flickers):
         points = np.flatnonzero(flickers == value)
-        one = evidence.fit(unit, statistics, shared, evidence.NONE, level, points)
+        one = evidence.fit(unit, statistics, shared, NONE, level, points)
         found.append(one.evidence[0])
     return np.array(found)
 

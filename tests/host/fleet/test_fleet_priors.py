@@ -8,7 +8,7 @@ import pytest
 
 from sixflip_host import cli
 from sixflip_host.diagnosis import hypotheses
-from sixflip_host.diagnosis.evidence import Columns
+from sixflip_host.diagnosis.elimination import Columns
 from sixflip_host.errors import BadFile
 from sixflip_host.experiment import fleet_prior
 from sixflip_host.fleet import answer, judgement, members, randomisation

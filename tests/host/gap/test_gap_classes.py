@@ -79,7 +79,7 @@ FORMS = {"levels off": ("thermal_bias", lambda t, warm, g: on_z(8.0 * np.tanh(0.
 
 @pytest.mark.parametrize("form", FORMS)
 def test_a_cause_of_another_form_than_the_library_s_ends_in_its_class(captures, form):
-    """With hypotheses.with_discrepancy returning None the bias that levels off with temperature
+    """With discrepancy.with_discrepancy returning None the bias that levels off with temperature
     and the seventh power are not found at all. Without the bends among the discrepancies the
     seventh power is three causes, the fourth a product of two axes. Poses turned by what the
     nominal sensor took of it make the square one of Y; with the share of one member of its class

@@ -13,7 +13,8 @@ from sixflip_host.diagnosis import (
     posterior,
     scored_sets,
 )
-from sixflip_host.diagnosis.evidence import NONE, Columns, Levels
+from sixflip_host.diagnosis.elimination import NONE, Columns
+from sixflip_host.diagnosis.evidence import Levels
 from sixflip_host.experiment import covariance, linear_model
 from sixflip_host.experiment.nominal_rows import Rows
 from sixflip_host.experiment.terms import Design

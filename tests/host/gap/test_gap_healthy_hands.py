@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture.capture_file import Capture
-from sixflip_host.diagnosis import diagnosis, hypotheses, stray_turns, turn_model
+from sixflip_host.diagnosis import diagnosis, discrepancy, hypotheses, stray_turns, turn_model
 from sixflip_host.diagnosis.detect import (
     line_across_rests,
     sample_neighbours,
@@ -119,10 +119,10 @@ def test_another_form_of_an_effect_may_look_like_one_of_the_same_variable_only()
     def form(effect, axes):
         return hypotheses.Form(effect, axes=axes)
     bias = form("thermal_bias", (0, 1))
-    assert hypotheses.alike(form("thermal_rate", (1,)), bias)
-    assert not hypotheses.alike(form("thermal_rate", (2,)), bias)
-    assert not hypotheses.alike(form("g_sensitivity", (1,)), bias)
-    assert hypotheses.alike(form("dead_band", (1,)), form("asymmetry", (1,)))
+    assert discrepancy.alike(form("thermal_rate", (1,)), bias)
+    assert not discrepancy.alike(form("thermal_rate", (2,)), bias)
+    assert not discrepancy.alike(form("g_sensitivity", (1,)), bias)
+    assert discrepancy.alike(form("dead_band", (1,)), form("asymmetry", (1,)))
 
 
 def carried(seed, rest=500, move=400):

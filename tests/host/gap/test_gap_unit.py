@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from scipy import linalg
 
-from sixflip_host.diagnosis import adequacy, evidence
+from sixflip_host.diagnosis import adequacy
+from sixflip_host.diagnosis.elimination import NONE
 from sixflip_host.experiment import covariance, linear_model
 from sixflip_host.experiment.flicker import flicker_kernel
 from sixflip_host.experiment.nominal_rows import Rows
@@ -186,7 +187,7 @@ def test_how_a_hand_puts_a_box_down_has_any_distribution():
         unit = linear_model.unit(Rows(
             readings.ravel(), covariance.in_time(t, np.full(2 * number, 2.5), np.ones(3), parts),
             np.tile(np.eye(3), (2 * number, 1)), ((0.5, 2.0), (0.01,))), [silent])
-        left = adequacy.innovations(unit, (2.0, 0.01), evidence.NONE, 0.0, loose)
+        left = adequacy.innovations(unit, (2.0, 0.01), NONE, 0.0, loose)
         assert np.isfinite(left).sum() == (4 if loose else 6) * number
         return adequacy.oddity(left)[0]
     assert odd(y, True) == "" and odd(y, False) == "heavy tails"

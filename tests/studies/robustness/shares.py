@@ -15,6 +15,7 @@ import numpy as np
 
 from sixflip_host.diagnosis import (
     coefficient_fits,
+    discrepancy,
     excess,
     holdout_gain,
     hypotheses,
@@ -78,7 +79,7 @@ def case(seed):
     form = max((f for f in forms if f.effect == name and f.axis is None and not f.record),
                key=lambda f: scores.scored((f,)).score)
     set_ = scores.scored((form,))
-    wider = hypotheses.with_discrepancy(scores, forms, set_, form)
+    wider = discrepancy.with_discrepancy(scores, forms, set_, form)
     if wider is not None and scores.scored((wider,)).score > set_.score + posterior.FORM_COST:
         set_ = scores.scored((wider,))
     chosen = list(set_.forms)
