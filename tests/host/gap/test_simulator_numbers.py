@@ -4,7 +4,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from sixflip_host.diagnosis.simulator import evidence_of_logs, parameters, simulator_answer
+from sixflip_host.diagnosis.simulator import (
+    alignment,
+    evidence_of_logs,
+    parameters,
+    simulator_answer,
+)
 from sixflip_host.export import put_back
 
 
@@ -52,6 +57,28 @@ def test_what_has_no_field_to_set_has_words_to_copy():
     assert said == {"delay": "output the gyro 40 ms later", "clock": "",
                     "smoothness": "put a low-pass of first order at 20 Hz (time constant 7.96 ms) "
                                   "behind it"}
+
+
+@pytest.mark.parametrize("drift, differs", [(8e-5, False), (-8e-5, False), (3e-4, True)])
+def test_two_quartzes_that_differ_as_quartzes_do_are_no_gap(drift, differs):
+    clock, = parameters.timing(None, None, {}, SimpleNamespace(
+        same=True, drift=drift, drift_sigma=1e-6))
+    assert clock.name == "clock" and clock.differs == differs
+
+
+def test_a_clock_is_as_uncertain_as_a_controllers_phase_wanders():
+    rng = np.random.default_rng(3)
+    t = np.arange(6000) * 0.01
+    found, stated = [], []
+    for _ in range(40):
+        slope = 3.0 * np.cos(3.0 * t + rng.uniform(0.0, 6.28))
+        phase = np.repeat(rng.normal(0.0, 0.02, 12), 500)  # s, another one every five seconds
+        columns = np.stack([slope, slope * t], 1)
+        y = slope * phase + rng.normal(0.0, 0.001, len(t))
+        size = np.linalg.lstsq(columns, y, rcond=None)[0]
+        found.append(size[1])
+        stated.append(alignment.errors(columns, y - columns @ size)[1])
+    assert 0.6 < np.median(stated) / np.std(found) < 1.6
 
 
 def test_an_effect_that_is_seen_under_two_names_is_not_no_gap():

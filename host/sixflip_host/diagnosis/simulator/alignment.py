@@ -120,12 +120,23 @@ def refined(a, b, offset, drift):
         gram = columns.T @ columns
         step = np.linalg.lstsq(gram, columns.T @ left, rcond=None)[0]
         offset, drift = offset + step[0], drift + step[1]
-        left = left - columns @ step
-        inflation = independent(left)
-        sigma = np.sqrt(np.diag(np.linalg.pinv(gram)) * left.var() * inflation)
+        sigma = errors(columns, left - columns @ step)
     correlation = float(np.corrcoef(x, y)[0, 1])
     return Alignment(correlation >= ALIKE, correlation, float(offset), float(sigma[0]),
                      float(drift), float(sigma[1]), inside.sum() / GRID_HZ)
+
+
+def errors(columns, left):
+    """(k,) standard errors of the coefficients of columns (n, k), of what is left (n,) of them:
+    the larger of those that the noise alone gives, neighbours of which are alike, and those that
+    are there where what is left follows the columns for a while, now to one side and now to the
+    other, as a controller's phase does [White, Econometrica 48 (1980) 817; Newey & West,
+    Econometrica 55 (1987) 703]."""
+    inverse = np.linalg.pinv(columns.T @ columns)
+    by_noise = np.diag(inverse) * left.var() * independent(left)
+    pulls = (columns * left[:, None]) @ inverse
+    return np.sqrt(np.maximum(by_noise, (pulls ** 2).sum(axis=0) * [
+        independent(pull) for pull in pulls.T]))
 
 
 def independent(x):
