@@ -242,6 +242,19 @@ def test_what_two_logs_of_one_motion_leave_far_above_noise_is_said(tmp_path, cap
     assert answer["verdict"] in ("unexplained", "partly explained")
 
 
+@pytest.mark.parametrize("force_unit, rate_unit, found", [
+    (1.0, 1.0, []), (1.0 / G, 1.0, ["accel_unit"]), (1.0, np.degrees(1.0), ["gyro_unit"])])
+def test_a_unit_that_the_simulators_columns_do_not_have_is_its_fault(
+        real, tmp_path, capsys, force_unit, rate_unit, found):
+    t, force, rate = turning(1)
+    noise = np.random.default_rng(5).normal(size=(len(t), 6)) * ([0.03] * 3 + [0.001] * 3)
+    rows = np.column_stack([t, force_unit * (force + noise[:, :3]),
+                            rate_unit * (rate + noise[:, 3:])])
+    np.savetxt(tmp_path / "sim.csv", rows, "%.9g", ",", comments="", header=(
+        "time,acc_x[m/s^2],acc_y[m/s^2],acc_z[m/s^2],gyro_x[rad/s],gyro_y[rad/s],gyro_z[rad/s]"))
+    assert names(diagnosed(capsys, real, str(tmp_path / "sim.csv"))) == found
+
+
 def test_gravity_of_another_strength_is_no_wrong_time_step(tmp_path, capsys):
     t, force, rate = turning(1, 60.0)
     push = 2.0 * np.abs(rate) ** 2

@@ -1,5 +1,6 @@
 """The units of accelerometer and gyro: as they were said, stand in a name, or are told from
-gravity; refused where the file contradicts by a factor."""
+gravity; refused where the file contradicts by a factor. A simulator's file is taken at its word:
+another unit than it says is a fault of the simulator, which diagnose is there to find."""
 
 
 from ...errors import BadFile
@@ -55,6 +56,8 @@ class ToldUnits:
         options = self.options
         per_unit = 1 / options.accel_lsb if unit == "counts" and options.accel_lsb else \
             units.ACCEL_UNITS[unit]
+        if not (options.gravity or said):
+            return
         if per_unit is None or seen is None or not seen.rests or self.rows < FEW_ROWS:
             return
         if 1 / gravity.DISAGREES <= seen.size * per_unit <= gravity.DISAGREES:
@@ -118,6 +121,8 @@ class ToldUnits:
         if unit == "counts" or not 0.4 < abs(factor) / ratio < 2.5 or abs(ratio - 1) < 0.1:
             return unit
         if self._assumed_gyro is None:
+            if not (self.options.gravity or said_units(self.options.units)[1]):
+                return unit
             raise BadFile("%s: its gyro in %s turns %.3g times as far as gravity does in the "
                           "accelerometer, expected --units ,%s" % (
                               self.path, unit, 1 / abs(factor), other))
