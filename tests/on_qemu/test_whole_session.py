@@ -22,9 +22,9 @@ from .firmware import ALL_CHIPS, POSE_SAMPLES, tape_bursts
 from .simulated_sums import vector_error_mg
 
 HEAP = 140032  # what the port leaves of its 140 KB
-# The limit for a whole session, what the test itself holds not counted. A session has 74 KB in use;
-# the collector takes any word on the stack for a pointer, and one left over may hold on to what
-# sampling had: at 100 KB the longest line had room or not as names elsewhere came and went.
+# The limit for a whole session, what the test itself holds not counted. A session has 74 KB in
+# use; the collector takes any word on the stack for a pointer, and one left over may hold on to
+# what sampling had: at 100 KB the longest line had room or not as names elsewhere came and went.
 SMALL_HEAP = 104 * 1024
 SMALL = {"heap": SMALL_HEAP, "pose_samples": POSE_SAMPLES}
 
