@@ -113,6 +113,14 @@ class Session(ReadOnlyArrays):
         return self._of_runs([run for run in self.runs if run.code not in codes])
 
     @cached_property
+    def at_rest(self):
+        """(samples,) which samples are in one of the rests."""
+        found = np.zeros(len(self.capture), bool)
+        for run in self.runs:
+            found[run.first:run.end] = True
+        return found
+
+    @cached_property
     def period_s(self):
         """Seconds between two samples, by the clock where it runs."""
         measured = None if self.timeless else clock.of(self.capture)

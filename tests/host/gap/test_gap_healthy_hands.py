@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture.capture_file import Capture
-from sixflip_host.diagnosis import diagnosis, discrepancy, hypotheses, stray_turns, turn_model
+from sixflip_host.diagnosis import (
+    diagnosis,
+    discrepancy,
+    hypotheses,
+    localisation,
+    stray_turns,
+    turn_model,
+)
 from sixflip_host.diagnosis.detect import (
     line_across_rests,
     sample_neighbours,
@@ -47,16 +54,30 @@ def test_turns_that_samples_were_lost_in_end_far_off():
     assert present(nats) and number == pytest.approx(3.0, abs=0.1)
 
 
-@pytest.mark.parametrize("off_deg", [1.6, 7.0])
-def test_a_hand_that_turns_by_half_a_circle_carelessly_is_no_gap_of_the_gyro(off_deg):
+def turned_by(off_deg):
+    """SensorGap of the turns of a hand whose half turns are off by so much."""
     plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 4,
                                "world": {"flip_error_deg": off_deg}})
     session = blocks.of("s", simulated_session.session(plan, 0))
-    nominal = attitude_fit.fit(session)
-    gap = turn_model.TurnModel("gyro", "mpu6050", diagnosis.Settings(jobs=1)).fit(
-        [session], [nominal])
+    return turn_model.TurnModel("gyro", "mpu6050", diagnosis.Settings(jobs=1)).fit(
+        [session], [attitude_fit.fit(session)])
+
+
+@pytest.mark.parametrize("off_deg", [1.6, 10.0])
+def test_a_hand_that_turns_by_half_a_circle_carelessly_is_no_gap_of_the_gyro(off_deg):
+    gap = turned_by(off_deg)
     assert gap.adequacy.ok and not gap.found.best.forms
     assert gap.units[0].grid[gap.adequacy.index[0]][1] >= 0.5 * off_deg
+
+
+def test_what_is_left_of_turns_and_nowhere_more_than_elsewhere_is_said_in_motion(monkeypatch):
+    """With levels of a hand that end below this one's, no test of a domain finds where."""
+    monkeypatch.setattr(turn_model, "FLIPS_DEG", (0.2, 0.4, 0.8, 1.6, 3.2))
+    gap = turned_by(10.0)
+    assert not gap.adequacy.ok
+    place, = localisation.places(gap)
+    assert (place.sensor, place.axis, place.domain) == ("gyro", None, "motion")
+    assert place.p == gap.adequacy.p < 1e-6
 
 
 def test_noise_near_the_edge_of_a_page_is_no_torn_read():

@@ -55,8 +55,9 @@ def test_a_gait_that_knocks_has_no_torn_reads():
     counts = counts + knocks * 250.0 * generator.standard_t(3.0, counts.shape)
 
     def found(values):
-        session = SimpleNamespace(runs=(), capture=SimpleNamespace(
-            gyro=np.rint(values).astype(np.int16), meta={}))
+        session = SimpleNamespace(
+            at_rest=np.zeros(len(values), bool),
+            capture=SimpleNamespace(gyro=np.rint(values).astype(np.int16), meta={}))
         return torn_reads.finding([session], "gyro")
     assert found(counts) == []
     whole = np.rint(counts - knocks * (counts - smooth)).astype(np.int64)

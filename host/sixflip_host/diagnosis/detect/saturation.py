@@ -31,8 +31,7 @@ def saturation(sessions, sensor, columns):
                 said = "%d samples of the %s axis sit on the rail" % (on_rail.sum(), "xyz"[i])
                 size = int(np.abs(x).max())
             else:
-                moving = in_motion(session)
-                nats, level = max(((cut_off_nats(y, moving), (y, y == y.max()))
+                nats, level = max(((cut_off_nats(y, ~session.at_rest), (y, y == y.max()))
                                    for y in (x, -x)), key=lambda pair: pair[0])
                 size = int(np.abs(level[0].max()))
                 said = _below(session, sensor, "xyz"[i], level[0].max())
@@ -66,7 +65,7 @@ def railed(session, sensor="accel"):
     """(n,) True where a sample sits on a rail or on a level that peaks are cut off at."""
     counts = getattr(session.capture, sensor)
     rail = _range_rail(session, sensor)
-    found, moving = np.zeros(len(counts), bool), in_motion(session)
+    found, moving = np.zeros(len(counts), bool), ~session.at_rest
     for column in counts.T.astype(np.int64):
         found |= np.abs(column) >= rail
         for sign in (1, -1):
@@ -83,14 +82,6 @@ def _range_rail(session, sensor):
     if top not in meta:
         return RAIL - 3
     return min(RAIL - 3, int(meta[top] * meta[lsb]) - RAIL_CODES)
-
-
-def in_motion(session):
-    """(n,) True where a sample is in no rest."""
-    moving = np.ones(len(session.capture), bool)
-    for _, first, end in session.runs:
-        moving[first:end] = False
-    return moving
 
 
 def cut_off_nats(x, moving=True):

@@ -64,19 +64,11 @@ def finding(sessions, sensor, banded=()):
 def _samples(sessions, sensor, banded, width):
     """Samples of all sessions and axes against pages so many counts wide."""
     return together([
-        tabled(counts[:, axis].astype(np.int64), axis in banded, _at_rest(s, len(counts)),
+        tabled(counts[:, axis].astype(np.int64), axis in banded, s.at_rest,
                _again(counts), width)
         for s in registers.of_counts(sessions, sensor)
         for counts in [getattr(s.capture, sensor)] if len(counts) >= FEWEST
         for axis in range(3)])
-
-
-def _at_rest(session, number):
-    """(number,) whether a sample is in a rest of the session."""
-    rests = np.zeros(number, bool)
-    for run in session.runs:
-        rests[run.first:run.end] = True
-    return rests
 
 
 def _again(counts):
