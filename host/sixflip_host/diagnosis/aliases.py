@@ -25,7 +25,8 @@ class Cause:
     part of its work), score (nats); place: {name: probability} of what
     stands here, "" nothing; members ({effect: why it cannot be told}), alike: those of them that
     cannot be told from the effect in principle; theta (k,), covariance (k, k) over the form's
-    columns; other_axes: those that cannot be told from the axes chosen. Of its size, see
+    columns; other_axes: those that cannot be told from the axes chosen; variants: ((probability,
+    Cause), ...) of it in each variant of its effect that is as likely. Of its size, see
     effect_estimates.sized: value and interval {key: ...} of the effect in its variant, letters of
     the axes, plausible, share of the excess, domain, unit."""
 
@@ -38,6 +39,7 @@ class Cause:
     theta: np.ndarray | None = None
     covariance: np.ndarray | None = None
     other_axes: tuple = ()
+    variants: tuple = ()
     value: dict = field(default_factory=dict)
     interval: dict = field(default_factory=dict)
     letters: tuple = ()

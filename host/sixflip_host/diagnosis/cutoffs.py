@@ -92,8 +92,7 @@ def _usual(unit, point, levels):
     """The point of a unit's grid nearest to one that the data shows, with no more flicker and
     placement, or change from one switch-on to the next, than is usual: a null is what the chip
     and the hand do anyhow."""
-    top = (levels.switch_on, 0.0) if unit.between else (
-        TIMES_USUAL * levels.placement, TIMES_USUAL * levels.flicker)
+    top = [level if unit.between else TIMES_USUAL * level for level in levels.usual(unit)]
     low = [k for k, pair in enumerate(unit.grid) if pair[0] <= top[0] and pair[1] <= top[1]]
     wanted = [min(a, b) for a, b in zip(unit.grid[point], top)]
     return min(low or [point], key=lambda k: sum(

@@ -3,6 +3,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from scipy import optimize, special
 
 from sixflip_sim.effects import typical
 from sixflip_sim.effects.library import EFFECTS
@@ -23,14 +24,39 @@ def sized(cause, data, levels, chip, kind, share=None):
     axis_of = dict(zip(cause.keys, cause.axes))
     shown = [] if cause.effect == "box_tilt" else letters(cause, theta, covariance)
     value = {k: float(v) for k, v in theta.items() if not shown or "xyz"[axis_of[k]] in shown}
-    interval = {k: (float(v - odds.Z_90 * sigma[k]), float(v + odds.Z_90 * sigma[k]))
-                for k, v in value.items()}
+    interval = _intervals(cause, gram, value, sigma)
     if shown:
         shown = sorted({*shown, *("xyz"[a] for a in cause.other_axes)})
     return replace(cause, value=value, interval=interval, letters=shown, share=share,
                    variant=_own(cause, gram)[0].variant,
                    plausible=believable(cause.effect, chip, kind, value, sigma),
                    domain=terms.DOMAIN[cause.effect], unit=EFFECTS[cause.effect].units[kind])
+
+
+def _intervals(cause, gram, value, sigma):
+    """{key: (low, high)}, 90 % of what a size may be in all variants of its effect that are as
+    likely, each with its own uncertainty: which lag or time constant it is nothing tells."""
+    mixed = [(p, *effective(one, gram)) for p, one in cause.variants[1:]]
+    own = 1.0 - sum(p for p, _, _ in mixed)
+    found = {}
+    for key, size in value.items():
+        parts = [(own, size, sigma[key])]
+        for p, theta, covariance in mixed:
+            place = list(theta).index(key)
+            parts.append((p, theta[key], math.sqrt(covariance[place, place])))
+        low, high = _ends(*np.array(parts).T)
+        found[key] = (min(low, size), max(high, size))
+    return found
+
+
+def _ends(weights, means, spreads):
+    """(low, high) between which 90 % of a mixture of normal distributions lies."""
+    spreads = np.maximum(spreads, 1e-12)
+
+    def above(size, part):
+        return float(weights @ special.ndtr((size - means) / spreads)) - part
+    reach = (means - 10.0 * spreads).min(), (means + 10.0 * spreads).max()
+    return tuple(optimize.brentq(above, *reach, args=(part,)) for part in odds.ENDS_90)
 
 
 def letters(cause, theta, covariance):

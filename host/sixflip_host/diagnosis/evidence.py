@@ -38,6 +38,11 @@ class Levels:
     switch_on: float
     known: bool = False
 
+    def usual(self, unit):
+        """(placement, flicker) that a unit has at most; of what is between the sessions (change
+        from one switch-on to the next, 0)."""
+        return (self.switch_on, 0.0) if unit.between else (self.placement, self.flicker)
+
     def prior(self, unit, free):
         """(G,) log prior of each point of a unit's grid; free: names of levels that may be
         anything. Less than usual is as good as usual."""

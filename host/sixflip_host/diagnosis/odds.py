@@ -15,6 +15,7 @@ CHANCE = 0.005  # two sensors, turns, moves, box, registers and spectra share 5 
 COST = -math.log(CHANCE)  # nats of a hypothesis over samples, whose chance is in its likelihood
 INSIDE = 2.0  # causes of the library for one that is not, in recordings made elsewhere
 BESIDE = 2.0  # readings with one cause for one with two: less can be told by which are seen
+ENDS_90 = 0.05, 0.95  # quantiles between which 90 % lies
 Z_90 = NormalDist().inv_cdf(0.95)  # standard deviations to either end of a 90 % interval
 SMALLEST = 1e-300  # of a probability: what a float holds
 

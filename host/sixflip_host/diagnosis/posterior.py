@@ -16,7 +16,6 @@ from .scored_sets import Scored
 
 MOST, BEAM = 4, 3  # members of a set (GAP stage 3); sets that the search goes on with
 FORM_COST = 1.0  # nats
-AS_WELL = 3.0  # nats, GAP stage 4
 NOISE_FORM = 0.2  # of a name's gain, that its true form may leave to noise that wanders
 # Of what a set must gain to be gone on with, what a discrepancy adds at most: it is half of what
 # the form itself is, so that where that gains nothing there is nothing for it to be a part of.
@@ -227,30 +226,3 @@ def _wider(model, forms, scored, cost, form):
         if _worth(found, cost) > _worth(scored, cost) + FORM_COST:
             scored = found
     return scored
-
-
-def rival_axes(model, forms, found, form):
-    """Axes (0..2) on which the same effect would do as well as on the one it was found on: where
-    a pose's attitude is free, x: f_y f_z and y: f_x f_z add the same along gravity."""
-    if form.axis is None:
-        return []
-    others = model.scored(tuple(f for f in found.best.forms if f is not form))
-    return [one.axis for one in forms if one.effect == form.effect
-            and (one.variant, one.record) == (form.variant, form.record)
-            and one.axis not in (None, form.axis)
-            and model.extended(others, one).score > found.best.score - AS_WELL]
-
-
-def axes_of(model, found, form):
-    """[(axis 0..2, nats)] of a member of the best set: the axes that it does its work on, each
-    by what it gains there alone; [] of a level of noise."""
-    others = model.scored(tuple(f for f in found.best.forms if f is not form))
-    gains = {}
-    for axis in range(3):
-        part = hypotheses.on_axis(form, axis) if form.axes else None
-        if part is not None:
-            gains[axis] = model.extended(others, part).score - others.score
-    most = max(gains.values(), default=0.0)
-    share = found.cost.beside if form.generic else found.cost.form
-    return [(axis, gain) for axis, gain in gains.items()
-            if gain == most or gain > found.cost.of(form) + share * most]

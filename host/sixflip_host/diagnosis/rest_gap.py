@@ -19,6 +19,7 @@ from . import (
     effect_estimates,
     excess,
     hypotheses,
+    members,
     odds,
     posterior,
     rest_forms,
@@ -132,8 +133,8 @@ def _sensor(rest, kind, chip, settings, jumps):
     units = rest_units.of(rest, kind, chip, settings)
     data = coefficient_fits.data_of(units)
     flicker, reference = adequacy.usual(chip, kind), settings.reference.get(kind)
-    levels = rest_units.RestLevels(rest_units.OFFSET[kind], flicker if reference is None
-                        else max(reference, flicker / 4.0), reference is not None)
+    levels = rest_units.levels(rest, kind, flicker if reference is None else max(
+        reference, flicker / 4.0), reference is not None)
     several = int(rest.rest.max()) > 0
     forms = [f for f in hypotheses.of(units, settings.without)
              if several or f.effect != SETTLED]
@@ -141,9 +142,11 @@ def _sensor(rest, kind, chip, settings, jumps):
     found = posterior.search(model, forms, cutoffs.of(units, forms, levels))
     fits = adequacy.of(units, data.statistics, found.best, levels)
     chosen = [f for f in found.best.forms if not f.generic and len(f.shared)]
-    strange = [(f, ["xyz"[axis] for axis, _ in posterior.axes_of(model, found, f)])
-               for f in found.best.forms if f.generic and not _settled(f, units, fits, kind)]
-    causes = aliases.causes(found, units, forms)
+    strange = [(f, ["xyz"[axis] for axis, _ in members.axes_of(model, found, f)])
+               for f in found.best.forms
+               if f.generic and not _settled(f, units, fits, levels, kind)]
+    causes = [members.in_full(model, forms, found, cause)
+              for cause in aliases.causes(found, units, forms)]
     told = [_told(c, data, fits, chip, kind, chosen, found) for c in causes]
     beaten = [c for c, one in zip(causes, told) if _beaten(one, strange, found)]
     chosen = [f for f in chosen if not any(f in c.chosen for c in beaten)]
@@ -164,16 +167,17 @@ def _sensor(rest, kind, chip, settings, jumps):
     return RestGap(kind, rest, tuple(told), tuple(places),
                    (*(1.0 - found.places[f.effect].get("", 0.0) for f, _ in strange),
                     *([] if fits.ok else [1.0 - fits.p]), *(1.0 - p for p in leaps.values())),
-                   tuple(rest_units.held_out(rest, unit, chosen, point, levels)
+                   tuple(rest_units.held_out(rest, kind, unit, chosen, point, levels)
                          for unit, point in zip(units, fits.index)),
                    frozenset(f.effect for f in forms))
 
 
-def _settled(form, units, fits, kind):
+def _settled(form, units, fits, levels, kind):
     """Whether a member of the set is no more than what switching on again, or putting down
     again, does to a reading."""
-    return form.effect == SETTLED and max(u.grid[k][0] for u, k in zip(
-        units, fits.index)) <= session_offsets.UNUSUAL[kind]
+    return form.effect == SETTLED and all(
+        u.grid[k][0] <= max(session_offsets.UNUSUAL[kind], levels.usual(u)[0])
+        for u, k in zip(units, fits.index))
 
 
 def _told(cause, data, fits, chip, kind, chosen, found):

@@ -16,6 +16,7 @@ from . import (
     excess,
     holdout_gain,
     hypotheses,
+    members,
     posterior,
     scored_sets,
     session_offsets,
@@ -59,8 +60,8 @@ class RestModel:
                 parts, searched = turned, again
         units, data, options, noise, forms, cost, model, found = searched
         best = found.best
-        causes = [replace(c, other_axes=posterior.rival_axes(model, forms, found, c.chosen[0]))
-                  for c in aliases.causes(found, units, forms)]
+        causes = [members.in_full(model, forms, found, cause)
+                  for cause in aliases.causes(found, units, forms)]
         fitted = adequacy.of(units, data.statistics, best, noise,
                              self.conditions.shaken.get(self.kind, ()), self.kind == "accel")
         if "drift" in best.names and fitted.ok:
@@ -75,7 +76,7 @@ class RestModel:
         gap = SensorGap(
             self, parts, units, data, options, forms, noise, cost, found,
             chosen, nameless, causes, fitted,
-            {f.effect: posterior.axes_of(model, found, f) for f in nameless},
+            {f.effect: members.axes_of(model, found, f) for f in nameless},
             wandering.drift(self.kind, [session for session, _ in parts], units, data, noise,
                             found, fitted, chosen),
             not fitted.ok or bool(nameless) or doubted, crooked)
@@ -245,7 +246,7 @@ def _owned(model, gap):
                    chosen=[form for form in gap.chosen if form not in forms],
                    strangers=[*gap.strangers, *forms], unexplained=True,
                    strange_axes={**gap.strange_axes, **{
-                       f.effect: posterior.axes_of(model, gap.found, f) for f in forms}})
+                       f.effect: members.axes_of(model, gap.found, f) for f in forms}})
 
 
 def _sized(gap, causes, data):

@@ -8,17 +8,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..experiment import covariance, linear_model, nominal_rows
+from ..experiment import covariance, linear_model, long_rest, nominal_rows
 from ..experiment.flicker import flicker_kernel
 from . import adequacy, evidence, holdout_gain, rest_forms
 
-# From one rest to the next where nothing was moved, beyond flicker: the Allan floor of the parts
-# (typical.FLOOR); a gyro's is the Earth's rate, should the box have been put down again.
-OFFSET = {"accel": 0.1, "gyro": 0.003}
-# Levels tried: of the offset from the usual one up, about half a decade apart; of flicker from a
-# quiet part's (typical.FLICKER) up, where parts are so close that what is left beside the nearest
+# Levels tried: of the offset from one rest to the next from what it is where nothing was moved
+# up, about half a decade apart: beyond flicker that is the Allan floor of the parts
+# (typical.FLOOR), of a gyro the Earth's rate, should the box have been put down again; of flicker
+# from a quiet
+# part (typical.FLICKER) up, where parts are so close that what is left beside the nearest
 # is not doubtful for that (adequacy.DOUBTFUL_RATIO, of squares).
-OFFSETS = {"accel": (0.1, 0.3, 1.0, 3.0, 12.0), "gyro": (0.003, 0.01, 0.05, 0.3, 1.0)}
+OFFSETS = {"accel": (0.1, 0.3, 1.0, 3.0, 12.0, 50.0), "gyro": (0.003, 0.01, 0.05, 0.3, 1.0)}
 FLICKERS = {"accel": (0.005, *np.geomspace(0.02, 0.8, 15).tolist(), 1.6, 4.0, 12.0, 40.0),
             "gyro": (0.0002, *np.geomspace(0.0005, 0.03, 17).tolist(), 0.1, 0.3, 1.0)}
 PIECES, FOLDS = 12, 4  # three pieces, far apart, are foretold by the nine beside them
@@ -26,11 +26,16 @@ PIECES, FOLDS = 12, 4  # three pieces, far apart, are foretold by the nine besid
 
 @dataclass(frozen=True)
 class RestLevels:
-    """What is usual: placement (from one rest to the next) and flicker, mg or deg/s."""
+    """What is usual: offsets (from one rest to the next, of each axis) and flicker, mg or
+    deg/s."""
 
-    placement: float
+    offsets: tuple
     flicker: float
     known: bool
+
+    def usual(self, unit):
+        """(offset from one rest to the next, flicker) that a unit has at most."""
+        return self.offsets[unit.axis], self.flicker
 
     def prior(self, unit, free):
         """(G,) log prior of each point of a unit's grid; free: levels that may be anything. Less
@@ -38,12 +43,22 @@ class RestLevels:
         grid = np.array(unit.grid)
         factor = np.log(evidence.KNOWN_FACTOR if self.known else evidence.USUAL_FACTOR["flicker"])
         total = np.zeros(len(grid))
-        for column, level, name in ((0, self.placement, "switch_on"), (1, self.flicker,
-                                                                       "flicker")):
+        for column, (name, level) in enumerate(zip(("switch_on", "flicker"), self.usual(unit))):
             if name not in free:
                 above = np.maximum(np.log(grid[:, column] / level), 0.0)
                 total -= 0.5 * (above / factor) ** 2
         return total
+
+
+def levels(rest, kind, flicker, known):
+    """RestLevels with this flicker, measured or not. A robot that stops again, or a box that is
+    put down again, leans another way within what counts as one attitude: across gravity that is
+    an accelerometer's attitude, and says nothing of the sensor."""
+    leaning = 1000.0 * np.sin(np.radians(long_rest.SAME_DEG)) if kind == "accel" else 0.0
+    across = leaning * np.sqrt(np.maximum(1.0 - rest.up ** 2, 0.0))
+    offsets = [min(tried for tried in OFFSETS[kind] if tried >= min(one, OFFSETS[kind][-1]))
+               for one in across]
+    return RestLevels(tuple(offsets), flicker, known)
 
 
 def of(rest, kind, chip, settings):
@@ -65,28 +80,35 @@ def of(rest, kind, chip, settings):
                                  (OFFSETS[kind], FLICKERS[kind]), (0,))
         signature = ("rest", axis, tuple(rest.rest.tolist()),
                      tuple((rest.t - rest.t[0]).round().astype(int).tolist()), warming)
-        unit = linear_model.unit(rows, own, signature=signature, apart=True)
+        unit = linear_model.unit(rows, own, signature=signature, axis=axis)
         found.append(replace(unit, energy=unit.energy / 3.0))  # the rows are those of one axis
     return found
 
 
-def held_out(rest, unit, chosen, index, levels):
-    """holdout_gain.Sums of one axis over the folds: pieces of the rest, every FOLDS-th of them
+def held_out(rest, kind, unit, chosen, index, levels):
+    """holdout_gain.Sums of one axis over the folds: pieces of the rests, every FOLDS-th of them
     foretold by the others, all means with one weight. The floor is that of noise that wanders no
-    more than a chip may; what wanders more is a gap that nothing foretells."""
+    more than a chip may, in rests that lie as they may; what wanders more is a gap that nothing
+    foretells."""
     y, group, (placement, flicker) = unit.rows.y, unit.rows.groups[0], unit.grid[index]
+    offset, wanders = levels.usual(unit)
     noise = covariance.dense([group], placement, flicker)
-    quiet = covariance.dense([group], 0.0, min(flicker, adequacy.TIMES_TYPICAL * levels.flicker))
+    quiet = covariance.dense([group], placement if placement <= offset else 0.0,
+                             min(flicker, adequacy.TIMES_TYPICAL * wanders))
     columns = np.concatenate([f.columns for f in chosen] + [np.zeros(0, dtype=int)]).astype(int)
     prior = np.concatenate([f.prior for f in chosen] + [np.zeros(0)])
     x = unit.raw(columns)
-    pieces = np.minimum(np.arange(rest.n) * PIECES // rest.n, PIECES - 1)
-    total = holdout_gain.NOTHING
+    # A bias is a session's own, and how a box lies each rest's.
+    own = rest.rest if offset > OFFSETS[kind][0] else rest.session
+    pieces, total = _pieces(rest.rest), holdout_gain.NOTHING
     for fold in range(FOLDS):
         held = pieces % FOLDS == fold
-        plain = _foretelling(x[:, :0], prior[:0], noise, held)
+        train = ~held
+        constants = (own[:, None] == np.unique(own[train])).astype(float)
+        held = held & constants.any(axis=1)
+        plain = _foretelling(constants, x[:, :0], prior[:0], noise, train, held)
         z = plain @ y
-        d = z - _foretelling(x, prior, noise, held) @ y
+        d = z - _foretelling(constants, x, prior, noise, train, held) @ y
         scatter = plain @ noise @ plain.T
         total = total + holdout_gain.Sums(
             float(z @ z), float((z - d) @ (z - d)), float(np.trace(plain @ quiet @ plain.T)),
@@ -96,13 +118,24 @@ def held_out(rest, unit, chosen, index, levels):
     return total
 
 
-def _foretelling(x, prior, noise, held):
-    """(held, n): what it takes to make of all means those held out less what the others foretell
-    of them: a constant and the columns x."""
-    train = ~held
-    design = np.hstack([np.ones((len(x), 1)), x])
+def _pieces(rest):
+    """(n,) number of the piece that each mean is in: PIECES in all, FOLDS of each rest at least
+    where it has so many means."""
+    found = []
+    for number in np.unique(rest):
+        n = int((rest == number).sum())
+        parts = max(FOLDS, int(round(PIECES * n / len(rest))))
+        found.append(np.arange(n) * parts // n)
+    return np.concatenate(found)
+
+
+def _foretelling(constants, x, prior, noise, train, held):
+    """(held, n): what it takes to make of all means those held out less what those of `train`
+    foretell of them: constants and the columns x."""
+    design = np.hstack([constants, x])
     solved = np.linalg.solve(noise[np.ix_(train, train)], design[train])
-    gram = design[train].T @ solved + np.diag(np.concatenate([[0.0], prior ** -2.0]))
+    gram = design[train].T @ solved + np.diag(np.concatenate([
+        np.zeros(constants.shape[1]), prior ** -2.0]))
     out = np.eye(len(x))[held]
     out[:, train] -= design[held] @ np.linalg.solve(gram, solved.T)
     return out

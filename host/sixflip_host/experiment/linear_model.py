@@ -43,7 +43,7 @@ class Unit:
     signature: what the protocol is known by, see cutoffs.py. within: {(effect, number of its
     choice): nats that the blocks of the rests say for it}. between: it lies between the
     sessions, see session_offsets.py. turns: the turns that it was made of, where all columns
-    are asked for. apart: the units are axes, which have no coefficient in common.
+    are asked for. axis: 0..2 where the units are axes, which have no coefficient in common.
     """
 
     rows: Rows
@@ -65,8 +65,13 @@ class Unit:
     within: dict = field(default_factory=dict)
     between: bool = False
     turns: tuple = ()
-    apart: bool = False
+    axis: int | None = None
     _factors: dict = field(default_factory=dict, init=False, repr=False)
+
+    @property
+    def apart(self):
+        """Whether it has no coefficient in common with the others."""
+        return self.axis is not None
 
     @property
     def coarse(self):
