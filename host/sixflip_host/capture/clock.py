@@ -21,7 +21,7 @@ import numpy as np
 from . import capture_binary, stamp_envelope
 from .board_extras import EXTRAS
 
-PAUSE_S, PAUSE_ROWS = 1.0, 20   # a gap that is longer than both is a pause whatever its phase
+PAUSE_S, PAUSE_ROWS = 1.0, 10   # a gap that is longer than both is a pause whatever its phase
 IN_PHASE = 0.5          # mean cosine of the phases of gaps that are losses, 0 by chance
 FEWEST_PHASES = 4
 BLOCKS = 10             # parts whose rates give the interval of the whole

@@ -17,7 +17,7 @@ from .. import atomic_write, progress
 from . import evidence, mimicry
 from .elimination import NONE
 from .mimicry import Mimicry
-from .odds import CHANCE
+from .odds import CHANCE, RARER
 
 RUNS = 160  # of which the upper tenth, 16, tell the scale of the tail to a quarter
 FIRST = 16  # of them, which tell the levels of noise that all are likely at
@@ -44,11 +44,12 @@ class Cutoffs:
     mimicry: Mimicry = Mimicry()
 
     def of(self, form):
-        """Nats that this member of a set must gain. What takes a stranger's columns in, as a
-        discrepancy beside its own, gains by chance what that does."""
-        return max((nats for one, nats in self.own.items() if one == form or
-                    form.discrepancy and np.isin(one.columns, form.columns).any()),
-                   default=self.member)
+        """Nats that this member of a set must gain; what is not in the library is rarer by that
+        much. What takes a stranger's columns in, as a discrepancy beside its own, gains by chance
+        what that does."""
+        return (RARER if form.generic else 0.0) + max(
+            (nats for one, nats in self.own.items() if one == form or
+             form.discrepancy and np.isin(one.columns, form.columns).any()), default=self.member)
 
 
 def folder():

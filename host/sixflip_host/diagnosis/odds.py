@@ -14,6 +14,7 @@ PRESENT = math.log(HOLDS / (1.0 - HOLDS))  # nats beyond its cost: more likely t
 CHANCE = 0.005  # two sensors, turns, moves, box, registers and spectra share 5 %, with room
 COST = -math.log(CHANCE)  # nats of a hypothesis over samples, whose chance is in its likelihood
 INSIDE = 2.0  # causes of the library for one that is not, in recordings made elsewhere
+RARER = math.log(INSIDE)  # nats
 BESIDE = 2.0  # readings with one cause for one with two: less can be told by which are seen
 ENDS_90 = 0.05, 0.95  # quantiles between which 90 % lies
 Z_90 = NormalDist().inv_cdf(0.95)  # standard deviations to either end of a 90 % interval

@@ -91,9 +91,30 @@ def of(sessions, without=(), damages=()):
     nameless += [localisation.Place(sensor, axis, "amplitude", 1.0, odds.chance(codes.bit_nats(
         [getattr(s.capture, sensor)[:, "xyz".index(axis)] for s in sessions])))
         for sensor, axis, _, _ in bits]
+    uneven = _uneven(sessions, leaping | {
+        f.sensor for f in findings if f.effect == "quantisation"})
+    nameless += [localisation.Place(sensor, axis, "amplitude", 1.0, odds.chance(nats))
+                 for sensor, axis, nats in uneven]
+    remarks += ["the %s axis of the %s reads some codes hardly ever and others too often"
+                % (axis, SENSOR[sensor]) for sensor, axis, _ in uneven]
     sessions = tuple(_without_lines(s, findings) for s in without_spikes)
     return SamplesJudged(sessions, tuple(findings), tuple(damages), tuple(nameless),
                          (*remarks, *(words for _, words, _ in unsteady)))
+
+
+def _uneven(sessions, coarse):
+    """[(sensor, axis letter, nats)] whose codes at rest are not as frequent as those around them;
+    coarse: sensors whose codes are known to be missing."""
+    found = []
+    for sensor in (one for one in SENSOR if one not in coarse):
+        rests = [getattr(s.capture, sensor)[run.first:run.end]
+                 for s in registers.of_counts(sessions, sensor)
+                 if getattr(s.capture, sensor) is not None for run in s.runs]
+        for axis in range(3) if rests else ():
+            nats = codes.uneven_nats([counts[:, axis] for counts in rests])
+            if present(nats):
+                found.append((sensor, "xyz"[axis], nats))
+    return found
 
 
 def _without_bands(session, findings):
@@ -159,6 +180,12 @@ def _dead_band(sensor, columns):
     """[Finding] of readings near 0 that are 0, by the codes that are missing or too frequent; on
     other axes by how the readings pass through 0."""
     words = "counts near 0 read 0"
+    about = [[codes.resting(column) for column in c.T] for c in columns]
+    if np.any(about):  # a bias was taken off before, and put back on
+        words = "counts near %s read the same" % ", ".join(
+            str(code) for code in dict.fromkeys(np.ravel(about).tolist()))
+    columns = [np.clip(c.astype(np.int32) - np.array(code), -RAIL - 1, RAIL)
+               for c, code in zip(columns, about)]
     found = _per_axis("dead_band", sensor, [registers.dead_band(c) for c in columns],
                       [codes.band_nats(c) for c in columns], words,
                       [codes.zeros(c) for c in columns])

@@ -20,6 +20,10 @@ from .session import Session
 # Of a labelled rest: without its edges it has two short means, whose difference tells its noise
 # (block_measures.white); in a log of few rows a second, samples enough for a mean of its own.
 SHORTEST_S, FEWEST_SAMPLES = 0.8, 8
+# Of the usual noise of a column: what the four samples around one span at most that agree (of
+# normal noise 2.1 on average, more than 8 in less than one of a million), and how far one is off
+# that no noise is.
+AGREE, SPIKE = 8.0, 12.0
 LATE_S = 0.1  # the longest delay of the library's filter_lag
 
 
@@ -74,10 +78,30 @@ def _labelled(capture):
     if capture.accel is None:
         return rests_by_variance.label_still_gyro(found)
     try:
-        find_poses(capture).label(found)
+        find_poses(_without_spikes(capture)).label(found)
     except (ValueError, IndexError, ZeroDivisionError):
         found.pose = np.zeros(len(capture), np.int16)
     return found
+
+
+def _without_spikes(capture):
+    """The capture with the median of the four samples around each that is alone far off while
+    those agree: a bit that is read wrongly moves no box, and cuts no rest in two."""
+    calm = copy.copy(capture)
+    for sensor in ("accel", "gyro"):
+        counts = getattr(capture, sensor)
+        if counts is None or len(counts) < 5:
+            continue
+        around = np.stack([counts[:-4], counts[1:-3], counts[3:-1], counts[4:]]).astype(float)
+        middle = np.median(around, axis=0)
+        noise = np.maximum(1.4826 / np.sqrt(2.0) * np.median(np.abs(np.diff(
+            counts.astype(float), axis=0)), axis=0), 1.0)
+        alone = (np.ptp(around, axis=0) < AGREE * noise) & (
+            np.abs(counts[2:-2] - middle) > SPIKE * noise)
+        whole = np.array(counts)
+        whole[2:-2] = np.where(alone, np.rint(middle), counts[2:-2]).astype(counts.dtype)
+        setattr(calm, sensor, whole)
+    return calm
 
 
 def distinct(sessions):

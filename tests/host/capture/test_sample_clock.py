@@ -172,3 +172,10 @@ def test_a_recorder_that_hurries_after_a_late_row_loses_nothing():
     found = measured(np.floor(t / 1000) * 1000)
     near(found, 1e6 / 3000)
     assert (found.losses, found.pauses) == (0, 0) and found.bursts >= ROWS // 70
+
+
+def test_a_pause_of_seconds_in_a_slow_log_is_no_loss():
+    t = np.arange(3000) * 100000
+    t[1500:] += 1700000
+    found = clock.measure(t)
+    assert (found.losses, found.pauses) == (0, 1)

@@ -5,7 +5,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from sixflip_host.capture.capture_file import Capture
 from sixflip_host.diagnosis import (
     diagnosis,
     discrepancy,
@@ -25,6 +24,7 @@ from sixflip_host.experiment import attitude_fit, block_measures, blocks, nomina
 from sixflip_host.experiment.attitude_fit import face_axes
 from sixflip_host.experiment.projection import lateral_basis
 from sixflip_host.simulation import scenario, simulated_session
+from tests.worlds.still_session import at_rest, flicker
 
 KNOWN_DEG = 0.03
 
@@ -108,24 +108,6 @@ def test_an_axis_that_never_changes_says_nothing_of_how_the_others_wander():
     shares = nominal_rows.axis_shares(session, values, np.full(3, 0.01))
     assert shares[:2] == pytest.approx(1.0, abs=0.5) and shares[:2].mean() == pytest.approx(
         1.0, abs=0.05) and shares[2] < 1e-3
-
-
-def flicker(seed, n=20000):
-    """(n, 3) counts whose spectrum falls with the frequency."""
-    generator, hz = np.random.default_rng(seed), np.fft.rfftfreq(n, 0.01)
-    hz[0] = np.inf
-    slow = np.fft.irfft(hz[:, None] ** -0.5 * np.fft.rfft(generator.standard_normal((n, 3)),
-                                                          axis=0), n, axis=0)
-    return 10.0 * slow / slow.std(axis=0) + 2.0 * generator.standard_normal((n, 3))
-
-
-def at_rest(gyro):
-    n = len(gyro)
-    accel = [0.0, 0.0, 16384.0] + 46.0 * np.random.default_rng(1).standard_normal((n, 3))
-    meta = {"sensor": "mpu6050", "accel_lsb_per_g": 16384.0, "gyro_lsb_per_dps": 65.5,
-            "rate_hz": 100.0}
-    return blocks.of("s", Capture(meta, 10_000 * np.arange(n), np.rint(accel).astype(np.int16),
-                                  np.rint(gyro).astype(np.int16), pose=np.ones(n, np.int16)))
 
 
 def test_what_only_falls_with_frequency_is_drift_and_no_line():

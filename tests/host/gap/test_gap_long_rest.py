@@ -92,3 +92,37 @@ def test_a_line_is_taken_off_before_the_means_are_made():
                       for lines in ((), [("accel", 2, 0.31)]))
     assert plain.values["accel"][:, 2].std() > 1.0
     assert without.values["accel"][:, 2].std() < 0.4
+
+
+def put_down_again(every_s=40.0, degrees=1.0, seed=3):
+    """(n,) mg that x reads of gravity where the box is put down again, another way each time, and
+    which of the samples it is moved in."""
+    rng = np.random.default_rng(seed)
+    place = (T / every_s).astype(int)
+    lean = rng.normal(0.0, degrees, place.max() + 1)
+    moved = (T % every_s > every_s - 1.5)
+    return 1000.0 * np.sin(np.radians(lean[place])), moved
+
+
+def test_a_box_that_lies_another_way_in_each_rest_is_no_gap():
+    """How it leans was 13 mg of the accelerometer "in the session", in any log with stops."""
+    leaning, moved = put_down_again()
+    whole = rest((leaning, 0.0, 0.0))
+    pose = np.where(moved, 0, 1 + (T / 40.0).astype(int) % 2).astype(np.int16)
+    capture = whole.capture
+    capture.pose = pose
+    found = accel(blocks.of("rests", capture))
+    assert not found.causes and not found.nameless and not found.places
+    assert found.by_axis["x"].before == pytest.approx(found.by_axis["x"].floor, rel=0.25)
+    assert found.by_axis["x"].floor < 1.0
+
+
+def test_a_drift_shows_in_rests_that_each_lie_another_way():
+    leaning, moved = put_down_again()
+    whole = rest((leaning + 1.5 * (SWEEP - 25.0), 0.0, 0.0), SWEEP)
+    whole.capture.pose = np.where(moved, 0, 1 + (T / 40.0).astype(int) % 2).astype(np.int16)
+    found = accel(blocks.of("rests", whole.capture))
+    assert [c.effect for c in found.causes] == ["thermal_bias"]
+    low, high = found.causes[0].interval["x"]
+    assert low < 1.5 < high
+    assert found.by_axis["x"].after < 1.4 * found.by_axis["x"].floor

@@ -5,10 +5,20 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture import registers
-from sixflip_host.diagnosis import verdict, wandering
-from sixflip_host.diagnosis.detect import dead_band, held_values, noise_bursts, torn_reads
+from sixflip_host.diagnosis import samples_judged, verdict, wandering
+from sixflip_host.diagnosis.detect import (
+    codes,
+    dead_band,
+    held_values,
+    noise_bursts,
+    sample_neighbours,
+    spectral_lines,
+    torn_reads,
+)
 from sixflip_host.diagnosis.detect.detection import present
 from sixflip_host.diagnosis.holdout_gain import Shrinkage
+from sixflip_host.experiment import blocks
+from tests.worlds.still_session import at_rest, flicker
 
 
 def swinging(number, noise, generator, counts=8000.0):
@@ -103,3 +113,82 @@ def test_a_gap_that_hardly_closes_is_not_explained():
     for interval, said in (((0.1, 0.25), "partly explained"), ((0.7, 1.0), "explained")):
         left = verdict.not_closed(Shrinkage(4.0, 3.7, 1.0, 0.2, interval))
         assert verdict.of(named, [left], True) == said
+
+
+def test_a_spike_cuts_no_rest_in_two():
+    """Where the poses are found, what spikes stood outside of every rest, and nothing was said."""
+    generator = np.random.default_rng(4)
+    still = at_rest(flicker(5, 6000)).capture
+    still.pose = None
+    spiked = generator.choice(np.arange(200, 5800), 60, replace=False)
+    still.gyro = still.gyro.copy()
+    still.gyro[spiked, 1] += np.int16(256)
+    found = blocks.of("s", still)
+    assert len(found.runs) == 1 and found.runs[0].end - found.runs[0].first > 5500
+    assert still.gyro[spiked[0], 1] > 200  # the capture itself is as it was
+    nats, number = torn_reads.paged(sample_neighbours.tabled(still.gyro[:, 1].astype(int), False))
+    assert present(nats) and number == pytest.approx(60, abs=5)
+
+
+def noisy(number, generator, sd=60.0):
+    return np.rint(generator.normal(900.0, sd, number)).astype(np.int64)
+
+
+def test_codes_that_are_left_out_are_told_by_those_around():
+    x = noisy(40000, np.random.default_rng(6))
+    assert codes.uneven_nats([x]) == 0.0
+    within = x % 32
+    left_out = np.where((within >= 9) & (within <= 15), x - within + 16, x)
+    assert codes.uneven_nats([left_out]) > 1000.0
+    changes = np.concatenate([x[:16000], 24 * np.rint(x[16000:] / 24.0).astype(np.int64)])
+    assert codes.uneven_nats([changes]) > 1000.0
+
+
+def test_single_codes_that_are_left_out_are_no_gap():
+    """A recording of a sensor sold calibrated has them: a tenth of its samples are elsewhere."""
+    x = noisy(40000, np.random.default_rng(7))
+    assert codes.uneven_nats([np.where(x % 16 == 3, x + 1, x)]) == 0.0
+
+
+def test_a_band_about_a_bias_is_a_dead_band():
+    """What is gated about the bias reads the bias: 1.5 deg/s of a slow rover's yaw."""
+    generator = np.random.default_rng(8)
+    rate = 400.0 * np.sin(2.0 * np.pi * np.arange(20000) / 900.0) * (
+        np.arange(20000) % 5000 > 2500) + generator.normal(0.0, 4.0, 20000)
+    gated = np.where(np.abs(rate) < 86.0, 55.0, 55.0 + rate)
+    others = generator.normal(20.0, 4.0, (20000, 2))
+    counts = np.rint(np.column_stack([others, gated])).astype(np.int16)
+    found, = samples_judged._dead_band("gyro", [counts])
+    assert found.axes == ["z"] and found.value["z"] == pytest.approx(86, abs=2)
+    plain = np.rint(np.column_stack([others, 55.0 + rate])).astype(np.int16)
+    assert samples_judged._dead_band("gyro", [plain]) == []
+
+
+def shaken(hz, moving):
+    """Session of a log that rests for a while, and is then shaken at hz or moved by a hand."""
+    generator = np.random.default_rng(9)
+    still = at_rest(flicker(5, 9000)).capture
+    t = np.arange(9000) / 100.0
+    wave = 400.0 * np.sin(2.0 * np.pi * hz * t) if hz else 0.0
+    sway = 900.0 * np.sin(np.cumsum(0.3 + 0.5 * generator.standard_normal(9000)))
+    still.accel = still.accel.copy()
+    still.accel[3000:, 2] += np.rint((wave + (sway if moving else 0.0)) * np.ones(9000))[
+        3000:].astype(np.int16)
+    still.pose = np.where(t < 30.0, 1, 0).astype(np.int16)
+    return blocks.of("s", still)
+
+
+def test_what_runs_beside_a_log_shows_outside_of_its_rests():
+    """A pump that ran half of the time cut the rests, and was "no gap"."""
+    found, = spectral_lines.in_motion([shaken(24.2, moving=False)])
+    assert found.axes == ["z"] and found.hz["z"] == pytest.approx(24.2, abs=0.01)
+    assert spectral_lines.in_motion([shaken(0.0, moving=True)]) == []
+
+
+def test_a_motion_without_a_rest_has_no_line_that_is_not_steady():
+    moving = shaken(0.0, moving=True)
+    moving.capture.pose[:] = 0
+    moving.capture.accel = np.roll(moving.capture.accel, -3000, axis=0)[:6000]
+    whole = spectral_lines.Moving("s", moving.capture, 100.0)
+    assert spectral_lines.strongest([whole], "accel", 2).hz < spectral_lines.MOTION_HZ
+    assert spectral_lines.of_axis([whole], "accel", 2) is None

@@ -2,10 +2,22 @@
 import math
 
 import numpy as np
+from scipy import ndimage, special
 
 from ...capture.registers import LOW_BITS, RAIL, codes, spacing, steps, zeros_beyond_noise
 
 STEPS_TRIED = 1 << LOW_BITS
+# Codes to either side that say how often one is read: as many as the usual difference of two
+# samples, over which the density of noise bends by a tenth, at most as many as the widest steps.
+NOISY, FEWEST_AROUND, MOST_AROUND = 1.0, 8, 16
+EXPECTED = 20.0  # readings of a code: chance leaves RARE of them once in a million
+# Of the usual number: no converter's steps differ so much that has none missing (differential
+# nonlinearity of more than 0.9 of a step) [IEEE Std 1241, section 4.4].
+RARE, FREQUENT = 0.1, 4.0
+# Share of the samples that are too many or missing at such codes: a tenth are in a recording of a
+# sensor that is sold calibrated, whose converter or arithmetic leaves single codes out.
+MANY = 0.15
+ALONE, SELDOM = 10.0, 0.01  # times any other; of all samples
 
 
 def step_nats(counts):
@@ -57,6 +69,43 @@ def _flat_nats(column):
     number, expected = told
     return (number * math.log(number / expected) - (number - expected)) * _runs(
         column == 0) / number
+
+
+def uneven_nats(columns):
+    """Log likelihood ratio (nats) of codes at rest that are read RARE times as often as those
+    around them or less, or FREQUENT times and more, Poisson, where MANY are. What shows them all
+    is noise that is wider than many of them; where it is not, and of 0, which a dead band holds,
+    nothing is said. columns: list of (n,) whole numbers, one a rest."""
+    columns = [c.astype(np.int64) for c in columns if len(c) > 1]
+    if not columns:
+        return 0.0
+    noise = np.median(np.abs(np.concatenate([np.diff(c) for c in columns])))
+    reach = min(int(NOISY * noise), MOST_AROUND)
+    every = np.concatenate(columns)
+    every = every[np.abs(every) < RAIL - 1]
+    if reach < FEWEST_AROUND or not len(every):
+        return 0.0
+    times = np.bincount(every - every.min())
+    usual = ndimage.median_filter(times.astype(float), 2 * reach + 1, mode="constant")
+    asked = usual >= EXPECTED
+    if -every.min() in range(len(times)):
+        asked[max(-every.min() - 1, 0):-every.min() + 2] = False
+    times, usual = times[asked], usual[asked]
+    odd = (times <= RARE * usual) | (times >= FREQUENT * usual)
+    if np.abs(times - usual)[odd].sum() < MANY * times.sum():
+        return 0.0
+    nats = special.xlogy(times, times / usual) - (times - usual)
+    return float(nats[odd].sum()) - math.log(max(len(times), 1))
+
+
+def resting(column):
+    """The code that a column (n,) of whole numbers reads whenever it would read one near it, where
+    there is one: it is read far more often than any other. 0 where there is none."""
+    values, times = np.unique(column, return_counts=True)
+    others = np.partition(times, -2)[-2] if len(times) > 1 else 0
+    k = int(times.argmax())
+    held = times[k] > ALONE * max(others, SELDOM * len(column)) and abs(values[k]) < RAIL - 1
+    return int(values[k]) if held else 0
 
 
 def bit_nats(columns):

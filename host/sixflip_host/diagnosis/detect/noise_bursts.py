@@ -123,7 +123,8 @@ def _deviation(off):
 def without_spikes(sessions, leaping=()):
     """(sessions, [(sensor, sentence, p)]): where single samples are far off more often than the
     tails of noise have them, they read as those beside them do. What is wild says nothing of where
-    a rest lies, and as much as all others of a mean. leaping: sensors whose counts leap anyhow."""
+    a rest lies, and as much as all others of a mean; of a few that is not worth a sentence.
+    leaping: sensors whose counts leap anyhow."""
     out = []
     for sensor, words in WORDS.items():
         if sensor in leaping or any(getattr(s.capture, sensor) is None for s in sessions):
@@ -131,11 +132,13 @@ def without_spikes(sessions, leaping=()):
         each = [spikes(s, sensor) for s in sessions]
         number, looked = sum(one.number for one in each), sum(one.looked for one in each)
         nats = jump_nats(np.concatenate([one.sizes for one in each]))
-        if number < LEAST_SPIKES or not present(nats):
+        if not number or not present(nats):
+            continue
+        sessions = [_put_right(s, sensor) for s in sessions]
+        if number < LEAST_SPIKES:
             continue
         out.append((sensor, "%d of %d samples of the %s at rest are far off those before and "
                     "after them: spikes" % (number, looked, words), odds.chance(nats)))
-        sessions = [_put_right(s, sensor) for s in sessions]
     return sessions, out
 
 

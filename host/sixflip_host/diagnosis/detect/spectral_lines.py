@@ -5,7 +5,9 @@ is exponential with mean 1 where there is only noise; over R rests the weighted 
 distributed. The largest over all frequencies and axes must be improbable (Bonferroni).
 Source: Percival & Walden, Spectral Analysis for Physical Applications (1993), section 10.9.
 """
+import copy
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from scipy import ndimage, special
@@ -19,6 +21,9 @@ from .line_frequency import Line
 # Of a stretch: a rest of the paper's protocol, a short one, one on the way.
 LENGTHS_S, MOVING_S = (5.0, 2.0, 1.0), 2.0
 LOWEST_HZ, LOWEST_MOVING_HZ = 0.7, 2.0  # a hand or a vehicle moves more slowly than that
+# What has no steady frequency is a motion's own up to here, where nothing rests: a hand trembles
+# at 4 to 12 Hz [Elble & Koller, Tremor (1990)], steps and swings are slower.
+MOTION_HZ = 15.0
 LEAST_CYCLES = 1.4  # of a line in a stretch: what settles in a rest has less
 BRIEF_S = 1.5  # a shorter stretch is all of its rest, and begins where the box was just put down
 GOES_ON = 0.5  # of a line's power in the first half of such stretches that the second has
@@ -52,13 +57,49 @@ def findings(sessions, rings=()):
     return out
 
 
+@dataclass(frozen=True)
+class Moving:
+    """What a session is to those who look for lines, of its longest stretch without a rest."""
+
+    name: str
+    capture: object
+    rate: float
+    runs: tuple = ()
+
+
+def in_motion(sessions):
+    """list of Finding: a line of the accelerometer that is there where nothing rests, steady in
+    its frequency, which no motion of a hand, a vehicle or a robot is."""
+    stretches = [one for one in map(_longest_move, sessions) if one]
+    if not stretches or any(s.capture.accel is None for s in sessions):
+        return []
+    lines = [line_frequency.refined(line, stretches, "accel") for line in (
+        strongest(stretches, "accel", axis) for axis in range(3)) if line]
+    lines = [line for line in lines if line.steady]
+    return [_told(lines, "accel", stretches[0].rate)] if lines else []
+
+
+def _longest_move(session):
+    """Moving, or None where there is too little of it."""
+    edges = [0, *(edge for run in session.runs for edge in (run.first, run.end)),
+             len(session.capture)]
+    first, end = max(zip(edges[::2], edges[1::2]), key=lambda part: part[1] - part[0])
+    if end - first < FEWEST * MOVING_S * session.rate:
+        return None
+    cut = copy.copy(session.capture)
+    cut.accel = cut.accel[first:end] if cut.accel is not None else None
+    return Moving(session.name, cut, session.rate)
+
+
 def of_axis(sessions, sensor, axis):
     """The Line of an axis by all files together or by one of them, whichever says more, with
     the frequency of every file that shows it; a slow one where nothing faster is there."""
     groups = [sessions, *([s] for s in sessions if len(sessions) > 1)]
     found = [strongest(some, sensor, axis) for some in groups]
     found = [line_frequency.refined(line, sessions, sensor) for line in found if line]
-    found = [line for line in found if line]
+    resting = any(s.runs for s in sessions)
+    found = [line for line in found if line and (
+        resting or line.steady or line.hz > MOTION_HZ)]
     if found:
         return max(found, key=lambda line: line.nats)
     slow = line_frequency.slow(sessions, sensor, axis)

@@ -1,0 +1,23 @@
+"""Sessions of one rest, the noise of whose gyro falls with the frequency."""
+import numpy as np
+
+from sixflip_host.capture.capture_file import Capture
+from sixflip_host.experiment import blocks
+
+
+def flicker(seed, n=20000):
+    """(n, 3) counts whose spectrum falls with the frequency."""
+    generator, hz = np.random.default_rng(seed), np.fft.rfftfreq(n, 0.01)
+    hz[0] = np.inf
+    slow = np.fft.irfft(hz[:, None] ** -0.5 * np.fft.rfft(generator.standard_normal((n, 3)),
+                                                          axis=0), n, axis=0)
+    return 10.0 * slow / slow.std(axis=0) + 2.0 * generator.standard_normal((n, 3))
+
+
+def at_rest(gyro):
+    n = len(gyro)
+    accel = [0.0, 0.0, 16384.0] + 46.0 * np.random.default_rng(1).standard_normal((n, 3))
+    meta = {"sensor": "mpu6050", "accel_lsb_per_g": 16384.0, "gyro_lsb_per_dps": 65.5,
+            "rate_hz": 100.0}
+    return blocks.of("s", Capture(meta, 10_000 * np.arange(n), np.rint(accel).astype(np.int16),
+                                  np.rint(gyro).astype(np.int16), pose=np.ones(n, np.int16)))
