@@ -14,6 +14,9 @@ from ..odds import Z_90
 
 FASTER = 3.0  # than the noise, from a sample to the next: its sign is that of the motion
 LONGEST = 8  # samples at 0 while something passes; more is a pause
+# Of a window's samples at 0: more are held there. All that rests may lie near 0, and what moves is
+# not quiet; a narrower band leaves too little noise, and takes too little off what is missing.
+HELD = 0.5
 LEVELS, APART = (0.2, 0.3, 0.4, 0.6, 0.7, 0.8), 4.0  # quantiles of the readings; bands off 0
 FEWEST = 20  # passages, whose median is known to a fifth of their scatter
 # Standard deviation of a median over that of a mean, and of a normal one over the median of its
@@ -76,7 +79,7 @@ def passages(x):
     """(k,) counts that are missing on each side of 0 at each of the k passages of a column x (n,)
     through it."""
     windows = x[:len(x) // WINDOW * WINDOW].reshape(-1, WINDOW)
-    away = windows[(windows != 0).all(axis=1)]
+    away = windows[(windows == 0).mean(axis=1) < HELD]
     noise = float(np.quantile(np.diff(away, axis=1).std(axis=1), QUIET)) / np.sqrt(2.0) if len(
         away) else 0.0
     if noise < LEAST_NOISE:  # what has none pauses at 0 exactly
