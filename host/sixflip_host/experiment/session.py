@@ -22,6 +22,9 @@ PLAY_S = 0.1
 # Share of bad samples up to which a rest is kept: two of a protocol's rest of 500. What they add
 # to its mean is then at most that share of what is wrong with them.
 MOST_BAD = 0.005
+# Intervals taken together; stamps by which their scatter is known to a tenth; share of an interval
+# that no turn shows: a sixth of a degree in one of half a second at 180 deg/s.
+STEPS, FEWEST_STAMPS, EVEN = 16, 1600, 0.01
 FAR_OFF_DEG = 25.0  # a label that gravity contradicts: a table does not lean by half of that
 USUAL_C = 25.0  # temperature where no thermometer tells it: of the effects' own reference
 OF_BLOCKS = ("placement", "code", "first", "end", "face", "t", "since", "seconds", "accel", "gyro",
@@ -125,6 +128,18 @@ class Session(ReadOnlyArrays):
         """Seconds between two samples, by the clock where it runs."""
         measured = None if self.timeless else clock.of(self.capture)
         return 1.0 / (measured.rate_hz if measured else self.rate)
+
+    @cached_property
+    def uneven(self):
+        """Whether the samples themselves came at uneven times: then the time that several take
+        scatters as the root of their number, and by no more than that of one where only the stamps
+        do [the variance ratio of Lo & MacKinlay, Review of Financial Studies 1 (1988) 41]. Its
+        scatter is that of the middle of them, without pauses."""
+        if self.timeless or len(self.t_s) < FEWEST_STAMPS:
+            return False
+        one, several = (float(np.subtract(*np.quantile(
+            self.t_s[k:] - self.t_s[:-k], (0.84, 0.16)))) for k in (1, STEPS))
+        return one > EVEN * self.period_s and several ** 2 > 0.5 * STEPS * one ** 2
 
     def without_samples(self, bad):
         """The same session without the placements with more than a few bad samples; bad (N,)."""

@@ -102,7 +102,7 @@ def between(session, up, bias, place, wander=None):
     """Turn from a placement of a Session to the next, not integrated. up (placements, 3): unit
     vectors against gravity; bias (3,) deg/s; wander as Turn has it."""
     move = blocks.move_after(session, place)
-    t = _even(session.t_s[move.first:move.end], session.period_s)
+    t = _even(session.t_s[move.first:move.end], session.period_s, session.uneven)
     rate = session.capture.gyro[move.first:move.end] / session.capture.meta[
         "gyro_lsb_per_dps"] - bias
     temperature = None if session.thermometer is None else session.thermometer.at(t[1:])
@@ -111,10 +111,11 @@ def between(session, up, bias, place, wander=None):
                 np.zeros(3) if wander is None else wander, move.railed, np.eye(3), np.zeros(3))
 
 
-def _even(t, period_s):
+def _even(t, period_s, uneven=False):
     """Times t (n,) s without what the stamps scatter by: spaced evenly where as many samples came
-    as so much time takes; else, where some are missing, as stamped, and none at the same time."""
-    if abs((t[-1] - t[0]) / period_s - (len(t) - 1)) < WHOLE:
+    as so much time takes; else, where some are missing or the samples are uneven themselves, as
+    stamped, and none at the same time."""
+    if not uneven and abs((t[-1] - t[0]) / period_s - (len(t) - 1)) < WHOLE:
         return np.linspace(t[0], t[-1], len(t))
     least = LEAST_STEP * period_s * np.arange(len(t))
     return np.maximum.accumulate(t - least) + least

@@ -201,3 +201,20 @@ def test_what_rests_near_0_and_swings_through_it_has_no_band():
     swings = size * np.sin(2.0 * np.pi * t / 60.0) * (t % 4000 > 800)
     column = np.rint(swings + generator.normal(0.0, 1.0, len(t))).astype(np.int64)
     assert not present(dead_band.of_columns([column]).nats)
+
+
+def stamped(t_s):
+    """Session of a rest with its samples stamped at t_s (n,) s."""
+    still = at_rest(flicker(5, len(t_s))).capture
+    still.t_us = np.rint(1e6 * t_s).astype(np.int64)
+    return blocks.of("s", still)
+
+
+def test_samples_that_come_at_uneven_times_are_told_from_stamps_that_scatter():
+    """Turns of a board that samples when it can were read as if it sampled evenly."""
+    generator, even = np.random.default_rng(12), 0.01 * np.arange(6000)
+    assert stamped(np.cumsum(0.01 + 0.0018 * generator.standard_normal(6000))).uneven
+    scattered = np.maximum.accumulate(even + 0.0018 * generator.standard_normal(6000))
+    packets = 0.04 * np.ceil(np.arange(6000) / 4.0) + 0.002 * (np.arange(6000) % 4)
+    for t in (even, scattered, packets, 1.0001 * even):
+        assert not stamped(t).uneven
