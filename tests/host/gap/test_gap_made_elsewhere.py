@@ -218,3 +218,28 @@ def test_samples_that_come_at_uneven_times_are_told_from_stamps_that_scatter():
     packets = 0.04 * np.ceil(np.arange(6000) / 4.0) + 0.002 * (np.arange(6000) % 4)
     for t in (even, scattered, packets, 1.0001 * even):
         assert not stamped(t).uneven
+
+
+def rustling(seed, n=24000):
+    """(n,) counts of an axis that lies near the edge of a page, as noisy as many chips are."""
+    return np.rint(np.random.default_rng(seed).normal(16390.0, 52.0, n)).astype(np.int64)
+
+
+def test_pages_are_told_where_noise_is_a_fifth_of_one():
+    """256 counts in 1 % of the samples of a chip with noise of 50 were "no gap"."""
+    x = rustling(20)
+    assert not present(torn_reads.paged(sample_neighbours.tabled(x, False))[0])
+    spiked = np.random.default_rng(21).random(len(x)) < 0.009
+    nats, number = torn_reads.paged(sample_neighbours.tabled(
+        np.where(spiked, x + 256, x), False))
+    assert present(nats) and number == pytest.approx(spiked.sum(), rel=0.25)
+
+
+def test_a_low_byte_of_the_sample_before_is_a_torn_read():
+    x = rustling(22)
+    assert not present(torn_reads.competed(sample_neighbours.tabled(x, False))[0])
+    stale = np.random.default_rng(23).random(len(x)) < 0.02
+    torn = np.where(stale, (x & ~255) | np.roll(x, 1) & 255, x)
+    moved = (np.abs(torn - x) > 128).sum()
+    nats, number, _ = torn_reads.competed(sample_neighbours.tabled(torn, False))
+    assert nats > 100.0 and number == pytest.approx(moved, rel=0.3)

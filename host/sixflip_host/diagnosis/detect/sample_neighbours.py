@@ -23,7 +23,8 @@ AT_A_TIME = 1 << 16  # samples that are looked at at once: memory, not time
 class Samples:
     """n samples against those around them: off, moved (n,): what those predict, and that by whole
     pages but 0, in standard deviations sigma (n,) counts; calm (n,) bool: those around agree;
-    before, after (n,) bool: the page is that of the sample before, of the one after."""
+    before, after (n,) bool: the page is that of the sample before, of the one after; stale (n,)
+    bool: it is another one than before, and the low byte is that of the sample before."""
 
     off: np.ndarray
     moved: np.ndarray
@@ -31,6 +32,7 @@ class Samples:
     calm: np.ndarray
     before: np.ndarray
     after: np.ndarray
+    stale: np.ndarray
 
     def __len__(self):
         return len(self.off)
@@ -81,7 +83,9 @@ def tabled(column, banded, at_rest=None, again=None, width=PAGE):
     pages = np.rint(off / width)
     pages = np.where(pages == 0.0, np.where(off < 0.0, -1.0, 1.0), pages)
     before, after = ((page[3:-3] == page[3 + k:len(page) - 3 + k])[keep] for k in (-1, 1))
-    return Samples(off / sigma, (off - width * pages) / sigma, sigma, calm[keep], before, after)
+    low = column % width
+    return Samples(off / sigma, (off - width * pages) / sigma, sigma, calm[keep], before, after,
+                   (low[3:-3] == low[2:-4])[keep] & ~before)
 
 
 def _beside(around):

@@ -2,7 +2,8 @@
 
 Each sample is judged by those around it. Sound, it lies as far from what they predict as the
 noise of the axis allows. Torn, it has the page (high byte) of the sample before, or after, and
-would lie so near with a page more or less. What has no name jumps by any amount, or by whole
+would lie so near with a page more or less; or it has a page of its own and the low byte of the
+sample before. What has no name jumps by any amount, or by whole
 pages whatever the pages around. Torn reads are found where a share of the samples being torn
 makes all samples likelier than the same jumps do without a name.
 """
@@ -16,7 +17,6 @@ from .. import odds
 from .detection import Finding, present
 from .sample_neighbours import (
     AT_A_TIME,
-    CALM,
     FEWEST,
     NEAR,
     PAGE,
@@ -33,6 +33,10 @@ KNOCKED = (5.0, 15.0, 50.0)  # and of those that knocks, gaits and chattering co
 # Counts that no byte is wide: what speaks for pages of these too is the motion of legs, wheels or
 # a knock, not the bytes. As far from a page as two samples differ where a page is looked at.
 NO_PAGES = (150, 163, 181, 300, 337, 367)
+# Standard deviations that a page is wide at least, where the pages around say nothing: of normal
+# noise one sample in 16,000 is so far off, and a heavier tail competes.
+BEYOND = 4.0
+CROSSED = 0.1  # chance of a sample to lie on another page than the one before, where it may
 LEAST = 1e-200  # of a density: what a float still divides by
 
 
@@ -99,8 +103,7 @@ def jumps(sessions, without=()):
 def paged(samples):
     """(nats of jumps by whole pages over none, over jumps of any size and over samples that are
     louder, as where the box is put down; their number) of Samples, among calm ones."""
-    # Without the pages around, one more is seen only beyond what neighbours may span.
-    samples = samples.of(samples.calm.astype(bool) & (samples.sigma < PAGE / CALM))
+    samples = samples.of(samples.calm.astype(bool) & (samples.sigma < PAGE / BEYOND))
     if len(samples) < FEWEST:
         return 0.0, 0.0
     whole, other, number = [], [], len(samples)
@@ -117,11 +120,12 @@ def paged(samples):
 
 def competed(samples):
     """(nats over what has no name, samples torn, samples that jump otherwise) of Samples, torn
-    with the page of the sample before or of the one after. Shares of jumps and tails of the noise
-    are the likeliest of those tried, in each hypothesis by itself; what was tried for the name's
-    sake is paid."""
+    with the page of the sample before or of the one after, or with the low byte before. Shares of
+    jumps and tails of the noise are the likeliest of those tried, in each hypothesis by itself;
+    what was tried for the name's sake is paid."""
     chances = {side: float(len(samples) - getattr(samples, side).sum())
                for side in ("before", "after")}
+    chances["stale"] = chances["before"]
     number, named, nameless = len(samples), [], []
     for freedom in FREEDOM:
         densities = Densities(samples, freedom)
@@ -136,7 +140,8 @@ def competed(samples):
             named += [(alone + gain, one, side, own) for side, (gain, own) in zip(chances, torn)]
     score, densities, side, own = max(named, key=lambda one: one[0])
     torn = torn_by(side)
-    return (score - max(nameless) - math.log(2.0 * len(SHARES)), densities.held(torn, own),
+    tried = math.log(len(chances) * len(SHARES))
+    return (score - max(nameless) - tried, densities.held(torn, own),
             densities.jumping(torn, own))
 
 
@@ -213,7 +218,10 @@ def moved(part, paged_by):
 
 
 def torn_by(side):
-    """A jump by a page that the sample before, or after, does not have."""
+    """A jump by a page that the sample before, or after, does not have; or to where the low byte
+    before leads on another page, which is one count."""
+    if side == "stale":
+        return lambda part, _: CROSSED * part.stale
     return lambda part, paged_by: paged_by * getattr(part, side)
 
 
