@@ -120,10 +120,8 @@ def _energy(candidate, cause, gram):
 
 TIMES = 5.0  # the typical size, that is believed: more is numerically helpful only (GAP stage 3)
 TAIL = 2.0
-LOOSE = {"warm_up": 10.0, "drift": 10.0, "vibration": 1e9, "sample_rate": 10.0,
-         "dropped_samples": 1e9, "saturation": 1e9, "torn_reads": 1e9, "axis_swap": 1e9,
-         "quantisation": 1e9, "dead_band": 1e9, "box_tilt": 20.0, "creep": 5.0,
-         "lever_arm": 10.0, "filter_lag": 20.0}
+LOOSE = {"warm_up": 10.0, "dead_band": 1e9, "box_tilt": 20.0, "lever_arm": 10.0,
+         "filter_lag": 20.0}
 
 
 # What a part's drift with temperature amounts to while it warms up, and in what follows the
@@ -131,9 +129,8 @@ LOOSE = {"warm_up": 10.0, "drift": 10.0, "vibration": 1e9, "sample_rate": 10.0,
 BY_TEMPERATURE = {"warm_up": 10.0, "thermal_rate": 1.0}  # degC, minutes
 
 
-def limit(effect, chip, sensor, key):
+def limit(effect, chip, kind, key):
     """Largest size that is believed, or None where there is no typical one."""
-    kind = "accel" if sensor == "device" else sensor
     size = typical.size(effect, chip, kind, key)[0]
     if size is None:
         size = typical.size(effect, chip, kind)[0]
