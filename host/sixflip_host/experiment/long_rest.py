@@ -43,16 +43,15 @@ def scaled(session, sensor):
 @dataclass(frozen=True)
 class LongRest:
     """Arrays over n means: t (s since the capture began), seconds (s that each lasts), rest and
-    session (their numbers), temperature or None (degC, with temperature_rate). values, noise:
-    {sensor: (n, 3) mg or deg/s}, {sensor: (n, 3) standard deviation of a mean}. up (3,): the
-    attitude, 0 where no accelerometer tells; thermometers: one a session, or None."""
+    session (their numbers), temperature or None (degC). values, noise: {sensor: (n, 3) mg or
+    deg/s}, {sensor: (n, 3) standard deviation of a mean}. up (3,): the attitude, 0 where no
+    accelerometer tells; thermometers: one a session, or None."""
 
     t: np.ndarray
     seconds: np.ndarray
     rest: np.ndarray
     session: np.ndarray
     temperature: object
-    temperature_rate: object
     values: dict
     noise: dict
     up: np.ndarray
@@ -92,15 +91,6 @@ class LongRest:
         m.session = self.session
         return m
 
-    def part(self, keep):
-        """The means where keep (n,) is True."""
-        def cut(values):
-            return None if values is None else values[keep]
-        return LongRest(self.t[keep], self.seconds[keep], self.rest[keep], self.session[keep],
-                        cut(self.temperature), cut(self.temperature_rate),
-                        {k: v[keep] for k, v in self.values.items()},
-                        {k: v[keep] for k, v in self.noise.items()}, self.up, self.thermometers)
-
 
 def of(sessions, lines=()):
     """LongRest of blocks.Sessions, or None where nothing rests; lines: (sensor, axis, Hz) of
@@ -123,14 +113,13 @@ def of(sessions, lines=()):
     number = np.array([k for k, _, _, _ in table])
     seconds = np.array([(b - a) / sessions[k].rate for k, _, a, b in table])
     thermometers = tuple(s.thermometer for s in sessions)
-    temperature = rate = None
+    temperature = None
     if all(one is not None for one in thermometers):
-        temperature, rate = np.empty(len(t)), np.empty(len(t))
+        temperature = np.empty(len(t))
         for k, one in enumerate(thermometers):
             temperature[number == k] = one.at(t[number == k])
-            rate[number == k] = one.rate_at(t[number == k])
     mean = values["accel"].mean(axis=0) if "accel" in values else np.zeros(3)
-    return LongRest(t, seconds, np.array([r for _, r, _, _ in table]), number, temperature, rate,
+    return LongRest(t, seconds, np.array([r for _, r, _, _ in table]), number, temperature,
                     values, noise, mean / max(np.linalg.norm(mean), 1e-9), thermometers)
 
 
