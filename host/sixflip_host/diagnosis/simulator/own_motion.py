@@ -44,7 +44,7 @@ def fitted(trace, sensor):
                                                    true.force))
     if rate.std() < 1e-3:
         return None
-    moved = traces.Motion(None, up, rate, rate_dot, None, None, ())
+    moved = traces.Motion(None, up, rate, rate_dot, None, None)
     spin = hypotheses.spinning(rate)
     tangential = hypotheses.lever_columns(moved) - spin
     signal = trace.g * up

@@ -64,7 +64,7 @@ def paired(real, sim, alignment, motion, band_hz=BANDS[0]):
     keep = ~bad
     return Pair(t[keep], onto(real, real.force, there)[keep], onto(real, real.rate, there)[keep],
                 None if real.celsius is None else np.interp(there, real.t, real.celsius)[keep],
-                Motion(carried=motion.carried, **{k: v[keep] for k, v in fields.items()}),
+                Motion(**{k: v[keep] for k, v in fields.items()}),
                 onto(sim, sim.force, t)[keep], onto(sim, sim_rate, t)[keep], band_hz)
 
 

@@ -146,8 +146,7 @@ class Motion:
     """What a Trace says its sensor went through, arrays over its samples: turn (n, 3, 3) body to
     world (heading 0 at the start); up (n, 3) unit vector against gravity in the body; rate
     (n, 3) rad/s less its bias at rest; rate_dot (n, 3); moved (n, 3) m/s2: specific force less
-    gravity; speed (n, 3) m/s in the body, zero at each rest; carried: degrees by which gravity
-    after each move was missed before it was levelled."""
+    gravity; speed (n, 3) m/s in the body, zero at each rest."""
 
     turn: np.ndarray
     up: np.ndarray
@@ -155,7 +154,6 @@ class Motion:
     rate_dot: np.ndarray
     moved: np.ndarray
     speed: np.ndarray
-    carried: tuple
 
 
 def motion(trace):
@@ -168,7 +166,6 @@ def motion(trace):
     middle = 0.5 * (rate[1:] + rate[:-1]) * np.diff(trace.t)[:, None]
     steps = np.concatenate([np.eye(3)[None], rotations(middle)])
     turn = np.empty((n, 3, 3))
-    carried = []
     first, end = trace.rests[0]
     # The first rest says where the world's vertical is; before it time runs backwards.
     start = rotation_between(ups[0], np.array([0.0, 0.0, 1.0]))
@@ -183,29 +180,28 @@ def motion(trace):
         turn[first:end] = turn[first]
         way = turn[end - 1] @ chained(np.concatenate([np.eye(3)[None], steps[end:last + 1]]))
         if k + 1 < len(trace.rests):
-            way, missed = levelled(way, ups[k + 1], middle[end - 1:last])
-            carried.append(missed)
+            way = levelled(way, ups[k + 1], middle[end - 1:last])
         turn[end - 1:last + 1] = way
     up = turn[:, 2, :]
     moved = trace.force - trace.g * up
     speed = _speed(trace, turn, moved)
     rate_dot = np.gradient(rate, trace.t, axis=0) if n > 2 else np.zeros_like(rate)
-    return Motion(turn, up, rate, rate_dot, moved, speed, tuple(carried))
+    return Motion(turn, up, rate, rate_dot, moved, speed)
 
 
 def levelled(way, up, steps):
-    """(way with gravity right at its end, degrees it was off): the correction grows with the
-    angle turned, as a wrong scale or bias of the gyro makes it."""
+    """way with gravity right at its end: the correction grows with the angle turned, as a wrong
+    scale or bias of the gyro makes it."""
     z = np.array([0.0, 0.0, 1.0])
     there = way[-1] @ up
     off = np.cross(there, z)
     size = np.linalg.norm(off)
     if size < 1e-12:
-        return way, 0.0
+        return way
     angle = np.arctan2(size, there[2])
     path = np.concatenate([[0.0], np.cumsum(np.linalg.norm(steps, axis=1))])
     share = path / path[-1] if path[-1] > 0 else np.linspace(0, 1, len(way))
-    return rotations(np.outer(share, off / size * angle)) @ way, float(np.degrees(angle))
+    return rotations(np.outer(share, off / size * angle)) @ way
 
 
 def chained(steps):
