@@ -23,17 +23,15 @@ STRETCHES = 20
 
 @dataclass(frozen=True)
 class Fit:
-    """One hypothesis fitted. log: marginal log likelihood; matrix (3, 3) = S (1 + E) and bias
-    (3,): simulator = matrix · signal + bias + columns · extra; axes (3, 3) and unit: S; extra (k,)
-    with its sigma; delay_s of the simulator against the signal, and its sigma; smooth_s2: half the
-    square of the time constant by which the simulator is smoother than the signal (negative: less
-    smooth); shape (3, 3): E, with its sigma; left (n, 3): what is not predicted, None of one of
-    many fits."""
+    """One hypothesis fitted. log: marginal log likelihood; bias (3,): simulator = S (1 + E) ·
+    signal + bias + columns · extra; axes (3, 3) and unit: S; extra (k,) with its sigma; delay_s of
+    the simulator against the signal, and its sigma; smooth_s2: half the square of the time
+    constant by which the simulator is smoother than the signal (negative: less smooth); shape
+    (3, 3): E, with its sigma; left (n, 3): what is not predicted, None of one of many fits."""
 
     hypothesis: object
     name: str
     log: float
-    matrix: np.ndarray
     bias: np.ndarray
     axes: np.ndarray
     unit: float
@@ -120,12 +118,10 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
         delay += float(np.clip(result[2][k], -0.05, 0.05))
     log, beta, shared, sigma, rest, beta_sigma = result
     log += 0.5 * n / inflation * np.minimum(0.0, np.log(gains(h, beta, shared, unit)))[live].sum()
-    matrix = (np.eye(3) + beta[:, :3]) @ axes * unit
     log -= live.sum() * n / inflation * np.log(unit)
-    return Fit(h, h.name, log, matrix, beta[:, 3] * unit, axes, unit,
-               shared[:k], sigma[:k], delay, float(sigma[k]), float(shared[k + 1]),
-               float(sigma[k + 1]), beta[:, :3], beta_sigma[:, :3], beta_sigma[:, 3] * unit,
-               rest * unit if left else None)
+    return Fit(h, h.name, log, beta[:, 3] * unit, axes, unit, shared[:k], sigma[:k], delay,
+               float(sigma[k]), float(shared[k + 1]), float(sigma[k + 1]), beta[:, :3],
+               beta_sigma[:, :3], beta_sigma[:, 3] * unit, rest * unit if left else None)
 
 
 def gains(h, beta, shared, unit):
