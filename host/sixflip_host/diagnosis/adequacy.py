@@ -43,18 +43,15 @@ def levels(sensor, kind, reference=None):
 
 @dataclass(frozen=True)
 class Adequacy:
-    """ok; ratio: chi2 a degree of freedom; p: the least of the tests failed, or of chi2; index:
-    of each unit's grid; excess, excess_before: chi2 beyond the degrees of freedom, with and
-    without the set; parts: (chi2, freedom) of each unit; odd: how what is left differs from
-    noise, or ""."""
+    """ok; p: the least of the tests failed, or of chi2; index: of each unit's grid; excess,
+    excess_before: chi2 beyond the degrees of freedom, with and without the set; odd: how what is
+    left differs from noise, or ""."""
 
     ok: bool
-    ratio: float
     p: float
     index: tuple
     excess: float
     excess_before: float
-    parts: tuple
     odd: str = ""
 
 
@@ -84,8 +81,7 @@ def of(units, statistics, scored, usual_noise, shaken=(), by_hand=False):
     wanders = wandering_nats(units, statistics, scored, usual_noise) > odds.COST
     odd, chance = _odd(units, scored, theta, shaken, by_hand) if wanders else ("", 1.0)
     p = min(p, looks * worst if not ok else 1.0, chance if odd else 1.0)
-    return Adequacy(ok and not odd, chi2 / freedom, p, tuple(index), chi2 - freedom, before,
-                    tuple(parts), odd)
+    return Adequacy(ok and not odd, p, tuple(index), chi2 - freedom, before, odd)
 
 
 def _chi2(fit, theta):
