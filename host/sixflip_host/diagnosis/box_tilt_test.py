@@ -52,7 +52,7 @@ def found(gap):
         return [], data
     gains = dict.fromkeys((f.effect for f in best.forms), gain)
     places = {f.effect: odds.shares({"": cost, f.effect: gain}) for f in best.forms}
-    said = Posterior(best, without, gap.cost, places, gains)
+    said = Posterior(best, gap.cost, places, gains)
     return [c for c in aliases.causes(said, units, forms) if c.effect == "box_tilt"], data
 
 

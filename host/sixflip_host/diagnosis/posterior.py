@@ -25,12 +25,11 @@ WORTH_TRYING = 0.5  # of what a member must gain: two that need each other may s
 
 @dataclass(frozen=True)
 class Posterior:
-    """best: Scored of the likeliest set; empty: Scored of no hypothesis; cost: cutoffs.Cutoffs;
-    places: {effect: {effect or "": probability}} of each member's place in the best set, the
-    others being as they are ("" nothing there); gains: {effect: nats lost without it}."""
+    """best: Scored of the likeliest set; cost: cutoffs.Cutoffs; places: {effect: {effect or "":
+    probability}} of each member's place in the best set, the others being as they are ("" nothing
+    there); gains: {effect: nats lost without it}."""
 
     best: Scored
-    empty: Scored
     cost: object
     places: dict
     gains: dict
@@ -85,11 +84,11 @@ def again(model, forms, cost, likeliest):
 
 def _judged(model, forms, likely, cost):
     """Posterior of the set that comes of a likely one."""
-    best, empty = _refined(model, forms, likely, cost), model.scored(())
+    best = _refined(model, forms, likely, cost)
     places, gains = {}, {}
     for form in best.forms:
         places[form.effect], gains[form.effect] = _place(model, forms, best, form, cost)
-    return Posterior(best, empty, cost, places, gains)
+    return Posterior(best, cost, places, gains)
 
 
 def _free(forms, scored, instead=""):
