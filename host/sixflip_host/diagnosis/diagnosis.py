@@ -51,10 +51,6 @@ class Diagnosis:
     noise: dict
 
     @property
-    def same_session(self):
-        return len(self.sessions) == 1
-
-    @property
     def causes(self):
         """[(sensor, Cause)] of all sensors, the largest score first."""
         found = [(kind, c) for gaps in (self.gaps, self.rest) for kind, gap in gaps.items()

@@ -89,10 +89,6 @@ class Session(ReadOnlyArrays):
     def n(self):
         return len(self.placement)
 
-    @property
-    def leaning(self):
-        return self.face < 0
-
     def placements(self):
         return len(self.runs)
 

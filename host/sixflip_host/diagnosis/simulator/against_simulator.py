@@ -31,10 +31,6 @@ class Simulator:
     known: dict
     remarks: tuple
 
-    @property
-    def reference_c(self):
-        return self.found.conditions.reference_c
-
     def new(self, finding):
         """True when the simulator lacks a Finding of the real sensor, or has another size."""
         for other in self.found.findings:
