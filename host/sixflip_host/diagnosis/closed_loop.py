@@ -157,15 +157,14 @@ def _checked(spec):
 @dataclass(frozen=True, eq=False)
 class Loop:
     """For one sensor: before, after, floor (RMS of real less simulated, mg or deg/s), share of the
-    gap that closes or None; effects: the specs added, from all sessions; before_twin, after_twin:
-    blocks.Session of the last session's twin at rest, without and with them, or None."""
+    gap that closes or None; effects: the specs added, from all sessions; after_twin: the last
+    session's twin at rest with them (blocks.Session), or None."""
 
     before: float
     after: float
     floor: float
     share: float | None
     effects: list
-    before_twin: object = None
     after_twin: object = None
 
 
@@ -176,21 +175,21 @@ def close(gap, reference_c):
     columns = np.concatenate([c.columns for c in gap.chosen])
     prior = np.concatenate([c.prior for c in gap.chosen])
     fits = coefficient_fits.fits(gap.data, columns, prior)
-    sums, twins = np.zeros(4), ()
+    sums, twin = np.zeros(4), None
     for held, unit in enumerate(gap.units[:len(gap.parts)]):
         others = fits[:held] + fits[held + 1:] or fits
         theta = coefficient_fits.coefficients(others, prior)[0][0]
-        added, twins = _session(gap, held, unit, specs(gap, theta, reference_c))
+        added, twin = _session(gap, held, unit, specs(gap, theta, reference_c))
         sums += added
     gap_square = sums[0] - sums[2]
     return Loop(*(float(np.sqrt(v / sums[3])) for v in sums[:3]),
                 float((sums[0] - sums[1]) / gap_square) if gap_square > 0.1 * sums[2] else None,
-                specs(gap, coefficient_fits.coefficients(fits, prior)[0][0], reference_c), *twins)
+                specs(gap, coefficient_fits.coefficients(fits, prior)[0][0], reference_c), twin)
 
 
 def _session(gap, held, unit, effects):
     """(sums of squares (before, after, floor) and the number of contrasts of one session, its
-    twins without and with the effects)."""
+    twin with the effects)."""
     session, nominal = gap.parts[held]
     if gap.kind == "accel":
         nominal = uncovered(gap, session, unit, nominal)
@@ -198,15 +197,14 @@ def _session(gap, held, unit, effects):
     level = {gap.kind: point[1]}
     # The twin lies as the real box lay: placement is in neither.
     floor = unit.noise_energy(unit.grid[0][0], point[1])
-    out, twins = [], []
+    out = []
     for added in ([], effects):
         twin = blocks.of(session.name, simulated(session, nominal, level, added, 1000 + held))
         y = nominal_rows.accel_rows(twin, gap.parts[held][1]) if gap.kind == "accel" else \
             twin.gyro.reshape(-1)
         difference = unit.z - unit.contrasts(y)
         out.append(float(difference @ difference))
-        twins.append(twin)
-    return np.array([*out, 2.0 * float(floor), float(unit.freedom)]), twins
+    return np.array([*out, 2.0 * float(floor), float(unit.freedom)]), twin
 
 
 def uncovered(gap, session, unit, nominal):
