@@ -20,10 +20,9 @@ class Data:
     statistics: list
 
 
-def data_of(units, contrasts=None):
-    """Data of these units, or of other contrasts (m, R) in each of them."""
-    return Data(units, [u.statistics(None if contrasts is None else contrasts[i])
-                        for i, u in enumerate(units)])
+def data_of(units):
+    """Data of these units, with their own contrasts."""
+    return Data(units, [u.statistics() for u in units])
 
 
 @dataclass(frozen=True, eq=False)

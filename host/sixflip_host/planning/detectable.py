@@ -64,10 +64,10 @@ class Power:
         return math.sqrt(QUANTILE / math.sqrt(information)) if information > 0 else SILENT
 
 
-def power_of(design, chip, rate_hz=100.0, placement_deg=PLACEMENT_DEG, step=0.0):
-    """Power of a PlannedModel read by a chip (a key of typical.NOISE) at rate_hz; placement_deg:
-    scatter of a placement; step: size of a count, mg or deg/s."""
-    noise = covariance(design, chip, rate_hz, placement_deg, step)
+def power_of(design, chip, rate_hz=100.0, step=0.0):
+    """Power of a PlannedModel read by a chip (a key of typical.NOISE) at rate_hz; step: size of
+    a count, mg or deg/s."""
+    noise = covariance(design, chip, rate_hz, step)
     whitener = np.linalg.inv(np.linalg.cholesky(noise))
     return Power(design, whitener, basis(whitener @ design.space))
 
@@ -78,14 +78,14 @@ def flicker(rows):
     return np.kron(kernel * (rows.session[:, None] == rows.session[None]), np.eye(3))
 
 
-def covariance(design, chip, rate_hz, placement_deg, step=0.0):
+def covariance(design, chip, rate_hz, step=0.0):
     """(3n, 3n) in mg2 or (deg/s)2; step: of a count."""
     rows = design.rows
     sigma = np.array(typical.noise_at(chip, rate_hz, step))
     white = sigma ** 2 / np.maximum(rows.seconds * rate_hz, 1.0)[:, None]
     total = np.diag(white.reshape(-1)) + typical.FLICKER[chip] ** 2 * flicker(rows)
     if design.sensor == "accel":
-        level = (math.radians(placement_deg) * MG_PER_RAD) ** 2
+        level = (math.radians(PLACEMENT_DEG) * MG_PER_RAD) ** 2
         for placement in np.unique(rows.placement):
             mask = np.repeat(rows.placement == placement, 3)
             turns = design.tilts_of(placement)[mask]

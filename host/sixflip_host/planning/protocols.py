@@ -108,12 +108,12 @@ def order_of(name, seed=7):
 
 
 def faces_session(codes, leaning=0, backward=False, both_ways=True, state=None, seed=7,
-                  dwell_s=DWELL_S, move_s=MOVE_S, rest_s=0.0):
+                  dwell_s=DWELL_S, rest_s=0.0):
     """One session: the codes, then leaning poses, then the codes backward."""
-    timing = {"dwell_s": dwell_s, "move_s": move_s}
-    rests = [face_rest(c, **timing) for c in codes] + leaning_rests(leaning, seed, **timing)
+    rests = [face_rest(c, dwell_s=dwell_s) for c in codes]
+    rests += leaning_rests(leaning, seed, dwell_s=dwell_s)
     if backward:
-        rests += [face_rest(c, **timing) for c in reversed(codes)]
+        rests += [face_rest(c, dwell_s=dwell_s) for c in reversed(codes)]
     for k, rest in enumerate(rests):
         rest.turn = "right" if both_ways and k // 2 % 2 else "left"
     if state is None:

@@ -73,7 +73,7 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
         values = reliable(values, noise, pair.band_hz, share)
         return pair, measured, hypotheses.accelerometer(
             values, pair.motion, real.g) if kind == "accel" else hypotheses.gyro(
-                values, pair.motion, pair.force, real.g)
+                values, pair.motion, real.g)
 
     pair, measured, tried = asked(pairing.paired(real, sim, alignment, motion))
     nameless = tried[-1]

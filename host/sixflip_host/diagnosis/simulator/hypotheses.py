@@ -84,7 +84,7 @@ def accelerometer(force, motion, g):
     return out + [nameless(force, everything, 2)]
 
 
-def gyro(rate, motion, force, g):
+def gyro(rate, motion, g):
     """Hypotheses of the gyro."""
     n = len(rate)
     world = np.einsum("nij,nj->ni", motion.turn, rate)
