@@ -45,9 +45,9 @@ def of_name(found, mimicked, outside, beside=1.0):
     return found / (1.0 + beside * (1.0 + outside) / INSIDE * mimicked)
 
 
-def probability(score, cost=COST):
+def probability(score):
     """That something is there which gains so many nats over nothing and over what is nameless."""
-    return 1.0 / (1.0 + math.exp(min(cost - score, 700.0)))
+    return 1.0 / (1.0 + math.exp(min(COST - score, 700.0)))
 
 
 def chance(nats):
