@@ -11,7 +11,6 @@ import numpy as np
 CARRIED = 4
 FIRST_HZ, OCTAVE = 0.3, 1.6  # of the bands of the tremor
 FEWEST = 4  # values for a level of its own
-STEADY = 1.0  # of the sensor's own noise: no level is below
 
 
 def bands(move):
@@ -56,7 +55,8 @@ def spectra(moves, left, weights):
         for number in members:
             band, weight = bands(moves[number])
             found = np.stack([level[int(b)] for b in band])
-            out[number] = white(moves[number]) * STEADY + np.maximum(found, 0.0) * weight[:, None]
+            # No level is below the sensor's own noise.
+            out[number] = white(moves[number]) + np.maximum(found, 0.0) * weight[:, None]
     return out
 
 
