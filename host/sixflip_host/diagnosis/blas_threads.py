@@ -2,7 +2,7 @@
 
 Matrices of a few hundred rows gain nothing from more, and threads that spin while they wait for
 each other take ten times as long on a machine that has something else to do. What runs side by
-side are whole sensors, see gap/diagnosis.py. A setting of the user's own is kept.
+side are whole sensors, see rests_judged.py. A setting of the user's own is kept.
 """
 import os
 
