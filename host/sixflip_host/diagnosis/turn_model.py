@@ -1,5 +1,4 @@
 """The gyro in motion: what the turns between the rests (experiment/turns.py) leave unexplained."""
-import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -22,7 +21,6 @@ FLIP_DEG = 0.4  # what is usual (METHOD section 2)
 FEWEST_MOVES = 6  # two equations each: as many as nine of the matrix and three of the bias
 WRONG_DEG = 25.0  # of a turn's end: as of a label that gravity contradicts (blocks.FAR_OFF_DEG)
 OFF_DEG = 6.0  # of a turn's end by a gyro not yet calibrated: a few percent of a half turn
-ORDERS = 48  # signed permutations
 BANDS_DPS = (1.0, 4.0)  # widths over which a dead band bends the rates beyond it
 TIMES = (1.0, 10.0)  # the usual width of a dead band: no data sheet gives one
 USUAL_DEG = 0.25  # of a move from rest to rest, beside white noise
@@ -157,28 +155,17 @@ def swapped(sessions, nominal):
                           for times in wrong_scale.RANGES)], key=np.sum)
     if plain.mean() < WRONG_DEG:
         return None
-    best = None
-    for order in itertools.permutations(range(3)):
-        for signs in itertools.product((1.0, -1.0), repeat=3):
-            matrix = np.zeros((3, 3))
-            matrix[range(3), order] = signs
-            off = np.array([t.integrated(matrix).off() for t in found])
-            if best is None or off.mean() < best[0].mean():
-                best = off, matrix
-    score = order_nats(best[0], plain)
+    off, matrix = min(((np.array([t.integrated(one).off() for t in found]), one)
+                       for one in axis_order.SIGNED), key=lambda pair: pair[0].mean())
+    score = order_nats(off, plain)
     if not present(score):
         return None
-    read = best[1].T  # what register i carries: true = matrix · read
-    value = {}
-    for i in range(3):
-        source = int(np.abs(read[i]).argmax())
-        signed = int(read[i, source]) * (source + 1)
-        if signed != i + 1:
-            value["xyz"[i]] = signed
+    read = matrix.T  # what register i carries: true = matrix · read
+    value = axis_order.sources(read)
     return Finding("axis_swap", "gyro", sorted(value), value, "axis", score, "orientation",
                    "the gyro's axes are swapped or inverted against the accelerometer's",
                    {k: (v, v) for k, v in value.items()},
-                   share=axis_order.explained(plain, best[0]), number=len(plain),
+                   share=axis_order.explained(plain, off), number=len(plain),
                    read=read)
 
 
@@ -190,4 +177,4 @@ def order_nats(off, plain):
         return float((-0.5 * (degrees / OFF_DEG) ** 2
                       - np.log(2.0 * np.pi * np.radians(OFF_DEG) ** 2)).sum())
     anywhere = -len(off) * np.log(4.0 * np.pi)
-    return likelihood(off) - max(likelihood(plain), anywhere) - np.log(ORDERS)
+    return likelihood(off) - max(likelihood(plain), anywhere) - np.log(len(axis_order.SIGNED))

@@ -1,6 +1,6 @@
 """Axes of the accelerometer that are swapped or inverted against the labels of the faces."""
-import itertools
 import math
+from itertools import permutations, product
 
 import numpy as np
 
@@ -11,7 +11,9 @@ from .detection import Finding, present
 # g, standard deviation of a reading from what an ideal part in that pose has: 80 mg of offset, 3 %
 # of scale [MPU-6000 PS rev 3.4, table 6.2], and a degree or two of tilt.
 OFF_G = 0.1
-ORDERS = 48  # signed permutations: 3! orders, 2^3 signs
+# Signed permutations, (3, 3) each: 3! orders, 2^3 signs.
+SIGNED = [np.diag(signs) @ np.eye(3)[list(order)] for order in permutations(range(3))
+          for signs in product((1.0, -1.0), repeat=3)]
 
 
 def swapped(sessions):
@@ -31,18 +33,13 @@ def swapped(sessions):
     means, axes = np.array(means), np.array(axes)
     matrix = np.linalg.lstsq(np.hstack([axes, np.ones((len(axes), 1))]), means,
                              rcond=None)[0][:3].T  # measured = matrix · true
-    best = nearest_permutation(matrix)
+    best = nearest(matrix)
     if (best == np.eye(3)).all():
         return []
     score = order_nats(means, axes, best)
     if not present(score):
         return []
-    value = {}
-    for i in range(3):
-        source = int(np.abs(best[i]).argmax())
-        signed = int(best[i, source]) * (source + 1)
-        if signed != i + 1:
-            value["xyz"[i]] = signed
+    value = sources(best)
     return [Finding("axis_swap", "accel", sorted(value), value, "axis", score, "orientation",
                     "axes are swapped or inverted against the labels",
                     {k: (v, v) for k, v in value.items()},
@@ -64,17 +61,21 @@ def order_nats(means, axes, order):
         axes @ order.T, axes, axes @ free)]
     named, plain, any_matrix = (-0.5 * one / OFF_G ** 2 for one in left)
     nameless = max(plain, any_matrix - 4.5 * math.log(means.size))
-    return named - math.log(ORDERS) - nameless
+    return named - math.log(len(SIGNED)) - nameless
 
 
-def nearest_permutation(matrix):
+def nearest(matrix):
     """The signed permutation (3, 3) nearest to a matrix."""
-    best = None
-    for order in itertools.permutations(range(3)):
-        total = sum(abs(matrix[i, order[i]]) for i in range(3))
-        if best is None or total > best[0]:
-            signed = np.zeros((3, 3))
-            for i in range(3):
-                signed[i, order[i]] = np.sign(matrix[i, order[i]]) or 1.0
-            best = total, signed
-    return best[1]
+    return max(SIGNED, key=lambda signed: (signed * matrix).sum())
+
+
+def sources(order):
+    """{axis: number of the axis that it reads, from 1, with its sign} of a signed permutation,
+    without those that read their own."""
+    found = {}
+    for i, row in enumerate(order):
+        source = int(np.abs(row).argmax())
+        signed = int(row[source]) * (source + 1)
+        if signed != i + 1:
+            found["xyz"[i]] = signed
+    return found

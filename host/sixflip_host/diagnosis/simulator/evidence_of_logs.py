@@ -11,7 +11,8 @@ import numpy as np
 
 from sixflip import STANDARD_G
 
-from .hypotheses import BIAS, DEAD, DEG, DELAY_S, FREE, SHAPE, SIGNED, SMOOTH_S2
+from ..detect import axis_order
+from .hypotheses import BIAS, DEAD, DEG, DELAY_S, FREE, SHAPE, SMOOTH_S2
 
 ROUNDS = 4  # of the noise of each channel: more change the evidence by some thousandths of a nat
 LEAST_LEFT = 1e-9  # of a variance, (m/s2)2 or (rad/s)2: a simulator without noise has none
@@ -75,7 +76,7 @@ def candidates(hypothesis, measured, kind, live):
     out = [(np.eye(3), unit) for unit in (units if hypothesis.name else units[:1])]
     if hypothesis.name:
         size = np.linalg.norm(free, axis=1)
-        near = max(SIGNED, key=lambda s: (s * free / np.maximum(size, 1e-9)[:, None]).sum())
+        near = axis_order.nearest(free / np.maximum(size, 1e-9)[:, None])
         dead = live & (size < DEAD * np.median(size[live]))
         if dead.any():
             near = np.where(dead[:, None], 0.0, near)

@@ -6,7 +6,6 @@ vertical; E, the bias and c have priors of their physical size. The nameless one
 own reading with every signal beside it, each with free coefficients.
 """
 from dataclasses import dataclass
-from itertools import permutations, product
 
 import numpy as np
 
@@ -29,8 +28,6 @@ OWN = {"accel": {"celsius": 0.03, "fading": 0.3, "line": 0.15, "pairs": 0.15, "f
        "gyro": {"celsius": 0.017, "fading": 0.017, "line": 0.017, "pairs": 0.006,
                 "force": 0.006}}
 FADES_S = (30.0, 120.0)  # time constants of what fades: of a minute's log, and of warming up
-SIGNED = [np.eye(3)[list(p)] * np.array(s)[:, None]
-          for p in permutations(range(3)) for s in product((1.0, -1.0), repeat=3)]
 DEG = 180.0 / np.pi
 
 
