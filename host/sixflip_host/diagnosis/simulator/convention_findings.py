@@ -98,14 +98,23 @@ def described(name, kind, fit, probability, nats, live):
         return finding(name, kind, probability, nats, "its %s says nothing of the motion" %
                        " and ".join(dead), value=dict.fromkeys(dead, 0.0), unit="1")
     if name.endswith("_axes"):
-        rows = ", ".join("%s = %s" % (a, signed(row)) for a, row in zip("xyz", fit.axes))
-        return finding(name, kind, probability, nats, "its axes are the sensor's so: " + rows,
-                       value={a: signed(row) for a, row in zip("xyz", fit.axes)}, unit="axis")
+        return other_axes(name, kind, probability, nats, fit.axes)
     if name.endswith("_unit"):
-        return finding(name, kind, probability, nats, "multiply by %.5g: %s" % (
-            1.0 / fit.unit, unit_words(kind, fit.unit)),
-            value={"factor": float(fit.unit)}, unit="1")
+        return other_unit(kind, probability, nats, fit.unit)
     return finding(name, kind, probability, nats)
+
+
+def other_axes(name, sensor, probability, nats, axes):
+    """The Convention of a sensor that reads along these axes (3, 3) of the real one's."""
+    value = {a: signed(row) for a, row in zip("xyz", axes)}
+    return finding(name, sensor, probability, nats, "its axes are the sensor's so: " + ", ".join(
+        "%s = %s" % pair for pair in value.items()), value=value, unit="axis")
+
+
+def other_unit(kind, probability, nats, unit):
+    """The Convention of a sensor that reads in another unit, of which so many are one."""
+    return finding(kind + "_unit", kind, probability, nats, "multiply by %.5g: %s" % (
+        1.0 / unit, unit_words(kind, unit)), value={"factor": float(unit)}, unit="1")
 
 
 def signed(row):

@@ -62,10 +62,8 @@ def conventions_of(real, sim):
     found = []
     for unit, chance in ((1.0 / STANDARD_G, small), (STANDARD_G, large)):
         if chance > conventions.CERTAIN:
-            found.append(convention_findings.finding(
-                "accel_unit", "accel", chance, -np.log(max(1.0 - chance, 1e-300)),
-                "multiply by %.5g: %s" % (1.0 / unit, convention_findings.unit_words(
-                    "accel", unit)), value={"factor": unit}, unit="1"))
+            found.append(convention_findings.other_unit(
+                "accel", chance, -np.log(max(1.0 - chance, 1e-300)), unit))
     ups = sim.rest_means(sim.force)
     ups = ups / np.maximum(np.linalg.norm(ups, axis=1), 1e-12)[:, None]
     ways = directions.moves(sim)
@@ -154,15 +152,7 @@ def unit_by_size(real, sim):
     total = sum(np.exp(v - top[0]) for v, _ in scored)
     if top[1] == 1.0 or 1.0 / total < conventions.CERTAIN:
         return []
-    return [gyro_unit(top[1], 1.0 / total, top[0] - scored[0][0])]
-
-
-def gyro_unit(unit, probability, nats):
-    """The Convention of a gyro that reads in another unit."""
-    return convention_findings.finding(
-        "gyro_unit", "gyro", probability, nats, "multiply by %.5g: %s" % (
-            1.0 / unit, convention_findings.unit_words("gyro", unit)),
-        value={"factor": unit}, unit="1")
+    return [convention_findings.other_unit("gyro", 1.0 / total, top[0] - scored[0][0], top[1])]
 
 
 def names_of(reading):
@@ -218,13 +208,10 @@ def judged(tried):
 def found_as(name, reading, probability, nats):
     """The Convention of a name that a Reading has."""
     if name == "gyro_unit":
-        return gyro_unit(reading.gyro_unit, probability, nats)
+        return convention_findings.other_unit("gyro", probability, nats, reading.gyro_unit)
     sensor = "gyro" if name in ("world_frame_rates", "gyro_axes") else \
         "device" if name == "both_axes" else "accel"
     if not name.endswith("_axes"):
         return convention_findings.finding(name, sensor, probability, nats)
-    axes = reading.gyro if name == "gyro_axes" else reading.accel
-    value = {a: convention_findings.signed(row) for a, row in zip("xyz", axes)}
-    return convention_findings.finding(
-        name, sensor, probability, nats, "its axes are the sensor's so: " + ", ".join(
-            "%s = %s" % pair for pair in value.items()), value=value, unit="axis")
+    return convention_findings.other_axes(
+        name, sensor, probability, nats, reading.gyro if name == "gyro_axes" else reading.accel)
