@@ -2,7 +2,11 @@
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy import special
 
+# Probability from which on a convention is named: whoever reads it changes a simulator, so that
+# one wrong name in a hundred is the most that is allowed.
+CERTAIN = 0.99
 WHO = {"accel": "accelerometer", "gyro": "gyro"}
 WORDS = {
     "no_gravity": "outputs acceleration without gravity",
@@ -69,6 +73,25 @@ def one_of(sensor, candidates, probability, nats):
     words = "%s shows one of: %s; these logs cannot tell which" % (who, ", ".join(
         n.replace("_", " ") for n in known)) if known else "%s %s" % (who, WORDS["unknown"])
     return Convention("unknown", sensor, probability, nats, words, one_of=tuple(known))
+
+
+def told(named, logs, possible, sensor, described):
+    """[Convention] of the likeliest of several hypotheses: what each says the simulator does
+    otherwise (named, () is healthy), their log probabilities (n,). Where no name is certain, one
+    of sensor's that may be any of those of hypotheses with more than the probability possible;
+    described: of (name, probability, nats over the healthy one)."""
+    weights = special.softmax(logs)
+    nats = float(logs.max() - max(v for names, v in zip(named, logs) if not names))
+    found = []
+    for name in named[int(logs.argmax())]:
+        probability = float(sum(w for names, w in zip(named, weights) if name in names))
+        if probability >= CERTAIN:
+            found.append(described(name, probability, nats))
+    quiet = float(sum(w for names, w in zip(named, weights) if not names))
+    if named[int(logs.argmax())] and not found and quiet < 1.0 - CERTAIN:
+        candidates = sorted({n for names, w in zip(named, weights) if w > possible for n in names})
+        found.append(one_of(sensor, candidates, 1.0 - quiet, nats))
+    return found
 
 
 def finding(name, sensor, probability, nats, set_to="", **more):

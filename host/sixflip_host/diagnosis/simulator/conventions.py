@@ -10,9 +10,6 @@ from . import convention_findings, evidence_of_logs, hypotheses, pairing, single
 # Before looking: nine simulators in ten are right about each sensor, and every single thing that
 # public reports name is one in some fifty of them.
 PRIOR_HEALTHY, PRIOR_EACH, PRIOR_NAMELESS = 0.9, 0.02, 0.005
-# Probability from which on a convention is named: whoever reads it changes a simulator, so that
-# one wrong name in a hundred is the most that is allowed.
-CERTAIN = 0.99
 # Of a factor from 1 that is a wrong time step: rates that are mistaken for each other, 50, 60, 100
 # and 120 Hz, are 1.2 apart and more; by less a scale is wrong, or gravity.
 LEAST_STEP = 0.1
@@ -22,6 +19,7 @@ DELAY_ROUNDS = 4  # of two rows, to a hundredth of one
 # Share of the noise expected in the difference of two logs below which they share some of it: logs
 # of their own have all of it, a log that was made of the other's samples next to none.
 SHARED = 0.5
+POSSIBLE = 0.02  # probability of a fit from which on its names are some that it may be
 LATE_SIGMA = 4.0  # standard errors from which on a delay is one: by chance in 1 of 16,000 (normal)
 
 
@@ -168,29 +166,17 @@ def local_noise(left):
 
 def posterior(kind, fits, live):
     """(Conventions, the best Fit)"""
-    logs = np.array([f.log + sum(np.log(prior(n)) for n in names(f, kind, live)) + (
-        np.log(PRIOR_HEALTHY) if not names(f, kind, live) else 0.0) for f in fits])
-    healthy = max(v for f, v in zip(fits, logs) if not names(f, kind, live))
-    weights = np.exp(logs - logs.max())
-    weights /= weights.sum()
-    best = fits[int(logs.argmax())]
-    out = []
-    for name in names(best, kind, live):
-        probability = float(sum(w for f, w in zip(fits, weights)
-                                if name in names(f, kind, live)))
-        if probability >= CERTAIN:
-            out.append(convention_findings.described(name, kind, best, probability,
-                                 float(logs.max() - healthy), live))
-    if names(best, kind, live) and not out:
-        candidates = sorted({n for f, w in zip(fits, weights) if w > 0.02
-                             for n in names(f, kind, live)})
-        quiet = float(sum(w for f, w in zip(fits, weights) if not names(f, kind, live)))
-        if quiet < 1.0 - CERTAIN:
-            out.append(convention_findings.one_of(kind, candidates, 1.0 - quiet,
-                                                  float(logs.max() - healthy)))
-        else:
-            best = max((f for f in fits if not names(f, kind, live)), key=lambda f: f.log)
-    return tuple(out), best
+    named = [names(f, kind, live) for f in fits]
+    logs = np.array([f.log + sum(np.log(prior(n)) for n in each) + (
+        np.log(PRIOR_HEALTHY) if not each else 0.0) for f, each in zip(fits, named)])
+    top = int(logs.argmax())
+    best = fits[top]
+    found = convention_findings.told(
+        named, logs, POSSIBLE, kind, lambda name, probability, nats:
+        convention_findings.described(name, kind, best, probability, nats, live))
+    if named[top] and not found:
+        best = max((f for f, each in zip(fits, named) if not each), key=lambda f: f.log)
+    return tuple(found), best
 
 
 def prior(name):

@@ -88,7 +88,7 @@ def under_noise(values, moving, rests):
             best = nats[first], k, first
     nats, k, first = best
     ways = sum(range(2, LONGEST + 1))
-    sure = conventions.CERTAIN / (1.0 - conventions.CERTAIN)
+    sure = convention_findings.CERTAIN / (1.0 - convention_findings.CERTAIN)
     if nats < np.log(ways * (1.0 - conventions.PRIOR_EACH) / conventions.PRIOR_EACH * sure):
         return everywhere
     starts = np.arange(n) % k == first

@@ -11,7 +11,7 @@ from .parameters import DEG, MG, compared
 SETTING = 0.2
 ANY = 2.0  # natural logarithm, of a noise that was set to anything: a factor of seven
 # Probability from which on a noise is said to be the density's number. Less than elsewhere
-# (conventions.CERTAIN), since it is said only where the densities differ anyhow.
+# (convention_findings.CERTAIN), since it is said only where the densities differ anyhow.
 LIKELY = 0.95
 # Times its noise, a step in which noise is not told any more: the differences of neighbouring
 # samples are then mostly 0 or a whole step. Noise below DROWNED of a step hardly ever crosses one.
@@ -63,10 +63,8 @@ def density_convention(kind, real, sim, rate_hz):
              "another": (0.0, ANY, conventions.PRIOR_NAMELESS)}
     logs = {n: np.log(p) - np.log(s) - 0.5 * ((ratio - m) / s) ** 2
             for n, (m, s, p) in means.items()}
-    top = max(logs.values())
-    total = sum(np.exp(v - top) for v in logs.values())
-    shares = {n: float(np.exp(v - top) / total) for n, v in logs.items()}
-    probability = shares["too small"] + shares["too large"]
+    shares = odds.shares(logs)
+    probability = sum(shares.get(n, 0.0) for n in ("too small", "too large"))
     if probability < LIKELY:
         return []
     factor, half_of_90 = float(np.exp(ratio)), odds.Z_90 * sigma

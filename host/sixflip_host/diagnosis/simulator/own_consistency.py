@@ -10,6 +10,7 @@ import numpy as np
 
 from sixflip import STANDARD_G
 
+from .. import odds
 from ..detect.axis_order import SIGNED
 from . import convention_findings, conventions, traces
 from . import gravity_directions as directions
@@ -48,20 +49,20 @@ def conventions_of(real, sim):
                     "against another motion" % sim.name] + unseen
     norms = np.linalg.norm(sim.rest_means(sim.force), axis=1) / sim.g
     chances, eye = by_norm(norms, moved_ratio(real, sim)), np.eye(3)
-    none, small, large = (chances[one] for one in (NONE, 1.0 / STANDARD_G, STANDARD_G))
+    none, small, large = (chances.get(one, 0.0) for one in (NONE, 1.0 / STANDARD_G, STANDARD_G))
     nothing = convention_findings.finding("no_gravity", "accel", none,
                                           -np.log(max(1.0 - none, 1e-300)))
     axes = ["axes and frame of %s: without gravity a log of another motion does not show them"
             % sim.name]
-    if none > conventions.CERTAIN:
+    if none > convention_findings.CERTAIN:
         return [nothing] + unit_by_size(real, sim), unseen + axes
-    if none + small > conventions.CERTAIN > small:
+    if none + small > convention_findings.CERTAIN > small:
         return [convention_findings.one_of("accel", ["accel_unit", "no_gravity"], none + small,
                                            -np.log(max(1.0 - none - small, 1e-300)))], \
             unseen + axes
     found = []
     for unit, chance in ((1.0 / STANDARD_G, small), (STANDARD_G, large)):
-        if chance > conventions.CERTAIN:
+        if chance > convention_findings.CERTAIN:
             found.append(convention_findings.other_unit(
                 "accel", chance, -np.log(max(1.0 - chance, 1e-300)), unit))
     ups = sim.rest_means(sim.force)
@@ -111,13 +112,11 @@ def by_norm(norms, moved=None):
     def by_motion(unit):
         return 0.0 if moved is None else -0.5 * (np.log(moved / unit) / RATIO_SIGMA) ** 2
     each = np.log(conventions.PRIOR_EACH)
-    logs = {1.0: log(1.0) + by_motion(1.0) + np.log(conventions.PRIOR_HEALTHY),
-            NONE: log(0.0) + by_motion(1.0) + each,
-            1.0 / STANDARD_G: log(1.0 / STANDARD_G) + by_motion(1.0 / STANDARD_G) + each,
-            STANDARD_G: log(STANDARD_G) + by_motion(STANDARD_G) + each}
-    top = max(logs.values())
-    total = sum(np.exp(v - top) for v in logs.values())
-    return {one: float(np.exp(v - top) / total) for one, v in logs.items()}
+    return odds.shares({
+        1.0: log(1.0) + by_motion(1.0) + np.log(conventions.PRIOR_HEALTHY),
+        NONE: log(0.0) + by_motion(1.0) + each,
+        1.0 / STANDARD_G: log(1.0 / STANDARD_G) + by_motion(1.0 / STANDARD_G) + each,
+        STANDARD_G: log(STANDARD_G) + by_motion(STANDARD_G) + each})
 
 
 def moved_ratio(real, sim):
@@ -145,14 +144,12 @@ def units_of(real, sim):
 
 def unit_by_size(real, sim):
     """The gyro's unit where nothing else says it."""
-    logs = units_of(real, sim)
-    scored = [(v + np.log(conventions.PRIOR_HEALTHY if u == 1.0 else conventions.PRIOR_EACH), u)
-              for v, u in logs]
-    top = max(scored)
-    total = sum(np.exp(v - top[0]) for v, _ in scored)
-    if top[1] == 1.0 or 1.0 / total < conventions.CERTAIN:
+    scored = {u: v + np.log(conventions.PRIOR_HEALTHY if u == 1.0 else conventions.PRIOR_EACH)
+              for v, u in units_of(real, sim)}
+    unit, chance = max(odds.shares(scored).items(), key=lambda pair: pair[1])
+    if unit == 1.0 or chance < convention_findings.CERTAIN:
         return []
-    return [convention_findings.other_unit("gyro", 1.0 / total, top[0] - scored[0][0], top[1])]
+    return [convention_findings.other_unit("gyro", chance, scored[unit] - scored[1.0], unit)]
 
 
 def names_of(reading):
@@ -188,21 +185,10 @@ def judged(tried):
     """[Convention] of the most probable Reading; tried: [(Reading, log likelihood), ...]."""
     named = [names_of(reading) for reading, _ in tried]
     logs = np.array([log + log_prior(names) for (_, log), names in zip(tried, named)])
-    weights = np.exp(logs - logs.max())
-    weights /= weights.sum()
-    top = int(logs.argmax())
-    best = tried[top][0]
-    nats = float(logs.max() - max(v for names, v in zip(named, logs) if not names))
-    out = []
-    for name in named[top]:
-        probability = float(sum(w for names, w in zip(named, weights) if name in names))
-        if probability >= conventions.CERTAIN:
-            out.append(found_as(name, best, probability, nats))
-    quiet = float(sum(w for names, w in zip(named, weights) if not names))
-    if named[top] and not out and quiet < 1.0 - conventions.CERTAIN:
-        candidates = sorted({n for names, w in zip(named, weights) if w > POSSIBLE for n in names})
-        out.append(convention_findings.one_of("device", candidates, 1.0 - quiet, nats))
-    return out
+    best = tried[int(logs.argmax())][0]
+    return convention_findings.told(
+        named, logs, POSSIBLE, "device",
+        lambda name, probability, nats: found_as(name, best, probability, nats))
 
 
 def found_as(name, reading, probability, nats):

@@ -11,7 +11,7 @@ import numpy as np
 from sixflip import STANDARD_G
 
 from .. import odds
-from . import convention_findings, conventions, single_log, traces
+from . import convention_findings, single_log, traces
 
 # Some thirty numbers are compared: at this many standard errors one log pair in 500 shows a
 # difference that is none (Bonferroni, normal).
@@ -237,7 +237,7 @@ def bias_sign(parameters):
         if turned and equal and len(turned) == sum(p.differs for p in own):
             nats = 0.5 * sum((p.difference / s) ** 2 for p, s in zip(own, sigma))
             found.append(convention_findings.finding(
-                "bias_sign", kind, conventions.CERTAIN, nats, "turn its sign on " +
+                "bias_sign", kind, convention_findings.CERTAIN, nats, "turn its sign on " +
                 " and ".join(p.axis for p in turned), value={p.axis: p.real for p in turned},
                 unit=own[0].unit, interval_90={p.axis: p.real_interval for p in turned}))
     return found
