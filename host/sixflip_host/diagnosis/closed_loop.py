@@ -21,7 +21,7 @@ from ..capture.capture_file import Capture
 from ..experiment import attitude_fit, blocks, nominal_rows
 from ..experiment.session_rows import body_to_table
 from ..simulation import replica
-from . import coefficient_fits, effect_estimates
+from . import effect_estimates
 
 # s, tried of a session's own warming: GAP has 60-300 s, and some octaves to both sides.
 TAUS_S = (30.0, 60.0, 120.0, 200.0, 300.0, 400.0, 600.0, 1000.0, 3000.0)
@@ -172,19 +172,14 @@ def close(gap, reference_c):
     """Loop of a SensorGap, or None where there is nothing to add."""
     if not gap.chosen:
         return None
-    columns = np.concatenate([c.columns for c in gap.chosen])
-    prior = np.concatenate([c.prior for c in gap.chosen])
-    fits = coefficient_fits.fits(gap.data, columns, prior)
     sums, twin = np.zeros(4), None
     for held, unit in enumerate(gap.units[:len(gap.parts)]):
-        others = fits[:held] + fits[held + 1:] or fits
-        theta = coefficient_fits.coefficients(others, prior)[0][0]
-        added, twin = _session(gap, held, unit, specs(gap, theta, reference_c))
+        added, twin = _session(gap, held, unit, specs(gap, gap.coefficients(held), reference_c))
         sums += added
     gap_square = sums[0] - sums[2]
     return Loop(*(float(np.sqrt(v / sums[3])) for v in sums[:3]),
                 float((sums[0] - sums[1]) / gap_square) if gap_square > 0.1 * sums[2] else None,
-                specs(gap, coefficient_fits.coefficients(fits, prior)[0][0], reference_c), twin)
+                specs(gap, gap.coefficients(), reference_c), twin)
 
 
 def _session(gap, held, unit, effects):
@@ -210,12 +205,8 @@ def _session(gap, held, unit, effects):
 def uncovered(gap, session, unit, nominal):
     """NominalSensor whose directions of gravity are those of the readings without what the causes
     add to them."""
-    columns = np.concatenate([c.columns for c in gap.chosen])
-    prior = np.concatenate([c.prior for c in gap.chosen])
-    theta = coefficient_fits.coefficients(
-        coefficient_fits.fits(gap.data, columns, prior), prior)[0][0]
-    raw = np.hstack([d.columns for d in unit.designs])[:, columns]
-    felt = nominal.corrected(session.accel) - (raw @ theta).reshape(-1, 3) * 1e-3
+    raw = np.hstack([d.columns for d in unit.designs])[:, gap.shared.index]
+    felt = nominal.corrected(session.accel) - (raw @ gap.coefficients()).reshape(-1, 3) * 1e-3
     up = nominal.up.copy()
     for place in np.unique(session.placement):
         moved = felt[session.placement == place].mean(axis=0)

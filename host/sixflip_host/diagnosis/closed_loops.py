@@ -15,7 +15,7 @@ from sixflip_sim.effects.moment import Moment
 
 from .. import progress
 from ..experiment import inertial_fit, noise_arrays, turns
-from . import closed_loop, coefficient_fits, moves_fit
+from . import closed_loop, moves_fit
 from .closed_loop import Loop
 
 ROUNDS = 3  # of a linear correction that is off by its square each time
@@ -47,13 +47,9 @@ def of_turns(gap, reference_c):
     that are made of rates (a dead band is made of counts)."""
     if not gap.chosen or any(form.effect == "dead_band" for form in gap.chosen):
         return None
-    columns = np.concatenate([c.columns for c in gap.chosen])
-    prior = np.concatenate([c.prior for c in gap.chosen])
-    fits = coefficient_fits.fits(gap.data, columns, prior)
     before = after = floor = number = 0.0
     for held, unit in enumerate(gap.units):
-        others = fits[:held] + fits[held + 1:] or fits
-        theta = coefficient_fits.coefficients(others, prior)[0][0]
+        theta = gap.coefficients(held)
         motion = [consistent(t) for t in unit.turns]
         squares = []
         for effects in ([], closed_loop.specs(gap, theta, reference_c)):
@@ -65,8 +61,7 @@ def of_turns(gap, reference_c):
     shown = before - floor
     return Loop(*(float(np.sqrt(v / number)) for v in (before, after, floor)),
                 float((before - after) / shown) if shown > 0.1 * floor else None,
-                closed_loop.specs(gap, coefficient_fits.coefficients(fits, prior)[0][0],
-                                  reference_c))
+                closed_loop.specs(gap, gap.coefficients(), reference_c))
 
 
 def consistent(turn):

@@ -36,13 +36,13 @@ class Fit:
     gram: np.ndarray
 
 
-def fit(unit, statistics, columns, prior):
-    """Fit of columns (k,) with the standard deviations prior (k,) of their coefficients."""
+def fit(unit, statistics, shared):
+    """Fit of elimination.Columns (k,)."""
     quadratic, projections = statistics
-    gram, inner = unit.gram.of(columns), projections[:, columns]
+    gram, inner = unit.gram.of(shared.index), projections[:, shared.index]
     course = -0.5 * quadratic - unit.logdet[:, None]
-    if len(columns):
-        full = gram + np.diag(1.0 / prior ** 2)
+    if len(shared):
+        full = gram + np.diag(1.0 / shared.prior ** 2)
         solved = np.linalg.solve(full, inner)
         course = course + 0.5 * (inner * solved).sum(axis=1)
         course = course - 0.5 * np.linalg.slogdet(full)[1][:, None]
@@ -50,14 +50,14 @@ def fit(unit, statistics, columns, prior):
     return Fit(index, course, inner[index, :, np.arange(quadratic.shape[1])], gram[index])
 
 
-def fits(data, columns, prior):
+def fits(data, shared):
     """Fit of every unit."""
-    return [fit(u, s, columns, prior) for u, s in zip(data.units, data.statistics)]
+    return [fit(u, s, shared) for u, s in zip(data.units, data.statistics)]
 
 
-def coefficients(found, prior):
-    """(theta (R, k), V (R, k, k)) of several Fits together."""
-    total = sum(f.gram for f in found) + np.diag(1.0 / prior ** 2)
+def coefficients(found, shared):
+    """(theta (R, k), V (R, k, k)) of several Fits of these Columns together."""
+    total = sum(f.gram for f in found) + np.diag(1.0 / shared.prior ** 2)
     covariance = np.linalg.inv(total)
     theta = np.einsum("rij,rj->ri", covariance, sum(f.inner for f in found))
     return theta, covariance

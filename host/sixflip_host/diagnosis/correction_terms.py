@@ -16,7 +16,7 @@ from sixflip.record.record import following
 from .. import record_terms
 from ..calibrate import term_words
 from ..errors import CheckFailed
-from . import coefficient_fits, term_gain
+from . import coefficient_fits, hypotheses, term_gain
 
 TERMS = {("accel", "thermal_bias"): "accel_thermal_bias",
          ("gyro", "thermal_bias"): "gyro_thermal_bias",
@@ -184,20 +184,19 @@ def fitted(gap, terms, data, diagnosis):
     named = {id(c) for term in terms for c in term.cause.chosen}
     chosen = [c for term in terms for c in candidates[term]]
     for candidate in gap.chosen:
-        taken = np.concatenate([c.columns for c in chosen])
+        taken = hypotheses.columns_of(chosen).index
         if id(candidate) not in named and not np.isin(candidate.columns, taken).any():
             chosen.append(candidate)
-    columns = np.concatenate([c.columns for c in chosen])
-    prior = np.concatenate([c.prior for c in chosen])
+    shared = hypotheses.columns_of(chosen)
     theta, covariance = coefficient_fits.coefficients(
-        coefficient_fits.fits(gap.data, columns, prior), prior)
-    fits = coefficient_fits.fits(data, columns, prior)
+        coefficient_fits.fits(gap.data, shared), shared)
+    fits = coefficient_fits.fits(data, shared)
     between, held = [getattr(u, "between", False) for u in data.units], []
     for place in range(between.count(False)):
         # What lies between the sessions knows of the one held out.
         others = [f for k, f in enumerate(fits) if k != place and not between[k]]
-        held.append(coefficient_fits.coefficients(others, prior)[0][0])
-    return Fit(gap, diagnosis, candidates, columns, theta[0],
+        held.append(coefficient_fits.coefficients(others, shared)[0][0])
+    return Fit(gap, diagnosis, candidates, shared.index, theta[0],
                np.sqrt(np.diag(covariance[0])), held)
 
 

@@ -9,7 +9,7 @@ from sixflip_sim.effects import typical
 from sixflip_sim.effects.library import EFFECTS
 
 from ..experiment import terms
-from . import odds
+from . import hypotheses, odds
 
 SIGNIFICANT = 3.0  # standard deviations at which an axis is said to have the effect
 FORM = 0.05  # of a size, standard deviation: parts do not have the library's very curves
@@ -85,8 +85,7 @@ def effective(cause, gram):
             if power == 1:
                 base.setdefault(key, column)
     plain = np.array(list(base.values()))
-    every = np.concatenate([c.columns for c in cause.chosen])
-    taken = nearest(gram, plain, every)
+    taken = nearest(gram, plain, hypotheses.columns_of(cause.chosen).index)
     size = taken @ cause.theta
     covariance = taken @ cause.covariance @ taken.T
     return dict(zip(base, size)), covariance + np.diag((FORM * size) ** 2)

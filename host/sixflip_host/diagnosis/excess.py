@@ -3,7 +3,7 @@ a cause or with noise that wanders.
 """
 import numpy as np
 
-from . import evidence
+from . import evidence, hypotheses
 from .elimination import NONE
 
 
@@ -18,15 +18,13 @@ def taken(unit, point, private):
 def at(units, statistics, chosen, index):
     """chi2 beyond the degrees of freedom with these Forms, at given points of the grids, each
     unit with sizes of its own."""
-    columns = np.concatenate([c.columns for c in chosen] + [np.zeros(0, dtype=int)])
-    prior = np.concatenate([c.prior for c in chosen] + [np.zeros(0)])
-    total = 0.0
+    shared, total = hypotheses.columns_of(chosen), 0.0
     for unit, (quadratic, projections), point in zip(units, statistics, index):
         total += quadratic[point, 0] - unit.freedom
-        if len(columns):
-            gram = unit.gram.at(point, columns) + np.diag(1.0 / prior ** 2)
-            inner = projections[point][columns, 0]
-            total -= inner @ np.linalg.solve(gram, inner) - (~unit.silent[columns]).sum()
+        if len(shared):
+            gram = unit.gram.at(point, shared.index) + np.diag(1.0 / shared.prior ** 2)
+            inner = projections[point][shared.index, 0]
+            total -= inner @ np.linalg.solve(gram, inner) - (~unit.silent[shared.index]).sum()
     return float(total)
 
 

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import adequacy, coefficient_fits, excess, odds
+from . import adequacy, coefficient_fits, excess, hypotheses, odds
 
 DRAWN = 400  # of noise: their variance is known to 7 %, an interval's length to 4 %
 
@@ -68,9 +68,8 @@ NOTHING = Sums(0.0, 0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
 def of(data, chosen, index, usual, wanders=False):
     """Shrinkage of all sessions, each held out in turn; index: into each unit's grid, the
     likeliest levels of noise; usual: evidence.Levels; wanders: that it is more is named."""
-    columns = np.concatenate([c.columns for c in chosen] + [np.zeros(0, dtype=int)])
-    prior = np.concatenate([c.prior for c in chosen] + [np.zeros(0)])
-    fits = coefficient_fits.fits(data, columns, prior)
+    shared = hypotheses.columns_of(chosen)
+    fits = coefficient_fits.fits(data, shared)
     largest = usual.flicker * (math.inf if wanders else adequacy.TIMES_TYPICAL)
     metrics = excess.usual_levels(data.units, index, usual.flicker)
     total, generator = NOTHING, np.random.default_rng(20190919)
@@ -78,10 +77,10 @@ def of(data, chosen, index, usual, wanders=False):
         if unit.between:
             continue
         foretold = np.zeros(len(unit.z))
-        if len(columns):
+        if len(shared):
             others = fits[:held] + fits[held + 1:] or fits
-            foretold = unit.columns[:, columns] @ coefficient_fits.coefficients(
-                others, prior)[0][0]
+            foretold = unit.columns[:, shared.index] @ coefficient_fits.coefficients(
+                others, shared)[0][0]
         noise = _drawn(unit, fits[held], point, largest, generator,
                        DRAWN if chosen else DRAWN_FLOOR)
         total = total + _sums(unit, metric, foretold, noise)

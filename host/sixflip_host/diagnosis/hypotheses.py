@@ -68,6 +68,11 @@ class Form:
         return self.identity == other.identity
 
 
+def columns_of(forms):
+    """Columns, those that the sessions share, of several Forms one after the other."""
+    return sum((form.shared for form in forms), NONE)
+
+
 def domain(effect):
     """Where a hypothesis shows itself."""
     if effect in FREE:

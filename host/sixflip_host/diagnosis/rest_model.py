@@ -155,7 +155,7 @@ class RestModel:
             certified = self.settings.certified
             parts = halves(self.kind, *gap.parts[0], certified)
             if parts:
-                wanted = np.concatenate([form.columns for form in gap.chosen])
+                wanted = hypotheses.columns_of(gap.chosen).index
                 data = coefficient_fits.data_of([self.unit(*part, certified, wanted)
                                               for part in parts])
                 index = gap.halved_levels(data)

@@ -1,18 +1,19 @@
 """What was found in one sensor at rest, or in its turns, and what can be asked of it."""
 from dataclasses import dataclass, replace
-
-import numpy as np
+from functools import cached_property
 
 from . import (
     adequacy,
     coefficient_fits,
     evidence,
     holdout_gain,
+    hypotheses,
     odds,
     posterior,
     scored_sets,
     wandering,
 )
+from .elimination import NONE
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +82,21 @@ class SensorGap:
     def same_session(self):
         return len(self.parts) == 1
 
+    @cached_property
+    def fits(self):
+        """[coefficient_fits.Fit] of the chosen Forms' columns in each unit."""
+        return coefficient_fits.fits(self.data, self.shared)
+
+    @property
+    def shared(self):
+        """elimination.Columns of the chosen Forms."""
+        return hypotheses.columns_of(self.chosen)
+
+    def coefficients(self, held=None):
+        """(k,) of the chosen Forms' columns, by all units or by those but one that is held out."""
+        others = self.fits if held is None else self.fits[:held] + self.fits[held + 1:]
+        return coefficient_fits.coefficients(others or self.fits, self.shared)[0][0]
+
     @property
     def wanders(self):
         """Whether noise that wanders more than it usually does is among what was found."""
@@ -94,7 +110,7 @@ class SensorGap:
         """Index into each unit's grid: levels that the data shows with all that was found."""
         if data is None or data is self.data:
             return list(self.adequacy.index)
-        fits = coefficient_fits.fits(data, np.zeros(0, dtype=int), np.zeros(0))
+        fits = coefficient_fits.fits(data, NONE)
         return [int(f.index[0]) for f in fits]
 
     def halved_levels(self, data):

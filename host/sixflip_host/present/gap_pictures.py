@@ -2,7 +2,7 @@
 readings, their noise, and which effects look alike. All write a PNG."""
 import numpy as np
 
-from ..diagnosis import aliases, coefficient_fits
+from ..diagnosis import aliases
 from ..experiment import long_rest, signal_measures
 from ..figures import COLOURS, canvas, save
 
@@ -74,13 +74,11 @@ def both(gap, number):
     """(before, after): residuals (n, 3) of one session; the nuisance is that of the fit with
     the causes, the noise's metric left aside (least squares)."""
     unit = gap.units[number]
-    columns = np.concatenate([c.columns for c in gap.chosen] + [np.zeros(0, dtype=int)])
-    prior = np.concatenate([c.prior for c in gap.chosen] + [np.zeros(0)])
+    columns = gap.shared.index
     left = unit.z
     added = np.zeros(len(unit.rows.y))
     if len(columns):
-        fits = coefficient_fits.fits(gap.data, columns, prior)
-        theta = coefficient_fits.coefficients(fits, prior)[0][0]
+        theta = gap.coefficients()
         left = unit.z - unit.columns[:, columns] @ theta
         raw = np.hstack([d.columns for d in unit.designs])[:, columns]
         added = raw @ theta

@@ -94,18 +94,17 @@ def case(seed):
 
 def true(data, chosen, index, without, shrinkage):
     """(share of the gap itself, share by the true floor)."""
-    columns = np.concatenate([f.columns for f in chosen])
-    prior = np.concatenate([f.prior for f in chosen])
-    fits = coefficient_fits.fits(data, columns, prior)
+    shared = hypotheses.columns_of(chosen)
+    fits = coefficient_fits.fits(data, shared)
     gap = left = floor = weight = 0.0
     for held, (unit, plain, point) in enumerate(zip(data.units, without, index)):
         if unit.between:
             continue
         others = fits[:held] + fits[held + 1:]
-        theta = coefficient_fits.coefficients(others, prior)[0][0]
+        theta = coefficient_fits.coefficients(others, shared)[0][0]
         added = unit.z - plain.z
         gap += unit.chi2(added, point)
-        left += unit.chi2(added - unit.columns[:, columns] @ theta, point)
+        left += unit.chi2(added - unit.columns[:, shared.index] @ theta, point)
         floor += unit.chi2(plain.z, point)
         weight += unit.weight(point)
     before = shrinkage.before ** 2

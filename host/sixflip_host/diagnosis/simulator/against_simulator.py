@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...experiment import blocks
-from .. import coefficient_fits, detectability, odds
+from .. import detectability, odds
 from .. import diagnosis as stages
 
 # Standard errors between two sizes from which on they are two effects: two of one size are as far
@@ -73,12 +73,8 @@ def read(captures, paths, settings):
 
 def _known(gap):
     """[(effect, variant, key, coefficient)] of what a SensorGap has with a name."""
-    columns = np.concatenate([c.columns for c in gap.chosen])
-    prior = np.concatenate([c.prior for c in gap.chosen])
-    theta = coefficient_fits.coefficients(
-        coefficient_fits.fits(gap.data, columns, prior), prior)[0][0]
     every = [(d.effect, d.variant, key) for d in gap.units[0].designs for key in d.keys]
-    return [(*every[column], float(t)) for column, t in zip(columns, theta)]
+    return [(*every[column], float(t)) for column, t in zip(gap.shared.index, gap.coefficients())]
 
 
 def _remarks(found):

@@ -15,6 +15,7 @@ from sixflip_sim.effects.moment import Moment
 
 from ...experiment import noise_arrays, terms
 from .. import closed_loop, odds
+from ..hypotheses import columns_of
 from . import conventions, hypotheses, pairing, parameters
 
 # Standard errors within which the share of an effect in the difference is none, so that both logs
@@ -96,7 +97,7 @@ def in_both(diagnosis):
 def _coefficients(gap, cause):
     """[(effect, variant, key, coefficient)] of a cause of a SensorGap."""
     every = [(d.effect, d.variant, key) for d in gap.units[0].designs for key in d.keys]
-    columns = np.concatenate([form.columns for form in cause.chosen])
+    columns = columns_of(cause.chosen).index
     return [(*every[column], float(size)) for column, size in zip(columns, cause.theta)]
 
 
