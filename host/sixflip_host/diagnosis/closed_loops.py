@@ -11,7 +11,6 @@ import numpy as np
 
 from sixflip_sim.effects.library import EFFECTS
 from sixflip_sim.effects.library import make as make_effect
-from sixflip_sim.effects.moment import Moment
 
 from .. import progress
 from ..experiment import inertial_fit, noise_arrays, turns
@@ -76,7 +75,7 @@ def consistent(turn):
 
 def turned(turn, effects):
     """The turn as a gyro with these effects (specs) reads it."""
-    m = Moment(np.exp, np.sin, np.floor, noise_arrays.gauss)
+    m = noise_arrays.moment()
     m.w = tuple(turn.middle.T)
     if turn.temperature is not None:
         m.temperature = turn.temperature

@@ -4,7 +4,6 @@ from dataclasses import replace
 import numpy as np
 
 from sixflip_sim.effects import typical
-from sixflip_sim.effects.moment import Moment
 
 from ..experiment import covariance, linear_model, noise_arrays, nominal_rows, terms, turns
 from . import stray_turns
@@ -30,7 +29,7 @@ def design(name, chosen, reference_c, chip):
     """Design of an effect of the gyro in motion over the rows of all turns."""
     parts = []
     for turn in chosen:
-        m = Moment(np.exp, np.sin, np.floor, noise_arrays.gauss)
+        m = noise_arrays.moment()
         m.w = tuple(turn.middle.T)
         m.temperature = turn.temperature if turn.temperature is not None else m.temperature
         shape = {"reference_c": reference_c} if name == "thermal_scale" else None

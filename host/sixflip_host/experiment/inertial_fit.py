@@ -13,7 +13,6 @@ import numpy as np
 from sixflip import STANDARD_G
 from sixflip_sim.effects import typical
 from sixflip_sim.effects.library import EFFECTS
-from sixflip_sim.effects.moment import Moment
 
 from ..capture.attitude import rotations
 from . import noise_arrays, projection, terms
@@ -122,7 +121,7 @@ def carried(turn):
 def moment(turn):
     """moment.Moment of a turn's samples."""
     _, felt, rate = carried(turn)
-    m = Moment(np.exp, np.sin, np.floor, noise_arrays.gauss)
+    m = noise_arrays.moment()
     m.f, m.w = tuple(felt.T), tuple(rate.T)
     m.w_rate = tuple(np.gradient(rate, turn.t, axis=0).T)
     return m

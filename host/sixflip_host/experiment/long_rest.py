@@ -8,8 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sixflip_sim.effects.moment import Moment
-
 from . import block_measures, noise_arrays
 
 # Rests that lie apart by no more are in one attitude: a robot that stops leans by its suspension
@@ -83,7 +81,7 @@ class LongRest:
 
     def moment(self, lag_s=0.0):
         """moment.Moment of all means, the thermometer lagging behind or not."""
-        m = Moment(np.exp, np.sin, np.floor, noise_arrays.gauss)
+        m = noise_arrays.moment()
         m.t = m.since_move = self.t
         if self.temperature is not None:
             m.temperature, m.temperature_rate = self.lagged(lag_s)

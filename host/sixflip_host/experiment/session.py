@@ -10,7 +10,6 @@ from functools import cached_property
 import numpy as np
 
 from sixflip.poses import faces
-from sixflip_sim.effects.moment import Moment
 
 from ..capture import clock
 from ..capture.capture_file import Capture
@@ -189,7 +188,7 @@ class Session(ReadOnlyArrays):
 
     def moment(self, up, number=0):
         """moment.Moment of all blocks; up (placements, 3): unit vectors against gravity."""
-        m = Moment(np.exp, np.sin, np.floor, noise_arrays.gauss)
+        m = noise_arrays.moment()
         m.t, m.since_move, m.face = self.t, self.since, self.face
         m.temperature = np.full(self.n, USUAL_C) if self.temperature is None else self.temperature
         m.temperature_rate = np.zeros(self.n) if self.temperature is None \

@@ -165,7 +165,7 @@ def test_drift_has_the_allan_floor_asked_for():
     from sixflip_host.experiment import noise_arrays
     floors = []
     for seed in range(8):
-        m = Moment(np.exp, np.sin, np.floor, noise_arrays.gauss)
+        m = noise_arrays.moment()
         m.t = np.arange(0, 20000.0, 1.0)
         x = [0.0, 0.0, 0.0]
         make_one({"effect": "drift", "x": 0.4, "seed": seed}).add(m, x)

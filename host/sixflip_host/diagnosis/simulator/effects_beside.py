@@ -11,7 +11,6 @@ import numpy as np
 from sixflip import STANDARD_G
 from sixflip.poses import faces
 from sixflip_sim.effects.library import EFFECTS
-from sixflip_sim.effects.moment import Moment
 
 from ...experiment import noise_arrays, terms
 from .. import closed_loop, odds
@@ -171,7 +170,7 @@ def _design(kind, name, cause, pair, diagnosis):
 
 def moment(pair):
     """Moment of arrays: what the real log of a Pair says."""
-    m = Moment(np.exp, np.sin, np.floor, noise_arrays.gauss)
+    m = noise_arrays.moment()
     m.t = pair.t
     m.f = tuple(pair.force.T / STANDARD_G)
     m.up = tuple(pair.motion.up.T)
