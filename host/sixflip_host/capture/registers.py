@@ -1,4 +1,5 @@
-"""Columns of counts: steps, a band that reads nothing, bits and columns that stick."""
+"""Columns of counts: what one stands for, steps, a band that reads nothing, bits and columns that
+stick."""
 import numpy as np
 
 from sixflip import RAIL
@@ -8,6 +9,13 @@ FEWEST_SAMPLES = 50
 SPACED = 6  # times the smallest value: as far as the values next to each other are looked at
 LOW_BITS = 6  # bits that noise and motion must have moved
 MOVED = 4  # times a bit's weight that a column must span to have moved it
+
+
+def unit_of_count(meta, sensor):
+    """mg or deg/s of one count of a capture's sensor ("accel", "gyro")."""
+    if sensor == "accel":
+        return 1000.0 / meta["accel_lsb_per_g"]
+    return 1.0 / meta["gyro_lsb_per_dps"]
 
 
 def codes(column):

@@ -8,7 +8,7 @@ import numpy as np
 
 from sixflip.poses import faces
 
-from ..capture.registers import fixed_bits, steps
+from ..capture.registers import fixed_bits, steps, unit_of_count
 
 # s left out at both ends of a rest: where it begins and ends is known to some samples only, and
 # the hand may still be on the box there. Of a protocol's rest it costs one sample in 25.
@@ -63,12 +63,8 @@ def of_runs(capture, runs, rate, t_s, labelled, smooth):
 
 def _sensors(capture):
     """[(name, counts, mg or deg/s a count)] of the sensors that there are."""
-    meta, found = capture.meta, []
-    if capture.accel is not None:
-        found.append(("accel", capture.accel, 1000.0 / meta["accel_lsb_per_g"]))
-    if capture.gyro is not None:
-        found.append(("gyro", capture.gyro, 1.0 / meta["gyro_lsb_per_dps"]))
-    return found
+    return [(sensor, getattr(capture, sensor), unit_of_count(capture.meta, sensor))
+            for sensor in ("accel", "gyro") if getattr(capture, sensor) is not None]
 
 
 def readings(capture, first, end):
@@ -166,9 +162,8 @@ def vibration(capture, first, end):
     out."""
     if not len(first):
         return np.zeros(0)
-    scale = 1000.0 / capture.meta["accel_lsb_per_g"]
     power = np.array([np.diff(capture.accel[a:b].astype(float), axis=0).var(axis=0).sum()
                       / 2.0 for a, b in zip(first, end)])
     quiet = np.quantile(power, QUIETEST)
     excess = np.where(power > STANDS_OUT * quiet, power - quiet, 0.0)
-    return np.sqrt(excess) * scale
+    return np.sqrt(excess) * unit_of_count(capture.meta, "accel")

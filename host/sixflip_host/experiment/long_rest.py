@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..capture.registers import unit_of_count
 from . import block_measures, noise_arrays
 
 # Rests that lie apart by no more are in one attitude: a robot that stops leans by its suspension
@@ -159,8 +160,7 @@ def _measured(sensor, sessions, runs, table, lines):
         session, where = sessions[k], [i for i, one in enumerate(table) if one[0] == k]
         first, end = (np.array([table[i][j] for i in where]) for j in (2, 3))
         counts = getattr(session.capture, sensor)
-        scale = 1000.0 / session.capture.meta["accel_lsb_per_g"] if sensor == "accel" \
-            else 1.0 / session.capture.meta["gyro_lsb_per_dps"]
+        scale = unit_of_count(session.capture.meta, sensor)
         read = counts.astype(float)
         for axis, hertz in [(axis, hz) for name, axis, hz in lines if name == sensor]:
             for a, b in [(a, b) for number, a, b in runs if number == k]:
