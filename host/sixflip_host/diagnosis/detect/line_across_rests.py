@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 from scipy import ndimage
 
+from ...capture.registers import unit_of_count
 from ...experiment.block_measures import EDGE_S
 from .. import odds
 from .line_frequency import HALVES, MEDIAN_ERROR, SLOW_CHANCE, SLOW_SHARE, Line
@@ -108,9 +109,8 @@ def _spectrum(t, x, slowest, fastest):
 
 def _means(session, sensor, axis):
     """(t (n,) s, means (n,) in mg or deg/s, number of the rest (n,), seconds of each rest)."""
-    meta, m = session.capture.meta, max(1, int(session.rate / RATE_HZ))
-    scale = 1000.0 / meta["accel_lsb_per_g"] if sensor == "accel" else \
-        1.0 / meta["gyro_lsb_per_dps"]
+    m = max(1, int(session.rate / RATE_HZ))
+    scale = unit_of_count(session.capture.meta, sensor)
     counts, edge = getattr(session.capture, sensor)[:, axis], int(EDGE_S * session.rate)
     t, x, rest, lengths = [], [], [], []
     last = int(np.searchsorted(session.t_s, session.t_s[0] + LONGEST_S))

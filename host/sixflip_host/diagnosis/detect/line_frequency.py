@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import linalg, ndimage
 
+from ...capture.registers import unit_of_count
 from .. import odds
 
 # Share of the power of short stretches that has to go on in phase over the whole. All of a sine's
@@ -154,14 +155,12 @@ def slow(sessions, sensor, axis):
 
 
 def _slow(session, sensor, axis):
-    meta, m = session.capture.meta, max(1, int(session.rate / SLOW_RATE))
+    m = max(1, int(session.rate / SLOW_RATE))
     x = longest(session, sensor)[:, axis]
     rate, n = session.rate / m, len(x) // m
     if n / rate < SLOW_S:
         return None
-    scale = 1000.0 / meta["accel_lsb_per_g"] if sensor == "accel" else \
-        1.0 / meta["gyro_lsb_per_dps"]
-    x = x[:n * m].reshape(n, m).mean(axis=1) * scale
+    x = x[:n * m].reshape(n, m).mean(axis=1) * unit_of_count(session.capture.meta, sensor)
     u = np.linspace(-1.0, 1.0, n)
     x = x - np.polynomial.polynomial.polyval(u, np.polynomial.polynomial.polyfit(u, x, 3))
     window = np.hanning(n)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage, special
 
-from ...capture.registers import steps
+from ...capture.registers import steps, unit_of_count
 from .. import odds
 from . import line_across_rests, line_frequency, ringing
 from .detection import Finding
@@ -148,9 +148,7 @@ def rests(sessions, sensor):
 def _stretches(sessions, sensor, length, whole=False):
     found = []
     for session in sessions:
-        meta = session.capture.meta
-        scale = 1000.0 / meta["accel_lsb_per_g"] if sensor == "accel" else \
-            1.0 / meta["gyro_lsb_per_dps"]
+        scale = unit_of_count(session.capture.meta, sensor)
         counts = getattr(session.capture, sensor)
         for _, first, end in [(0, 0, len(counts))] if whole else session.runs:
             first, end = first + int(0.1 * session.rate), end - int(0.1 * session.rate)
@@ -177,9 +175,7 @@ def spectrum(stretches, axis):
 
 def step(sessions, sensor, axis):
     """mg or deg/s of the steps that an axis counts in: rounding makes lines of its own."""
-    meta = sessions[0].capture.meta
-    scale = 1000.0 / meta["accel_lsb_per_g"] if sensor == "accel" else \
-        1.0 / meta["gyro_lsb_per_dps"]
+    scale = unit_of_count(sessions[0].capture.meta, sensor)
     return scale * min(int(steps(getattr(s.capture, sensor)[:, [axis]])[0]) for s in sessions)
 
 
