@@ -91,7 +91,8 @@ def move(turn, capture, nominal, course, session, by_hand, white, lag_ms=0.0):
     measured = nominal.corrected(capture.accel[turn.first:turn.last] * scale)
     y = seen.of(1000.0 * (measured - felt)[:, :, None])[:, :, 0]
     m = moment(turn)
-    effects = np.concatenate([spread(name, m) for name in EFFECT_NAMES], axis=2)
+    effects = np.hstack([terms.columns_of(EFFECTS[name]("accel", {}), m, len(felt))[2]
+                         for name in EFFECT_NAMES]).reshape(len(felt), 3, EFFECTS_NUMBER)
     if lag_ms:
         effects[:, :, EFFECTS_NUMBER - 1] = lagging(turn.t, felt, lag_ms)
     own = seen.of(effects)
@@ -168,15 +169,6 @@ def local_priors(by_hand):
     wheels turn the box in it, and the course of the bias."""
     centre, bias = (HAND_CM, BIAS_MG) if by_hand else (WHEELS_CM, STRANGE_BIAS_MG)
     return np.concatenate([[centre] * 3, [bias] * (3 * HATS)])
-
-
-def spread(name, moment):
-    """(n, 3, keys): the effect's terms over the samples of a move, mg."""
-    effect = EFFECTS[name]("accel", {})
-    out = np.zeros((len(moment.f[0]), 3, len(effect.keys)))
-    for key, axis, value in effect.terms(moment):
-        out[:, axis, effect.keys.index(key)] = value
-    return out
 
 
 def lagging(t, felt, lag_ms):

@@ -88,19 +88,21 @@ def is_stranger(name):
 
 def of_terms(name, sensor, moment, n, variant="", only=None, shape=None, chip="mpu6050"):
     """Design of an effect's terms; only: the keys wanted."""
-    effect = EFFECTS[name](sensor, {}, shape)
-    keys, axes, columns = [], [], []
-    for key, axis, value in effect.terms(moment):
-        if only is not None and key not in only:
-            continue
-        column = np.zeros((n, 3))
-        column[:, axis] = value
-        keys.append(key)
-        axes.append(axis)
-        columns.append(column.reshape(-1))
+    keys, axes, columns = columns_of(EFFECTS[name](sensor, {}, shape), moment, n, only)
     size = typical.size(name, chip, sensor)[0]
     prior = 10.0 * (abs(size) if size else 1.0)
-    return Design(name, variant, keys, axes, np.stack(columns, 1), np.full(len(keys), prior))
+    return Design(name, variant, keys, axes, columns, np.full(len(keys), prior))
+
+
+def columns_of(effect, moment, n, only=None):
+    """(keys (k,), axes (k,), columns (3n, k)) of an effect at n moments, rows in the order x y z
+    of each; axes: the first that a coefficient acts on; only: the keys wanted."""
+    found = {}
+    for key, axis, value in effect.terms(moment):
+        if only is None or key in only:
+            found.setdefault(key, (axis, np.zeros((n, 3))))[1][:, axis] += value
+    axes, columns = zip(*found.values())
+    return list(found), axes, np.stack([column.reshape(-1) for column in columns], 1)
 
 
 def corrected(designs, matrix):

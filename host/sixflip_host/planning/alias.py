@@ -11,6 +11,7 @@ import numpy as np
 from sixflip.poses import faces
 from sixflip_sim.effects.library import EFFECTS
 
+from ..experiment import terms
 from ..experiment.projection import NEGLIGIBLE, basis, rank, without
 from ..experiment.session_rows import Rows
 from . import protocols
@@ -26,15 +27,6 @@ GYRO = ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic",
 SHAPES = {"supply": {"volts": 3.4}, "saturation": {"level": 0.95},
           "vibration_rectification": {"vibration_mg": protocols.SHAKE_MG}}
 GYRO_SHAPES = {"saturation": {"level": 50.0}}  # deg/s, below session_rows.FLIP_DPS
-
-
-def effect_columns(effect, moment, n):
-    """(keys (k,), columns (3n, k)) of an effect at n moments, rows in the order x y z of each."""
-    found = {}
-    for key, axis, value in effect.terms(moment):
-        column = found.setdefault(key, np.zeros((n, 3)))
-        column[:, axis] += value
-    return list(found), np.stack([c.reshape(-1) for c in found.values()], 1)
 
 
 def blocks_of(rows, values, mask):
@@ -119,13 +111,13 @@ class PlannedModel:
 
     def _table(self):
         """Two columns a session; poses that lean stand on no table."""
-        _, columns = effect_columns(EFFECTS["table_tilt"](), self.rows.at, self.rows.n)
+        columns = terms.columns_of(EFFECTS["table_tilt"](), self.rows.at, self.rows.n)[2]
         flat = np.repeat(~self.rows.leaning, 3)
         return np.hstack([columns * (flat & np.repeat(self.rows.session == s, 3))[:, None]
                           for s in np.unique(self.rows.session)])
 
     def _box(self):
-        return effect_columns(EFFECTS["box_tilt"](), self.rows.at, self.rows.n)[1]
+        return terms.columns_of(EFFECTS["box_tilt"](), self.rows.at, self.rows.n)[2]
 
     def tilts_of(self, placement):
         """The two small turns of one placement as columns (3n, 2), a unit for a radian."""
@@ -156,7 +148,8 @@ class PlannedModel:
         """(keys, columns) of an effect before projection."""
         shapes = GYRO_SHAPES if self.sensor == "gyro" and name in GYRO_SHAPES else SHAPES
         effect = EFFECTS[name](self.sensor, {}, shapes.get(name))
-        return effect_columns(effect, self.rows.at, self.rows.n)
+        keys, _, columns = terms.columns_of(effect, self.rows.at, self.rows.n)
+        return keys, columns
 
     def signature(self, name):
         """Columns (3n, k) of an effect that the nominal parameters cannot take up; None when

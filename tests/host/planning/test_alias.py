@@ -45,13 +45,13 @@ def test_silent_on_faces(effect, protocol):
 
 def test_constant_rectification_is_silent_and_vertical_is_not():
     from sixflip_host.experiment.projection import without
-    from sixflip_host.planning.alias import effect_columns
+    from sixflip_host.experiment.terms import columns_of
     from sixflip_sim.effects.library import make
     found = design("paper")
     for vertical, silent in ((0, True), (1, False)):
         effect = make({"effect": "vibration_rectification", "vibration_mg": 100,
                        "vertical": vertical})
-        _, columns = effect_columns(effect, found.rows.at, found.rows.n)
+        _, _, columns = columns_of(effect, found.rows.at, found.rows.n)
         left = np.abs(without(found.space, columns)).max()
         assert (left < 1e-12 * np.abs(columns).max()) == silent
 
