@@ -97,13 +97,9 @@ def move(turn, capture, nominal, course, session, by_hand, white, lag_ms=0.0):
         effects[:, :, EFFECTS_NUMBER - 1] = lagging(turn.t, felt, lag_ms)
     own = seen.of(effects)
     edge = own[:, :, :3] @ frame.T * (not flat)
-    memory = np.zeros((len(felt), 3, 3))
-    for i in range(3):
-        memory[:, i, i] = felt[0, i] - felt[:, i]
-    static = seen.held(np.concatenate([_orientation(felt), memory], axis=2))
-    bias = np.zeros((len(felt), 3, 3 * HATS))
-    for i in range(3):
-        bias[:, i, i::3] = course[:, turn.first:turn.last].T
+    # What bends with the attitude, and remembers the one before.
+    static = seen.held(projection.by_axis([*terms.harmonics(felt, "accel"), felt[0] - felt]))
+    bias = projection.by_axis(course[:, turn.first:turn.last])
     strange = seen.of(_of_motion(felt, rate, np.stack(m.w_rate, 1)))
     shared = [own, strange, edge, _habits(seen.n, turn.seconds, flat), static]
     return Move(turn, session, by_hand, white, flat, turn.seconds, turn.seconds / seen.n, y,
@@ -255,21 +251,4 @@ def _of_motion(felt, rate, change):
     w, faster = rate / FAST_DPS, change / FAST_DPS2
     speed = np.linalg.norm(w, axis=1)
     pairs = [w[:, i] * w[:, j] for i in range(3) for j in range(i + 1)]
-    functions = [speed, *w.T, *pairs, *faster.T]
-    out = np.zeros((len(w), 3, 3 * len(functions) + 3))
-    for number, values in enumerate(functions):
-        for axis in range(3):
-            out[:, axis, 3 * number + axis] = values
-    for axis in range(3):
-        out[:, axis, 3 * len(functions) + axis] = felt[:, axis] * speed
-    return out
-
-
-def _orientation(felt):
-    """(n, 3, 36): harmonics of degree 2 and 3 on each axis, mg."""
-    harmonics = terms.harmonics(felt, "accel")
-    out = np.zeros((len(felt), 3, 3 * len(harmonics)))
-    for number, values in enumerate(harmonics):
-        for i in range(3):
-            out[:, i, 3 * number + i] = values
-    return out
+    return projection.by_axis([speed, *w.T, *pairs, *faster.T, felt * speed[:, None]])

@@ -1,4 +1,4 @@
-"""What some columns leave of others: projection, ranks and the alias index.
+"""Columns of functions, and what some columns leave of others: projection, ranks, alias index.
 
 The signature of an effect is its columns (one a coefficient) after the nominal parameters have
 been projected out; an effect without anything left is silent. The alias index A(a|b) =
@@ -25,6 +25,15 @@ def cross(a, b):
     """(3,) of two vectors; numpy's own takes thirty times as long for a single pair."""
     (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
     return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+
+
+def by_axis(functions):
+    """(n, 3, 3k): k functions, each (n,) on all axes or (n, 3) of each axis' own, with a
+    coefficient an axis: those of the first function first."""
+    out = np.zeros((len(functions[0]), 3, len(functions), 3))
+    for number, values in enumerate(functions):
+        out[:, range(3), number, range(3)] = values.reshape(len(values), -1)
+    return out.reshape(len(out), 3, -1)
 
 
 def basis(columns):

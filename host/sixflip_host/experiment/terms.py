@@ -13,6 +13,7 @@ import numpy as np
 from sixflip_sim.effects import typical
 from sixflip_sim.effects.library import EFFECTS
 
+from .projection import by_axis
 from .thermometer import MOVES_C
 
 LAGS_S = (0.0, 15.0, 30.0, 60.0, -30.0)  # GAP: a neighbouring thermometer, 10-60 s
@@ -187,7 +188,7 @@ def remembered(session, m, plain):
         PLAY_G, session.played(PLAY_G))]
     found = []
     for variant, values in forms:
-        columns = np.einsum("ni,ij->nij", values, np.eye(3)).reshape(-1, 3)
+        columns = by_axis([values]).reshape(-1, 3)
         found.append(Design("hysteresis", variant, plain.keys, plain.axes, columns, plain.prior))
     return found
 

@@ -12,7 +12,7 @@ from sixflip.poses import faces
 from sixflip_sim.effects.library import EFFECTS
 
 from ..experiment import terms
-from ..experiment.projection import NEGLIGIBLE, basis, rank, without
+from ..experiment.projection import NEGLIGIBLE, basis, by_axis, rank, without
 from ..experiment.session_rows import Rows
 from . import protocols
 
@@ -27,14 +27,6 @@ GYRO = ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic",
 SHAPES = {"supply": {"volts": 3.4}, "saturation": {"level": 0.95},
           "vibration_rectification": {"vibration_mg": protocols.SHAKE_MG}}
 GYRO_SHAPES = {"saturation": {"level": 50.0}}  # deg/s, below session_rows.FLIP_DPS
-
-
-def blocks_of(rows, values, mask):
-    """Columns (3n, 3): values (n,) into one axis each, where mask holds."""
-    out = np.zeros((rows.n, 3, 3))
-    for i in range(3):
-        out[:, i, i] = values * mask
-    return out.reshape(3 * rows.n, 3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,13 +93,11 @@ class PlannedModel:
 
     def _matrix(self):
         felt = self.rows.at.f if self.sensor == "accel" else self.rows.at.w
-        every = np.ones(self.rows.n)
-        return np.hstack([blocks_of(self.rows, component, every) for component in felt])
+        return by_axis(felt).reshape(3 * self.rows.n, -1)
 
     def _biases(self):
-        every = np.ones(self.rows.n)
-        return np.hstack([blocks_of(self.rows, every, self.rows.session == s)
-                          for s in np.unique(self.rows.session)])
+        return by_axis([self.rows.session == s for s in np.unique(self.rows.session)]).reshape(
+            3 * self.rows.n, -1)
 
     def _table(self):
         """Two columns a session; poses that lean stand on no table."""
@@ -164,6 +154,6 @@ class PlannedModel:
 def even_contrasts(rows):
     """How many residual degrees of freedom say something about the sensor: of any function of
     the face alone, three channels, what the 12 parameters do not take up."""
-    free = np.hstack([blocks_of(rows, np.ones(rows.n), rows.face == face)
-                      for face in range(len(faces.FACES))])
+    free = by_axis([rows.face == face for face in range(len(faces.FACES))]).reshape(
+        3 * rows.n, -1)
     return rank(PlannedModel(rows, certified_box=True, tilt=False).left(free), free)
