@@ -65,6 +65,19 @@ def carried(steps):
     return np.concatenate([np.eye(3)[None], square.reshape(-1, 3, 3)[:n]])
 
 
+def levelled(way, after, before, share):
+    """Attitudes (n, 3, 3) with gravity right at the end, where it is `after` in the body, and
+    `before` in the frame of the attitudes: the correction grows with share (n,), that of the
+    angle turned, as a wrong scale or bias of the gyro makes it."""
+    there = way[-1] @ after
+    off = np.cross(there, before)
+    size = np.linalg.norm(off)
+    if size < 1e-12:
+        return way
+    angle = np.arctan2(size, there @ before)
+    return rotations(np.outer(share, off / size * angle)) @ way
+
+
 def rotations(vectors):
     """Rotation matrices (n, 3, 3) of rotation vectors (n, 3), rad."""
     from scipy.spatial.transform import Rotation  # takes a while to load

@@ -14,7 +14,7 @@ from sixflip import STANDARD_G
 from sixflip_sim.effects import typical
 from sixflip_sim.effects.library import EFFECTS
 
-from ..capture.attitude import rotations
+from ..capture.attitude import levelled
 from . import noise_arrays, projection, terms
 from .turns import Turn
 
@@ -197,13 +197,7 @@ def path(turn):
 def pinned(turn):
     """(n, 3, 3): attitude at each sample since the start, gravity right at both ends."""
     body = np.concatenate([turn.attitude, turn.end[None]])
-    carried = turn.end @ turn.after
-    off = np.cross(carried, turn.before)
-    size = np.linalg.norm(off)
-    if size < 1e-12:
-        return body
-    angle = np.arctan2(size, carried @ turn.before)
-    return rotations(np.outer(path(turn), off / size * angle)) @ body
+    return levelled(body, turn.after, turn.before, path(turn))
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ from sixflip.poses import faces
 
 from ...capture import rests as rest_finder
 from ...capture import rests_by_variance
-from ...capture.attitude import rotation_between, rotations
+from ...capture.attitude import levelled, rotation_between, rotations
 from ...experiment.block_measures import EDGE_S
 
 SHORTEST_REST_S = 0.5  # of a robot that stops between two moves
@@ -21,6 +21,7 @@ WINDOW_S = 0.3  # over which a log is still: shorter than such a stop with its e
 LOUDER, SLOW_DPS = 2.5, 1.5
 COUNT_VARIANCE = 0.25  # counts: a channel that toggles between two of them
 DPS = np.pi / 180.0
+UP = np.array([0.0, 0.0, 1.0])  # of the world
 
 
 @dataclass(frozen=True)
@@ -168,7 +169,7 @@ def motion(trace):
     turn = np.empty((n, 3, 3))
     first, end = trace.rests[0]
     # The first rest says where the world's vertical is; before it time runs backwards.
-    start = rotation_between(ups[0], np.array([0.0, 0.0, 1.0]))
+    start = rotation_between(ups[0], UP)
     turn[first:end] = start
     if first:
         back = chained(np.concatenate([np.eye(3)[None], np.swapaxes(
@@ -180,7 +181,7 @@ def motion(trace):
         turn[first:end] = turn[first]
         way = turn[end - 1] @ chained(np.concatenate([np.eye(3)[None], steps[end:last + 1]]))
         if k + 1 < len(trace.rests):
-            way = levelled(way, ups[k + 1], middle[end - 1:last])
+            way = levelled(way, ups[k + 1], UP, _share_turned(middle[end - 1:last]))
         turn[end - 1:last + 1] = way
     up = turn[:, 2, :]
     moved = trace.force - trace.g * up
@@ -189,19 +190,10 @@ def motion(trace):
     return Motion(turn, up, rate, rate_dot, moved, speed)
 
 
-def levelled(way, up, steps):
-    """way with gravity right at its end: the correction grows with the angle turned, as a wrong
-    scale or bias of the gyro makes it."""
-    z = np.array([0.0, 0.0, 1.0])
-    there = way[-1] @ up
-    off = np.cross(there, z)
-    size = np.linalg.norm(off)
-    if size < 1e-12:
-        return way
-    angle = np.arctan2(size, there[2])
+def _share_turned(steps):
+    """(n + 1,) share of the angle turned so far, by rotation vectors (n, 3)."""
     path = np.concatenate([[0.0], np.cumsum(np.linalg.norm(steps, axis=1))])
-    share = path / path[-1] if path[-1] > 0 else np.linspace(0, 1, len(way))
-    return rotations(np.outer(share, off / size * angle)) @ way
+    return path / path[-1] if path[-1] > 0 else np.linspace(0, 1, len(path))
 
 
 def chained(steps):
