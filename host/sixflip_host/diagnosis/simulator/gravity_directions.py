@@ -2,7 +2,7 @@
 rests have them, and from each rest to the next, as the gyro carries them."""
 import numpy as np
 
-from ...capture.attitude import rotation_between, rotations
+from ...capture.attitude import carried, rotation_between, rotations
 from . import traces
 
 SIGMA = np.radians(4.0)  # of a direction: bias of 60 mg, scale of the gyro 3 % of a half turn
@@ -44,7 +44,7 @@ def carried_log(body, ways, gyro):
     total = 0.0
     matrix = np.linalg.inv(gyro)
     for before, after, steps in ways:
-        turn = traces.chained(rotations(steps @ matrix.T))[-1]
+        turn = carried(rotations(steps @ matrix.T))[-1]
         total += closeness(body[after], turn.T @ body[before])
     return float(total)
 
@@ -102,7 +102,7 @@ def should_turn(ups, ways):
     """rad: how far the gyro says that gravity moves in the sensor in a move, at most."""
     found = [0.0]
     for before, _, steps in ways:
-        turn = traces.chained(rotations(steps))[-1]
+        turn = carried(rotations(steps))[-1]
         found.append(float(np.arccos(np.clip(ups[before] @ (turn.T @ ups[before]), -1.0, 1.0))))
     return max(found)
 

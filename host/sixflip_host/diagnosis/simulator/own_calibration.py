@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...capture.attitude import rotations
+from ...capture.attitude import carried, rotations
 from . import traces
 from .hypotheses import BIAS, SHAPE
 
@@ -126,7 +126,7 @@ def by_carry(trace, rate, ups, tilt):
             true = rate[first:last + 1] @ matrix.T
             dt = np.diff(trace.t[first:last + 1])[:, None]
             middle = 0.5 * (true[1:] + true[:-1])
-            turns = traces.chained(np.concatenate([np.eye(3)[None], rotations(middle * dt)]))
+            turns = carried(rotations(middle * dt))
             raw = 0.5 * (rate[first + 1:last + 1] + rate[first:last]) * dt
             # d(turn) = sum over samples of R(t) dM w dt, in the frame of the start
             spread = np.einsum("nij,nk->ijk", turns[:-1], raw).reshape(3, 9)
@@ -159,6 +159,5 @@ def astray(trace, rate, up, k):
     for every in (1, 2):
         t, w = trace.t[first:last + 1:every], rate[first:last + 1:every]
         steps = 0.5 * (w[1:] + w[:-1]) * np.diff(t)[:, None]
-        ends.append(traces.chained(np.concatenate([np.eye(3)[None], rotations(steps)]))[-1].T
-                    @ up)
+        ends.append(carried(rotations(steps))[-1].T @ up)
     return float(np.linalg.norm(ends[0] - ends[1]))

@@ -11,7 +11,7 @@ from sixflip.poses import faces
 
 from ...capture import rests as rest_finder
 from ...capture import rests_by_variance
-from ...capture.attitude import levelled, rotation_between, rotations
+from ...capture.attitude import carried, levelled, rotation_between, rotations
 from ...experiment.block_measures import EDGE_S
 
 SHORTEST_REST_S = 0.5  # of a robot that stops between two moves
@@ -165,21 +165,19 @@ def motion(trace):
     ups = [_unit(v) for v in trace.rest_means(trace.force)]
     n = len(trace.t)
     middle = 0.5 * (rate[1:] + rate[:-1]) * np.diff(trace.t)[:, None]
-    steps = np.concatenate([np.eye(3)[None], rotations(middle)])
+    steps = rotations(middle)
     turn = np.empty((n, 3, 3))
     first, end = trace.rests[0]
     # The first rest says where the world's vertical is; before it time runs backwards.
     start = rotation_between(ups[0], UP)
     turn[first:end] = start
     if first:
-        back = chained(np.concatenate([np.eye(3)[None], np.swapaxes(
-            steps[1:first + 1], 1, 2)[::-1]]))
-        turn[:first + 1] = (start @ back)[::-1]
+        turn[:first + 1] = (start @ carried(np.swapaxes(steps[:first], 1, 2)[::-1]))[::-1]
     for k in range(len(trace.rests)):
         first, end = trace.rests[k]
         last = trace.rests[k + 1][0] if k + 1 < len(trace.rests) else n - 1
         turn[first:end] = turn[first]
-        way = turn[end - 1] @ chained(np.concatenate([np.eye(3)[None], steps[end:last + 1]]))
+        way = turn[end - 1] @ carried(steps[end - 1:last])
         if k + 1 < len(trace.rests):
             way = levelled(way, ups[k + 1], UP, _share_turned(middle[end - 1:last]))
         turn[end - 1:last + 1] = way
@@ -194,15 +192,6 @@ def _share_turned(steps):
     """(n + 1,) share of the angle turned so far, by rotation vectors (n, 3)."""
     path = np.concatenate([[0.0], np.cumsum(np.linalg.norm(steps, axis=1))])
     return path / path[-1] if path[-1] > 0 else np.linspace(0, 1, len(path))
-
-
-def chained(steps):
-    """(n, 3, 3): the running product of rotations, by doubling."""
-    out, d = np.array(steps), 1
-    while d < len(out):
-        out[d:] = out[:-d] @ out[d:]
-        d *= 2
-    return out
 
 
 def rest_line(trace, values):
