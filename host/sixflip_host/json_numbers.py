@@ -1,4 +1,4 @@
-"""Numbers as JSON can hold them."""
+"""Numbers and their units as JSON has them."""
 
 import math
 
@@ -10,3 +10,15 @@ def finite(value):
     if isinstance(value, (list, tuple)):
         return [finite(one) for one in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def number(value, digits=4):
+    """A finite number with so many significant digits, or None."""
+    if value is None or not math.isfinite(value):
+        return None
+    return float("%.*g" % (digits, value))
+
+
+def spelled(unit):
+    """The library's units in GAP.md's spelling."""
+    return unit.replace("degC", "°C").replace("deg/s", "°/s") if unit else unit

@@ -1,8 +1,7 @@
 """The answer as JSON, in the words and with the keys of GAP.md."""
-import math
-
 from sixflip_sim.effects.drift import FLOOR_OF_KERNEL
 
+from ..json_numbers import number, spelled
 from ..planning import next_capture
 from . import closed_loop, detectability, rest_noise
 from .detect import damage, line_frequency, sample_clock
@@ -11,17 +10,12 @@ from .simulator import simulator_answer
 UNITS = {"accel": "mg", "gyro": "deg/s", "gyro_turns": "deg/s", "accel_motion": "mg"}
 
 
-def spelled(unit):
-    """The library's units in GAP.md's spelling."""
-    return unit.replace("degC", "°C").replace("deg/s", "°/s") if unit else unit
-
-
 def of(diagnosis):
     """dict for json.dumps, no NaN in it."""
     answer = {
         "format": 1, "verdict": diagnosis.verdict, "causes": causes(diagnosis),
         "where": [{"sensor": p.sensor, "axis": p.axis, "domain": p.domain,
-                   "share": number(p.share), "p": float("%.2g" % p.p)}
+                   "share": number(p.share), "p": number(p.p, 2)}
                   for p in diagnosis.where],
         "gap": {kind: _gap(kind, gap) for kind, gap in gaps(diagnosis).items()},
         "unseen": detectability.listed(diagnosis), "next": next_capture.proposed(diagnosis),
@@ -66,13 +60,6 @@ def held_out(diagnosis):
     if any(g.same_session for g in diagnosis.gaps.values()):
         return "same session"
     return "each session by the others"
-
-
-def number(value, digits=4):
-    """A finite number with so many significant digits, or None."""
-    if value is None or not math.isfinite(value):
-        return None
-    return float("%.*g" % (digits, value))
 
 
 def _sizes(values):

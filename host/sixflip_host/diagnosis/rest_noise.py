@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import progress
 from ..experiment import long_rest, noise_spectrum, signal_measures
+from ..json_numbers import number, spelled
 from . import odds
 
 WALK_S = 60.0  # a rest this long shows the random walk
@@ -93,11 +94,10 @@ def _allan(x, rate):
 def answer(found):
     """For --json."""
     def digits(value):
-        return float("%.5g" % value)
+        return number(value, 5)
     out = {}
     for sensor, one in found.items():
-        unit = one.unit.replace("deg", "°")
-        out[sensor] = {"unit": unit, "seconds": digits(one.seconds),
+        out[sensor] = {"unit": spelled(one.unit), "seconds": digits(one.seconds),
                        "longest_s": digits(one.longest_s),
                        "allan": [{"tau_s": digits(tau), "deviation": [digits(v) for v in values]}
                                  for tau, values in one.allan]}

@@ -7,7 +7,7 @@ import numpy as np
 
 from .. import optional
 from ..errors import BadFile
-from ..json_numbers import finite
+from ..json_numbers import finite, number
 from . import hierarchy, judgement, members
 
 FORMAT = 1
@@ -20,7 +20,7 @@ def digits(value):
     """A number with as many digits as anything here means, a list of them likewise."""
     if isinstance(value, (list, tuple)):
         return [digits(one) for one in value]
-    return value if value is None else float("%.*g" % (DIGITS, float(value)))
+    return number(value, DIGITS)
 
 
 def of(kinds, failures, remarks):

@@ -13,6 +13,7 @@ from sixflip_sim.effects.library import EFFECTS
 
 from ..diagnosis import adequacy, evidence, hypotheses
 from ..experiment import linear_model, nominal_rows, terms
+from ..json_numbers import spelled
 
 # One form of each effect that rests can show, the likeliest cause first: where a protocol cannot
 # tell two, the population names the first and says which others it may be.
@@ -52,7 +53,7 @@ def nothing(sensor):
 def unit(name):
     """The library's unit of a coefficient, for people."""
     sensor, effect, _ = name.split(".")
-    return EFFECTS[effect].units[sensor].replace("degC", "°C").replace("deg/s", "°/s")
+    return spelled(EFFECTS[effect].units[sensor])
 
 
 def of(rests, chip, gaps=None):

@@ -1,4 +1,5 @@
 """The comparison with a simulator as JSON, and what it makes of the verdict."""
+from ...json_numbers import number, spelled
 
 
 def of(comparisons):
@@ -12,10 +13,10 @@ def of(comparisons):
         "task": None if best.task is None else {
             "estimator": best.task.estimator, "against": best.task.against, "unit": "°",
             "attitude": rounded(best.task.attitude), "heading": rounded(best.task.heading)},
-        "gap": {kind: {"unit": "mg" if kind == "accel" else "deg/s", "before": digits(before),
-                       "after": digits(after), "floor": digits(floor)}
+        "gap": {kind: {"unit": "mg" if kind == "accel" else "deg/s", "before": number(before),
+                       "after": number(after), "floor": number(floor)}
                 for kind, (before, after, floor) in best.gap.items()},
-        "reference_c": digits(best.reference_c),
+        "reference_c": number(best.reference_c),
         "logs": [log(x) for x in comparisons],
         "unseen": list(dict.fromkeys(s for x in comparisons for s in x.unseen)),
     }
@@ -30,19 +31,19 @@ def log(x):
     """One log of the simulator: against which real one, whether of one motion, clock, remarks."""
     a = x.alignment
     return {"log": x.log, "against": x.against, "same_motion": a.same,
-            "correlation": digits(a.correlation),
-            "offset_s": digits(a.offset_s, 6) if a.same else None,
-            "offset_interval_90": [digits(a.offset_s - 1.645 * a.offset_sigma_s, 6),
-                                   digits(a.offset_s + 1.645 * a.offset_sigma_s, 6)]
+            "correlation": number(a.correlation),
+            "offset_s": number(a.offset_s, 6) if a.same else None,
+            "offset_interval_90": [number(a.offset_s - 1.645 * a.offset_sigma_s, 6),
+                                   number(a.offset_s + 1.645 * a.offset_sigma_s, 6)]
             if a.same else None, "remarks": list(x.remarks)}
 
 
 def convention(c, name):
     """A Convention found in the log of this name."""
     return {"name": c.name, "sensor": c.sensor, "class": list(c.one_of or (c.name,)),
-            "probability": digits(c.probability), "score_nats": digits(min(c.nats, 1e6)),
-            "value": {k: v if isinstance(v, str) else digits(v) for k, v in c.value.items()},
-            "unit": c.unit, "interval_90": {k: [digits(v) for v in span]
+            "probability": number(c.probability), "score_nats": number(min(c.nats, 1e6)),
+            "value": {k: v if isinstance(v, str) else number(v) for k, v in c.value.items()},
+            "unit": c.unit, "interval_90": {k: [number(v) for v in span]
                                             for k, span in c.interval_90.items()},
             "words": c.words, "set": c.set_to, "log": name}
 
@@ -50,8 +51,8 @@ def convention(c, name):
 def effect(found):
     """value: of the effect named, which stands for its class."""
     return {"effect": found.effect, "sensor": found.sensor, "class": list(found.stands_for),
-            "value": {k: digits(v) for k, v in found.value.items()},
-            "unit": found.unit.replace("degC", "°C").replace("deg/s", "°/s"),
+            "value": {k: number(v) for k, v in found.value.items()},
+            "unit": spelled(found.unit),
             "interval_90": {k: span(v) for k, v in found.interval.items()}, "shape": found.shape}
 
 
@@ -61,13 +62,13 @@ def numbers(found):
     for p in found:
         place = out.setdefault(p.sensor, {}).setdefault(p.name, {})
         place[p.axis or "all"] = {
-            "unit": p.unit, "real": digits(p.real, whole(p)),
+            "unit": p.unit, "real": number(p.real, whole(p)),
             "real_interval_90": span(p.real_interval),
-            "simulator": digits(p.simulated),
+            "simulator": number(p.simulated),
             "simulator_interval_90": span(p.simulated_interval),
-            "difference": digits(p.difference),
+            "difference": number(p.difference),
             "difference_interval_90": span(p.difference_interval), "differs": p.differs,
-            "set": digits(p.set_to, whole(p)), "how": p.how}
+            "set": number(p.set_to, whole(p)), "how": p.how}
     return out
 
 
@@ -78,19 +79,12 @@ def whole(parameter):
 
 def span(interval):
     """[low, high] of an interval, or None."""
-    return None if interval is None else [digits(x) for x in interval]
+    return None if interval is None else [number(x) for x in interval]
 
 
 def rounded(values):
     """{key: number} to four digits."""
-    return {k: digits(v) for k, v in values.items()}
-
-
-def digits(x, number=4):
-    """A finite number with so many significant digits, or None."""
-    if x is None or x != x or x in (float("inf"), float("-inf")):
-        return None
-    return float("%.*g" % (number, x))
+    return {k: number(v) for k, v in values.items()}
 
 
 def verdict(effects, comparisons, named_effects=False):
