@@ -142,9 +142,7 @@ def of_traces(real, sim, aligned):
     tried, why_not = tasked(real_free, mended, own_real, own_sim, fits)
     left = {kind: not_foretold(one) for kind, one in fits.items()}
     return Comparison(sim.name, real.name, aligned, tuple(found), tuple(numbers), tried,
-                      held_out(fits, left, real, sim), fits, own_real, own_sim,
-                      {k: single_log.noise(real, getattr(real, v)) for k, v in (
-                          ("accel", "force"), ("gyro", "rate")) if getattr(real, v) is not None},
+                      held_out(fits, left, real, sim), fits, own_real, own_sim, real.noise,
                       (*said_of(real, sim, aligned), *why_not), tuple(unseen),
                       judged or put_right.only_in_motion(found),
                       None if real.celsius is None else float(real.celsius.mean()),
@@ -234,8 +232,7 @@ def held_out(fits, not_explained, real, sim):
         theirs = pair.sim_force if kind == "accel" else pair.sim_rate
         ours = pair.force if kind == "accel" else pair.rate
         left = not_explained[kind]
-        levels = [single_log.noise(trace, trace.force if kind == "accel" else trace.rate)
-                  for trace in (real, sim)]
+        levels = [trace.noise[kind] for trace in (real, sim)]
         noise = 0.0 if None in levels else sum(
             (level.density ** 2).mean() * 2.0 * min(pair.band_hz, trace.rate_hz / 2)
             for level, trace in zip(levels, (real, sim)))

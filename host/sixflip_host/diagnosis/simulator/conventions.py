@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from . import alignment as align_by
-from . import convention_findings, evidence_of_logs, hypotheses, pairing, single_log
+from . import convention_findings, evidence_of_logs, hypotheses, pairing
 
 # Before looking: nine simulators in ten are right about each sensor, and every single thing that
 # public reports name is one in some fifty of them.
@@ -58,8 +58,7 @@ def same_motion(real, sim, alignment, motion, live, fresh_hz):
 
 def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
     """SensorFit of one sensor."""
-    noise, theirs = (single_log.noise(log, log.force if kind == "accel" else log.rate)
-                     for log in (real, sim))
+    noise, theirs = (log.noise[kind] for log in (real, sim))
 
     def asked(pair):
         values, measured = (pair.force, pair.sim_force) if kind == "accel" else (

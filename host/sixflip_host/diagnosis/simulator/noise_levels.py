@@ -26,7 +26,7 @@ def noises(real, sim):
         values = [getattr(x, name) for x in (real, sim)]
         if any(v is None for v in values):
             continue
-        a, b = (single_log.noise(x, v) for x, v in zip((real, sim), values))
+        a, b = (x.noise[kind] for x in (real, sim))
         if a is None or b is None:
             continue
         scale = MG if kind == "accel" else DEG

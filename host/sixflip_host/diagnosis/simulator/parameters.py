@@ -133,9 +133,7 @@ def own(sensor, kind):
 def registers(real, sim):
     """Step, range and rate."""
     out = []
-    noises = {kind: single_log.noise(real, values) for kind, values in (
-        ("accel", real.force), ("gyro", real.rate)) if values is not None}
-    noises = {kind: found.per_sample for kind, found in noises.items() if found is not None}
+    noises = {kind: found.per_sample for kind, found in real.noise.items() if found is not None}
     for kind, name, index in (("accel", "force", 0), ("gyro", "rate", 1)):
         a, b = (getattr(x, name) for x in (real, sim))
         if a is None or b is None:

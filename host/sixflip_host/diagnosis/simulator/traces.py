@@ -4,6 +4,7 @@ Simulator and sensor are compared as two such logs. Gravity and the motion come 
 levelled at every rest by the accelerometer, so that nothing but the log itself is needed.
 """
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from ...capture import rests as rest_finder
 from ...capture import rests_by_variance
 from ...capture.attitude import carried, levelled, rotation_between, rotations
 from ...experiment.block_measures import EDGE_S
+from . import single_log
 
 SHORTEST_REST_S = 0.5  # of a robot that stops between two moves
 WINDOW_S = 0.3  # over which a log is still: shorter than such a stop with its edges
@@ -46,6 +48,12 @@ class Trace:
     @property
     def seconds(self):
         return float(self.t[-1]) if len(self.t) else 0.0
+
+    @cached_property
+    def noise(self):
+        """{sensor: single_log.Noise at rest, or None} of the sensors that there are."""
+        return {kind: single_log.noise(self, values) for kind, values in (
+            ("accel", self.force), ("gyro", self.rate)) if values is not None}
 
     def rest_means(self, values):
         """(rests, 3): the mean of values (n, 3) over each rest."""
