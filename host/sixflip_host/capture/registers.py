@@ -4,6 +4,7 @@ import numpy as np
 
 from sixflip import RAIL
 
+SENSORS = {"accel": "accelerometer", "gyro": "gyro"}  # in words
 FEWEST_VALUES = 12  # distinct counts before a common divisor means anything
 FEWEST_SAMPLES = 50
 SPACED = 6  # times the smallest value: as far as the values next to each other are looked at
@@ -155,7 +156,7 @@ def stuck(sessions):
     """Sentences on columns that never change while the sensor's others do: where their steps are
     wider than the noise, an axis that nobody turned reads one value."""
     out = []
-    for sensor, words in (("accel", "accelerometer"), ("gyro", "gyro")):
+    for sensor, words in SENSORS.items():
         columns = [getattr(s.capture, sensor) for s in sessions]
         if any(c is None for c in columns):
             continue

@@ -187,7 +187,7 @@ def of(sessions, settings=None, simulator=None, comparisons=(), damages=(), besi
         # The two logs were compared in motion: what the hand or both do is no gap.
         findings = [f for f in findings if f.domain != "motion"]
         nameless = [place for place in nameless if place.domain != "motion"]
-    remarks += ["the %s: %s" % (samples_judged.SENSOR[f.sensor], f.words)
+    remarks += ["the %s: %s" % (registers.SENSORS[f.sensor], f.words)
                 for f in findings if f.effect == "vibration"]
     return Diagnosis(rests.everything, settings, conditions, tuple(clocks), tuple(findings), gaps,
                      rest, turns, motion, tuple(nameless), bool(stuck), remarks,

@@ -31,7 +31,7 @@ COARSE = ("quantisation", "dead_band", "saturation", "torn_reads")
 NOISY = ("vibration", "torn_reads", "saturation", "dead_band")
 SLOW_HZ = 1.0  # of a line that the means of rests have something of
 SCALES = ("full_scale", "gravity")  # damages that every reading of a sensor has
-SENSOR = {"accel": "accelerometer", "gyro": "gyro"}
+SENSOR = registers.SENSORS
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,13 +10,13 @@ import numpy as np
 
 from sixflip import STANDARD_G as G
 
+from ..capture.registers import SENSORS
 from ..errors import BadFile, UsageError
 from ..experiment.terms import of_the_moment
 
 DEG = np.pi / 180.0
 MARK = "put back by sixflip export"  # in every file that is made from a diagnosis
 AXES = "xyz"
-SENSORS = {"accel": "accelerometer", "gyro": "gyro"}
 # How a value of an effect becomes SI units where it is not mg or deg/s.
 PERCENT = {("thermal_scale", "accel"), ("thermal_scale", "gyro"), ("asymmetry", "gyro")}
 # effects that the generated class can express

@@ -15,11 +15,11 @@ import numpy as np
 from sixflip import __version__
 
 from ..calibrate import verification, verify_files
+from ..capture.registers import SENSORS
 from ..diagnosis import (
     blas_threads,  # noqa: F401 (before numpy's threads are asked for)
     usable_rests,
 )
-from ..diagnosis.samples_judged import SENSOR
 from ..errors import BadFile, SixflipError, internal_error
 from ..value_kinds import LONGEST_TEXT
 from . import diagnosed, effects, parameters, sources, summary_file
@@ -165,7 +165,7 @@ def _judged(kept, remarks, options=None):
     for sensor, one in told.items():
         found["precision_" + sensor] = one.precision[np.triu_indices(len(one.score))].tolist()
         found["score_" + sensor] = one.score.tolist()
-    findings = ["the %s: %s" % (SENSOR.get(f["sensor"], f["sensor"]), f["words"] or f["effect"])
+    findings = ["the %s: %s" % (SENSORS.get(f["sensor"], f["sensor"]), f["words"] or f["effect"])
                 for one in kept for f in one.about["samples"]["findings"]]
     return dict(found, chip=chip, accel_range_g=accel, gyro_range_dps=gyro,
                 findings=list(dict.fromkeys(findings)),

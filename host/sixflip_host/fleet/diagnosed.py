@@ -4,6 +4,7 @@ diagnose` has, with the samples' verdicts as the summaries keep them.
 Turns and motion need the samples of the moves, so they are not looked at, and the verdict is that
 of the rests.
 """
+from ..capture.registers import SENSORS
 from ..diagnosis import answer, diagnosis, localisation, samples_judged, usable_rests
 from ..diagnosis.detect.detection import Finding
 from ..diagnosis.rest_model import RestModel
@@ -52,7 +53,7 @@ def words(gap):
     said = []
     for cause in gap["causes"]:
         names = cause["effect"] or " or ".join(cause["class"])
-        sensor = samples_judged.SENSOR.get(cause["sensor"], cause["sensor"])
+        sensor = SENSORS.get(cause["sensor"], cause["sensor"])
         said.append("%s of the %s%s" % (names, sensor, " " + "".join(cause["axes"])
                                         if cause["axes"] else ""))
     return gap["verdict"] + (": " + ", ".join(dict.fromkeys(said)) if said else "")

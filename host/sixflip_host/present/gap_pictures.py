@@ -2,12 +2,12 @@
 readings, their noise, and which effects look alike. All write a PNG."""
 import numpy as np
 
+from ..capture.registers import SENSORS
 from ..diagnosis import aliases
 from ..experiment import long_rest, signal_measures
 from ..figures import COLOURS, canvas, save
 
 UNIT = {"accel": "mg", "gyro": "°/s"}
-NAME = {"accel": "accelerometer", "gyro": "gyro"}
 DOMAINS = ("along_gravity", "across_gravity", "orientation", "flip", "time", "time_since_move",
            "temperature", "history", "frequency", "noise", "amplitude", "timing", "motion",
            "session")
@@ -62,7 +62,7 @@ def residuals(gap, path):
         for row, words in enumerate(("before", "after")):
             axes[row, i].set_ylim(low, high)
             axes[row, i].axhline(0.0, color="0.6", lw=0.8)
-            axes[row, i].set_title("%s %s, %s" % (NAME[gap.kind], AXES[i], words), fontsize=10)
+            axes[row, i].set_title("%s %s, %s" % (SENSORS[gap.kind], AXES[i], words), fontsize=10)
         axes[1, i].set_xlabel(VARIABLE[domain])
     axes[0, 0].legend(fontsize=8)
     for row in range(2):
@@ -114,7 +114,7 @@ def noise(diagnosis, loops, path):
             rest = long_rest.longest(session) or (0, len(session.capture))
             x = long_rest.scaled(session, kind)[rest[0]:rest[1]]
             _noise_curves(axes[:, column], x, session.rate, words, style)
-        axes[0, column].set_title("%s, longest rest" % NAME[kind])
+        axes[0, column].set_title("%s, longest rest" % SENSORS[kind])
         axes[0, column].set_ylabel(UNIT[kind] + "/√Hz")
         axes[0, column].set_xlabel("frequency, Hz")
         axes[1, column].set_ylabel("Allan deviation, " + UNIT[kind])
@@ -160,7 +160,7 @@ def draw_alias(matrices, path, title):
         image = ax.imshow(index, cmap="Blues", vmin=0.0, vmax=1.0)
         ax.set_xticks(range(len(names)), names, rotation=60, ha="right", rotation_mode="anchor")
         ax.set_yticks(range(len(names)), names)
-        ax.set_title(NAME[sensor])
+        ax.set_title(SENSORS[sensor])
         ax.set_xlabel("could be reproduced by")
         for i in range(len(names)):
             for j in range(len(names)):
@@ -192,5 +192,5 @@ def poses(gap, path):
         ax.axhline(0.0, color="0.3", lw=0.7)
         ax.set_ylabel(UNIT[gap.kind])
         ax.set_title("%s, session %d: residual of each placement (pale: before; x red, y green, "
-                     "z blue)" % (NAME[gap.kind], number + 1), fontsize=9)
+                     "z blue)" % (SENSORS[gap.kind], number + 1), fontsize=9)
     save(figure, path)

@@ -4,6 +4,7 @@ from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
 from .. import atomic_write
+from ..capture.registers import SENSORS
 from ..errors import UsageError
 from . import gap_pictures, gap_words, simulator_report
 from .page import Page
@@ -41,7 +42,7 @@ def draw(folder, diagnosis, loops):
                 compared)
     picture("where", "Where the gap lies", gap_pictures.heat_map, diagnosis)
     for kind, gap in diagnosis.gaps.items():
-        title = gap_pictures.NAME[kind]
+        title = SENSORS[kind]
         picture("residuals_" + kind, "Residuals of the %s before and after" % title,
                 gap_pictures.residuals, gap)
         picture("poses_" + kind, "Residuals of the %s by placement" % title,

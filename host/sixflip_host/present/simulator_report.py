@@ -3,13 +3,13 @@ of one motion, and its sections."""
 import numpy as np
 from scipy.signal import welch
 
+from ..capture.registers import SENSORS
 from ..diagnosis.simulator import pairing
 from ..figures import COLOURS, canvas, save
 from . import simulator_words
 
 SHOWN_S = 12.0  # of a log, in which a move can still be seen
 UNIT = {"accel": "m/s²", "gyro": "rad/s"}
-NAME = {"accel": "accelerometer", "gyro": "gyro"}
 BEFORE, AFTER, REAL = COLOURS[0], COLOURS[2], "0.35"
 
 
@@ -45,7 +45,7 @@ def traces(comparison, path):
             ax.plot(t, mended[part, i], "--", color=AFTER, lw=1.2,
                     label="simulated, put right")
             ax.set_ylabel("%s, %s" % (axis, UNIT[kind]))
-        axes[0, column].set_title(NAME[kind])
+        axes[0, column].set_title(SENSORS[kind])
         axes[0, column].legend(fontsize=8, loc="upper right")
         axes[2, column].set_xlabel("time of the simulator's log, s")
     save(figure, path)
@@ -63,7 +63,7 @@ def spectra(comparison, path):
                              nperseg=min(512, len(values)), axis=0)
             inside = (f > 0) & (f <= found.pair.band_hz)
             ax.loglog(f[inside], np.sqrt(power[inside].sum(axis=1)), color=colour, label=words)
-        ax.set_title(NAME[kind])
+        ax.set_title(SENSORS[kind])
         ax.set_xlabel("frequency, Hz")
         ax.set_ylabel("%s/√Hz" % UNIT[kind])
         ax.legend(fontsize=8)

@@ -4,10 +4,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy import special
 
+from ...capture.registers import SENSORS
+
 # Probability from which on a convention is named: whoever reads it changes a simulator, so that
 # one wrong name in a hundred is the most that is allowed.
 CERTAIN = 0.99
-WHO = {"accel": "accelerometer", "gyro": "gyro"}
 WORDS = {
     "no_gravity": "outputs acceleration without gravity",
     "gravity_sign": "adds gravity with its sign turned",
@@ -69,7 +70,7 @@ class Convention:
 def one_of(sensor, candidates, probability, nats):
     """A finding whose name the logs cannot tell."""
     known = [c for c in candidates if c != "unknown"]
-    who = "the simulator" if sensor == "device" else "the simulator's " + WHO[sensor]
+    who = "the simulator" if sensor == "device" else "the simulator's " + SENSORS[sensor]
     words = "%s shows one of: %s; these logs cannot tell which" % (who, ", ".join(
         n.replace("_", " ") for n in known)) if known else "%s %s" % (who, WORDS["unknown"])
     return Convention("unknown", sensor, probability, nats, words, one_of=tuple(known))
@@ -96,7 +97,7 @@ def told(named, logs, possible, sensor, described):
 
 def finding(name, sensor, probability, nats, set_to="", **more):
     """The Convention of a name with its sentence; set_to: what to set, else the usual words."""
-    who = "the simulator" if sensor == "device" else "the simulator's " + WHO[sensor]
+    who = "the simulator" if sensor == "device" else "the simulator's " + SENSORS[sensor]
     return Convention(name, sensor, probability, nats, "%s %s" % (who, WORDS[name]),
                       set_to or SET.get(name, ""), **more)
 
