@@ -13,7 +13,7 @@ import math
 import numpy as np
 from scipy import ndimage
 
-from ...capture.registers import RAIL
+from ...capture.registers import RAIL, SENSORS
 from . import course_likelihood
 from .damage import Damage
 from .detection import present
@@ -26,7 +26,6 @@ HOPELESS = 0.05
 LONGEST = 200_000  # samples that are looked at: half an hour at 100 Hz
 WIDTHS = range(8, 16)  # bits of a reading whose sign may be lost: a byte, to all but one of 16
 AROUND = (3, 9, 33)  # samples around one whose level tells its lost high byte: fast, slow, still
-WORDS = {"accel": "accelerometer", "gyro": "gyro"}
 
 
 def _unsigned(bits):
@@ -181,7 +180,7 @@ def repaired(captures):
                 setattr(mended, sensor, values)
         out.append((name, mended))
     return out, [Damage(kind, sensor, axes, "amplitude", "the %s of the %s: %s" % (
-        ", ".join(axes) + (" axes" if len(axes) > 1 else " axis"), WORDS[sensor], words),
+        ", ".join(axes) + (" axes" if len(axes) > 1 else " axis"), SENSORS[sensor], words),
         sum(nats for _, nats in seen))
         for (kind, sensor, words), seen in found.items()
         for axes in [tuple(sorted({letter for letter, _ in seen}))]]

@@ -12,6 +12,7 @@ import math
 
 import numpy as np
 
+from ...capture.registers import SENSORS
 from .damage import Damage
 from .detection import present
 
@@ -23,14 +24,13 @@ HELD = 0.05  # share of rows that are held: fewer are single rows, not a rate
 AT_RANDOM = 0.5
 MOVES = 8.0  # times the noise, from a row to the next: six deviations of a difference at rest
 NOT_READ = "not read"  # kind of the Damage of samples that are missing though rows are not
-WORDS = {"accel": "accelerometer", "gyro": "gyro"}
 TIMES = {2: "twice", 3: "three times", 4: "four times"}
 
 
 def findings(sessions):
     """[Damage] of sensors that hold their values."""
     found = []
-    for sensor, words in WORDS.items():
+    for sensor, words in SENSORS.items():
         columns = [getattr(s.capture, sensor) for s in sessions]
         if any(c is None or len(c) < FEWEST for c in columns):
             continue

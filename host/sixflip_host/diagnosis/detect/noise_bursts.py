@@ -15,8 +15,6 @@ from .detection import present
 from .ringing import SETTLES_S
 from .torn_reads import student
 
-WORDS = {"accel": "accelerometer", "gyro": "gyro"}
-
 WINDOW_S = 0.5  # a touch or a step on the floor rings for less
 LOUD = 9.0  # times the usual variance: three times as loud, which no touch is mistaken for
 FEWEST, FEWEST_RESTS = 4, 3  # windows, rests with one: a single event rings in one rest, or in two
@@ -126,7 +124,7 @@ def without_spikes(sessions, leaping=()):
     a rest lies, and as much as all others of a mean; of a few that is not worth a sentence.
     leaping: sensors whose counts leap anyhow."""
     out = []
-    for sensor, words in WORDS.items():
+    for sensor, words in registers.SENSORS.items():
         if sensor in leaping or any(getattr(s.capture, sensor) is None for s in sessions):
             continue
         each = [spikes(s, sensor) for s in sessions]
@@ -183,7 +181,7 @@ def growing(session, sensor):
 def found(sessions):
     """[(sensor, sentence, p)] of noise that comes in bursts, or changes from rest to rest."""
     out = []
-    for sensor, words in WORDS.items():
+    for sensor, words in registers.SENSORS.items():
         if any(getattr(s.capture, sensor) is None for s in sessions):
             continue
         sums = np.sum([loud(s, sensor) for s in sessions], axis=0)

@@ -7,6 +7,7 @@ domain time_since_move, with the frequency where it has one.
 import numpy as np
 from scipy import special
 
+from ...capture.registers import SENSORS
 from .. import odds
 from .detection import present
 
@@ -15,7 +16,6 @@ PART_S = 1.5  # of a rest, early and late
 FEWEST = 12  # rests: the scatter of what they say is known to a fifth
 GOES_ON = 0.5  # of a line's early power that is there late where something runs on
 LEAST_SHARE = 0.25  # of the noise's standard deviation, as of a line: smaller is no matter
-WORDS = {"accel": "accelerometer", "gyro": "gyro"}
 
 
 def fading(sessions, sensor, axis):
@@ -39,7 +39,7 @@ def fading(sessions, sensor, axis):
 def found(sessions):
     """[(sensor, axis letter, sentence, nats)] of what rings out after the moves."""
     out = []
-    for sensor, words in WORDS.items():
+    for sensor, words in SENSORS.items():
         if any(getattr(s.capture, sensor) is None for s in sessions):
             continue
         for axis in range(3):

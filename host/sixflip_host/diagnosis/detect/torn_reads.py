@@ -83,7 +83,7 @@ def _again(counts):
 def jumps(sessions, without=()):
     """[(sensor, sentence, p)] of jumps by whole pages that nothing torn explains."""
     found = []
-    for sensor, words in (("accel", "accelerometer"), ("gyro", "gyro")):
+    for sensor, words in registers.SENSORS.items():
         if sensor in without or any(getattr(s.capture, sensor) is None for s in sessions):
             continue
         counted = registers.of_counts(sessions, sensor)
