@@ -15,6 +15,7 @@ from ..experiment import inertial_fit, turns
 from ..experiment.attitude_fit import NominalSensor
 from ..experiment.gram import Products
 from ..experiment.session import MOST_BAD
+from ..experiment.signal_measures import MEDIAN_OF_SQUARE
 from ..experiment.terms import Design
 from .detect import saturation
 from .evidence import Levels
@@ -139,8 +140,8 @@ def _white(capture, runs):
     """mg: standard deviation of the accelerometer's mean over one second, of all axes."""
     differences = np.concatenate([np.diff(capture.accel[a:b].astype(float), axis=0)
                                   for _, a, b in runs if b - a > 2])
-    # A squared difference of two normal samples has a median of 0.4549 times its mean, twice
-    # their variance; rounding adds a twelfth.
-    counts = np.sqrt(np.median(differences ** 2, axis=0) / 0.4549 / 2.0 + 1.0 / 12.0)
+    # The mean of a squared difference of two normal samples is twice their variance; rounding
+    # adds a twelfth.
+    counts = np.sqrt(np.median(differences ** 2, axis=0) / MEDIAN_OF_SQUARE / 2.0 + 1.0 / 12.0)
     return float(counts.mean()) * 1000.0 / capture.meta["accel_lsb_per_g"] / np.sqrt(
         capture.meta["rate_hz"])

@@ -6,6 +6,7 @@ import numpy as np
 from sixflip_sim.effects import typical
 
 from ..experiment import covariance, linear_model, noise_arrays, nominal_rows, terms, turns
+from ..planning.detectable import FLIP_DEG
 from . import stray_turns
 from .detect import axis_order, wrong_scale
 from .detect.detection import Finding, present
@@ -16,7 +17,6 @@ EFFECTS = ("asymmetry", "quadratic", "cubic", "thermal_scale")
 ATTITUDE_DEG = 0.03  # of gravity's direction at rest
 # Of half a turn by hand, a level of its own: a careless one is five to ten degrees off.
 FLIPS_DEG = (0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8)
-FLIP_DEG = 0.4  # what is usual (METHOD section 2)
 FEWEST_MOVES = 6  # two equations each: as many as nine of the matrix and three of the bias
 WRONG_DEG = 25.0  # of a turn's end: as of a label that gravity contradicts (blocks.FAR_OFF_DEG)
 OFF_DEG = 6.0  # of a turn's end by a gyro not yet calibrated: a few percent of a half turn

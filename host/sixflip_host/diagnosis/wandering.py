@@ -10,13 +10,13 @@ import numpy as np
 
 from ..experiment import long_rest, nominal_rows
 from ..experiment.flicker import differences
+from ..experiment.noise_spectrum import HALF_OF_90
 from . import adequacy, evidence, excess
 from .elimination import NONE
 
 # s of the short means whose steps are looked at; steps that their tails are known from; steps that
 # may be knocks.
 STEP_S, FEWEST_STEPS, KNOCKS = (0.5, 1.0, 2.0, 4.0, 8.0), 60, 3
-HALF_OF_90 = 1.353  # nats below the maximum at the ends of a 90 % interval: half of chi2(0.9, 1)
 
 
 @dataclass(frozen=True)

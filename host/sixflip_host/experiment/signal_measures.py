@@ -5,6 +5,8 @@ x is (n, k), n samples of k channels, in any unit, which the results are in as w
 """
 import numpy as np
 
+MEDIAN_OF_SQUARE = 0.4549  # of a standard normal
+
 
 def white(x):
     """Standard deviation of what changes from sample to sample, per column of x (n, k)."""

@@ -12,10 +12,10 @@ import numpy as np
 
 from sixflip_sim.effects import typical
 
+from ..experiment.signal_measures import MEDIAN_OF_SQUARE
 from . import analysis, effects, hierarchy, parameters, store
 
 FEWEST_PAIRS = 8  # boards with two sessions that a repeatability is taken from
-MEDIAN_OF_CHI2 = 0.4549  # of one degree of freedom
 TOLD_APART = 0.1  # share of an effect's information that those before it must leave, as aliases
 # Boards over which errors average out. What a protocol's own approximations leave, such as the
 # second order of a leaning table, is the same in all of them: in 10,000 boards of
@@ -205,7 +205,7 @@ def _repeatability(steps):
         if use.sum() >= FEWEST_PAIRS:
             step, noise = steps[use, :, j].T
             away = step - np.median(step)
-            own[j] = max(0.0, 0.5 * (np.median(away ** 2) / MEDIAN_OF_CHI2 - np.median(noise)))
+            own[j] = max(0.0, 0.5 * (np.median(away ** 2) / MEDIAN_OF_SQUARE - np.median(noise)))
     return np.sqrt(own), bool(there)
 
 

@@ -21,7 +21,8 @@ from . import (
     task,
     traces,
 )
-from .parameters import DEG, MG
+from .hypotheses import DEG
+from .parameters import MG
 
 # s of a block that is held out as a whole: longer than what neighbouring samples have in common, a
 # move of a robot for instance, and short enough that half of a log of a minute has several.

@@ -4,7 +4,8 @@ import numpy as np
 
 from .. import odds
 from . import convention_findings, conventions, single_log
-from .parameters import DEG, MG, compared
+from .hypotheses import DEG
+from .parameters import MG, compared
 
 # How far a noise that was set by hand may be off, natural logarithm: whoever reads a density off a
 # data sheet, typical for the part's, is taken to be right to a fifth.

@@ -12,11 +12,12 @@ from sixflip import STANDARD_G
 
 from .. import odds
 from . import convention_findings, single_log, traces
+from .hypotheses import DEG
 
 # Some thirty numbers are compared: at this many standard errors one log pair in 500 shows a
 # difference that is none (Bonferroni, normal).
 DIFFERS = 4.0
-MG, DEG = 1000.0 / STANDARD_G, 180.0 / np.pi
+MG = 1000.0 / STANDARD_G
 COARSER = 1.5  # times the other's step: registers differ by factors of two
 RANGE_APART = 1.01  # times the other's: a range that differs; full scales are twofold apart
 # An engine whose rates are half a physics step older than its forces (MuJoCo, Featherstone's

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...experiment.block_measures import SUBMEAN_S
+from ...experiment.signal_measures import MEDIAN_OF_SQUARE
 
-# Of a standard normal: the median of its square, and the standard error of a deviation that is
-# taken from it, times the root of the number [Rousseeuw, Croux, J. Am. Stat. Assoc. 88 (1993)].
-MEDIAN_OF_SQUARE, MEDIAN_SIGMA = 0.4549, 1.17
+# Standard error of a deviation taken from the median of squares of a standard normal, times the
+# root of the number [Rousseeuw, Croux, J. Am. Stat. Assoc. 88 (1993)].
+MEDIAN_SIGMA = 1.17
 SETTLING = 4.0  # times the usual power: five means of one noise differ by as much in 0.3 %
 # Share of the liveliest channel's standard deviation: a channel that says nothing varies by less
 # than DEAD, where the real one varies by more than ALIVE, five times as much.
