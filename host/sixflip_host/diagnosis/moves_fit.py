@@ -1,14 +1,17 @@
 """All moves of all sessions fitted together: what each says of the columns that all have.
 
 A move is the unit of replication: its own information on the sizes, weighted by how well it agrees
-with the others (Student's t), habits of the hand and bends of the sensor beside them.
+with the others (Student's t), habits of the hand and bends of the sensor beside them. How strongly
+hands (or wheels) shake and shift the box on its way is told frequency by frequency: a spectrum for
+each kind of move of each session, along each direction, from the moves themselves. The lowest four
+frequencies of a move are how it was carried (metres, whatever its length), those above how it
+trembled (a density), the mean how well gravity is known on the way.
 """
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..experiment import inertial_fit
-from . import handling_noise
 
 FEWEST_FLAT = 6  # turns on a table, if there is one session only
 SINGLE_FOLDS = 2  # of one session: every other move is foretold by those between
@@ -16,6 +19,11 @@ ROUNDS, FREEDOM = 4, 4.0  # of weighting; Student's t
 BENT, WANDERED = (0.03, 0.1, 0.3, 1.0), (0.1, 0.3, 1.0)  # of the widest priors
 EFFECTS = {"lever_arm": np.arange(3), "filter_lag": np.array([3])}  # their columns
 AT_A_TIME = 64  # moves left out together
+# A hand moves with the least jerk [Flash & Hogan, J. Neurosci. 5 (1985) 1688]: 96 % of the square
+# of such a move's acceleration is in its first four cosines.
+CARRIED = 4
+FIRST_HZ, OCTAVE = 0.3, 1.6  # of the bands of the tremor
+FEWEST = 4  # values for a level of its own
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +96,7 @@ def fit(moves, chip):
     wide = np.concatenate([shared, *(inertial_fit.local_priors(by_hand[s]) for s in sessions)])
     left, weights = [m.y for m in moves], np.ones(len(moves))
     for _ in range(ROUNDS):
-        variances = handling_noise.spectra(moves, left, weights)
+        variances = spectra(moves, left, weights)
         gram, inner = _information(moves, sessions, variances, len(wide))
         total = np.tensordot(weights, gram, axes=1), weights @ inner
         prior = _settled(*total, wide, len(shared), len(sessions))
@@ -175,3 +183,62 @@ def _evidence(gram, inner, prior):
     lower = np.linalg.cholesky(scaled)
     half = np.linalg.solve(lower, inner * prior)
     return float(0.5 * (half ** 2).sum() - np.log(np.diag(lower)).sum())
+
+
+def bands(move):
+    """(n,) band of each frequency and (n,) what a level is multiplied with there."""
+    k = np.arange(len(move.y))
+    hz = k / (2.0 * move.seconds)
+    band = 1 + CARRIED + np.maximum(0, np.log(np.maximum(hz, FIRST_HZ) / FIRST_HZ)
+                                    / np.log(OCTAVE)).astype(int)
+    band[:CARRIED + 1] = np.arange(CARRIED + 1)
+    weight = np.ones(len(k))
+    weight[1:CARRIED + 1] = len(k) / move.seconds ** 4
+    weight[0] = len(k)
+    return band, weight
+
+
+def white(move):
+    """mg²: of the sensor in one bin."""
+    return move.white ** 2 / move.bin_s
+
+
+def spectra(moves, left, weights):
+    """list of (n, 3) variances, one of each move. left: what is unexplained of each (n, 3);
+    weights (moves,): how far each is believed."""
+    groups = {}
+    for number, move in enumerate(moves):
+        groups.setdefault((move.session, move.flat), []).append(number)
+    out = [None] * len(moves)
+    for members in groups.values():
+        flat = moves[members[0]].flat
+        sums = {}
+        for number in members:
+            band, weight = bands(moves[number])
+            square = left[number] ** 2
+            if flat:  # no way is onwards
+                square = np.stack([0.5 * (square[:, 0] + square[:, 1])] * 2 + [square[:, 2]], 1)
+            excess = (square - white(moves[number])) / weight[:, None]
+            for b in np.unique(band):
+                s = sums.setdefault(int(b), np.zeros(4))
+                s[:3] += weights[number] * excess[band == b].sum(axis=0)
+                s[3] += weights[number] * (band == b).sum()
+        level = _levels(sums)
+        for number in members:
+            band, weight = bands(moves[number])
+            found = np.stack([level[int(b)] for b in band])
+            # No level is below the sensor's own noise.
+            out[number] = white(moves[number]) + np.maximum(found, 0.0) * weight[:, None]
+    return out
+
+
+def _levels(sums):
+    """{band: (3,)}; bands with too little in them are joined with the one before."""
+    out, before = {}, None
+    for b in sorted(sums):
+        total = sums[b].copy()
+        if total[3] < FEWEST and before is not None and b > CARRIED + 1:
+            total += before
+        out[b] = total[:3] / max(total[3], 1e-9)
+        before = total
+    return out

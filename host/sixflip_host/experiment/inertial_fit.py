@@ -38,7 +38,7 @@ FEWEST_BINS, MOST_BINS = 12, 60  # five samples each in between: a hand moves be
 FLAT_DEG = 15.0
 HATS = 4  # of the bias's course over a session: a straight line, or one that bends twice
 # Cosines that hands have in common when they turn a box: most of a way is in four of them
-# (handling_noise.py), but what is alike in all moves is as strong evidence in the faster ones.
+# (moves_fit.py), but what is alike in all moves is as strong evidence in the faster ones.
 HABITS = 10
 BENDS = 39  # columns of what bends with the attitude, or remembers the one before
 # Standard deviations: of a hand's way, of a centre of turning in a box as large as a hand, and of
