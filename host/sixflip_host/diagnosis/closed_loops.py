@@ -5,15 +5,22 @@ The motion is the real one. Of the gyro's turns it is the rate as it was read, c
 constant rate that makes each turn end where gravity says it did; the simulated gyro adds its
 effects to that. Of the moves it is what the gyro and gravity at both ends say; what is compared
 are the frequencies of each move, and the hand's own acceleration is in the difference, before and
-after.
+after. What was found is also written as a scenario file for `sixflip simulate`, and its plan.
 """
+import json
+import math
+from pathlib import Path
+
 import numpy as np
 
+from sixflip.chips.catalogue import SENSORS
+from sixflip.poses import faces
 from sixflip_sim.effects.library import EFFECTS
 from sixflip_sim.effects.library import make as make_effect
 
-from .. import progress
+from .. import atomic_write, progress
 from ..experiment import inertial_fit, noise_arrays, turns
+from ..planning import plan_file, protocols
 from . import closed_loop, moves_fit
 from .closed_loop import Loop
 
@@ -129,3 +136,48 @@ def added(move, effects):
         body = inertial_fit.pinned(turn)
         out = out + 1000.0 * (np.einsum("nji,j->ni", body, turn.before) - felt)
     return inertial_fit.Seen.of_turn(move.turn).of(out[:, :, None])[:, :, 0]
+
+
+def plan_of(session):
+    """SessionPlan of a captured session: its poses, their times and its temperature."""
+    rests = []
+    for place, (code, first, end) in enumerate(session.runs):
+        start = session.runs[place - 1][2] if place else 0
+        dwell = max(0.5, round((end - first) / session.rate, 2))
+        move = max(0.1, round((first - start) / session.rate, 2))
+        name = faces.pose_name(code)
+        mean = session.capture.accel[first:end].mean(axis=0)
+        up = mean / max(np.linalg.norm(mean), 1e-9)
+        timing = {"dwell_s": dwell, "move_s": move}
+        rests.append(protocols.face_rest(code, **timing) if code <= 12
+                     else protocols.Rest(name, tuple(up.tolist()), **timing))
+    end_c, change, tau = closed_loop.cooling(session)
+    return protocols.SessionPlan(rests, "measured", round(end_c - change, 2), round(change, 2),
+                                 tau)
+
+
+def plan_beside(path):
+    """Where the plan of a scenario file is."""
+    return Path(path).with_suffix(".plan.json")
+
+
+def write_scenario(path, diagnosis, effects):
+    """Write PATH (TOML) and beside it the plan it names; returns both paths."""
+    path = Path(path)
+    sessions = next(iter(diagnosis.gaps.values())).sessions
+    plan = plan_beside(path)
+    plan_file.write(str(plan), protocols.Protocol("measured", [plan_of(s) for s in sessions]))
+    first = sessions[0]
+    sensor = first.capture.meta["sensor"]
+    lines = ["# The nominal simulator with the effects that `sixflip diagnose` found.",
+             "sensor = %s" % json.dumps(sensor if sensor in SENSORS else "mpu6050"),
+             "plan = %s" % json.dumps(str(plan)), "rate_hz = %g" % first.rate, "", "[world]",
+             "accel_noise_mg = %.4g" % (float(first.noise_accel.mean()) * math.sqrt(first.rate))]
+    if first.gyro is not None:
+        lines.append("gyro_noise_dps = %.4g" % (float(first.noise_gyro.mean())
+                                                * math.sqrt(first.rate)))
+    for spec in effects:
+        lines += ["", "[[effects]]"]
+        lines += ["%s = %s" % (key, json.dumps(value)) for key, value in spec.items()]
+    atomic_write.write_text(str(path), "\n".join(lines) + "\n")
+    return path, plan

@@ -122,7 +122,7 @@ def closed(found, args):
     """{sensor: Loop} of the simulator run again; the scenario file where asked for."""
     from sixflip_sim.effects.library import NAMES
 
-    from ..diagnosis import closed_loops, scenario_out
+    from ..diagnosis import closed_loops
     named = [name for name in args.add if name != "found"]
     for name in named:
         if name not in NAMES:
@@ -132,16 +132,16 @@ def closed(found, args):
         return {}
     closed_again = closed_loops.of(found, named)
     if args.scenario:
-        scenario_out.write(args.scenario, found,
-                           [e for lo in closed_again.values() for e in lo.effects])
+        closed_loops.write_scenario(args.scenario, found, [
+            e for lo in closed_again.values() for e in lo.effects])
     return closed_again
 
 
 def scenario_files(value, args):
-    """The scenario and the plan that scenario_out.write puts beside it."""
-    from ..diagnosis import scenario_out
+    """The scenario and the plan that closed_loops.write_scenario puts beside it."""
+    from ..diagnosis import closed_loops
     return [(value, (file_kinds.SCENARIO,)),
-            (str(scenario_out.plan_beside(value)), (file_kinds.PLAN,))]
+            (str(closed_loops.plan_beside(value)), (file_kinds.PLAN,))]
 
 
 def report_files(value, args):
