@@ -16,10 +16,7 @@ from sixflip import __version__
 
 from ..calibrate import verification, verify_files
 from ..capture.registers import SENSORS
-from ..diagnosis import (
-    blas_threads,  # noqa: F401 (before numpy's threads are asked for)
-    usable_rests,
-)
+from ..diagnosis import usable_rests
 from ..errors import BadFile, SixflipError, internal_error
 from ..value_kinds import LONGEST_TEXT
 from . import diagnosed, effects, parameters, sources, summary_file

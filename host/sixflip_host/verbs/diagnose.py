@@ -3,7 +3,7 @@ shrinks once that is added."""
 import json
 import os
 
-from ..diagnosis import blas_threads  # noqa: F401 (numpy asks for threads as it is loaded)
+from .. import diagnosis  # noqa: F401 (it settles numpy's threads before that is loaded)
 
 # isort: split
 from sixflip.record import correction_record
