@@ -35,11 +35,11 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
     settings = Settings(certified_box, tuple(without), noise, jobs, prior=prior)
     own, comparisons = None, []
     if simulator:
-        from .simulator import against_simulator, comparison, put_right
+        from .simulator import against_simulator, comparison, convention_findings
         progress.doing("conventions and parameters of the simulator")
         comparisons = [comparison.compare(captures, *log) for log in simulator]
         # What a log with another convention reads is no effect of a sensor.
-        mended = [(name, put_right.capture(log, found.conventions))
+        mended = [(name, convention_findings.capture_put_right(log, found.conventions))
                   for (name, log), found in zip(simulator, comparisons)]
         sound = [log for log in mended if log[1] is not None]
         if sound:

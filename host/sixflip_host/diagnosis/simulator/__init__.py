@@ -6,7 +6,6 @@ hypotheses, evidence_of_logs, conventions, convention_findings
                                    layer 1: what the simulator's numbers mean, by the same motion
 own_calibration, own_motion, own_consistency, gravity_directions
                                    layer 1 where the motions differ: each log by its own rests
-put_right                          a log with the conventions found put right
 parameters, noise_levels           layer 2: the numbers to set
 against_simulator, effects_beside  layer 3: the effects that one has and the other lacks
 task                               layer 4: what the difference does to a robot

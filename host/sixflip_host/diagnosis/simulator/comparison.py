@@ -16,7 +16,6 @@ from . import (
     own_motion,
     pairing,
     parameters,
-    put_right,
     single_log,
     task,
     traces,
@@ -133,7 +132,7 @@ def of_traces(real, sim, aligned):
     if real.rate is not None and sim.rate is None:
         unseen = [*unseen, "the gyro: there is none in %s" % sim.name]
     found = convention_findings.merged(found)
-    mended = put_right.trace(sim_free, found)
+    mended = convention_findings.trace_put_right(sim_free, found)
     own_sim = own_calibration.fitted(mended)
     numbers, of_numbers = numbers_of(real, sim, mended, (own_real, own_sim), fits, found)
     numbers += parameters.timing(late, late_sigma, fits, aligned)
@@ -145,7 +144,7 @@ def of_traces(real, sim, aligned):
     return Comparison(sim.name, real.name, aligned, tuple(found), tuple(numbers), tried,
                       held_out(fits, left, real, sim), fits, own_real, own_sim, real.noise,
                       (*said_of(real, sim, aligned), *why_not), tuple(unseen),
-                      judged or put_right.only_in_motion(found),
+                      judged or convention_findings.only_in_motion(found),
                       None if real.celsius is None else float(real.celsius.mean()),
                       wanders=frozenset(kind for kind, one in fits.items()
                                         if slow(left[kind], one.pair.band_hz) > SLOW))
@@ -178,8 +177,8 @@ def constant_channels(real, sim):
 def numbers_of(real, sim, mended, own, fits, found):
     """([Parameter], [Convention] on the noise) of two Traces; mended: that of the simulator with
     the conventions found put right; own: OwnSensor or None of the real one, of the simulator."""
-    usable = {k: not any(c.name in put_right.SPOILED and c.sensor in (k, "device") for c in found)
-              for k in ("accel", "gyro")}
+    spoiled = [c for c in found if c.name in convention_findings.SPOILED]
+    usable = {k: not any(c.sensor in (k, "device") for c in spoiled) for k in ("accel", "gyro")}
     densities, on_noise = noise_levels.noises(real, mended)
     return (parameters.shapes(*own, fits, usable) + densities + parameters.registers(real, sim),
             on_noise)
