@@ -4,7 +4,7 @@ from sixflip_sim.effects.drift import FLOOR_OF_KERNEL
 from ..json_numbers import number, spelled
 from ..planning import next_capture
 from . import closed_loop, detectability, rest_noise
-from .detect import damage, line_frequency, sample_clock
+from .detect import detection, line_frequency, sample_clock
 from .simulator import simulator_answer
 
 UNITS = {"accel": "mg", "gyro": "deg/s", "gyro_turns": "deg/s", "accel_motion": "mg"}
@@ -20,7 +20,7 @@ def of(diagnosis):
         "gap": {kind: _gap(kind, gap) for kind, gap in gaps(diagnosis).items()},
         "unseen": detectability.listed(diagnosis), "next": next_capture.proposed(diagnosis),
         "clock": sample_clock.answer(diagnosis.sessions, diagnosis.clocks),
-        "held_out": held_out(diagnosis), "damage": damage.answer(diagnosis.damages),
+        "held_out": held_out(diagnosis), "damage": detection.damages(diagnosis.damages),
         "noise": rest_noise.answer(diagnosis.noise),
         "remarks": diagnosis.remarks}
     if diagnosis.comparisons:

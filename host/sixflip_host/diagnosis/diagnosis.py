@@ -31,7 +31,7 @@ class Diagnosis:
     without poses, turns (SensorGap of the gyro in motion or None), motion (MotionGap of the
     accelerometer or None); nameless (tuple of Place): beside those in the gaps; broken: nothing
     can be said of the rests; remarks (list of sentences); comparisons: simulator.comparison.
-    Comparison of each log of the user's own simulator; damages: tuple of damage.Damage, those put
+    Comparison of each log of the user's own simulator; damages: tuple of Damage, those put
     right before among them; noise: {sensor: rest_noise.RestNoise} of rests without poses."""
 
     sessions: tuple

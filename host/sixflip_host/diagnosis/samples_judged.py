@@ -37,7 +37,7 @@ SENSOR = registers.SENSORS
 @dataclass(frozen=True, eq=False)
 class SamplesJudged:
     """sessions: those judged, without what single samples far off do to their rests; findings
-    (tuple of Finding), damages (tuple of damage.Damage), nameless (tuple of Place), remarks
+    (tuple of Finding), damages (tuple of detection.Damage), nameless (tuple of Place), remarks
     (tuple of sentences)."""
 
     sessions: tuple

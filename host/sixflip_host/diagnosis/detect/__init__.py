@@ -1,6 +1,6 @@
 """What is read off the samples themselves, before any model of the sensor.
 
-detection, damage                  what is found: a sensor's effect, or a recording's damage
+detection                          what is found: a sensor's effect, or a recording's damage
 codes, torn_reads (sample_neighbours), saturation, dead_band, axis_order, sample_clock
                                    registers and timing
 byte_faults (course_likelihood), held_values, wrong_scale

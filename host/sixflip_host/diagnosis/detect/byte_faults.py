@@ -15,8 +15,7 @@ from scipy import ndimage
 
 from ...capture.registers import RAIL, SENSORS
 from . import course_likelihood
-from .damage import Damage
-from .detection import present
+from .detection import Damage, present
 
 FEWEST = 50  # samples, of which a width, its tails and a share of leaps are told
 FEWEST_CHANGED = 8  # steps that a rule must change: a recording whose moves were cut out leaps

@@ -1,9 +1,10 @@
-"""An effect read off the samples themselves: registers, timing, spectrum.
+"""What is read off the samples themselves (registers, timing, spectrum): an effect of the sensor,
+or what a recording or its scales suffered, which has a sentence of its own and no name of the
+library.
 
-Its score is the log likelihood ratio of the samples with the effect against the likeliest
-explanation that has no name: no effect at all, or the stranger of its domain (jumps of any size,
-codes that are missing anywhere, gaps of any length, any matrix). What was tried to find it is
-taken off.
+The score is the log likelihood ratio of the samples with it against the likeliest explanation that
+has no name: no effect at all, or the stranger of its domain (jumps of any size, codes that are
+missing anywhere, gaps of any length, any matrix). What was tried to find it is taken off.
 """
 from dataclasses import dataclass, field
 
@@ -76,6 +77,28 @@ class Finding:
         return odds.nameless(self.place)
 
 
+@dataclass(frozen=True)
+class Damage:
+    """kind: sign_extension, byte_order, repeats, full_scale, gravity; sensor: accel or gyro;
+    axes: letters, () for all three; domain and words (a sentence); score (nats); value: {key:
+    number} of what is known of its size."""
+
+    kind: str
+    sensor: str
+    axes: tuple
+    domain: str
+    words: str
+    score: float
+    value: dict = field(default_factory=dict)
+
+
 def present(score):
     """True when an effect is more likely there than HOLDS."""
     return score >= odds.COST + odds.PRESENT
+
+
+def damages(found):
+    """[Damage] as a list of dictionaries for --json."""
+    return [{"kind": one.kind, "sensor": one.sensor, "axes": list(one.axes),
+             "domain": one.domain, "score_nats": round(min(one.score, 1e6), 2),
+             "value": dict(one.value), "words": one.words} for one in found]

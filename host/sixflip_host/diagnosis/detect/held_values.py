@@ -13,8 +13,7 @@ import math
 import numpy as np
 
 from ...capture.registers import SENSORS
-from .damage import Damage
-from .detection import present
+from .detection import Damage, present
 
 FEWEST = 200  # rows
 STRETCH = 256  # rows

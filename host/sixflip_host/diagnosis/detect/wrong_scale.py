@@ -11,8 +11,7 @@ import numpy as np
 from sixflip.poses import faces
 
 from ...capture.imports import gravity
-from .damage import Damage
-from .detection import present
+from .detection import Damage, present
 
 SOUND_ACCEL = 0.1  # of |a|: ±80 mg of offset and 3 % of scale [MPU-6000 PS rev 3.4, table 6.2]
 SOUND_GYRO = 0.05  # ±3 % of scale [table 6.1], and a misaligned axis
