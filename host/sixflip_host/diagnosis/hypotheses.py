@@ -13,9 +13,9 @@ from .elimination import NONE, Columns
 TYPICAL = 0.2  # of a design's prior, which is ten times the typical size: twice typical
 WIDTHS = (0.2, 1.0)  # of the strangers' scale, tried for what is a session's own
 # A random walk's width, of the strangers' scale: from a chip's own flicker (0.3 to 0.45 mg, GAP)
-# to three times the largest effects of the library. Halfway between two of them a prior is off
+# to ten times the largest effects of the library. Halfway between two of them a prior is off
 # by 1.8, which costs half a nat a coefficient at most: ln r + (1 / r^2 - 1) / 2.
-WALKS = (0.1, 0.3, 1.0, 3.0)
+WALKS = (0.1, 0.3, 1.0, 3.0, 10.0)
 ONE_AXIS = "one axis"  # variant of the drift that one axis has
 FREE = {"drift": ("flicker", "time"), "session": ("switch_on", "session")}
 

@@ -68,6 +68,12 @@ def test_a_random_walk_of_each_axis_drifts(captures):
     assert not found.causes  # nothing slow that a walk follows by chance for a while
 
 
+def test_a_walk_as_wide_as_no_other_effect_drifts(captures):
+    """0.6 deg/s were "unexplained": what moves in steps was wider than the widest walk."""
+    found = diagnosed(captures, lambda generator, t: 4.0 * walk(generator, t, 3))
+    assert found.gaps["gyro"].drift and found.verdict == "explained"
+
+
 def test_a_slope_beside_a_walk_keeps_its_name(captures):
     warmest = max(c.temp.max() for c in captures)
 
