@@ -17,7 +17,7 @@ from . import (
     usable_rests,
     verdict,
 )
-from .detect import sample_clock, shake_detector, spectral_lines
+from .detect import sample_clock, shake_detector
 from .settings import Conditions, Settings
 from .simulator import simulator_answer
 
@@ -168,8 +168,8 @@ def of(sessions, settings=None, simulator=None, comparisons=(), damages=(), besi
             remarks.append("no rest found: only what shows in motion can be judged")
         if not moving and not any(
                 f.effect == "vibration" and f.sensor == "accel" for f in findings):
-            found = shake_detector.findings(sessions) or spectral_lines.in_motion(sessions)
-            findings += [f for f in found if f.effect not in settings.without]
+            findings += [f for f in shake_detector.findings(sessions)
+                         if f.effect not in settings.without]
     compared_in_motion = any(one.motion_judged for one in comparisons)
     if simulator:
         remarks += simulator.remarks

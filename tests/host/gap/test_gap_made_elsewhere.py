@@ -12,6 +12,7 @@ from sixflip_host.diagnosis.detect import (
     held_values,
     noise_bursts,
     sample_neighbours,
+    shake_detector,
     spectral_lines,
     torn_reads,
 )
@@ -180,16 +181,16 @@ def shaken(hz, moving):
 
 def test_what_runs_beside_a_log_shows_outside_of_its_rests():
     """A pump that ran half of the time cut the rests, and was "no gap"."""
-    found, = spectral_lines.in_motion([shaken(24.2, moving=False)])
+    found, = shake_detector.steady([shaken(24.2, moving=False)])
     assert found.axes == ["z"] and found.hz["z"] == pytest.approx(24.2, abs=0.01)
-    assert spectral_lines.in_motion([shaken(0.0, moving=True)]) == []
+    assert shake_detector.steady([shaken(0.0, moving=True)]) == []
 
 
 def test_a_motion_without_a_rest_has_no_line_that_is_not_steady():
     moving = shaken(0.0, moving=True)
     moving.capture.pose[:] = 0
     moving.capture.accel = np.roll(moving.capture.accel, -3000, axis=0)[:6000]
-    whole = spectral_lines.Moving("s", moving.capture, 100.0)
+    whole = shake_detector.Moving("s", moving.capture, 100.0)
     assert spectral_lines.strongest([whole], "accel", 2).hz < spectral_lines.MOTION_HZ
     assert spectral_lines.of_axis([whole], "accel", 2) is None
 

@@ -1,6 +1,12 @@
-"""Captures that move on: how much faster than the hand or the wheels the sensor is shaken."""
+"""Captures that move on: how much faster than the hand or the wheels the sensor is shaken, and
+what runs beside it at a steady frequency.
+"""
+import copy
+from dataclasses import dataclass
+
 import numpy as np
 
+from . import line_frequency, spectral_lines
 from .detection import Finding
 
 WINDOW_S = 1.0  # a shaken second stands beside quiet ones; at 100 Hz it knows its level to 7 %
@@ -9,9 +15,48 @@ SHAKEN = 3.0  # times the quiet level, root mean square, in at least half of the
 FEWEST_WINDOWS = 8  # of which half and one quiet one are compared
 
 
+@dataclass(frozen=True)
+class Moving:
+    """What a session is to those who look for lines, of its longest stretch without a rest."""
+
+    name: str
+    capture: object
+    rate: float
+    runs: tuple = ()
+
+
 def findings(sessions):
-    """list of Finding: vibration of captures without poses, from what changes from one sample
-    to the next (third differences: no motion of a hand or a vehicle is so fast)."""
+    """list of Finding: vibration of captures without poses."""
+    return shaken(sessions) or steady(sessions)
+
+
+def steady(sessions):
+    """list of Finding: a line of the accelerometer that is there where nothing rests, steady in
+    its frequency, which no motion of a hand, a vehicle or a robot is."""
+    moves = [one for one in map(_longest_move, sessions) if one]
+    if not moves or any(s.capture.accel is None for s in sessions):
+        return []
+    lines = [line_frequency.refined(line, moves, "accel") for line in (
+        spectral_lines.strongest(moves, "accel", axis) for axis in range(3)) if line]
+    lines = [line for line in lines if line.steady]
+    return [spectral_lines.told(lines, "accel", moves[0].rate)] if lines else []
+
+
+def _longest_move(session):
+    """Moving, or None where there is too little of it."""
+    edges = [0, *(edge for run in session.runs for edge in (run.first, run.end)),
+             len(session.capture)]
+    first, end = max(zip(edges[::2], edges[1::2]), key=lambda part: part[1] - part[0])
+    if end - first < spectral_lines.FEWEST * spectral_lines.MOVING_S * session.rate:
+        return None
+    cut = copy.copy(session.capture)
+    cut.accel = cut.accel[first:end] if cut.accel is not None else None
+    return Moving(session.name, cut, session.rate)
+
+
+def shaken(sessions):
+    """list of Finding: from what changes from one sample to the next (third differences: no motion
+    of a hand or a vehicle is so fast)."""
     levels = []
     if any(session.capture.accel is None for session in sessions):
         return []

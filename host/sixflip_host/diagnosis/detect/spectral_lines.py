@@ -5,9 +5,7 @@ is exponential with mean 1 where there is only noise; over R rests the weighted 
 distributed. The largest over all frequencies and axes must be improbable (Bonferroni).
 Source: Percival & Walden, Spectral Analysis for Physical Applications (1993), section 10.9.
 """
-import copy
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from scipy import ndimage, special
@@ -53,42 +51,8 @@ def findings(sessions, rings=()):
         lines = [line for line in lines if not ((sensor, line.letter) in rings and ringing.fades(
             sessions, sensor, line.axis, line.hz))]
         if lines:
-            out.append(_told(lines, sensor, sessions[0].rate))
+            out.append(told(lines, sensor, sessions[0].rate))
     return out
-
-
-@dataclass(frozen=True)
-class Moving:
-    """What a session is to those who look for lines, of its longest stretch without a rest."""
-
-    name: str
-    capture: object
-    rate: float
-    runs: tuple = ()
-
-
-def in_motion(sessions):
-    """list of Finding: a line of the accelerometer that is there where nothing rests, steady in
-    its frequency, which no motion of a hand, a vehicle or a robot is."""
-    stretches = [one for one in map(_longest_move, sessions) if one]
-    if not stretches or any(s.capture.accel is None for s in sessions):
-        return []
-    lines = [line_frequency.refined(line, stretches, "accel") for line in (
-        strongest(stretches, "accel", axis) for axis in range(3)) if line]
-    lines = [line for line in lines if line.steady]
-    return [_told(lines, "accel", stretches[0].rate)] if lines else []
-
-
-def _longest_move(session):
-    """Moving, or None where there is too little of it."""
-    edges = [0, *(edge for run in session.runs for edge in (run.first, run.end)),
-             len(session.capture)]
-    first, end = max(zip(edges[::2], edges[1::2]), key=lambda part: part[1] - part[0])
-    if end - first < FEWEST * MOVING_S * session.rate:
-        return None
-    cut = copy.copy(session.capture)
-    cut.accel = cut.accel[first:end] if cut.accel is not None else None
-    return Moving(session.name, cut, session.rate)
 
 
 def of_axis(sessions, sensor, axis):
@@ -112,7 +76,7 @@ def of_axis(sessions, sensor, axis):
     return max((line for line in across if line), key=lambda line: line.nats, default=None)
 
 
-def _told(lines, sensor, rate):
+def told(lines, sensor, rate):
     """Finding of the lines of a sensor."""
     top = max(lines, key=lambda line: line.nats)
     value = {line.letter: float("%.3g" % line.amplitude) for line in lines}
