@@ -244,3 +244,13 @@ def test_a_low_byte_of_the_sample_before_is_a_torn_read():
     moved = (np.abs(torn - x) > 128).sum()
     nats, number, _ = torn_reads.competed(sample_neighbours.tabled(torn, False))
     assert nats > 100.0 and number == pytest.approx(moved, rel=0.3)
+
+
+def test_pages_of_a_quiet_chip_are_no_low_bytes_of_the_sample_before():
+    """Of three codes that noise reads one is the one before: those were named, beside knocks."""
+    generator = np.random.default_rng(24)
+    x = np.rint(generator.normal(70.3, 1.0, 24000)).astype(np.int64)
+    knocked = generator.random(len(x)) < 0.03
+    x = np.where(knocked, x + np.rint(40.0 * generator.standard_normal(len(x))), x)
+    spiked = np.where(generator.random(len(x)) < 0.009, x + 256, x).astype(np.int64)
+    assert not present(torn_reads.competed(sample_neighbours.tabled(spiked, False))[0])

@@ -130,13 +130,14 @@ def competed(samples):
     for freedom in FREEDOM:
         densities = Densities(samples, freedom)
         others = [anywhere, *(louder(times, freedom) for times in KNOCKED)]
-        alone, ((gain, _), *knocked) = densities.best(
-            (moved, number), *((jump, number) for jump in others))
-        nameless += [alone, alone + gain, *(alone + other for other, _ in knocked)]
+        alone, knocked = densities.best(*((jump, number) for jump in others))
+        nameless += [alone, *(alone + other for other, _ in knocked)]
         likeliest = max(range(len(others)), key=lambda k: knocked[k][0])
         beside = Densities(samples, freedom, knocked[likeliest][1], others[likeliest])
         for one in (densities, beside):  # without others, and beside the likeliest share of them
-            alone, torn = one.best(*((torn_by(side), among) for side, among in chances.items()))
+            alone, ((by_pages, _), *torn) = one.best(
+                (moved, number), *((torn_by(side), among) for side, among in chances.items()))
+            nameless.append(alone + by_pages)
             named += [(alone + gain, one, side, own) for side, (gain, own) in zip(chances, torn)]
     score, densities, side, own = max(named, key=lambda one: one[0])
     torn = torn_by(side)
