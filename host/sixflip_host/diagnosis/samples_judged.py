@@ -125,9 +125,10 @@ def _without_bands(session, findings):
         counts = np.array(getattr(capture, found.sensor))
         for axis, band in found.value.items():
             column = counts[:, "xyz".index(axis)].astype(np.int64)
-            if np.abs(column[column != 0]).min(initial=band) < band:
+            off = column - codes.resting(column)
+            if np.abs(off[off != 0]).min(initial=band) < band:
                 counts[:, "xyz".index(axis)] = np.clip(
-                    column + band * np.sign(column), -RAIL - 1, RAIL)
+                    column + band * np.sign(off), -RAIL - 1, RAIL)
         setattr(capture, found.sensor, counts)
     return session.of_capture(capture) if any(
         f.effect == "dead_band" for f in findings) else session

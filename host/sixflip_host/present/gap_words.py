@@ -16,7 +16,7 @@ DOES = {  # what a part with this effect does
     "the temperature changes", "quadratic": "is bent (quadratic)", "cross_quadratic":
     "feels products of the other axes", "cubic": "is bent (cubic)", "asymmetry":
     "has different scales up and down", "g_sensitivity": "feels gravity", "drift":
-    "wanders by itself", "quantisation": "counts in steps", "dead_band": "reads 0 near 0",
+    "wanders by itself", "quantisation": "counts in steps", "dead_band": "has a dead band",
     "saturation": "hits its limit", "vibration": "is shaken at a steady frequency",
     "vibration_rectification": "shifts when it is shaken", "hysteresis":
     "remembers the pose before", "creep": "creeps after each move", "box_tilt":
