@@ -44,10 +44,10 @@ class Cutoffs:
     mimicry: Mimicry = Mimicry()
 
     def of(self, form):
-        """Nats that this member of a set must gain; what is not in the library is rarer by that
-        much. What takes a stranger's columns in, as a discrepancy beside its own, gains by chance
-        what that does."""
-        return (RARER if form.generic else 0.0) + max(
+        """Nats that this member of a set must gain; what is not in the library is rarer, unless it
+        is no more than a level of noise. What takes a stranger's columns in, as a discrepancy
+        beside its own, gains by chance what that does."""
+        return (RARER if form.generic and not form.free else 0.0) + max(
             (nats for one, nats in self.own.items() if one == form or
              form.discrepancy and np.isin(one.columns, form.columns).any()), default=self.member)
 

@@ -53,8 +53,10 @@ class RestLevels:
 def levels(rest, kind, flicker, known):
     """RestLevels with this flicker, measured or not. A robot that stops again, or a box that is
     put down again, leans another way within what counts as one attitude: across gravity that is
-    an accelerometer's attitude, and says nothing of the sensor."""
-    leaning = 1000.0 * np.sin(np.radians(long_rest.SAME_DEG)) if kind == "accel" else 0.0
+    an accelerometer's attitude, and says nothing of the sensor. Files of a rest each may be of a
+    thing that stood still all the while."""
+    moved = kind == "accel" and rest.rest.max() > rest.session.max()
+    leaning = 1000.0 * np.sin(np.radians(long_rest.SAME_DEG)) if moved else 0.0
     across = leaning * np.sqrt(np.maximum(1.0 - rest.up ** 2, 0.0))
     offsets = [min(tried for tried in OFFSETS[kind] if tried >= min(one, OFFSETS[kind][-1]))
                for one in across]
@@ -98,8 +100,9 @@ def held_out(rest, kind, unit, chosen, index, levels):
     columns = np.concatenate([f.columns for f in chosen] + [np.zeros(0, dtype=int)]).astype(int)
     prior = np.concatenate([f.prior for f in chosen] + [np.zeros(0)])
     x = unit.raw(columns)
-    # A bias is a session's own, and how a box lies each rest's.
-    own = rest.rest if offset > OFFSETS[kind][0] else rest.session
+    # How a box lies is each rest's own; so is a session's bias where it changes by more than is
+    # usual.
+    own = rest.rest if offset > OFFSETS[kind][0] else rest.session * (placement > offset)
     pieces, total = _pieces(rest.rest), holdout_gain.NOTHING
     for fold in range(FOLDS):
         held = pieces % FOLDS == fold
