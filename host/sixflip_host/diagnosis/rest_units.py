@@ -102,8 +102,10 @@ def held_out(rest, kind, unit, chosen, index, levels):
     x = unit.raw(columns)
     # How a box lies is each rest's own; so is a session's bias where it changes by more than is
     # usual.
-    own = rest.rest if offset > OFFSETS[kind][0] else rest.session * (placement > offset)
     pieces, total = _pieces(rest.rest), holdout_gain.NOTHING
+    own = rest.session * (placement > offset)
+    if offset > OFFSETS[kind][0] and len(np.unique(pieces)) > len(np.unique(rest.rest)):
+        own = rest.rest
     for fold in range(FOLDS):
         held = pieces % FOLDS == fold
         train = ~held
@@ -122,13 +124,14 @@ def held_out(rest, kind, unit, chosen, index, levels):
 
 
 def _pieces(rest):
-    """(n,) number of the piece that each mean is in: PIECES in all, FOLDS of each rest at least
-    where it has so many means."""
-    found = []
+    """(n,) number of the piece that each mean is in: about PIECES in all, FOLDS of each rest at
+    least where it has so many means; one after the other through all rests."""
+    found, start = [], 0
     for number in np.unique(rest):
         n = int((rest == number).sum())
-        parts = max(FOLDS, int(round(PIECES * n / len(rest))))
-        found.append(np.arange(n) * parts // n)
+        parts = min(n, max(FOLDS, int(round(PIECES * n / len(rest)))))
+        found.append(start + np.arange(n) * parts // n)
+        start += parts
     return np.concatenate(found)
 
 

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture.capture_file import Capture
-from sixflip_host.diagnosis import rest_gap
+from sixflip_host.diagnosis import rest_gap, rest_units
 from sixflip_host.diagnosis.diagnosis import Settings
 from sixflip_host.experiment import blocks, long_rest
 
@@ -126,3 +126,16 @@ def test_a_drift_shows_in_rests_that_each_lie_another_way():
     low, high = found.causes[0].interval["x"]
     assert low < 1.5 < high
     assert found.by_axis["x"].after < 1.4 * found.by_axis["x"].floor
+
+
+def test_rests_of_one_mean_each_have_figures():
+    """What nothing else in a rest foretells is foretold by the other rests."""
+    found = rest_units._pieces(np.array([0, 0, 0, 0, 0, 0, 1, 2, 3]))
+    assert sorted(set(found % rest_units.FOLDS)) == list(range(rest_units.FOLDS))
+    assert len(set(found[6:])) == 3
+    leaning, moved = put_down_again(every_s=6.0)
+    whole = rest((leaning, 0.0, 0.0))
+    whole.capture.pose = np.where(moved, 0, 1 + (T / 6.0).astype(int) % 2).astype(np.int16)
+    judged = accel(blocks.of("rests", whole.capture))
+    assert not judged.causes and not judged.nameless
+    assert all(judged.by_axis[axis].before > 0.0 for axis in "xyz")
