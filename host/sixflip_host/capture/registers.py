@@ -12,6 +12,11 @@ LOW_BITS = 6  # bits that noise and motion must have moved
 MOVED = 4  # times a bit's weight that a column must span to have moved it
 
 
+def beside(x):
+    """(4, n - 4, ...): the two samples before and the two after each of x (n, ...) with both."""
+    return np.stack([x[:-4], x[1:-3], x[3:-1], x[4:]])
+
+
 def unit_of_count(meta, sensor):
     """mg or deg/s of one count of a capture's sensor ("accel", "gyro")."""
     if sensor == "accel":

@@ -167,7 +167,7 @@ def _sensor(rest, kind, chip, settings, jumps):
     return RestGap(kind, rest, tuple(told), tuple(places),
                    (*(1.0 - found.places[f.effect].get("", 0.0) for f, _ in strange),
                     *([] if fits.ok else [1.0 - fits.p]), *(1.0 - p for p in leaps.values())),
-                   tuple(rest_units.held_out(rest, kind, unit, chosen, point, levels)
+                   tuple(rest_units.held_out(rest, unit, chosen, point, levels)
                          for unit, point in zip(units, fits.index)),
                    frozenset(f.effect for f in forms))
 

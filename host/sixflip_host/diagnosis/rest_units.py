@@ -15,9 +15,8 @@ from . import adequacy, evidence, holdout_gain, rest_forms
 # Levels tried: of the offset from one rest to the next from what it is where nothing was moved
 # up, about half a decade apart: beyond flicker that is the Allan floor of the parts
 # (typical.FLOOR), of a gyro the Earth's rate, should the box have been put down again; of flicker
-# from a quiet
-# part (typical.FLICKER) up, where parts are so close that what is left beside the nearest
-# is not doubtful for that (adequacy.DOUBTFUL_RATIO, of squares).
+# from a quiet part (typical.FLICKER) up, where parts are so close that what is left beside the
+# nearest is not doubtful for that (adequacy.DOUBTFUL_RATIO, of squares).
 OFFSETS = {"accel": (0.1, 0.3, 1.0, 3.0, 12.0, 50.0), "gyro": (0.003, 0.01, 0.05, 0.3, 1.0)}
 FLICKERS = {"accel": (0.005, *np.geomspace(0.02, 0.8, 15).tolist(), 1.6, 4.0, 12.0, 40.0),
             "gyro": (0.0002, *np.geomspace(0.0005, 0.03, 17).tolist(), 0.1, 0.3, 1.0)}
@@ -87,7 +86,7 @@ def of(rest, kind, chip, settings):
     return found
 
 
-def held_out(rest, kind, unit, chosen, index, levels):
+def held_out(rest, unit, chosen, index, levels):
     """holdout_gain.Sums of one axis over the folds: pieces of the rests, every FOLDS-th of them
     foretold by the others, all means with one weight. The floor is that of noise that wanders no
     more than a chip may, in rests that lie as they may; what wanders more is a gap that nothing
@@ -104,7 +103,7 @@ def held_out(rest, kind, unit, chosen, index, levels):
     # usual.
     pieces, total = _pieces(rest.rest), holdout_gain.NOTHING
     own = rest.session * (placement > offset)
-    if offset > OFFSETS[kind][0] and len(np.unique(pieces)) > len(np.unique(rest.rest)):
+    if offset > unit.grid[0][0] and len(np.unique(pieces)) > len(np.unique(rest.rest)):
         own = rest.rest
     for fold in range(FOLDS):
         held = pieces % FOLDS == fold

@@ -83,7 +83,10 @@ def of(sessions, without=(), damages=()):
     remarks += ["bit %d of the %s axis of the %s always reads %d"
                % (bit, axis, SENSOR[sensor], value) for sensor, axis, bit, value in bits]
     remarks += [words for _, _, words, _ in rings]
-    nameless = [localisation.Place(sensor, None, "noise", 1.0, p) for sensor, _, p in unsteady]
+    # Spikes that are pages are one gap, by whichever of both they are told more surely.
+    noise = {sensor: min(p for one, _, p in unsteady if one == sensor)
+             for sensor, _, _ in unsteady}
+    nameless = [localisation.Place(sensor, None, "noise", 1.0, p) for sensor, p in noise.items()]
     nameless += [localisation.Place(sensor, axis, "time_since_move", 1.0, odds.chance(nats))
                  for sensor, axis, _, nats in rings]
     nameless += [localisation.Place(one.sensor, axis, one.domain, 1.0, odds.chance(one.score))

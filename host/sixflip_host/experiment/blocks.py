@@ -92,7 +92,7 @@ def _without_spikes(capture):
         counts = getattr(capture, sensor)
         if counts is None or len(counts) < 5:
             continue
-        around = np.stack([counts[:-4], counts[1:-3], counts[3:-1], counts[4:]]).astype(float)
+        around = registers.beside(counts).astype(float)
         middle = np.median(around, axis=0)
         noise = np.maximum(1.4826 / np.sqrt(2.0) * np.median(np.abs(np.diff(
             counts.astype(float), axis=0)), axis=0), 1.0)

@@ -22,7 +22,7 @@ PLAY_S = 0.1
 # to its mean is then at most that share of what is wrong with them.
 MOST_BAD = 0.005
 # Intervals taken together; stamps by which their scatter is known to a tenth; share of an interval
-# that no turn shows: a sixth of a degree in one of half a second at 180 deg/s.
+# that no turn shows: at 180 deg/s fifty of 10 ms are off by an eighth of a degree at most.
 STEPS, FEWEST_STAMPS, EVEN = 16, 1600, 0.01
 FAR_OFF_DEG = 25.0  # a label that gravity contradicts: a table does not lean by half of that
 USUAL_C = 25.0  # temperature where no thermometer tells it: of the effects' own reference

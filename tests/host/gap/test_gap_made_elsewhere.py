@@ -16,7 +16,7 @@ from sixflip_host.diagnosis.detect import (
     spectral_lines,
     torn_reads,
 )
-from sixflip_host.diagnosis.detect.detection import present
+from sixflip_host.diagnosis.detect.detection import Finding, present
 from sixflip_host.diagnosis.holdout_gain import Shrinkage
 from sixflip_host.experiment import blocks
 from tests.worlds.still_session import at_rest, flicker
@@ -254,3 +254,27 @@ def test_pages_of_a_quiet_chip_are_no_low_bytes_of_the_sample_before():
     x = np.where(knocked, x + np.rint(40.0 * generator.standard_normal(len(x))), x)
     spiked = np.where(generator.random(len(x)) < 0.009, x + 256, x).astype(np.int64)
     assert not present(torn_reads.competed(sample_neighbours.tabled(spiked, False))[0])
+
+
+def test_a_band_about_a_bias_is_put_back_about_that():
+    """About 0 it was put on every reading of the axis, those at the bias as well."""
+    still = at_rest(flicker(5, 4000)).capture
+    rate = 400.0 * np.sin(2.0 * np.pi * np.arange(4000) / 900.0) * (np.arange(4000) >= 2000)
+    still.gyro = still.gyro.copy()
+    still.gyro[:, 2] = np.rint(55.0 + np.sign(rate) * np.maximum(np.abs(rate) - 30.0, 0.0))
+    found = Finding("dead_band", "gyro", ["z"], {"z": 30}, "counts", 50.0, "amplitude", "")
+    back = samples_judged._without_bands(blocks.of("s", still), [found]).capture.gyro[:, 2]
+    assert (back[:2000] == 55).all() and still.gyro[2100, 2] + 30 == back[2100]
+    away = np.abs(rate) > 31.0
+    assert np.abs(back - 55.0 - rate)[away].max() <= 1.0
+
+
+def test_spikes_that_are_pages_are_one_place():
+    still = at_rest(flicker(5, 8000)).capture
+    still.gyro = still.gyro.copy()
+    spiked = np.random.default_rng(25).choice(np.arange(100, 7900), 90, replace=False)
+    still.gyro[spiked, 1] += np.int16(256)
+    judged = samples_judged.of([blocks.of("s", still)])
+    said = [words for words in judged.remarks if "spikes" in words or "256 counts" in words]
+    assert len(said) == 2
+    assert [(p.sensor, p.domain) for p in judged.nameless] == [("gyro", "noise")]

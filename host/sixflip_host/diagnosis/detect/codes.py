@@ -8,16 +8,18 @@ from ...capture.registers import LOW_BITS, RAIL, codes, spacing, steps, zeros_be
 
 STEPS_TRIED = 1 << LOW_BITS
 # Codes to either side that say how often one is read: as many as the usual difference of two
-# samples, over which the density of noise bends by a tenth, at most as many as the widest steps.
+# samples, whose median is a tenth below the peak of normal noise, at most as many as wide steps.
 NOISY, FEWEST_AROUND, MOST_AROUND = 1.0, 8, 16
 EXPECTED = 20.0  # readings of a code: chance leaves RARE of them once in a million
 # Of the usual number: no converter's steps differ so much that has none missing (differential
-# nonlinearity of more than 0.9 of a step) [IEEE Std 1241, section 4.4].
+# nonlinearity of more than 0.9 of a step, which IEEE Std 1241 calls a missing code).
 RARE, FREQUENT = 0.1, 4.0
 # Share of the samples that are too many or missing at such codes: a tenth are in a recording of a
 # sensor that is sold calibrated, whose converter or arithmetic leaves single codes out.
 MANY = 0.15
-ALONE, SELDOM = 10.0, 0.01  # times any other; of all samples
+# Times as often as any other code, and as a hundredth of all samples: in noise of one count a rest
+# reads its commonest code in four of ten samples, and the next one in a quarter.
+ALONE, SELDOM = 10.0, 0.01
 
 
 def step_nats(counts):

@@ -82,7 +82,7 @@ def spikes(session, sensor, agreeing=4):
         x = counts[first:end].astype(float)
         if len(x) < 20:
             continue
-        beside = np.stack([x[:-4], x[1:-3], x[3:-1], x[4:]])
+        beside = registers.beside(x)
         middle = np.median(beside, axis=0)
         off = np.abs(x[2:-2] - middle)
         sigma = np.maximum(_deviation(off), narrowest)

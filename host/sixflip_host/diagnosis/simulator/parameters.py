@@ -23,7 +23,7 @@ RANGE_APART = 1.01  # times the other's: a range that differs; full scales are t
 # An engine whose rates are half a physics step older than its forces (MuJoCo, Featherstone's
 # semi-implicit step) differs from itself by as much at two step sizes of 1 and 2 ms.
 LEAST_DELAY_MS = 0.5
-LEAST_SMOOTH_MS2 = 3.0
+LEAST_SMOOTH_MS2 = 3.0  # half the square of a time constant of 2.4 ms
 # Quartz is within 50 ppm of its frequency (boards' crystals have 10 to 50 in their data sheets),
 # and two logs have one each: so much is no simulator's fault, and nothing to set.
 QUARTZ = 1e-4
