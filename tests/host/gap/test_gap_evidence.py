@@ -4,9 +4,12 @@ import pytest
 from scipy import integrate, linalg, stats
 
 from sixflip_host.diagnosis import (
+    aliases,
     cutoffs,
+    effect_estimates,
     evidence,
     hypotheses,
+    members,
     mimicry,
     moves_unit,
     odds,
@@ -249,3 +252,47 @@ def test_strangers_that_look_like_a_name_make_every_name_less_sure(monkeypatch):
 def test_where_no_form_is_left_to_compete_a_cost_is_not_simulated():
     """Half a session, whose few turns show no effect at all."""
     assert cutoffs.of([], [], USUAL).member == cutoffs.LEAST_NATS
+
+
+def test_what_is_not_in_the_library_is_rarer_and_a_level_of_noise_is_not():
+    cost = cutoffs.Cutoffs(5.0, 0.02)
+    named, nameless = (hypotheses.Form(name, shared=Columns(np.array([0]), np.ones(1)))
+                       for name in ("thermal_bias", "orientation"))
+    level = hypotheses.Form("session", free=frozenset(["switch_on"]))
+    assert cost.of(nameless) - cost.of(named) == pytest.approx(np.log(odds.INSIDE))
+    assert cost.of(level) == cost.of(named) == 5.0
+
+
+def lagging(generator, n=40):
+    """A unit whose readings follow a course that it has twice, as it is and half a step behind: by
+    half as much again would the second have to be larger."""
+    one = np.zeros((n, 3))
+    one[:, 0] = np.sin(np.linspace(0.0, 3.0, n))
+    later = one / 1.5
+    y = 4.0 * one + generator.standard_normal((n, 3))
+    designs = [Design("thermal_bias", name, ["x"], [0], columns.reshape(-1, 1), np.array([50.0]))
+               for name, columns in (("", one), ("lag 15 s", later))]
+    groups = covariance.alone(np.eye(3 * n), np.zeros((3 * n, 0)), np.eye(3 * n))
+    return linear_model.unit(Rows(y.reshape(-1), groups, np.kron(np.ones((n, 1)), np.eye(3)),
+                                  ((0.0,), (0.01, 1.0))), designs)
+
+
+def test_a_size_is_as_uncertain_as_the_lag_that_nothing_tells():
+    units = [lagging(np.random.default_rng(seed)) for seed in (3, 4)]
+    model, forms = model_of(units), hypotheses.of(units)
+    best = posterior.search(model, forms, cutoffs.Cutoffs(5.0, 0.02))
+    cause, = aliases.causes(best, units, forms)
+    full = members.in_full(model, forms, best, cause)
+    assert len(full.variants) == 2 and sum(p for p, _ in full.variants) == pytest.approx(1.0)
+    gram = sum(u.gram.at(int(f.index[0])) for u, f in zip(units, best.best.fits))
+    sizes = {one.chosen[0].variant: effect_estimates.effective(one, gram)[0]["x"]
+             for _, one in full.variants}
+    assert sizes["lag 15 s"] == pytest.approx(1.5 * sizes[""], rel=0.02)
+    theta, spread = effect_estimates.effective(full, gram)
+    sigma = {"x": float(np.sqrt(spread[0, 0]))}
+    own, mixed = (effect_estimates._intervals(one, gram, theta, sigma)["x"]
+                  for one in (cause, full))
+    assert own == pytest.approx((theta["x"] - odds.Z_90 * sigma["x"],
+                                 theta["x"] + odds.Z_90 * sigma["x"]))
+    assert mixed[0] < sizes[""] and mixed[1] > sizes["lag 15 s"]
+    assert own[1] - own[0] < 0.7 * (mixed[1] - mixed[0])
