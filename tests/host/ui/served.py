@@ -114,7 +114,7 @@ def until(holds, so_far=lambda: ""):
     """Wait for something that another thread does; so_far() says what there is where it fails."""
     end = time.monotonic() + WAIT_S
     while not holds():
-        assert time.monotonic() < end, "it never came: %s" % so_far()
+        assert time.monotonic() < end, "it never came: %s" % (so_far(),)
         time.sleep(0.01)
 
 
