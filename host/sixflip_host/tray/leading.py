@@ -64,7 +64,7 @@ def begun(now_tray):
             now_tray.now - since < START_S * now_tray.patience:
         return now_tray, []
     reference = next((member for member in running if not member.stuck), running[0])
-    now_tray = put(now_tray, replace(reference, mounting=jig.AS_THE_JIG))
+    now_tray = put(now_tray, replace(reference, mounting=reference.mounting or jig.AS_THE_JIG))
     now_tray = replace(now_tray, reference=reference.port)
     early = {member.port: member.taken_last for member in running if member.taken_last}
     return as_it_lies(now_tray, early) if early else onward(now_tray)

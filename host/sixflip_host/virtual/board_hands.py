@@ -87,8 +87,9 @@ class JigHand:
         self.mountings = mountings
         self.clock = clock
         self.lock = threading.Lock()    # every board is heard in a thread of its own
-        self.tray = tray(dict.fromkeys(mountings))
+        self.tray = self.seated(tray(dict.fromkeys(mountings)))
         self.lies = FIRST
+        self.lay = {}       # {face: the pose in which the jig lay on it last}
         self.visit = None
         self.swapped = False
 
@@ -109,27 +110,39 @@ class JigHand:
         with self.lock:
             if event["event"] == "hello":
                 self.restarted(name)
-            self.tray, _ = tray_events.after(self.tray, name, event, self.clock())
+            heard, _ = tray_events.after(self.tray, name, event, self.clock())
+            self.tray = self.seated(heard)
             return self.own(name, self.pose())
+
+    def seated(self, now_tray):
+        """The Tray with every board as it sits in the jig, whatever its words made of that. A
+        board that was not yet moved, or that speaks late, would seem to sit otherwise than it
+        does, and would wait for ever for a face that is never up."""
+        return replace(now_tray, members=tuple(
+            replace(member, mounting=self.mountings[member.port])
+            for member in now_tray.members))
 
     def restarted(self, name):
         """A board begins anew; the jig does when nothing of a session is left."""
         members = tuple(Member(name, member.number) if member.port == name else member
                         for member in self.tray.members)
-        self.tray = replace(self.tray, members=members)
+        self.tray = self.seated(replace(self.tray, members=members))
         if not any(member.running and member.state.taken for member in members):
-            self.tray = tray(dict.fromkeys(self.mountings))
-            self.lies, self.visit = FIRST, None
+            self.tray = self.seated(tray(dict.fromkeys(self.mountings)))
+            self.lies, self.lay, self.visit = FIRST, {}, None
 
     def pose(self):
-        """The jig's pose. A face that is taken again as it lies begins with how it lies."""
+        """The jig's pose. A face that is taken again as it lies begins with how it lies; one that
+        a board tells late of having taken, with how the jig lay on it before it was turned on."""
         face = self.tray.face
         if face and self.tray.running:
             visit = (face, self.tray.visits[face])
             if visit != self.visit:
-                self.swapped = self.lies == face + "b"
+                lay = self.lies if self.tray.letter == "a" else self.lay.get(face)
+                self.swapped = lay == face + "b"
                 self.visit = visit
             self.lies = face + "ab"[(self.tray.letter == "b") != self.swapped]
+            self.lay[face] = self.lies
         return self.lies
 
 

@@ -4,6 +4,7 @@ import json
 
 from sixflip_host.virtual.board_hands import WAYS, JigHand
 from sixflip_sim.operator import LOOKS_S, REACTS_S, Operator
+from tests.worlds.tray_rig import LIE_S, ScriptedBoard
 
 WINDOW_S = 0.25
 AT_REST, TROUBLED = {"state": "waiting", "reason": ""}, {"state": "waiting", "reason": "noisy"}
@@ -48,3 +49,71 @@ def test_a_pose_asked_for_anew_is_placed_anew():
     assert operator.scene.end_us() == before_us
     operator.asked(before_us + 3_000_000, "Z+a")
     assert operator.scene.end_us() > before_us + 3_000_000
+
+
+class Jig:
+    """A JigHand and the boards in it, each of which says at once what it has to say."""
+
+    def __init__(self):
+        self.now = 0.0
+        self.hand = JigHand({"one": WAYS[0], "two": WAYS[1]}, lambda: self.now)
+        self.boards = {name: ScriptedBoard(way) for name, way in self.hand.mountings.items()}
+        self.laid = 0
+
+    def says(self, name, *events):
+        for event in events:
+            self.hand.hear(name, event)
+
+    def begins(self, name):
+        self.says(name, *self.boards[name].hello(name))
+
+    def lie(self, *names):
+        """The jig lies as the hand has laid it, and these boards take what they lack."""
+        pose = self.hand.pose()
+        for name in names:
+            self.says(name, *self.boards[name].lay(self.laid, pose))
+        self.laid, self.now = self.laid + 1, self.now + LIE_S
+
+    def missing(self, most=20):
+        """What no board ever takes, in so many layings of the jig."""
+        for _ in range(most):
+            self.lie("one", "two")
+        return [board.missing for board in self.boards.values()]
+
+
+def test_boards_restarted_one_after_the_other_are_turned_as_the_jig_is():
+    """As a host restarts them: the second is in its session while the first still ends another."""
+    jig = Jig()
+    hello, calibrating = jig.boards["two"].hello("two")
+    jig.begins("one")
+    jig.says("one", {"event": "capture", "samples": 7200})
+    jig.says("two", hello)
+    jig.says("one", {"event": "solved", "verdict": "good"}, {"event": "saved", "slot": "a"})
+    jig.says("two", calibrating)
+    assert jig.hand.tray.reference == "two"
+    jig.lie("two")
+    jig.begins("one")
+    assert jig.missing() == [[], []]
+
+
+def test_a_board_that_tells_late_what_it_took_is_known_to_sit_as_it_does():
+    jig = Jig()
+    for name in (*jig.boards, "one"):       # as the second starts, the first begins anew
+        jig.begins(name)
+    while jig.laid < 9 and jig.hand.pose() != "X+a":
+        jig.lie("one")
+    jig.lie("one")
+    jig.says("two", *jig.boards["two"].lay(jig.laid, "Z+a"))
+    assert jig.hand.tray.member("two").mounting == WAYS[1]
+    assert jig.missing() == [[], []]
+
+
+def test_half_a_turn_is_one_from_how_the_jig_lay_when_the_first_placement_was_taken():
+    jig = Jig()
+    for name in (*jig.boards, "one"):
+        jig.begins(name)
+    while jig.laid < 9 and jig.hand.pose() != "X+a":
+        jig.lie("one")
+    jig.says("two", *jig.boards["two"].lay(jig.laid, "Z+b"))    # taken as the jig was turned on
+    assert jig.hand.pose() == "Z+a"
+    assert jig.missing() == [[], []]
