@@ -46,7 +46,7 @@ class FlipsTurned:
 def by_moves(capture, far_pairs=True):
     """The FlipsTurned of a labelled capture.
 
-    far_pairs  as rests_and_moves.of: for labels, not for poses found
+    far_pairs  as rests_and_moves.from_session: for labels, not for poses found
     """
     if capture.sums_only:
         return FlipsTurned("no samples of the moves were kept")

@@ -111,7 +111,7 @@ class GyroMoves(ReadOnlyArrays):
         return total, change
 
 
-def of(session, moves):
+def from_session(session, moves):
     """GyroMoves of some of the moves (blocks.Move) of a blocks.Session, by the nominal scale."""
     meta = session.capture.meta
     return of_samples(session.capture.gyro * (RAD / meta["gyro_lsb_per_dps"]),

@@ -85,7 +85,7 @@ class RestsAndMoves(ReadOnlyArrays):
         return bool(self.flips or self.alone)
 
 
-def of(session, far_pairs=True):
+def from_session(session, far_pairs=True):
     """RestsAndMoves of a blocks.Session; BadFile or CheckFailed where nothing can be refined from
     it. far_pairs: believe that a and b of a face belong to one table though the box was elsewhere
     in between; for labels, not for poses found."""
@@ -101,7 +101,7 @@ def of(session, far_pairs=True):
         rate_error = _error(session, session.noise_gyro * RAD, FLOOR_RATE)
         usable, left_out = _usable(session)
         ends = tuple((move.place, move.place + 1) for move in usable)
-        kept = gyro_moves.of(session, usable)
+        kept = gyro_moves.from_session(session, usable)
         move_error = _move_error(session, kept, force_error, ends)
     flips, alone = _paired(session, ends, far_pairs)
     _refuse_unusable(session, ends, left_out, flips)

@@ -180,7 +180,7 @@ def _time_remarks(capture):
     usual = float(np.median(gaps))
     remarks = []
     rate_hz = capture.meta["rate_hz"]
-    measured = clock.of(capture)
+    measured = clock.sample_clock(capture)
     if measured and abs(measured.rate_hz / rate_hz - 1) > RATE_OFF:
         remarks.append("the timestamps say %.4g samples a second, the header %g" % (
             measured.rate_hz, rate_hz))

@@ -53,7 +53,7 @@ class Extras(NamedTuple):
     lost: list
 
 
-def of(meta, path):
+def from_meta(meta, path):
     """The Extras in a capture's metadata; BadFile when they make no sense."""
     found = meta.get(EXTRAS, {})
     try:
@@ -71,7 +71,7 @@ def of(meta, path):
 
 def take(capture, path):
     """Sets on a capture what its metadata says of the board's file it came from."""
-    extras = of(capture.meta, path)
+    extras = from_meta(capture.meta, path)
     capture.notes, capture.withdrawn = extras.notes, extras.withdrawn
     capture.truncated = extras.truncated
     capture.complete = extras.complete or EXTRAS not in capture.meta

@@ -58,7 +58,7 @@ class Capture:
             return list(self.board_placements)
         if self.accel is None:
             return []
-        return pose_sums.of(self)
+        return pose_sums.placements(self)
 
     def moves(self):
         """What lies between consecutive placements, as sixflip.poses.placement.Move."""

@@ -115,13 +115,13 @@ def usual_us(t_us):
 def write_pauses(capture):
     """Indices of the intervals in which the board wrote to its flash instead of reading; of a
     board's file or of a text made from one."""
-    return _intervals(capture, board_extras.of(capture.meta, "the capture").pauses)
+    return _intervals(capture, board_extras.from_meta(capture.meta, "the capture").pauses)
 
 
 def lost_on_the_way(capture):
     """(samples, indices of the intervals they are missing in) that the link lost while a
     recording came from the board: the sensor and the board had them."""
-    lost = board_extras.of(capture.meta, "the capture").lost
+    lost = board_extras.from_meta(capture.meta, "the capture").lost
     return (lost[0], _intervals(capture, lost[1])) if lost else (0, np.zeros(0, int))
 
 
@@ -176,7 +176,7 @@ def encode(capture):
         raise BadFile("the times go from %d to %d us, a board's file holds 0 to %d" % (
             capture.t_us[0], capture.t_us[-1], LATEST_US - 1))
     meta = dict(capture.meta)
-    extras = board_extras.of(meta, "the capture")
+    extras = board_extras.from_meta(meta, "the capture")
     meta[EXTRAS] = {PAUSES: extras.pauses, LOST: extras.lost}
     data = bytearray()      # the writer's buffer is used again: copy what it hands over
     mask = ACCEL | (GYRO if capture.gyro is not None else 0) \

@@ -94,7 +94,7 @@ def measure(t_us, recorder=(), lost=()):
         gaps.late, gaps.bursts, gaps.latest / 1e3, gaps.jitter / 1e3, resolution / 1e3)
 
 
-def of(capture):
+def sample_clock(capture):
     """The SampleClock of a Capture. Where a board's own file says that it wrote to its flash, it
     read nothing meanwhile; that is no loss."""
     _, places = capture_binary.lost_on_the_way(capture)

@@ -12,7 +12,7 @@ from .still_windows import POSE_SAMPLES
 AT_A_TIME = 1000        # windows as floats, which take four times the room of counts
 
 
-def of(capture):
+def placements(capture):
     """list of Placement, one for every run of a label in capture.pose; none when unlabelled."""
     return [one(capture, *run) for run in rests.labelled(capture.pose)]
 

@@ -106,7 +106,7 @@ def labelled(pose, shortest=1, without=()):
 def find(capture, stillness=POSES):
     """Found: every rest of a capture, against the noise of its quietest second. Unlike the
     board, which must learn that from what comes first, the whole recording is there."""
-    windows = still_windows.of(capture)
+    windows = still_windows.cut_into_windows(capture)
     noise = still_windows.quietest(windows)
     if noise is None:
         return Found((), None)
@@ -126,7 +126,7 @@ def find(capture, stillness=POSES):
 def longest(capture):
     """LongestRest of a capture, for what is measured at rest and no session: mounting, and
     whether a calibration still holds. The noise is learnt as the board learns it."""
-    windows = still_windows.of(capture)
+    windows = still_windows.cut_into_windows(capture)
     if len(windows) < WINDOWS:
         rate = capture.meta["rate_hz"]
         return LongestRest(reason="%.1f s are too short, %.1f s of rest are needed" % (

@@ -64,7 +64,7 @@ class _Window:
         self.step = windows.step[index].tolist().__getitem__
 
 
-def of(capture):
+def cut_into_windows(capture):
     """StillWindows of a capture."""
     rate = capture.meta["rate_hz"]
     length = window_length(rate, POSE_SAMPLES)

@@ -121,7 +121,7 @@ class Session(ReadOnlyArrays):
     @cached_property
     def period_s(self):
         """Seconds between two samples, by the clock where it runs."""
-        measured = None if self.timeless else clock.of(self.capture)
+        measured = None if self.timeless else clock.sample_clock(self.capture)
         return 1.0 / (measured.rate_hz if measured else self.rate)
 
     @cached_property

@@ -97,13 +97,13 @@ def read(path):
         raise UsageError("%s: a diagnosis without a simulator, expected one made with --sim"
                          % path)
     try:
-        return of(answer)
+        return from_diagnosis(answer)
     except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
         raise BadFile("%s: damaged (%s), expected the JSON of sixflip diagnose --json" % (
             path, error)) from None
 
 
-def of(answer):
+def from_diagnosis(answer):
     """PutBack of an answer."""
     simulator = answer["simulator"]
     numbers = simulator["parameters"]

@@ -154,11 +154,11 @@ def _judged(kept, remarks, options=None):
     chip, accel, gyro = _kind(kept[0].meta)
     gaps = {}
     if options and options.diagnose:
-        answered, rests, gaps = diagnosed.of(kept, sessions)
+        answered, rests, gaps = diagnosed.diagnose_board(kept, sessions)
         found["gap"] = json.dumps(answered, allow_nan=False)
     if not gaps:
         rests = usable_rests.of(sessions, [], [])
-    told, said = effects.of(rests, chip, gaps)
+    told, said = effects.information(rests, chip, gaps)
     for sensor, one in told.items():
         found["precision_" + sensor] = one.precision[np.triu_indices(len(one.score))].tolist()
         found["score_" + sensor] = one.score.tolist()

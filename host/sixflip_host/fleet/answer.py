@@ -23,7 +23,7 @@ def digits(value):
     return number(value, DIGITS)
 
 
-def of(kinds, failures, remarks):
+def population(kinds, failures, remarks):
     """dict of [(Members, [Batch], [LotDifference])], [(board, sentence)], [sentence]."""
     return finite({"format": FORMAT, "kind": KIND,
                    "groups": [_group(*one) for one in kinds],
@@ -69,9 +69,9 @@ def _outlier(o):
 
 
 def judged(rows, keys=None):
-    """[(Members, [Batch], [LotDifference])] of the rows of a data set: see members.of()."""
+    """[(Members, [Batch], [LotDifference])] of the rows of a data set: see members.by_kind()."""
     found = []
-    for them in members.of(rows, keys):
+    for them in members.by_kind(rows, keys):
         batches = judgement.batches(them)
         found.append((them, batches, judgement.lots(batches)))
     return found

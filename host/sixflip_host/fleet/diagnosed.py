@@ -11,7 +11,7 @@ from ..diagnosis.rest_model import RestModel
 from ..diagnosis.settings import Conditions, Settings
 
 
-def of(kept, sessions, settings=None):
+def diagnose_board(kept, sessions, settings=None):
     """(dict, UsableRests, gaps) of the [Summary] of one board and their sessions: verdict; causes
     as in the answer of diagnose; gap {sensor: before, after and floor}; beside it what it was
     found in, {sensor: SensorGap}."""

@@ -56,7 +56,7 @@ def unit(name):
     return spelled(EFFECTS[effect].units[sensor])
 
 
-def of(rests, chip, gaps=None):
+def information(rests, chip, gaps=None):
     """({sensor: Information}, remarks) of the UsableRests of one board. gaps: {sensor:
     SensorGap} of their diagnosis, whose units need not be made again."""
     found = {sensor: nothing(sensor) for sensor in FORMS}

@@ -89,7 +89,7 @@ COLUMNS = (*KEYS, "values", "covariances", *("%s_%s" % (what, s) for s in effect
                                              for what in ("precision", "score")))
 
 
-def of(rows, keys=None):
+def by_kind(rows, keys=None):
     """[Members], the most boards first, of rows that can be gone over again and again; those that
     failed are left out. keys: the same rows with the columns KEYS, which are read faster. What is
     in memory of a board is its name: once over the rows, what all boards tell together is summed,

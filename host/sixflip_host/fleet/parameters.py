@@ -61,7 +61,7 @@ def unknown():
                     {block: np.full((len(names),) * 2, np.nan) for block, names in BLOCKS.items()})
 
 
-def of(P, sigma_P, g, gyro=None, noise=None):
+def estimate(P, sigma_P, g, gyro=None, noise=None):
     """Estimate of an accelerometer's P (4 x 4, m/s²; None: no such) with its standard errors.
 
     gyro   (P 4 x 3 rad/s, sigma 4 x 3, bias_dps (3,), sigma_bias_dps (3,), missing axes) or None
@@ -128,7 +128,7 @@ def of_solution(solved, session):
             level = getattr(session, "noise_" + sensor)
             if level is not None:
                 noise[sensor] = level, seconds
-    return of(accel.P if usable else None, accel.sigma_P if usable else None, solved.g, gyro,
+    return estimate(accel.P if usable else None, accel.sigma_P if usable else None, solved.g, gyro,
               noise)
 
 
@@ -146,4 +146,4 @@ def of_record(record):
         from ..history.parameters import gyro_bias_dps
         told = (gyro["P"], gyro["sigma_P"], gyro_bias_dps(gyro["P"]),
                 [math.degrees(s) for s in gyro["sigma_P"][3][:3]], gyro["missing"])
-    return of(accel and accel["P"], accel and accel["sigma_P"], record.g, told)
+    return estimate(accel and accel["P"], accel and accel["sigma_P"], record.g, told)

@@ -66,7 +66,7 @@ def boards(path, output, target, options=None, work=cluster.rows_of):
     options = options or analysis.Options()
     if os.path.isdir(path) and dataset.in_folder(path):
         return _taken_over(path)
-    found = sources.of(path)
+    found = sources.find_boards(path)
     data = dataset.DataSet(output)
     known, damaged = data.done(options.version)
     left = dataset.to_do(found.boards, known)

@@ -42,7 +42,7 @@ class Sources:
     failures: tuple = field(default_factory=tuple)
 
 
-def of(path):
+def find_boards(path):
     """Sources of what stands on the command line; BadFile or UsageError where it is nothing."""
     path = os.fspath(path)
     if os.path.isdir(path):

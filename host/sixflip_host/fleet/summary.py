@@ -131,7 +131,7 @@ class Summary:
             starts=a["starts"], play=a["play"], **values)
 
 
-def of(name, capture):
+def summarise(name, capture):
     """Summary of a capture with samples; the capture itself is not changed."""
     solved = solution.solve(copy.copy(capture))
     labelled = capture.pose is not None

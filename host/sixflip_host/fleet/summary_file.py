@@ -99,7 +99,7 @@ def of_capture(path, keep=True):
         if found.about.get("hash") == digest:
             return found, ""
     digest = digest or content_hash(path)
-    made = summary.of(os.path.basename(path), open_recording.read_samples(path))
+    made = summary.summarise(os.path.basename(path), open_recording.read_samples(path))
     made = replace(made, about=dict(made.about, format=FORMAT, hash=digest, stamp=now))
     return made, _kept(path, made) if keep else ""
 

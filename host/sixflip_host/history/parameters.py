@@ -11,7 +11,7 @@ from ..errors import BadFile
 AXES = "xyz"
 
 
-def of(happened):
+def calibration_numbers(happened):
     """dict of a calibration: {name: (value, standard error or None)}; {} when nothing is known.
 
     Names: accel_scale_x, accel_bias_x_mg, gyro_scale_x, gyro_bias_x_dps and so on. The bias is
@@ -91,7 +91,7 @@ def readable(rows):
         if one.kind != "calibration":
             continue
         try:
-            out.append((one, of(one)))
+            out.append((one, calibration_numbers(one)))
         except BadFile as error:
             remarks.append(str(error))
     return out, remarks

@@ -62,7 +62,7 @@ def run(args):
             not args.no_summaries, args.diagnose))
         progress.doing("the population")
         kinds = answer.judged(done.rows(), done.rows(members.KEYS))
-    found = answer.of(kinds, done.failures, done.remarks)
+    found = answer.population(kinds, done.failures, done.remarks)
     os.makedirs(args.output, exist_ok=True)
     atomic_write.write_text(os.path.join(args.output, JSON_NAME),
                             json.dumps(found, indent=1, ensure_ascii=False) + "\n")

@@ -78,7 +78,7 @@ def run(args):
             remarks += found.remarks()
         capture_file.write(args.output, capture)
     if args.json:
-        measured = clock.of(capture)
+        measured = clock.sample_clock(capture)
         print(json.dumps({
             "format": 1, "kind": "sixflip import", "capture": args.output,
             "samples": len(capture), "meta": capture.meta, "assumed": assumed,

@@ -129,7 +129,7 @@ def _matrix(section, P, g):
 
 
 def _capture_json(capture):
-    measured = clock.of(capture)
+    measured = clock.sample_clock(capture)
     return {"format": 1, "kind": "sixflip capture", "meta": capture.meta,
             "samples": len(capture), "columns": capture.columns(),
             "duration_s": _duration(capture), "remarks": solution.capture_remarks(capture),
@@ -155,7 +155,7 @@ def _capture_words(name, capture):
         out.print(plain("  %s: %s" % (key, json.dumps(value))))
     for line in capture.assumed + solution.capture_remarks(capture) + capture.notes:
         out.print(plain("  " + line))
-    measured = clock.of(capture)
+    measured = clock.sample_clock(capture)
     if measured:
         gaps = np.diff(capture.t_us)
         out.print("  longest interval %.1f ms, usual %.1f ms" % (

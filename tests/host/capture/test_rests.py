@@ -46,7 +46,7 @@ def boards(capture, length, rails):
 def test_the_windows_are_the_boards_bit_by_bit(gyro, at_a_time, monkeypatch):
     monkeypatch.setattr(still_windows, "AT_A_TIME", at_a_time)
     capture = recording(gyro=gyro)
-    found = still_windows.of(capture)
+    found = still_windows.cut_into_windows(capture)
     expected = boards(capture, found.length, found.rails)
     assert len(found) == len(expected) == 60
     for k, fields in enumerate(zip(*expected)):
@@ -57,7 +57,7 @@ def test_the_windows_are_the_boards_bit_by_bit(gyro, at_a_time, monkeypatch):
 
 def test_a_table_of_windows_is_not_changed():
     with pytest.raises(ValueError, match="read-only"):
-        still_windows.of(recording()).mean[0] = 0.0
+        still_windows.cut_into_windows(recording()).mean[0] = 0.0
 
 
 def test_labelled_runs_that_are_long_enough_and_not_left_out():

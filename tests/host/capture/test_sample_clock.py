@@ -104,10 +104,11 @@ def capture(t_us, **meta):
 def test_the_writes_that_a_boards_own_file_names_are_pauses_of_its_recorder():
     t = EVEN.copy()
     t[3000:] += 3 * PERIOD
-    assert clock.of(capture(t)).losses == 3
-    found = clock.of(capture(t, board_capture={"write_pauses_us": [int(np.rint(t[2999]))]}))
+    assert clock.sample_clock(capture(t)).losses == 3
+    written = {"write_pauses_us": [int(np.rint(t[2999]))]}
+    found = clock.sample_clock(capture(t, board_capture=written))
     assert (found.losses, found.pauses) == (0, 1)
-    found = clock.of(capture(t, board_capture={"write_pauses_us": []}))
+    found = clock.sample_clock(capture(t, board_capture={"write_pauses_us": []}))
     assert (found.losses, found.pauses) == (3, 0)
 
 

@@ -26,7 +26,7 @@ def cause(name, kind, value, **more):
 
 def made(said):
     space = {}
-    exec(put_back_numpy.text(put_back.of(said)), space)
+    exec(put_back_numpy.text(put_back.from_diagnosis(said)), space)
     return space["ImuModel"]()
 
 
@@ -58,7 +58,7 @@ def test_a_step_adds_what_the_library_adds(kind, name):
 def test_of_a_class_the_name_with_a_size_goes_in_and_the_others_are_said():
     said = answer([cause(None, "accel", {"x": 3.0}, **{
         "class": ["quadratic", "asymmetry"], "value_of": "quadratic"})])
-    found = put_back.of(said)
+    found = put_back.from_diagnosis(said)
     assert found.accel.effects["quadratic"].values["x"] == pytest.approx(3.0 * G / 1000.0)
     assert found.instead == ("quadratic of the accelerometer may as well be asymmetry: these logs "
                              "do not tell them apart",)
@@ -70,7 +70,7 @@ def test_two_logs_of_one_motion_know_the_size_better():
     said = answer([cause(None, "accel", {"x": 3.0}, **{"class": names, "value_of": "quadratic"})],
                   [{"effect": "asymmetry", "sensor": "accel", "class": names,
                     "value": {"x": 5.0}, "shape": {}}])
-    found = put_back.of(said)
+    found = put_back.from_diagnosis(said)
     assert list(found.accel.effects) == ["asymmetry"]
     assert found.accel.effects["asymmetry"].values["x"] == pytest.approx(5.0 * G / 1000.0)
 
@@ -82,7 +82,7 @@ def test_two_logs_of_one_motion_know_the_size_better():
     cause(None, "accel", {"Z+x": 3.0}, **{"class": ["box_tilt", "quadratic"],
                                           "value_of": "box_tilt"})])
 def test_what_a_step_cannot_know_is_left_and_said(one):
-    found = put_back.of(answer([one]))
+    found = put_back.from_diagnosis(answer([one]))
     assert not found.accel.effects and len(found.left) == 1
     assert "found, and not in here: " + found.left[0] in put_back_numpy.text(found)
 

@@ -60,7 +60,7 @@ def test_the_two_boards_that_stand_out_are_named_with_their_reason(found):
 
 def test_an_answer_is_json_with_everything_in_it(found):
     them, batch = found
-    said = answer.of([(them, [batch], [])], [("x", "why")], [])
+    said = answer.population([(them, [batch], [])], [("x", "why")], [])
     names = {p["name"] for p in said["groups"][0]["batches"][0]["parameters"]}
     assert {"accel_scale_x", "gyro_bias_z_dps", "accel.thermal_bias.z"} <= names
     assert said["failures"] == [{"board": "x", "why": "why"}]

@@ -43,7 +43,7 @@ def batch():
 @pytest.fixture
 def file(batch, tmp_path):
     path = tmp_path / "fleet.json"
-    path.write_text(json.dumps(answer.of([(*batch, [])], [], [])))
+    path.write_text(json.dumps(answer.population([(*batch, [])], [], [])))
     return str(path)
 
 

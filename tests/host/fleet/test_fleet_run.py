@@ -84,7 +84,7 @@ def test_damaged_files_are_sentences_and_stop_nobody(tmp_path, inside, capsys):
 def test_what_a_task_raises_is_its_boards_sentence(tmp_path, monkeypatch):
     folder = fleet_of(tmp_path / "in", 1)
     monkeypatch.setattr(analysis, "_of_files", lambda board, options: 1 / 0)
-    row = analysis.row(sources.of(folder).boards[0])
+    row = analysis.row(sources.find_boards(folder).boards[0])
     assert row["failure"].startswith("internal error: ZeroDivisionError")
 
 
@@ -125,7 +125,7 @@ def test_what_a_run_left_is_a_source_itself(tmp_path, inside):
 
 
 def test_a_lost_connection_is_a_clear_end_that_keeps_what_is_done(tmp_path, client):
-    boards = sources.of(fleet_of(tmp_path / "in", 40)).boards
+    boards = sources.find_boards(fleet_of(tmp_path / "in", 40)).boards
     taken = []
 
     def take(rows):

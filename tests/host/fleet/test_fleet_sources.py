@@ -18,7 +18,7 @@ def test_a_folder_of_boards_in_batches(tmp_path):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("x")
     (tmp_path / "empty").mkdir()
-    found = sources.of(tmp_path)
+    found = sources.find_boards(tmp_path)
     assert [(b.batch, b.board) for b in found.boards] == [
         ("", "d"), ("", "e"), ("lot 1", "a"), ("lot 1", "b"), ("lot 2", "c")]
     assert [what for what, _ in found.failures] == ["empty"]
@@ -29,7 +29,7 @@ def test_an_id_that_stands_twice_is_taken_once_and_said(tmp_path):
     for name in ("lot 1/a/s.csv", "lot 2/a/s.csv"):
         (tmp_path / name).parent.mkdir(parents=True)
         (tmp_path / name).write_text("x")
-    found = sources.of(tmp_path)
+    found = sources.find_boards(tmp_path)
     assert [b.batch for b in found.boards] == ["lot 1"]
     assert "twice" in found.failures[0][1]
 
@@ -38,18 +38,18 @@ def test_a_board_as_pull_left_it_is_one_session(tmp_path):
     (tmp_path / "a").mkdir()
     for name in ("capture.bin", "capture.csv", "record_a.bin"):
         (tmp_path / "a" / name).write_bytes(b"x")
-    assert [p[-11:] for p in sources.of(tmp_path).boards[0].captures] == ["capture.csv"]
+    assert [p[-11:] for p in sources.find_boards(tmp_path).boards[0].captures] == ["capture.csv"]
 
 
 def test_what_is_no_fleet_is_one_sentence(tmp_path):
     with pytest.raises(BadFile, match="not there"):
-        sources.of(tmp_path / "none")
+        sources.find_boards(tmp_path / "none")
     with pytest.raises(BadFile, match="no board in it"):
-        sources.of(tmp_path)
+        sources.find_boards(tmp_path)
     one = tmp_path / "s.csv"
     one.write_text("# sixflip-capture 1\n# {}\n")
     with pytest.raises(UsageError, match="is one capture"):
-        sources.of(one)
+        sources.find_boards(one)
 
 
 def test_a_manifest_and_its_wrong_lines():
@@ -97,7 +97,7 @@ def test_a_history_gives_its_calibrations(tmp_path):
     store.add(file, [store.Happened("b1", "calibration", "pull", 10.0 * k, "good", chip="gy85",
                                     session=k, sequence=k, record=data) for k in (1, 2)]
               + [store.Happened("b2", "check", "check", 1.0, "holds")])
-    found = sources.of(file)
+    found = sources.find_boards(file)
     assert [(b.board, len(b.calibrations)) for b in found.boards] == [("b1", 2)]
     assert "no calibration" in found.failures[0][1]
     row = analysis.row(found.boards[0])
@@ -111,4 +111,4 @@ def test_the_database_of_another_program_is_one_sentence(tmp_path):
     file = tmp_path / "x.sqlite"
     sqlite3.connect(file).execute("CREATE TABLE t (a)").connection.commit()
     with pytest.raises(BadFile, match="another program"):
-        sources.of(file)
+        sources.find_boards(file)

@@ -74,7 +74,7 @@ def test_the_kept_one_is_read_while_the_capture_is_the_same(captured, monkeypatc
 
 def test_the_effect_of_the_capture_is_in_its_information(captured):
     _, _, one = captured
-    found, _ = effects.of(usable_rests.of([one.session()], [], []), "mpu6050")
+    found, _ = effects.information(usable_rests.of([one.session()], [], []), "mpu6050")
     k = effects.NAMES["accel"].index("accel.thermal_bias.z")
     precision, score = found["accel"].precision, found["accel"].score
     sigma = 1.0 / np.sqrt(precision[k, k])
@@ -84,7 +84,7 @@ def test_the_effect_of_the_capture_is_in_its_information(captured):
 
 def test_a_board_is_diagnosed_from_its_summary(captured):
     _, _, one = captured
-    found, *_ = diagnosed.of([one], [one.session()])
+    found, *_ = diagnosed.diagnose_board([one], [one.session()])
     cause, = (c for c in found["causes"] if c["sensor"] == "accel")
     assert "thermal_bias" in cause["class"] and cause["axes"] == ["z"]
     assert found["gap"]["accel"]["before"] > 0.0 and "gyro" in found["gap"]
@@ -93,9 +93,9 @@ def test_a_board_is_diagnosed_from_its_summary(captured):
 
 def test_a_board_has_the_same_effects_with_a_diagnosis_and_without(captured):
     _, _, one = captured
-    _, rests, gaps = diagnosed.of([one], [one.session()])
-    alone, _ = effects.of(rests, "mpu6050")
-    beside, _ = effects.of(rests, "mpu6050", gaps)
+    _, rests, gaps = diagnosed.diagnose_board([one], [one.session()])
+    alone, _ = effects.information(rests, "mpu6050")
+    beside, _ = effects.information(rests, "mpu6050", gaps)
     for sensor, own in alone.items():
         scale = np.sqrt(np.maximum(np.diag(own.precision), 1e-12))  # of what shows nothing
         assert (scale > 1e-3).sum() > 6
@@ -112,7 +112,7 @@ def test_what_only_samples_show_is_in_the_diagnosis_as_it_was_found(captured):
     samples = dict(one.about["samples"], findings=[seen])
     few = one.session().part(range(3))._of_runs(())    # nothing but what the samples say
     told = summary.Summary(dict(one.about, samples=samples), one.arrays)
-    found, *_ = diagnosed.of([told], [few])
+    found, *_ = diagnosed.diagnose_board([told], [few])
     assert [c["effect"] for c in found["causes"]] == ["vibration"]
     assert found["verdict"] == "cannot tell"
 

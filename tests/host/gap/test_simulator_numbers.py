@@ -31,7 +31,8 @@ def test_a_range_that_is_too_wide_or_too_narrow(real, sim, differs, to_set):
 def test_a_range_that_nothing_behind_the_simulator_can_widen_is_said_first():
     numbers = {"accel": {"range": {"x": {"real": None, "simulator": 2000.0, "difference": 900.0,
                                          "differs": True, "set": None}}}}
-    found = put_back.of({"simulator": {"parameters": numbers, "conventions": []}, "causes": []})
+    found = put_back.from_diagnosis({"simulator": {"parameters": numbers, "conventions": []},
+                                     "causes": []})
     assert "stops short on x" in found.first[0]
     assert np.isinf(found.accel.limit).all()
 

@@ -196,7 +196,7 @@ def answered(pair):
     effect = EFFECTS[name]
     mine, held = real(effect, DIAGNOSED), real(effect, HELD_OUT)
     said = judged(effect, mine, simulated(effect, None, DIAGNOSED))
-    after, holds = {}, put_back.of(said)
+    after, holds = {}, put_back.from_diagnosis(said)
     named = any(effect.words in one for one in holds.holds)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "gap.json"

@@ -27,7 +27,8 @@ LATE = 0.02  # periods, at least: how exactly a stamp tells the time of a sample
 
 def clocks(sessions):
     """[SampleClock, or None where the times do not run], one a session."""
-    return [None if session.timeless else clock.of(session.capture) for session in sessions]
+    return [None if session.timeless else clock.sample_clock(session.capture)
+            for session in sessions]
 
 
 def findings(sessions):
