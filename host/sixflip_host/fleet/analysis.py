@@ -43,10 +43,10 @@ class Options:
 def stamps(board):
     """What tells that a board's files are as they were: a text; BadFile where one is missing."""
     if board.calibrations:
-        found = hashlib.sha256()
-        for one in board.calibrations:
-            found.update(repr((one.at, one.verdict)).encode() + one.record)
-        return found.hexdigest()
+        digest = hashlib.sha256()
+        for earlier in board.calibrations:
+            digest.update(repr((earlier.at, earlier.verdict)).encode() + earlier.record)
+        return digest.hexdigest()
     return repr([(os.path.basename(path), *summary_file.stamp(path)) for path in _files(board)])
 
 
@@ -54,10 +54,10 @@ def content(board):
     """SHA-256 of the content of all of a board's files, hex."""
     if board.calibrations:
         return stamps(board)
-    found = hashlib.sha256()
+    digest = hashlib.sha256()
     for path in _files(board):
-        found.update(summary_file.content_hash(path).encode())
-    return found.hexdigest()
+        digest.update(summary_file.content_hash(path).encode())
+    return digest.hexdigest()
 
 
 def _files(board):
@@ -77,21 +77,21 @@ def failed(board, options, why=""):
 def row(board, options=None):
     """dict of a board, see dataset.schema(); failure is "" or the sentence on what is wrong."""
     options = options or Options()
-    found = failed(board, options)
+    of_board = failed(board, options)
     started = time.process_time()
     try:
-        found["stamps"], found["content"] = stamps(board), content(board)
-        found.update(_of_history(board) if board.calibrations
-                     else _of_files(board, options))
+        of_board["stamps"], of_board["content"] = stamps(board), content(board)
+        of_board.update(_of_history(board) if board.calibrations
+                        else _of_files(board, options))
     except SixflipError as error:
-        found["failure"] = str(error)
+        of_board["failure"] = str(error)
     except MemoryError:
-        found["failure"] = "there is not enough memory for this board"
+        of_board["failure"] = "there is not enough memory for this board"
     except Exception as error:  # a bug of ours is one board's, too
-        found["failure"] = internal_error(error)
-    found["failure"] = found["failure"][:LONGEST_TEXT]
-    found["cpu_s"] = time.process_time() - started
-    return found
+        of_board["failure"] = internal_error(error)
+    of_board["failure"] = of_board["failure"][:LONGEST_TEXT]
+    of_board["cpu_s"] = time.process_time() - started
+    return of_board
 
 
 def _empty():
@@ -110,8 +110,8 @@ def _of_files(board, options):
         if path in board.summaries:
             kept.append(summary_file.read(path))
         else:
-            one, why = summary_file.of_capture(path, options.summaries)
-            kept.append(one)
+            summary, why = summary_file.of_capture(path, options.summaries)
+            kept.append(summary)
             remarks += [why] if why else []
     if not any(one.placements() for one in kept):
         raise BadFile("no session: nothing lies still in a pose that is known, in %s" % ", ".join(
@@ -126,10 +126,10 @@ def _of_files(board, options):
             ", ".join(map(_spelled, kinds[1:])), _spelled(kinds[0])))
         kept = [one for one in kept if _kind(one.meta) == kinds[0]]
     hashes = [one.about.get("hash") for one in kept]
-    again = [k for k, one in enumerate(hashes) if one and one in hashes[:k]]
-    if again:
-        remarks.append("%d captures repeat one before them and are left out" % len(again))
-        kept = [one for k, one in enumerate(kept) if k not in again]
+    repeated = [k for k, one in enumerate(hashes) if one and one in hashes[:k]]
+    if repeated:
+        remarks.append("%d captures repeat one before them and are left out" % len(repeated))
+        kept = [one for k, one in enumerate(kept) if k not in repeated]
     return dict(_judged(kept, remarks, options), verified=_verified(board, remarks))
 
 
@@ -144,37 +144,38 @@ def _spelled(kind):
 
 def _judged(kept, remarks, options=None):
     """What stands in the row of the summaries of one board's sessions."""
-    found = {"at": [], "verdicts": [], "reasons": [], "values": [], "covariances": []}
+    columns = {"at": [], "verdicts": [], "reasons": [], "values": [], "covariances": []}
     sessions = [one.session() for one in kept]
-    for number, (one, session) in enumerate(zip(kept, sessions)):
-        solved = one.solved()
-        made = one.meta.get("time")
-        _add(found, made if isinstance(made, (int, float)) else float(number), solved.verdict,
+    for number, (summary, session) in enumerate(zip(kept, sessions)):
+        solved = summary.solved()
+        made = summary.meta.get("time")
+        _add(columns, made if isinstance(made, (int, float)) else float(number), solved.verdict,
              solved.reason, parameters.of_solution(solved, session))
     chip, accel, gyro = _kind(kept[0].meta)
     gaps = {}
     if options and options.diagnose:
         answered, rests, gaps = diagnosed.diagnose_board(kept, sessions)
-        found["gap"] = json.dumps(answered, allow_nan=False)
+        columns["gap"] = json.dumps(answered, allow_nan=False)
     if not gaps:
         rests = usable_rests.of(sessions, [], [])
     told, said = effects.information(rests, chip, gaps)
-    for sensor, one in told.items():
-        found["precision_" + sensor] = one.precision[np.triu_indices(len(one.score))].tolist()
-        found["score_" + sensor] = one.score.tolist()
+    for sensor, told_of in told.items():
+        upper = np.triu_indices(len(told_of.score))
+        columns["precision_" + sensor] = told_of.precision[upper].tolist()
+        columns["score_" + sensor] = told_of.score.tolist()
     findings = ["the %s: %s" % (SENSORS.get(f["sensor"], f["sensor"]), f["words"] or f["effect"])
                 for one in kept for f in one.about["samples"]["findings"]]
-    return dict(found, chip=chip, accel_range_g=accel, gyro_range_dps=gyro,
+    return dict(columns, chip=chip, accel_range_g=accel, gyro_range_dps=gyro,
                 findings=list(dict.fromkeys(findings)),
                 remarks=list(dict.fromkeys([*remarks, *said])))
 
 
-def _add(found, at, verdict, reason, estimate):
-    found["at"].append(float(at))
-    found["verdicts"].append(verdict)
-    found["reasons"].append(reason)
-    found["values"].append(estimate.value.tolist())
-    found["covariances"].append(np.concatenate(
+def _add(columns, at, verdict, reason, estimate):
+    columns["at"].append(float(at))
+    columns["verdicts"].append(verdict)
+    columns["reasons"].append(reason)
+    columns["values"].append(estimate.value.tolist())
+    columns["covariances"].append(np.concatenate(
         [estimate.covariance[block].ravel() for block in parameters.BLOCKS]).tolist())
 
 
@@ -200,11 +201,11 @@ def _verified(board, remarks):
 
 def _of_history(board):
     """What stands in the row of calibrations that a history kept."""
-    found = {"at": [], "verdicts": [], "reasons": [], "values": [], "covariances": []}
+    columns = {"at": [], "verdicts": [], "reasons": [], "values": [], "covariances": []}
     remarks, kinds = [], []
-    for one in board.calibrations[-MOST_SESSIONS:]:
+    for earlier in board.calibrations[-MOST_SESSIONS:]:
         try:
-            record = verify_files.decode_record("history, board %s" % board.board, one.record)
+            record = verify_files.decode_record("history, board %s" % board.board, earlier.record)
         except BadFile as error:
             remarks.append(str(error))
             continue
@@ -213,34 +214,34 @@ def _of_history(board):
         if kinds[-1] != kinds[0]:
             remarks.append("a calibration of another chip or range is left out")
             continue
-        _add(found, one.at, one.verdict, one.reason, parameters.of_record(record))
+        _add(columns, earlier.at, earlier.verdict, earlier.reason, parameters.of_record(record))
     if not kinds:
         raise BadFile("; ".join(remarks) or "no calibration in the history")
-    return dict(found, chip=kinds[0][0], accel_range_g=kinds[0][1], gyro_range_dps=kinds[0][2],
+    return dict(columns, chip=kinds[0][0], accel_range_g=kinds[0][1], gyro_range_dps=kinds[0][2],
                 remarks=list(dict.fromkeys(remarks)))
 
 
-def estimates(found):
+def estimates(board_row):
     """[parameters.Estimate] of the sessions in a row."""
-    out = []
-    for values, flat in zip(found["values"], found["covariances"]):
+    sessions = []
+    for values, flat in zip(board_row["values"], board_row["covariances"]):
         covariance, start = {}, 0
         flat = np.array(flat, float)
         for block, names in parameters.BLOCKS.items():
             k = len(names)
             covariance[block] = flat[start:start + k * k].reshape(k, k)
             start += k * k
-        out.append(parameters.Estimate(np.array(values, float), covariance))
-    return out
+        sessions.append(parameters.Estimate(np.array(values, float), covariance))
+    return sessions
 
 
-def information(found, sensor):
+def information(board_row, sensor):
     """effects.Information of a sensor in a row."""
-    flat = found["precision_" + sensor]
+    flat = board_row["precision_" + sensor]
     if not flat:
         return effects.nothing(sensor)
     k = len(effects.NAMES[sensor])
     precision = np.zeros((k, k))
     precision[np.triu_indices(k)] = flat
     precision += np.triu(precision, 1).T
-    return effects.Information(precision, np.array(found["score_" + sensor], float))
+    return effects.Information(precision, np.array(board_row["score_" + sensor], float))

@@ -40,26 +40,27 @@ def _group(them, batches, lots):
                       "chance": digits(one.chance)} for one in lots]}
 
 
-def _batch(one):
-    return {"batch": one.name, "boards": len(one.boards), "cutoff_sigmas": digits(one.cutoff),
-            "parameters": [_parameter(p) for p in one.parameters],
-            "blocks": [_block(name, *pair) for name, pair in one.populations.items()],
-            "outliers": [_outlier(o) for o in one.outliers]}
+def _batch(batch):
+    return {"batch": batch.name, "boards": len(batch.boards),
+            "cutoff_sigmas": digits(batch.cutoff),
+            "parameters": [_parameter(p) for p in batch.parameters],
+            "blocks": [_block(name, *pair) for name, pair in batch.populations.items()],
+            "outliers": [_outlier(o) for o in batch.outliers]}
 
 
 def _parameter(p):
-    found = {"name": p.name, "unit": p.unit, "mean": digits(p.mean), "error": digits(p.error),
-             "spread": digits(p.spread), "nominal": p.nominal, "kind": p.kind,
-             "systematic_chance": digits(p.systematic), "individual_chance": digits(p.individual),
-             "i2": digits(p.i2), "common_share": digits(p.share),
-             "repeats": digits(p.repeats)}
-    return dict(found, aliases=list(p.aliases)) if p.aliases else found
+    fields = {"name": p.name, "unit": p.unit, "mean": digits(p.mean), "error": digits(p.error),
+              "spread": digits(p.spread), "nominal": p.nominal, "kind": p.kind,
+              "systematic_chance": digits(p.systematic), "individual_chance": digits(p.individual),
+              "i2": digits(p.i2), "common_share": digits(p.share),
+              "repeats": digits(p.repeats)}
+    return dict(fields, aliases=list(p.aliases)) if p.aliases else fields
 
 
-def _block(name, block, one):
-    return {"block": name, "names": list(block.names), "mean": digits(one.mean.tolist()),
-            "covariance": digits(one.spread.tolist()), "error": digits(one.error.tolist()),
-            "rare": digits(one.rare)}
+def _block(name, block, fitted):
+    return {"block": name, "names": list(block.names), "mean": digits(fitted.mean.tolist()),
+            "covariance": digits(fitted.spread.tolist()), "error": digits(fitted.error.tolist()),
+            "rare": digits(fitted.rare)}
 
 
 def _outlier(o):
@@ -70,11 +71,11 @@ def _outlier(o):
 
 def judged(rows, keys=None):
     """[(Members, [Batch], [LotDifference])] of the rows of a data set: see members.by_kind()."""
-    found = []
+    groups = []
     for them in members.by_kind(rows, keys):
         batches = judgement.batches(them)
-        found.append((them, batches, judgement.lots(batches)))
-    return found
+        groups.append((them, batches, judgement.lots(batches)))
+    return groups
 
 
 def write_estimates(folder, kinds):
@@ -108,10 +109,10 @@ def write_estimates(folder, kinds):
 def _estimates(them, batch, cut, names):
     """{column: values} of some boards of a batch; what is not known of them is null."""
     boards = batch.boards[cut]
-    found = {"board": boards, "batch": batch.lots[cut], "chip": [them.chip] * len(boards)}
-    for block, one in batch.populations.values():
-        values, sigmas = one.shrunk(block.y[cut], block.R[cut], one.belongs[cut])
+    known = {"board": boards, "batch": batch.lots[cut], "chip": [them.chip] * len(boards)}
+    for block, fitted in batch.populations.values():
+        values, sigmas = fitted.shrunk(block.y[cut], block.R[cut], fitted.belongs[cut])
         for j, name in enumerate(block.names):
-            found[name], found[name + "_sigma"] = values[:, j], sigmas[:, j]
+            known[name], known[name + "_sigma"] = values[:, j], sigmas[:, j]
     nothing = np.full(len(boards), None)
-    return {**{part: nothing for name in names for part in (name, name + "_sigma")}, **found}
+    return {**{part: nothing for name in names for part in (name, name + "_sigma")}, **known}

@@ -130,9 +130,9 @@ def _same_versions(distributed, scheduler, versions):
     here = versions["client"]["packages"]
     others = [("the scheduler", versions["scheduler"])] + [
         ("a worker", one) for one in versions["workers"].values()]
-    for who, one in others:
+    for who, reported in others:
         for package in ("distributed", "dask", "python"):
-            there = (one or {}).get("packages", {}).get(package)
+            there = (reported or {}).get("packages", {}).get(package)
             mine = here.get(package)
             if package == "python":
                 there, mine = (".".join(str(v).split(".")[:2]) for v in (there, mine))
@@ -144,11 +144,11 @@ def _same_versions(distributed, scheduler, versions):
 def _same_sixflip(client, scheduler):
     """CheckFailed where a worker has no sixflip, or another."""
     try:
-        found = client.run(_own_version)
+        running = client.run(_own_version)
     except Exception as error:  # whatever a worker without sixflip raises
         raise CheckFailed("--scheduler %s: a worker has no sixflip %s (%s): install it there" % (
             scheduler, __version__, _short(error))) from None
-    for worker, version in found.items():
+    for worker, version in running.items():
         if version != analysis.VERSION:
             raise CheckFailed("--scheduler %s: the worker %s has row layout %s, this is %s: "
                               "expected the same version on both sides" % (

@@ -86,33 +86,33 @@ class DataSet:
     def done(self, version=None):
         """({(batch, board): Done} of the boards in it by this version, [sentence] on damaged
         parts)."""
-        found, damaged = {}, []
+        done, damaged = {}, []
         for part in self.parts():
             try:
                 rows = self._read(part, KNOWN_BY)
             except BadFile as error:
                 damaged.append(str(error))
                 continue
-            for one in rows:
-                if version is not None and one["version"] != version:
+            for row in rows:
+                if version is not None and row["version"] != version:
                     continue
-                key = sys.intern(one["batch"]), one["board"]
-                if key not in found or found[key].written < one["written"]:
-                    found[key] = Done(part, one["stamps"], one["content"], one["failure"],
-                                      one["written"])
-        return found, damaged
+                key = sys.intern(row["batch"]), row["board"]
+                if key not in done or done[key].written < row["written"]:
+                    done[key] = Done(part, row["stamps"], row["content"], row["failure"],
+                                     row["written"])
+        return done, damaged
 
     def rows(self, wanted=None, columns=None):
         """Every row that counts, a part in memory at a time; wanted: {(batch, board): Done} as
         done() gives them, None: all of any version."""
         wanted = self.done()[0] if wanted is None else wanted
         parts = {}
-        for key, one in wanted.items():
-            parts.setdefault(one.part, {})[key] = one.written
+        for key, row in wanted.items():
+            parts.setdefault(row.part, {})[key] = row.written
         for part in sorted(parts):
-            for one in self._read(part, columns):
-                if parts[part].get((one["batch"], one["board"])) == one["written"]:
-                    yield one
+            for row in self._read(part, columns):
+                if parts[part].get((row["batch"], row["board"])) == row["written"]:
+                    yield row
 
     def _read(self, part, columns=None):
         pa, pq = _arrow()
@@ -139,10 +139,10 @@ def to_do(boards, known):
     """The boards that are not done, or whose files changed since; boards: [sources.Board],
     known: {(batch, board): Done} of this version."""
     left = []
-    for one in boards:
-        before = known.get((one.batch, one.board))
-        if before is None or not _same(one, before):
-            left.append(one)
+    for board in boards:
+        before = known.get((board.batch, board.board))
+        if before is None or not _same(board, before):
+            left.append(board)
     return left
 
 

@@ -17,8 +17,8 @@ def diagnose_board(kept, sessions, settings=None):
     found in, {sensor: SensorGap}."""
     settings = settings or Settings(jobs=1)
     findings, nameless = [], []
-    for one in kept:
-        samples = one.about["samples"]
+    for summary in kept:
+        samples = summary.about["samples"]
         findings += [_finding(f) for f in samples["findings"]]
         nameless += [localisation.Place(p["sensor"], p["axis"], p["domain"], 1.0, p["p"])
                      for p in samples["nameless"]]
@@ -35,10 +35,10 @@ def diagnose_board(kept, sessions, settings=None):
             if all(getattr(s, sensor) is not None for s in rests.sessions):
                 model = RestModel(sensor, kept[0].meta["sensor"], settings, conditions)
                 gaps[sensor] = model.fit(rests.sessions, rests.nominal)
-    found = diagnosis.Diagnosis(
+    told = diagnosis.Diagnosis(
         rests.everything, settings, conditions, (None,) * len(kept), tuple(findings), gaps, {},
         None, None, tuple(nameless), False, list(rests.remarks), (), (), {})
-    return {"verdict": found.verdict if gaps else "cannot tell", "causes": answer.causes(found),
+    return {"verdict": told.verdict if gaps else "cannot tell", "causes": answer.causes(told),
             "gap": {kind: answer._gap(kind, gap) for kind, gap in gaps.items()}}, rests, gaps
 
 

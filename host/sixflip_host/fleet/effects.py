@@ -59,9 +59,9 @@ def unit(name):
 def information(rests, chip, gaps=None):
     """({sensor: Information}, remarks) of the UsableRests of one board. gaps: {sensor:
     SensorGap} of their diagnosis, whose units need not be made again."""
-    found = {sensor: nothing(sensor) for sensor in FORMS}
+    told = {sensor: nothing(sensor) for sensor in FORMS}
     if not rests.nominal:
-        return found, [*rests.remarks, "too few rests in known poses: no effects"]
+        return told, [*rests.remarks, "too few rests in known poses: no effects"]
     agreed = terms.agreed(rests.sessions)
     for sensor in FORMS:
         if any(getattr(one, sensor) is None for one in agreed):
@@ -71,8 +71,8 @@ def information(rests, chip, gaps=None):
         else:
             units = [_unit(sensor, *part, rests.reference_c, chip)
                      for part in zip(agreed, rests.nominal)]
-        found[sensor] = _of_units(sensor, units, chip)
-    return found, list(rests.remarks)
+        told[sensor] = _of_units(sensor, units, chip)
+    return told, list(rests.remarks)
 
 
 def _unit(sensor, session, nominal, reference_c, chip):
@@ -92,13 +92,13 @@ def _of_units(sensor, units, chip):
             prior += list(hypotheses.TYPICAL * design.prior)
         start += len(design.keys)
     place = [NAMES[sensor].index(name) for name in names]
-    out = nothing(sensor)
+    told = nothing(sensor)
     for unit in units:
         precision, score = averaged(unit, np.array(columns, dtype=int), np.array(prior),
                                     adequacy.levels(chip, sensor).flicker)
-        out.precision[np.ix_(place, place)] += precision
-        out.score[place] += score
-    return out
+        told.precision[np.ix_(place, place)] += precision
+        told.score[place] += score
+    return told
 
 
 def averaged(unit, columns, prior, usual):

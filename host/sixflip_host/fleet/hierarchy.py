@@ -97,16 +97,16 @@ class _Boards:
 
     def first_spread(self):
         """A diagonal to begin with: the boards' robust variance less that of their estimates."""
-        found = []
+        variances = []
         for j, known in enumerate(self.known.T):
             own = self.y[known, j]
             if not len(own):
-                found.append(1.0)
+                variances.append(1.0)
                 continue
             width = 1.4826 * np.median(np.abs(own - np.median(own)))
             noise = np.median(self.variance[known, j]) / self.scale[j] ** 2
-            found.append(max(width ** 2 - noise, 0.01 * width ** 2, 1e-6))
-        return np.diag(found)
+            variances.append(max(width ** 2 - noise, 0.01 * width ** 2, 1e-6))
+        return np.diag(variances)
 
 
 def cuts(n):

@@ -98,9 +98,9 @@ def _batch(members, name, index):
     populations = {}
     for block in members.blocks:
         own = block.of(index)
-        found = hierarchy.fit(own.y[:], own.R)
-        if found is not None:
-            populations[block.name] = own, found
+        fitted = hierarchy.fit(own.y[:], own.R)
+        if fitted is not None:
+            populations[block.name] = own, fitted
     tests = _tests(populations)
     return Batch(name, tuple(members.boards[i] for i in index),
                  tuple(members.batches[i] for i in index), populations,
@@ -109,20 +109,20 @@ def _batch(members, name, index):
 
 def _tests(populations):
     """[(Block, Population, column, p of the mean, p of the spread, I²)]"""
-    out = []
-    for block, one in populations.values():
+    tests = []
+    for block, fitted in populations.values():
         y, variance = block.y[:], block.variance()
         for j, name in enumerate(block.names):
             use = np.isfinite(y[:, j])
             nominal = 0.0 if block.usual is not None else parameters.nominal(name)
             p_mean = np.nan
             if nominal is not None and use.sum() >= hierarchy.FEWEST:
-                z = (one.mean[j] - nominal) / np.sqrt(one.error[j, j])
-                p_mean = float(2.0 * stats.t.sf(abs(z), max(one.freedom, 1)))
+                z = (fitted.mean[j] - nominal) / np.sqrt(fitted.error[j, j])
+                p_mean = float(2.0 * stats.t.sf(abs(z), max(fitted.freedom, 1)))
             p_spread, i2 = _heterogeneity(y[use, j], variance[use, j],
-                                          one.belongs[use] > 0.5)
-            out.append((block, one, j, p_mean, p_spread, i2, nominal))
-    return out
+                                          fitted.belongs[use] > 0.5)
+            tests.append((block, fitted, j, p_mean, p_spread, i2, nominal))
+    return tests
 
 
 def _heterogeneity(y, variance, belongs):
@@ -140,19 +140,19 @@ def _judged(tests, repeats):
     """[Parameter]; both kinds of tests are controlled over all parameters."""
     systematic = holm([t[3] for t in tests])
     individual = holm([t[4] for t in tests])
-    out = []
-    for (block, one, j, p_mean, p_spread, i2, nominal), all_of, each in zip(
+    parameters = []
+    for (block, fitted, j, p_mean, p_spread, i2, nominal), all_of, each in zip(
             tests, systematic, individual):
         each = each and i2 >= LOW_I2
-        name, spread = block.names[j], float(np.sqrt(max(one.spread[j, j], 0.0)))
-        away = 0.0 if nominal is None else float(one.mean[j] - nominal)
+        name, spread = block.names[j], float(np.sqrt(max(fitted.spread[j, j], 0.0)))
+        away = 0.0 if nominal is None else float(fitted.mean[j] - nominal)
         share = away ** 2 / max(away ** 2 + spread ** 2, 1e-300)
         kind = "both" if all_of and each else "batch" if all_of else \
             "individual" if each else "neither"
-        out.append(Parameter(
-            name, unit(block, name), float(one.mean[j]), float(np.sqrt(one.error[j, j])), spread,
-            nominal, p_mean, p_spread, i2, kind, share, block.aliases, repeats.get(name)))
-    return out
+        parameters.append(Parameter(
+            name, unit(block, name), float(fitted.mean[j]), float(np.sqrt(fitted.error[j, j])),
+            spread, nominal, p_mean, p_spread, i2, kind, share, block.aliases, repeats.get(name)))
+    return parameters
 
 
 def unit(block, name):
@@ -164,12 +164,12 @@ def unit(block, name):
 def holm(chances, level=LEVEL):
     """[bool]: which hypotheses are rejected [Holm 1979]; nan is none."""
     index = [k for k, p in enumerate(chances) if np.isfinite(p)]
-    out = [False] * len(chances)
+    rejected = [False] * len(chances)
     for rank, k in enumerate(sorted(index, key=lambda k: chances[k])):
         if chances[k] > level / (len(index) - rank):
             break
-        out[k] = True
-    return out
+        rejected[k] = True
+    return rejected
 
 
 def threshold(number):
@@ -184,44 +184,44 @@ def _standing_out(members, index, populations):
     number = sum(len(block.names) for block, _ in populations.values()) \
         + sum(len(c.names) for c in changes)
     limit = threshold(number)
-    found, freedom = [], max(len(index) - 1, 1)
-    for block, one in populations.values():
-        y, sigma = block.y[:], one.sigma(block.variance())
-        away = (y - one.mean) / sigma
-        chance = 2.0 * stats.t.sf(np.abs(away), max(one.freedom, 1))
+    outliers, freedom = [], max(len(index) - 1, 1)
+    for block, fitted in populations.values():
+        y, sigma = block.y[:], fitted.sigma(block.variance())
+        away = (y - fitted.mean) / sigma
+        chance = 2.0 * stats.t.sf(np.abs(away), max(fitted.freedom, 1))
         for b, j in np.argwhere(np.isfinite(y) & (chance < limit)):
-            found.append(Outlier(members.boards[index[b]], block.names[j], float(y[b, j]),
-                                 float(one.mean[j]), float(sigma[b, j]), float(away[b, j]),
-                                 float(chance[b, j]), "differs"))
-    for one in changes:
-        change, sigma = one.change[index] - one.common, np.sqrt(one.variance[index])
+            outliers.append(Outlier(members.boards[index[b]], block.names[j], float(y[b, j]),
+                                    float(fitted.mean[j]), float(sigma[b, j]), float(away[b, j]),
+                                    float(chance[b, j]), "differs"))
+    for moved in changes:
+        change, sigma = moved.change[index] - moved.common, np.sqrt(moved.variance[index])
         away = change / sigma
         chance = 2.0 * stats.t.sf(np.abs(away), freedom)
         for b, j in np.argwhere(np.isfinite(away) & (chance < limit)):
-            found.append(Outlier(members.boards[index[b]], one.names[j], float(change[b, j]), 0.0,
-                                 float(sigma[b, j]), float(away[b, j]), float(chance[b, j]),
-                                 "drifted"))
-    found.sort(key=lambda one: -abs(one.sigmas))
-    return found, float(stats.t.isf(limit / 2.0, freedom))
+            outliers.append(Outlier(members.boards[index[b]], moved.names[j], float(change[b, j]),
+                                    0.0, float(sigma[b, j]), float(away[b, j]),
+                                    float(chance[b, j]), "drifted"))
+    outliers.sort(key=lambda one: -abs(one.sigmas))
+    return outliers, float(stats.t.isf(limit / 2.0, freedom))
 
 
-def lots(found):
+def lots(batches):
     """[LotDifference] of the batches of one kind of board, beyond chance (Holm over all)."""
-    if len(found) < 2:
+    if len(batches) < 2:
         return []
     tests = []
-    for batch in found:
-        others = [b for b in found if b is not batch]
-        for name, (block, one) in batch.populations.items():
+    for batch in batches:
+        others = [b for b in batches if b is not batch]
+        for name, (block, fitted) in batch.populations.items():
             theirs = [b.populations[name][1] for b in others if name in b.populations]
             if not theirs:
                 continue
             for j, parameter in enumerate(block.names):
                 weights = np.array([1.0 / t.error[j, j] for t in theirs])
                 mean = float((weights * [t.mean[j] for t in theirs]).sum() / weights.sum())
-                error = float(np.sqrt(one.error[j, j] + 1.0 / weights.sum()))
-                difference = float(one.mean[j]) - mean
-                freedom = max(1, min(one.freedom, *(t.freedom for t in theirs)))
+                error = float(np.sqrt(fitted.error[j, j] + 1.0 / weights.sum()))
+                difference = float(fitted.mean[j]) - mean
+                freedom = max(1, min(fitted.freedom, *(t.freedom for t in theirs)))
                 chance = float(2.0 * stats.t.sf(abs(difference) / error, freedom))
                 tests.append(LotDifference(batch.name, parameter, difference, error, chance))
     return [one for one, sure in zip(tests, holm([t.chance for t in tests])) if sure]

@@ -59,7 +59,7 @@ def parse(path, data):
 
 def _lines(path, rows, head):
     place = {name: head.index(name) for name in COLUMNS if name in head}
-    found, wrong, seen = [], [], {}
+    kept, wrong, seen = [], [], {}
     folder = os.path.dirname(os.path.abspath(path))
     while True:
         try:
@@ -70,25 +70,25 @@ def _lines(path, rows, head):
         if row is None:
             break
         number = rows.line_num
-        if len(found) + len(wrong) >= MOST_LINES:
+        if len(kept) + len(wrong) >= MOST_LINES:
             raise BadFile("%s: more than %d lines, expected fewer: split it" % (path, MOST_LINES))
         if not any(cell.strip() for cell in row):
             continue
         cells = {name: row[k].strip() if k < len(row) else "" for name, k in place.items()}
         why = _fault(cells, len(row), len(head))
         if not why:
-            one = Line(cells["board"], cells.get("batch", ""),
-                       os.path.join(folder, cells["capture"]), number)
-            before = seen.setdefault(os.path.normpath(one.capture), one)
-            if before is not one:
+            line = Line(cells["board"], cells.get("batch", ""),
+                        os.path.join(folder, cells["capture"]), number)
+            before = seen.setdefault(os.path.normpath(line.capture), line)
+            if before is not line:
                 why = "the capture stands on line %d already%s" % (
-                    before.number, "" if before.board == one.board else
+                    before.number, "" if before.board == line.board else
                     ", for board %s" % plain(before.board))
         if why:
             wrong.append((_where(path, number), why))
         else:
-            found.append(one)
-    return found, wrong
+            kept.append(line)
+    return kept, wrong
 
 
 def _where(path, number):

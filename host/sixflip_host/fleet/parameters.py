@@ -67,27 +67,27 @@ def estimate(P, sigma_P, g, gyro=None, noise=None):
     gyro   (P 4 x 3 rad/s, sigma 4 x 3, bias_dps (3,), sigma_bias_dps (3,), missing axes) or None
     noise  {sensor: ((3,) of a mean over one second, seconds at rest)} or None
     """
-    found = unknown()
+    estimated = unknown()
     if P is not None:
-        _matrix(found, "accel", np.array(P, float)[:, :3], np.array(sigma_P, float)[:, :3],
+        _matrix(estimated, "accel", np.array(P, float)[:, :3], np.array(sigma_P, float)[:, :3],
                 -1e3 / g, ())
     if gyro is not None:
         P, sigma, bias, sigma_bias, missing = gyro
-        _matrix(found, "gyro", np.array(P, float)[:, :3], np.array(sigma, float)[:, :3],
+        _matrix(estimated, "gyro", np.array(P, float)[:, :3], np.array(sigma, float)[:, :3],
                 -math.degrees(1.0), missing)
-        _put(found, "gyro_bias", np.array(bias, float), np.diag(np.square(sigma_bias)))
+        _put(estimated, "gyro_bias", np.array(bias, float), np.diag(np.square(sigma_bias)))
     for sensor, (level, seconds) in (noise or {}).items():
         # of a standard deviation from n successive differences [von Neumann et al., Annals of
         # Mathematical Statistics 12 (1941) 153]
         relative = 0.5 * math.sqrt(3.0 / max(SUBMEANS_HZ * seconds, 1.0))
         level = np.array(level, float)
-        _put(found, sensor + "_noise", level, np.diag((relative * level) ** 2))
-    return found
+        _put(estimated, sensor + "_noise", level, np.diag((relative * level) ** 2))
+    return estimated
 
 
-def _put(found, block, value, covariance):
-    found.value[[PLACE[name] for name in BLOCKS[block]]] = value
-    found.covariance[block][:] = covariance
+def _put(estimated, block, value, covariance):
+    estimated.value[[PLACE[name] for name in BLOCKS[block]]] = value
+    estimated.covariance[block][:] = covariance
 
 
 def _forms(P, bias_unit):
@@ -97,7 +97,7 @@ def _forms(P, bias_unit):
                            bias_unit * np.array(v)])
 
 
-def _matrix(found, sensor, P, sigma, bias_unit, missing):
+def _matrix(estimated, sensor, P, sigma, bias_unit, missing):
     """Puts scale, misalignment and bias of a P with standard errors (4, 3), taken as independent,
     into an Estimate; those of axes that were not turned are unknown."""
     value = _forms(P, bias_unit)
@@ -112,7 +112,7 @@ def _matrix(found, sensor, P, sigma, bias_unit, missing):
     value = np.where(known, value, np.nan)
     for block, own in (("_scale", slice(0, 3)), ("_misalignment", slice(3, 9)),
                        ("_bias", slice(9, 12))):
-        _put(found, sensor + block, value[own], covariance[own, own])
+        _put(estimated, sensor + block, value[own], covariance[own, own])
 
 
 def of_solution(solved, session):
@@ -120,8 +120,9 @@ def of_solution(solved, session):
     accel, gyro, noise = solved.accel, None, {}
     usable = accel is not None and solved.verdict != "refused"
     if solved.gyro is not None and solved.gyro.verdict != "refused":
-        one = solved.gyro
-        gyro = one.P, one.sigma, one.bias_dps, one.sigma_bias_dps, one.missing
+        measured = solved.gyro
+        gyro = (measured.P, measured.sigma, measured.bias_dps, measured.sigma_bias_dps,
+                measured.missing)
     if session is not None and session.n:
         seconds = float(session.seconds.sum())
         for sensor in ("accel", "gyro"):

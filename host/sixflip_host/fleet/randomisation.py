@@ -170,14 +170,14 @@ def files(members, batches):
         members.spelled(), len(members.boards), ", ".join(sorted(batch)))
     missing = cannot_express(batches)
     ends = {"numpy": "", "mujoco": MUJOCO, "isaaclab": ISAACLAB}
-    found = {}
+    texts = {}
     for form, name in NAMES.items():
         without = "\nThis form cannot express: %s." % ", ".join(missing[name])
-        found[name] = CORE % {
+        texts[name] = CORE % {
             "title": "Parts of a batch, drawn: written by sixflip fleet --randomise.",
             "about": "\n" + about + (without if missing[name] else ""),
             "cannot": json.dumps(missing[name]), "batch": json.dumps(batch, indent=1)} + ends[form]
-    return found
+    return texts
 
 
 def cannot_express(batches):
@@ -193,7 +193,7 @@ def cannot_express(batches):
 
 def pooled(batches):
     """{block: {names, mean, covariance}} over all batches of a kind: within them and between."""
-    found = {}
+    blocks = {}
     for name in (*parameters.BLOCKS, *EFFECTS):
         own = [(len(b.boards), *b.populations[name]) for b in batches if name in b.populations]
         if not own:
@@ -208,6 +208,6 @@ def pooled(batches):
             np.diag(covariance), 1e-12)
         if not known.all() or not np.isfinite(covariance).all():
             continue  # an axis that no board tells
-        found[name] = {"names": list(own[0][1].names), "mean": mean.tolist(),
-                       "covariance": covariance.tolist()}
-    return found
+        blocks[name] = {"names": list(own[0][1].names), "mean": mean.tolist(),
+                        "covariance": covariance.tolist()}
+    return blocks

@@ -66,10 +66,10 @@ def boards(path, output, target, options=None, work=cluster.rows_of):
     options = options or analysis.Options()
     if os.path.isdir(path) and dataset.in_folder(path):
         return _taken_over(path)
-    found = sources.find_boards(path)
+    listed = sources.find_boards(path)
     data = dataset.DataSet(output)
     known, damaged = data.done(options.version)
-    left = dataset.to_do(found.boards, known)
+    left = dataset.to_do(listed.boards, known)
     if left:
         progress.doing("the cluster")
         writer = _Writer(data, len(left))
@@ -80,10 +80,10 @@ def boards(path, output, target, options=None, work=cluster.rows_of):
             finally:
                 writer.flush()
         known, damaged = data.done(options.version)
-    names = {(one.batch, one.board) for one in found.boards}
+    names = {(one.batch, one.board) for one in listed.boards}
     wanted = {key: one for key, one in known.items() if key in names}
-    failures = [*found.failures, *((board, one.failure) for (_, board), one in wanted.items()
-                                   if one.failure)]
+    failures = [*listed.failures, *((board, one.failure) for (_, board), one in wanted.items()
+                                    if one.failure)]
     return Run(data, wanted, failures, [*damaged, *_kinds(data, wanted)], len(left))
 
 
@@ -103,13 +103,13 @@ def _taken_over(path):
 def _kinds(data, wanted):
     """Sentences on boards of more than one chip or range, and on captures that repeat."""
     kinds, contents = {}, {}
-    for one in data.rows(wanted, ("board", "batch", "written", "chip", "accel_range_g",
+    for row in data.rows(wanted, ("board", "batch", "written", "chip", "accel_range_g",
                                   "gyro_range_dps", "failure", "content")):
-        if one["failure"]:
+        if row["failure"]:
             continue
-        kinds.setdefault((one["chip"], str(one["accel_range_g"]), str(one["gyro_range_dps"])),
-                         []).append(one["board"])
-        contents.setdefault(one["content"], []).append(one["board"])
+        kinds.setdefault((row["chip"], str(row["accel_range_g"]), str(row["gyro_range_dps"])),
+                         []).append(row["board"])
+        contents.setdefault(row["content"], []).append(row["board"])
     said = ["%d kinds of boards, each judged by itself: %s" % (len(kinds), "; ".join(
         "%d of %s ±%s g ±%s °/s" % (len(its), *kind) for kind, its in sorted(kinds.items())))] \
         if len(kinds) > 1 else []

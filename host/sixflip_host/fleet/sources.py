@@ -46,22 +46,22 @@ def find_boards(path):
     """Sources of what stands on the command line; BadFile or UsageError where it is nothing."""
     path = os.fspath(path)
     if os.path.isdir(path):
-        found = _of_folder(path)
+        listed = _of_folder(path)
     elif not os.path.exists(path):
         raise BadFile("%s: is not there, expected a folder of captures, a manifest or a history"
                       % path)
     elif _begins(path).startswith(SQLITE):
-        found = _of_history(path)
+        listed = _of_history(path)
     elif file_kinds.kind_of(path) in (file_kinds.CAPTURE, file_kinds.SIMULATED,
                                       file_kinds.BOARD_CAPTURE):
         raise UsageError("%s: is one capture, expected a folder of them, a manifest or a history; "
                          "sixflip diagnose looks at one board" % path)
     else:
-        found = _of_manifest(path)
-    if not found.boards and not found.failures:
+        listed = _of_manifest(path)
+    if not listed.boards and not listed.failures:
         raise BadFile("%s: no board in it, expected captures (%s) in a folder for each board"
                       % (path, " ".join(ENDINGS)))
-    return found
+    return listed
 
 
 def _begins(path):
@@ -125,26 +125,26 @@ def _stem(path):
 def _distinct(boards, failures):
     """Sources with every id once; the others are said."""
     kept, failed = {}, list(failures)
-    for one in boards:
-        first = kept.setdefault(one.board, one)
-        if first is not one:
-            failed.append((one.board, "the id stands twice, in %s and in %s: only the first is "
+    for board in boards:
+        first = kept.setdefault(board.board, board)
+        if first is not board:
+            failed.append((board.board, "the id stands twice, in %s and in %s: only the first is "
                            "taken, expected one place for a board" % (
-                               _place(first), _place(one))))
+                               _place(first), _place(board))))
     return Sources(tuple(sorted(kept.values(), key=lambda b: (b.batch, b.board))), tuple(failed))
 
 
-def _place(one):
-    return one.folder or (one.captures or one.summaries or ("batch %r" % one.batch,))[0]
+def _place(board):
+    return board.folder or (board.captures or board.summaries or ("batch %r" % board.batch,))[0]
 
 
 def _of_manifest(path):
     lines, wrong = manifest.read(path)
-    found = {}
+    lines_of = {}
     for line in lines:
-        found.setdefault(line.board, []).append(line)
+        lines_of.setdefault(line.board, []).append(line)
     boards, failures = [], list(wrong)
-    for board, its in found.items():
+    for board, its in lines_of.items():
         batches = list(dict.fromkeys(line.batch for line in its))
         if len(batches) > 1:
             failures.append((board, "is in the batches %s: the first is taken, expected one"
@@ -161,12 +161,12 @@ def _of_history(path):
         rows = store.read(path)
     except sqlite3.Error as error:
         raise BadFile("%s: cannot be used as history: %s" % (path, error)) from None
-    found = {}
+    rows_of = {}
     for row in rows:
         if row.kind == "calibration" and row.record is not None and row.verb != "refine":
-            found.setdefault(row.board, []).append(row)
-    without = sorted({row.board for row in rows} - set(found))
+            rows_of.setdefault(row.board, []).append(row)
+    without = sorted({row.board for row in rows} - set(rows_of))
     failures = [(board, "no calibration with its record in the history: sixflip pull fetches it")
                 for board in without]
     return Sources(tuple(Board(board, "", calibrations=tuple(its))
-                         for board, its in sorted(found.items())), tuple(failures))
+                         for board, its in sorted(rows_of.items())), tuple(failures))

@@ -156,10 +156,10 @@ def summarise(name, capture):
 
 
 def _with_poses(capture):
-    found = copy.copy(capture)
-    found.meta = dict(capture.meta)
-    find_poses(found).label(found)
-    return found
+    posed = copy.copy(capture)
+    posed.meta = dict(capture.meta)
+    find_poses(posed).label(posed)
+    return posed
 
 
 def _placed(capture, solved):
@@ -189,15 +189,15 @@ def _move(row):
 
 def _blocks(session):
     """The arrays that the diagnosis of rests needs."""
-    found = {"block_" + name: getattr(session, name) for name in OF_SESSION
-             if getattr(session, name) is not None}
-    found["runs"] = np.array([(*run,) for run in session.runs], np.int64).reshape(-1, 3)
-    found["starts"] = np.array([session.t_s[run.first] for run in session.runs], float)
-    found["play"] = np.stack(session.played(terms.PLAY_G), 1).astype(float) if session.n \
+    arrays = {"block_" + name: getattr(session, name) for name in OF_SESSION
+              if getattr(session, name) is not None}
+    arrays["runs"] = np.array([(*run,) for run in session.runs], np.int64).reshape(-1, 3)
+    arrays["starts"] = np.array([session.t_s[run.first] for run in session.runs], float)
+    arrays["play"] = np.stack(session.played(terms.PLAY_G), 1).astype(float) if session.n \
         else np.zeros((0, len(terms.PLAY_G), 3))
     if session.thermometer is not None:
-        found["thermometer"] = np.concatenate([session.thermometer.t[:1], session.thermometer.c])
-    return found
+        arrays["thermometer"] = np.concatenate([session.thermometer.t[:1], session.thermometer.c])
+    return arrays
 
 
 def _verdict(judged):

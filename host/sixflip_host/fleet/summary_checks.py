@@ -47,9 +47,9 @@ ABOUT = Fields(
 
 def about(value):
     """The JSON of a summary, once checked; ValueError otherwise."""
-    found = ABOUT.take(value)
-    meta = found["meta"]
-    columns = ["ax"] + (["gx"] if found["gyro"] else [])
+    checked = ABOUT.take(value)
+    meta = checked["meta"]
+    columns = ["ax"] + (["gx"] if checked["gyro"] else [])
 
     def fault(seen, expected):
         return ValueError("%s, expected %s" % (seen, expected))
@@ -59,21 +59,21 @@ def about(value):
         raise ValueError("a key of its capture is of another kind") from None
     if not 0.01 <= meta["rate_hz"] <= 1e6:
         raise ValueError("rate_hz is %g" % meta["rate_hz"])
-    return found
+    return checked
 
 
-def arrays(found, columns):
+def arrays(tables, columns):
     """ValueError unless the arrays are those of a summary; columns: {name: number} of the tables
     that a summary has."""
-    for name, one in found.items():
-        if one.dtype.kind not in "if" or one.size > MOST_BLOCKS * 20 + MOST_SECONDS \
-                or not np.isfinite(one).all() or np.abs(one).max(initial=0) > MOST_COUNTS:
+    for name, table in tables.items():
+        if table.dtype.kind not in "if" or table.size > MOST_BLOCKS * 20 + MOST_SECONDS \
+                or not np.isfinite(table).all() or np.abs(table).max(initial=0) > MOST_COUNTS:
             raise ValueError(name)
     for name, number in columns.items():
-        if found[name].ndim != 2 or found[name].shape[1] != number:
+        if tables[name].ndim != 2 or tables[name].shape[1] != number:
             raise ValueError(name)
-    _placements(found)
-    _blocks(found)
+    _placements(tables)
+    _blocks(tables)
 
 
 def _need(holds, name):
@@ -85,20 +85,20 @@ def _codes(codes):
     return bool(((codes >= 1) & (codes <= LEANING + MOST_LEANING)).all())
 
 
-def _placements(found):
+def _placements(tables):
     """Those of the tables that solve needs."""
-    of, number = found["placement_of"], len(found["placement_of"])
+    of, number = tables["placement_of"], len(tables["placement_of"])
     _need(number <= MOST_POSES and of.dtype.kind == "i" and _codes(of[:, 0])
           and (of[:, 1] >= 0).all() and (of[:, 2] > 0).all() and (of[:, 3] >= 0).all(),
           "placement_of")
-    sums = found["placement_sums"]
+    sums = tables["placement_sums"]
     _need(len(sums) == number and sums.dtype.kind == "i"
           and (np.abs(sums) <= of[:, 2:3] * 32768).all(), "placement_sums")
-    noise = found["placement_noise"]
+    noise = tables["placement_noise"]
     _need(len(noise) == number and (noise >= 0.0).all() and (noise < 1e5).all(),
           "placement_noise")
-    _need(len(found["halves"]) == number, "halves")
-    moves = found["move_of"]
+    _need(len(tables["halves"]) == number, "halves")
+    moves = tables["move_of"]
     _need(len(moves) in (0, max(0, number - 1)) and moves.dtype.kind == "i", "move_of")
     if len(moves):
         _need((moves[:, :2] >= -1).all() and (moves[:, :2] < number).all()
@@ -106,35 +106,35 @@ def _placements(found):
               and (moves[:, 7] >= 0).all() and (moves[:, 13] >= 0).all(), "move_of")
 
 
-def _blocks(found):
+def _blocks(tables):
     """Those of the blocks of the rests."""
-    runs, n = found["runs"], len(found["block_placement"])
+    runs, n = tables["runs"], len(tables["block_placement"])
     _need(len(runs) <= MOST_POSES and runs.dtype.kind == "i" and _codes(runs[:, 0]), "runs")
-    _need(found["starts"].shape == (len(runs),), "starts")
-    _need(n <= MOST_BLOCKS and found["play"].shape == (n, 3, 3), "play")
-    place = found["block_placement"]
+    _need(tables["starts"].shape == (len(runs),), "starts")
+    _need(n <= MOST_BLOCKS and tables["play"].shape == (n, 3, 3), "play")
+    place = tables["block_placement"]
     _need(place.shape == (n,) and place.dtype.kind == "i" and (np.diff(place) >= 0).all()
           and (not n or 0 <= place[0] and place[-1] < len(runs)), "block_placement")
     for name in ("code", "first", "end", "face"):
-        one = found["block_" + name]
-        _need(one.shape == (n,) and one.dtype.kind == "i", name)
-    _need(_codes(found["block_code"]) and (np.abs(found["block_face"]) <= 5).all(), "block_code")
+        column = tables["block_" + name]
+        _need(column.shape == (n,) and column.dtype.kind == "i", name)
+    _need(_codes(tables["block_code"]) and (np.abs(tables["block_face"]) <= 5).all(), "block_code")
     for name in ("t", "since", "seconds", "vibration", "temperature", "temperature_rate"):
-        one = found.get("block_" + name)
-        _need(one is None and name.startswith("temperature") or one is not None
-              and one.shape == (n,) and (np.abs(one) < LARGEST).all(), name)
-    _need((np.diff(found["block_t"]) > 0.0).all() and (found["block_seconds"] > 0.0).all(), "t")
+        column = tables.get("block_" + name)
+        _need(column is None and name.startswith("temperature") or column is not None
+              and column.shape == (n,) and (np.abs(column) < LARGEST).all(), name)
+    _need((np.diff(tables["block_t"]) > 0.0).all() and (tables["block_seconds"] > 0.0).all(), "t")
     for sensor in ("accel", "gyro"):
-        own = [found.get(name % sensor) for name in ("block_%s", "block_noise_%s",
-                                                     "block_rounding_%s")]
+        own = [tables.get(name % sensor) for name in ("block_%s", "block_noise_%s",
+                                                      "block_rounding_%s")]
         there = [one is not None for one in own]
         _need(all(there) or not any(there) and (sensor == "gyro" or not n) or not n, sensor)
         if all(there):
             _need(own[0].shape == (n, 3) and (np.abs(own[0]) < LARGEST).all(), sensor)
             _need(own[1].shape == own[2].shape == (3,) and (own[1] > 0.0).all()
                   and (own[2] >= 0.0).all(), "noise_" + sensor)
-    smooth = found.get("thermometer")
-    _need((smooth is None) == (found.get("block_temperature") is None), "thermometer")
+    smooth = tables.get("thermometer")
+    _need((smooth is None) == (tables.get("block_temperature") is None), "thermometer")
     if smooth is not None:
         _need(smooth.ndim == 1 and 4 <= len(smooth) <= MOST_SECONDS
               and (np.abs(smooth) < LARGEST).all(), "thermometer")

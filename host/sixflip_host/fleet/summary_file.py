@@ -31,14 +31,14 @@ ARRAYS = {  # columns of each table
 
 def content_hash(path):
     """SHA-256 of a file, hex; BadFile where it cannot be read."""
-    found = hashlib.sha256()
+    digest = hashlib.sha256()
     try:
         with open(path, "rb") as file:
             while piece := file.read(PIECE):
-                found.update(piece)
+                digest.update(piece)
     except OSError as error:
         raise BadFile("%s: cannot be read: %s" % (path, error.strerror)) from None
-    return found.hexdigest()
+    return digest.hexdigest()
 
 
 def stamp(path):
@@ -50,12 +50,12 @@ def stamp(path):
     return [about.st_size, about.st_mtime_ns]
 
 
-def encode(one):
+def encode(summarised):
     """The bytes of a Summary."""
-    out = io.BytesIO()
-    about = json.dumps(one.about, allow_nan=False).encode()
-    np.savez_compressed(out, about=np.frombuffer(about, np.uint8), **one.arrays)
-    return out.getvalue()
+    file = io.BytesIO()
+    about = json.dumps(summarised.about, allow_nan=False).encode()
+    np.savez_compressed(file, about=np.frombuffer(about, np.uint8), **summarised.arrays)
+    return file.getvalue()
 
 
 def decode(path, data):
@@ -68,14 +68,14 @@ def decode(path, data):
             raise BadFile("%s: is a summary of layout %s, expected %d: delete it, it is made "
                           "again" % (path, about["format"], FORMAT))
         summary_checks.arrays(arrays, ARRAYS)
-        one = summary.Summary(summary_checks.about(about), arrays)
-        one.session()
+        summarised = summary.Summary(summary_checks.about(about), arrays)
+        summarised.session()
     except (OSError, ValueError, TypeError, KeyError, IndexError, EOFError, RecursionError,
             MemoryError, AttributeError, zipfile.BadZipFile, zlib.error, NotImplementedError,
             struct.error) as error:
         raise BadFile("%s: is no summary or a damaged one (%s), expected one that sixflip fleet "
                       "wrote" % (path, str(error)[:80].replace("\n", " "))) from None
-    return one
+    return summarised
 
 
 def read(path):
@@ -90,14 +90,14 @@ def of_capture(path, keep=True):
     digest = None
     for kept in places(path):
         try:
-            found = read(kept)
+            earlier = read(kept)
         except BadFile:
             continue
-        if found.about.get("stamp") == now:
-            return found, ""
+        if earlier.about.get("stamp") == now:
+            return earlier, ""
         digest = digest or content_hash(path)
-        if found.about.get("hash") == digest:
-            return found, ""
+        if earlier.about.get("hash") == digest:
+            return earlier, ""
     digest = digest or content_hash(path)
     made = summary.summarise(os.path.basename(path), open_recording.read_samples(path))
     made = replace(made, about=dict(made.about, format=FORMAT, hash=digest, stamp=now))
