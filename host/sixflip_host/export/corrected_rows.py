@@ -14,11 +14,11 @@ def corrected_rows(correction, capture):
     n = len(capture)
     gyro = np.zeros((n, 3)) if capture.gyro is None else capture.gyro
     counts = np.hstack([capture.accel, gyro]).astype(float)
-    out = np.empty((n, 6))
+    corrected = np.empty((n, 6))
     for rows, temp in _by_temperature(correction, capture):
         sample = list(counts[rows].T) + [temp]
-        out[rows] = np.array(correction.apply(sample, [None] * 6)).T
-    return out
+        corrected[rows] = np.array(correction.apply(sample, [None] * 6)).T
+    return corrected
 
 
 def _by_temperature(correction, capture):

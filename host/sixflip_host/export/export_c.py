@@ -10,10 +10,10 @@ from .affine_correction import AffineCorrection
 def c_header(path, record):
     """Text of the header, with the terms the record has. Raises BadFile for a record without
     an accelerometer's correction."""
-    found = AffineCorrection(path, record)
+    affine = AffineCorrection(path, record)
     correction = correction_of(record)
-    parts = [_head(found), _defines(record), _table("sixflip_accel_table", correction.accel)]
-    if not found.gyro:      # neither has it a thermometer
+    parts = [_head(affine), _defines(record), _table("sixflip_accel_table", correction.accel)]
+    if not affine.gyro:      # neither has it a thermometer
         return "\n".join([*parts, text.ACCEL]) + text.TAIL
     parts.append(_table("sixflip_gyro_table", correction.gyro))
     parts += [*_terms(correction), text.GYRO_OFFSET, text.REST_TERMS] if record.terms else \
@@ -24,13 +24,13 @@ def c_header(path, record):
 def _terms(correction):
     """Tables of a TermCorrection and the function that applies them, in the order it does."""
     tables, calls = [], []
-    for number, one in enumerate(correction.thermal):
+    for number, term in enumerate(correction.thermal):
         name = "sixflip_thermal_%d" % number
-        tables += [_table(name, [one.base, one.k1, one.k2]),
-                   _row(name + "_range", [one.t0, one.low, one.high, one.lsb, one.offset])]
-        into = "scale" if one.into is correction.scale else "shift"
+        tables += [_table(name, [term.base, term.k1, term.k2]),
+                   _row(name + "_range", [term.t0, term.low, term.high, term.lsb, term.offset])]
+        into = "scale" if term.into is correction.scale else "shift"
         calls.append("    sixflip_thermal(%s, %s_range, temp, %s + %d);\n" % (
-            name, name, into, one.first))
+            name, name, into, term.first))
     tables.append(_table("sixflip_coupling", correction.coupling or [[0.0] * 3] * 3))
     tables.append(_table("sixflip_turn", correction.turn or [
         [1.0 if i == j else 0.0 for j in range(3)] for i in range(3)]))
@@ -38,11 +38,11 @@ def _terms(correction):
     return [*tables, text.TERMS.replace("CALLS", "".join(calls))]
 
 
-def _head(found):
-    names = [name for tag, name in TERMS if tag in [one for one, _ in found.record.terms]]
-    lines = [_comment(line) for line in found.origin()] + ["", text.FORMULA]
+def _head(affine):
+    names = [name for tag, name in TERMS if tag in [one for one, _ in affine.record.terms]]
+    lines = [_comment(line) for line in affine.origin()] + ["", text.FORMULA]
     lines += [text.TERM_FORMULA % " ".join(names)] if names else []
-    lines += ["", text.USE_GYRO if found.gyro else text.USE]
+    lines += ["", text.USE_GYRO if affine.gyro else text.USE]
     return "/*\n%s\n*/\n#ifndef SIXFLIP_CORRECTION_H\n#define SIXFLIP_CORRECTION_H\n\n" \
         "#include <stdint.h>\n\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n" \
         % "\n".join(lines)

@@ -15,9 +15,9 @@ IMUCAL_VERSION = "2.0.0"        # of its file format
 
 def imu_calib_yaml(path, record, temp_c=None):
     """Text for the ROS node apply_calib (dpkoch/imu_calib): SM row by row, and bias."""
-    found = AffineCorrection(path, record, temp_c)
-    A, o = found.accel
-    lines = found.origin() + found.left_out() + [
+    affine = AffineCorrection(path, record, temp_c)
+    A, o = affine.accel
+    lines = affine.origin() + affine.left_out() + [
         "formula of imu_calib: corrected = SM * raw - bias, SM row by row",
         "units: m/s^2 in and out, the bias too; SM has none",
         "the node knows no gyro scale: it subtracts the mean of its first samples"]
@@ -34,15 +34,15 @@ def _items(values):
 
 def imufusion_python(path, record, temp_c=None):
     """Text of a Python module for imufusion (x-io Fusion): misalignment, sensitivity, offset."""
-    found = AffineCorrection(path, record, temp_c)
-    lines = found.origin() + found.left_out() + [
+    affine = AffineCorrection(path, record, temp_c)
+    lines = affine.origin() + affine.left_out() + [
         "formula of imufusion: calibrated = misalignment * (sensitivity o (raw - offset)),",
         "o: element by element, misalignment after sensitivity (model_inertial of imufusion,",
         "FusionModelInertial or FusionCalibrationInertial in C)",
         "units: raw and offset in counts of the chip; calibrated in g (1 g = the gravity above)",
         "and in deg/s, as the AHRS of Fusion expects them"]
     text = _comment(lines) + "import numpy as np\n"
-    for name, part, lsb, unit in _fusion_parts(found):
+    for name, part, lsb, unit in _fusion_parts(affine):
         A, o = part
         A, o = A / lsb * unit[0], o * unit[1]
         size = np.linalg.norm(A, axis=0)
@@ -53,13 +53,13 @@ def imufusion_python(path, record, temp_c=None):
     return text
 
 
-def _fusion_parts(found):
+def _fusion_parts(affine):
     """Name, (A, o), counts per unit in, factors (of A, of o) to Fusion's units."""
-    record = found.record
+    record = affine.record
     g = 1 / record.g
-    parts = [("accelerometer", found.accel, record.accel_lsb_per_g, (STANDARD_G * g, g))]
-    if found.gyro:
-        parts.append(("gyroscope", found.gyro, record.gyro_lsb_per_dps, (1.0, 1.0)))
+    parts = [("accelerometer", affine.accel, record.accel_lsb_per_g, (STANDARD_G * g, g))]
+    if affine.gyro:
+        parts.append(("gyroscope", affine.gyro, record.gyro_lsb_per_dps, (1.0, 1.0)))
     return parts
 
 
@@ -71,24 +71,24 @@ def _array(values):
 
 def imucal_json(path, record, temp_c=None):
     """Text that imucal loads as a FerrarisCalibrationInfo."""
-    found = AffineCorrection(path, record, temp_c)
-    if found.gyro is None:
+    affine = AffineCorrection(path, record, temp_c)
+    if affine.gyro is None:
         raise BadFile("%s is of a sensor without a gyro: imucal needs both, expected another "
                       "format" % path)
-    lines = found.origin() + found.left_out(coupled=True) + [
+    lines = affine.origin() + affine.left_out(coupled=True) + [
         "formula of imucal: acc = R_a^-1 K_a^-1 (raw - b_a), "
         "gyr = R_g^-1 K_g^-1 (raw - K_ga acc - b_g)",
         "units: m/s^2 and deg/s in and out"]
     answer = {"acc_unit": "m/s^2", "gyr_unit": "deg/s", "from_acc_unit": "m/s^2",
               "from_gyr_unit": "deg/s", "comment": "; ".join(lines)}
-    for letter, (A, o) in (("a", found.accel), ("g", found.gyro)):
+    for letter, (A, o) in (("a", affine.accel), ("g", affine.gyro)):
         inverse = np.linalg.inv(A)
         size = np.linalg.norm(inverse, axis=1)
         answer["K_" + letter] = np.diag(size).tolist()
         answer["R_" + letter] = (inverse / size[:, None]).tolist()
         answer["b_" + letter] = (-inverse @ o).tolist()
-    K_ga = np.zeros((3, 3)) if found.coupling is None else np.linalg.solve(
-        found.gyro[0], found.coupling)
+    K_ga = np.zeros((3, 3)) if affine.coupling is None else np.linalg.solve(
+        affine.gyro[0], affine.coupling)
     answer.update(K_ga=K_ga.tolist(), cal_type="Ferraris", _format_version=IMUCAL_VERSION)
     if not all(math.isfinite(x) for x in answer["b_a"] + answer["b_g"]):
         raise BadFile("%s: its matrices cannot be inverted" % path)

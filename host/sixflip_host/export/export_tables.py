@@ -26,19 +26,19 @@ def columns(capture, record=None, tell=None):
 
     tell: as sixflip.record.correction.correction_of.
     """
-    out = {"t_us": capture.t_us}
+    arrays = {"t_us": capture.t_us}
     if record is not None:
         values, names = corrected(record, capture, tell)
-        out.update(zip(names, values.T))
+        arrays.update(zip(names, values.T))
     else:
         for group, block in ((ACCEL, capture.accel), (GYRO, capture.gyro), (MAG, capture.mag)):
             if block is not None:
-                out.update(zip(group, block.T))
+                arrays.update(zip(group, block.T))
         if capture.temp is not None:
-            out["temp"] = capture.temp
+            arrays["temp"] = capture.temp
     if capture.pose is not None:
-        out["pose"] = poses(capture)
-    return out
+        arrays["pose"] = poses(capture)
+    return arrays
 
 
 def poses(capture):

@@ -60,13 +60,13 @@ def measure(capture):
         matrix, bias = np.array(inverse), -np.array(v)
     elif not _one_attitude(capture, still):
         raise CheckFailed("the capture does not calibrate the board: %s" % solved.reason)
-    found = {"accel": _triad(capture, capture.accel, still,
-                             capture.meta["accel_lsb_per_g"] / solved.g, "m/s2", matrix, bias)}
+    triads = {"accel": _triad(capture, capture.accel, still,
+                              capture.meta["accel_lsb_per_g"] / solved.g, "m/s2", matrix, bias)}
     if capture.gyro is not None:
-        turned = found["accel"].matrix is not None and solved.gyro is not None \
+        turned = triads["accel"].matrix is not None and solved.gyro is not None \
             and not solved.gyro.missing
-        found["gyro"] = _gyro(capture, still, solved.gyro.P if turned else None)
-    return found
+        triads["gyro"] = _gyro(capture, still, solved.gyro.P if turned else None)
+    return triads
 
 
 def _gyro(capture, still, P=None):
@@ -91,15 +91,15 @@ def _triad(capture, counts, still, lsb, unit, matrix, bias):
     parts = [counts[a:b] / lsb for a, b in still]
     longest = max(len(x) for x in parts) / rate
     from ..experiment import noise_spectrum  # scipy takes its time
-    found = [noise_spectrum.levels([x[:, axis] for x in parts], rate, longest >= WALK_S)
-             for axis in range(3)]
-    constant = ["xyz"[axis] for axis, one in enumerate(found) if one[0] is None]
+    of_axes = [noise_spectrum.levels([x[:, axis] for x in parts], rate, longest >= WALK_S)
+               for axis in range(3)]
+    constant = ["xyz"[axis] for axis, one in enumerate(of_axes) if one[0] is None]
     if constant:
         raise CheckFailed("the %s axis reads one value throughout its rests, expected noise that "
                           "is wider than its steps" % constant[0])
     values, intervals = {}, {}
     for k, name in enumerate(("density", "floor", "walk")):
-        levels = [one[k] for one in found]
+        levels = [one[k] for one in of_axes]
         if all(level is not None for level in levels):
             values[name] = np.array([level.value for level in levels])
             intervals[name] = np.array([[level.low for level in levels],
@@ -111,10 +111,10 @@ def _triad(capture, counts, still, lsb, unit, matrix, bias):
 
 def pooled(parts, m):
     """Allan deviation (3,) over m samples, pooled over the rests that are long enough."""
-    found = [(len(r) - 2 * m, signal_measures.allan(r, m) ** 2) for r in parts
-             if len(r) >= 3 * m]
-    if not found:
+    variances = [(len(r) - 2 * m, signal_measures.allan(r, m) ** 2) for r in parts
+                 if len(r) >= 3 * m]
+    if not variances:
         return None
-    weights = np.array([w for w, _ in found], dtype=float)
-    return np.sqrt(np.average([v for _, v in found], axis=0, weights=weights))
+    weights = np.array([w for w, _ in variances], dtype=float)
+    return np.sqrt(np.average([v for _, v in variances], axis=0, weights=weights))
 

@@ -40,7 +40,7 @@ def _read(path):
     return capture_file.with_samples(path, capture_file.read(path, gyro_alone=True))
 
 
-def sdf(found, meta):
+def sdf(triads, meta):
     """Gazebo's GaussianNoiseModel: stddev is per sample, the dynamic bias a Gauss-Markov process
     whose driving noise has the density dynamic_bias_stddev (as in Kalibr's wiki)."""
     lines = ['<?xml version="1.0"?>',
@@ -51,7 +51,7 @@ def sdf(found, meta):
              "     misalignment have no place in SDF: see the table. -->",
              '<sdf version="1.7">', ' <sensor name="imu" type="imu">',
              "  <update_rate>%g</update_rate>" % meta["rate_hz"], "  <imu>"]
-    for kind, triad in found.items():
+    for kind, triad in triads.items():
         lines.append("   <%s>" % NAMES[kind])
         counted = meta.get(kind + "_values") != "float"  # else counts are the import's own
         for i, axis in enumerate("xyz"):
@@ -82,17 +82,17 @@ def _mean(triad, i):
     return ["      <mean>%.6g</mean>" % triad.bias[i]]
 
 
-def kalibr(found, meta):
+def kalibr(triads, meta):
     """Kalibr's imu.yaml: continuous-time densities, one number for the three axes: the largest."""
     lines = ["# %s. Densities in continuous time; per sample they are N sqrt(rate) and"
              % meta["sensor"],
              "# K / sqrt(rate). One number for three axes: the largest of them.",
              "rostopic: /imu0", "update_rate: %g  # Hz" % meta["rate_hz"]]
     for kind, word, unit in (("accel", "accelerometer", "m/s^2"), ("gyro", "gyroscope", "rad/s")):
-        if kind not in found:
+        if kind not in triads:
             lines.append("# no %s in this capture" % word)
             continue
-        triad = found[kind]
+        triad = triads[kind]
         lines.append("%s_noise_density: %.6g  # N, %s/sqrt(Hz); %s"
                      % (word, triad.density.max(), unit, _span(triad, "density")))
         if triad.walk is None:
@@ -131,11 +131,11 @@ FORMULAS = {"density": "S(f) = N^2 at rest, likeliest in the spectrum",
             "walk": "S(f) = K^2 / (2 pi f)^2; Allan deviation K sqrt(tau / 3)"}
 
 
-def plain_table(found, meta, effects=()):
+def plain_table(triads, meta, effects=()):
     """One line a quantity: name, three values or nine, unit, formula."""
     lines = ["# %s, %g Hz. measured = M true + bias + noise; tab-separated." % (
         meta["sensor"], meta["rate_hz"]), "quantity\tx\ty\tz\tunit\tformula"]
-    for kind, triad in found.items():
+    for kind, triad in triads.items():
         unit = triad.unit
         if triad.matrix is None:
             lines.append("%s M\t\t\t\t1\tnot measured: no flips about all three axes" % kind)

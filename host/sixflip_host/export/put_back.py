@@ -72,15 +72,15 @@ class PutBack:
     @property
     def holds(self):
         """Names of what is in here beyond the matrices and biases."""
-        out = []
+        names = []
         for kind, triad in zip(SENSORS.values(), (self.accel, self.gyro)):
-            out += ["%s of the %s" % (name, kind) for name, there in (
+            names += ["%s of the %s" % (name, kind) for name, there in (
                 ("scale and misalignment", (triad.matrix != np.eye(3)).any()),
                 ("bias", triad.bias.any()), ("noise", triad.noise.any()),
                 ("step", triad.step.any()), ("range", np.isfinite(triad.limit).any()),
                 ("low-pass", triad.lag_s > 0), ("delay", triad.delay_s > 0)) if there]
-            out += ["%s of the %s" % (name, kind) for name in triad.effects]
-        return out + (["lever arm"] if self.lever.any() else [])
+            names += ["%s of the %s" % (name, kind) for name in triad.effects]
+        return names + (["lever arm"] if self.lever.any() else [])
 
 
 def read(path):
@@ -152,19 +152,19 @@ def whole(name, cause):
 
 def narrow(numbers):
     """Sentences on ranges and steps that nothing behind the simulator can take back."""
-    out = []
+    said = []
     for kind, who in SENSORS.items():
         stops = [a for a, p in numbers.get(kind, {}).get("range", {}).items()
                  if p["differs"] and p["simulator"] is not None and p["difference"] > 0]
         if stops:
-            out.append("the simulator's %s stops short on %s, where the real one goes on: set its "
-                       "range" % (who, " and ".join(stops)))
+            said.append("the simulator's %s stops short on %s, where the real one goes on: set "
+                        "its range" % (who, " and ".join(stops)))
         coarse = [a for a, p in numbers.get(kind, {}).get("step", {}).items()
                   if p["differs"] and p["difference"] < 0]
         if coarse:
-            out.append("the simulator's %s has coarser steps on %s than the real one: set its "
-                       "step" % (who, " and ".join(coarse)))
-    return out
+            said.append("the simulator's %s has coarser steps on %s than the real one: set its "
+                        "step" % (who, " and ".join(coarse)))
+    return said
 
 
 def added(name, kind, cause):
@@ -215,12 +215,13 @@ def relative_delay(numbers, lags):
     return {"gyro": max(wanted, 0.0), "accel": abs(min(wanted, 0.0))}
 
 
-def header(found, comment, cannot):
+def header(sensor, comment, cannot):
     """Lines that say where it comes from, what must be right first, what is not in it."""
-    lines = ["%s: what the real sensor has beyond the simulator, at %g Hz" % (MARK, found.rate_hz)]
-    lines += ["first: " + words for words in found.first]
-    lines += ["holds: " + (", ".join(found.holds) or "nothing: the two did not differ")]
+    lines = ["%s: what the real sensor has beyond the simulator, at %g Hz" % (
+        MARK, sensor.rate_hz)]
+    lines += ["first: " + words for words in sensor.first]
+    lines += ["holds: " + (", ".join(sensor.holds) or "nothing: the two did not differ")]
     lines += ["this target cannot express: " + ", ".join(cannot)] if cannot else []
-    lines += list(found.instead)
-    lines += ["found, and not in here: " + ", ".join(found.left)] if found.left else []
+    lines += list(sensor.instead)
+    lines += ["found, and not in here: " + ", ".join(sensor.left)] if sensor.left else []
     return "".join("%s %s\n" % (comment, line.replace("--", "-")) for line in lines)

@@ -127,23 +127,23 @@ class ImuModel:
 '''
 
 
-def text(found):
+def text(sensor):
     """The module of a PutBack."""
-    values = {"lever": array(found.lever), "constants": "", "additions": "",
-              "reference_c": found.reference_c, "dt": 1.0 / found.rate_hz}
-    for kind, triad in (("accel", found.accel), ("gyro", found.gyro)):
+    values = {"lever": array(sensor.lever), "constants": "", "additions": "",
+              "reference_c": sensor.reference_c, "dt": 1.0 / sensor.rate_hz}
+    for kind, triad in (("accel", sensor.accel), ("gyro", sensor.gyro)):
         for name in ("matrix", "bias", "noise", "step"):
             values["%s_%s" % (kind, name)] = array(getattr(triad, name))
         values[kind + "_limit"] = array(triad.limit)
         values[kind + "_delay"], values[kind + "_lag"] = triad.delay_s, triad.lag_s
-        for name, one in triad.effects.items():
+        for name, effect in triad.effects.items():
             unit, added = EXPRESSIONS[kind][name]
             constant = ("%s_%s" % (kind, name)).upper()
             values["constants"] += "    %s = np.array(%s)  # %s\n" % (
-                constant, array(sizes(name, one)), unit.format(unit=UNITS[kind]))
+                constant, array(sizes(name, effect)), unit.format(unit=UNITS[kind]))
             values["additions"] += "        %s = %s + %s\n" % (kind, kind, added.format(
-                "self." + constant, **{"lag_s": 0.0, **one.shape}, hz=list(one.hz)))
-    return put_back.header(found, "#", ()) + CLASS % values
+                "self." + constant, **{"lag_s": 0.0, **effect.shape}, hz=list(effect.hz)))
+    return put_back.header(sensor, "#", ()) + CLASS % values
 
 
 def sizes(name, added):

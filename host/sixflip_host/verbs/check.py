@@ -48,15 +48,15 @@ def run(args):
     if args.capture:
         capture = capture_file.read_samples(args.capture)
         board = capture.meta.get("device_id")
-        found = compare(capture, verify_files.accelerometer_record(args.record), g)
+        answer = compare(capture, verify_files.accelerometer_record(args.record), g)
     else:
-        board, found = ask_board(args.port)
-    logbook.checked(board, found)
+        board, answer = ask_board(args.port)
+    logbook.checked(board, answer)
     if args.json:
-        print(json.dumps(found))
+        print(json.dumps(answer))
     else:
-        say(lines(found))
-    return 0 if found["valid"] else CheckFailed.exit_code
+        say(lines(answer))
+    return 0 if answer["valid"] else CheckFailed.exit_code
 
 
 def compare(capture, record, g=None):
@@ -71,17 +71,17 @@ def compare(capture, record, g=None):
     error_mg = still_valid.length_error_mg(correction, rest.means, g)
     noise_mg = rest.noise_mg(record.accel_lsb_per_g)[0]
     drift_known = still_valid.drift_is_corrected(correction, temp_c)
-    found = {
+    answer = {
         "a_error_mg": error_mg, "noise_mg": noise_mg,
         "noise_then_mg": 1e3 * record.accel["noise_g"] if record.accel["noise_g"] else None,
         "temp_c": temp_c, "temp_then_c": record.temp_c, "drift_known": drift_known,
         "bias_dps": None, "bias_then_dps": None, "seconds": rest.n / capture.meta["rate_hz"],
         "record_verdict": record.accel["verdict"], "record_reason": record.accel["reason"]}
     if capture.gyro is not None:
-        found["bias_dps"] = [x / capture.meta["gyro_lsb_per_dps"] for x in rest.means[3:6]]
+        answer["bias_dps"] = [x / capture.meta["gyro_lsb_per_dps"] for x in rest.means[3:6]]
         if record.gyro_bias:
-            found["bias_then_dps"] = list(record.gyro_bias["bias_dps"])
-    return judged(found, still_valid.against(error_mg, noise_mg, temp_c, record, drift_known))
+            answer["bias_then_dps"] = list(record.gyro_bias["bias_dps"])
+    return judged(answer, still_valid.against(error_mg, noise_mg, temp_c, record, drift_known))
 
 
 def _celsius(capture, rest):
@@ -90,17 +90,17 @@ def _celsius(capture, rest):
     return rest.means[6] / capture.meta["temp_lsb_per_c"] + capture.meta["temp_offset_c"]
 
 
-def judged(found, against):
+def judged(answer, against):
     """The answer with `against`, what speaks against the calibration, and `valid`."""
     against = list(against)
-    if found["record_verdict"] == "refused":
+    if answer["record_verdict"] == "refused":
         against.insert(0, "the record itself was refused")
-    if found["bias_dps"] and found["bias_then_dps"]:
-        moved = max(abs(x - y) for x, y in zip(found["bias_dps"], found["bias_then_dps"]))
+    if answer["bias_dps"] and answer["bias_then_dps"]:
+        moved = max(abs(x - y) for x, y in zip(answer["bias_dps"], answer["bias_then_dps"]))
         if not moved <= BIAS_DPS:
             against.append("the gyro's bias moved by %.1f deg/s, %.0f is the limit: it turns, or "
                            "it is another gyro" % (moved, BIAS_DPS))
-    return dict(found, format=1, kind="sixflip check", valid=not against, against=against)
+    return dict(answer, format=1, kind="sixflip check", valid=not against, against=against)
 
 
 def ask_board(port):
@@ -133,26 +133,26 @@ def ask_board(port):
         "bias_dps": event.get("bias_dps"), "bias_then_dps": None, "seconds": None}
 
 
-def lines(found):
+def lines(answer):
     """The answer for a person: each number beside the record's, then whether it is still valid."""
-    out = []
-    if found["a_error_mg"] is not None:
-        out.append("|a|          %+.2f mg off gravity (length only: it says nothing of "
-                   "directions)" % found["a_error_mg"])
-    out += _beside("noise", found["noise_mg"], found["noise_then_mg"], "%.2f mg")
-    out += _beside("temperature", found["temp_c"], found["temp_then_c"], "%.1f °C")
-    if found["bias_dps"]:
+    said = []
+    if answer["a_error_mg"] is not None:
+        said.append("|a|          %+.2f mg off gravity (length only: it says nothing of "
+                    "directions)" % answer["a_error_mg"])
+    said += _beside("noise", answer["noise_mg"], answer["noise_then_mg"], "%.2f mg")
+    said += _beside("temperature", answer["temp_c"], answer["temp_then_c"], "%.1f °C")
+    if answer["bias_dps"]:
         form = "%+.3f %+.3f %+.3f deg/s"
-        then = found["bias_then_dps"]
-        out += _beside("gyro bias", tuple(found["bias_dps"]), then and tuple(then), form)
-    if found["record_verdict"] == "doubtful":
-        out.append(plain("the calibration itself was doubtful: %s" % found["record_reason"]))
-    if found["valid"]:
-        out.append("still valid: nothing speaks against the record")
+        then = answer["bias_then_dps"]
+        said += _beside("gyro bias", tuple(answer["bias_dps"]), then and tuple(then), form)
+    if answer["record_verdict"] == "doubtful":
+        said.append(plain("the calibration itself was doubtful: %s" % answer["record_reason"]))
+    if answer["valid"]:
+        said.append("still valid: nothing speaks against the record")
     else:
-        out.append("no longer valid:")
-        out += ["  " + plain(one) for one in found["against"]]
-    return out
+        said.append("no longer valid:")
+        said += ["  " + plain(one) for one in answer["against"]]
+    return said
 
 
 def _beside(name, now, then, form):

@@ -94,21 +94,21 @@ def answered(args, without, record):
     captures = list(read(args.captures, gyro_alone=not args.sim and not record))
     if record:
         of_this_part(captures, record, args)
-    found = diagnose(captures, list(read(args.sim, gravity=False)),
-                     list(read([args.reference] if args.reference else [])),
-                     args.certified_box, without, args.jobs, fleet_of(args.prior, captures))
-    loops = closed(found, args)
-    result = answer.of(found)
+    diagnosed = diagnose(captures, list(read(args.sim, gravity=False)),
+                         list(read([args.reference] if args.reference else [])),
+                         args.certified_box, without, args.jobs, fleet_of(args.prior, captures))
+    loops = closed(diagnosed, args)
+    result = answer.of(diagnosed)
     if loops:
         result["simulated"] = {kind: answer.of_loop(kind, loop) for kind, loop in loops.items()}
     terms = None
     if record:
-        terms = correction_terms.of(found, record)
+        terms = correction_terms.of(diagnosed, record)
         result["terms"] = correction_terms.answer(terms, args.output)
     if args.report:
         from ..present import gap_report
         progress.doing("drawing the report")
-        gap_report.write(args.report, found, result, loops)
+        gap_report.write(args.report, diagnosed, result, loops)
     return result, terms
 
 
@@ -118,7 +118,7 @@ def fleet_of(path, captures):
     return fleet_prior.read(path, captures[0][1].meta["sensor"]) if path else None
 
 
-def closed(found, args):
+def closed(diagnosed, args):
     """{sensor: Loop} of the simulator run again; the scenario file where asked for."""
     from sixflip_sim.effects.library import NAMES
 
@@ -128,11 +128,11 @@ def closed(found, args):
         if name not in NAMES:
             raise UsageError("--add %s: %s" % (name, instead(
                 name, NAMES, "expected found, or an effect out of: %s")))
-    if not (args.add or args.scenario or args.report) or not found.gaps:
+    if not (args.add or args.scenario or args.report) or not diagnosed.gaps:
         return {}
-    closed_again = closed_loops.of(found, named)
+    closed_again = closed_loops.of(diagnosed, named)
     if args.scenario:
-        closed_loops.write_scenario(args.scenario, found, [
+        closed_loops.write_scenario(args.scenario, diagnosed, [
             e for lo in closed_again.values() for e in lo.effects])
     return closed_again
 
@@ -153,12 +153,12 @@ def report_files(value, args):
 
 def verdicts(text):
     """The verdicts of --fail-on; UsageError names those there are."""
-    out = [" ".join(part.replace("_", " ").split()) for part in text.split(",") if part.strip()]
-    for verdict in out:
+    named = [" ".join(part.replace("_", " ").split()) for part in text.split(",") if part.strip()]
+    for verdict in named:
         if verdict not in VERDICTS:
             raise UsageError("--fail-on %s: %s" % (verdict, instead(
                 verdict, VERDICTS, "expected verdicts out of: %s")))
-    return out
+    return named
 
 
 def failures(result, wanted, max_gap):

@@ -32,69 +32,69 @@ def add_arguments(parser):
 
 def run(args):
     """Look, and say; 0 without a fault, 1 with one, 3 where there is no board or no chip."""
-    found = look(args.port or os.environ.get("SIXFLIP_PORT"))
+    findings = look(args.port or os.environ.get("SIXFLIP_PORT"))
     if args.json:
         print(json.dumps({"format": 1, "kind": "sixflip doctor",
-                          "ok": not any(one.state == FAULT for one in found),
-                          "findings": [vars(one) for one in found]}))
+                          "ok": not any(one.state == FAULT for one in findings),
+                          "findings": [vars(one) for one in findings]}))
     else:
-        _words(found)
-    if any(one.unreachable for one in found):
+        _words(findings)
+    if any(one.unreachable for one in findings):
         return NoBoard.exit_code
-    return CheckFailed.exit_code if any(one.state == FAULT for one in found) else 0
+    return CheckFailed.exit_code if any(one.state == FAULT for one in findings) else 0
 
 
 def look(port=None):
     """[Finding], from the plug to the sensor; ends at the first thing that hides the rest."""
-    found = []
+    findings = []
     if port is None:
-        found, port = reach.ports(list(list_ports.comports()))
+        findings, port = reach.ports(list(list_ports.comports()))
         if port is None:
-            return found
+            return findings
     if not port.startswith("local:"):
         seen = reach.opened(port)
-        if not found or seen.state != OK:
-            found = [seen]
+        if not findings or seen.state != OK:
+            findings = [seen]
         if seen.unreachable:
-            return found
+            return findings
     try:
         with open_link(port) as link:
-            return found + on_board(link)
+            return findings + on_board(link)
     except NoBoard as error:
-        return found + [fault("port", str(error), "unplug the board, plug it in, try again",
-                              True)]
+        return findings + [fault("port", str(error), "unplug the board, plug it in, try again",
+                                 True)]
 
 
 def on_board(link):
     """Findings of a board that can be reached; it is reset at the end."""
-    found = reach.micropython(link)
-    if any(one.unreachable for one in found):
-        return found
-    found += reach.firmware(link)
+    findings = reach.micropython(link)
+    if any(one.unreachable for one in findings):
+        return findings
+    findings += reach.firmware(link)
     try:
-        if found[-1].state != FAULT:
-            found += _of_the_bus(link)
+        if findings[-1].state != FAULT:
+            findings += _of_the_bus(link)
     except SixflipError as error:
-        found.append(fault("bus", str(error), "sixflip provision, then try again"))
+        findings.append(fault("bus", str(error), "sixflip provision, then try again"))
     with contextlib.suppress(SixflipError):
         link.reset()
-    return found
+    return findings
 
 
 def _of_the_bus(link):
     said = ask(link)
-    found = wiring.judge(said)
-    if not any(one.unreachable for one in found):
-        found += wiring.record(said, slots(link))
-    return found
+    findings = wiring.judge(said)
+    if not any(one.unreachable for one in findings):
+        findings += wiring.record(said, slots(link))
+    return findings
 
 
 def ask(link):
     """{name: values} of what the board says when it looks at its bus."""
     code = SCRIPT.read_text(encoding="utf-8")
-    out = link.run(code, "looking at its bus", timeout=ANSWER_S) if hasattr(link, "run") \
+    printed = link.run(code, "looking at its bus", timeout=ANSWER_S) if hasattr(link, "run") \
         else here(link.folder, code)
-    return parse(link.port, out)
+    return parse(link.port, printed)
 
 
 def here(folder, code):
@@ -112,10 +112,10 @@ def here(folder, code):
     return done.stdout
 
 
-def parse(port, out):
+def parse(port, printed):
     """{name: values} of lines that are Python literals, ("name", ...) each; "ready" a list."""
     said = {}
-    for line in out.splitlines():
+    for line in printed.splitlines():
         if line.strip():
             name, *values = board_answers.parse(port, line, BusAnswer())
             if name == "ready":     # of each chip
@@ -134,25 +134,25 @@ def parse(port, out):
 
 def slots(link):
     """[(name, Record or the sentence why it cannot be read)] of the records in flash."""
-    out = []
+    records = []
     present = link.files([])
     for name in RECORDS:
         if name in present:
             try:
-                out.append((name, decode_record(name, link.get(name))))
+                records.append((name, decode_record(name, link.get(name))))
             except BadFile as error:
-                out.append((name, str(error)))
-    return out
+                records.append((name, str(error)))
+    return records
 
 
-def _words(found):
+def _words(findings):
     from ..terminal import Sentence, console
-    out = console()
-    for one in found:
-        state = styled("%-8s " % one.state, STYLE[one.state])
-        out.print(Sentence(state + plain("%s: %s" % (one.check, one.found)), hanging=9))
-        if one.todo and one.state != OK:
-            out.print(plain("         what to do: " + one.todo))
+    screen = console()
+    for finding in findings:
+        state = styled("%-8s " % finding.state, STYLE[finding.state])
+        screen.print(Sentence(state + plain("%s: %s" % (finding.check, finding.found)), hanging=9))
+        if finding.todo and finding.state != OK:
+            screen.print(plain("         what to do: " + finding.todo))
     counts = ["%d %s%s" % (n, state, "" if n == 1 else "s") for state in (FAULT, WARNING)
-              if (n := sum(one.state == state for one in found))]
-    out.print(", ".join(counts) or "nothing is wrong")
+              if (n := sum(one.state == state for one in findings))]
+    screen.print(", ".join(counts) or "nothing is wrong")

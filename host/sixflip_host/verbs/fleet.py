@@ -38,15 +38,15 @@ def add_arguments(parser):
 def files(value, args):
     """What is written into the folder, beside the data set."""
     from ..fleet import answer
-    found = [(os.path.join(value, JSON_NAME), (file_kinds.FLEET,)),
-             (os.path.join(value, answer.ESTIMATES), (file_kinds.PARQUET,))]
+    written = [(os.path.join(value, JSON_NAME), (file_kinds.FLEET,)),
+               (os.path.join(value, answer.ESTIMATES), (file_kinds.PARQUET,))]
     if args.report:
-        found.append((os.path.join(value, PAGE_NAME), (file_kinds.PAGE,)))
+        written.append((os.path.join(value, PAGE_NAME), (file_kinds.PAGE,)))
     if args.randomise:
         from ..fleet import randomisation
-        found += [(os.path.join(value, name), (file_kinds.RANDOMISATION,))
-                  for name in randomisation.NAMES.values()]
-    return found
+        written += [(os.path.join(value, name), (file_kinds.RANDOMISATION,))
+                    for name in randomisation.NAMES.values()]
+    return written
 
 
 def run(args):
@@ -62,10 +62,10 @@ def run(args):
             not args.no_summaries, args.diagnose))
         progress.doing("the population")
         kinds = answer.judged(done.rows(), done.rows(members.KEYS))
-    found = answer.population(kinds, done.failures, done.remarks)
+    result = answer.population(kinds, done.failures, done.remarks)
     os.makedirs(args.output, exist_ok=True)
     atomic_write.write_text(os.path.join(args.output, JSON_NAME),
-                            json.dumps(found, indent=1, ensure_ascii=False) + "\n")
+                            json.dumps(result, indent=1, ensure_ascii=False) + "\n")
     answer.write_estimates(args.output, kinds)
     if args.randomise and kinds:
         from ..fleet import randomisation
@@ -77,10 +77,10 @@ def run(args):
         atomic_write.write_text(os.path.join(args.output, PAGE_NAME),
                                 fleet_page.html(kinds, done, args.output))
     if args.json:
-        print(json.dumps(found, indent=1, ensure_ascii=False))
+        print(json.dumps(result, indent=1, ensure_ascii=False))
     else:
         from ..present import fleet_words
-        fleet_words.show(found, args.output, args.report and PAGE_NAME)
+        fleet_words.show(result, args.output, args.report and PAGE_NAME)
         if args.randomise and kinds:
             fleet_words.cannot_express(randomisation.cannot_express(kinds[0][1]))
     if not kinds:

@@ -54,21 +54,21 @@ def _plot(path, calibrations):
 
 def _chosen(word, boards):
     """The one board whose id begins like that."""
-    found = [board for board in boards if board == word] or \
+    matching = [board for board in boards if board == word] or \
         [board for board in boards if board.startswith(word)]
-    if len(found) == 1:
-        return found[0]
+    if len(matching) == 1:
+        return matching[0]
     raise UsageError("%s: %s, expected one of %s" % (
-        word, "no such board in the history" if not found else "%d boards begin so" % len(found),
-        " ".join(found or boards) or "none, the history is empty"))
+        word, "%d boards begin so" % len(matching) if matching else "no such board in the history",
+        " ".join(matching or boards) or "none, the history is empty"))
 
 
 def _boards(args, file, rows):
     """One line a board: what is known of it and when it was last calibrated and checked."""
-    found = {}
+    rows_of = {}
     for row in rows:
-        found.setdefault(row.board, []).append(row)
-    listed = [_summary(board, its) for board, its in sorted(found.items())]
+        rows_of.setdefault(row.board, []).append(row)
+    listed = [_summary(board, its) for board, its in sorted(rows_of.items())]
     if args.json:
         print(json.dumps({"format": 1, "kind": "sixflip history", "file": file and str(file),
                           "boards": listed}))
@@ -118,22 +118,22 @@ def _slope_json(slope):
 
 
 def _words(board, rows, calibrations, drifts, remarks):
-    out = console()
+    screen = console()
     for remark in remarks:
-        out.print(plain(remark))
+        screen.print(plain(remark))
     if calibrations:
-        out.print(table("calibrations of board %s" % board, *tables._coloured_rows(
+        screen.print(table("calibrations of board %s" % board, *tables._coloured_rows(
             *tables.calibration_rows(calibrations), 4)))
     if any(one.time_is == store.SEEN for one, _ in calibrations):
-        out.print(tables.SEEN_NOTE)
+        screen.print(tables.SEEN_NOTE)
     head, checks = tables.check_rows(rows)
     if checks:
-        out.print(table("checks", *tables._coloured_rows(head, checks, 3), prose=True))
+        screen.print(table("checks", *tables._coloured_rows(head, checks, 3), prose=True))
     head, moved = tables.drift_rows(drifts)
     if moved:
-        out.print(table("drift (%s)" % tables.DRIFT_NOTE, head, moved))
+        screen.print(table("drift (%s)" % tables.DRIFT_NOTE, head, moved))
     for note in tables.drift_notes(drifts):
-        out.print(plain(note))
+        screen.print(plain(note))
 
 
 

@@ -73,9 +73,9 @@ def run(args):
             imported.remarks)
         if capture.pose is None and capture.accel is not None and not args.no_poses:
             from ..capture.find_poses import find_poses
-            found = find_poses(capture)
-            found.label(capture)
-            remarks += found.remarks()
+            found_poses = find_poses(capture)
+            found_poses.label(capture)
+            remarks += found_poses.remarks()
         capture_file.write(args.output, capture)
     if args.json:
         measured = clock.sample_clock(capture)

@@ -66,53 +66,53 @@ def run(args):
     else:
         G, rest = mounting_angles.gravity_of(capture_file.read_samples(args.capture), record)
     calibrated = record is not None or rest is None
-    found = mounting_angles.answer(G, axes, args.order, record, calibrated)
-    found["rest"] = rest
+    mounted = mounting_angles.answer(G, axes, args.order, record, calibrated)
+    mounted["rest"] = rest
     if args.json:
-        print(json.dumps(found))
+        print(json.dumps(mounted))
     else:
-        say(lines(found, args.both))
+        say(lines(mounted, args.both))
     if args.output:
-        record.mounting = found["mounting"]
+        record.mounting = mounted["mounting"]
         record.sequence = following(record.sequence)
         atomic_write.write_bytes(args.output, correction_record.encode(record))
     return 0
 
 
-def lines(found, both=False):
+def lines(mounted, both=False):
     """A mounting in lines for a person."""
-    out = ["G = (%+.4f, %+.4f, %+.4f) g, length %.4f g%s" % (
-        *found["G"], found["G_size"], "" if found["calibrated"] else
+    said = ["G = (%+.4f, %+.4f, %+.4f) g, length %.4f g%s" % (
+        *mounted["G"], mounted["G_size"], "" if mounted["calibrated"] else
         ": not calibrated, its direction alone is used")]
-    rest = found["rest"]
+    rest = mounted["rest"]
     if rest:
-        out.append("  %d samples at rest, noise %.2f mg: the angles are good to %.3f deg by "
-                   "noise alone" % (rest["samples"], rest["noise_mg"], rest["angle_sigma_deg"]))
-        if not found["calibrated"]:
-            out.append("  without --record the sensor's bias is in the angles: 10 mg are 0.6 deg")
-    rule = found["rule"]
-    out.append("paper's rule: R_%s, since %s" % (
+        said.append("  %d samples at rest, noise %.2f mg: the angles are good to %.3f deg by "
+                    "noise alone" % (rest["samples"], rest["noise_mg"], rest["angle_sigma_deg"]))
+        if not mounted["calibrated"]:
+            said.append("  without --record the sensor's bias is in the angles: 10 mg are 0.6 deg")
+    rule = mounted["rule"]
+    said.append("paper's rule: R_%s, since %s" % (
         rule["order"], RULE % (rule["left"], "<" if rule["left"] < rule["right"] else ">=",
                                rule["right"])))
-    orders = ("xyz", "yxz") if both else (found["order"],)
+    orders = ("xyz", "yxz") if both else (mounted["order"],)
     for order in orders:
-        one = found["both"][order]
-        out.append("order R_%s: roll %.4f deg, pitch %.4f deg, yaw 0 (gravity does not show it)"
-                   "%s" % (order, one["roll_deg"], one["pitch_deg"],
-                           " <- taken" if both and order == found["order"] else ""))
-    out.append("axes: the robot's x y z lie along the sensor's %s%s" % (
-        found["axes"], "; the answer is in NED: forward, right, down"
-        if found["frame"] == "ned" else ""))
-    if found["left_handed"]:
-        out.append("  the axes asked for are left-handed, no way of mounting gives that: roll and "
-                   "pitch are for y turned round; rates need the matrix with its sign turned")
-    out.append("robot = C · sensor, C (order R_%s)" % found["order"])
-    out += ["  %+.6f  %+.6f  %+.6f" % tuple(row) for row in found["compensation"]]
-    out.append("G in the robot's axes: (%+.4f, %+.4f, %+.4f) g" % tuple(found["G_robot"]))
-    out.append(CHAIN + ("; with this sensor's errors that is %.1f mg"
-                        % found["chain_differs_mg"] if found["chain_differs_mg"] is not None
-                        else ", 10.6 mg at 30 and 15 deg with scale errors of +2, +0.5, -1 %"))
-    return out
+        angles = mounted["both"][order]
+        said.append("order R_%s: roll %.4f deg, pitch %.4f deg, yaw 0 (gravity does not show it)"
+                    "%s" % (order, angles["roll_deg"], angles["pitch_deg"],
+                            " <- taken" if both and order == mounted["order"] else ""))
+    said.append("axes: the robot's x y z lie along the sensor's %s%s" % (
+        mounted["axes"], "; the answer is in NED: forward, right, down"
+        if mounted["frame"] == "ned" else ""))
+    if mounted["left_handed"]:
+        said.append("  the axes asked for are left-handed, no way of mounting gives that: roll "
+                    "and pitch are for y turned round; rates need the matrix with its sign turned")
+    said.append("robot = C · sensor, C (order R_%s)" % mounted["order"])
+    said += ["  %+.6f  %+.6f  %+.6f" % tuple(row) for row in mounted["compensation"]]
+    said.append("G in the robot's axes: (%+.4f, %+.4f, %+.4f) g" % tuple(mounted["G_robot"]))
+    said.append(CHAIN + ("; with this sensor's errors that is %.1f mg"
+                         % mounted["chain_differs_mg"] if mounted["chain_differs_mg"] is not None
+                         else ", 10.6 mg at 30 and 15 deg with scale errors of +2, +0.5, -1 %"))
+    return said
 
 
 def board_command(args):

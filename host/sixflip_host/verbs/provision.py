@@ -45,21 +45,21 @@ def add_arguments(parser):
 
 def pins(text):
     """{"sda": 4, "scl": 5} of "sda=4,scl=5"; names such as X9 stay text."""
-    found = {}
+    numbers = {}
     for part in text.split(","):
         name, equals, value = part.strip().partition("=")
         if name not in ("sda", "scl", "led", "button") or not equals or not value:
             raise UsageError("--pins %s: expected names of sda scl led button with a pin each, "
                              "such as sda=4,scl=5" % text)
-        found[name] = int(value) if value.isdigit() else value
-    return found
+        numbers[name] = int(value) if value.isdigit() else value
+    return numbers
 
 
 def spi_pins(text):
     """{"sck": 18, "cs": 17} of "sck=18,cs=17", {} of "usual", None of "off"."""
     if text == "off":
         return None
-    found = {}
+    pin_of = {}
     for part in text.split(",") if text != "usual" else ():
         name, equals, value = part.strip().partition("=")
         numbers = name in ("bus", "mode", "freq")
@@ -68,8 +68,8 @@ def spi_pins(text):
             raise UsageError("--spi %s: expected usual, off or some of %s with a pin or number "
                              "each, such as sck=18,cs=17; the chips take the modes 0 and 3"
                              % (text, " ".join(KEYS)))
-        found[name] = int(value) if value.isdigit() else value
-    return found
+        pin_of[name] = int(value) if value.isdigit() else value
+    return pin_of
 
 
 def wanted_settings(args):

@@ -44,17 +44,17 @@ def run(args):
     if args.output and pull == "auto":
         pull = "off"
     with progress.during("refine: all rests and moves together"):
-        found = refinement.refine(capture, args.free, record, pull)
-    logbook.refined(capture, found)
+        refined = refinement.refine(capture, args.free, record, pull)
+    logbook.refined(capture, refined)
     if args.json:
         said = {"assumed": capture.assumed} if capture.assumed else {}
-        print(json.dumps(dict(found, **said), allow_nan=False))
+        print(json.dumps(dict(refined, **said), allow_nan=False))
     else:
         say(capture.assumed)
-        calibration_words.show_refinement(found)
-    if found["verdict"] == "refused":
+        calibration_words.show_refinement(refined)
+    if refined["verdict"] == "refused":
         return CheckFailed.exit_code
     if args.output:
-        data = correction_record.encode(refinement_record.build(capture, found, record))
+        data = correction_record.encode(refinement_record.build(capture, refined, record))
         atomic_write.write_bytes(args.output, data)
     return 0

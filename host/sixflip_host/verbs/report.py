@@ -65,16 +65,16 @@ def page(path, capture, record_path, record, gap_of=()):
     from ..present.page import Page
     board = capture.meta.get("device_id")
     board = str(board)[:sections.LONGEST] if board else None
-    found = solution.solve(capture, None if record is None else record.g)
-    out = Page("Sixflip: %s" % (board or os.path.basename(str(path))),
-               "Calibration of %s" % ("board " + board if board else os.path.basename(str(path))))
-    sections.facts(out, capture, record, board)
-    sections.calibration(out, found, record)
-    sections.session(out, capture)
+    solved = solution.solve(capture, None if record is None else record.g)
+    html = Page("Sixflip: %s" % (board or os.path.basename(str(path))),
+                "Calibration of %s" % ("board " + board if board else os.path.basename(str(path))))
+    sections.facts(html, capture, record, board)
+    sections.calibration(html, solved, record)
+    sections.session(html, capture)
     if record is not None:
-        sections.verification(out, capture, record_path, record)
-    sections.board_history(out, board)
+        sections.verification(html, capture, record_path, record)
+    sections.board_history(html, board)
     if gap_of:
         with tempfile.TemporaryDirectory(prefix="sixflip-report-") as folder:
-            sections.gap(out, Path(folder), gap_of)
-    return out.html()
+            sections.gap(html, Path(folder), gap_of)
+    return html.html()

@@ -48,14 +48,14 @@ def run(args):
         repeated, claims = table_3(args.seed)
         progress.doing("Table 4, %d calibrations" % args.sessions)
         turned, more = table_4(args.sessions, args.seed)
-    found = {"format": 1, "kind": "sixflip reproduce", "seed": args.seed,
-             "sessions": args.sessions, "table_3": repeated, "table_4": turned,
-             "claims": claims + more}
+    result = {"format": 1, "kind": "sixflip reproduce", "seed": args.seed,
+              "sessions": args.sessions, "table_3": repeated, "table_4": turned,
+              "claims": claims + more}
     if args.json:
-        print(json.dumps(found, ensure_ascii=False))
+        print(json.dumps(result, ensure_ascii=False))
     else:
-        show(found)
-    return 0 if all(one["holds"] for one in found["claims"]) else 1
+        show(result)
+    return 0 if all(one["holds"] for one in result["claims"]) else 1
 
 
 def table_3(seed):
@@ -104,30 +104,30 @@ def table_4(sessions, seed):
     return rows, claims
 
 
-def show(found):
+def show(result):
     """Both tables and the claims on the terminal."""
-    out = console()
-    out.print(table(
+    screen = console()
+    screen.print(table(
         "Table 3: %d calibrations of one sensor" % li_tables.CALIBRATIONS,
         ["parameter", "paper mean", "sd", "ours mean", "sd", "sd, flush"],
         [[row["parameter"], *("%.2f" % row[key] for key in ("paper_mean", "paper_sd")),
           *("%.3f" % row[key] for key in ("mean", "sd", "sd_flush"))]
-         for row in found["table_3"]]))
-    out.print(plain(_about_table_3(found["table_3"])))
-    out.print()
-    out.print(table(
+         for row in result["table_3"]]))
+    screen.print(plain(_about_table_3(result["table_3"])))
+    screen.print()
+    screen.print(table(
         "Table 4: turns of a robot on the floor, degrees, before and after",
         ["turn", "paper", "after", "ours", "after", "error before", "median after", "95 %"],
         [["%d°" % row["turn_deg"], *("%.1f" % row[key] for key in ("paper_before", "paper_after")),
           *("%.2f" % row[key] for key in ("first_before", "first_after", "before_mean_error")),
           *("%.3f" % row[key] for key in ("after_median_error", "after_95_error"))]
-         for row in found["table_4"]]))
-    out.print(plain(_about_table_4(found["sessions"], found["table_4"][0]["repetitions"])))
-    out.print()
-    for one in found["claims"]:
-        word = styled("holds", "bold green") if one["holds"] else styled(
+         for row in result["table_4"]]))
+    screen.print(plain(_about_table_4(result["sessions"], result["table_4"][0]["repetitions"])))
+    screen.print()
+    for stated in result["claims"]:
+        word = styled("holds", "bold green") if stated["holds"] else styled(
             "does not hold", "bold red")
-        out.print(word, plain(": %s: %s" % (one["claim"], one["found"])), sep="")
+        screen.print(word, plain(": %s: %s" % (stated["claim"], stated["found"])), sep="")
 
 
 def _about_table_3(rows):

@@ -62,56 +62,57 @@ def run(args):
         results = experiment.run(program, gyros, 1000 * args.seed, experiment.CORRIDOR,
                                  keep=args.keep)
         rows = claims.rows(results)
-        found = {"format": 1, "kind": "sixflip reproduce --map", "seed": args.seed,
-                 "gyros": gyros, "corridor": rows, "claims": claims.corridor(rows, gyros)}
+        result = {"format": 1, "kind": "sixflip reproduce --map", "seed": args.seed,
+                  "gyros": gyros, "corridor": rows, "claims": claims.corridor(rows, gyros)}
         try:
             recording = botlab.load(recordings.folder() / botlab.RECORDING)
         except BadFile as error:
-            found["recording"], found["no_recording"] = None, str(error)
+            result["recording"], result["no_recording"] = None, str(error)
         else:
             progress.doing("a real recording")
-            found["recording"] = claims.recorded(program, recording)
-            found["claims"] += claims.real(found["recording"])
+            result["recording"] = claims.recorded(program, recording)
+            result["claims"] += claims.real(result["recording"])
     if args.keep:
         args.keep.mkdir(parents=True, exist_ok=True)
         experiment.draw(args.keep / PICTURE, results[0])
-        atomic_write.write_text(args.keep / TABLE, json.dumps(found, ensure_ascii=False) + "\n")
+        atomic_write.write_text(args.keep / TABLE, json.dumps(result, ensure_ascii=False) + "\n")
     if args.json:
-        print(json.dumps(found, ensure_ascii=False))
+        print(json.dumps(result, ensure_ascii=False))
     else:
-        show(found, args.keep)
-    return 0 if all(one["holds"] for one in found["claims"]) else 1
+        show(result, args.keep)
+    return 0 if all(one["holds"] for one in result["claims"]) else 1
 
 
-def show(found, keep):
+def show(result, keep):
     """Tables, claims and the honest words on the terminal."""
-    out, gyros = console(), found["gyros"]
-    for name in dict.fromkeys(row["engine"] for row in found["corridor"]):
-        out.print(table(
+    screen, gyros = console(), result["gyros"]
+    for name in dict.fromkeys(row["engine"] for row in result["corridor"]):
+        screen.print(table(
             "A looped corridor of %g m, %s: median/worst of %d gyro%s" % (
                 experiment.CORRIDOR.around, name, gyros, "" if gyros == 1 else "s"),
             ["reading", "heading °", "corner °", "closure m", "walls m", "off", "closed"],
             [[row["reading"], *("%s/%s" % (short(row[name]["median"]), short(row[name]["worst"]))
                                 for name in ("heading_deg", "corner_deg", "closure_m", "wall_m")),
               "%.0f %%" % (100 * row["off"]["median"]), "%d" % row["closed"]]
-             for row in found["corridor"] if row["engine"] == name]))
-    out.print(plain("  at the end; the worst of four corners; from the way round; from the real "
-                    "ones; farther than %g m; within %g m of the start. raw: datasheet numbers; "
-                    "rest: and the bias of the first rest; Sixflip: the record of a session of "
-                    "six flips and that bias" % (experiment.OFF_M, experiment.CLOSES_M)))
-    out.print(plain(HONEST))
-    out.print()
-    if found["recording"]:
-        show_recording(out, found["recording"])
+             for row in result["corridor"] if row["engine"] == name]))
+    screen.print(plain("  at the end; the worst of four corners; from the way round; from the "
+                       "real ones; farther than %g m; within %g m of the start. raw: datasheet "
+                       "numbers; rest: and the bias of the first rest; Sixflip: the record of a "
+                       "session of six flips and that bias" % (
+                           experiment.OFF_M, experiment.CLOSES_M)))
+    screen.print(plain(HONEST))
+    screen.print()
+    if result["recording"]:
+        show_recording(screen, result["recording"])
     else:
-        out.print(plain("The real recording was not looked at: " + found["no_recording"]))
-    out.print()
-    for one in found["claims"]:
-        word = styled("holds", "bold green") if one["holds"] else styled(
+        screen.print(plain("The real recording was not looked at: " + result["no_recording"]))
+    screen.print()
+    for stated in result["claims"]:
+        word = styled("holds", "bold green") if stated["holds"] else styled(
             "does not hold", "bold red")
-        out.print(word, plain(": %s: %s" % (one["claim"], one["found"])), sep="")
-    out.print(plain("the picture: %s" % (keep / PICTURE) if keep else
-                    "--keep DIR leaves the picture of the first gyro's nine maps"))
+        screen.print(word, plain(": %s: %s" % (stated["claim"], stated["found"])), sep="")
+    screen.print(plain("the picture: %s" % (keep / PICTURE) if keep else
+                       "--keep DIR leaves the picture of the first gyro's nine maps"))
 
 
 def short(value):
@@ -119,12 +120,12 @@ def short(value):
     return "%.0f" % value if value >= 10 else "%.2f" % value
 
 
-def show_recording(out, found):
+def show_recording(screen, recorded):
     """The ladder and the scales of the real recording."""
-    out.print(table("Real recording", ["engine", *botlab.READINGS],
-                    [[name, *("%.1f" % row[reading] for reading in botlab.READINGS)]
-                     for name, row in found["ladder_mm"].items()]))
-    out.print(table("Real recording, no SLAM, the gyro's scale changed", ["scale", *found[
-        "scale_mm"]], [["%g" % scale, *("%.1f" % mm[k] for mm in found["scale_mm"].values())]
-                       for k, scale in enumerate(found["scales"])]))
-    out.print(plain("  " + RECORDED))
+    screen.print(table("Real recording", ["engine", *botlab.READINGS],
+                       [[name, *("%.1f" % row[reading] for reading in botlab.READINGS)]
+                        for name, row in recorded["ladder_mm"].items()]))
+    screen.print(table("Real recording, no SLAM, the gyro's scale changed", ["scale", *recorded[
+        "scale_mm"]], [["%g" % scale, *("%.1f" % mm[k] for mm in recorded["scale_mm"].values())]
+                       for k, scale in enumerate(recorded["scales"])]))
+    screen.print(plain("  " + RECORDED))

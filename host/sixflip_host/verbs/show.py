@@ -81,33 +81,34 @@ def _show_record(name, data, as_json):
 
 
 def _record_words(name, record):
-    out = console()
-    out.print(plain("%s: correction for a %s (who_am_i %s), number %d, session %d" % (
+    screen = console()
+    screen.print(plain("%s: correction for a %s (who_am_i %s), number %d, session %d" % (
         name, record.chip, "/".join("0x%02x" % one for one in record.who_am_i),
         record.sequence, record.session)))
-    out.print(plain("  ±%g g at %g counts per g, ±%g deg/s at %g counts per deg/s, g %.5f m/s²" % (
+    screen.print(plain("  ±%g g at %g counts per g, ±%g deg/s at %g counts per deg/s, g %.5f "
+                       "m/s²" % (
         record.accel_range_g, record.accel_lsb_per_g, record.gyro_range_dps,
         record.gyro_lsb_per_dps, record.g)))
     if record.temp_c is not None:
-        out.print("  measured at %.1f °C" % record.temp_c)
+        screen.print("  measured at %.1f °C" % record.temp_c)
     for section in ("accel", "gyro"):
         fields = getattr(record, section)
         if fields is None:
-            out.print("%s: not measured" % section)
+            screen.print("%s: not measured" % section)
             continue
-        out.print(_matrix(section, fields["P"], record.g if section == "accel" else None))
+        screen.print(_matrix(section, fields["P"], record.g if section == "accel" else None))
         if fields.get("tilt_deg") is not None:
-            out.print("table tilt %.3f deg, the faces agree to %.3f deg (%s)" % (
+            screen.print("table tilt %.3f deg, the faces agree to %.3f deg (%s)" % (
                 fields["tilt_deg"], fields["tilt_spread_deg"], fields["level"]))
-        out.print(verdict_text(fields["verdict"]), ": ", plain(fields["reason"]), sep="")
+        screen.print(verdict_text(fields["verdict"]), ": ", plain(fields["reason"]), sep="")
     if record.gyro_bias is not None:
-        out.print("gyro bias %s deg/s" % _numbers(record.gyro_bias["bias_dps"], "%+.4f"))
+        screen.print("gyro bias %s deg/s" % _numbers(record.gyro_bias["bias_dps"], "%+.4f"))
     if record.mounting is not None:
-        out.print("mounting: roll %.3f deg, pitch %.3f deg, order %s" % tuple(
+        screen.print("mounting: roll %.3f deg, pitch %.3f deg, order %s" % tuple(
             record.mounting[key] for key in ("roll_deg", "pitch_deg", "order")))
     for name, fields in record_terms.terms(record).items():
         for line in term_words.lines(term_words.facts(name, fields)):
-            out.print(plain(line))
+            screen.print(plain(line))
 
 
 def _numbers(values, form):
@@ -144,33 +145,33 @@ def _duration(capture):
 
 
 def _capture_words(name, capture):
-    out = console()
-    out.print(plain("%s: %d samples of a %s in %.1f s, columns %s" % (
+    screen = console()
+    screen.print(plain("%s: %d samples of a %s in %.1f s, columns %s" % (
         name, len(capture), capture.meta["sensor"], _duration(capture),
         " ".join(capture.columns()))))
     pauses = write_pauses(capture)
     for key, value in capture.meta.items():
         if key == EXTRAS and isinstance(value, dict):       # hundreds of times, counted below
             value = {name: kept for name, kept in value.items() if name != PAUSES}
-        out.print(plain("  %s: %s" % (key, json.dumps(value))))
+        screen.print(plain("  %s: %s" % (key, json.dumps(value))))
     for line in capture.assumed + solution.capture_remarks(capture) + capture.notes:
-        out.print(plain("  " + line))
+        screen.print(plain("  " + line))
     measured = clock.sample_clock(capture)
     if measured:
         gaps = np.diff(capture.t_us)
-        out.print("  longest interval %.1f ms, usual %.1f ms" % (
+        screen.print("  longest interval %.1f ms, usual %.1f ms" % (
             gaps.max() / 1e3, np.median(gaps) / 1e3))
         for line in clock_words.words(measured):
-            out.print("  " + line)
+            screen.print("  " + line)
     if len(pauses):
-        out.print("  %d of the pauses are writes to the board's flash" % len(pauses))
+        screen.print("  %d of the pauses are writes to the board's flash" % len(pauses))
     lsb = capture.meta.get("accel_lsb_per_g")
     rows = [[pose_name(one.pose), str(one.first), str(one.n),
              _numbers([s / one.n / lsb for s in one.sums[:3]], "%+.4f"),
              _numbers([1e3 * x / lsb for x in one.noise[:3]], "%.2f")]
             for one in capture.placements()]
     if rows:
-        out.print(table("placements", ["pose", "first", "samples", "mean x y z, g", "noise, mg"],
-                        rows))
+        screen.print(table("placements", [
+            "pose", "first", "samples", "mean x y z, g", "noise, mg"], rows))
     else:
-        out.print("  no labelled poses")
+        screen.print("  no labelled poses")

@@ -36,14 +36,14 @@ def run(args):
     g = local_gravity(args)
     with progress.during("solve"):
         capture = open_recording.read(args.capture)
-        found = solution.solve(capture, g, args.level, args.flips == "180")
+        solved = solution.solve(capture, g, args.level, args.flips == "180")
     if args.json:
         said = {"assumed": capture.assumed} if capture.assumed else {}
-        print(json.dumps(dict(finite(solution_json.to_json(found)), **said), ensure_ascii=False))
+        print(json.dumps(dict(finite(solution_json.to_json(solved)), **said), ensure_ascii=False))
     else:
         say(capture.assumed)
-        calibration_words.show(found)
-    return 1 if found.verdict == "refused" else 0
+        calibration_words.show(solved)
+    return 1 if solved.verdict == "refused" else 0
 
 
 def local_gravity(args):

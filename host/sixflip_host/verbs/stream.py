@@ -71,18 +71,18 @@ def run(args):
 def write(session, args, stack, to=None):
     """Header and rows, every one as soon as it is there; where it is published (to), only into a
     file."""
-    out = None
+    file = None
     for t_us, values in session.samples(args.seconds):
         if to:
             to.publish(t_us, values)
             if args.output is None:
                 continue
-        if out is None:     # a board that does not stream leaves no empty file behind
-            out = sys.stdout if args.output is None else stack.enter_context(
+        if file is None:     # a board that does not stream leaves no empty file behind
+            file = sys.stdout if args.output is None else stack.enter_context(
                 open(args.output, "w", encoding="utf-8", newline="\n"))  # noqa: SIM115
-            print(",".join(("t_us",) + COLUMNS[args.what]), file=out)
-        print("%d,%s" % (t_us, ",".join([cell(x) for x in values])), file=out,
-              flush=out is sys.stdout)
+            print(",".join(("t_us",) + COLUMNS[args.what]), file=file)
+        print("%d,%s" % (t_us, ",".join([cell(x) for x in values])), file=file,
+              flush=file is sys.stdout)
 
 
 def cell(value):

@@ -47,17 +47,17 @@ def run(args):
 
 def _words(capture_path, record_path, record, checks, failed, remarks, others):
     """What was compared, what differs, and the answer."""
-    out = console()
-    out.print(plain("%s against %s (%d comparisons, board with %d-bit floats)" % (
+    screen = console()
+    screen.print(plain("%s against %s (%d comparisons, board with %d-bit floats)" % (
         record_path, capture_path, len(checks), record.float_bits)))
     for remark in remarks:
-        out.print(plain("  " + remark))
+        screen.print(plain("  " + remark))
     for why in dict.fromkeys(why for _, why in others):
-        out.print(plain("  not verifiable: %s (%s)" % (", ".join(
+        screen.print(plain("  not verifiable: %s (%s)" % (", ".join(
             field for field, reason in others if reason == why), why)))
     if not failed:
-        out.print(styled("the board's arithmetic is right", "bold green"))
+        screen.print(styled("the board's arithmetic is right", "bold green"))
         return
     rows = [check.row() for check in failed]
-    out.print(table("what differs", ["", "board", "host", "limit"], rows))
-    out.print(styled("%d of %d comparisons differ" % (len(failed), len(checks)), "bold red"))
+    screen.print(table("what differs", ["", "board", "host", "limit"], rows))
+    screen.print(styled("%d of %d comparisons differ" % (len(failed), len(checks)), "bold red"))

@@ -63,12 +63,12 @@ def more_of_it(given, session):
     except (ValueError, RecursionError):
         raise (UsageError if inline else BadFile)(
             "--world %s: expected a JSON object, or a file of it" % given) from None
-    found = content if isinstance(content, list) else [content]
-    if not 1 <= session <= len(found):
-        raise UsageError("--session %d: %s holds %d" % (session, given, len(found)))
-    if not isinstance(found[session - 1], dict):
+    worlds = content if isinstance(content, list) else [content]
+    if not 1 <= session <= len(worlds):
+        raise UsageError("--session %d: %s holds %d" % (session, given, len(worlds)))
+    if not isinstance(worlds[session - 1], dict):
         raise UsageError("--world %s: expected a JSON object" % given)
-    return found[session - 1]
+    return worlds[session - 1]
 
 
 def boards_of(args, images, spec):
