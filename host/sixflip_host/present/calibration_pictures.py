@@ -69,8 +69,8 @@ def flip_pairs(names, raw, corrected, true):
         for values, colour, label in ((raw, RAW, "raw"), (corrected, CORRECTED, "corrected")):
             panel.plot(1e3 * values[here, i], 1e3 * values[here, j], "-", color=colour, lw=0.8)
             for flip, marker in (("a", "o"), ("b", "s")):
-                one = [k for k in here if names[k].endswith(flip)]
-                panel.plot(1e3 * values[one, i], 1e3 * values[one, j], marker, color=colour,
+                placed = [k for k in here if names[k].endswith(flip)]
+                panel.plot(1e3 * values[placed, i], 1e3 * values[placed, j], marker, color=colour,
                            ms=6, label="%s %s" % (label, flip))
         panel.plot(1e3 * true[here, i], 1e3 * true[here, j], "k+", ms=11, label="true")
         panel.axhline(0.0, color="0.8", lw=0.8, zorder=0)

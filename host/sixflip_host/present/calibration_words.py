@@ -10,29 +10,30 @@ from ..terminal import console, plain, styled, table, verdict_text
 
 def show(solution):
     """Print everything a person wants to know; the verdict first and last."""
-    out = console()
+    screen = console()
     capture = solution.capture
     samples = "%d samples, " % len(capture) if len(capture) else ""
-    out.print(plain("%s: %s%d still poses" % (
+    screen.print(plain("%s: %s%d still poses" % (
         capture.meta["sensor"], samples, len(solution.placements))))
     for remark in solution.remarks:
-        out.print(plain("  " + remark))
+        screen.print(plain("  " + remark))
     if solution.accel:
-        out.print(parameters(solution))
-        out.print(poses(solution))
-        out.print("middle: half-way between the axis' two faces, as read; angles: to the others")
-        out.print(plain(tilt_line(solution.accel)))
+        screen.print(parameters(solution))
+        screen.print(poses(solution))
+        screen.print("middle: half-way between the axis' two faces, as read; angles: to the "
+                     "others")
+        screen.print(plain(tilt_line(solution.accel)))
     for line in solution.flips.words():
-        out.print(plain(line))
+        screen.print(plain(line))
     if solution.gyro:
-        out.print(gyro_table(solution.gyro))
+        screen.print(gyro_table(solution.gyro))
         if solution.gyro.flips:
-            out.print(flip_table(solution.gyro, solution.flips))
-        out.print("gyro: ", verdict_text(solution.gyro.verdict), plain(
+            screen.print(flip_table(solution.gyro, solution.flips))
+        screen.print("gyro: ", verdict_text(solution.gyro.verdict), plain(
             ": " + solution.gyro.reason), sep="")
     else:
-        out.print(plain("gyro: not calibrated: " + solution.no_gyro))
-    out.print(verdict_text(solution.verdict), ": ", plain(solution.reason), sep="")
+        screen.print(plain("gyro: not calibrated: " + solution.no_gyro))
+    screen.print(verdict_text(solution.verdict), ": ", plain(solution.reason), sep="")
 
 
 def parameters(solution):
@@ -119,62 +120,64 @@ def flip_rows(gyro, turned):
     return ["face", "turned, deg", "by the moves, deg", "used", "why not"], rows
 
 
-def show_refinement(found):
+def show_refinement(refined):
     """Print the dictionary of refinement.refine."""
-    out = console()
-    out.print(plain("%d rests (%s), %d moves" % (
-        found["rests"], found["rests_from"], found["moves"])))
-    for line in found["moves_left_out"]:
-        out.print(plain("  left out: " + line))
-    out.print(_refined_accelerometer(found))
-    _refined_gyro(out, found)
-    if found["flips"]:
-        out.print(_refined_flips(found))
-    if found["solved"] is not None:
-        out.print(plain("solved by this session: %s" % (", ".join(found["solved"]) or "nothing")))
-        out.print(plain("kept from the record: %s" % (", ".join(found["kept"]) or "nothing")))
-    elif found["not_determined"] and found["verdict"] != "refused":
-        out.print(plain("hardly told by this session: %s" % ", ".join(found["not_determined"])))
-    out.print(verdict_text(found["verdict"]),
-              plain(found["reason"] and ": " + found["reason"]), sep="")
+    screen = console()
+    screen.print(plain("%d rests (%s), %d moves" % (
+        refined["rests"], refined["rests_from"], refined["moves"])))
+    for line in refined["moves_left_out"]:
+        screen.print(plain("  left out: " + line))
+    screen.print(_refined_accelerometer(refined))
+    _refined_gyro(screen, refined)
+    if refined["flips"]:
+        screen.print(_refined_flips(refined))
+    if refined["solved"] is not None:
+        screen.print(plain("solved by this session: %s" % (
+            ", ".join(refined["solved"]) or "nothing")))
+        screen.print(plain("kept from the record: %s" % (", ".join(refined["kept"]) or "nothing")))
+    elif refined["not_determined"] and refined["verdict"] != "refused":
+        screen.print(plain("hardly told by this session: %s" % ", ".join(
+            refined["not_determined"])))
+    screen.print(verdict_text(refined["verdict"]),
+                 plain(refined["reason"] and ": " + refined["reason"]), sep="")
 
 
-def _refined_accelerometer(found):
-    accel = found["accel"]
-    sigma, mg = accel["sigma"], 1e3 / found["g"]
+def _refined_accelerometer(refined):
+    accel = refined["accel"]
+    sigma, mg = accel["sigma"], 1e3 / refined["g"]
     rows = [[axis, "%.5f ± %.5f" % (accel["scale"][k], sigma["scale"][k]),
              "%+.2f ± %.2f" % (-mg * accel["v"][k], mg * sigma["v"][k]),
              "  ".join("%+.3f" % math.degrees(accel["T"][k][j]) for j in range(3) if j != k)]
             for k, axis in enumerate("xyz")]
     return table("accelerometer, %d terms; |a| - g %.3f mg rms over the rests" % (
-        accel["terms"], found["norm_off_mg_rms"]),
+        accel["terms"], refined["norm_off_mg_rms"]),
         ["axis", "scale", "bias, mg", "angles, deg"], rows)
 
 
-def _refined_gyro(out, found):
-    gyro = found["gyro"]
+def _refined_gyro(screen, refined):
+    gyro = refined["gyro"]
     if gyro is None:
-        out.print(plain(found.get("gyro_missing", "gyro: no move could be used")))
+        screen.print(plain(refined.get("gyro_missing", "gyro: no move could be used")))
         return
-    out.print(table(
+    screen.print(table(
         "gyro; gravity at both ends of the moves agrees to %.3f deg rms"
-        % found["moves_off_deg_rms"], ["axis", "scale", "from moves alone", "bias, deg/s"],
+        % refined["moves_off_deg_rms"], ["axis", "scale", "from moves alone", "bias, deg/s"],
         [[axis, "%.5f ± %.5f" % (gyro["P"][k][k], gyro["sigma"]["P"][k][k]),
           "%.5f ± %.5f" % (gyro["scale_from_moves"][k], gyro["scale_from_moves_sigma"][k]),
           "%+.4f" % gyro["bias_dps"][k]] for k, axis in enumerate("xyz")]))
     if gyro["per_g_dps"]:
-        out.print(table(
+        screen.print(table(
             "pulled by gravity, deg/s a g on x y z", ["axis", "x", "y", "z"],
             [[axis, *("%+.4f ± %.4f" % pair for pair in zip(row, sigma))] for axis, row, sigma in
              zip("xyz", gyro["per_g_dps"], gyro["per_g_sigma_dps"])]))
 
 
-def _refined_flips(found):
+def _refined_flips(refined):
     title = "flips, a to b about the face's own axis"
-    if found["flip_spread_deg"] is not None:
-        title += " (the hand's spread about 180: %.2f deg)" % found["flip_spread_deg"]
+    if refined["flip_spread_deg"] is not None:
+        title += " (the hand's spread about 180: %.2f deg)" % refined["flip_spread_deg"]
     rows = []
-    for face, flip in found["flips"].items():
+    for face, flip in refined["flips"].items():
         known = flip["sigma_deg"] is not None
         rows.append([face, "%.2f ± %.2f" % (flip["angle_deg"], flip["sigma_deg"])
                      if known else "180", "! " + flip["reason"] if known and flip["off"]

@@ -127,15 +127,15 @@ def _said(own):
 
 def distances(batch, number):
     """[(parameter, sigmas from the batch, value, sigma)] of a board of a judgement.Batch."""
-    found = []
-    for block, one in batch.populations.values():
+    rows = []
+    for block, fitted in batch.populations.values():
         values, = block.y[[number]]
-        sigmas, = one.sigma(np.einsum("nii->ni", block.R[[number]]))
+        sigmas, = fitted.sigma(np.einsum("nii->ni", block.R[[number]]))
         for j, name in enumerate(block.names):
             value, sigma = values[j], float(sigmas[j])
             if np.isfinite(value):
-                found.append((name, float((value - one.mean[j]) / sigma), float(value), sigma))
-    return found
+                rows.append((name, float((value - fitted.mean[j]) / sigma), float(value), sigma))
+    return rows
 
 
 def file_name(batch, board):

@@ -55,10 +55,10 @@ def _edges(values):
 
 def _curve(ax, pair, j, edges, number, colour):
     """The population with the usual error of an estimate, as a line."""
-    block, one = pair
-    sigma = np.median(one.sigma(block.variance())[:, j])
+    block, fitted = pair
+    sigma = np.median(fitted.sigma(block.variance())[:, j])
     x = np.linspace(edges[0], edges[-1], 200)
-    y = np.exp(-0.5 * ((x - one.mean[j]) / sigma) ** 2) / (sigma * np.sqrt(2.0 * np.pi))
+    y = np.exp(-0.5 * ((x - fitted.mean[j]) / sigma) ** 2) / (sigma * np.sqrt(2.0 * np.pi))
     ax.plot(x, number * (edges[1] - edges[0]) * y, color=colour, lw=1.2)
 
 
@@ -71,14 +71,16 @@ def _parameter(batches, name, j):
 
 
 def _nominal(ax, batches, name, j, edges):
-    found = _parameter(batches, name, j)
-    if found and found.nominal is not None and edges[0] <= found.nominal <= edges[-1]:
-        ax.axvline(found.nominal, color="0.3", lw=0.8, ls="--")
+    parameter = _parameter(batches, name, j)
+    if parameter and parameter.nominal is not None and edges[0] <= parameter.nominal <= edges[-1]:
+        ax.axvline(parameter.nominal, color="0.3", lw=0.8, ls="--")
 
 
 def _title(batches, name, j):
-    found = _parameter(batches, name, j)
-    return "%s%s" % (found.name, ", " + found.unit if found.unit else "") if found else ""
+    parameter = _parameter(batches, name, j)
+    if not parameter:
+        return ""
+    return "%s%s" % (parameter.name, ", " + parameter.unit if parameter.unit else "")
 
 
 def control_charts(members, batches):
@@ -101,17 +103,17 @@ def _chart(ax, batches, name, j):
     for batch in batches:
         if name not in batch.populations:
             continue
-        block, one = batch.populations[name]
+        block, fitted = batch.populations[name]
         x = start + np.arange(len(batch.boards))
-        y, sigma = block.y[:][:, j], one.sigma(block.variance())[:, j]
-        middle = one.mean[j]
+        y, sigma = block.y[:][:, j], fitted.sigma(block.variance())[:, j]
+        middle = fitted.mean[j]
         ax.plot(x, y, ".", color=COLOURS[j], ms=2.5)
         ax.plot(x, np.full(len(x), middle), color="0.4", lw=0.8)
         for sign in (-1.0, 1.0):
             ax.plot(x, middle + sign * LIMIT * sigma, color="0.6", lw=0.7)
         named = {(o.board, o.parameter) for o in batch.outliers if o.why == "differs"}
-        out = [k for k, board in enumerate(batch.boards) if (board, block.names[j]) in named]
-        ax.plot(x[out], y[out], "o", mfc="none", mec="k", ms=6)
+        outlying = [k for k, board in enumerate(batch.boards) if (board, block.names[j]) in named]
+        ax.plot(x[outlying], y[outlying], "o", mfc="none", mec="k", ms=6)
         start += len(batch.boards)
         if batch is not batches[-1]:
             ax.axvline(start - 0.5, color="0.85", lw=0.8, zorder=0)

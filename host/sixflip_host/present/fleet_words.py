@@ -7,18 +7,18 @@ MOST_ROWS = 20  # of a table in a terminal; fleet.json and the page have all of 
 SAYS = {"batch": "systematic", "individual": "individual", "both": "both", "neither": "-"}
 
 
-def show(found, output, page):
+def show(answer, output, page):
     """found: the answer; output: folder; page: name of the page in it, or nothing."""
-    out = console()
-    for remark in found["remarks"]:
-        out.print(plain(remark))
-    for group in found["groups"]:
-        _group(out, group)
-    if found["failures"]:
-        rows = [[one["board"], one["why"]] for one in found["failures"]]
-        out.print(table("left out (%d)" % len(rows), ["board", "why"], rows, prose=True))
-    out.print(plain("%s%s" % (os.path.join(output, "fleet.json"),
-                              ", " + os.path.join(output, page) if page else "")))
+    screen = console()
+    for remark in answer["remarks"]:
+        screen.print(plain(remark))
+    for group in answer["groups"]:
+        _group(screen, group)
+    if answer["failures"]:
+        rows = [[one["board"], one["why"]] for one in answer["failures"]]
+        screen.print(table("left out (%d)" % len(rows), ["board", "why"], rows, prose=True))
+    screen.print(plain("%s%s" % (os.path.join(output, "fleet.json"),
+                                 ", " + os.path.join(output, page) if page else "")))
 
 
 def cannot_express(missing):
@@ -37,30 +37,30 @@ def kind_of(group):
     return " ".join(words)
 
 
-def _group(out, group):
-    out.print(styled(plain("%s: %d board%s" % (
+def _group(screen, group):
+    screen.print(styled(plain("%s: %d board%s" % (
         kind_of(group), group["boards"], "" if group["boards"] == 1 else "s")), "bold"))
     for batch in group["batches"]:
         name = "batch %s, " % batch["batch"] if batch["batch"] else ""
         if not batch["parameters"]:
-            out.print(plain("%stoo few boards for a population: %d, expected three at least" % (
+            screen.print(plain("%stoo few boards for a population: %d, expected three at least" % (
                 name, batch["boards"])))
             continue
         rows = [[p["name"], number(p["mean"]) + " ± " + number(p["error"]), number(p["spread"]),
                  p["unit"], word(p)] for p in batch["parameters"] if told(p)]
-        out.print(table("%s%d boards: mean, and spread between boards" % (name, batch["boards"]),
-                        ["parameter", "mean", "spread", "", "it is"], rows))
+        screen.print(table("%s%d boards: mean, and spread between boards" % (
+            name, batch["boards"]), ["parameter", "mean", "spread", "", "it is"], rows))
         loud = {p["name"].rpartition(".")[0] for p in batch["parameters"] if told(p)}
         quiet = dict.fromkeys(p["name"].rpartition(".")[0] for p in batch["parameters"]
                               if p["name"].rpartition(".")[0] not in loud)
         if quiet:
-            out.print(plain("no sign of: %s (sizes and limits are in fleet.json)" % ", ".join(
+            screen.print(plain("no sign of: %s (sizes and limits are in fleet.json)" % ", ".join(
                 "%s (%s)" % tuple(reversed(name.split("."))) for name in quiet)))
-        outliers(out, batch)
+        outliers(screen, batch)
     if group["unseen"]:
-        out.print(plain("these captures cannot show: " + ", ".join(group["unseen"])))
+        screen.print(plain("these captures cannot show: " + ", ".join(group["unseen"])))
     if group["lots"]:
-        out.print(table("batches that differ from the others", ["batch", "parameter", "by"], [
+        screen.print(table("batches that differ from the others", ["batch", "parameter", "by"], [
             [one["batch"], one["parameter"], "%s ± %s" % (
                 number(one["difference"]), number(one["error"]))]
             for one in group["lots"][:MOST_ROWS]]))
@@ -71,25 +71,25 @@ def told(p):
     return p["kind"] != "neither" or "." not in p["name"]
 
 
-def outliers(out, batch):
+def outliers(screen, batch):
     """The boards that stand out, each with its reason."""
     its = batch["outliers"]
     if not its:
         return
     rows = [[one["board"], reason(one)] for one in its[:MOST_ROWS]]
     more = "" if len(its) <= MOST_ROWS else ", the first %d of %d" % (MOST_ROWS, len(its))
-    out.print(table("boards that stand out (beyond %.1f sigma%s)" % (
+    screen.print(table("boards that stand out (beyond %.1f sigma%s)" % (
         batch["cutoff_sigmas"], more), ["board", "why"], rows, prose=True))
 
 
-def reason(one):
+def reason(outlier):
     """The sentence on an outlier."""
-    if one["why"] == "drifted":
+    if outlier["why"] == "drifted":
         return "%s moved by %s against its own history, %.1f sigma" % (
-            one["parameter"], number(one["value"]), abs(one["sigmas"]))
+            outlier["parameter"], number(outlier["value"]), abs(outlier["sigmas"]))
     return "%s is %s, the batch has %s ± %s: %.1f sigma" % (
-        one["parameter"], number(one["value"]), number(one["mean"]), number(one["sigma"]),
-        abs(one["sigmas"]))
+        outlier["parameter"], number(outlier["value"]), number(outlier["mean"]),
+        number(outlier["sigma"]), abs(outlier["sigmas"]))
 
 
 def word(p):

@@ -27,12 +27,12 @@ def write(folder, diagnosis, answer, loops):
 
 def draw(folder, diagnosis, loops):
     """[(caption, path of the PNG)]"""
-    found = []
+    pictures = []
 
     def picture(name, caption, function, *args):
         path = folder / (name + ".png")
         if function(*args, str(path)) is not False:
-            found.append((caption, path))
+            pictures.append((caption, path))
 
     compared = next((x for x in diagnosis.comparisons if x.fits), None)
     if compared is not None:
@@ -51,14 +51,14 @@ def draw(folder, diagnosis, loops):
         picture("noise", "Spectrum and Allan deviation", gap_pictures.noise, diagnosis, loops)
     if diagnosis.gaps:
         picture("alias", "What could be taken for what", gap_pictures.alias_matrix, diagnosis)
-    return found
+    return pictures
 
 
 def page(answer, drawn):
     """The HTML, pictures included."""
-    out = Page("Gap", gap_words.sentence(answer))
-    sections(out, answer, [(caption, path.read_bytes()) for caption, path in drawn])
-    return out.html()
+    html = Page("Gap", gap_words.sentence(answer))
+    sections(html, answer, [(caption, path.read_bytes()) for caption, path in drawn])
+    return html.html()
 
 
 def sections(page, answer, drawn):

@@ -124,30 +124,30 @@ def _closed(answer):
 
 def show(answer):
     """Print everything."""
-    out = console()
-    out.print(styled(plain(sentence(answer)), STYLE[answer["verdict"]]))
+    screen = console()
+    screen.print(styled(plain(sentence(answer)), STYLE[answer["verdict"]]))
     for remark in answer["remarks"]:
-        out.print(plain("  " + remark))
+        screen.print(plain("  " + remark))
     if "simulator" in answer:
-        simulator_words.show(out, answer["simulator"])
+        simulator_words.show(screen, answer["simulator"])
     if answer["where"]:
-        out.print(table("Where", ("sensor", "axis", "domain", "share", "p"), [
+        screen.print(table("Where", ("sensor", "axis", "domain", "share", "p"), [
             (SENSOR[w["sensor"]], w["axis"] or "-", w["domain"].replace("_", " "),
              "%.0f %%" % (100 * w["share"]), chance(w["p"])) for w in answer["where"][:12]]))
     if answer["causes"]:
-        out.print(table("Which", WHICH, [row(c) for c in answer["causes"]], prose=True))
+        screen.print(table("Which", WHICH, [row(c) for c in answer["causes"]], prose=True))
     for kind, gap in answer["gap"].items():
-        out.print(plain(holdout_line(kind, gap, answer["held_out"])))
+        screen.print(plain(holdout_line(kind, gap, answer["held_out"])))
         if "axes" in gap:
-            out.print(plain("  " + axes_line(gap)))
+            screen.print(plain("  " + axes_line(gap)))
     for kind, loop in answer.get("simulated", {}).items():
-        out.print(plain(loop_line(kind, loop)))
+        screen.print(plain(loop_line(kind, loop)))
     for sensor, noise in answer["noise"].items():
         for line in noise_lines(sensor, noise):
-            out.print(plain(line))
-    _rest(out, answer)
+            screen.print(plain(line))
+    _rest(screen, answer)
     if "terms" in answer:
-        show_terms(out, answer["terms"])
+        show_terms(screen, answer["terms"])
 
 
 def chance(p):
@@ -225,26 +225,26 @@ def noise_lines(sensor, noise):
     return lines
 
 
-def _rest(out, answer):
+def _rest(screen, answer):
     if answer["unseen"]:
-        out.print("Could not be seen:")
+        screen.print("Could not be seen:")
         for u in answer["unseen"]:
-            out.print(plain("  %s (%s): %s" % (u["effect"], SENSOR[u["sensor"]], u["reason"])))
+            screen.print(plain("  %s (%s): %s" % (u["effect"], SENSOR[u["sensor"]], u["reason"])))
     if answer["next"]:
-        out.print("To capture next:")
+        screen.print("To capture next:")
         for n in answer["next"]:
-            out.print(plain("  %s (%.0f minutes): tells %s" % (
+            screen.print(plain("  %s (%.0f minutes): tells %s" % (
                 n["capture"], n["minutes"], ", ".join(" from ".join(p) for p in n["resolves"]))))
 
 
-def show_terms(out, result):
+def show_terms(screen, result):
     """Print what correction_terms.answer() holds."""
     for term in result["found"]:
         for line in term_words.lines(term):
-            out.print(plain("Into the record: " + line))
-    for one in result["left_out"]:
-        out.print(plain("Not into the record: %s (%s): %s" % (
-            " or ".join(one["effects"]), one["sensor"], one["reason"])))
+            screen.print(plain("Into the record: " + line))
+    for left in result["left_out"]:
+        screen.print(plain("Not into the record: %s (%s): %s" % (
+            " or ".join(left["effects"]), left["sensor"], left["reason"])))
     if result["written"]:
-        out.print(plain("%s: sixflip restore --from it puts it onto the board"
-                        % result["written"]))
+        screen.print(plain("%s: sixflip restore --from it puts it onto the board"
+                           % result["written"]))

@@ -9,21 +9,21 @@ NAME = {"accel": "accelerometer", "gyro": "gyro", "device": "device"}
 def show(answer):
     """Print what can be told, what cannot and what to add in three lines; then what is there,
     each effect's chances and every addition."""
-    out = console()
+    screen = console()
     for line in (can_tell(answer), cannot_tell(answer), add_this(answer)):
-        out.print(plain(line))
-    out.print()
-    out.print(overview(answer))
+        screen.print(plain(line))
+    screen.print()
+    screen.print(overview(answer))
     for sensor, title in TITLES:
         effects = [e for e in answer["effects"] if e["sensor"] == sensor]
         if effects:
-            out.print(table(title, ("effect", "seen from", "typical", "unit", "remark"),
-                            [effect_row(effect) for effect in effects], prose=True))
-    out.print("What to add, by what it resolves per minute:")
+            screen.print(table(title, ("effect", "seen from", "typical", "unit", "remark"),
+                               [effect_row(effect) for effect in effects], prose=True))
+    screen.print("What to add, by what it resolves per minute:")
     for addition in answer["additions"]:
-        addition_lines(out, addition)
+        addition_lines(screen, addition)
     if not answer["additions"]:
-        out.print("  nothing on the list of additions would resolve more")
+        screen.print("  nothing on the list of additions would resolve more")
 
 
 def can_tell(answer):
@@ -67,8 +67,8 @@ def minutes(addition):
 def resolved(addition):
     """What an addition makes visible, in a clause."""
     apart = {}
-    for sensor, one, other in addition["tells_apart"]:
-        apart.setdefault((sensor, one), []).append(other)
+    for sensor, effect, other in addition["tells_apart"]:
+        apart.setdefault((sensor, effect), []).append(other)
     said = [] if not apart else ["tells " + "; ".join(
         "%s %s from %s" % (NAME[sensor], one, ", ".join(others))
         for (sensor, one), others in apart.items())]
@@ -113,8 +113,8 @@ def effect_row(effect):
     return effect["effect"], styled(seen, style), typical, effect["unit"], words
 
 
-def addition_lines(out, addition):
+def addition_lines(screen, addition):
     """Print an addition: its price, and below it what it resolves."""
-    out.print(plain("  %s: %s, resolves %.2g per minute" % (
+    screen.print(plain("  %s: %s, resolves %.2g per minute" % (
         addition["add"], minutes(addition), addition["per_minute"])))
-    out.print(plain("    " + resolved(addition)))
+    screen.print(plain("    " + resolved(addition)))

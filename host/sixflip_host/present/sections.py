@@ -140,12 +140,12 @@ def gap(page, folder, paths):
     from ..diagnosis import answer, closed_loops
     from ..diagnosis.diagnose import diagnose
     from . import gap_report, gap_words
-    found = diagnose([(path, capture_file.read_samples(path)) for path in paths])
-    closed = closed_loops.of(found)
-    result = answer.of(found)
+    diagnosed = diagnose([(path, capture_file.read_samples(path)) for path in paths])
+    closed = closed_loops.of(diagnosed)
+    result = answer.of(diagnosed)
     if closed:
         result["simulated"] = {kind: answer.of_loop(kind, one) for kind, one in closed.items()}
     page.heading("The gap to a nominal simulator")
     page.paragraph(gap_words.sentence(result))
-    gap_report.sections(page, result, [(caption, path.read_bytes())
-                                   for caption, path in gap_report.draw(folder, found, closed)])
+    drawn = gap_report.draw(folder, diagnosed, closed)
+    gap_report.sections(page, result, [(caption, path.read_bytes()) for caption, path in drawn])

@@ -13,12 +13,12 @@ UNIT = {"accel": "m/s²", "gyro": "rad/s"}
 BEFORE, AFTER, REAL = COLOURS[0], COLOURS[2], "0.35"
 
 
-def logs(found):
+def logs(fitted):
     """(simulated, real, simulated with what was found) (n, 3) of a conventions.SensorFit."""
-    pair = found.pair
-    real = pair.force if found.kind == "accel" else pair.rate
-    simulated = pair.sim_force if found.kind == "accel" else pair.sim_rate
-    return simulated, real, real + found.fit.left @ found.fit.axes / found.fit.unit
+    pair = fitted.pair
+    real = pair.force if fitted.kind == "accel" else pair.rate
+    simulated = pair.sim_force if fitted.kind == "accel" else pair.sim_rate
+    return simulated, real, real + fitted.fit.left @ fitted.fit.axes / fitted.fit.unit
 
 
 def liveliest(pair, values):
@@ -34,10 +34,10 @@ def liveliest(pair, values):
 def traces(comparison, path):
     """Real, simulated, and simulated with what was found, all axes, where most happens."""
     figure, axes = canvas(3, max(1, len(comparison.fits)), 11.0, 6.6)
-    for column, (kind, found) in enumerate(comparison.fits.items()):
-        simulated, real, mended = logs(found)
-        part = liveliest(found.pair, real)
-        t = found.pair.t[part]
+    for column, (kind, fitted) in enumerate(comparison.fits.items()):
+        simulated, real, mended = logs(fitted)
+        part = liveliest(fitted.pair, real)
+        t = fitted.pair.t[part]
         for i, axis in enumerate("xyz"):
             ax = axes[i, column]
             ax.plot(t, real[part, i], color=REAL, lw=2.2, label="real")
@@ -54,14 +54,14 @@ def traces(comparison, path):
 def spectra(comparison, path):
     """Spectra of simulated less real, before and after, in the band that was compared."""
     figure, axes = canvas(1, max(1, len(comparison.fits)), 11.0, 3.6)
-    for column, (kind, found) in enumerate(comparison.fits.items()):
-        simulated, real, mended = logs(found)
+    for column, (kind, fitted) in enumerate(comparison.fits.items()):
+        simulated, real, mended = logs(fitted)
         ax = axes[0, column]
         for values, colour, words in ((simulated, BEFORE, "simulated less real"),
                                       (mended, AFTER, "put right less real")):
             f, power = welch(values - real, pairing.GRID_HZ,
                              nperseg=min(512, len(values)), axis=0)
-            inside = (f > 0) & (f <= found.pair.band_hz)
+            inside = (f > 0) & (f <= fitted.pair.band_hz)
             ax.loglog(f[inside], np.sqrt(power[inside].sum(axis=1)), color=colour, label=words)
         ax.set_title(SENSORS[kind])
         ax.set_xlabel("frequency, Hz")

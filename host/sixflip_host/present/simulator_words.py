@@ -9,18 +9,18 @@ SENSOR = {"accel": "accelerometer", "gyro": "gyro", "device": "device"}
 
 def sentence(answer, effects):
     """The first line; effects: function of the answer to the sentence of its effects' layer."""
-    found = answer["simulator"]["conventions"]
+    conventions = answer["simulator"]["conventions"]
     numbers = differing(answer["simulator"])
-    if not found and not numbers:
+    if not conventions and not numbers:
         if answer["verdict"] == "no gap":
             return ("No gap: the simulator says what the real sensor says, as far as these logs "
                     "can show.")
         return effects(answer)
     parts = []
-    if found:
-        parts.append(" ".join(capital(c["words"]) + "." for c in found[:2]))
-        if len(found) > 2:
-            parts.append("%d conventions more are in the table." % (len(found) - 2))
+    if conventions:
+        parts.append(" ".join(capital(c["words"]) + "." for c in conventions[:2]))
+        if len(conventions) > 2:
+            parts.append("%d conventions more are in the table." % (len(conventions) - 2))
     if numbers:
         names = list(dict.fromkeys("%s of the %s" % (name.replace("_", " "), SENSOR[sensor])
                                    for sensor, name, _, _ in numbers))
@@ -42,39 +42,39 @@ def differing(simulator):
             for name, axes in named.items() for axis, p in axes.items() if p["differs"]]
 
 
-def show(out, simulator):
+def show(screen, simulator):
     """Print the layers."""
     for log in simulator["logs"]:
         for remark in log["remarks"]:
-            out.print(plain("  " + remark))
+            screen.print(plain("  " + remark))
     if simulator["conventions"]:
-        out.print(table("Conventions", CONVENTIONS, convention_rows(simulator), prose=True))
+        screen.print(table("Conventions", CONVENTIONS, convention_rows(simulator), prose=True))
     rows = parameter_rows(simulator)
     if rows:
-        out.print(table("Parameters that differ", PARAMETERS, rows, prose=True))
+        screen.print(table("Parameters that differ", PARAMETERS, rows, prose=True))
     rows = effect_rows(simulator)
     if rows:
-        out.print(table("Effects by both logs", EFFECTS, rows, prose=True))
+        screen.print(table("Effects by both logs", EFFECTS, rows, prose=True))
     for line in lines(simulator):
-        out.print(plain(line))
+        screen.print(plain(line))
 
 
 def lines(simulator):
     """The task, the gap and what was not seen, a sentence each."""
-    out = []
+    said = []
     for kind, gap in simulator["gap"].items():
-        out.append("Simulator less real, %s: %.3g %s before, %.3g with conventions and parameters "
-                   "put right (held out), noise alone %.3g." % (
-                       SENSOR[kind], gap["before"], gap["unit"], gap["after"], gap["floor"]))
+        said.append("Simulator less real, %s: %.3g %s before, %.3g with conventions and "
+                    "parameters put right (held out), noise alone %.3g." % (
+                        SENSOR[kind], gap["before"], gap["unit"], gap["after"], gap["floor"]))
     task = simulator["task"]
     if task:
-        out.append("Task (%s against %s): roll and pitch %.2f° before, %.2f° after; heading %.2f° "
-                   "before, %.2f° after." % (
-                       task["estimator"], task["against"], task["attitude"]["before"],
-                       task["attitude"]["after"], task["heading"]["before"],
-                       task["heading"]["after"]))
-    out += ["Not seen: %s." % said for said in simulator["unseen"]]
-    return out
+        said.append("Task (%s against %s): roll and pitch %.2f° before, %.2f° after; heading "
+                    "%.2f° before, %.2f° after." % (
+                        task["estimator"], task["against"], task["attitude"]["before"],
+                        task["attitude"]["after"], task["heading"]["before"],
+                        task["heading"]["after"]))
+    said += ["Not seen: %s." % effects for effects in simulator["unseen"]]
+    return said
 
 
 def convention_rows(simulator):
@@ -88,7 +88,7 @@ def convention_rows(simulator):
 
 def parameter_rows(simulator, all_of_them=False):
     """Rows of PARAMETERS; those that differ, or all."""
-    out = []
+    rows = []
     for sensor, named in simulator["parameters"].items():
         for name, axes in named.items():
             for axis, p in axes.items():
@@ -96,11 +96,11 @@ def parameter_rows(simulator, all_of_them=False):
                     continue
                 label = "%s%s, %s" % (name.replace("_", " "), "" if axis == "all" else " " + axis,
                                       SENSOR[sensor])
-                out.append((label, valued(p["real"], p["real_interval_90"], ""),
-                            valued(p["simulator"], p["simulator_interval_90"], ""),
-                            valued(p["difference"], p["difference_interval_90"], p["unit"]),
-                            p["how"] if p["set"] is None else "%.4g %s" % (p["set"], p["unit"])))
-    return out
+                rows.append((label, valued(p["real"], p["real_interval_90"], ""),
+                             valued(p["simulator"], p["simulator_interval_90"], ""),
+                             valued(p["difference"], p["difference_interval_90"], p["unit"]),
+                             p["how"] if p["set"] is None else "%.4g %s" % (p["set"], p["unit"])))
+    return rows
 
 
 def effect_rows(simulator):
@@ -114,8 +114,8 @@ def effect_rows(simulator):
 
 def settings(simulator):
     """[(setting, value)] of all that is to be set."""
-    out = [(c["words"], c["set"]) for c in simulator["conventions"] if c["set"]]
-    return out + [(row[0], row[4]) for row in parameter_rows(simulator) if row[4]]
+    pairs = [(c["words"], c["set"]) for c in simulator["conventions"] if c["set"]]
+    return pairs + [(row[0], row[4]) for row in parameter_rows(simulator) if row[4]]
 
 
 def valued(value, interval, unit):
