@@ -77,11 +77,11 @@ def _weighed(session, result):
     if not np.all(sigma[seen] < NOT_DETERMINED_DEG):
         return FlipsTurned("the face-to-face moves do not determine the gyro's scale "
                            "(an angle would be good to %.1f degrees only)" % sigma[seen].max())
-    out = FlipsTurned()
+    flips = FlipsTurned()
     for face in sorted({session.flips[k].face for k in seen}):
         mine = [k for k in seen if session.flips[k].face == face]
-        out.measured[face] = (180.0 + float(measured[mine].mean()), float(sigma[mine].max()))
+        flips.measured[face] = (180.0 + float(measured[mine].mean()), float(sigma[mine].max()))
         # more captures of a face than two stand at headings which no single angle tells
         if len(mine) == 1 and abs(excess[mine[0]]) < NO_FLIP:
-            out.angles[face] = np.pi + float(excess[mine[0]])
-    return out
+            flips.angles[face] = np.pi + float(excess[mine[0]])
+    return flips

@@ -118,31 +118,31 @@ def one_pass(equations, start, centre, typical, free):
         max_nfev=MOST_STEPS,
     )
     at = evaluate(fit.x)
-    out = Refinement()
-    out.equations, out.typical, out.free = equations, typical, free
-    out.p = at["p"]
+    refined = Refinement()
+    refined.equations, refined.typical, refined.free = equations, typical, free
+    refined.p = at["p"]
     inverse = np.linalg.inv(at["J"].T @ at["J"])
-    out.covariance = np.zeros((len(centre), len(centre)))
-    out.covariance[np.ix_(columns, columns)] = inverse * np.outer(
+    refined.covariance = np.zeros((len(centre), len(centre)))
+    refined.covariance[np.ix_(columns, columns)] = inverse * np.outer(
         typical[columns], typical[columns]
     )
-    out.groups = _group_errors(at["groups"], columns, out.covariance)
-    out.jacobian = np.vstack([J for _, J in at["groups"].values()])
-    out.residuals = {k: r for k, (r, _) in at["groups"].items()}
-    out.names = ACCEL_NAMES + GYRO_NAMES + [
+    refined.groups = _group_errors(at["groups"], columns, refined.covariance)
+    refined.jacobian = np.vstack([J for _, J in at["groups"].values()])
+    refined.residuals = {k: r for k, (r, _) in at["groups"].items()}
+    refined.names = ACCEL_NAMES + GYRO_NAMES + [
         "flip %s" % equations.session.names[f.a][:2] for f in equations.session.flips
     ]
-    return out
+    return refined
 
 
 def _group_errors(groups, columns, covariance):
     inner = covariance[np.ix_(columns, columns)]
-    out = {}
+    errors = {}
     for name, (r, J) in groups.items():
         J = J[:, columns]
         freedom = len(r) - float(np.einsum("ni,ij,nj->", J, inner, J))
-        out[name] = (float(np.sqrt(r @ r / max(freedom, 1e-9))), len(r), freedom)
-    return out
+        errors[name] = (float(np.sqrt(r @ r / max(freedom, 1e-9))), len(r), freedom)
+    return errors
 
 
 def hand_spread(excess, covariance):

@@ -107,14 +107,14 @@ def search(measured, g, first_rest=None, samples_a_rest=100):
     best = None
     most = 0
     for multiple in MULTIPLES:
-        found = rests_by_variance.find(measured, multiple * limit, shortest=samples_a_rest)
-        most = max(most, len(found))
-        if len(found) < FEWEST_RESTS:
+        still = rests_by_variance.find(measured, multiple * limit, shortest=samples_a_rest)
+        most = max(most, len(still))
+        if len(still) < FEWEST_RESTS:
             continue
-        picked = np.vstack([measured[run.first : run.first + samples_a_rest] for run in found])
+        picked = np.vstack([measured[run.first : run.first + samples_a_rest] for run in still])
         fit = solve(picked, g)
         if best is None or fit.cost < best.cost:
-            best = replace(fit, rests=tuple(found), multiple=multiple)
+            best = replace(fit, rests=tuple(still), multiple=multiple)
     if best is None:
         raise ValueError(
             "%d rests of %d samples found, %d or more are needed for |a| = g in free poses"

@@ -51,13 +51,14 @@ def solve(placements, lsb_per_g, g, level="tilt solved", angles=None):
         P = _lstsq(X_face, np.array([_upright(face, 0) for face in range(6)]))
     else:
         P = _lstsq(X, flips.truths(across))
-    out = _summary(P, X, flips, across, g)
-    left = np.array([out.residual[int(pose)] for pose in poses])
-    out.sigma_P = _sigma_P(poses, X, P, left, _mean_variance(used, lsb_per_g), g,
-                           np.array([one.first for one in used]) / 1000)
-    out.residual_rms_g = float(np.sqrt(np.mean(np.square(list(out.residual.values())))))
-    out.noise_g = float(np.sqrt(np.mean([np.square(one.noise[:3]) for one in used])) / lsb_per_g)
-    return out
+    solved = _summary(P, X, flips, across, g)
+    left = np.array([solved.residual[int(pose)] for pose in poses])
+    solved.sigma_P = _sigma_P(poses, X, P, left, _mean_variance(used, lsb_per_g), g,
+                              np.array([one.first for one in used]) / 1000)
+    solved.residual_rms_g = float(np.sqrt(np.mean(np.square(list(solved.residual.values())))))
+    noise = [np.square(placement.noise[:3]) for placement in used]
+    solved.noise_g = float(np.sqrt(np.mean(noise)) / lsb_per_g)
+    return solved
 
 
 def _lstsq(X, Y):
@@ -89,24 +90,24 @@ class Flips:
 
     def seen(self, P):
         """In-plane gravity of every capture a, from the corrected difference a - b."""
-        found = []
+        in_plane = []
         for face, turn in zip(self.faces, self.turn):
             d = (self.mean(self.means, 2 * face + 1) - self.mean(self.means, 2 * face + 2)) @ P[:3]
             k = AXIS[face]
-            found.append((d[(k + 1) % 3] + 1j * d[(k + 2) % 3]) / (1 - turn))
-        return np.array(found)
+            in_plane.append((d[(k + 1) % 3] + 1j * d[(k + 2) % 3]) / (1 - turn))
+        return np.array(in_plane)
 
     def truths(self, across):
         """True unit gravity (n, 3) of every placement, given `across` of the captures a."""
-        out = []
+        gravity = []
         for pose in self.poses:
             face = face_of_code(int(pose))
             h = 0
             if face in self.faces:
                 at = self.faces.index(face)
                 h = across[at] * (self.turn[at] if is_b(int(pose)) else 1)
-            out.append(_upright(face, h))
-        return np.array(out)
+            gravity.append(_upright(face, h))
+        return np.array(gravity)
 
 
 def _root(function, start):
@@ -131,22 +132,22 @@ def _root(function, start):
 
 def _summary(P, X, flips, across, g):
     """The Reference with P in m/s² and everything derived from it."""
-    out = Reference()
+    summed = Reference()
     seen = flips.seen(P)
     tilts = np.degrees(np.arcsin(np.minimum(1.0, np.abs(seen))))
-    out.tilts = {FACES[face]: float(tilt) for face, tilt in zip(flips.faces, tilts)}
-    out.tilt_deg = float(tilts.mean()) if len(tilts) else None
-    out.tilt_spread_deg = float(np.ptp(tilts)) if len(tilts) else None
+    summed.tilts = {FACES[face]: float(tilt) for face, tilt in zip(flips.faces, tilts)}
+    summed.tilt_deg = float(tilts.mean()) if len(tilts) else None
+    summed.tilt_spread_deg = float(np.ptp(tilts)) if len(tilts) else None
     left = X @ P - flips.truths(across)
-    out.residual = {int(pose): left[flips.poses == pose].mean(axis=0)
-                    for pose in np.unique(flips.poses)}
+    summed.residual = {int(pose): left[flips.poses == pose].mean(axis=0)
+                       for pose in np.unique(flips.poses)}
     A = P[:3].T
-    out.scale = np.diag(A).copy()
-    out.T = A / out.scale
-    out.v = np.linalg.solve(A, P[3]) * g
-    out.P = np.zeros((4, 4))
-    out.P[:3, :3], out.P[3, :3], out.P[3, 3] = P[:3], P[3] * g, 1
-    return out
+    summed.scale = np.diag(A).copy()
+    summed.T = A / summed.scale
+    summed.v = np.linalg.solve(A, P[3]) * g
+    summed.P = np.zeros((4, 4))
+    summed.P[:3, :3], summed.P[3, :3], summed.P[3, 3] = P[:3], P[3] * g, 1
+    return summed
 
 
 def _sigma_P(poses, X, P, residual, variance, g, times):
@@ -164,19 +165,19 @@ def _sigma_P(poses, X, P, residual, variance, g, times):
     faces = np.array([face_of_code(int(pose)) for pose in poses])
     upright = np.array([AXIS[face] for face in faces])[:, None] == np.arange(3)
     H = np.linalg.pinv(X)
-    found = noise = weight = 0.0
+    seen = noise = weight = 0.0
     for face in np.unique(faces):
         mine = faces == face
         kept = mine / mine.sum() - X[mine].mean(axis=0) @ H
-        found += mine.sum() * (residual[mine].mean(axis=0) ** 2).sum()
+        seen += mine.sum() * (residual[mine].mean(axis=0) ** 2).sum()
         noise += mine.sum() * (kept ** 2 @ variance).sum()
         weight += mine.sum() * (kept ** 2 @ ~upright).sum()
-    scatter = max(0.0, found - noise) / weight * STUDENT ** 2 if weight else 0.0
+    scatter = max(0.0, seen - noise) / weight * STUDENT ** 2 if weight else 0.0
     drift = _drift(faces, upright, X @ P, variance, times)
-    out = np.sqrt(H ** 2 @ (variance + ~upright * scatter)
-                  + np.outer((H @ (times - times.mean())) ** 2, drift))
-    out[3] *= g
-    return out
+    sigma = np.sqrt(H ** 2 @ (variance + ~upright * scatter)
+                    + np.outer((H @ (times - times.mean())) ** 2, drift))
+    sigma[3] *= g
+    return sigma
 
 
 def _drift(faces, upright, corrected, variance, times):

@@ -69,8 +69,8 @@ def solve(capture, placements, accel_P, old=None):
     bias = np.radians(sum(capture.gyro[one.first:one.first + one.n].sum(axis=0, dtype=np.int64)
                           for one in rests) / n / lsb)
     flips = half_turns(capture, placements, bias, np.asarray(accel_P)[:3, :3])
-    out = GyroReference()
-    out.missing = [k for k in range(3) if k not in {flip[1] for flip in flips}]
+    solved = GyroReference()
+    solved.missing = [k for k in range(3) if k not in {flip[1] for flip in flips}]
     rows, truths, weights, spreads = [], [], [], []
 
     def add(row, truth, weight, spread):
@@ -79,27 +79,27 @@ def solve(capture, placements, accel_P, old=None):
         weights.append(weight)
         spreads.append(spread)
 
-    for one in rests:
-        at = Interval(capture, one.first, one.first + one.n, moving=False)
-        noise = np.radians(np.array(one.noise[3:6]) / lsb) * at.T / math.sqrt(one.n)
+    for rest in rests:
+        at = Interval(capture, rest.first, rest.first + rest.n, moving=False)
+        noise = np.radians(np.array(rest.noise[3:6]) / lsb) * at.T / math.sqrt(rest.n)
         variance = noise ** 2 + (WANDER * at.T) ** 2
         add([*at.turned, at.T], np.zeros(3), variance.max(), variance)
     for at, k, truth, _ in flips:
         add([*at.turned, at.T], truth, HAND ** 2, np.where(np.arange(3) == k, np.nan, FLAT ** 2))
     A = np.linalg.inv(np.asarray(old)[:3]) if old is not None else np.eye(3)
-    for k in out.missing:
+    for k in solved.missing:
         add([*(math.pi * A[k]), 0.0], math.pi * np.eye(3)[k], OLD ** 2, np.full(3, OLD ** 2))
     X, Y, root = np.array(rows), np.array(truths), 1 / np.sqrt(np.array(weights))[:, None]
     if np.linalg.matrix_rank(X * root, tol=1e-9 * np.abs(X * root).max()) < 4:
         raise CheckFailed("rests and flips of the capture do not determine the gyro")
     H = np.linalg.pinv(X * root, rcond=1e-14) * root.T
-    out.P = H @ Y
-    out.used = [flip[3] for flip in flips]
-    free = len(flips) - (3 - len(out.missing))
-    left = [abs((np.append(at.turned, at.T) @ out.P)[k]) - math.pi for at, k, _, _ in flips]
+    solved.P = H @ Y
+    solved.used = [flip[3] for flip in flips]
+    free = len(flips) - (3 - len(solved.missing))
+    left = [abs((np.append(at.turned, at.T) @ solved.P)[k]) - math.pi for at, k, _, _ in flips]
     hand = max(HAND ** 2, float(np.square(left).sum()) / free if free > 0 else 0.0)
-    out.sigma = np.sqrt(H ** 2 @ np.where(np.isnan(spreads), hand, spreads))
-    return out
+    solved.sigma = np.sqrt(H ** 2 @ np.where(np.isnan(spreads), hand, spreads))
+    return solved
 
 
 def half_turns(capture, placements, bias, rotation):
@@ -119,7 +119,7 @@ def half_turns(capture, placements, bias, rotation):
         k = AXIS[face]
         if abs(abs(turned[k]) - 180) <= NEAR_DEG:
             turns.append((at, k, turned, (before.pose, after.pose)))
-    found = []
+    counted = []
     for index, (at, k, turned, poses) in enumerate(turns):
         lean = min(_across(turned, k), _across(turned @ rotation, k))
         alike = any(_across(turned - turned[k] / other[k] * other, k) <= FLAT_DEG
@@ -128,8 +128,8 @@ def half_turns(capture, placements, bias, rotation):
         if lean <= FLAT_DEG or (lean <= MISALIGNED_DEG and alike):
             truth = np.zeros(3)
             truth[k] = math.copysign(math.pi, turned[k])
-            found.append((at, k, truth, poses))
-    return found
+            counted.append((at, k, truth, poses))
+    return counted
 
 
 def _across(turned, k):

@@ -44,10 +44,10 @@ def bias_of_rests(session):
     weight = 1.0 / session.rate_error[:, None]
     chi2 = []
     for columns in (x[:, :1], x):
-        found = np.linalg.lstsq(columns * weight, session.rate * weight, rcond=None)[0]
-        left = (session.rate - columns @ found) * weight
+        fitted = np.linalg.lstsq(columns * weight, session.rate * weight, rcond=None)[0]
+        left = (session.rate - columns @ fitted) * weight
         chi2.append((left**2).sum(axis=0) / (len(x) - columns.shape[1]))
-    return chi2[0], chi2[1], found[1:].T
+    return chi2[0], chi2[1], fitted[1:].T
 
 
 def pulled_by_gravity(session):
@@ -90,22 +90,22 @@ def refine_from_record(session, record):
         free[N_ACCEL + N_GYRO + k] = flip.move is not None
     sensor = np.arange(len(centre)) < N_ACCEL + N_GYRO
     while True:
-        out = joint_refinement.refine(session, centre=centre, typical=typical, free=free)
-        share = 1.0 - (out.sigma() / np.where(typical > 0, typical, 1.0)) ** 2
+        refined = joint_refinement.refine(session, centre=centre, typical=typical, free=free)
+        share = 1.0 - (refined.sigma() / np.where(typical > 0, typical, 1.0)) ** 2
         weak = free & sensor & (share < TOLD)
         if not weak.any():
             break
         free[weak & (share <= share[weak].min() + 0.1)] = False
     # What is kept is as uncertain as its age, not certain because it was not touched.
     held = np.flatnonzero(~free & sensor)
-    out.covariance[held, held] = typical[held] ** 2
-    told = [out.names[k] for k in np.flatnonzero(free & sensor)]
+    refined.covariance[held, held] = typical[held] ** 2
+    told = [refined.names[k] for k in np.flatnonzero(free & sensor)]
     known = np.ones(len(centre), dtype=bool)
     known[GYRO_PER_G] = False
     if record.gyro is None and not session.has_gyro:
         known[N_ACCEL:] = False
-    kept = [out.names[k] for k in np.flatnonzero(~free & sensor & known)]
-    return out, told, kept
+    kept = [refined.names[k] for k in np.flatnonzero(~free & sensor & known)]
+    return refined, told, kept
 
 
 def session_of(capture, free=False, far_pairs=None):
@@ -133,8 +133,8 @@ def rests_of(capture, free):
             raise CheckFailed(str(error))
         return renamed([(run.first, run.end) for run in fit.rests]), "found by |a| = g (Tedaldi)"
     from ..capture.find_poses import find_poses
-    found = find_poses(capture)
-    return rests.labelled(np.asarray(found.pose)), "found against the sensor's own noise"
+    posed = find_poses(capture)
+    return rests.labelled(np.asarray(posed.pose)), "found against the sensor's own noise"
 
 
 def renamed(spans):
@@ -147,7 +147,7 @@ def assemble(capture, session, result, source, told, kept):
     lost, weak = answer.left_open(session, result) if told is None else ([], [])
     judged, reason = answer.verdict(session, result, lost)
     off = answer.norm_off_mg(result)
-    out = {
+    refined = {
         "format": 1, "sensor": capture.meta["sensor"], "g": capture.g,
         "rests": len(session.codes), "rests_from": source, "moves": len(session.ends),
         "moves_left_out": list(session.left_out),
@@ -165,6 +165,6 @@ def assemble(capture, session, result, source, told, kept):
         "solved": told, "kept": kept, "verdict": judged, "reason": reason,
     }
     if not session.has_gyro:
-        out["gyro_missing"] = ("no gyro columns: flips are taken as 180 degrees and there is "
-                               "nothing to refine a gyro from")
-    return out
+        refined["gyro_missing"] = ("no gyro columns: flips are taken as 180 degrees and there is "
+                                   "nothing to refine a gyro from")
+    return refined

@@ -68,23 +68,23 @@ def gyro(result):
 
 def flips(session, result):
     """{face: {angle_deg, sigma_deg, measured_deg, off, reason}} of every flip."""
-    out = {}
+    answer = {}
     excess, sigma = result.excess()
     measured, measured_sigma = result.first.excess()
     for k, flip in enumerate(session.flips):
         name = session.names[flip.a][:2]
         if flip.move is None:
-            out[name] = {"angle_deg": 180.0, "sigma_deg": None, "measured_deg": None,
-                         "off": False, "reason": "no gyro over this flip, 180 assumed"}
+            answer[name] = {"angle_deg": 180.0, "sigma_deg": None, "measured_deg": None,
+                            "off": False, "reason": "no gyro over this flip, 180 assumed"}
             continue
         by_gyro, error = measured[k] * DEG, measured_sigma[k] * DEG
         off = bool(abs(by_gyro) > max(OFF_HALF_TURN, 3.0 * error))
-        out[name] = {"angle_deg": 180.0 + float(excess[k] * DEG),
-                     "sigma_deg": float(sigma[k] * DEG),
-                     "measured_deg": 180.0 + float(by_gyro),
-                     "off": off, "reason": "%+.1f deg off a half turn, compensated" % by_gyro
-                     if off else ""}
-    return out
+        answer[name] = {"angle_deg": 180.0 + float(excess[k] * DEG),
+                        "sigma_deg": float(sigma[k] * DEG),
+                        "measured_deg": 180.0 + float(by_gyro),
+                        "off": off, "reason": "%+.1f deg off a half turn, compensated" % by_gyro
+                        if off else ""}
+    return answer
 
 
 def angles(session, result):

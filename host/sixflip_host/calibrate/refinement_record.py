@@ -31,7 +31,7 @@ def parameters(record, flips, g):
     return p
 
 
-def build(capture, found, kept=None):
+def build(capture, refined, kept=None):
     """The Record of a refinement's dictionary.
 
     kept: the record it started from; its identity, mounting and unsolved parts stay.
@@ -49,17 +49,17 @@ def build(capture, found, kept=None):
         record.accel_range_g = int(meta.get("accel_range_g", 0))
         record.gyro_lsb_per_dps = float(meta.get("gyro_lsb_per_dps", 0))
         record.gyro_range_dps = int(meta.get("gyro_range_dps", 0))
-        record.g = float(found["g"])
+        record.g = float(refined["g"])
     elif abs(record.accel_lsb_per_g - meta["accel_lsb_per_g"]) > 1e-3 * record.accel_lsb_per_g:
         raise CheckFailed("the record is for %g counts per g, the capture has %g"
                           % (record.accel_lsb_per_g, meta["accel_lsb_per_g"]))
-    if capture.temp is not None and (kept is None or set(BIASES) <= set(found["solved"])):
+    if capture.temp is not None and (kept is None or set(BIASES) <= set(refined["solved"])):
         # A term that follows the temperature counts from that of the bias.
         record.temp_c = (float(np.mean(capture.temp)) / meta["temp_lsb_per_c"]
                          + meta["temp_offset_c"])
     record.sequence = following(record.sequence)
-    record.accel = _accelerometer(found, kept)
-    gyro = found["gyro"]
+    record.accel = _accelerometer(refined, kept)
+    gyro = refined["gyro"]
     if gyro is not None:
         if gyro["per_g_dps"]:
             record_terms.put(record, "g_sensitivity", {
@@ -67,19 +67,19 @@ def build(capture, found, kept=None):
                 "origin": "refinement", "source": "", "before": None, "after": None,
                 "floor": None})
         record.gyro = {"P": gyro["P"], "sigma_P": gyro["sigma"]["P"], "missing": [],
-                       "verdict": found["verdict"], "reason": found["reason"]}
+                       "verdict": refined["verdict"], "reason": refined["reason"]}
         record.gyro_bias = {"bias_dps": gyro["bias_dps"], "temp_c": record.temp_c}
     return record
 
 
-def _accelerometer(found, kept):
-    accel = found["accel"]
+def _accelerometer(refined, kept):
+    accel = refined["accel"]
     fields = {"P": accel["P"], "sigma_P": accel["sigma"]["P"],
               "tilt_deg": None, "tilt_spread_deg": None, "noise_g": None}
-    level = "tilt solved" if len(found["flips"]) == 6 else "no flips"
+    level = "tilt solved" if len(refined["flips"]) == 6 else "no flips"
     if kept is not None:
         fields.update({k: kept.accel[k] for k in ("tilt_deg", "tilt_spread_deg", "noise_g")})
         level = kept.accel["level"]
-    fields.update(level=level, residual_rms_g=found["norm_off_mg_rms"] * 1e-3,
-                  verdict=found["verdict"], reason=found["reason"])
+    fields.update(level=level, residual_rms_g=refined["norm_off_mg_rms"] * 1e-3,
+                  verdict=refined["verdict"], reason=refined["reason"])
     return fields

@@ -43,15 +43,16 @@ class Equations:
     def evaluate(self, p):
         """{group: (residual (n,), Jacobian (n, size))} at parameters p."""
         f = self.forces(p)
-        out = {"norm": self._norm(f), "flips": self._flips(f, p), "level": self._level(f)}
+        groups = {"norm": self._norm(f), "flips": self._flips(f, p), "level": self._level(f)}
         if self.gyro:
             W = p[N_ACCEL : N_ACCEL + N_GYRO].reshape(3, 7)
-            out["still"] = self._still(W)
+            groups["still"] = self._still(W)
             if len(self.session.moves):
                 turns, change = self.session.moves.rotate(W)
-                out["moves"] = self._moves(f, turns, change)
-                out["angle"] = self._angle(p, turns, change)
-        return {k: (r / self.sigma[k], J / self.sigma[k]) for k, (r, J) in out.items() if len(r)}
+                groups["moves"] = self._moves(f, turns, change)
+                groups["angle"] = self._angle(p, turns, change)
+        return {k: (r / self.sigma[k], J / self.sigma[k])
+                for k, (r, J) in groups.items() if len(r)}
 
     def _norm(self, f):
         length = np.linalg.norm(f, axis=1)

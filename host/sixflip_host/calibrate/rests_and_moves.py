@@ -118,7 +118,7 @@ def _error(session, noise, floor):
 def _usable(session):
     """(tuple of blocks.Move that can be integrated, tuple of sentences on the others)."""
     usual = float(np.median(np.diff(session.t_s)))
-    found, left_out = [], []
+    usable, left_out = [], []
     for move in blocks.moves_of(session):
         name = "%s to %s" % tuple(pose_name(run.code)
                                   for run in session.runs[move.place:move.place + 2])
@@ -129,8 +129,8 @@ def _usable(session):
         elif move.longest_s - usual > GAP_US * 1e-6:
             left_out.append("move %s: the timestamps jump by %.3f s" % (name, move.longest_s))
         else:
-            found.append(move)
-    return tuple(found), tuple(left_out)
+            usable.append(move)
+    return tuple(usable), tuple(left_out)
 
 
 def _move_error(session, kept, force_error, ends):

@@ -40,9 +40,9 @@ def solve(capture, g=None, level=None, half_turns=False):
     remarks = capture_remarks(capture)
     labelled = capture.pose is not None
     if not labelled and not capture.sums_only:
-        found = find_poses(capture)
-        found.label(capture)
-        remarks += found.remarks()
+        posed = find_poses(capture)
+        posed.label(capture)
+        remarks += posed.remarks()
     flips = flips_turned.FlipsTurned("as asked for") if half_turns \
         else flips_turned.by_moves(capture, labelled)
     return of_placements(capture, flips, labelled, g, level, remarks=remarks)
@@ -53,30 +53,30 @@ def of_placements(capture, flips, labelled, g=None, level=None, halves=None, rem
 
     flips  FlipsTurned; halves: as halves() gives them, None: they are taken from the samples
     """
-    out = Solution()
-    out.capture, out.remarks, out.flips = capture, list(remarks), flips
+    solved = Solution()
+    solved.capture, solved.remarks, solved.flips = capture, list(remarks), flips
     placements = capture.placements()
-    judge(capture, placements, capture.g if g is None else g, level, labelled, out, flips.angles,
-          halves)
-    out.moves = capture.moves() if not capture.sums_only else []
-    out.gyro, out.no_gyro = solve_gyro(capture, placements, out.moves,
-                                       out.accel and out.accel.P, flips=out.flips)
-    doubt_flips(out, set(out.flips.angles))
-    return out
+    judge(capture, placements, capture.g if g is None else g, level, labelled, solved,
+          flips.angles, halves)
+    solved.moves = capture.moves() if not capture.sums_only else []
+    solved.gyro, solved.no_gyro = solve_gyro(capture, placements, solved.moves,
+                                             solved.accel and solved.accel.P, flips=solved.flips)
+    doubt_flips(solved, set(solved.flips.angles))
+    return solved
 
 
-def doubt_flips(out, known=()):
+def doubt_flips(solved, known=()):
     """What the gyro saw of the flips reaches the accelerometer's verdict.
 
     known  faces whose turn was measured and taken into account
     """
-    if out.verdict == "refused" or out.gyro is None:
+    if solved.verdict == "refused" or solved.gyro is None:
         return
-    sentence = gyro_verdict.accelerometer_doubt(out.gyro, tolerance(out.capture),
-                                              out.accel.tilt_deg, known)
+    sentence = gyro_verdict.accelerometer_doubt(solved.gyro, tolerance(solved.capture),
+                                              solved.accel.tilt_deg, known)
     if sentence:
-        out.reason = sentence if out.verdict == "good" else out.reason + "; " + sentence
-        out.verdict = "doubtful"
+        solved.reason = sentence if solved.verdict == "good" else solved.reason + "; " + sentence
+        solved.verdict = "doubtful"
 
 
 def tolerance(capture):
@@ -86,23 +86,23 @@ def tolerance(capture):
     return catalogue.driver(sensor).gyro_tolerance if sensor in known else None
 
 
-def judge(capture, placements, g, level=None, labelled=True, out=None, angles=None, moved=None):
+def judge(capture, placements, g, level=None, labelled=True, solved=None, angles=None, moved=None):
     """Solve the accelerometer from placements and judge it; fills a Solution. moved: what
     halves() gives of the capture, None: it is asked."""
-    out = out or Solution()
-    out.capture = capture
-    out.placements, out.g = placements, g
+    solved = solved or Solution()
+    solved.capture = capture
+    solved.placements, solved.g = placements, g
     lsb = capture.meta["accel_lsb_per_g"]
-    out.accel, failure = None, ""
+    solved.accel, failure = None, ""
     try:
-        out.accel = accelerometer.solve(out.placements, lsb, out.g, level, angles)
+        solved.accel = accelerometer.solve(solved.placements, lsb, solved.g, level, angles)
     except (ValueError, ZeroDivisionError) as error:
         failure = str(error)
-    missing = [] if level == "no flips" else unfinished(out.placements, labelled)
-    out.verdict, out.reason = verdict.judge_accelerometer(
-        out.accel, out.placements, lsb, missing, failure, rail(capture),
-        halves(capture, out) if moved is None else moved)
-    return out
+    missing = [] if level == "no flips" else unfinished(solved.placements, labelled)
+    solved.verdict, solved.reason = verdict.judge_accelerometer(
+        solved.accel, solved.placements, lsb, missing, failure, rail(capture),
+        halves(capture, solved) if moved is None else moved)
+    return solved
 
 
 def unfinished(placements, labelled):
@@ -128,15 +128,15 @@ def halves(capture, solution):
     if capture.sums_only:
         return None
     by_hand = capture.meta.get(HELD_BY_HAND, [])
-    out = []
-    for one in solution.placements:
-        middle, end = one.first + one.n // 2, one.first + one.n
-        if one.n < 2 or pose_name(one.pose) in by_hand:
-            out.append([0.0] * 3)
+    differences = []
+    for placement in solution.placements:
+        middle, end = placement.first + placement.n // 2, placement.first + placement.n
+        if placement.n < 2 or pose_name(placement.pose) in by_hand:
+            differences.append([0.0] * 3)
             continue
-        out.append((capture.accel[middle:end].mean(axis=0)
-                    - capture.accel[one.first:middle].mean(axis=0)).tolist())
-    return out
+        differences.append((capture.accel[middle:end].mean(axis=0)
+                            - capture.accel[placement.first:middle].mean(axis=0)).tolist())
+    return differences
 
 
 def middles_mg(placements, lsb):
@@ -144,13 +144,13 @@ def middles_mg(placements, lsb):
 
     Where faces are crooked or the table tilts this is wrong by the square of the angle only.
     """
-    out = []
+    middles = []
     for up, down in ((2, 3), (4, 5), (0, 1)):       # X+ X-, Y+ Y-, Z+ Z-
-        axis = len(out)
+        axis = len(middles)
         reads = [[one.sums[axis] / one.n for one in placements if face_of_code(one.pose) == face]
                  for face in (up, down)]
-        out.append(500 * sum(sum(r) / len(r) for r in reads) / lsb if all(reads) else None)
-    return out
+        middles.append(500 * sum(sum(r) / len(r) for r in reads) / lsb if all(reads) else None)
+    return middles
 
 
 def capture_remarks(capture):
@@ -204,16 +204,16 @@ def solve_gyro(capture, placements, moves, accel_P=None, old=None, flips=None):
     if capture.sums_only:
         return None, "the board kept only the sums: the gyro needs the samples of the moves"
     try:
-        found = gyroscope.solve(placements, moves, capture.meta["gyro_lsb_per_dps"], accel_P,
-                                old, capture.meta["accel_lsb_per_g"])
+        solved = gyroscope.solve(placements, moves, capture.meta["gyro_lsb_per_dps"], accel_P,
+                                 old, capture.meta["accel_lsb_per_g"])
     except (ValueError, ZeroDivisionError) as error:
         return None, str(error)
-    if found.verdict == "good":
+    if solved.verdict == "good":
         doubt = flips_short(flips.measured) if flips and flips.measured else \
-            gyro_verdict.scale_doubt(found, tolerance(capture))
+            gyro_verdict.scale_doubt(solved, tolerance(capture))
         if doubt:
-            found.verdict, found.reason = "doubtful", doubt
-    return found, ""
+            solved.verdict, solved.reason = "doubtful", doubt
+    return solved, ""
 
 
 def flips_short(measured):

@@ -32,20 +32,20 @@ def facts(name, fields):
     return answer
 
 
-def lines(found):
+def lines(facts):
     """[str] about one facts()."""
-    sizes = ", ".join("%s %+.3g%s" % (key, value, "" if found["sigma"][key] is None else
-                                      " ± %.2g" % found["sigma"][key])
-                      for key, value in found["value"].items())
-    text = "%s, %s: %s %s" % (WHAT[found["term"]][0], found["sensor"], sizes or "none",
-                              found["unit"])
-    if any(key.endswith("2") for key in found["value"]):
+    sizes = ", ".join("%s %+.3g%s" % (key, value, "" if facts["sigma"][key] is None else
+                                      " ± %.2g" % facts["sigma"][key])
+                      for key, value in facts["value"].items())
+    text = "%s, %s: %s %s" % (WHAT[facts["term"]][0], facts["sensor"], sizes or "none",
+                              facts["unit"])
+    if any(key.endswith("2") for key in facts["value"]):
         text += " (2: per °C²)"
-    if "between_c" in found:
+    if "between_c" in facts:
         text += ", measured at %.1f to %.1f °C (about %.1f)" % (
-            *found["between_c"], found["about_c"])
-    gain = found["gain"]
-    out = [text, "  from %s (%s)" % (found["source"] or "unknown captures", found["origin"])]
+            *facts["between_c"], facts["about_c"])
+    gain = facts["gain"]
+    out = [text, "  from %s (%s)" % (facts["source"] or "unknown captures", facts["origin"])]
     if gain["before"] is not None and gain["after"] is not None:
         out[1] += ": %.3g %s before, %.3g after%s" % (
             gain["before"], gain["unit"], gain["after"],

@@ -40,13 +40,13 @@ def verify(capture, record, before=None):
             remarks
     checks += verify_checks.accelerometer(record, placements, record.accel_lsb_per_g,
                                           verify_gyro.flip_angles(record))
-    found, said = verify_gyro.flip_checks(capture, record, placements, before)
-    checks += found
+    compared, said = verify_gyro.flip_checks(capture, record, placements, before)
+    checks += compared
     remarks += said
     old_gyro = before and before.gyro["P"]
     checks += _verdict(capture, record, placements, old_gyro)
-    found, said = verify_gyro.checks(capture, record, placements, old_gyro)
-    checks += found
+    compared, said = verify_gyro.checks(capture, record, placements, old_gyro)
+    checks += compared
     remarks += said
     if record.gyro_lsb_per_dps:
         checks += verify_checks.gyro_bias(record, placements)
@@ -56,19 +56,19 @@ def verify(capture, record, before=None):
 
 def _verdict(capture, record, placements, old_gyro):
     """Level, and the verdict the shared judge gives now that the samples are at hand."""
-    again = solution.judge(capture, placements, record.g, record.accel["level"],
-                           angles=verify_gyro.flip_angles(record))
-    verify_gyro.doubt_flips(capture, record, placements, again, old_gyro)
-    check = verify_checks.same("verdict", record.accel["verdict"], again.verdict)
+    host = solution.judge(capture, placements, record.g, record.accel["level"],
+                          angles=verify_gyro.flip_angles(record))
+    verify_gyro.doubt_flips(capture, record, placements, host, old_gyro)
+    check = verify_checks.same("verdict", record.accel["verdict"], host.verdict)
     if capture.sums_only and (check.board, check.host) == ("doubtful", "good") \
             and "flip" in record.accel["reason"]:
         check.ok = True     # what the gyro saw of the flips was not kept
     if not check.ok:
-        check.host = "%s: %s" % (again.verdict, again.reason)
+        check.host = "%s: %s" % (host.verdict, host.reason)
     checks = [check, verify_checks.same("level", record.accel["level"], best_level(
         [one.pose for one in placements if face_of_code(one.pose) >= 0]))]
     if check.ok and not capture.sums_only:
-        checks.append(verify_checks.same_words("reason", record.accel["reason"], again.reason,
+        checks.append(verify_checks.same_words("reason", record.accel["reason"], host.reason,
                                                record.float_bits))
     return checks
 
@@ -78,17 +78,17 @@ def not_verifiable(capture, record, before):
 
     before  the record in the other slot, or None
     """
-    out = [("sequence", SAVED), ("time", SAVED)]
-    out += [(name, HEADER) for name in verify_checks.STATED if name not in capture.meta]
+    fields = [("sequence", SAVED), ("time", SAVED)]
+    fields += [(name, HEADER) for name in verify_checks.STATED if name not in capture.meta]
     if capture.sums_only:
-        out += [("accel.reason", SUMS), ("gyro", SUMS)]
+        fields += [("accel.reason", SUMS), ("gyro", SUMS)]
     if record.flips is not None:
         if capture.sums_only:
-            out.append(("flips", SUMS))
+            fields.append(("flips", SUMS))
         elif before is None or before.sequence != record.flips["sequence"]:
-            out += [("flips.scale_sigma", EARLIER), ("flips.sequence", EARLIER)]
+            fields += [("flips.scale_sigma", EARLIER), ("flips.sequence", EARLIER)]
     if record.mounting is not None:
-        out.append(("mounting, roll %.4g pitch %.4g degrees" % (
+        fields.append(("mounting, roll %.4g pitch %.4g degrees" % (
             record.mounting["roll_deg"], record.mounting["pitch_deg"]), INSTALLED))
-    out += [(name, OTHER_CAPTURES) for name in names_of(record)]
-    return out + [("section %d" % tag, LATER) for tag, _ in record.unknown]
+    fields += [(name, OTHER_CAPTURES) for name in names_of(record)]
+    return fields + [("section %d" % tag, LATER) for tag, _ in record.unknown]

@@ -83,20 +83,20 @@ def same_words(name, board, host, float_bits):
 def pose_blocks(capture):
     """The board's own sums of every pose against the raw samples: exactly equal."""
     checks = []
-    for one in capture.board_placements or ():
-        name = pose_name(one.pose)
-        if one.n < 1 or one.first + one.n > len(capture):
+    for block in capture.board_placements or ():
+        name = pose_name(block.pose)
+        if block.n < 1 or block.first + block.n > len(capture):
             checks.append(Check("%s samples" % name, "%d to %d" % (
-                one.first, one.first + one.n - 1), "0 to %d" % (len(capture) - 1), False))
+                block.first, block.first + block.n - 1), "0 to %d" % (len(capture) - 1), False))
             continue
-        host = pose_sums.one(capture, one.pose, one.first, one.first + one.n)
-        checks.append(same("%s sums" % name, list(one.sums), host.sums))
-        widest = max(abs(a - b) / (b or 1) for a, b in zip(one.noise, host.noise))
-        checks.append(Check("%s noise" % name, _short(one.noise), _short(host.noise),
+        host = pose_sums.one(capture, block.pose, block.first, block.first + block.n)
+        checks.append(same("%s sums" % name, list(block.sums), host.sums))
+        widest = max(abs(a - b) / (b or 1) for a, b in zip(block.noise, host.noise))
+        checks.append(Check("%s noise" % name, _short(block.noise), _short(host.noise),
                             widest < 1e-4, "1e-4"))
-        if one.first:
-            before, last = capture.t_us[one.first - 1], capture.t_us[one.first + one.n - 1]
-            checks.append(same("%s duration, us" % name, one.duration_us, int(last - before)))
+        if block.first:
+            before, last = capture.t_us[block.first - 1], capture.t_us[block.first + block.n - 1]
+            checks.append(same("%s duration, us" % name, block.duration_us, int(last - before)))
     return checks
 
 

@@ -39,27 +39,29 @@ def checks(capture, record, placements, old=None):
     double = record.float_bits == 64
     relative, absolute = (DOUBLE_REL, DOUBLE_ABS) if double else (0.0, SINGLE)
     P = np.array(section["P"])
-    out = [same("gyro, axes without a flip", list(section["missing"]), host.missing)]
+    compared = [same("gyro, axes without a flip", list(section["missing"]), host.missing)]
     for i, j in np.ndindex(4, 3):
-        out.append(close("gyro P[%d][%d]" % (i, j), P[i, j], host.P[i, j], relative, absolute))
+        compared.append(close("gyro P[%d][%d]" % (i, j), P[i, j], host.P[i, j], relative,
+                              absolute))
     for i, j in np.ndindex(4, 3):
-        out.append(close("gyro sigma P[%d][%d]" % (i, j), section["sigma_P"][i][j],
-                         host.sigma[i, j], 1e-4 if double else 0.05, 1e-7))
-    again, why = _solved_from_capture(capture, placements, accel_P, old)
-    out.append(same("gyro verdict", section["verdict"],
-                    again.verdict if again else "none: " + why))
-    if again:
-        out.append(same_words("gyro reason", section["reason"], again.reason, record.float_bits))
-    return out, _remarks(section, old)
+        compared.append(close("gyro sigma P[%d][%d]" % (i, j), section["sigma_P"][i][j],
+                              host.sigma[i, j], 1e-4 if double else 0.05, 1e-7))
+    solved, why = _solved_from_capture(capture, placements, accel_P, old)
+    compared.append(same("gyro verdict", section["verdict"],
+                         solved.verdict if solved else "none: " + why))
+    if solved:
+        compared.append(same_words("gyro reason", section["reason"], solved.reason,
+                                   record.float_bits))
+    return compared, _remarks(section, old)
 
 
 def _left_out(capture, record, placements, old):
     """A board leaves the gyro out where its own is refused, or there is none."""
     if capture.sums_only or capture.gyro is None:
         return []
-    again, _ = _solved_from_capture(capture, placements, record.accel["P"], old)
-    there = again is not None and again.verdict != "refused"
-    return [Check("gyro", "not in the record", "verdict " + again.verdict if again else "none",
+    solved, _ = _solved_from_capture(capture, placements, record.accel["P"], old)
+    there = solved is not None and solved.verdict != "refused"
+    return [Check("gyro", "not in the record", "verdict " + solved.verdict if solved else "none",
                   not there)]
 
 
@@ -101,12 +103,12 @@ def flip_checks(capture, record, placements, before):
     sigma = max(before.gyro["sigma_P"][k][k] for k in known)
     double = record.float_bits == 64
     host = _excess(capture, placements, np.array(before.gyro["P"]), known, sigma)
-    out = [close("gyro scale behind the flip angles", section["scale_sigma"], sigma, 1e-5)]
+    compared = [close("gyro scale behind the flip angles", section["scale_sigma"], sigma, 1e-5)]
     for face in range(6):
-        out.append(close("flip of %s, rad beyond half a turn" % FACES[face],
-                         section["excess"][face], host.get(face, 0.0), 0.0,
-                         1e-9 if double else 2e-5))
-    return out, []
+        compared.append(close("flip of %s, rad beyond half a turn" % FACES[face],
+                              section["excess"][face], host.get(face, 0.0), 0.0,
+                              1e-9 if double else 2e-5))
+    return compared, []
 
 
 def _excess(capture, placements, P, known, sigma):
@@ -115,26 +117,26 @@ def _excess(capture, placements, P, known, sigma):
     rests = [one for one in placements if one.n > 0]
     bias = np.radians(sum(capture.gyro[one.first:one.first + one.n].sum(axis=0, dtype=np.int64)
                           for one in rests) / sum(one.n for one in rests) / lsb)
-    found = {}
+    turns_of = {}
     for at, k, _, (first, second) in reference_gyro.half_turns(
             capture, placements, bias, P[:3]):
         face = face_of_code(first)
         if k in known:
             turn = SIGN[face] * ((at.turned - bias * at.T) @ P[:3])[k]
             turn = -turn if is_b(first) and not is_b(second) else turn
-            found.setdefault(face, []).append(turn % (2 * np.pi) - np.pi)
-    off = {face: float(np.mean(each)) for face, each in found.items()}
+            turns_of.setdefault(face, []).append(turn % (2 * np.pi) - np.pi)
+    off = {face: float(np.mean(each)) for face, each in turns_of.items()}
     off = {face: d for face, d in off.items() if abs(d) < NO_FLIP}
     own = 2 * (np.pi * sigma) ** 2
     square = np.mean(np.square(list(off.values()))) if off else 0.0
     return {face: d * (1 - own / square) for face, d in off.items()} if square > own else {}
 
 
-def doubt_flips(capture, record, placements, again, old_P=None):
+def doubt_flips(capture, record, placements, solved, old_P=None):
     """The shared judge's verdict (a Solution) once the gyro has spoken, as on the board."""
-    again.gyro = None
-    if again.accel and not capture.sums_only and capture.gyro is not None:
+    solved.gyro = None
+    if solved.accel and not capture.sums_only and capture.gyro is not None:
         moves = pose_sums.moves(capture, placements)
-        again.gyro, _ = solution.solve_gyro(capture, placements, moves, again.accel.P, old_P)
-    solution.doubt_flips(again, set(flip_angles(record) or ()))
-    return again
+        solved.gyro, _ = solution.solve_gyro(capture, placements, moves, solved.accel.P, old_P)
+    solution.doubt_flips(solved, set(flip_angles(record) or ()))
+    return solved

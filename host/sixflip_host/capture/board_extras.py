@@ -24,16 +24,16 @@ def as_json(placement):
             "noise": list(placement.noise)}
 
 
-def _placement(found):
-    sums, noise = [int(x) for x in found["sums"]], [float(x) for x in found["noise"]]
-    first, n = int(found["first"]), int(found["n"])
+def _placement(fields):
+    sums, noise = [int(x) for x in fields["sums"]], [float(x) for x in fields["noise"]]
+    first, n = int(fields["first"]), int(fields["n"])
     if len(sums) != 7 or len(noise) != 6 or first < 0 or n <= 0:
         raise ValueError("a placement contradicts itself")
-    return Placement(pose_code(found["pose"]), first, n, sums, noise, int(found["duration_us"]))
+    return Placement(pose_code(fields["pose"]), first, n, sums, noise, int(fields["duration_us"]))
 
 
-def _lost(found):
-    return [int(found[0]), [int(t) for t in found[1]]] if found else []
+def _lost(pair):
+    return [int(pair[0]), [int(t) for t in pair[1]]] if pair else []
 
 
 class Extras(NamedTuple):
@@ -55,15 +55,15 @@ class Extras(NamedTuple):
 
 def from_meta(meta, path):
     """The Extras in a capture's metadata; BadFile when they make no sense."""
-    found = meta.get(EXTRAS, {})
+    kept = meta.get(EXTRAS, {})
     try:
-        return Extras([str(note) for note in found.get("notes", [])],
-                      [int(code) for code in found.get("withdrawn", [])],
-                      str(found["truncated"]) if found.get("truncated") else None,
-                      found.get("complete", False) is True, int(found.get("taken", 0)),
-                      [_placement(each) for each in found["placements"]]
-                      if "placements" in found else None,
-                      [int(t) for t in found.get(PAUSES) or []], _lost(found.get(LOST)))
+        return Extras([str(note) for note in kept.get("notes", [])],
+                      [int(code) for code in kept.get("withdrawn", [])],
+                      str(kept["truncated"]) if kept.get("truncated") else None,
+                      kept.get("complete", False) is True, int(kept.get("taken", 0)),
+                      [_placement(each) for each in kept["placements"]]
+                      if "placements" in kept else None,
+                      [int(t) for t in kept.get(PAUSES) or []], _lost(kept.get(LOST)))
     except (ValueError, TypeError, LookupError, AttributeError, OverflowError) as error:
         raise BadFile("%s: in its metadata the key %s makes no sense: %s" % (
             path, EXTRAS, quoted(str(error))))

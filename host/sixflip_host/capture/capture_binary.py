@@ -79,14 +79,14 @@ def decode(data, path="capture"):
 
 def _gaps(blocks):
     """What the recorder is to blame for, as it stands in a text made of the capture."""
-    found = {PAUSES: write_pauses_us(blocks)}
+    gaps = {PAUSES: write_pauses_us(blocks)}
     if blocks.lost:
         rows = [first - sum(n for _, n in blocks.lost[:k])
                 for k, (first, _) in enumerate(blocks.lost)]
         times = [blocks.t_us[row - 1] for row in rows if 0 < row < len(blocks.t_us)]
-        found = {PAUSES: [t for t in found[PAUSES] if t not in times],
-                 LOST: [blocks.missing, times]}
-    return found
+        gaps = {PAUSES: [t for t in gaps[PAUSES] if t not in times],
+                LOST: [blocks.missing, times]}
+    return gaps
 
 
 def write_pauses_us(blocks):
@@ -153,12 +153,13 @@ def _array(buffer, dtype):
 def _labels(path, blocks):
     """int16 codes of every sample from the placements in force."""
     pose = np.zeros(len(blocks.t_us), np.int16)
-    for one in blocks.placements:
-        if len(pose) and one.first + one.n > len(pose) + blocks.missing and not (
+    for placement in blocks.placements:
+        if len(pose) and placement.first + placement.n > len(pose) + blocks.missing and not (
                 blocks.damage or blocks.sums_only):
             raise BadFile("%s: a pose ends at sample %d of %d" % (
-                path, one.first + one.n, len(pose) + blocks.missing))
-        pose[_here(blocks, one.first):_here(blocks, one.first + one.n)] = one.pose
+                path, placement.first + placement.n, len(pose) + blocks.missing))
+        end = placement.first + placement.n
+        pose[_here(blocks, placement.first):_here(blocks, end)] = placement.pose
     return pose
 
 

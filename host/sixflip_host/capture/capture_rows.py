@@ -182,9 +182,9 @@ def _slow_value(path, number, name, field):
         return code
     match = WHOLE_NUMBER.match(field)
     if not match:
-        found = "%s is missing" % name if not field.strip() else \
+        seen = "%s is missing" % name if not field.strip() else \
             "%s is %s" % (name, quoted(field))
-        raise BadFile.at(path, number, found, "a whole number of %s"
+        raise BadFile.at(path, number, seen, "a whole number of %s"
                          % ("microseconds" if name == "t_us" else "counts"))
     low, high = TIMES if name == "t_us" else INT16
     digits = match.group(1)

@@ -76,10 +76,10 @@ def measure(t_us, recorder=(), lost=()):
         pause, missing = _sorted_out(gaps, period, np.asarray(recorder, int),
                                      np.asarray(lost, int))
         running = float(t_us[-1] - t_us[0]) - gaps.lift[pause].sum()
-        again = running / (n - 1 + int(missing.sum()))
-        if not again > 0:
+        refined = running / (n - 1 + int(missing.sum()))
+        if not refined > 0:
             return None
-        close, period = abs(again / period - 1) < 1e-6, again
+        close, period = abs(refined / period - 1) < 1e-6, refined
         if close:
             break
     is_known = np.isin(gaps.places, lost)

@@ -54,18 +54,18 @@ def by_a_person(capture):
 
 def find_poses(capture):
     """Label every sample of a Capture; returns FoundPoses. Nothing is changed in the capture."""
-    found = rests.find(capture, rests.POSES)
-    named = _named(capture, found.rests, found.noise)
+    still = rests.find(capture, rests.POSES)
+    named = _named(capture, still.rests, still.noise)
     pose = np.zeros(len(capture), np.int16)
     for rest in named:
         pose[rest.first:rest.end] = rest.code
-    return FoundPoses(pose, tuple(named), found.noise)
+    return FoundPoses(pose, tuple(named), still.noise)
 
 
-def _named(capture, found, noise):
+def _named(capture, still_rests, noise):
     """Every rest with its pose: face from gravity, a or b from the gyro, leaning otherwise."""
     leaning, named = 0, []
-    for rest in found:
+    for rest in still_rests:
         code, why = 0, "leaning"
         if rest.off_deg <= CROOKED_DEG:
             code, why = _letter(capture, named, rest, noise)

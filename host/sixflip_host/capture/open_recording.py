@@ -32,12 +32,12 @@ def read(path, gravity=True, gyro_alone=False):
         return capture_file.read(path, gyro_alone)
     from .imports import presets
     try:
-        found = presets.convert(presets.Options(path, gravity=gravity))
+        converted = presets.convert(presets.Options(path, gravity=gravity))
     except (BadFile, UsageError) as error:
         raise BadFile("%s; or make a capture of it: %s" % (error, _line(path, str(error)))) \
             from None
-    capture = found.capture
-    capture.assumed = ["%s: imported: %s" % (path, sentence) for sentence in found.assumed]
+    capture = converted.capture
+    capture.assumed = ["%s: imported: %s" % (path, sentence) for sentence in converted.assumed]
     return capture if gyro_alone else capture_file.with_accelerometer(path, capture)
 
 

@@ -31,12 +31,12 @@ def codes(column):
 
 def steps(counts):
     """(3,) greatest common divisor of the counts' distances; 1 where too few values differ."""
-    out = []
+    sizes = []
     for column in counts.T:
         values = codes(column)
         values = values[np.abs(values) < RAIL]  # a rail need not lie on a step
-        out.append(int(np.gcd.reduce(np.diff(values))) if len(values) >= FEWEST_VALUES else 1)
-    return np.array(out)
+        sizes.append(int(np.gcd.reduce(np.diff(values))) if len(values) >= FEWEST_VALUES else 1)
+    return np.array(sizes)
 
 
 def gyro_railed(capture, first, end):
@@ -100,19 +100,19 @@ def _flat(column):
 def dead_band(counts):
     """(3,) counts up to which an axis reads 0: the smallest that is not 0, where many more near 0
     were to be expected; or by how often 0 is read, where no code is missing."""
-    out = []
+    bands = []
     for column in counts.T:
         small = np.abs(column.astype(np.int64))
         zeros, others = int((small == 0).sum()), small[small > 0]
         least = int(others.min()) if len(others) else 0
         if not least:
-            out.append(0)
+            bands.append(0)
             continue
         step = max(1, steps(column[:, None])[0], spacing(small, least))
         near = int((others < 2 * least).sum())
         expected = near * (least / step - 1.0) / max(least / step, 1.0)
-        out.append(least if zeros > 20 and least > 2 * step and expected > 40 else _flat(column))
-    return np.array(out)
+        bands.append(least if zeros > 20 and least > 2 * step and expected > 40 else _flat(column))
+    return np.array(bands)
 
 
 def of_counts(sessions, sensor):
@@ -127,19 +127,19 @@ def fixed_bits(x):
     if len(x) < FEWEST_SAMPLES:
         return []
     ever, always = np.bitwise_or.reduce(x), np.bitwise_and.reduce(x)
-    step, found = max(1, steps(x[:, None])[0]), []
+    step, bits = max(1, steps(x[:, None])[0]), []
     for bit in range(LOW_BITS):
         weight = 1 << bit
         fixed = not ever & weight or bool(always & weight)
         if fixed and step < 2 * weight and np.ptp(x) > MOVED * weight * 2:
-            found.append((bit, int(bool(always & weight))))
-    return found
+            bits.append((bit, int(bool(always & weight))))
+    return bits
 
 
 def stuck_bits(sessions):
     """[(sensor, axis, bit, value)] of single low bits that never change while those around
     them do (bits stuck from the lowest on are steps, see quantisation)."""
-    found = []
+    bits = []
     for sensor in ("accel", "gyro"):
         if any(getattr(s.capture, sensor) is None for s in sessions):
             continue
@@ -147,8 +147,8 @@ def stuck_bits(sessions):
         for i in range(3 if counted else 0):
             x = np.concatenate([getattr(s.capture, sensor)[:, i] for s in counted]).astype(
                 np.int64)
-            found += [(sensor, "xyz"[i], bit, value) for bit, value in fixed_bits(x)]
-    return found
+            bits += [(sensor, "xyz"[i], bit, value) for bit, value in fixed_bits(x)]
+    return bits
 
 
 def _others_tell(steps):
@@ -160,7 +160,7 @@ def _others_tell(steps):
 def stuck(sessions):
     """Sentences on columns that never change while the sensor's others do: where their steps are
     wider than the noise, an axis that nobody turned reads one value."""
-    out = []
+    said = []
     for sensor, words in SENSORS.items():
         columns = [getattr(s.capture, sensor) for s in sessions]
         if any(c is None for c in columns):
@@ -168,5 +168,5 @@ def stuck(sessions):
         for i in range(3):
             if any(len(c) >= FEWEST_SAMPLES and np.ptp(c[:, i].astype(int)) == 0
                    and _others_tell(np.diff(c.astype(int), axis=0)) for c in columns):
-                out.append("the %s axis of the %s never changes: it is stuck" % ("xyz"[i], words))
-    return out
+                said.append("the %s axis of the %s never changes: it is stuck" % ("xyz"[i], words))
+    return said

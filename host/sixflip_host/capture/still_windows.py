@@ -172,15 +172,15 @@ def still(windows, noise, first_twice=False):
     """(bool (n,), sentences against rest): which windows a NoiseFloor judges to be still, with
     its hysteresis. first_twice: the first window has nothing before it to wander from, where
     the floor has looked at others already."""
-    found, against = np.zeros(len(windows), bool), []
+    at_rest, against = np.zeros(len(windows), bool), []
     for k in range(len(windows)):
         window = windows.one(k)
         for _ in range(2 if first_twice and not k else 1):
             noise.look(window)
-        found[k] = not noise.judge(window, LEAVE if k and found[k - 1] else ENTER)
-        if not found[k]:
+        at_rest[k] = not noise.judge(window, LEAVE if k and at_rest[k - 1] else ENTER)
+        if not at_rest[k]:
             against.append(sentence(noise))
-    return found, against
+    return at_rest, against
 
 
 def sentence(noise):

@@ -84,21 +84,21 @@ def _gunzip(path, first, rest):
                     member = zlib.decompressobj(wbits=31)
                 before = member.copy()
                 try:
-                    out = member.decompress(pending, GROWTH)
+                    unpacked = member.decompress(pending, GROWTH)
                 except zlib.error:
                     lines += _readable_part(before, pending).count(b"\n")
                     raise _ends(path, lines, "the gzip file is damaged, here or before") from None
-                lines += out.count(b"\n")
-                if out:
-                    yield out
+                lines += unpacked.count(b"\n")
+                if unpacked:
+                    yield unpacked
                 pending = member.unused_data if member.eof else member.unconsumed_tail
                 member = None if member.eof else member
     while member is not None:       # what is left in it after the last byte
-        out = member.decompress(b"", GROWTH)
-        if not out:
+        unpacked = member.decompress(b"", GROWTH)
+        if not unpacked:
             raise _ends(path, lines, "the gzip file was cut short here")
-        lines += out.count(b"\n")
-        yield out
+        lines += unpacked.count(b"\n")
+        yield unpacked
         member = None if member.eof else member
 
 
@@ -108,13 +108,13 @@ def _ends(path, lines, fault):
 
 def _readable_part(member, data):
     """What can be unpacked of a damaged piece, byte by byte."""
-    out = b""
+    unpacked = b""
     try:
         for start in range(len(data)):
-            out += member.decompress(data[start:start + 1], GROWTH)
+            unpacked += member.decompress(data[start:start + 1], GROWTH)
     except zlib.error:
         pass
-    return out
+    return unpacked
 
 
 def whole_lines(path, pieces, first_line, longest, head=0):
@@ -142,7 +142,7 @@ def whole_lines(path, pieces, first_line, longest, head=0):
         yield line, rest
 
 
-def _check_length(path, line, found, longest):
-    if len(found) > longest:
-        raise BadFile.at(path, line, "a line of %d characters" % len(found),
+def _check_length(path, line, text, longest):
+    if len(text) > longest:
+        raise BadFile.at(path, line, "a line of %d characters" % len(text),
                          "%d at most" % longest)

@@ -82,11 +82,11 @@ def read_mat(path):
     """ArrayTable of a .mat of MATLAB's format 5 (save -v6 or -v7)."""
     try:
         data = b"".join(Source(path).pieces())
-        found = mat_file.arrays(data, sample_limit.memory())
+        arrays = mat_file.arrays(data, sample_limit.memory())
     except (ValueError, MemoryError) as error:
         raise BadFile("%s: cannot be read as a MAT-file: %s" % (path, _first_line(error))) \
             from None
-    return _table(path, found)
+    return _table(path, arrays)
 
 
 def _too_large(path):

@@ -67,10 +67,10 @@ def column(name):
         said = unit.lower() or (words[-1] if len(words) > 1 else "")
         return Column(TEMP, "", next((one for one, names in DEGREES.items() if said in names), ""),
                       "")
-    found = _fused(words) or _apart(words) or _by_unit(words, unit)
-    if found is None:
+    parts = _fused(words) or _apart(words) or _by_unit(words, unit)
+    if parts is None:
         return None
-    sensor, axis, group = found
+    sensor, axis, group = parts
     return Column(sensor, axis, _unit(unit, words, sensor), group)
 
 
@@ -177,13 +177,13 @@ def readings(names, file_name=""):
                        if part in file_name.lower()), None)
         if sensor and set("xyz") <= set(lower):
             return {sensor + axis: lower[axis] for axis in "xyz"}, {}, []
-    found, sets = {}, {}
+    columns, sets = {}, {}
     for name in names:
         told = column(name)
         if told is None:
             continue
         if told.sensor == TEMP:
-            found.setdefault("temp", name)
+            columns.setdefault("temp", name)
         else:
             sets.setdefault((told.sensor, told.group), {}).setdefault(told.axis, (name, told.unit))
     units, remarks = {}, []
@@ -193,10 +193,10 @@ def readings(names, file_name=""):
         if not whole:       # what there is of it shows what is missing
             for (kind, _), axes in sets.items():
                 for axis in set("xyz") & set(axes) if kind == sensor else ():
-                    found.setdefault(sensor + axis, axes[axis][0])
+                    columns.setdefault(sensor + axis, axes[axis][0])
             continue
         for axis, key in zip("xyz", _axes(whole[0])):
-            found[sensor + axis] = whole[0][key][0]
+            columns[sensor + axis] = whole[0][key][0]
         said = {unit for _, unit in whole[0].values()}
         if len(said) == 1 and "" not in said:
             units[sensor] = said.pop()
@@ -204,7 +204,7 @@ def readings(names, file_name=""):
             remarks.append("columns %s are taken, %s are left out" % (
                 " ".join(one for one, _ in whole[0].values()),
                 " ".join(one for other in whole[1:] for one, _ in other.values())))
-    return found, units, remarks
+    return columns, units, remarks
 
 
 def _axes(axes):
@@ -227,13 +227,13 @@ def with_units(names, below):
 
 def looks_like_header(names):
     """True for a line of names that has all three axes of an accelerometer or a gyro."""
-    found = readings(names)[0]
-    return any({sensor + axis for axis in "xyz"} <= set(found) for sensor in (ACCEL, GYRO))
+    columns = readings(names)[0]
+    return any({sensor + axis for axis in "xyz"} <= set(columns) for sensor in (ACCEL, GYRO))
 
 
 def times(names):
     """[(column name or (seconds, nanoseconds), unit or "")] that may be times, best first."""
-    found = []
+    ranks = []
     for name in names:
         bare, unit = _without_unit(name)
         words = _words(bare)
@@ -245,20 +245,20 @@ def times(names):
             unit = unit or (said[-1] if said and words[-1] in UNIT_OF_TIME else "")
             rank = 0 if "stamp" in words and "header" in words else 3 if "date" in words \
                 else 4 if bare == "T" else 1  # a T alone is as often a temperature
-            found.append((rank, name, unit))
+            ranks.append((rank, name, unit))
         elif len(words) == 1 and len(words[0]) > 1 \
                 and UNIT_OF_TIME.get(words[0]) in TIME_UNITS:
-            found.append((2, name, UNIT_OF_TIME[words[0]]))
+            ranks.append((2, name, UNIT_OF_TIME[words[0]]))
     pairs = _second_pairs(names)
     chosen = [(pair, "s") for pair in pairs]
     taken = {name for pair in pairs for name in pair}
-    ranked = sorted((one for one in found if one[1] not in taken), key=lambda one: one[0])
+    ranked = sorted((one for one in ranks if one[1] not in taken), key=lambda one: one[0])
     return chosen + [(name, unit) for _, name, unit in ranked]
 
 
 def _second_pairs(names):
     """[(seconds, nanoseconds)] of stamps that ROS keeps in two columns."""
-    found = []
+    pairs = []
     for name in names:
         words = _words(name)
         if words and words[-1] in ("sec", "secs", "s"):
@@ -266,5 +266,5 @@ def _second_pairs(names):
                 theirs = _words(other)
                 if theirs and theirs[:-1] == words[:-1] and theirs[-1] in (
                         "nanosec", "nsec", "nsecs", "nanosecs"):
-                    found.append((name, other))
-    return found
+                    pairs.append((name, other))
+    return pairs

@@ -203,9 +203,9 @@ class Table:
             if wall_clock.is_ambiguous(cell):
                 raise BadFile.at(self.path, line, "%s is %s, whose day and month cannot be told"
                                  % (column, quoted(cell)), wall_clock.EXPECTED) from None
-            found = "%s is missing" % column if not cell.strip() else \
+            seen = "%s is missing" % column if not cell.strip() else \
                 "%s is %s" % (column, quoted(cell))
-            raise BadFile.at(self.path, line, found, "a number") from None
+            raise BadFile.at(self.path, line, seen, "a number") from None
         if not math.isfinite(value):
             raise BadFile.at(self.path, line, "%s is %s" % (column, quoted(cell)),
                              "a finite number")
@@ -230,12 +230,12 @@ def read_table(path, delimiter="auto", skip=None, names=None, is_header=None):
         if dress.names:
             skip = (skip or 0) + dress.first
     head, first, separator = csv_text.find_header(path, lines, delimiter, skip, is_header)
-    found = None if head is None else cells_of(lines[head].lstrip("#"), separator)
+    titles = None if head is None else cells_of(lines[head].lstrip("#"), separator)
     told = head is not None and first < len(lines) and column_names.with_units(
-        found, cells_of(lines[first], separator))
+        titles, cells_of(lines[first], separator))
     if told:
-        found, first = told, first + 1
-    names = names or found
+        titles, first = told, first + 1
+    names = names or titles
     row = next((text for text in lines[first:] if text.strip()
                 and not text.startswith(COMMENT)), "")
     width = len(names) if names else len(cells_of(row, separator))

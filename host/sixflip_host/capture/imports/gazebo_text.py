@@ -43,7 +43,7 @@ def read_text(path):
 
 def _messages(path):
     """(sec, nsec, ax … gz) of every message."""
-    found, inside = {}, []
+    fields, inside = {}, []
     for first, block in whole_lines(path, Source(path).pieces(), 1, LONGEST_LINE):
         for number, line in enumerate(block.decode("utf-8", "replace").split("\n"), first):
             line = line.strip()
@@ -52,11 +52,11 @@ def _messages(path):
                 continue
             opens, field = OPENS.match(line), FIELD.match(line)
             if opens:
-                if not inside and opens[1] == "header" and found:
-                    yield _row(found)
-                    found = {}
+                if not inside and opens[1] == "header" and fields:
+                    yield _row(fields)
+                    fields = {}
                 inside.append(opens[1])
-                found.setdefault("", True)
+                fields.setdefault("", True)
             elif line == "}":
                 if not inside:
                     raise BadFile.at(path, number, "a } that nothing opened", "a message")
@@ -64,18 +64,18 @@ def _messages(path):
             elif field:
                 ours = FIELDS.get((*inside, field[1]))
                 if ours:
-                    found[ours] = _number(path, number, field[1], field[2])
+                    fields[ours] = _number(path, number, field[1], field[2])
             elif line:
                 raise BadFile.at(path, number, quoted(line), "a line of a message of gz topic")
     if inside:
         raise BadFile("%s: ends inside a message, it was cut short" % path)
-    if found:
-        yield _row(found)
+    if fields:
+        yield _row(fields)
 
 
-def _row(found):
-    return [found.get("sec", 0.0), found.get("nsec", 0.0)] + [
-        found.get(name, 0.0) for name in NAMES[1:]]
+def _row(fields):
+    return [fields.get("sec", 0.0), fields.get("nsec", 0.0)] + [
+        fields.get(name, 0.0) for name in NAMES[1:]]
 
 
 def _number(path, line, name, text):
@@ -89,10 +89,10 @@ def _of_json(path, line, text):
     try:
         message = json.loads(text)
         stamp = message["header"]["stamp"]
-        found = {"sec": stamp.get("sec", 0), "nsec": stamp.get("nsec", 0)}
+        fields = {"sec": stamp.get("sec", 0), "nsec": stamp.get("nsec", 0)}
         for theirs, ours in (("linearAcceleration", "accel_"), ("angularVelocity", "gyro_")):
-            found.update({ours + axis: message[theirs].get(axis, 0.0) for axis in "xyz"})
+            fields.update({ours + axis: message[theirs].get(axis, 0.0) for axis in "xyz"})
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise BadFile.at(path, line, "no message of an IMU",
                          "header, angularVelocity, linearAcceleration") from None
-    return _row({name: _number(path, line, name, value) for name, value in found.items()})
+    return _row({name: _number(path, line, name, value) for name, value in fields.items()})

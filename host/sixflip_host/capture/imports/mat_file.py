@@ -25,7 +25,7 @@ def arrays(data, most_bytes):
     if len(data) < HEADER or data[126:128] not in (b"IM", b"MI"):
         raise ValueError("its header is cut short or damaged")
     order = "<" if data[126:128] == b"IM" else ">"
-    found = {}
+    named = {}
     for kind, body in _elements(data[HEADER:], order, padded=False):
         if kind == COMPRESSED:
             unpacker = zlib.decompressobj()
@@ -39,8 +39,8 @@ def arrays(data, most_bytes):
         if kind == MATRIX:
             name, value = _matrix(body, order)
             if value is not None:
-                found[name] = value
-    return found
+                named[name] = value
+    return named
 
 
 def _elements(data, order, padded=True):

@@ -47,10 +47,10 @@ class Dress:
         if self.stamped and (stamp is None or not rest.strip()):
             return text if stamp is None else ""
         if self.names:
-            found = _labelled(rest)
-            if tuple(name for name, _ in found) != self.names:
+            labelled = _labelled(rest)
+            if tuple(name for name, _ in labelled) != self.names:
                 return text
-            rest = self.separator.join(value for _, value in found)
+            rest = self.separator.join(value for _, value in labelled)
         if not self.stamped:
             return rest
         # Names of columns have the time that they came at before them, too.
@@ -86,20 +86,20 @@ def _stamp_of(text):
 
 def _separator(rests):
     """The delimiter that most lines have: some may be greetings."""
-    for one in ",;\t":
-        if 2 * sum(one in rest for rest in rests) > len(rests):
-            return one
+    for mark in ",;\t":
+        if 2 * sum(mark in rest for rest in rests) > len(rests):
+            return mark
     return " "
 
 
 def _labelled(text):
     """[(name, value)] of a line of labelled values, [] of any other."""
     text = JSON.sub(r"\1", text)
-    found, place, end = [], 0, len(text.rstrip())
+    pairs, place, end = [], 0, len(text.rstrip())
     while place < end:
         match = LABELLED.match(text, place)
         if match is None:
             return []
-        found.append((match[1].strip(), match[2]))
+        pairs.append((match[1].strip(), match[2]))
         place = match.end()
-    return found if len(found) > 2 else []  # three axes; fewer may be a sentence
+    return pairs if len(pairs) > 2 else []  # three axes; fewer may be a sentence

@@ -39,10 +39,10 @@ def readings(options, table):
             raise UsageError("--map %s: expected one of %s" % (
                 name, " ".join(csv_mapping.TARGETS)))
         table.index(given[name])
-    found, named, remarks = column_names.readings(table.names or (),
-                                                  os.path.basename(str(table.path)))
+    columns, named, remarks = column_names.readings(table.names or (),
+                                                    os.path.basename(str(table.path)))
     used = set(given.values())
-    chosen = {ours: name for ours, name in found.items()
+    chosen = {ours: name for ours, name in columns.items()
               if ours not in given and name not in used}
     if "mx" in chosen and options.mag_lsb is None:      # of no use to anybody here
         for name in MAG:

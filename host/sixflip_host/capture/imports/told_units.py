@@ -112,10 +112,10 @@ class ToldUnits:
     def turned(self, accel, gyro, unit, rate_hz):
         """The gyro's unit, held against how gravity turns in the accelerometer."""
         per_unit = 1 / self.options.gyro_lsb if unit == "counts" else units.GYRO_UNITS[unit]
-        found = gravity.turn_factor(accel, gyro, per_unit, rate_hz)
-        if found is None or abs(found[1]) < TURNS_ALIKE:
+        turned = gravity.turn_factor(accel, gyro, per_unit, rate_hz)
+        if turned is None or abs(turned[1]) < TURNS_ALIKE:
             return unit
-        factor, _ = found
+        factor, _ = turned
         other = {True: "rad/s", False: "dps"}[factor > 1]
         ratio = units.GYRO_UNITS[other] / per_unit
         if unit == "counts" or not 0.4 < abs(factor) / ratio < 2.5 or abs(ratio - 1) < 0.1:

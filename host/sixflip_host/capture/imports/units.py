@@ -98,15 +98,15 @@ def counts_of(path, what, values, unit, lsb, per_unit, step=None):
         return _whole(path, what, values, lsb)
     of = "g" if what == "accelerometer" else "deg/s"
     if lsb is not None:
-        found, rounding, remarks = _scaled(path, what, values, per_unit * lsb)
+        counts, rounding, remarks = _scaled(path, what, values, per_unit * lsb)
         if rounding > ON_GRID:
             remarks.append("%s values are not whole counts at %g per %s: rounded by up to %.2f "
                            "count" % (what, lsb, of, rounding))
-        return Counts(found, lsb, "counts", remarks)
+        return Counts(counts, lsb, "counts", remarks)
     if step is not None and largest / step <= RAIL + 1 and not _printed(step):
         lsb = 1 / (step * per_unit)
-        found, _, remarks = _scaled(path, what, values, 1 / step)
-        return Counts(found, lsb, "counts", [
+        counts, _, remarks = _scaled(path, what, values, 1 / step)
+        return Counts(counts, lsb, "counts", [
             "%s values are whole steps of 1/%.6g %s" % (what, lsb, of), *remarks])
     if step is None or largest / step > ROOM:
         step = max(largest, 1e-300) / ROOM
@@ -133,7 +133,7 @@ def _whole(path, what, values, lsb):
         raise BadFile("%s: the %s is in counts, so its LSB must be given (%s)" % (
             path, what, {"accelerometer": "--accel-lsb, counts per g",
                          "gyro": "--gyro-lsb, counts per deg/s"}.get(what, "--mag-lsb")))
-    out = np.empty(values.shape, np.int16)
+    counts = np.empty(values.shape, np.int16)
     beyond = at = 0
     for block in _blocks(values):
         whole = np.rint(block)
@@ -142,31 +142,31 @@ def _whole(path, what, values, lsb):
             row = int(np.argmax(off.max(axis=1)))
             raise BadFile("%s: row %d of the %s is %s, expected whole counts (or say --units)" % (
                 path, at + row + 1, what, block[row].tolist()))
-        beyond += _clip(path, what, whole, out[at:at + len(block)], lsb)
+        beyond += _clip(path, what, whole, counts[at:at + len(block)], lsb)
         at += len(block)
-    return Counts(out, lsb, "counts", _clipped(path, what, beyond, len(values), lsb))
+    return Counts(counts, lsb, "counts", _clipped(path, what, beyond, len(values), lsb))
 
 
 def _scaled(path, what, values, factor):
     """(int16 counts, largest rounding, remarks) of values times a factor."""
-    out, rounding = np.empty(values.shape, np.int16), 0.0
+    counts, rounding = np.empty(values.shape, np.int16), 0.0
     beyond = at = 0
     for block in _blocks(values):
         block = block * factor
         whole = np.rint(block)
         rounding = max(rounding, float(np.abs(block - whole).max()))
-        beyond += _clip(path, what, whole, out[at:at + len(block)], factor)
+        beyond += _clip(path, what, whole, counts[at:at + len(block)], factor)
         at += len(block)
-    return out, rounding, _clipped(path, what, beyond, len(values), factor)
+    return counts, rounding, _clipped(path, what, beyond, len(values), factor)
 
 
-def _clip(path, what, whole, out, lsb):
+def _clip(path, what, whole, counts, lsb):
     """Writes whole counts into out, +32768 as 32767; the number of these. BadFile for more."""
     low, high = float(whole.min()), float(whole.max())
     if low < -32768 or high > RAIL + 1:
         raise BadFile("%s: the %s reaches %.0f counts, expected at most 32767: is its LSB %g "
                       "right?" % (path, what, max(-low, high), lsb))
-    out[:] = np.minimum(whole, RAIL)
+    counts[:] = np.minimum(whole, RAIL)
     return int((whole > RAIL).sum())
 
 
@@ -182,16 +182,16 @@ def _clipped(path, what, beyond, rows, lsb):
 def _shaped(values, step):
     """int16 counts of values in steps, the rounding error of each carried over to the next, so
     that the sum of any rows is right to one step however coarse it is."""
-    out = np.empty(values.shape, np.int16)
+    shaped = np.empty(values.shape, np.int16)
     carry, at = np.zeros(values.shape[1]), 0
     for block in _blocks(values):
         total = np.cumsum(block / step, axis=0) + carry
         whole = np.rint(total)
         counts = np.diff(whole, axis=0, prepend=0.0)
-        out[at:at + len(block)] = np.clip(counts, -32768, RAIL)
+        shaped[at:at + len(block)] = np.clip(counts, -32768, RAIL)
         carry = total[-1] - whole[-1]
         at += len(block)
-    return out
+    return shaped
 
 
 def are_whole(values):
