@@ -20,8 +20,8 @@ QMC5883L, HMC5883L = (0x0D, 0x0D), (0x1E, 0x0A)
 
 def byte(ids, address, register):
     """The answer of an identification register, or None."""
-    one = ids.get((address, register))
-    return one[0] if isinstance(one, bytes) else None
+    answer = ids.get((address, register))
+    return answer[0] if isinstance(answer, bytes) else None
 
 
 def shared_address(ids):

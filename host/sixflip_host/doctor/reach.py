@@ -97,7 +97,7 @@ def busy(device):
 
 def holders(device, processes="/proc"):
     """["minicom (4711)"] of other processes that have the device open."""
-    found = []
+    holding = []
     real = os.path.realpath(device)
     for folder in Path(processes).glob("[0-9]*"):
         if int(folder.name) == os.getpid():
@@ -108,8 +108,8 @@ def holders(device, processes="/proc"):
         except OSError:         # another user's, or gone meanwhile
             continue
         if held:
-            found.append("%s (%s)" % (name, folder.name))
-    return found
+            holding.append("%s (%s)" % (name, folder.name))
+    return holding
 
 
 def micropython(link):

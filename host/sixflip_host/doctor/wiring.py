@@ -20,13 +20,13 @@ def judge(said):
     if "stopped" in said:
         return [fault("bus", "the firmware cannot open it: %s" % said["stopped"][0],
                       "sixflip provision --pins …, or --board …", True)]
-    found = settings(said) + lines(said)
-    if any(one.unreachable for one in found):
-        return found
-    found += chips(said)
+    findings = settings(said) + lines(said)
+    if any(one.unreachable for one in findings):
+        return findings
+    findings += chips(said)
     if "sensor" in said:
-        found += sensor(said) + clock(said) + gravity(said)
-    return found
+        findings += sensor(said) + clock(said) + gravity(said)
+    return findings
 
 
 def settings(said):
@@ -60,12 +60,12 @@ def lines(said):
 
 def _overruled(said, names):
     """A chip that answers says more of the bus than a line that was measured while idle."""
-    found = "%s read low with the board's own pulls, but the %s answers" % (
+    sentence = "%s read low with the board's own pulls, but the %s answers" % (
         names, said["sensor"][1])
     if "lost" in said or "selftest" in said and said["selftest"][6]:
-        return warning("lines", found, "transfers fail: its pull-ups are weak or missing; 4.7 kΩ "
-                       "from each line to 3.3 V")
-    return ok("lines", found + " and no transfer fails")
+        return warning("lines", sentence, "transfers fail: its pull-ups are weak or missing; 4.7 "
+                       "kΩ from each line to 3.3 V")
+    return ok("lines", sentence + " and no transfer fails")
 
 
 def chips(said):
@@ -90,65 +90,67 @@ def chips(said):
             if others else ""
         return [fault("chips", "nothing answers at %s%s" % (
             " ".join("0x%02x" % one for one in catalogued()), more), WIRES, True)]
-    found = shared_address(ids)
-    if not found:
+    findings = shared_address(ids)
+    if not findings:
         for address in catalogued():
-            found += at_address(ids, address)
-    found += magnetometers(ids)
-    if "no sensor" in said and not any(one.state == "fault" for one in found):
-        found.append(fault("chips", "; ".join(said["no sensor"][0]),
-                           "sixflip provision --sensor auto, or wire the sensor that is asked for",
-                           True))
-    return found
+            findings += at_address(ids, address)
+    findings += magnetometers(ids)
+    if "no sensor" in said and not any(one.state == "fault" for one in findings):
+        findings.append(fault("chips", "; ".join(said["no sensor"][0]),
+                              "sixflip provision --sensor auto, or wire the sensor that is asked "
+                              "for", True))
+    return findings
 
 
 def sensor(said):
     """What the firmware makes of it."""
     kind, name, _, _, _, _, report = said["sensor"]
-    found = [ok("sensor", "%s: %s" % (kind, name))]
+    findings = [ok("sensor", "%s: %s" % (kind, name))]
     for line in report:
         if "no gyro" in line:
-            found.append(warning("sensor", line, "a calibration without gyro assumes half turns"))
+            findings.append(warning("sensor", line,
+                                    "a calibration without gyro assumes half turns"))
     if "lost" in said:
-        found.append(fault("sensor", "answers, then is lost: %s" % said["lost"][0],
-                           "a loose wire or a weak supply; shorter wires; \"freq\": 100000 in "
-                           "sixflip.json"))
-    return found
+        findings.append(fault("sensor", "answers, then is lost: %s" % said["lost"][0],
+                              "a loose wire or a weak supply; shorter wires; \"freq\": 100000 in "
+                              "sixflip.json"))
+    return findings
 
 
 def clock(said):
     """Samples the chip makes by the board's clock, and samples the bus carries."""
-    found = []
+    findings = []
     for chip, made, us, nominal, asked in said.get("ready", ()):
         whose = "the %s" % chip
         if not made or not us:
-            found.append(fault("clock", "%s makes no new samples: its readings are frozen" % whose,
-                               "take its power away for some seconds; if that does not help, it "
-                               "is broken"))
+            findings.append(fault("clock",
+                                  "%s makes no new samples: its readings are frozen" % whose,
+                                  "take its power away for some seconds; if that does not help, "
+                                  "it is broken"))
         elif asked > ASKED_OFTEN * made:    # else a slow bus missed some
             off = made * 1e6 / us / nominal - 1
             words = "%s makes %.1f samples a second, %.4g are meant (%+.1f %%)" % (
                 whose, made * 1e6 / us, nominal, 100 * off)
-            found.append(ok("clock", words) if abs(off) <= CLOCK_OFF else warning(
+            findings.append(ok("clock", words) if abs(off) <= CLOCK_OFF else warning(
                 "clock", words, "its clock is off, as clones' are: timestamps come from the "
                 "board, so rates are right, but its filter and noise are not those of the data "
                 "sheet"))
     if "selftest" not in said:
-        return found
+        return findings
     fine, problems, reached, wanted, _, _, errors = said["selftest"]
     slow = [one for one in problems if one.startswith("too slow")]
     other = [one for one in problems if one not in slow]
     if slow:
-        found.append(fault("rate", "%.0f samples a second reached, %d are wanted" % (
+        findings.append(fault("rate", "%.0f samples a second reached, %d are wanted" % (
             reached, wanted), "a faster bus (\"freq\": 400000 in sixflip.json) or a lower "
             "\"rate_hz\""))
     if other:
-        found.append(fault("samples", "; ".join(other), "take the sensor's power away for some "
-                           "seconds; if that does not help, it is broken"))
+        findings.append(fault("samples", "; ".join(other), "take the sensor's power away for some "
+                              "seconds; if that does not help, it is broken"))
     if errors:
-        found.append(warning("samples", "%d transfers failed in the self-test" % errors,
-                             "shorter wires, a better supply, or \"freq\": 100000"))
-    return found or [ok("rate", "%.0f samples a second" % reached)]
+        findings.append(warning("samples", "%d transfers failed in the self-test" % errors,
+                                "shorter wires, a better supply, or \"freq\": 100000"))
+    return findings or [ok("rate", "%.0f samples a second" % reached)]
 
 
 def gravity(said):

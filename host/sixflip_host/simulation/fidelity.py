@@ -21,16 +21,16 @@ TAUS_S = (0.1, 0.5, 1.0, 3.0)
 
 def rests(place):
     """{(name, kind): (counts (n, 3) at rest, LSB, rate)} of the recordings."""
-    found = {}
+    recorded = {}
     still = recordings.suarez(place)
-    found["suarez", "accel"] = still[:, :3], 16384.0, 100.0
-    found["suarez", "gyro"] = still[:, 3:], 131.0, 100.0
+    recorded["suarez", "accel"] = still[:, :3], 16384.0, 100.0
+    recorded["suarez", "gyro"] = still[:, 3:], 131.0, 100.0
     counts, _, rate = recordings.tree(place, "non_event_far_new_sd_v10")
-    found["tree", "accel"] = counts, 16384.0, rate
+    recorded["tree", "accel"] = counts, 16384.0, rate
     accel, gyro = recordings.xsens(place)
-    found["xsens", "accel"] = accel[100:5000], 415.0 * replica.STANDARD_G, 100.0
-    found["xsens", "gyro"] = gyro[100:5000], 4778.0 * np.pi / 180.0, 100.0
-    return found
+    recorded["xsens", "accel"] = accel[100:5000], 415.0 * replica.STANDARD_G, 100.0
+    recorded["xsens", "gyro"] = gyro[100:5000], 4778.0 * np.pi / 180.0, 100.0
+    return recorded
 
 
 def simulated(kind, counts, lsb, rate):
@@ -74,15 +74,15 @@ def all_rows(place):
     return rows + fidelity_effects.rows(place)
 
 
-def draw(place, out):
+def draw(place, path):
     """Allan deviation and spectrum of every rest, real against simulated: one PNG."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
-    found = rests(place)
-    figure = Figure(figsize=(3.4 * len(found), 6.4), layout="constrained")
+    recorded = rests(place)
+    figure = Figure(figsize=(3.4 * len(recorded), 6.4), layout="constrained")
     FigureCanvasAgg(figure)
-    axes = figure.subplots(2, len(found))
-    for column, ((name, kind), (counts, lsb, rate)) in enumerate(found.items()):
+    axes = figure.subplots(2, len(recorded))
+    for column, ((name, kind), (counts, lsb, rate)) in enumerate(recorded.items()):
         unit, per = ("mg", lsb / 1000.0) if kind == "accel" else ("deg/s", lsb)
         for words, data, style in (("real", counts[len(counts) // 2:], "C0-"),
                                    ("simulated", simulated(kind, counts, lsb, rate), "C1--")):
@@ -98,7 +98,7 @@ def draw(place, out):
         axes[1, column].set_xlabel("frequency, Hz")
         axes[1, column].set_ylabel(unit + "/√Hz")
         axes[0, column].legend()
-    save(figure, out)
+    save(figure, path)
 
 
 def main(argv=None):
@@ -114,11 +114,12 @@ def main(argv=None):
     except SixflipError as error:
         print("fidelity: %s" % error, file=sys.stderr)
         return error.exit_code
-    out = console()
-    out.print(table("Simulator against real recordings, judged on the half it was not fitted to",
-                    ("quantity", "unit", "real", "simulated", "ratio"),
-                    [(what, unit, "%.4g" % real, "%.4g" % twin, ratio(real, twin))
-                     for what, unit, real, twin in rows]))
+    screen = console()
+    screen.print(table("Simulator against real recordings, judged on the half it was not fitted "
+                       "to",
+                       ("quantity", "unit", "real", "simulated", "ratio"),
+                       [(what, unit, "%.4g" % real, "%.4g" % twin, ratio(real, twin))
+                        for what, unit, real, twin in rows]))
     print("A chainsaw does not saw evenly: its rms differs from half to half of the recording.")
     print("plots: %s" % (Path(args.out) / "fidelity.png"))
     return 0

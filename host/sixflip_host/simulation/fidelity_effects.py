@@ -32,18 +32,18 @@ def thermal(place):
     slope = (means[2] - means[0]) / (temps[2] - temps[0]) / (LSB_G / 1000.0)  # mg/degC
     spec = dict(zip("xyz", slope.tolist()), effect="thermal_bias", reference_c=float(temps[0]))
     noise = replica.Noise(files[0][0], LSB_G / 1000.0, files[0][2])
-    again = []
+    simulated = []
     for number, t in enumerate(temps):
         scene = replica.HeldScene(means[0] / LSB_G * STANDARD_G, 1e9, float(t))
         model = replica.accel_model(scene, replica.UNIT, [0.0] * 3, noise.white, [spec],
                                     number + 1)
-        again.append(replica.counted(model, "accel", LSB_G, 333.0, 3996).mean(axis=0))
-    again = np.array(again)
-    refit = np.polyfit(temps, again[:, 2], 1)[0]
+        simulated.append(replica.counted(model, "accel", LSB_G, 333.0, 3996).mean(axis=0))
+    simulated = np.array(simulated)
+    refit = np.polyfit(temps, simulated[:, 2], 1)[0]
     real = np.polyfit(temps, means[:, 2], 1)[0]
     return [("tree Z over temperature", "counts/degC", float(real), float(refit)),
             ("tree Z at the temperature left out", "counts", float(means[1, 2]),
-             float(again[1, 2]))]
+             float(simulated[1, 2]))]
 
 
 def vibration(place):
@@ -89,8 +89,8 @@ def xsens(place):
                                 noise.effects("accel", 1), 1)
     counts = replica.counted(model, "accel", LSB_ACCEL * STANDARD_G, 100.0, n)
     twin = counts.reshape(len(true), -1, 3).mean(axis=1) / LSB_ACCEL
-    found = [("xsens misalignment", "mg", misalignment(poses), misalignment(twin))]
-    return found + g_sensitivity(scene, true, rates, gyro, n)
+    rows = [("xsens misalignment", "mg", misalignment(poses), misalignment(twin))]
+    return rows + g_sensitivity(scene, true, rates, gyro, n)
 
 
 def misalignment(poses):
@@ -117,8 +117,8 @@ def g_sensitivity(scene, true, rates, gyro, n):
     model = replica.gyro_model(scene, [0.0] * 3, noise.white,
                                [spec] + noise.effects("gyro", 1), 2)
     counts = replica.counted(model, "gyro", lsb, 100.0, n)
-    again = regressed(counts.reshape(len(true), -1, 3).mean(axis=1) / lsb)
+    refitted = regressed(counts.reshape(len(true), -1, 3).mean(axis=1) / lsb)
     return [("xsens g-sensitivity, largest", "deg/s/g", float(np.abs(matrix).max()),
-             float(np.abs(again).max())),
+             float(np.abs(refitted).max())),
             ("xsens g-sensitivity, norm", "deg/s/g", float(np.linalg.norm(matrix)),
-             float(np.linalg.norm(again)))]
+             float(np.linalg.norm(refitted)))]

@@ -15,22 +15,22 @@ class MovingScene:
     def __init__(self, g=STANDARD_G, lever_arm=None):
         self.g, self.lever_arm = g, lever_arm
 
-    def fill(self, found, t_us):
+    def fill(self, motion, t_us):
         """Fill a scene_arrays.Motion."""
         t = t_us * 1e-6
         attitude, rate, acceleration, linear = self.at(t)
-        found.attitude[:] = np.stack([attitude[i, j] for i in range(3) for j in range(3)])
+        motion.attitude[:] = np.stack([attitude[i, j] for i in range(3) for j in range(3)])
         # f = R^T (a + g up), w and its derivative in the body
         world = linear + np.array([[0.0], [0.0], [self.g]])
-        found.f[:] = np.einsum("ijn,in->jn", attitude, world)
-        found.w[:] = np.einsum("ijn,in->jn", attitude, rate)
-        found.alpha[:] = np.einsum("ijn,in->jn", attitude, acceleration)
+        motion.f[:] = np.einsum("ijn,in->jn", attitude, world)
+        motion.w[:] = np.einsum("ijn,in->jn", attitude, rate)
+        motion.alpha[:] = np.einsum("ijn,in->jn", attitude, acceleration)
         if self.lever_arm is not None:
             r = np.array(self.lever_arm)[:, None]
-            found.f += np.cross(found.alpha, r, axis=0)
-            found.f += np.cross(found.w, np.cross(found.w, r, axis=0), axis=0)
-        found.before[:] = found.f[:, :1]
-        found.resting[:] = np.abs(found.w).max(axis=0) < 1e-9
+            motion.f += np.cross(motion.alpha, r, axis=0)
+            motion.f += np.cross(motion.w, np.cross(motion.w, r, axis=0), axis=0)
+        motion.before[:] = motion.f[:, :1]
+        motion.resting[:] = np.abs(motion.w).max(axis=0) < 1e-9
 
 
 class Turntable(MovingScene):
@@ -123,5 +123,5 @@ def start(t, seconds=5.0):
 def yawed(angle):
     """(3, 3, n): body to world, turned about the vertical."""
     c, s = np.cos(angle), np.sin(angle)
-    zero, one = np.zeros_like(angle), np.ones_like(angle)
-    return np.array([[c, -s, zero], [s, c, zero], [zero, zero, one]])
+    zero, ones = np.zeros_like(angle), np.ones_like(angle)
+    return np.array([[c, -s, zero], [s, c, zero], [zero, zero, ones]])

@@ -22,13 +22,13 @@ class HeldScene:
         self.forces = np.atleast_2d(forces)
         self.seconds, self.temperature_c = seconds, temperature_c
 
-    def fill(self, found, t_us):
+    def fill(self, motion, t_us):
         pose = np.minimum((t_us * 1e-6 / self.seconds).astype(int), len(self.forces) - 1)
-        found.f[:] = self.forces[pose].T
-        found.before[:] = self.forces[np.maximum(pose - 1, 0)].T
-        found.attitude[6:9] = found.f / np.linalg.norm(found.f, axis=0)
-        found.resting[:] = True
-        found.since[:] = t_us * 1e-6 - pose * self.seconds
+        motion.f[:] = self.forces[pose].T
+        motion.before[:] = self.forces[np.maximum(pose - 1, 0)].T
+        motion.attitude[6:9] = motion.f / np.linalg.norm(motion.f, axis=0)
+        motion.resting[:] = True
+        motion.since[:] = t_us * 1e-6 - pose * self.seconds
 
 
 class Noise:

@@ -25,10 +25,10 @@ class Motion:
 def motion(scene, t_us):
     """Motion of a sixflip_sim.scene.Scene at t_us (n,), not decreasing, in us."""
     t_us = np.asarray(t_us, dtype=float)
-    found = Motion(len(t_us))
+    moved = Motion(len(t_us))
     if hasattr(scene, "fill"):  # a scene of arrays by itself, see motion_scenes.py
-        scene.fill(found, t_us)
-        return found
+        scene.fill(moved, t_us)
+        return moved
     segments = scene.segments
     ends = np.array([s.t1 for s in segments[:-1]], dtype=float)
     held = np.searchsorted(ends, t_us, side="right")
@@ -37,18 +37,18 @@ def motion(scene, t_us):
         part = slice(edges[i], edges[i + 1])
         if part.start == part.stop:
             continue
-        found.before[:, part] = np.array(scene.previous_force(i))[:, None]
+        moved.before[:, part] = np.array(scene.previous_force(i))[:, None]
         if segment.kind == REST:
-            found.attitude[:, part] = np.array(segment.start)[:, None]
-            found.f[:, part] = np.array(scene.rest_force(i))[:, None]
-            found.resting[part] = True
-            found.since[part] = (t_us[part] - segment.t0) * 1e-6
+            moved.attitude[:, part] = np.array(segment.start)[:, None]
+            moved.f[:, part] = np.array(scene.rest_force(i))[:, None]
+            moved.resting[part] = True
+            moved.since[part] = (t_us[part] - segment.t0) * 1e-6
         else:
-            _turn(found, part, segment, t_us[part], scene)
-    return found
+            _turn(moved, part, segment, t_us[part], scene)
+    return moved
 
 
-def _turn(found, part, segment, t_us, scene):
+def _turn(moved, part, segment, t_us, scene):
     """scene.Scene.motion within one moving segment."""
     seconds = (segment.t1 - segment.t0) * 1e-6
     tau = (t_us - segment.t0) * 1e-6 / seconds
@@ -63,7 +63,7 @@ def _turn(found, part, segment, t_us, scene):
         if scene.tremor:
             phase = 2.0 * math.pi * TREMOR_HZ * tau * seconds
             up = up + scene.tremor * np.array([math.sin(x) for x in phase.tolist()])
-    found.attitude[:, part] = r
+    moved.attitude[:, part] = r
     f = (r[6] * up, r[7] * up, r[8] * up)
     w = tuple(a * speed for a in axis)
     alpha = tuple(a * gain for a in axis)
@@ -72,7 +72,7 @@ def _turn(found, part, segment, t_us, scene):
         a = rotation.cross(alpha, scene.lever_arm)
         b = rotation.cross(w, rotation.cross(w, scene.lever_arm))
         f = tuple(f[i] + a[i] + b[i] for i in range(3))
-    found.f[:, part], found.w[:, part], found.alpha[:, part] = f, w, alpha
+    moved.f[:, part], moved.w[:, part], moved.alpha[:, part] = f, w, alpha
 
 
 def _about(axis, angle):
@@ -95,12 +95,12 @@ def _product(a, b):
 
 def moment(scene, k, t, look_us):
     """sensor_model.Moment with arrays: samples k, device time t (s), looked at look_us."""
-    found = motion(scene, look_us)
+    moved = motion(scene, look_us)
     m = Moment()
     m.k, m.t = k, t
-    m.attitude = tuple(found.attitude)
-    m.f, m.w, m.alpha = list(found.f), list(found.w), tuple(found.alpha)
-    m.previous_f, m.since_move, m.resting = tuple(found.before), found.since, found.resting
+    m.attitude = tuple(moved.attitude)
+    m.f, m.w, m.alpha = list(moved.f), list(moved.w), tuple(moved.alpha)
+    m.previous_f, m.since_move, m.resting = tuple(moved.before), moved.since, moved.resting
     warm = scene.warm_c
     if warm:
         fading = np.exp(-np.asarray(look_us) * 1e-6 / scene.warm_tau_s)

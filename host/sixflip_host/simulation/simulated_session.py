@@ -29,20 +29,20 @@ def session(plan, number):
     imu.configure(plan.rate_hz)
     outputs = {o.kind: o for o in simulator.outputs_of(world.chips)}
     t_us, look_us = polls(plan, end_us)
-    found = {}
+    counts = {}
     for kind, output in outputs.items():
         k = simulator.polled(output, look_us)
-        found[kind] = simulator.counts(world.model, output, k).astype(np.int16)
+        counts[kind] = simulator.counts(world.model, output, k).astype(np.int16)
         if kind != "temp":
-            _not_saturated(found[kind], output, kind)
+            _not_saturated(counts[kind], output, kind)
     meta = dict(imu.metadata())
     meta["g"] = spec.get("g", STANDARD_G)
     meta["simulated"] = {"seed": plan.seed, "session": number, "scene": plan.scene,
                          "effects": plan.effects}
     pose = labels(world, look_us, bool(plan.moving))
-    capture = Capture(meta, t_us, found["accel"].T,
-                      found["gyro"].T if "gyro" in found else None,
-                      found["temp"][0] if "temp" in found else None, None, pose)
+    capture = Capture(meta, t_us, counts["accel"].T,
+                      counts["gyro"].T if "gyro" in counts else None,
+                      counts["temp"][0] if "temp" in counts else None, None, pose)
     return without_lost(capture, plan.effects, spec["seed"])
 
 
@@ -52,13 +52,13 @@ def capture_of(world, rate_hz=100):
     imu.configure(rate_hz)
     n = int(world.scene.end_us() * 1e-6 * rate_hz)
     t_us = np.rint(np.arange(n) * (1e6 / rate_hz)).astype(np.int64)
-    found = {}
+    counts = {}
     for output in simulator.outputs_of(world.chips):
         k = simulator.polled(output, t_us)
-        found[output.kind] = simulator.counts(world.model, output, k).astype(np.int16)
+        counts[output.kind] = simulator.counts(world.model, output, k).astype(np.int16)
     meta = dict(imu.metadata(), g=world.scene.g)
-    return Capture(meta, t_us, found["accel"].T, found["gyro"].T if "gyro" in found else None,
-                   found["temp"][0] if "temp" in found else None, None,
+    return Capture(meta, t_us, counts["accel"].T, counts["gyro"].T if "gyro" in counts else None,
+                   counts["temp"][0] if "temp" in counts else None, None,
                    labels(world, t_us, False))
 
 

@@ -44,7 +44,7 @@ class _Listener:
 
 def outputs_of(chips):
     """Outputs of configured simulated chips, by asking each for a sample."""
-    found = []
+    outputs = []
     for chip in chips:
         if not hasattr(chip, "model"):
             continue
@@ -54,8 +54,8 @@ def outputs_of(chips):
             chip.measure(0, 0)
         finally:
             chip.model = model
-        found += listener.outputs
-    return found
+        outputs += listener.outputs
+    return outputs
 
 
 def vectorise(model):

@@ -35,27 +35,27 @@ def levels(board):
     if board.scl_pulse is None or scl is None:
         return
     from machine import Pin
-    found = []
+    read = []
     for pull in (getattr(Pin, "PULL_DOWN", None), Pin.PULL_UP):
         for name in (sda, scl):
             pin = Pin(name, Pin.IN, pull)
             board.sleep_us(200)
-            found.append(pin.value())
-    tell("lines", str(sda), str(scl), *found)
+            read.append(pin.value())
+    tell("lines", str(sda), str(scl), *read)
     board.reopen_i2c()
 
 
 def answers(i2c):
     """("ids", {(address, register): bytes or errno}); asked again when there was an error."""
-    found = {}
+    ids = {}
     for address, register, n in ASKED:
         for _ in range(TRIES):
             try:
-                found[address, register] = bytes(i2c.readfrom_mem(address, register, n))
+                ids[address, register] = bytes(i2c.readfrom_mem(address, register, n))
                 break
             except OSError as e:
-                found[address, register] = e.args[0] if e.args else 0
-    tell("ids", found)
+                ids[address, register] = e.args[0] if e.args else 0
+    tell("ids", ids)
 
 
 def scanned(i2c):
