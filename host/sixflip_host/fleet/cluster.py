@@ -13,11 +13,9 @@ import socket
 from dataclasses import dataclass
 from urllib.parse import urlparse
 
-from sixflip import __version__
-
 from .. import optional
 from ..errors import BadFile, CheckFailed, UsageError
-from . import analysis
+from . import analysis, worker_versions
 
 AHEAD = 3  # tasks a worker may have waiting: it never idles, and little is lost with it
 WAIT_S = 20.0  # for a scheduler to answer
@@ -101,9 +99,10 @@ def _client(distributed, scheduler):
             ImportError) as error:
         raise CheckFailed("--scheduler %s: no scheduler of Dask %s answers there (%s): expected "
                           "one of the same version" % (
-                              scheduler, distributed.__version__, _short(error))) from None
-    _same_versions(distributed, scheduler, versions)
-    _same_sixflip(client, scheduler)
+                              scheduler, distributed.__version__,
+                              worker_versions.in_short(error))) from None
+    worker_versions.same_dask(distributed, scheduler, versions)
+    worker_versions.same_sixflip(client, scheduler)
     return client
 
 
@@ -123,45 +122,6 @@ def _reachable(address):
     except OSError as error:
         raise CheckFailed("--scheduler %s: nobody answers there: %s" % (
             address, error.strerror or error)) from None
-
-
-def _same_versions(distributed, scheduler, versions):
-    """CheckFailed where the scheduler or a worker is of another Dask or Python."""
-    here = versions["client"]["packages"]
-    others = [("the scheduler", versions["scheduler"])] + [
-        ("a worker", one) for one in versions["workers"].values()]
-    for who, reported in others:
-        for package in ("distributed", "dask", "python"):
-            there = (reported or {}).get("packages", {}).get(package)
-            mine = here.get(package)
-            if package == "python":
-                there, mine = (".".join(str(v).split(".")[:2]) for v in (there, mine))
-            if there != mine:
-                raise CheckFailed("--scheduler %s: %s is of %s %s, this is %s: expected the same "
-                                  "version on both sides" % (scheduler, who, package, there, mine))
-
-
-def _same_sixflip(client, scheduler):
-    """CheckFailed where a worker has no sixflip, or another."""
-    try:
-        running = client.run(_own_version)
-    except Exception as error:  # whatever a worker without sixflip raises
-        raise CheckFailed("--scheduler %s: a worker has no sixflip %s (%s): install it there" % (
-            scheduler, __version__, _short(error))) from None
-    for worker, version in running.items():
-        if version != analysis.VERSION:
-            raise CheckFailed("--scheduler %s: the worker %s has row layout %s, this is %s: "
-                              "expected the same version on both sides" % (
-                                  scheduler, worker, version, analysis.VERSION))
-
-
-def _own_version():
-    return analysis.VERSION
-
-
-def _short(error):
-    words = (str(error) or type(error).__name__).split("\n")[0]
-    return words.rpartition("cancelled for reason: ")[2].rstrip(".")[:120]
 
 
 def rows_of(boards, options):
@@ -212,7 +172,7 @@ def _result(future, jobs, task):
         raise
     except Exception as error:
         return [task.failed(one, task.settings, "not done, its task failed on %d workers (%s)" % (
-            RETRIES + 1, _short(error))) for one in jobs]
+            RETRIES + 1, worker_versions.in_short(error))) for one in jobs]
 
 
 def _next(pool, client, target, so_far):
@@ -263,4 +223,4 @@ def _where(target):
 
 def _lost(target, so_far, error):
     return SchedulerLost("%s is lost (%s): %s, the same command goes on from there" % (
-        _where(target), _short(error), so_far()))
+        _where(target), worker_versions.in_short(error), so_far()))

@@ -8,6 +8,7 @@ import pytest
 from sixflip_host.errors import BadFile
 from sixflip_host.fleet import (
     answer,
+    effect_blocks,
     effects,
     hierarchy,
     judgement,
@@ -149,10 +150,10 @@ def test_missing_values_are_no_boards():
 def test_many_boards_do_not_make_seen_what_none_of_them_tells():
     names = effects.NAMES["accel"]
     for number in (200, 100_000):
-        typical = members._Effects("accel", "mpu6050", np.eye(len(names)), 1)
+        typical = effect_blocks.EffectBlocks("accel", "mpu6050", np.eye(len(names)), 1)
         told = np.where([".cubic." in name for name in names], 1.0 / 50.0, 1.0 / 5.0)
-        total = number * np.diag(told ** 2 * typical.floor * members.TIMES_TYPICAL ** 2)
-        seen = members._Effects("accel", "mpu6050", total, number)
+        total = number * np.diag(told ** 2 * typical.floor * effect_blocks.TIMES_TYPICAL ** 2)
+        seen = effect_blocks.EffectBlocks("accel", "mpu6050", total, number)
         assert "cubic of the accel" in seen.unseen
         assert "accel.thermal_bias" in [block.name for block in seen.blocks]
 

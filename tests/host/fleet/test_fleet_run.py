@@ -8,7 +8,7 @@ import pytest
 
 from sixflip_host import cli
 from sixflip_host.errors import BadFile, CheckFailed, UsageError
-from sixflip_host.fleet import analysis, cluster, dataset, run_fleet, sources
+from sixflip_host.fleet import analysis, cluster, dataset, run_fleet, sources, worker_versions
 
 HERE = cluster.Target(None, 1)
 
@@ -168,12 +168,12 @@ def test_another_version_on_the_other_side_is_one_sentence():
     def about(version, python="3.11.2.final.0"):
         return {"packages": {"dask": version, "distributed": version, "python": python}}
     here = about("1.0")
-    cluster._same_versions(distributed, "tcp://x:1", {
+    worker_versions.same_dask(distributed, "tcp://x:1", {
         "client": here, "scheduler": about("1.0", "3.11.9.final.0"), "workers": {"w": here}})
     for scheduler, worker, said in (("0.9", "1.0", "the scheduler is of distributed 0.9"),
                                     ("1.0", "0.9", "a worker is of distributed 0.9")):
         with pytest.raises(CheckFailed, match=said):
-            cluster._same_versions(distributed, "tcp://x:1", {
+            worker_versions.same_dask(distributed, "tcp://x:1", {
                 "client": here, "scheduler": about(scheduler), "workers": {"w": about(worker)}})
 
 
