@@ -63,7 +63,7 @@ class SamplesJudged:
 def of(sessions, without=(), damages=()):
     """SamplesJudged of all sessions; without: effects left out of the library; damages: those
     that were put right before."""
-    rings = ringing.found(sessions)
+    rings = ringing.ringing_axes(sessions)
     findings = [f for f in of_registers(sessions) + spectral_lines.findings(
         sessions, [(sensor, axis) for sensor, axis, _, _ in rings]) if f.effect not in without]
     if any(d.kind == held_values.NOT_READ for d in damages):
@@ -76,7 +76,7 @@ def of(sessions, without=(), damages=()):
     jumpy = {f.sensor for f in findings if f.effect in ("torn_reads", "dead_band")}
     sessions = [_without_bands(s, findings) for s in sessions]
     without_spikes, wild = noise_bursts.without_spikes(sessions, leaping)
-    unsteady = [one for one in [*noise_bursts.found(without_spikes), *wild]
+    unsteady = [one for one in [*noise_bursts.unsteady(without_spikes), *wild]
                 if one[0] not in noisy]
     unsteady += torn_reads.jumps(sessions, jumpy)
     remarks = [one.words for one in damages]

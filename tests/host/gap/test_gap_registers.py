@@ -218,7 +218,7 @@ def test_bursts_of_noise_are_no_vibration():
             capture.accel[start:start + 150] += np.rint(
                 120.0 * generator.standard_t(1.8, (150, 3))).clip(-4000, 4000).astype(np.int16)
     found = diagnosed(two)
-    assert {s for s, _, _ in noise_bursts.found(found.sessions)} == {"accel"}
+    assert {s for s, _, _ in noise_bursts.unsteady(found.sessions)} == {"accel"}
     assert "vibration" not in [f.effect for f in found.findings]
     assert found.verdict in ("unexplained", "partly explained")
     assert ("accel", "noise") in [(w.sensor, w.domain) for w in found.where]
@@ -232,7 +232,7 @@ def test_a_table_that_rings_under_a_box_put_down_is_no_burst_of_noise():
             t = np.arange(end - first) / session.rate - settled
             ring = 200.0 * np.exp(-t / 0.28) * np.sin(8.4 * np.pi * t) * (t >= 0.0)
             session.capture.accel[first:end] += np.rint(ring).astype(np.int16)[:, None]
-        said = [sensor for sensor, _, _ in noise_bursts.found([session])]
+        said = [sensor for sensor, _, _ in noise_bursts.unsteady([session])]
         assert said == (["accel"] if settled else [])
 
 

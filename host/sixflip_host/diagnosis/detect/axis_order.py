@@ -59,7 +59,7 @@ def order_nats(means, axes, order):
     free = np.linalg.lstsq(axes, means, rcond=None)[0]
     left = [float(((means - predicted) ** 2).sum()) for predicted in (
         axes @ order.T, axes, axes @ free)]
-    named, plain, any_matrix = (-0.5 * one / OFF_G ** 2 for one in left)
+    named, plain, any_matrix = (-0.5 * squares / OFF_G ** 2 for squares in left)
     nameless = max(plain, any_matrix - 4.5 * math.log(means.size))
     return named - math.log(len(SIGNED)) - nameless
 
@@ -72,10 +72,10 @@ def nearest(matrix):
 def sources(order):
     """{axis: number of the axis that it reads, from 1, with its sign} of a signed permutation,
     without those that read their own."""
-    found = {}
+    swapped_axes = {}
     for i, row in enumerate(order):
         source = int(np.abs(row).argmax())
         signed = int(row[source]) * (source + 1)
         if signed != i + 1:
-            found["xyz"[i]] = signed
-    return found
+            swapped_axes["xyz"[i]] = signed
+    return swapped_axes

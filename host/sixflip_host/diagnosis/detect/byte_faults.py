@@ -92,12 +92,12 @@ def _carried(y, lost):
 
 
 def _onward(y, lost):
-    out, level = y.tolist(), 0
+    counts, level = y.tolist(), 0
     for k, alone in enumerate(lost.tolist()):
         if alone:
-            out[k] += 256 * round((level - out[k]) / 256)
-        level = out[k]
-    return np.array(out, np.int64)
+            counts[k] += 256 * round((level - counts[k]) / 256)
+        level = counts[k]
+    return np.array(counts, np.int64)
 
 
 def _or_ed(y):
@@ -161,7 +161,7 @@ RULES = [
 def repaired(captures):
     """([(name, Capture)] with the bytes put right, [Damage]): a recording is looked at further as
     it was meant. The captures given are not changed."""
-    out, found = [], {}
+    mended_captures, faults = [], {}
     for name, capture in captures:
         mended = copy.copy(capture)
         for sensor in ("accel", "gyro"):
@@ -173,15 +173,15 @@ def repaired(captures):
                 if fault is None:
                     continue
                 kind, words, back, nats = fault
-                found.setdefault((kind, sensor, words), []).append(("xyz"[axis], nats))
+                faults.setdefault((kind, sensor, words), []).append(("xyz"[axis], nats))
                 values = np.array(getattr(mended, sensor))
                 values[:, axis] = np.clip(back(counts[:, axis].astype(np.int64)), -RAIL - 1, RAIL)
                 setattr(mended, sensor, values)
-        out.append((name, mended))
-    return out, [Damage(kind, sensor, axes, "amplitude", "the %s of the %s: %s" % (
+        mended_captures.append((name, mended))
+    return mended_captures, [Damage(kind, sensor, axes, "amplitude", "the %s of the %s: %s" % (
         ", ".join(axes) + (" axes" if len(axes) > 1 else " axis"), SENSORS[sensor], words),
         sum(nats for _, nats in seen))
-        for (kind, sensor, words), seen in found.items()
+        for (kind, sensor, words), seen in faults.items()
         for axes in [tuple(sorted({letter for letter, _ in seen}))]]
 
 

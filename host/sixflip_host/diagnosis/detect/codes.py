@@ -25,12 +25,12 @@ ALONE, SELDOM = 10.0, 0.01
 def step_nats(counts):
     """(3,) log likelihood ratio (nats) of every code lying on a grid of steps: without one each
     code that appears lies there with a chance of one in the width of a step."""
-    out = []
+    nats = []
     for column, step in zip(counts.T, steps(counts)):
         values = codes(column)
         number = int((np.abs(values) < RAIL).sum())
-        out.append((number - 1) * math.log(step) - math.log(STEPS_TRIED) if step > 1 else 0.0)
-    return np.array(out)
+        nats.append((number - 1) * math.log(step) - math.log(STEPS_TRIED) if step > 1 else 0.0)
+    return np.array(nats)
 
 
 def distinct(counts):
@@ -47,20 +47,20 @@ def band_nats(counts):
     """(3,) log likelihood ratio (nats) of readings near 0 being 0: how often the readings just
     outside of the band would have gone inside (Poisson), and how much more often 0 is read than
     a code beside it; where no code is missing that alone. A run of samples counts once."""
-    out = []
+    nats = []
     for column in counts.T:
         size = np.abs(column.astype(np.int64))
         least = int(size[size > 0].min()) if size.any() else 0
         step = max(1, steps(column[:, None])[0], spacing(size, least)) if least else 1
         if least <= step:
-            out.append(_flat_nats(column))
+            nats.append(_flat_nats(column))
             continue
         beside = _runs((size > 0) & (size < 2 * least))
         missed = beside * (1.0 - step / least)
         expected, zeros = max(beside * step / least, 1e-3), _runs(size == 0)
         piled = zeros * math.log(max(zeros / expected, 1.0)) - max(zeros - expected, 0.0)
-        out.append(missed + piled - math.log(len(codes(size))) if zeros else 0.0)
-    return np.array(out)
+        nats.append(missed + piled - math.log(len(codes(size))) if zeros else 0.0)
+    return np.array(nats)
 
 
 def _flat_nats(column):

@@ -34,7 +34,7 @@ def of_samples(x, seen=None, lost=None):
     x = x - np.median(x)
     keep = slice(None) if seen is None else seen[2:]
     lost = np.zeros(len(x) - 2, bool)[keep] if lost is None else lost[2:][keep]
-    return max((_unforeseen(rest[keep], lost) for rest in _remains(x)), key=lambda one: one[0])[1]
+    return max((_unforeseen(rest[keep], lost) for rest in _remains(x)), key=lambda fit: fit[0])[1]
 
 
 def coarse(x):
@@ -102,9 +102,9 @@ def _unforeseen(rest, lost):
                              np.bincount(page, minlength=len(residue))])
 
     def density(freedom, width):
-        def of(r):
+        def at(r):
             return student(r / width, freedom) / width
-        return np.concatenate([of(size), of(pages).sum(axis=1)])
+        return np.concatenate([at(size), at(pages).sum(axis=1)])
 
     evenly = np.concatenate([np.full(len(size), 1.0 / EVENLY),
                              np.full(len(residue), 2.0 * PAGES / EVENLY)])
@@ -116,10 +116,10 @@ def _unforeseen(rest, lost):
             for other in [evenly, *(density(5.0, times * width) for times in WIDER)]:
                 mixed = np.log(np.outer(1.0 - SHARES, sound) + np.outer(SHARES, other))
                 sums = mixed @ number
-                best = max(best, (float(sums.max()), mixed[sums.argmax()]), key=lambda one: one[0])
-    out = np.zeros(len(rest))
-    out[known], out[alone] = best[1][place], best[1][len(size) + page]
-    return best[0], out
+                best = max(best, (float(sums.max()), mixed[sums.argmax()]), key=lambda mix: mix[0])
+    likelihoods = np.zeros(len(rest))
+    likelihoods[known], likelihoods[alone] = best[1][place], best[1][len(size) + page]
+    return best[0], likelihoods
 
 
 def _counted(size):

@@ -50,18 +50,18 @@ def of_columns(columns):
     """Band of one axis, columns (n,) of counts of all sessions: what is missing about 0 beyond
     what seems to be about levels where no band can be, as far as the motion goes to and fro."""
     columns = [column.astype(np.int64) for column in columns]
-    found = _about(columns, 0)
-    if not found.number or found.counts <= 0.0:
+    zero = _about(columns, 0)
+    if not zero.number or zero.counts <= 0.0:
         return NOTHING
     every = np.concatenate(columns)
     levels = {int(level) for level in np.quantile(every, LEVELS)
-              if abs(level) > APART * (found.counts + found.error)}
-    others = [one for one in (_about(columns, level) for level in levels) if one.number]
+              if abs(level) > APART * (zero.counts + zero.error)}
+    others = [band for band in (_about(columns, level) for level in levels) if band.number]
     if not others:
         return NOTHING
-    usual = float(np.median([one.counts for one in others]))
-    error = float(np.median([one.error for one in others]))
-    return Band(found.counts - max(usual, 0.0), float(np.hypot(found.error, error)), found.number)
+    usual = float(np.median([band.counts for band in others]))
+    error = float(np.median([band.error for band in others]))
+    return Band(zero.counts - max(usual, 0.0), float(np.hypot(zero.error, error)), zero.number)
 
 
 def _about(columns, level):

@@ -97,8 +97,8 @@ def present(score):
     return score >= odds.COST + odds.PRESENT
 
 
-def damages(found):
+def damages(recording_damages):
     """[Damage] as a list of dictionaries for --json."""
-    return [{"kind": one.kind, "sensor": one.sensor, "axes": list(one.axes),
-             "domain": one.domain, "score_nats": round(min(one.score, 1e6), 2),
-             "value": dict(one.value), "words": one.words} for one in found]
+    return [{"kind": damage.kind, "sensor": damage.sensor, "axes": list(damage.axes),
+             "domain": damage.domain, "score_nats": round(min(damage.score, 1e6), 2),
+             "value": dict(damage.value), "words": damage.words} for damage in recording_damages]

@@ -28,7 +28,7 @@ TIMES = {2: "twice", 3: "three times", 4: "four times"}
 
 def findings(sessions):
     """[Damage] of sensors that hold their values."""
-    found = []
+    damages = []
     for sensor, words in SENSORS.items():
         columns = [getattr(s.capture, sensor) for s in sessions]
         if any(c is None or len(c) < FEWEST for c in columns):
@@ -43,32 +43,32 @@ def findings(sessions):
         if share < HELD:
             said = "about %.0f rows of the %s are the row before once more: read again" % (
                 held, words)
-            found.append(Damage("repeats", sensor, (), "timing", said, nats,
-                                {"rows": round(held)}))
+            damages.append(Damage("repeats", sensor, (), "timing", said, nats,
+                                  {"rows": round(held)}))
             continue
         times = 1.0 / (1.0 - min(share, 0.999))
         whole = TIMES.get(round(times)) if abs(times - round(times)) < 0.1 else None
         said = "each value %s" % whole if whole else "each value %.2f times on the mean" % times
-        found.append(Damage("repeats", sensor, (), "timing", "the %s gives %s: it is read faster "
-                            "than it measures, or rows were filled in" % (words, said), nats,
-                            {"times": round(times, 3)}))
-    return found
+        damages.append(Damage(
+            "repeats", sensor, (), "timing", "the %s gives %s: it is read faster than it measures,"
+            " or rows were filled in" % (words, said), nats, {"times": round(times, 3)}))
+    return damages
 
 
 def as_read(captures):
     """([(name, Capture)] without the rows in which neither sensor was read anew, [Damage]). The
     captures given are not changed."""
-    out, nats, number = [], 0.0, 0
+    captures_as_read, nats, number = [], 0.0, 0
     for name, capture in captures:
         more, rows = _not_read(capture)
-        out.append((name, _without(capture, rows) if len(rows) else capture))
+        captures_as_read.append((name, _without(capture, rows) if len(rows) else capture))
         nats, number = nats + more, number + len(rows)
     if not number:
-        return out, []
+        return captures_as_read, []
     share = 100.0 * number / sum(len(capture) for _, capture in captures)
-    return out, [Damage(NOT_READ, "device", (), "timing", "%d rows (%.2g %%) are the row before "
-                        "once more, of both sensors: samples that were not read" % (
-                            number, share), nats, {"rows": number})]
+    return captures_as_read, [Damage(
+        NOT_READ, "device", (), "timing", "%d rows (%.2g %%) are the row before once more, of "
+        "both sensors: samples that were not read" % (number, share), nats, {"rows": number})]
 
 
 def _not_read(capture):
@@ -89,11 +89,11 @@ def _not_read(capture):
 
 
 def _without(capture, rows):
-    out = copy.copy(capture)
+    shorter = copy.copy(capture)
     for name in ("t_us", "accel", "gyro", "temp", "mag", "pose"):
-        if getattr(out, name) is not None:
-            setattr(out, name, np.delete(getattr(out, name), rows, axis=0))
-    return out
+        if getattr(shorter, name) is not None:
+            setattr(shorter, name, np.delete(getattr(shorter, name), rows, axis=0))
+    return shorter
 
 
 def read_again(counts):

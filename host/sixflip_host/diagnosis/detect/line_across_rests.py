@@ -44,9 +44,9 @@ def strongest(session, sensor, axis, fastest_hz):
         return None
     doubt = 1.0 + odds.Z_90 * MEDIAN_ERROR / math.sqrt(WIDTH / OVER)
     nats = ratio / doubt - math.log(3.0 * looked_at)
-    found, size = _nearest(t, x, rest, weight, near)
+    hz, size = _nearest(t, x, rest, weight, near)
     amplitude = float(np.hypot(*size))
-    halves = [_fitted(t[part], x[part], rest[part], weight[part], found, t[0])
+    halves = [_fitted(t[part], x[part], rest[part], weight[part], hz, t[0])
               for part in (rest < rest.max() / 2, rest >= rest.max() / 2)]
     if nats < -math.log(SLOW_CHANCE) or amplitude < SLOW_SHARE * float(np.std(x * weight)) \
             or halves[0] @ halves[1] < HALVES ** 2 * amplitude ** 2:
@@ -54,10 +54,10 @@ def strongest(session, sensor, axis, fastest_hz):
     # Of a frequency [Rife & Boorstyn, IEEE Trans. IT 20 (1974) 591], the samples being gaps apart.
     half = odds.Z_90 * math.sqrt(12.0 * float(np.var(x * weight)) / len(x)) / (
         2.0 * math.pi * span * amplitude)
-    return Line(axis, float(found), 1.0 / span, min(nats, 999.0), amplitude,
-                1.0 / math.sqrt(2.0 * ratio), steady=True, low=float(found - half),
-                high=float(found + half), files=((session.name, float(found), float(found - half),
-                                                  float(found + half)),))
+    return Line(axis, float(hz), 1.0 / span, min(nats, 999.0), amplitude,
+                1.0 / math.sqrt(2.0 * ratio), steady=True, low=float(hz - half),
+                high=float(hz + half), files=((session.name, float(hz), float(hz - half),
+                                               float(hz + half)),))
 
 
 def _highest(t, x, rest, weight, slowest, fastest):
@@ -73,7 +73,7 @@ def _highest(t, x, rest, weight, slowest, fastest):
         return 0.0, 0.0, 0
     by = power / _floor(power), power / _passed(t, rest, weight, hz)
     looked = []
-    for k in {int(one.argmax()) for one in by}:
+    for k in {int(height.argmax()) for height in by}:
         left = x - _wave(t, rest, hz[k]) @ _fitted(t, x, rest, weight, hz[k])
         _, floor = _spectrum(t, _for_itself(t, weight ** 2 * left, rest), slowest, fastest)
         looked.append((float(power[k] / _floor(floor)[k]), float(hz[k])))
@@ -118,9 +118,9 @@ def _means(session, sensor, axis):
         first, n = first + edge, (min(end, last) - first - 2 * edge) // m
         if n * m < SHORTEST_S * session.rate:
             continue
-        one = slice(first, first + n * m)
-        t.append(session.t_s[one].reshape(n, m).mean(axis=1))
-        x.append(counts[one].reshape(n, m).mean(axis=1) * scale)
+        samples = slice(first, first + n * m)
+        t.append(session.t_s[samples].reshape(n, m).mean(axis=1))
+        x.append(counts[samples].reshape(n, m).mean(axis=1) * scale)
         rest.append(np.full(n, len(rest)))
         lengths.append(n * m / session.rate)
     return (*(np.concatenate(v) if v else np.zeros(0) for v in (t, x, rest)), lengths)
@@ -163,8 +163,8 @@ def _passed(t, rest, weight, hz):
     """(k,) share of the power of a sine of each frequency that what is taken off each rest leaves,
     smooth between SEEN_AT of them."""
     at = np.linspace(hz[0], hz[-1], SEEN_AT)
-    return np.interp(hz, at, [float((weight[:, None] ** 2 * _wave(t, rest, one) ** 2).mean())
-                              for one in at])
+    return np.interp(hz, at, [float((weight[:, None] ** 2 * _wave(t, rest, frequency) ** 2
+                                     ).mean()) for frequency in at])
 
 
 def _wave(t, rest, hz, start=None):
@@ -176,12 +176,12 @@ def _wave(t, rest, hz, start=None):
 
 def _nearest(t, x, rest, weight, hz):
     """(Hz, (2,) sine and cosine) of the sine next to a frequency that takes most of x with it."""
-    found = []
-    for one in hz + np.arange(-FINER, FINER + 1) / (OVER * FINER * (t[-1] - t[0])):
-        size = _fitted(t, x, rest, weight, one)
-        left = weight * (x - _wave(t, rest, one) @ size)
-        found.append((float(left @ left), float(one), size))
-    return min(found, key=lambda one: one[0])[1:]
+    sines = []
+    for frequency in hz + np.arange(-FINER, FINER + 1) / (OVER * FINER * (t[-1] - t[0])):
+        size = _fitted(t, x, rest, weight, frequency)
+        left = weight * (x - _wave(t, rest, frequency) @ size)
+        sines.append((float(left @ left), float(frequency), size))
+    return min(sines, key=lambda sine: sine[0])[1:]
 
 
 def _fitted(t, x, rest, weight, hz, start=None):

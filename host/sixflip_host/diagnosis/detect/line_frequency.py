@@ -74,11 +74,10 @@ def peak(power, k):
 def refined(line, sessions, sensor):
     """The Line with its frequency by the longest unbroken stretch of each file; not steady where
     none of them keeps the phase."""
-    seen = [(s.name, *found) for s in sessions for found in [_over_whole(line, s, sensor)]
-            if found]
+    seen = [(s.name, *sine) for s in sessions for sine in [_over_whole(line, s, sensor)] if sine]
     if not seen or not line.narrow:
         return replace(line, low=line.hz - line.bin_hz, high=line.hz + line.bin_hz)
-    best = max(seen, key=lambda one: one[1])
+    best = max(seen, key=lambda file: file[1])
     return replace(line, steady=True, hz=best[2], low=best[2] - best[3], high=best[2] + best[3],
                    files=tuple((name, hz, hz - half, hz + half) for name, _, hz, half in seen))
 
@@ -99,14 +98,15 @@ def _over_whole(line, session, sensor):
     x = longest(session, sensor)[:, line.axis].astype(float)
     short = int(round(session.rate / line.bin_hz))
     if len(x) < 2 * short:  # nothing longer to hold against: as narrow as can be seen
-        return _found(line, x, session.rate) if len(x) >= short // 2 else None
+        return _sine_nearest(line, x, session.rate) if len(x) >= short // 2 else None
     parts = len(x) // short
-    each = [_found(line, x[k * short:(k + 1) * short], session.rate) for k in range(parts)]
-    power = np.mean([one[0] ** 2 for one in each if one] or [0.0])
-    whole = _found(line, x, session.rate)
+    each = [_sine_nearest(line, x[k * short:(k + 1) * short], session.rate) for k in range(parts)]
+    power = np.mean([sine[0] ** 2 for sine in each if sine] or [0.0])
+    whole = _sine_nearest(line, x, session.rate)
     if whole is None or whole[0] ** 2 < STEADY * power:
         return None
-    halves = [_found(line, half, session.rate) for half in (x[:len(x) // 2], x[len(x) // 2:])]
+    halves = [_sine_nearest(line, half, session.rate)
+              for half in (x[:len(x) // 2], x[len(x) // 2:])]
     apart = abs(halves[0][1] - halves[1][1]) / 4.0 if all(halves) else 0.0
     return whole[0], whole[1], math.hypot(whole[2], odds.Z_90 * apart)
 
@@ -116,11 +116,11 @@ def _slope(x, y):
     there are half a million pairs of so many."""
     few = np.linspace(0, len(x) - 1, min(len(x), PAIRED)).astype(int)
     x, y = x[few], y[few]
-    one, other = np.triu_indices(len(x), 1)
-    return float(np.median((y[other] - y[one]) / (x[other] - x[one])))
+    first, second = np.triu_indices(len(x), 1)
+    return float(np.median((y[second] - y[first]) / (x[second] - x[first])))
 
 
-def _found(line, x, rate):
+def _sine_nearest(line, x, rate):
     """(amplitude in counts, Hz, half of its 90 % interval) of the sine nearest to a line."""
     n = len(x)
     if n < 16:
@@ -146,12 +146,12 @@ def _found(line, x, rate):
 
 def slow(sessions, sensor, axis):
     """The strongest Line between SLOWEST periods of a long rest and FASTEST_HZ, or None."""
-    found = [_slow(s, sensor, axis) for s in sessions if s.runs]
-    found = [line for line in found if line]
-    if not found:
+    lines = [_slow(s, sensor, axis) for s in sessions if s.runs]
+    lines = [line for line in lines if line]
+    if not lines:
         return None
-    best = max(found, key=lambda line: line.nats)
-    return replace(best, files=tuple(one for line in found for one in line.files))
+    best = max(lines, key=lambda line: line.nats)
+    return replace(best, files=tuple(file for line in lines for file in line.files))
 
 
 def _slow(session, sensor, axis):

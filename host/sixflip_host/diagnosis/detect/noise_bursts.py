@@ -123,37 +123,38 @@ def without_spikes(sessions, leaping=()):
     tails of noise have them, they read as those beside them do. What is wild says nothing of where
     a rest lies, and as much as all others of a mean; of a few that is not worth a sentence.
     leaping: sensors whose counts leap anyhow."""
-    out = []
+    sentences = []
     for sensor, words in registers.SENSORS.items():
         if sensor in leaping or any(getattr(s.capture, sensor) is None for s in sessions):
             continue
         each = [spikes(s, sensor) for s in sessions]
-        number, looked = sum(one.number for one in each), sum(one.looked for one in each)
-        nats = jump_nats(np.concatenate([one.sizes for one in each]))
+        number, looked = sum(spiky.number for spiky in each), sum(spiky.looked for spiky in each)
+        nats = jump_nats(np.concatenate([spiky.sizes for spiky in each]))
         if not number or not present(nats):
             continue
         sessions = [_put_right(s, sensor) for s in sessions]
         if number < LEAST_SPIKES:
             continue
-        out.append((sensor, "%d of %d samples of the %s at rest are far off those before and "
-                    "after them: spikes" % (number, looked, words), odds.chance(nats)))
-    return sessions, out
+        sentences.append((
+            sensor, "%d of %d samples of the %s at rest are far off those before and after them: "
+            "spikes" % (number, looked, words), odds.chance(nats)))
+    return sessions, sentences
 
 
 def _put_right(session, sensor):
     """The session without spikes, those included that others stand beside."""
     for _ in range(PASSES):
-        found = spikes(session, sensor, 3)
-        if not found.number:
+        spiky = spikes(session, sensor, 3)
+        if not spiky.number:
             break
-        session = _without(session, sensor, found)
+        session = _without(session, sensor, spiky)
     return session
 
 
-def _without(session, sensor, found):
+def _without(session, sensor, spiky):
     capture = copy.copy(session.capture)
     counts = np.array(getattr(capture, sensor))
-    counts[found.wild] = np.rint(found.middle[found.wild]).astype(counts.dtype)
+    counts[spiky.wild] = np.rint(spiky.middle[spiky.wild]).astype(counts.dtype)
     setattr(capture, sensor, counts)
     return session.of_capture(capture)
 
@@ -178,9 +179,9 @@ def growing(session, sensor):
     return best
 
 
-def found(sessions):
+def unsteady(sessions):
     """[(sensor, sentence, p)] of noise that comes in bursts, or changes from rest to rest."""
-    out = []
+    sentences = []
     for sensor, words in registers.SENSORS.items():
         if any(getattr(s.capture, sensor) is None for s in sessions):
             continue
@@ -188,12 +189,14 @@ def found(sessions):
         if sums[0] >= FEWEST and sums[1] >= FEWEST_RESTS:
             m = max(8, int(WINDOW_S * sessions[0].rate))
             chance = 3.0 * special.chdtrc(m / 2.0, LOUD * m / 2.0)  # differences share samples
-            out.append((sensor, "the %s is far louder in %d of %d half seconds at rest: noise "
-                        "that comes in bursts" % (words, sums[0], sums[2]),
-                        float(special.bdtrc(sums[0] - 1, sums[2], min(chance, 1.0)))))
+            sentences.append((
+                sensor, "the %s is far louder in %d of %d half seconds at rest: noise that comes "
+                "in bursts" % (words, sums[0], sums[2]),
+                float(special.bdtrc(sums[0] - 1, sums[2], min(chance, 1.0)))))
             continue
-        times, p = min((growing(s, sensor) for s in sessions), key=lambda one: one[1])
+        times, p = min((growing(s, sensor) for s in sessions), key=lambda change: change[1])
         if present(-np.log(max(p * len(sessions), odds.SMALLEST))):
-            out.append((sensor, "the noise of the %s at the end of a session is %.2g times what "
-                        "it was at its begin" % (words, times), p * len(sessions)))
-    return out
+            sentences.append((
+                sensor, "the noise of the %s at the end of a session is %.2g times what it was at "
+                "its begin" % (words, times), p * len(sessions)))
+    return sentences

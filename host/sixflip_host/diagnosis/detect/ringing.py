@@ -36,18 +36,18 @@ def fading(sessions, sensor, axis):
     return -np.log(max(3.0 * p, odds.SMALLEST)), np.sqrt(2.0 * max(np.exp(mean) - 1.0, 0.0))
 
 
-def found(sessions):
+def ringing_axes(sessions):
     """[(sensor, axis letter, sentence, nats)] of what rings out after the moves."""
-    out = []
+    rings = []
     for sensor, words in SENSORS.items():
         if any(getattr(s.capture, sensor) is None for s in sessions):
             continue
         for axis in range(3):
             nats, size = fading(sessions, sensor, axis)
             if present(nats) and size > LEAST_SHARE:
-                out.append((sensor, "xyz"[axis], "the %s axis of the %s rings for seconds after "
-                            "the moves" % ("xyz"[axis], words), nats))
-    return out
+                rings.append((sensor, "xyz"[axis], "the %s axis of the %s rings for seconds after "
+                              "the moves" % ("xyz"[axis], words), nats))
+    return rings
 
 
 def _power(x):
@@ -68,7 +68,7 @@ def fades(sessions, sensor, axis, hertz):
         wave = np.hanning(part) * np.exp(-2j * np.pi * hertz / session.rate * np.arange(part))
         for _, a, b in session.runs:
             if b - a >= settles + 2 * part:
-                for found, first in ((early, a + settles), (late, b - part)):
+                for powers, first in ((early, a + settles), (late, b - part)):
                     x = counts[first:first + part]
-                    found.append(abs((x - x.mean()) @ wave) ** 2)
+                    powers.append(abs((x - x.mean()) @ wave) ** 2)
     return bool(early) and np.mean(late) < GOES_ON * np.mean(early)

@@ -33,30 +33,31 @@ def clocks(sessions):
 
 def findings(sessions):
     """list of Finding: a rate that is not the one stated, samples that are missing."""
-    found = clocks(sessions)
-    return rate(sessions, found) + drops(found)
+    session_clocks = clocks(sessions)
+    return rate(sessions, session_clocks) + drops(session_clocks)
 
 
-def rate(sessions, found):
+def rate(sessions, clocks):
     """The clock against the header's rate_hz, where every capture states one. With a name: one
     error of the oscillator in all sessions; without: one of each session's own."""
-    if any(one is None or one.rows < FEWEST or clock.is_measured(session.capture.meta)
-           for session, one in zip(sessions, found)):
+    if any(timing is None or timing.rows < FEWEST or clock.is_measured(session.capture.meta)
+           for session, timing in zip(sessions, clocks)):
         return []
-    errors = np.array([one.rate_hz / session.rate - 1.0 for session, one in zip(sessions, found)])
-    widths = [np.ptp(one.interval_hz) / 4.0 / session.rate  # 95 %: two standard errors each way
-              for session, one in zip(sessions, found)]
+    errors = np.array([timing.rate_hz / session.rate - 1.0
+                       for session, timing in zip(sessions, clocks)])
+    widths = [np.ptp(timing.interval_hz) / 4.0 / session.rate  # 95 %: two standard errors each way
+              for session, timing in zip(sessions, clocks)]
     known = np.diag(np.square(widths) + CRYSTAL ** 2)
     alike = OSCILLATOR ** 2 * ((1.0 - WANDERS ** 2) + WANDERS ** 2 * np.eye(len(errors)))
-    sound, own, one = (_log_normal(errors, c)
-                       for c in (known, known + OSCILLATOR ** 2 * np.eye(len(errors)),
-                                 known + alike))
-    if one < own - APART or not present(one - sound):
+    sound, own, common = (_log_normal(errors, c)
+                          for c in (known, known + OSCILLATOR ** 2 * np.eye(len(errors)),
+                                    known + alike))
+    if common < own - APART or not present(common - sound):
         return []
     percent = 100.0 * float(np.mean(errors))
     half = 100.0 * max(float(np.ptp(errors)) / 2, 2.0 * max(widths), 1e-6)
     return [Finding("sample_rate", "device", [], {"rate": round(percent, 4)}, "%",
-                    one - sound, "timing", "the samples come at %.2f Hz, not %g" % (
+                    common - sound, "timing", "the samples come at %.2f Hz, not %g" % (
                         sessions[0].rate * (1 + percent / 100.0), sessions[0].rate),
                     {"rate": (percent - half, percent + half)},
                     share=explained(errors, errors - np.mean(errors)), number=len(errors))]
@@ -68,22 +69,23 @@ def _log_normal(errors, covariance):
                         + np.linalg.slogdet(covariance)[1])
 
 
-def drops(found):
+def drops(clocks):
     """Samples that are missing under a clock that went on: gaps as long as a whole number of
     samples, which gaps without a name need not be."""
-    found = [one for one in found if one is not None and one.rows >= FEWEST]
-    lost = sum(one.losses - one.losses_known for one in found)
-    score = sum(gap_nats(np.array(one.loss_periods),
-                         max(one.jitter_ms * one.rate_hz / 1e3, LATE), one.rows) for one in found)
+    clocks = [timing for timing in clocks if timing is not None and timing.rows >= FEWEST]
+    lost = sum(timing.losses - timing.losses_known for timing in clocks)
+    score = sum(gap_nats(np.array(timing.loss_periods),
+                         max(timing.jitter_ms * timing.rate_hz / 1e3, LATE), timing.rows)
+                for timing in clocks)
     if not lost or not present(score):
         return []
-    expected = sum(one.expected for one in found)
-    late = np.concatenate([one.loss_periods for one in found])
+    expected = sum(timing.expected for timing in clocks)
+    late = np.concatenate([timing.loss_periods for timing in clocks])
     chance = 100.0 * lost / expected
     half = 100.0 * 1.645 * math.sqrt(lost) / expected
     return [Finding("dropped_samples", "device", [], {"chance": round(chance, 4)}, "%", score,
                     "timing", "%d of %d samples are missing, the longest gap lasts %.0f ms" % (
-                        lost, expected, max(one.longest_loss_ms for one in found)),
+                        lost, expected, max(timing.longest_loss_ms for timing in clocks)),
                     {"chance": (max(0.0, chance - half), chance + half)},
                     share=explained(late, late - np.rint(late)), number=len(late))]
 
@@ -103,29 +105,29 @@ def gap_nats(late, sigma, rows):
     return exact + length + own
 
 
-def remarks(sessions, found):
+def remarks(sessions, clocks):
     """Sentences on what is not the sensor's: pauses, the link, bursts, jitter."""
     said = []
-    for session, one in zip(sessions, found):
-        if one is None:
+    for session, timing in zip(sessions, clocks):
+        if timing is None:
             continue
         lines = []
-        if one.losses_known:
+        if timing.losses_known:
             lines.append("%d samples were lost on the way from the board; that is the link's "
-                         "doing, not the sensor's" % one.losses_known)
-        if one.pauses and clock.of_a_board(session.capture):
+                         "doing, not the sensor's" % timing.losses_known)
+        if timing.pauses and clock.of_a_board(session.capture):
             lines.append("the board wrote to its flash %d times, the longest took %.0f ms "
                          "without a sample; that is the recorder's doing, not the sensor's" % (
-                             one.pauses, 1e3 * one.longest_pause_s))
-        elif one.pauses:
-            lines.append(clock_words.pause_words(one))
-        lines += [clock_words.burst_words(one), clock_words.jitter_words(one)]
+                             timing.pauses, 1e3 * timing.longest_pause_s))
+        elif timing.pauses:
+            lines.append(clock_words.pause_words(timing))
+        lines += [clock_words.burst_words(timing), clock_words.jitter_words(timing)]
         said += ["%s: %s" % (session.name, line) for line in lines if line]
     return said
 
 
-def answer(sessions, found):
+def answer(sessions, clocks):
     """For --json: every capture's clock, and whether its header's rate is stated or measured."""
-    return [dict(clock_words.as_json(one), capture=session.name, header_hz=session.rate,
+    return [dict(clock_words.as_json(timing), capture=session.name, header_hz=session.rate,
                  header_rate="measured" if clock.is_measured(session.capture.meta) else "stated")
-            for session, one in zip(sessions, found) if one is not None]
+            for session, timing in zip(sessions, clocks) if timing is not None]

@@ -37,15 +37,15 @@ class Samples:
     def __len__(self):
         return len(self.off)
 
-    def of(self, chosen):
+    def subset(self, chosen):
         """Samples of a slice or a mask."""
         return Samples(*(getattr(self, f.name)[chosen] for f in fields(self)))
 
 
 def together(tables):
     """Samples of several, None left out."""
-    tables = [one for one in tables if one is not None]
-    return Samples(*(np.concatenate([getattr(one, f.name) for one in tables] or [np.zeros(0)])
+    tables = [table for table in tables if table is not None]
+    return Samples(*(np.concatenate([getattr(table, f.name) for table in tables] or [np.zeros(0)])
                      for f in fields(Samples)))
 
 
@@ -113,5 +113,5 @@ def _white(z, among):
     """Whether standardised residuals z (n,) among those (n,) tell little of the next ones."""
     pairs = among[1:] & among[:-1]
     z = np.clip(z, -NEAR, NEAR)
-    one, after = z[:-1][pairs], z[1:][pairs]
-    return float(one @ after) <= WHITE * float(one @ one)
+    now, following = z[:-1][pairs], z[1:][pairs]
+    return float(now @ following) <= WHITE * float(now @ now)

@@ -65,13 +65,13 @@ def railed(session, sensor="accel"):
     """(n,) True where a sample sits on a rail or on a level that peaks are cut off at."""
     counts = getattr(session.capture, sensor)
     rail = _range_rail(session, sensor)
-    found, moving = np.zeros(len(counts), bool), ~session.at_rest
+    at_end, moving = np.zeros(len(counts), bool), ~session.at_rest
     for column in counts.T.astype(np.int64):
-        found |= np.abs(column) >= rail
+        at_end |= np.abs(column) >= rail
         for sign in (1, -1):
             if present(cut_off_nats(sign * column, moving)):
-                found |= sign * column == (sign * column).max()
-    return found
+                at_end |= sign * column == (sign * column).max()
+    return at_end
 
 
 def _range_rail(session, sensor):

@@ -33,7 +33,7 @@ def findings(sessions):
 def steady(sessions):
     """list of Finding: a line of the accelerometer that is there where nothing rests, steady in
     its frequency, which no motion of a hand, a vehicle or a robot is."""
-    moves = [one for one in map(_longest_move, sessions) if one]
+    moves = [move for move in map(_longest_move, sessions) if move]
     if not moves or any(s.capture.accel is None for s in sessions):
         return []
     lines = [line_frequency.refined(line, moves, "accel") for line in (

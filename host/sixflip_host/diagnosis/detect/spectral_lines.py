@@ -43,7 +43,7 @@ STEADY, STRONG_SHARE = 0.6, 0.4
 def findings(sessions, rings=()):
     """list of Finding: at most one vibration a sensor; rings: (sensor, axis letter) that are
     louder after each move, whose line has to go on over the rests."""
-    out = []
+    vibrations = []
     for sensor in ("accel", "gyro"):
         if any(getattr(s.capture, sensor) is None for s in sessions):
             continue
@@ -51,21 +51,21 @@ def findings(sessions, rings=()):
         lines = [line for line in lines if not ((sensor, line.letter) in rings and ringing.fades(
             sessions, sensor, line.axis, line.hz))]
         if lines:
-            out.append(told(lines, sensor, sessions[0].rate))
-    return out
+            vibrations.append(told(lines, sensor, sessions[0].rate))
+    return vibrations
 
 
 def of_axis(sessions, sensor, axis):
     """The Line of an axis by all files together or by one of them, whichever says more, with
     the frequency of every file that shows it; a slow one where nothing faster is there."""
     groups = [sessions, *([s] for s in sessions if len(sessions) > 1)]
-    found = [strongest(some, sensor, axis) for some in groups]
-    found = [line_frequency.refined(line, sessions, sensor) for line in found if line]
+    lines = [strongest(some, sensor, axis) for some in groups]
+    lines = [line_frequency.refined(line, sessions, sensor) for line in lines if line]
     resting = any(s.runs for s in sessions)
-    found = [line for line in found if line and (
+    lines = [line for line in lines if line and (
         resting or line.steady or line.hz > MOTION_HZ)]
-    if found:
-        return max(found, key=lambda line: line.nats)
+    if lines:
+        return max(lines, key=lambda line: line.nats)
     slow = line_frequency.slow(sessions, sensor, axis)
     if slow:
         return slow
@@ -103,22 +103,22 @@ def rests(sessions, sensor):
     if not any(session.runs for session in sessions):
         return _stretches(sessions, sensor, int(MOVING_S * sessions[0].rate), whole=True)
     for seconds in LENGTHS_S:
-        found = _stretches(sessions, sensor, int(seconds * sessions[0].rate))
-        if len(found) >= FEWEST:
-            return found
+        stretches = _stretches(sessions, sensor, int(seconds * sessions[0].rate))
+        if len(stretches) >= FEWEST:
+            return stretches
     return []
 
 
 def _stretches(sessions, sensor, length, whole=False):
-    found = []
+    stretches = []
     for session in sessions:
         scale = unit_of_count(session.capture.meta, sensor)
         counts = getattr(session.capture, sensor)
         for _, first, end in [(0, 0, len(counts))] if whole else session.runs:
             first, end = first + int(0.1 * session.rate), end - int(0.1 * session.rate)
             for start in range(first, end - length + 1, length):
-                found.append(counts[start:start + length] * scale)
-    return found
+                stretches.append(counts[start:start + length] * scale)
+    return stretches
 
 
 def spectrum(stretches, axis):

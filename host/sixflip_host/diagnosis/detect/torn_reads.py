@@ -49,7 +49,7 @@ def finding(sessions, sensor, banded=()):
     nats, number, others = competed(samples)
     if present(nats):
         unlike = [_samples(sessions, sensor, banded, width) for width in NO_PAGES]
-        most = max((competed(one)[0] for one in unlike if len(one)), default=0.0)
+        most = max((competed(other)[0] for other in unlike if len(other)), default=0.0)
         # In standard deviations, of which nats are half the square.
         nats = 0.5 * max(math.sqrt(2.0 * nats) - math.sqrt(2.0 * max(most, 0.0)), 0.0) ** 2
     if not present(nats):
@@ -82,7 +82,7 @@ def _again(counts):
 
 def jumps(sessions, without=()):
     """[(sensor, sentence, p)] of jumps by whole pages that nothing torn explains."""
-    found = []
+    sentences = []
     for sensor, words in registers.SENSORS.items():
         if sensor in without or any(getattr(s.capture, sensor) is None for s in sessions):
             continue
@@ -95,15 +95,16 @@ def jumps(sessions, without=()):
                   for counts in rests if len(counts) >= FEWEST for axis in range(3)]
         nats, number = paged(together(tables))
         if present(nats):
-            found.append((sensor, "about %.0f samples of the %s are off by 256 counts: a bit that "
-                          "is read wrongly" % (number, words), odds.chance(nats)))
-    return found
+            sentences.append((
+                sensor, "about %.0f samples of the %s are off by 256 counts: a bit that is read "
+                "wrongly" % (number, words), odds.chance(nats)))
+    return sentences
 
 
 def paged(samples):
     """(nats of jumps by whole pages over none, over jumps of any size and over samples that are
     louder, as where the box is put down; their number) of Samples, among calm ones."""
-    samples = samples.of(samples.calm.astype(bool) & (samples.sigma < PAGE / BEYOND))
+    samples = samples.subset(samples.calm.astype(bool) & (samples.sigma < PAGE / BEYOND))
     if len(samples) < FEWEST:
         return 0.0, 0.0
     whole, other, number = [], [], len(samples)
@@ -114,7 +115,7 @@ def paged(samples):
             *((louder(times, freedom), number) for times in LOUD))
         whole.append((alone + gain, densities, share))
         other += [alone, *(alone + gain for gain, _ in rivals)]
-    score, densities, share = max(whole, key=lambda one: one[0])
+    score, densities, share = max(whole, key=lambda jumping: jumping[0])
     return score - max(other) - math.log(len(SHARES)), densities.held(moved, share)
 
 
@@ -134,12 +135,12 @@ def competed(samples):
         nameless += [alone, *(alone + other for other, _ in knocked)]
         likeliest = max(range(len(others)), key=lambda k: knocked[k][0])
         beside = Densities(samples, freedom, knocked[likeliest][1], others[likeliest])
-        for one in (densities, beside):  # without others, and beside the likeliest share of them
-            alone, ((by_pages, _), *torn) = one.best(
+        for noise in (densities, beside):  # without others, and beside the likeliest share of them
+            alone, ((by_pages, _), *torn) = noise.best(
                 (moved, number), *((torn_by(side), among) for side, among in chances.items()))
             nameless.append(alone + by_pages)
-            named += [(alone + gain, one, side, own) for side, (gain, own) in zip(chances, torn)]
-    score, densities, side, own = max(named, key=lambda one: one[0])
+            named += [(alone + gain, noise, side, own) for side, (gain, own) in zip(chances, torn)]
+    score, densities, side, own = max(named, key=lambda tear: tear[0])
     torn = torn_by(side)
     tried = math.log(len(chances) * len(SHARES))
     return (score - max(nameless) - tried, densities.held(torn, own),
@@ -161,7 +162,7 @@ class Densities:
         """Triples of Samples, some at a time, their density (n,) when none jumps by pages, and
         (n,) when all do."""
         for first in range(0, len(self.samples), AT_A_TIME):
-            part = self.samples.of(slice(first, first + AT_A_TIME))
+            part = self.samples.subset(slice(first, first + AT_A_TIME))
             yield (part, self._sound(part) + self._otherwise(part),
                    student(part.moved, self.freedom) / part.sigma)
 

@@ -32,18 +32,18 @@ def findings(sessions):
     """[Damage] of the accelerometer, then of the gyro."""
     if any(s.capture.accel is None for s in sessions):
         return []
-    found = [accelerometer(sessions)]
-    if not found[0] and all(s.capture.gyro is not None for s in sessions):
-        found.append(gyro(sessions))
-    return [one for one in found if one]
+    damages = [accelerometer(sessions)]
+    if not damages[0] and all(s.capture.gyro is not None for s in sessions):
+        damages.append(gyro(sessions))
+    return [damage for damage in damages if damage]
 
 
 def accelerometer(sessions):
     """Damage where |a| is not gravity, or None."""
-    sizes = [one for one in map(at_rest, sessions) if one]
+    sizes = [seen for seen in map(at_rest, sessions) if seen]
     if not sizes:
         return None
-    size = float(np.median([one for one, _ in sizes]))
+    size = float(np.median([size for size, _ in sizes]))
     width = SOUND_ACCEL * (1.0 if all(rests for _, rests in sizes) else MOVING)
     factor, nats = competed([size], [width])
     if not present(nats):
@@ -72,16 +72,16 @@ def competed(factors, widths):
     nats of one of both over 1). factors, widths (n,): relative standard deviations."""
     factors, widths = np.array(factors), np.array(widths)
 
-    def of(times):
+    def log_density(times):
         return -float((0.5 * ((factors / times - 1.0) / widths) ** 2
                        + np.log(widths * times)).sum())
-    sound = of(1.0)
-    ranges = {times: of(times) - math.log(len(RANGES)) for times in RANGES}
+    sound = log_density(1.0)
+    ranges = {times: log_density(times) - math.log(len(RANGES)) for times in RANGES}
     best = max(ranges, key=ranges.get)
     middle = max(float(np.average(factors, weights=1.0 / widths ** 2)), 1e-3)
     narrow = math.log(math.sqrt(2.0 * math.pi) / math.sqrt(float((1.0 / widths ** 2).sum()))
                       / (2.0 * math.log(WIDEST)))
-    nameless = of(middle) + narrow
+    nameless = log_density(middle) + narrow
     if max(ranges[best], nameless) <= sound:
         return None, 0.0
     if ranges[best] > nameless:
@@ -117,10 +117,10 @@ def _by_gravity(session):
         return []
     m, parts = len(capture.accel) // PARTS, []
     for k in range(PARTS):
-        one = gravity.turn_factor(capture.accel[k * m:(k + 1) * m],
-                                  capture.gyro[k * m:(k + 1) * m], known, session.rate)
-        if one is not None and one[1] >= ALIKE and one[0] > 0.0:
-            parts.append(1.0 / one[0])
+        part = gravity.turn_factor(capture.accel[k * m:(k + 1) * m],
+                                   capture.gyro[k * m:(k + 1) * m], known, session.rate)
+        if part is not None and part[1] >= ALIKE and part[0] > 0.0:
+            parts.append(1.0 / part[0])
     size = float(np.median(parts)) if parts else 1.0 / whole[0]
     spread = float(np.std(parts)) / size / math.sqrt(len(parts)) if len(parts) > 2 else 0.0
     return [(size, math.hypot(MOVING * SOUND_GYRO, spread))]
@@ -128,17 +128,17 @@ def _by_gravity(session):
 
 def _by_flips(session):
     """[(factor, relative width)] of half turns about a face's axis that labels tell."""
-    found, capture = [], session.capture
+    factors, capture = [], session.capture
     if not session.labelled:
         return []
     rates = capture.gyro / capture.meta["gyro_lsb_per_dps"]
-    for one, other in zip(session.runs, session.runs[1:]):
-        face = faces.face_of_code(one.code)
-        if face < 0 or face != faces.face_of_code(other.code) or one.code == other.code:
+    for before, after in zip(session.runs, session.runs[1:]):
+        face = faces.face_of_code(before.code)
+        if face < 0 or face != faces.face_of_code(after.code) or before.code == after.code:
             continue
-        bias = 0.5 * (rates[one.first:one.end].mean(axis=0)
-                      + rates[other.first:other.end].mean(axis=0))
-        middle = slice((one.first + one.end) // 2, (other.first + other.end) // 2)
+        bias = 0.5 * (rates[before.first:before.end].mean(axis=0)
+                      + rates[after.first:after.end].mean(axis=0))
+        middle = slice((before.first + before.end) // 2, (after.first + after.end) // 2)
         turned = np.trapezoid((rates[middle] - bias)[:, faces.AXIS[face]], session.t_s[middle])
-        found.append((abs(float(turned)) / 180.0, math.hypot(SOUND_GYRO, HAND_DEG / 180.0)))
-    return found
+        factors.append((abs(float(turned)) / 180.0, math.hypot(SOUND_GYRO, HAND_DEG / 180.0)))
+    return factors
