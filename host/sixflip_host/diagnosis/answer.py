@@ -24,7 +24,7 @@ def of(diagnosis):
         "noise": rest_noise.answer(diagnosis.noise),
         "remarks": diagnosis.remarks}
     if diagnosis.comparisons:
-        answer["simulator"] = simulator_answer.of(diagnosis.comparisons)
+        answer["simulator"] = simulator_answer.as_json(diagnosis.comparisons)
     return answer
 
 

@@ -44,8 +44,8 @@ def test_a_log_that_shows_nothing_of_what_acts_in_motion_is_not_said_to_lack_it(
     assert simulator(motion="judged").shows(arm)
     assert simulator().shows(finding({"x": 10.0}))
     own = simulator(arm, finding({"x": 10.0}), motion="judged")
-    assert own.only_simulated([], in_motion=False) == [own.found.findings[1]]
-    assert own.only_simulated([]) == own.found.findings
+    assert own.only_simulated([], in_motion=False) == [own.diagnosis.findings[1]]
+    assert own.only_simulated([]) == own.diagnosis.findings
 
 
 def test_the_simulators_remarks_and_silent_effects_are_passed_on(monkeypatch):

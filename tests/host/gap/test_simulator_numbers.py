@@ -51,7 +51,7 @@ def test_a_coefficient_is_as_uncertain_as_stretches_of_the_log_disagree_on_it():
 def test_what_has_no_field_to_set_has_words_to_copy():
     """A pole of 20 Hz is half of 63 ms² of smoothness; what does not differ says nothing."""
     tau = 1.0 / (2.0 * np.pi * 20.0)
-    fits = {"gyro": SimpleNamespace(found=(), fit=SimpleNamespace(
+    fits = {"gyro": SimpleNamespace(conventions=(), fit=SimpleNamespace(
         smooth_s2=-0.5 * tau ** 2, smooth_sigma_s2=1e-8))}
     said = {p.name: p.how for p in parameters.timing(-0.04, 1e-4, fits, SimpleNamespace(
         same=True, drift=0.0, drift_sigma=1e-5))}

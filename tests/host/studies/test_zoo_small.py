@@ -124,7 +124,8 @@ def test_a_rover_with_a_biased_accelerometer_has_no_scale_of_its_gyro():
     """Its rests lie alike: the bias turns gravity with the robot, as a scale would."""
     from sixflip_host.diagnosis.simulator import own_calibration, traces
     texts = defects.pair("healthy", motion("rover", 2), motion("rover", 2), 108)
-    own = own_calibration.fitted(traces.of("real", capture_file.parse("log", texts[0].encode())))
+    own = own_calibration.fitted(traces.trace_from_capture(
+        "real", capture_file.parse("log", texts[0].encode())))
     part = defects.real_part(np.random.default_rng(108))
     off = np.abs(np.linalg.inv(own.gyro) - part.gyro)
     assert (off < 4.0 * own.gyro_sigma).all()

@@ -221,7 +221,7 @@ def judged(effect, mine, sim):
         return answer.of(diagnose([("real.csv", mine)], [("sim.csv", sim)]))
     found = comparison.compare([("real.csv", mine)], "sim.csv", sim)
     return {"verdict": simulator_answer.verdict("no gap", [found]), "causes": [],
-            "simulator": simulator_answer.of([found])}
+            "simulator": simulator_answer.as_json([found])}
 
 
 def again(effect, target, mine, held):

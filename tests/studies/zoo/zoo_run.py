@@ -97,7 +97,8 @@ def simple(name, logs, found):
     """{method of baselines: what it is worth} on a pair of one motion."""
     if not found.alignment.same:
         return {}
-    pair = baselines.paired(*(traces.of("log", log) for log in logs), found.alignment)
+    pair = baselines.paired(*(traces.trace_from_capture("log", log) for log in logs),
+                            found.alignment)
     told = {method: ask(pair) for method, ask in baselines.METHODS.items()}
     return {method: judged_simply(name, answer) for method, answer in told.items()
             if answer is not None}

@@ -24,16 +24,16 @@ RAW = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Simulator:
-    """found: the Diagnosis of its captures; known: {sensor: [(effect, variant, key,
+    """diagnosis: the Diagnosis of its captures; known: {sensor: [(effect, variant, key,
     coefficient)]}; remarks: tuple of sentences."""
 
-    found: stages.Diagnosis
+    diagnosis: stages.Diagnosis
     known: dict
     remarks: tuple
 
     def new(self, finding):
         """True when the simulator lacks a Finding of the real sensor, or has another size."""
-        for other in self.found.findings:
+        for other in self.diagnosis.findings:
             if (other.effect, other.sensor) != (finding.effect, finding.sensor):
                 continue
             keys = set(other.value) | set(finding.value)
@@ -44,13 +44,13 @@ class Simulator:
 
     def shows(self, finding):
         """True when its log would show a Finding of the real sensor, if it had it."""
-        return finding.domain != "motion" or self.found.motion is not None
+        return finding.domain != "motion" or self.diagnosis.motion is not None
 
     def only_simulated(self, findings, in_motion=True):
         """Findings of the simulator that the real sensor does not show; in_motion: its log would
         show what acts in motion."""
         real = {(f.effect, f.sensor) for f in findings}
-        return [f for f in self.found.findings if (f.effect, f.sensor) not in real
+        return [f for f in self.diagnosis.findings if (f.effect, f.sensor) not in real
                 and (in_motion or f.domain != "motion")]
 
 
@@ -65,10 +65,10 @@ def _size(finding, key):
 
 def read(captures, paths, settings):
     """Simulator from captures."""
-    found = stages.of([blocks.of(p, c) for p, c in zip(paths, captures)], settings,
-                      beside=True)
-    known = {kind: _known(gap) for kind, gap in found.gaps.items() if gap.chosen}
-    return Simulator(found, known, tuple(_remarks(found)))
+    diagnosis = stages.of([blocks.of(p, c) for p, c in zip(paths, captures)], settings,
+                          beside=True)
+    known = {kind: _known(gap) for kind, gap in diagnosis.gaps.items() if gap.chosen}
+    return Simulator(diagnosis, known, tuple(_remarks(diagnosis)))
 
 
 def _known(gap):
@@ -77,15 +77,15 @@ def _known(gap):
     return [(*every[column], float(t)) for column, t in zip(gap.shared.index, gap.coefficients())]
 
 
-def _remarks(found):
+def _remarks(diagnosis):
     """Sentences on what the simulator's Diagnosis shows, and cannot show."""
-    remarks = [] if found.gaps else ["the simulator's capture holds too few poses: of the "
-                                     "effects, only steps, lines and timing are compared"]
-    names = sorted({c.effect for _, c in found.causes})
+    remarks = [] if diagnosis.gaps else ["the simulator's capture holds too few poses: of the "
+                                         "effects, only steps, lines and timing are compared"]
+    names = sorted({c.effect for _, c in diagnosis.causes})
     if names:
         remarks.append("the simulator already has: " + ", ".join(names))
-    remarks += ["the simulator's log: " + said for said in found.remarks]
-    silent = sorted({u["effect"] for u in detectability.listed(found)})
-    if silent and found.gaps:
+    remarks += ["the simulator's log: " + said for said in diagnosis.remarks]
+    silent = sorted({u["effect"] for u in detectability.listed(diagnosis)})
+    if silent and diagnosis.gaps:
         remarks.append("effects that the simulator's log cannot show: " + ", ".join(silent))
     return remarks

@@ -88,8 +88,8 @@ def compare(real_logs, name, capture):
 
     real_logs  [(name, Capture)]
     """
-    sim = traces.of(name, capture)
-    candidates = [traces.of(n, c) for n, c in real_logs]
+    sim = traces.trace_from_capture(name, capture)
+    candidates = [traces.trace_from_capture(n, c) for n, c in real_logs]
     aligned = [alignment.align(real, sim) for real in candidates]
     best = max(range(len(candidates)), key=lambda k: aligned[k].correlation)
     return of_traces(candidates[best], sim, aligned[best])
@@ -98,12 +98,12 @@ def compare(real_logs, name, capture):
 def of_traces(real, sim, aligned):
     """Comparison of two Traces, whose clocks lie as the Alignment says."""
     unseen = []
-    holds = {"real": held_readings.of(real), "sim": held_readings.of(sim)}
-    found = held_readings.findings(real, sim, holds["real"], holds["sim"])
+    holds = {"real": held_readings.holds(real), "sim": held_readings.holds(sim)}
+    findings = held_readings.findings(real, sim, holds["real"], holds["sim"])
     sim_free = held_readings.free(sim, holds["sim"])
     real_free = held_readings.free(real, holds["real"])
     live, constant = constant_channels(real, sim)
-    found += constant
+    findings += constant
     own_real = own_calibration.fitted(real_free)
     fits, late, late_sigma, judged = {}, None, None, False
     row_s = 1.0 / min(real.rate_hz, sim.rate_hz)
@@ -122,32 +122,32 @@ def of_traces(real, sim, aligned):
         late, late_sigma, delays = conventions.delay(fits, row_s)
         delays = [c for c in delays if _late_itself(sim_free, late)]
         judged = len(fits) == 2
-        found += [c for f in fits.values() for c in f.found if not (
+        findings += [c for f in fits.values() for c in f.conventions if not (
             constant and c.name == "constant_channel")] + delays
     elif constant:
         unseen.append("other conventions of %s: a channel of it says nothing" % sim.name)
     else:
         more, unseen, judged = different_motion(real_free, sim_free, own_real, row_s)
-        found += more
+        findings += more
     if real.rate is not None and sim.rate is None:
         unseen = [*unseen, "the gyro: there is none in %s" % sim.name]
-    found = convention_findings.merged(found)
-    mended = convention_findings.trace_put_right(sim_free, found)
+    findings = convention_findings.merged(findings)
+    mended = convention_findings.trace_put_right(sim_free, findings)
     own_sim = own_calibration.fitted(mended)
-    numbers, of_numbers = numbers_of(real, sim, mended, (own_real, own_sim), fits, found)
+    numbers, of_numbers = numbers_of(real, sim, mended, (own_real, own_sim), fits, findings)
     numbers += parameters.timing(late, late_sigma, fits, aligned)
-    found += of_numbers + parameters.bias_sign(numbers)
-    if any(c.name == "noise_per_sample" for c in found):
+    findings += of_numbers + parameters.bias_sign(numbers)
+    if any(c.name == "noise_per_sample" for c in findings):
         numbers = [p for p in numbers if p.name != "noise_density"]
     tried, why_not = tasked(real_free, mended, own_real, own_sim, fits)
-    left = {kind: not_foretold(one) for kind, one in fits.items()}
-    return Comparison(sim.name, real.name, aligned, tuple(found), tuple(numbers), tried,
+    left = {kind: not_foretold(sensor_fit) for kind, sensor_fit in fits.items()}
+    return Comparison(sim.name, real.name, aligned, tuple(findings), tuple(numbers), tried,
                       held_out(fits, left, real, sim), fits, own_real, own_sim, real.noise,
                       (*said_of(real, sim, aligned), *why_not), tuple(unseen),
-                      judged or convention_findings.only_in_motion(found),
+                      judged or convention_findings.only_in_motion(findings),
                       None if real.celsius is None else float(real.celsius.mean()),
-                      wanders=frozenset(kind for kind, one in fits.items()
-                                        if slow(left[kind], one.pair.band_hz) > SLOW))
+                      wanders=frozenset(kind for kind, sensor_fit in fits.items()
+                                        if slow(left[kind], sensor_fit.pair.band_hz) > SLOW))
 
 
 def _late_itself(sim, late):
@@ -162,22 +162,22 @@ def constant_channels(real, sim):
     """({sensor: (3,) bool} of the simulator's channels that change and answer, [Convention] of
     those that do not)."""
     live, dead = single_log.live(sim), single_log.dead(real, sim)
-    found = []
+    findings = []
     for kind, mask in dead.items():
         still = mask | ~live[kind] & (kind == "accel" or sim.rate is not None)
         if still.any():
             axes = [a for a, x in zip("xyz", still) if x]
-            found.append(convention_findings.finding(
+            findings.append(convention_findings.finding(
                 "constant_channel", kind, 1.0, 100.0, "its %s says nothing of the motion" %
                 " and ".join(axes), value=dict.fromkeys(axes, 0.0), unit="1"))
             live[kind] = live[kind] & ~still
-    return live, found
+    return live, findings
 
 
-def numbers_of(real, sim, mended, own, fits, found):
+def numbers_of(real, sim, mended, own, fits, findings):
     """([Parameter], [Convention] on the noise) of two Traces; mended: that of the simulator with
     the conventions found put right; own: OwnSensor or None of the real one, of the simulator."""
-    spoiled = [c for c in found if c.name in convention_findings.SPOILED]
+    spoiled = [c for c in findings if c.name in convention_findings.SPOILED]
     usable = {k: not any(c.sensor in (k, "device") for c in spoiled) for k in ("accel", "gyro")}
     densities, on_noise = noise_levels.noises(real, mended)
     return (parameters.shapes(*own, fits, usable) + densities + parameters.registers(real, sim),
@@ -189,25 +189,25 @@ def different_motion(real, sim, own_real, row_s):
     of logs of two motions."""
     if sim.rate is None or real.rate is None:
         return [], ["conventions of %s: they need a gyro in both logs" % sim.name], False
-    found, unseen = own_consistency.conventions_of(real, sim)
-    if found or own_real is None or not sim.rests:
-        return found, unseen, False
+    findings, unseen = own_consistency.conventions_of(real, sim)
+    if findings or own_real is None or not sim.rests:
+        return findings, unseen, False
     moved = own_motion.fitted(real, own_real), own_motion.fitted(
         sim, own_calibration.fitted(sim))
     if None in moved:
-        return found, unseen + ["delay of %s: fewer than %d moves between rests" % (
+        return findings, unseen + ["delay of %s: fewer than %d moves between rests" % (
             sim.name, own_motion.FEWEST_MOVES)], False
     return own_motion.compared(*moved, row_s), unseen, True
 
 
-def not_foretold(found):
+def not_foretold(sensor_fit):
     """(n, 3) of the simulator's log that conventions and parameters fitted on the other half's
     blocks do not foretell, of a SensorFit."""
-    pair = found.pair
+    pair = sensor_fit.pair
     fold = ((pair.t - pair.t[0]) / FOLD_S).astype(int) % 2
     left = np.empty((len(pair.t), 3))
     for k in (0, 1):
-        fit = found.refitted(np.where(fold == k, UNSEEN, 1.0))
+        fit = sensor_fit.refitted(np.where(fold == k, UNSEEN, 1.0))
         left[fold == k] = fit.left[fold == k] / fit.unit
     return left
 
@@ -226,9 +226,9 @@ def held_out(fits, not_explained, real, sim):
     """{sensor: (before, after, noise alone)}: root mean square of simulator less real, mg and
     deg/s, in the band compared; not_explained {sensor: not_foretold()}. Noise is 0 where a log
     without a rest does not tell it."""
-    out = {}
-    for kind, found in fits.items():
-        pair, scale = found.pair, MG if kind == "accel" else DEG
+    gaps = {}
+    for kind, sensor_fit in fits.items():
+        pair, scale = sensor_fit.pair, MG if kind == "accel" else DEG
         theirs = pair.sim_force if kind == "accel" else pair.sim_rate
         ours = pair.force if kind == "accel" else pair.rate
         left = not_explained[kind]
@@ -236,10 +236,10 @@ def held_out(fits, not_explained, real, sim):
         noise = 0.0 if None in levels else sum(
             (level.density ** 2).mean() * 2.0 * min(pair.band_hz, trace.rate_hz / 2)
             for level, trace in zip(levels, (real, sim)))
-        out[kind] = tuple(float(scale * x) for x in (
+        gaps[kind] = tuple(float(scale * x) for x in (
             np.sqrt(((theirs - ours) ** 2).mean()), np.sqrt((left ** 2).mean()),
             np.sqrt(noise)))
-    return out
+    return gaps
 
 
 def tasked(real, sim, own_real, own_sim, fits):
@@ -255,23 +255,23 @@ def tasked(real, sim, own_real, own_sim, fits):
 
 def said_of(real, sim, aligned):
     """Sentences on the two logs."""
-    out = []
+    sentences = []
     if aligned.same:
-        out.append("%s and %s are of one motion (correlation of the turn rates %.3f): offset "
-                   "%.3f ± %.3f s, %.0f s together" % (
-                       sim.name, real.name, aligned.correlation, aligned.offset_s,
-                       1.645 * aligned.offset_sigma_s, aligned.overlap_s))
+        sentences.append(
+            "%s and %s are of one motion (correlation of the turn rates %.3f): offset %.3f ± %.3f "
+            "s, %.0f s together" % (sim.name, real.name, aligned.correlation, aligned.offset_s,
+                                    1.645 * aligned.offset_sigma_s, aligned.overlap_s))
     else:
-        out.append("%s and %s are of different motions (correlation of the turn rates %.2f): each "
-                   "was held against its own rests and moves" % (
-                       sim.name, real.name, aligned.correlation))
+        sentences.append(
+            "%s and %s are of different motions (correlation of the turn rates %.2f): each was "
+            "held against its own rests and moves" % (sim.name, real.name, aligned.correlation))
     for trace in (real, sim):
         if not trace.rests:
-            out.append("no rest in %s: gravity and the gyro's bias are not known in it"
-                       % trace.name)
+            sentences.append("no rest in %s: gravity and the gyro's bias are not known in it"
+                             % trace.name)
         if trace.rate is None:
-            out.append("no gyro in %s" % trace.name)
+            sentences.append("no gyro in %s" % trace.name)
     if abs(real.rate_hz / sim.rate_hz - 1.0) > 0.02:
-        out.append("%s has %.4g rows a second, %s %.4g: compared on one grid" % (
+        sentences.append("%s has %.4g rows a second, %s %.4g: compared on one grid" % (
             sim.name, sim.rate_hz, real.name, real.rate_hz))
-    return out
+    return sentences

@@ -95,16 +95,16 @@ def told(named, logs, possible, sensor, described):
     described: of (name, probability, nats over the healthy one)."""
     weights = special.softmax(logs)
     nats = float(logs.max() - max(v for names, v in zip(named, logs) if not names))
-    found = []
+    findings = []
     for name in named[int(logs.argmax())]:
         probability = float(sum(w for names, w in zip(named, weights) if name in names))
         if probability >= CERTAIN:
-            found.append(described(name, probability, nats))
+            findings.append(described(name, probability, nats))
     quiet = float(sum(w for names, w in zip(named, weights) if not names))
-    if named[int(logs.argmax())] and not found and quiet < 1.0 - CERTAIN:
+    if named[int(logs.argmax())] and not findings and quiet < 1.0 - CERTAIN:
         candidates = sorted({n for names, w in zip(named, weights) if w > possible for n in names})
-        found.append(one_of(sensor, candidates, 1.0 - quiet, nats))
-    return found
+        findings.append(one_of(sensor, candidates, 1.0 - quiet, nats))
+    return findings
 
 
 def finding(name, sensor, probability, nats, set_to="", **more):
@@ -170,43 +170,44 @@ def unit_words(kind, unit):
         "it gives g where m/s² is expected"
 
 
-def merged(found):
+def merged(findings):
     """Both sensors' axes turned in the same way are one finding, of the whole device."""
-    axes = {c.sensor: c for c in found if c.name in ("accel_axes", "gyro_axes")}
+    axes = {c.sensor: c for c in findings if c.name in ("accel_axes", "gyro_axes")}
     if len(axes) == 2 and axes["accel"].value == axes["gyro"].value:
-        one = axes["accel"]
-        found = [c for c in found if c not in axes.values()]
-        found.append(Convention("both_axes", "device", min(c.probability for c in axes.values()),
-                                sum(c.nats for c in axes.values()),
-                                "the simulator " + WORDS["both_axes"], one.set_to, one.value,
-                                one.unit))
-    return list(found)
+        accel = axes["accel"]
+        findings = [c for c in findings if c not in axes.values()]
+        findings.append(Convention(
+            "both_axes", "device", min(c.probability for c in axes.values()),
+            sum(c.nats for c in axes.values()), "the simulator " + WORDS["both_axes"],
+            accel.set_to, accel.value, accel.unit))
+    return list(findings)
 
 
-def trace_put_right(log, found):
+def trace_put_right(log, findings):
     """The Trace with axes, signs and units as the Conventions say they should be."""
-    force = log.force @ _matrix(found, "accel") / _unit(found, "accel")
-    rate = None if log.rate is None else log.rate @ _matrix(found, "gyro") / _unit(found, "gyro")
+    force = log.force @ _matrix(findings, "accel") / _unit(findings, "accel")
+    rate = None if log.rate is None else log.rate @ _matrix(findings, "gyro") / _unit(
+        findings, "gyro")
     return replace(log, force=force, rate=rate)
 
 
-def capture_put_right(log, found):
+def capture_put_right(log, findings):
     """The Capture likewise, a new one, or None where nothing of a sensor is left in it."""
-    if any(c.name in SPOILED for c in found):
+    if any(c.name in SPOILED for c in findings):
         return None
-    out = copy.copy(log)
-    out.accel = _counts(log.accel, _matrix(found, "accel"))
-    out.meta = {**log.meta, "accel_lsb_per_g": log.meta["accel_lsb_per_g"]
-                * _unit(found, "accel")}
+    put_right = copy.copy(log)
+    put_right.accel = _counts(log.accel, _matrix(findings, "accel"))
+    put_right.meta = {**log.meta, "accel_lsb_per_g": log.meta["accel_lsb_per_g"]
+                      * _unit(findings, "accel")}
     if log.gyro is not None:
-        out.gyro = _counts(log.gyro, _matrix(found, "gyro"))
-        out.meta["gyro_lsb_per_dps"] = log.meta["gyro_lsb_per_dps"] * _unit(found, "gyro")
-    return out
+        put_right.gyro = _counts(log.gyro, _matrix(findings, "gyro"))
+        put_right.meta["gyro_lsb_per_dps"] = log.meta["gyro_lsb_per_dps"] * _unit(findings, "gyro")
+    return put_right
 
 
-def only_in_motion(found):
+def only_in_motion(findings):
     """True when the log was wrong in what moves it, and the moves of it say nothing."""
-    return any(c.name in IN_MOTION for c in found)
+    return any(c.name in IN_MOTION for c in findings)
 
 
 def _counts(counts, matrix):
@@ -217,25 +218,25 @@ def _counts(counts, matrix):
     return np.clip(turned, -RAIL - 1, RAIL).astype(counts.dtype)
 
 
-def _matrix(found, kind):
+def _matrix(findings, kind):
     """(3, 3) by which readings (n, 3) of a sensor become the body's."""
-    out = np.eye(3)
-    for c in found:
+    matrix = np.eye(3)
+    for c in findings:
         if c.name in (kind + "_axes", "both_axes"):
-            out = out @ of_axes(c.value)
+            matrix = matrix @ of_axes(c.value)
         if c.name == "force_sign" and kind == "accel":
-            out = -out
-    return out
+            matrix = -matrix
+    return matrix
 
 
 def of_axes(value):
     """(3, 3) of {"x": "-y", ...}"""
-    out = np.zeros((3, 3))
+    matrix = np.zeros((3, 3))
     for i, axis in enumerate("xyz"):
         if value[axis] != "0":
-            out[i, "xyz".index(value[axis][-1])] = -1.0 if value[axis][0] == "-" else 1.0
-    return out
+            matrix[i, "xyz".index(value[axis][-1])] = -1.0 if value[axis][0] == "-" else 1.0
+    return matrix
 
 
-def _unit(found, kind):
-    return float(np.prod([c.value["factor"] for c in found if c.name == kind + "_unit"]))
+def _unit(findings, kind):
+    return float(np.prod([c.value["factor"] for c in findings if c.name == kind + "_unit"]))

@@ -25,12 +25,12 @@ LATE_SIGMA = 4.0  # standard errors from which on a delay is one: by chance in 1
 
 @dataclass(frozen=True)
 class SensorFit:
-    """One sensor of the simulator as the best hypothesis has it: found (Conventions), fit
+    """One sensor of the simulator as the best hypothesis has it: conventions, fit
     (evidence_of_logs.Fit), inflation, the Pair it was made on, the Hypothesis, the real sensor's
     own effects and the channels that change."""
 
     kind: str
-    found: tuple
+    conventions: tuple
     fit: object
     inflation: float
     pair: object
@@ -48,12 +48,12 @@ class SensorFit:
 
 def same_motion(real, sim, alignment, motion, live, fresh_hz):
     """{sensor: SensorFit} of two aligned Traces; live {sensor: (3,)}: channels that change."""
-    out = {}
+    sensor_fits = {}
     for kind in ("accel", "gyro"):
         if live[kind].any():
-            out[kind] = one_sensor(kind, real, sim, alignment, motion, live[kind],
-                                   fresh_hz[kind])
-    return out
+            sensor_fits[kind] = one_sensor(kind, real, sim, alignment, motion, live[kind],
+                                           fresh_hz[kind])
+    return sensor_fits
 
 
 def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
@@ -95,9 +95,9 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
     own = sized(own, lambda sizes: evidence_of_logs.fit_one(
         first.hypothesis, measured, first.axes, first.unit, pairing.GRID_HZ, kind, inflation,
         (own[0], sizes), live, rows, left=False).log)
-    found, fit = posterior(kind, judged(inflation, rows), live)
+    named, fit = posterior(kind, judged(inflation, rows), live)
     fit = whole(fit, inflation, rows)
-    return SensorFit(kind, found, fit, inflation, pair, fit.hypothesis, own, live)
+    return SensorFit(kind, named, fit, inflation, pair, fit.hypothesis, own, live)
 
 
 def own_noise(values, measured, noise, theirs, band_hz):
@@ -111,14 +111,14 @@ def own_noise(values, measured, noise, theirs, band_hz):
         moved = evidence_of_logs.shifted(values, delay)
         slope = -np.gradient(moved, axis=0)
         design = np.column_stack([moved, slope, np.ones(len(values))])
-        found = np.linalg.lstsq(design, measured, rcond=None)[0]
+        fit = np.linalg.lstsq(design, measured, rcond=None)[0]
         # A late simulator has the slope of what it has, in the same proportions.
-        delay += float((found[:3] * found[3:6]).sum() / max((found[:3] ** 2).sum(), 1e-12))
-    left = (measured - design @ found) ** 2
+        delay += float((fit[:3] * fit[3:6]).sum() / max((fit[:3] ** 2).sum(), 1e-12))
+    left = (measured - design @ fit) ** 2
     wide = max(1, int(pairing.GRID_HZ))
     calm = np.median(left[:len(left) // wide * wide].reshape(-1, wide, 3).mean(axis=1), axis=0) \
         if len(left) >= wide else left.mean(axis=0)
-    expected = 2.0 * band_hz * ((found[:3].T ** 2) @ noise.density ** 2 + theirs.density ** 2)
+    expected = 2.0 * band_hz * ((fit[:3].T ** 2) @ noise.density ** 2 + theirs.density ** 2)
     share = calm / np.maximum(expected, 1e-30)
     return np.where(share > SHARED, 1.0, share)
 
@@ -170,12 +170,12 @@ def posterior(kind, fits, live):
         np.log(PRIOR_HEALTHY) if not each else 0.0) for f, each in zip(fits, named)])
     top = int(logs.argmax())
     best = fits[top]
-    found = convention_findings.told(
+    findings = convention_findings.told(
         named, logs, POSSIBLE, kind, lambda name, probability, nats:
         convention_findings.described(name, kind, best, probability, nats, live))
-    if named[top] and not found:
+    if named[top] and not findings:
         best = max((f for f, each in zip(fits, named) if not each), key=lambda f: f.log)
-    return tuple(found), best
+    return tuple(findings), best
 
 
 def prior(name):
@@ -185,23 +185,23 @@ def prior(name):
 
 def names(fit, kind, live):
     """What a Fit says the simulator does other than a sensor: () is healthy."""
-    out = []
+    deviations = []
     if fit.name == "":
-        out.append("unknown")
+        deviations.append("unknown")
     elif fit.name != "healthy" and not (fit.name == "time_step"
                                         and abs(fit.extra[0]) < LEAST_STEP):
-        out.append(fit.name)
+        deviations.append(fit.name)
     dead = live & ~fit.axes.any(axis=1)
     if dead.any():
-        out.append("constant_channel")
+        deviations.append("constant_channel")
     answers = live & ~dead
     turned = not np.array_equal(fit.axes[answers], np.eye(3)[answers])
     if turned and fit.name not in ("world_frame_rates", "world_frame_forces"):
         minus = kind == "accel" and live.all() and np.array_equal(fit.axes, -np.eye(3))
-        out.append("force_sign" if minus else kind + "_axes")
+        deviations.append("force_sign" if minus else kind + "_axes")
     if fit.unit != 1.0:
-        out.append(kind + "_unit")
-    return tuple(out)
+        deviations.append(kind + "_unit")
+    return tuple(deviations)
 
 
 def delay(sensor_fits, row_s):
@@ -212,10 +212,10 @@ def delay(sensor_fits, row_s):
     a, g = sensor_fits["accel"].fit, sensor_fits["gyro"].fit
     late = g.delay_s - a.delay_s
     sigma = float(np.hypot(a.delay_sigma_s, g.delay_sigma_s))
-    known = not any(c.name == "unknown" for f in sensor_fits.values() for c in f.found)
-    out = [late_one(late, sigma)] if known and abs(late) > LATE_SIGMA * sigma and (
+    known = not any(c.name == "unknown" for f in sensor_fits.values() for c in f.conventions)
+    findings = [late_one(late, sigma)] if known and abs(late) > LATE_SIGMA * sigma and (
         abs(late) >= row_s) else []
-    return late, sigma, out
+    return late, sigma, findings
 
 
 def late_one(late, sigma):

@@ -44,14 +44,14 @@ class Beside:
 def beyond(diagnosis):
     """The Diagnosis with the effects of its Comparisons."""
     return replace(diagnosis, comparisons=tuple(
-        _compared(one, diagnosis) for one in diagnosis.comparisons))
+        _compared(comparison, diagnosis) for comparison in diagnosis.comparisons))
 
 
 def _compared(comparison, diagnosis):
     """The Comparison with its effects, and bias, scale and misalignment beside them."""
-    for kind, found in comparison.fits.items():
+    for kind, sensor_fit in comparison.fits.items():
         mine = [c for sensor, c in diagnosis.causes if sensor == kind and c.plausible]
-        names = _likeliest(kind, found, mine, diagnosis)
+        names = _likeliest(kind, sensor_fit, mine, diagnosis)
         if names:
             comparison = _beside(comparison, kind, names, diagnosis)
     return comparison
@@ -61,16 +61,16 @@ def _beside(comparison, kind, names, diagnosis):
     """The Comparison with the effects names ([(name, Cause)]) of one sensor, and its bias, scale
     and misalignment beside them. What does not differ is the same in both when the sizes are
     taken: a cubic is much like a scale."""
-    found = comparison.fits[kind]
-    fit, _ = _fitted(kind, found, names, diagnosis)
+    sensor_fit = comparison.fits[kind]
+    fit, _ = _fitted(kind, sensor_fit, names, diagnosis)
     numbers = parameters.shapes(comparison.real, comparison.simulated,
-                                {kind: replace(found, fit=fit)}, {kind: True})
+                                {kind: replace(sensor_fit, fit=fit)}, {kind: True})
     known = {(p.name, p.axis): p for p in numbers if p.sensor == kind}
     differs = np.array([[any(p.differs for p in numbers if p.sensor == kind and p.axis in (
         a + b, a * (a == b)) and p.name in ("scale", "misalignment")) for b in "xyz"]
         for a in "xyz"])
-    same = replace(found, hypothesis=replace(
-        found.hypothesis, shape_sd=np.where(differs, hypotheses.SHAPE, SAME)))
+    same = replace(sensor_fit, hypothesis=replace(
+        sensor_fit.hypothesis, shape_sd=np.where(differs, hypotheses.SHAPE, SAME)))
     return replace(
         comparison, effects=comparison.effects + _sizes(
             kind, *_fitted(kind, same, names, diagnosis), names, diagnosis),
@@ -83,14 +83,14 @@ def in_both(diagnosis):
     of one motion show to be in the simulator as well: of what such a cause adds to the real
     readings, nothing is in their difference. Each log by itself may take one effect for several,
     and not alike, which is no gap between them."""
-    found = {}
+    shared = {}
     for comparison in diagnosis.comparisons:
         for kind, fit in comparison.fits.items():
             gap = diagnosis.gaps.get(kind)
             for cause in gap.causes if gap else ():
                 if _is_in_both(kind, fit, cause, diagnosis):
-                    found.setdefault(kind, []).extend(_coefficients(gap, cause))
-    return found
+                    shared.setdefault(kind, []).extend(_coefficients(gap, cause))
+    return shared
 
 
 def _coefficients(gap, cause):
@@ -100,40 +100,40 @@ def _coefficients(gap, cause):
     return [(*every[column], float(size)) for column, size in zip(columns, cause.theta)]
 
 
-def _is_in_both(kind, found, cause, diagnosis):
+def _is_in_both(kind, sensor_fit, cause, diagnosis):
     names = (*terms.of_the_moment(kind), "box_tilt")
-    if found.hypothesis.name == "" or cause.effect not in names or not cause.value:
+    if sensor_fit.hypothesis.name == "" or cause.effect not in names or not cause.value:
         return False
-    design = _design(kind, cause.effect, cause, found.pair, diagnosis)
+    design = _design(kind, cause.effect, cause, sensor_fit.pair, diagnosis)
     added = design.columns @ [cause.value.get(key, 0.0) for key in design.keys]
-    fit = _fit(kind, found, [replace(
+    fit = _fit(kind, sensor_fit, [replace(
         design, keys=["share"], columns=added[:, None], prior=np.ones(1))])
     share, sigma = fit.extra[-1], fit.extra_sigma[-1]
     return bool(abs(share) < BOTH * sigma < abs(1.0 - share))
 
 
-def _likeliest(kind, found, causes, diagnosis):
+def _likeliest(kind, sensor_fit, causes, diagnosis):
     """[(name, Cause)]: of each cause the name in whose form both logs bear it out best."""
     causes = [c for c in causes if any(name in terms.of_the_moment(kind) for name in c.names)]
-    if found.hypothesis.name == "" or not causes:
+    if sensor_fit.hypothesis.name == "" or not causes:
         return []
     sets = [list(zip(names, causes)) for names in islice(product(
         *([n for n in c.names if n in terms.of_the_moment(kind)] for c in causes)), MOST_SETS)
         if len(set(names)) == len(names)]
     if len(sets) < 2:
         return sets[0] if sets else []
-    return max(sets, key=lambda names: _fit(kind, found, [
-        _design(kind, *one, found.pair, diagnosis) for one in names]).log)
+    return max(sets, key=lambda names: _fit(kind, sensor_fit, [
+        _design(kind, *named, sensor_fit.pair, diagnosis) for named in names]).log)
 
 
-def _fitted(kind, found, names, diagnosis):
+def _fitted(kind, sensor_fit, names, diagnosis):
     """(Fit, designs) of effects beside the parameters. An effect is a function of what acts,
     which the real readings are once it is taken off."""
-    pair = found.pair
+    pair = sensor_fit.pair
     for _ in range(2):
-        designs = [_design(kind, *one, pair, diagnosis) for one in names]
-        fit = _fit(kind, found, designs)
-        pair = _less(kind, found.pair, designs, fit)
+        designs = [_design(kind, *named, pair, diagnosis) for named in names]
+        fit = _fit(kind, sensor_fit, designs)
+        pair = _less(kind, sensor_fit.pair, designs, fit)
     return fit, designs
 
 
@@ -189,28 +189,28 @@ def moment(pair):
     return m
 
 
-def _fit(kind, found, designs):
+def _fit(kind, sensor_fit, designs):
     """Fit of the sensor's own hypothesis with the designs' columns beside it; what the real
     sensor may do besides is left out, since it would take their place."""
-    h = found.hypothesis
+    h = sensor_fit.hypothesis
     wide = replace(h, columns=np.concatenate(
-                       [h.columns, -_columns(kind, found.pair, designs)], axis=2),
+                       [h.columns, -_columns(kind, sensor_fit.pair, designs)], axis=2),
                    mean=np.concatenate([h.mean, *(np.zeros(len(d.keys)) for d in designs)]),
                    sd=np.concatenate([h.sd, *(d.prior for d in designs)]))
-    rows = conventions.local_noise(found.fit.left[:, found.live])
-    return replace(found, hypothesis=wide, own=None).refitted(rows)
+    rows = conventions.local_noise(sensor_fit.fit.left[:, sensor_fit.live])
+    return replace(sensor_fit, hypothesis=wide, own=None).refitted(rows)
 
 
 def _sizes(kind, fit, designs, names, diagnosis):
     """Effects of a Fit."""
-    found, start = [], len(fit.extra) - sum(len(d.keys) for d in designs)
+    effects, start = [], len(fit.extra) - sum(len(d.keys) for d in designs)
     for design, (name, cause) in zip(designs, names):
         part = slice(start, start + len(design.keys))
         start = part.stop
         value = dict(zip(design.keys, fit.extra[part].tolist()))
         half = dict(zip(design.keys, (odds.Z_90 * fit.extra_sigma[part]).tolist()))
-        found.append(Beside(
+        effects.append(Beside(
             name, kind, value, {k: (v - half[k], v + half[k]) for k, v in value.items()},
             EFFECTS[name].units[kind], _shape(name, cause, diagnosis),
             tuple(cause.probabilities)))
-    return tuple(found)
+    return tuple(effects)

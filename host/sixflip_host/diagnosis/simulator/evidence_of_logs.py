@@ -55,11 +55,11 @@ def fits(hypothesis, measured, kind, grid_hz, inflation=1.0, own=None, live=None
     the real sensor adds of itself to each channel; live (3,): channels that are not constant;
     rows (n,): the noise of each sample, in units of the average."""
     live = np.ones(3, bool) if live is None else live
-    found = []
+    every_fit = []
     for axes, unit in candidates(hypothesis, measured, kind, live):
-        found.append(fit_one(hypothesis, measured, axes, unit, grid_hz, kind, inflation, own,
-                             live, rows, left=False))
-    return found
+        every_fit.append(fit_one(hypothesis, measured, axes, unit, grid_hz, kind, inflation, own,
+                                 live, rows, left=False))
+    return every_fit
 
 
 def candidates(hypothesis, measured, kind, live):
@@ -73,7 +73,7 @@ def candidates(hypothesis, measured, kind, live):
         return [(np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]), 1.0)]
     units = (1.0, DEG, 1.0 / DEG) if kind == "gyro" else (1.0, STANDARD_G, 1.0 / STANDARD_G)
     free[~live] = 0.0
-    out = [(np.eye(3), unit) for unit in (units if hypothesis.name else units[:1])]
+    tried = [(np.eye(3), unit) for unit in (units if hypothesis.name else units[:1])]
     if hypothesis.name:
         size = np.linalg.norm(free, axis=1)
         near = axis_order.nearest(free / np.maximum(size, 1e-9)[:, None])
@@ -81,8 +81,8 @@ def candidates(hypothesis, measured, kind, live):
         if dead.any():
             near = np.where(dead[:, None], 0.0, near)
         if not np.array_equal(near[live], np.eye(3)[live]):
-            out += [(near, unit) for unit in units]
-    return out
+            tried += [(near, unit) for unit in units]
+    return tried
 
 
 def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, rows, left=True):
@@ -112,8 +112,8 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
             own.append(real_own[0][some])
             own_sd.append(real_own[1])
         result = regression((target - signal)[some], np.concatenate(own, 1), np.concatenate(
-                                [np.broadcast_to(one, (3, np.shape(one)[-1])) for one in own_sd],
-                                axis=1),
+                                [np.broadcast_to(width, (3, np.shape(width)[-1]))
+                                 for width in own_sd], axis=1),
                             columns, mean, sd, inflation, live, rows if rows is None else
                             rows[some], residuals=last, every=every)
         delay += float(np.clip(result[2][k], -0.05, 0.05))
@@ -162,10 +162,10 @@ def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,
     prior = np.concatenate([np.broadcast_to(own_sd, (3, p)).ravel(), sd])
     variance = np.maximum((y - y.mean(axis=0)).var(axis=0), LEAST_LEFT)
     gram_own = own.T @ own * k_rows
-    cross = [own.T @ one * k_rows for one in columns]
-    gram_shared = [one.T @ one * k_rows for one in columns]
+    cross = [own.T @ channel * k_rows for channel in columns]
+    gram_shared = [channel.T @ channel * k_rows for channel in columns]
     right_own = (own.T @ y * k_rows).T
-    right_shared = [one.T @ y[:, c] * k_rows for c, one in enumerate(columns)]
+    right_shared = [channel.T @ y[:, c] * k_rows for c, channel in enumerate(columns)]
     power, looked = (y ** 2).sum(axis=0) * k_rows, len(y) * k_rows
     for _ in range(ROUNDS):
         gram, right = np.diag(1.0 / prior ** 2), np.zeros(size)
@@ -203,9 +203,9 @@ def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,
             variance * inflation), live))
         y, own, columns = raw
         left = y - own @ beta.T - columns @ shared
-    out = (log, beta, shared, sigma[3 * p:], left if residuals else None,
-           sigma[:3 * p].reshape(3, p))
-    return out + (inverse[3 * p:, 3 * p:],) if covariance else out
+    result = (log, beta, shared, sigma[3 * p:], left if residuals else None,
+              sigma[:3 * p].reshape(3, p))
+    return result + (inverse[3 * p:, 3 * p:],) if covariance else result
 
 
 def scattered(inverse, left, own, columns, weights, live):

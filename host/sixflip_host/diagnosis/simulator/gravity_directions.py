@@ -20,15 +20,15 @@ def moves(trace):
     if trace.rate is None:
         return []
     rate = trace.rate - traces.rest_line(trace, trace.rate)
-    out = []
+    ways = []
     for k in range(len(trace.rests) - 1):
         first, last = trace.rests[k][1] - 1, trace.rests[k + 1][0]
         dt = np.diff(trace.t[first:last + 1])[:, None]
         steps = 0.5 * (rate[first:last] + rate[first + 1:last + 1]) * dt
         group = max(1, int(trace.rate_hz / STEPS_HZ))
         edges = np.arange(0, len(steps), group)
-        out.append((k, k + 1, np.add.reduceat(steps, edges, axis=0)))
-    return out
+        ways.append((k, k + 1, np.add.reduceat(steps, edges, axis=0)))
+    return ways
 
 
 def closeness(a, b):
@@ -62,8 +62,8 @@ def world_log(body, ways):
         for _, after, steps in ways:
             turns = rotations(steps)
             whole = np.eye(3)
-            for one in turns:
-                whole = one @ whole
+            for turn in turns:
+                whole = turn @ whole
             attitude = whole @ attitude
             total += closeness(body[after], attitude[2])
             attitude = rotation_between(attitude @ body[after], z) @ attitude
@@ -100,11 +100,11 @@ def direction_log(body, real, sim):
 
 def should_turn(ups, ways):
     """rad: how far the gyro says that gravity moves in the sensor in a move, at most."""
-    found = [0.0]
+    angles = [0.0]
     for before, _, steps in ways:
         turn = carried(rotations(steps))[-1]
-        found.append(float(np.arccos(np.clip(ups[before] @ (turn.T @ ups[before]), -1.0, 1.0))))
-    return max(found)
+        angles.append(float(np.arccos(np.clip(ups[before] @ (turn.T @ ups[before]), -1.0, 1.0))))
+    return max(angles)
 
 
 def turned(ups, ways):

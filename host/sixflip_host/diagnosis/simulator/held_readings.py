@@ -32,7 +32,7 @@ class Hold:
         return self.rows >= LEAST
 
 
-def of(trace):
+def holds(trace):
     """{sensor: Hold} of a Trace."""
     return {"accel": of_values(trace.force, trace.quantum[0], trace.rests),
             "gyro": of_values(trace.rate, trace.quantum[1], trace.rests)}
@@ -99,26 +99,26 @@ def under_noise(values, moving, rests):
 def free(trace, holds):
     """The Trace with what is held in a straight line from one new reading to the next: what it
     would say without the hold. A reading is the mean of the rows it stands in."""
-    out = trace
+    freed = trace
     for name, kind in (("force", "accel"), ("rate", "gyro")):
         values = getattr(trace, name)
         if values is None or not holds[kind].held:
             continue
         at = np.flatnonzero(holds[kind].starts)
         means = np.add.reduceat(values, at, axis=0) / np.diff(np.append(at, len(values)))[:, None]
-        out = replace(out, **{name: np.stack([
+        freed = replace(freed, **{name: np.stack([
             np.interp(trace.t, trace.t[at], means[:, i]) for i in range(3)], 1)})
-    return out
+    return freed
 
 
 def findings(real, sim, holds_real, holds_sim):
     """Conventions of sensors that the simulator holds and the real log does not."""
-    out = []
+    held = []
     for kind, hold in holds_sim.items():
         hz = real.rate_hz / holds_real[kind].rows, sim.rate_hz / hold.rows
         if hold.held and hz[1] <= SLOWER * hz[0]:
-            out.append(convention_findings.finding(
+            held.append(convention_findings.finding(
                 kind + "_rate_held", kind, 1.0, 100.0, "update it %.4g times a second: it says "
                 "something new every %.3g rows" % (hz[0], hold.rows), value={"rate": hz[1]},
                 unit="Hz"))
-    return out
+    return held

@@ -64,7 +64,7 @@ def accelerometer(force, motion, g):
     arm = np.zeros(3), np.full(3, LEVER_M)
     transport = -np.cross(motion.rate, motion.speed)[:, :, None]
     world = np.einsum("nij,nj->ni", motion.turn, force)
-    out = [
+    tried = [
         Hypothesis("healthy", force, *none(n)),
         Hypothesis("no_gravity", moved, *none(n)),
         Hypothesis("gravity_sign", moved - up, *none(n)),
@@ -74,22 +74,22 @@ def accelerometer(force, motion, g):
         Hypothesis("no_centripetal_term", force, -spin, *arm),
         Hypothesis("lever_arm_missing", force, -lever, *arm),
     ]
-    out += [Hypothesis("time_step", force, moved[:, :, None], np.array([k - 1.0]),
-                       np.array([TIMES_SPREAD * k]), scaled=True) for k in TIMES]
+    tried += [Hypothesis("time_step", force, moved[:, :, None], np.array([k - 1.0]),
+                         np.array([TIMES_SPREAD * k]), scaled=True) for k in TIMES]
     everything = np.concatenate([moved, world, up, transport[:, :, 0], motion.rate_dot,
                                  pairs(motion.rate)], axis=1)
-    return out + [nameless(force, everything, 2)]
+    return tried + [nameless(force, everything, 2)]
 
 
 def gyro(rate, motion, g):
     """Hypotheses of the gyro."""
     n = len(rate)
     world = np.einsum("nij,nj->ni", motion.turn, rate)
-    out = [Hypothesis("healthy", rate, *none(n)),
-           Hypothesis("world_frame_rates", world, *none(n), heading=True)]
+    tried = [Hypothesis("healthy", rate, *none(n)),
+             Hypothesis("world_frame_rates", world, *none(n), heading=True)]
     everything = np.concatenate([world, motion.rate_dot * 0.1, pairs(rate), motion.up,
                                  motion.moved / g], axis=1)
-    return out + [nameless(rate, everything, 1)]
+    return tried + [nameless(rate, everything, 1)]
 
 
 def nameless(signal, everything, copies):
@@ -124,12 +124,12 @@ def spinning(rate):
 
 def lever_columns(motion):
     """(n, 3, 3): what multiplies r in dw/dt x r + w x (w x r)."""
-    out = spinning(motion.rate)
+    columns = spinning(motion.rate)
     x, y, z = motion.rate_dot.T
     for (i, j), value in {(0, 1): -z, (0, 2): y, (1, 0): z, (1, 2): -x, (2, 0): -y,
                           (2, 1): x}.items():
-        out[:, i, j] += value
-    return out
+        columns[:, i, j] += value
+    return columns
 
 
 def pairs(x):

@@ -21,7 +21,7 @@ COARSE, DROWNED = 1.5, 0.3
 
 def noises(real, sim):
     """(Parameters of the noise densities, Conventions on the noise)."""
-    out, found = [], []
+    numbers, findings = [], []
     for kind in ("accel", "gyro"):
         name = "force" if kind == "accel" else "rate"
         values = [getattr(x, name) for x in (real, sim)]
@@ -43,12 +43,12 @@ def noises(real, sim):
             da, db = a.density[i] * scale, 0.0 if silent else b.density[i] * scale
             # Noise is known to a share of itself: it is the ratio that can be told from one.
             ratio = abs(np.log(max(da, 1e-12) / max(db, 1e-12)))
-            out.append(compared("noise_density", kind, axis, unit, da, da * a.relative_sigma, db,
-                                db * b.relative_sigma, apart=ratio / np.hypot(
-                                    a.relative_sigma, b.relative_sigma)))
+            numbers.append(compared(
+                "noise_density", kind, axis, unit, da, da * a.relative_sigma, db,
+                db * b.relative_sigma, apart=ratio / np.hypot(a.relative_sigma, b.relative_sigma)))
         if not silent and (a.per_sample > DROWNED * floor[0]).all() and (b.density > 0).all():
-            found += density_convention(kind, a, b, sim.rate_hz)
-    return out, merged_noise(found)
+            findings += density_convention(kind, a, b, sim.rate_hz)
+    return numbers, merged_noise(findings)
 
 
 def density_convention(kind, real, sim, rate_hz):
@@ -75,11 +75,12 @@ def density_convention(kind, real, sim, rate_hz):
         interval_90={"factor": (factor * np.exp(-half_of_90), factor * np.exp(half_of_90))})]
 
 
-def merged_noise(found):
+def merged_noise(findings):
     """Both sensors at once are one finding, of the device."""
-    if len(found) < 2:
-        return found
-    one = found[0]
-    return [convention_findings.finding("noise_per_sample", "device",
-                                min(c.probability for c in found), sum(c.nats for c in found),
-                                value=one.value, unit="1", interval_90=one.interval_90)]
+    if len(findings) < 2:
+        return findings
+    first = findings[0]
+    return [convention_findings.finding(
+        "noise_per_sample", "device", min(c.probability for c in findings),
+        sum(c.nats for c in findings), value=first.value, unit="1",
+        interval_90=first.interval_90)]

@@ -98,12 +98,12 @@ def by_norm(means, g):
 
 def matrix_of(p):
     """((3, 3) symmetric matrix, (3,) bias) of nine parameters, zero for a sensor without error."""
-    out = np.eye(3)
+    matrix = np.eye(3)
     for value, (i, j) in zip(p, SYMMETRIC):
-        out[i, j] += value
+        matrix[i, j] += value
         if i != j:
-            out[j, i] += value
-    return out, p[6:]
+            matrix[j, i] += value
+    return matrix, p[6:]
 
 
 def by_carry(trace, rate, ups, tilt):

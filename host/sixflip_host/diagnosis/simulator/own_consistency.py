@@ -49,7 +49,7 @@ def conventions_of(real, sim):
                     "against another motion" % sim.name] + unseen
     norms = np.linalg.norm(sim.rest_means(sim.force), axis=1) / sim.g
     chances, eye = by_norm(norms, moved_ratio(real, sim)), np.eye(3)
-    none, small, large = (chances.get(one, 0.0) for one in (NONE, 1.0 / STANDARD_G, STANDARD_G))
+    none, small, large = (chances.get(size, 0.0) for size in (NONE, 1.0 / STANDARD_G, STANDARD_G))
     nothing = convention_findings.finding("no_gravity", "accel", none,
                                           -np.log(max(1.0 - none, 1e-300)))
     axes = ["axes and frame of %s: without gravity a log of another motion does not show them"
@@ -60,10 +60,10 @@ def conventions_of(real, sim):
         return [convention_findings.one_of("accel", ["accel_unit", "no_gravity"], none + small,
                                            -np.log(max(1.0 - none - small, 1e-300)))], \
             unseen + axes
-    found = []
+    findings = []
     for unit, chance in ((1.0 / STANDARD_G, small), (STANDARD_G, large)):
         if chance > convention_findings.CERTAIN:
-            found.append(convention_findings.other_unit(
+            findings.append(convention_findings.other_unit(
                 "accel", chance, -np.log(max(1.0 - chance, 1e-300)), unit))
     ups = sim.rest_means(sim.force)
     ups = ups / np.maximum(np.linalg.norm(ups, axis=1), 1e-12)[:, None]
@@ -97,7 +97,7 @@ def conventions_of(real, sim):
     elif planar:
         unseen.append("axes and frame of the gyro of %s: gravity stays where it is in the sensor"
                       % sim.name)
-    return found + more, unseen
+    return findings + more, unseen
 
 
 def by_norm(norms, moved=None):
@@ -157,19 +157,19 @@ def names_of(reading):
     eye = np.eye(3)
     if reading.constant:
         return ["gravity_after_rotation"]
-    out = ["world_frame_rates"] if reading.world else []
+    names = ["world_frame_rates"] if reading.world else []
     if np.array_equal(reading.accel, reading.gyro) and not np.array_equal(reading.accel, eye):
-        out.append("both_axes")
+        names.append("both_axes")
     else:
         if np.array_equal(reading.accel, -eye):
-            out.append("gravity_sign")
+            names.append("gravity_sign")
         elif not np.array_equal(reading.accel, eye):
-            out.append("accel_axes")
+            names.append("accel_axes")
         if not np.array_equal(reading.gyro, eye):
-            out.append("gyro_axes")
+            names.append("gyro_axes")
     if reading.gyro_unit != 1.0:
-        out.append("gyro_unit")
-    return out
+        names.append("gyro_unit")
+    return names
 
 
 def log_prior(names):
@@ -188,10 +188,10 @@ def judged(tried):
     best = tried[int(logs.argmax())][0]
     return convention_findings.told(
         named, logs, POSSIBLE, "device",
-        lambda name, probability, nats: found_as(name, best, probability, nats))
+        lambda name, probability, nats: convention_as(name, best, probability, nats))
 
 
-def found_as(name, reading, probability, nats):
+def convention_as(name, reading, probability, nats):
     """The Convention of a name that a Reading has."""
     if name == "gyro_unit":
         return convention_findings.other_unit("gyro", probability, nats, reading.gyro_unit)

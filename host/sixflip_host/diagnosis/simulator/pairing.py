@@ -48,8 +48,8 @@ def paired(real, sim, alignment, motion, band_hz=BANDS[0]):
 
     def onto(trace, values, at):
         flat = align_by.smooth(values.reshape(len(values), -1), trace.rate_hz, band_hz)
-        out = CubicSpline(*increasing(trace.t, flat))(at)
-        return out.reshape((len(at),) + values.shape[1:])
+        resampled = CubicSpline(*increasing(trace.t, flat))(at)
+        return resampled.reshape((len(at),) + values.shape[1:])
 
     # A simulator without a gyro is compared by its forces alone.
     sim_rate = np.zeros_like(sim.force) if sim.rate is None else sim.rate

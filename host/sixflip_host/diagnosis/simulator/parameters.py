@@ -87,7 +87,7 @@ def _span(x, sigma):
 def shapes(real, sim, fits, usable):
     """Bias, scale, misalignment; real, sim: OwnSensor or None; fits {sensor: SensorFit} of one
     motion or {}; usable {sensor: bool}: its conventions leave its numbers what they are."""
-    out = []
+    numbers = []
     for kind in ("accel", "gyro"):
         if not usable.get(kind) or real is None or sim is None:
             continue
@@ -105,7 +105,7 @@ def shapes(real, sim, fits, usable):
             (a, sa), (b, sb) = [(v[0][i] * scale, v[1][i] * scale) for v in values]
             if kind == "gyro":
                 pair = (None, None)  # at rest it is read directly
-            out.append(compared("bias", kind, axis, unit, a, sa, b, sb, *pair))
+            numbers.append(compared("bias", kind, axis, unit, a, sa, b, sb, *pair))
         if fit is None and not usable.get("accel"):
             continue  # by its own moves a gyro is known by where the accelerometer finds gravity
         for i in range(3):
@@ -116,10 +116,10 @@ def shapes(real, sim, fits, usable):
                 (a, sa), (b, sb) = [(v[2][i, j] * size, v[3][i, j] * size) for v in values]
                 if fit is None and kind == "accel" and i > j:
                     continue  # a turn of the whole accelerometer cannot be seen by rests alone
-                out.append(compared("scale" if i == j else "misalignment", kind,
-                                    "xyz"[i] + ("" if i == j else "xyz"[j]),
-                                    "%" if i == j else "°", a, sa, b, sb, *pair))
-    return out
+                numbers.append(compared("scale" if i == j else "misalignment", kind,
+                                        "xyz"[i] + ("" if i == j else "xyz"[j]),
+                                        "%" if i == j else "°", a, sa, b, sb, *pair))
+    return numbers
 
 
 def own(sensor, kind):
@@ -133,8 +133,8 @@ def own(sensor, kind):
 
 def registers(real, sim):
     """Step, range and rate."""
-    out = []
-    noises = {kind: found.per_sample for kind, found in real.noise.items() if found is not None}
+    numbers = []
+    noises = {kind: noise.per_sample for kind, noise in real.noise.items() if noise is not None}
     for kind, name, index in (("accel", "force", 0), ("gyro", "rate", 1)):
         a, b = (getattr(x, name) for x in (real, sim))
         if a is None or b is None:
@@ -150,13 +150,13 @@ def registers(real, sim):
                 # drown them.
                 coarse |= steps[1] > COARSER * steps[0] and steps[1] > scale * (
                     noises[kind][i] if kind in noises else np.inf)
-                out.append(Parameter("step", kind, axis, unit, steps[0], None, steps[1], None,
-                                     steps[0] - steps[1], None, bool(coarse),
-                                     steps[0] if coarse else None))
-            out += ranges(kind, axis, unit, *(v[:, i] * scale for v in (a, b)))
-    out.append(Parameter("rate", "device", "", "Hz", real.rate_hz, None, sim.rate_hz, None,
-                         real.rate_hz - sim.rate_hz, None, False, None))
-    return out
+                numbers.append(Parameter("step", kind, axis, unit, steps[0], None, steps[1], None,
+                                         steps[0] - steps[1], None, bool(coarse),
+                                         steps[0] if coarse else None))
+            numbers += ranges(kind, axis, unit, *(v[:, i] * scale for v in (a, b)))
+    numbers.append(Parameter("rate", "device", "", "Hz", real.rate_hz, None, sim.rate_hz, None,
+                             real.rate_hz - sim.rate_hz, None, False, None))
+    return numbers
 
 
 def ranges(kind, axis, unit, real, sim):
@@ -176,24 +176,24 @@ def ranges(kind, axis, unit, real, sim):
 def timing(late, late_sigma, fits, alignment):
     """Delay between the sensors, smoothness of each, clock: differences only, each with what to
     do."""
-    out = []
+    numbers = []
     if late is not None:
-        out.append(with_how(compared("delay", "gyro", "", "ms", None, np.inf, None, np.inf,
-                                     -1e3 * late, 1e3 * late_sigma, least=LEAST_DELAY_MS),
-                            later))
-    for kind, found in fits.items():
-        fit = found.fit
-        if any(c.name == "unknown" for c in found.found):
+        numbers.append(with_how(compared("delay", "gyro", "", "ms", None, np.inf, None, np.inf,
+                                         -1e3 * late, 1e3 * late_sigma, least=LEAST_DELAY_MS),
+                                later))
+    for kind, sensor_fit in fits.items():
+        fit = sensor_fit.fit
+        if any(c.name == "unknown" for c in sensor_fit.conventions):
             continue
-        out.append(with_how(compared(
+        numbers.append(with_how(compared(
             "smoothness", kind, "", "ms²", None, np.inf, None, np.inf, -1e6 * fit.smooth_s2,
             1e6 * fit.smooth_sigma_s2, least=LEAST_SMOOTH_MS2), smoother))
     if alignment.same:
-        out.append(with_how(compared(
+        numbers.append(with_how(compared(
             "clock", "device", "", "%", None, np.inf, None, np.inf, -100.0 * alignment.drift,
             100.0 * alignment.drift_sigma,
             apart=(abs(alignment.drift) - QUARTZ) / alignment.drift_sigma), faster))
-    return out
+    return numbers
 
 
 def with_how(parameter, how):
@@ -222,7 +222,7 @@ def faster(percent):
 
 def bias_sign(parameters):
     """Convention: the biases have the right size and the wrong sign (gz-sensors draws it)."""
-    found = []
+    findings = []
     for kind in ("accel", "gyro"):
         own = [p for p in parameters if p.name == "bias" and p.sensor == kind]
         if len(own) < 3 or not any(p.differs for p in own):
@@ -235,8 +235,8 @@ def bias_sign(parameters):
                     for p, s in zip(own, sigma))
         if turned and equal and len(turned) == sum(p.differs for p in own):
             nats = 0.5 * sum((p.difference / s) ** 2 for p, s in zip(own, sigma))
-            found.append(convention_findings.finding(
+            findings.append(convention_findings.finding(
                 "bias_sign", kind, convention_findings.CERTAIN, nats, "turn its sign on " +
                 " and ".join(p.axis for p in turned), value={p.axis: p.real for p in turned},
                 unit=own[0].unit, interval_90={p.axis: p.real_interval for p in turned}))
-    return found
+    return findings

@@ -2,7 +2,7 @@
 from ...json_numbers import number, spelled
 
 
-def of(comparisons):
+def as_json(comparisons):
     """{"conventions": [...], "parameters": {...}, "task": {...}, ...} of a list of Comparison;
     the log of the same motion, or else the first, gives parameters, task and gap."""
     best = main(comparisons)
@@ -48,19 +48,19 @@ def convention(c, name):
             "words": c.words, "set": c.set_to, "log": name}
 
 
-def effect(found):
+def effect(beside):
     """value: of the effect named, which stands for its class."""
-    return {"effect": found.effect, "sensor": found.sensor, "class": list(found.stands_for),
-            "value": {k: number(v) for k, v in found.value.items()},
-            "unit": spelled(found.unit),
-            "interval_90": {k: span(v) for k, v in found.interval.items()}, "shape": found.shape}
+    return {"effect": beside.effect, "sensor": beside.sensor, "class": list(beside.stands_for),
+            "value": {k: number(v) for k, v in beside.value.items()},
+            "unit": spelled(beside.unit),
+            "interval_90": {k: span(v) for k, v in beside.interval.items()}, "shape": beside.shape}
 
 
-def numbers(found):
+def numbers(parameters):
     """{sensor: {name: {axis or "all": {...}}}}"""
-    out = {}
-    for p in found:
-        place = out.setdefault(p.sensor, {}).setdefault(p.name, {})
+    by_sensor = {}
+    for p in parameters:
+        place = by_sensor.setdefault(p.sensor, {}).setdefault(p.name, {})
         place[p.axis or "all"] = {
             "unit": p.unit, "real": number(p.real, whole(p)),
             "real_interval_90": span(p.real_interval),
@@ -69,7 +69,7 @@ def numbers(found):
             "difference": number(p.difference),
             "difference_interval_90": span(p.difference_interval), "differs": p.differs,
             "set": number(p.set_to, whole(p)), "how": p.how}
-    return out
+    return by_sensor
 
 
 def whole(parameter):
@@ -93,11 +93,11 @@ def verdict(effects, comparisons, named_effects=False):
     unexplained = any(x.unexplained for x in comparisons)
     undecided = any(c.one_of for x in comparisons for c in x.conventions)
     named = any(c.name != "unknown" for x in comparisons for c in x.conventions)
-    found = named or any(x.differs for x in comparisons)
+    explains = named or any(x.differs for x in comparisons)
     left = effects in ("unexplained", "partly explained")
     if unexplained or left:
-        return "partly explained" if found or effects == "partly explained" else "unexplained"
-    if found:
+        return "partly explained" if explains or effects == "partly explained" else "unexplained"
+    if explains:
         return "explained"
     if undecided:
         return "cannot tell"

@@ -32,27 +32,27 @@ class Noise:
 
 def live(trace):
     """{sensor: (3,) bool}: channels that change at all."""
-    out = {"accel": np.ptp(trace.force, axis=0) > 0}
-    out["gyro"] = np.zeros(3, bool) if trace.rate is None else np.ptp(trace.rate, axis=0) > 0
-    return out
+    channels = {"accel": np.ptp(trace.force, axis=0) > 0}
+    channels["gyro"] = np.zeros(3, bool) if trace.rate is None else np.ptp(trace.rate, axis=0) > 0
+    return channels
 
 
 def dead(real, sim):
     """{sensor: (3,) bool}: channels of the simulator that hardly change where the real ones do."""
-    out = {}
+    channels = {}
     for kind, name in (("accel", "force"), ("gyro", "rate")):
         if getattr(real, name) is None or getattr(sim, name) is None:
-            out[kind] = np.zeros(3, bool)
+            channels[kind] = np.zeros(3, bool)
             continue
         shares = [getattr(x, name).std(axis=0) / max(getattr(x, name).std(axis=0).max(), 1e-12)
                   for x in (real, sim)]
-        out[kind] = (shares[1] < DEAD) & (shares[0] > ALIVE)
+        channels[kind] = (shares[1] < DEAD) & (shares[0] > ALIVE)
         still = [at_rest(x, getattr(x, name), x.quantum[kind == "gyro"]) for x in (real, sim)]
         if still[0] is not None and still[1] is not None:
             ours, theirs = (getattr(x, name).var(axis=0) for x in (real, sim))
-            out[kind] |= (theirs < SAME * still[1]) & (theirs.max() > MORE * still[1]) & (
+            channels[kind] |= (theirs < SAME * still[1]) & (theirs.max() > MORE * still[1]) & (
                 ours > MORE * np.maximum(*still))
-    return out
+    return channels
 
 
 def at_rest(trace, values, quantum):

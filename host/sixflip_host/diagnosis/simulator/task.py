@@ -35,11 +35,11 @@ def estimated(t, force, rate, g):
     settings = imufusion.AhrsSettings()
     settings.sample_rate = 1.0 / period
     ahrs.set_settings(settings)
-    out = np.empty((len(t), 3, 3))
+    attitudes = np.empty((len(t), 3, 3))
     for i in range(len(t)):
         ahrs.update_no_magnetometer(np.degrees(rate[i]), force[i] / g)
-        out[i] = imufusion.quaternion_to_matrix(ahrs.get_quaternion()).reshape(3, 3)
-    return out
+        attitudes[i] = imufusion.quaternion_to_matrix(ahrs.get_quaternion()).reshape(3, 3)
+    return attitudes
 
 
 def between(a, b, t):

@@ -60,7 +60,7 @@ class Trace:
         return np.array([values[a:b].mean(axis=0) for a, b in self.rests]).reshape(-1, 3)
 
 
-def of(name, capture):
+def trace_from_capture(name, capture):
     """The Trace of a Capture; a chip without a gyro has no rate."""
     meta = capture.meta
     t = (capture.t_us - capture.t_us[0]) * 1e-6
@@ -85,11 +85,11 @@ def _rests(capture, rate_hz):
     """Rests by their labels where there are any, else by what stands still."""
     edge, least = int(EDGE_S * rate_hz), max(8, int(SHORTEST_REST_S * rate_hz))
     if capture.pose is not None and (capture.pose > 0).any():
-        found = rest_finder.labelled(capture.pose)
+        runs = rest_finder.labelled(capture.pose)
     else:
-        found = still(capture, rate_hz)
+        runs = still(capture, rate_hz)
     rests, ups = [], []
-    for code, first, end in found:
+    for code, first, end in runs:
         if end - first - 2 * edge < least:
             continue
         rests.append((int(first + edge), int(end - edge)))
@@ -117,23 +117,23 @@ def still(capture, rate_hz):
             here[run.first:run.end] = True
         mask &= here
     edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
-    found = [(0, int(a), int(b)) for a, b in edges.reshape(-1, 2)]
-    if capture.gyro is None or not found:
-        return found
+    runs = [(0, int(a), int(b)) for a, b in edges.reshape(-1, 2)]
+    if capture.gyro is None or not runs:
+        return runs
     usual = np.median(capture.gyro[mask], axis=0)
     slow = SLOW_DPS * capture.meta["gyro_lsb_per_dps"]
-    return [run for run in found
+    return [run for run in runs
             if np.linalg.norm(capture.gyro[run[1]:run[2]].mean(axis=0) - usual) < slow]
 
 
 def _railed(counts):
     """(n,): samples at which a channel stands at the end of what it can say."""
-    out = np.zeros(len(counts), bool)
+    railed = np.zeros(len(counts), bool)
     for i in range(3):
         end = limit(counts[:, i].astype(float))
         if end is not None:
-            out |= np.abs(counts[:, i].astype(float)) >= end
-    return out
+            railed |= np.abs(counts[:, i].astype(float)) >= end
+    return railed
 
 
 def limit(x):
