@@ -7,6 +7,7 @@ import pytest
 from sixflip_host.diagnosis.simulator import (
     alignment,
     evidence_of_logs,
+    noise_and_registers,
     parameters,
     simulator_answer,
 )
@@ -21,7 +22,7 @@ def swung(limit, size=3.0):
     (2.0, 9.0, True, 2.0), (9.0, 2.0, True, None), (1.0, 2.0, True, 1.0), (2.0, 1.0, True, 2.0),
     (2.0, 2.0, False, None), (9.0, 9.0, False, None)])
 def test_a_range_that_is_too_wide_or_too_narrow(real, sim, differs, to_set):
-    found = parameters.ranges("accel", "x", "mg", swung(real), swung(sim))
+    found = noise_and_registers.ranges("accel", "x", "mg", swung(real), swung(sim))
     assert [p.differs for p in found] == ([True] if differs else [])
     if differs:
         assert found[0].set_to == to_set

@@ -6,9 +6,9 @@ hypotheses, evidence_of_logs, conventions, convention_findings
                                    layer 1: what the simulator's numbers mean, by the same motion
 own_calibration, own_motion, own_consistency, gravity_directions
                                    layer 1 where the motions differ: each log by its own rests
-parameters, noise_levels           layer 2: the numbers to set
+parameters, noise_and_registers    layer 2: the numbers to set
 against_simulator, effects_beside  layer 3: the effects that one has and the other lacks
-task                               layer 4: what the difference does to a robot
+remaining_gap                      layer 4: what is left of the gap, and what it does to a robot
 comparison, simulator_answer       all layers in their order, and the JSON of them
 
 Thresholds that neither a data sheet nor a formula gives trade names that are found for healthy

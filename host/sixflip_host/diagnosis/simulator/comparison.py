@@ -2,61 +2,51 @@
 conventions, parameters, effects (of diagnosis.Diagnosis), task."""
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from .. import verdict
 from . import (
     alignment,
     convention_findings,
     conventions,
     held_readings,
-    noise_levels,
+    noise_and_registers,
     own_calibration,
     own_consistency,
     own_motion,
     pairing,
     parameters,
+    remaining_gap,
     single_log,
-    task,
     traces,
 )
-from .hypotheses import DEG
-from .parameters import MG
 
-# s of a block that is held out as a whole: longer than what neighbouring samples have in common, a
-# move of a robot for instance, and short enough that half of a log of a minute has several.
-FOLD_S = 5.0
 RAILED = 0.5  # share of a log at the end of its range: what is left of it is no motion any more
 # Times the noise, root mean square, of what is left of two logs of one motion: 0.8 to 1.2 where
 # they differ in nothing but noise, 2.8 of a rover that bumps shake otherwise in each (`make zoo`).
-# What such shaking leaves over seconds is 1.1 to 1.8 times slow() of noise.
-ABOVE, SLOW = 1.5, 3.0
-UNSEEN = 1e6  # noise of a sample that a fit must not see, in units of the average
+ABOVE = 1.5
 
 
 @dataclass(frozen=True)
 class Comparison:
     """log, against: names of the simulator's and the real log; alignment; conventions
     (convention_findings.Convention, ...); parameters (parameters.Parameter, ...); task
-    (task.Task or None); gap {sensor: (before, after, noise alone)} held out, of one motion; fits
-    {sensor: conventions.SensorFit}; real and simulated own_calibration.OwnSensor; noise {sensor:
-    single_log.Noise of the real log}; remarks; unseen; motion_judged: lever arm and delay of the
-    two logs were compared, or what is wrong with the simulator's hides them; reference_c: mean
-    temperature of the real log or None; effects (tuple of effects_beside.Beside): those found,
-    as far as two logs of one motion show their size; wanders: sensors of which what is left of one
-    motion goes on for seconds: it is no shaking, which each log has of its own."""
+    (remaining_gap.Task or None); gap {sensor: (before, after, noise alone)} held out, of one
+    motion; fits {sensor: conventions.SensorFit}; real and simulated own_calibration.OwnSensor;
+    remarks; unseen; motion_judged: lever arm and delay of the two logs were compared, or what is
+    wrong with the simulator's hides them; reference_c: mean temperature of the real log or None;
+    effects (tuple of effects_beside.Beside): those found, as far as two logs of one motion show
+    their size; wanders: sensors of which what is left of one motion goes on for seconds: it is no
+    shaking, which each log has of its own."""
 
     log: str
     against: str
     alignment: alignment.Alignment
     conventions: tuple
     parameters: tuple
-    task: task.Task
+    task: remaining_gap.Task
     gap: dict
     fits: dict
     real: own_calibration.OwnSensor
     simulated: own_calibration.OwnSensor
-    noise: dict
     remarks: tuple
     unseen: tuple
     motion_judged: bool
@@ -92,10 +82,10 @@ def compare(real_logs, name, capture):
     candidates = [traces.trace_from_capture(n, c) for n, c in real_logs]
     aligned = [alignment.align(real, sim) for real in candidates]
     best = max(range(len(candidates)), key=lambda k: aligned[k].correlation)
-    return of_traces(candidates[best], sim, aligned[best])
+    return compare_traces(candidates[best], sim, aligned[best])
 
 
-def of_traces(real, sim, aligned):
+def compare_traces(real, sim, aligned):
     """Comparison of two Traces, whose clocks lie as the Alignment says."""
     unseen = []
     holds = {"real": held_readings.holds(real), "sim": held_readings.holds(sim)}
@@ -139,15 +129,14 @@ def of_traces(real, sim, aligned):
     findings += of_numbers + parameters.bias_sign(numbers)
     if any(c.name == "noise_per_sample" for c in findings):
         numbers = [p for p in numbers if p.name != "noise_density"]
-    tried, why_not = tasked(real_free, mended, own_real, own_sim, fits)
-    left = {kind: not_foretold(sensor_fit) for kind, sensor_fit in fits.items()}
-    return Comparison(sim.name, real.name, aligned, tuple(findings), tuple(numbers), tried,
-                      held_out(fits, left, real, sim), fits, own_real, own_sim, real.noise,
+    task, why_not = remaining_gap.tried(real_free, mended, own_real, own_sim, fits)
+    left = {kind: remaining_gap.not_foretold(sensor_fit) for kind, sensor_fit in fits.items()}
+    return Comparison(sim.name, real.name, aligned, tuple(findings), tuple(numbers), task,
+                      remaining_gap.held_out(fits, left, real, sim), fits, own_real, own_sim,
                       (*said_of(real, sim, aligned), *why_not), tuple(unseen),
                       judged or convention_findings.only_in_motion(findings),
                       None if real.celsius is None else float(real.celsius.mean()),
-                      wanders=frozenset(kind for kind, sensor_fit in fits.items()
-                                        if slow(left[kind], sensor_fit.pair.band_hz) > SLOW))
+                      wanders=remaining_gap.wandering(fits, left))
 
 
 def _late_itself(sim, late):
@@ -179,9 +168,9 @@ def numbers_of(real, sim, mended, own, fits, findings):
     the conventions found put right; own: OwnSensor or None of the real one, of the simulator."""
     spoiled = [c for c in findings if c.name in convention_findings.SPOILED]
     usable = {k: not any(c.sensor in (k, "device") for c in spoiled) for k in ("accel", "gyro")}
-    densities, on_noise = noise_levels.noises(real, mended)
-    return (parameters.shapes(*own, fits, usable) + densities + parameters.registers(real, sim),
-            on_noise)
+    densities, on_noise = noise_and_registers.noises(real, mended)
+    return (parameters.shapes(*own, fits, usable) + densities
+            + noise_and_registers.registers(real, sim), on_noise)
 
 
 def different_motion(real, sim, own_real, row_s):
@@ -198,59 +187,6 @@ def different_motion(real, sim, own_real, row_s):
         return findings, unseen + ["delay of %s: fewer than %d moves between rests" % (
             sim.name, own_motion.FEWEST_MOVES)], False
     return own_motion.compared(*moved, row_s), unseen, True
-
-
-def not_foretold(sensor_fit):
-    """(n, 3) of the simulator's log that conventions and parameters fitted on the other half's
-    blocks do not foretell, of a SensorFit."""
-    pair = sensor_fit.pair
-    fold = ((pair.t - pair.t[0]) / FOLD_S).astype(int) % 2
-    left = np.empty((len(pair.t), 3))
-    for k in (0, 1):
-        fit = sensor_fit.refitted(np.where(fold == k, UNSEEN, 1.0))
-        left[fold == k] = fit.left[fold == k] / fit.unit
-    return left
-
-
-def slow(left, band_hz):
-    """How large the means of what is left (n, 3) over a second are, root mean square, beside those
-    of noise in a band that is as large within the seconds: 1 of noise."""
-    second = int(pairing.GRID_HZ)
-    parts = left[:len(left) // second * second].reshape(-1, second, 3)
-    means = parts.mean(axis=1)
-    within = float(((parts - means[:, None]) ** 2).mean()) / max(2.0 * band_hz - 1.0, 0.2)
-    return float(np.sqrt((means ** 2).mean() / max(within, 1e-300)))
-
-
-def held_out(fits, not_explained, real, sim):
-    """{sensor: (before, after, noise alone)}: root mean square of simulator less real, mg and
-    deg/s, in the band compared; not_explained {sensor: not_foretold()}. Noise is 0 where a log
-    without a rest does not tell it."""
-    gaps = {}
-    for kind, sensor_fit in fits.items():
-        pair, scale = sensor_fit.pair, MG if kind == "accel" else DEG
-        theirs = pair.sim_force if kind == "accel" else pair.sim_rate
-        ours = pair.force if kind == "accel" else pair.rate
-        left = not_explained[kind]
-        levels = [trace.noise[kind] for trace in (real, sim)]
-        noise = 0.0 if None in levels else sum(
-            (level.density ** 2).mean() * 2.0 * min(pair.band_hz, trace.rate_hz / 2)
-            for level, trace in zip(levels, (real, sim)))
-        gaps[kind] = tuple(float(scale * x) for x in (
-            np.sqrt(((theirs - ours) ** 2).mean()), np.sqrt((left ** 2).mean()),
-            np.sqrt(noise)))
-    return gaps
-
-
-def tasked(real, sim, own_real, own_sim, fits):
-    """(Task of the logs, or None where it cannot be tried; [sentence on why])."""
-    if own_real is None or own_sim is None:
-        return None, ["the task was not tried: it needs a gyro and a rest in both logs"]
-    if not task.available():
-        return None, ["the task was not tried: imufusion is not installed (pip install imufusion)"]
-    if len(fits) == 2:
-        return task.of_pair(fits["accel"], fits["gyro"], real.g), []
-    return task.of_own(real, sim, own_real, own_sim), []
 
 
 def said_of(real, sim, aligned):

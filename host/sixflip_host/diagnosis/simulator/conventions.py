@@ -40,10 +40,9 @@ class SensorFit:
 
     def refitted(self, rows):
         """The Fit of the same hypothesis with other noise of each sample, rows (n,)."""
-        measured = self.pair.sim_force if self.kind == "accel" else self.pair.sim_rate
-        return evidence_of_logs.fit_one(self.hypothesis, measured, self.fit.axes, self.fit.unit,
-                                        pairing.GRID_HZ, self.kind, self.inflation, self.own,
-                                        self.live, rows)
+        return evidence_of_logs.fit_one(
+            self.hypothesis, self.pair.simulated(self.kind), self.fit.axes, self.fit.unit,
+            pairing.GRID_HZ, self.kind, self.inflation, self.own, self.live, rows)
 
 
 def same_motion(real, sim, alignment, motion, live, fresh_hz):
@@ -61,8 +60,7 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
     noise, theirs = (log.noise[kind] for log in (real, sim))
 
     def asked(pair):
-        values, measured = (pair.force, pair.sim_force) if kind == "accel" else (
-            pair.rate, pair.sim_rate)
+        values, measured = pair.real(kind), pair.simulated(kind)
         share = own_noise(values, measured, noise, theirs, pair.band_hz)
         if (share < 1.0).any():
             measured = measured + rounding(kind, real, sim, pair)

@@ -37,6 +37,14 @@ class Pair:
     sim_rate: np.ndarray
     band_hz: float
 
+    def real(self, kind):
+        """(n, 3) readings of a sensor of the real log."""
+        return self.force if kind == "accel" else self.rate
+
+    def simulated(self, kind):
+        """(n, 3) readings of a sensor of the simulator's."""
+        return self.sim_force if kind == "accel" else self.sim_rate
+
 
 def paired(real, sim, alignment, motion, band_hz=BANDS[0]):
     """Pair of two Traces and the real one's Motion; samples on a rail are left out."""

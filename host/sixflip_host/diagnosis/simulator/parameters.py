@@ -1,5 +1,5 @@
-"""Layer two: the numbers to set. Bias, scale, misalignment, noise, step, range, rate, delay and
-smoothness of the simulator and of the real sensor side by side, each with its interval.
+"""Layer two: the numbers to set. Bias, scale, misalignment, delay, smoothness and clock of the
+simulator and of the real sensor side by side, each with its interval.
 
 Two logs of one motion give the difference directly; logs of different motions give each sensor by
 its own rests and moves, and the difference with the sum of both covariances.
@@ -11,15 +11,13 @@ import numpy as np
 from sixflip import STANDARD_G
 
 from .. import odds
-from . import convention_findings, single_log, traces
+from . import convention_findings
 from .hypotheses import DEG
 
 # Some thirty numbers are compared: at this many standard errors one log pair in 500 shows a
 # difference that is none (Bonferroni, normal).
 DIFFERS = 4.0
 MG = 1000.0 / STANDARD_G
-COARSER = 1.5  # times the other's step: registers differ by factors of two
-RANGE_APART = 1.01  # times the other's: a range that differs; full scales are twofold apart
 # An engine whose rates are half a physics step older than its forces (MuJoCo, Featherstone's
 # semi-implicit step) differs from itself by as much at two step sizes of 1 and 2 ms.
 LEAST_DELAY_MS = 0.5
@@ -129,48 +127,6 @@ def own(sensor, kind):
                 sensor.accel_sigma)
     return (sensor.gyro_bias, sensor.gyro_bias_sigma, np.linalg.inv(sensor.gyro) - np.eye(3),
             sensor.gyro_sigma)
-
-
-def registers(real, sim):
-    """Step, range and rate."""
-    numbers = []
-    noises = {kind: noise.per_sample for kind, noise in real.noise.items() if noise is not None}
-    for kind, name, index in (("accel", "force", 0), ("gyro", "rate", 1)):
-        a, b = (getattr(x, name) for x in (real, sim))
-        if a is None or b is None:
-            continue
-        scale = MG if kind == "accel" else DEG
-        unit = "mg" if kind == "accel" else "°/s"
-        for i, axis in enumerate("xyz"):
-            steps = [float(single_log.step(v, x.quantum[index])[i]) * scale
-                     for v, x in ((a, real), (b, sim))]
-            if steps[0] > 0 and steps[1] > 0:
-                coarse = steps[0] > COARSER * max(steps[1], real.quantum[index] * scale)
-                # A simulator's may be its printed digits, which matter where noise does not
-                # drown them.
-                coarse |= steps[1] > COARSER * steps[0] and steps[1] > scale * (
-                    noises[kind][i] if kind in noises else np.inf)
-                numbers.append(Parameter("step", kind, axis, unit, steps[0], None, steps[1], None,
-                                         steps[0] - steps[1], None, bool(coarse),
-                                         steps[0] if coarse else None))
-            numbers += ranges(kind, axis, unit, *(v[:, i] * scale for v in (a, b)))
-    numbers.append(Parameter("rate", "device", "", "Hz", real.rate_hz, None, sim.rate_hz, None,
-                             real.rate_hz - sim.rate_hz, None, False, None))
-    return numbers
-
-
-def ranges(kind, axis, unit, real, sim):
-    """[Parameter] where one channel, real (n,) or sim (m,), stops and the other goes on."""
-    ends = [float(np.abs(x).max()) for x in (real, sim)]
-    stop, theirs = traces.limit(real), traces.limit(sim)
-    if stop is not None and ends[1] > stop * RANGE_APART:
-        return [Parameter("range", kind, axis, unit, stop, None, theirs, None, stop - ends[1],
-                          None, True, stop)]
-    if theirs is not None and ends[0] > theirs * RANGE_APART:
-        # Where the real one would stop is not known: it goes as far as this at least.
-        return [Parameter("range", kind, axis, unit, stop, None, theirs, None, ends[0] - theirs,
-                          None, True, stop)]
-    return []
 
 
 def timing(late, late_sigma, fits, alignment):

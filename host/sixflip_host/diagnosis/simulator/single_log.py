@@ -93,3 +93,17 @@ def step(values, quantum):
     counts = np.round(values / quantum).astype(np.int64)
     counts = counts - counts[0]
     return np.gcd.reduce(np.abs(counts), axis=0) * quantum
+
+
+def limit(x):
+    """The value that a channel (n,) stops at, or None: the largest size, read so often that a
+    peak of a smooth motion cannot be it."""
+    size = np.abs(x)
+    top = size.max()
+    at = (size == top)
+    runs = at[1:] & at[:-1] & (np.sign(x[1:]) == np.sign(x[:-1]))
+    if runs.sum() < 5 or top <= 0:
+        return None
+    # A log at rest repeats its largest reading by chance; then those next to it are as frequent.
+    near = ((size < top) & (size > 0.99 * top)).sum()
+    return float(top) if at.sum() > 3 * max(near, 1) else None

@@ -103,8 +103,8 @@ def _rests(capture, rate_hz):
 
 
 def still(capture, rate_hz):
-    """[(0, first, end)] of the rests of a robot: both sensors no louder than a few times their
-    quietest tenth (a count where they make no noise), and the gyro where it stands most often."""
+    """[rests.Run] of a robot: both sensors no louder than a few times their quietest tenth (a
+    count where they make no noise), and the gyro where it stands most often."""
     window = 2 * int(WINDOW_S / 2 * rate_hz) + 1
     mask = np.ones(len(capture), bool)
     for counts in (capture.accel, capture.gyro):
@@ -116,38 +116,25 @@ def still(capture, rate_hz):
         for run in rests_by_variance.find(counts, LOUDER ** 2 * level, window, 1):
             here[run.first:run.end] = True
         mask &= here
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
-    runs = [(0, int(a), int(b)) for a, b in edges.reshape(-1, 2)]
+    runs = [rest_finder.Run(0, first, end) for first, end in rest_finder.stretches(mask)]
     if capture.gyro is None or not runs:
         return runs
     usual = np.median(capture.gyro[mask], axis=0)
     slow = SLOW_DPS * capture.meta["gyro_lsb_per_dps"]
     return [run for run in runs
-            if np.linalg.norm(capture.gyro[run[1]:run[2]].mean(axis=0) - usual) < slow]
+            if np.linalg.norm(capture.gyro[run.first:run.end].mean(axis=0) - usual) < slow]
 
 
 def _railed(counts):
-    """(n,): samples at which a channel stands at the end of what it can say."""
+    """(n,): samples at which a channel stands at the end of what it can say. By its readings
+    alone: a simulator may stop elsewhere than at the range that its header states, by which
+    detect.saturation goes."""
     railed = np.zeros(len(counts), bool)
     for i in range(3):
-        end = limit(counts[:, i].astype(float))
+        end = single_log.limit(counts[:, i].astype(float))
         if end is not None:
             railed |= np.abs(counts[:, i].astype(float)) >= end
     return railed
-
-
-def limit(x):
-    """The value that a channel (n,) stops at, or None: the largest size, read so often that a
-    peak of a smooth motion cannot be it."""
-    size = np.abs(x)
-    top = size.max()
-    at = (size == top)
-    runs = at[1:] & at[:-1] & (np.sign(x[1:]) == np.sign(x[:-1]))
-    if runs.sum() < 5 or top <= 0:
-        return None
-    # A log at rest repeats its largest reading by chance; then those next to it are as frequent.
-    near = ((size < top) & (size > 0.99 * top)).sum()
-    return float(top) if at.sum() > 3 * max(near, 1) else None
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,12 @@
-"""Noise of the simulator at rest against the real sensor's: the densities side by side, and
-whether a sample was given the number of a density (or the reverse)."""
+"""Layer two, what each log shows by itself: noise at rest, step, range and rate of the simulator
+and of the real sensor side by side, and whether a sample was given the number of a density (or
+the reverse)."""
 import numpy as np
 
 from .. import odds
 from . import convention_findings, conventions, single_log
 from .hypotheses import DEG
-from .parameters import MG, compared
+from .parameters import MG, Parameter, compared
 
 # How far a noise that was set by hand may be off, natural logarithm: whoever reads a density off a
 # data sheet, typical for the part's, is taken to be right to a fifth.
@@ -17,6 +18,8 @@ LIKELY = 0.95
 # Times its noise, a step in which noise is not told any more: the differences of neighbouring
 # samples are then mostly 0 or a whole step. Noise below DROWNED of a step hardly ever crosses one.
 COARSE, DROWNED = 1.5, 0.3
+COARSER = 1.5  # times the other's step: registers differ by factors of two
+RANGE_APART = 1.01  # times the other's: a range that differs; full scales are twofold apart
 
 
 def noises(real, sim):
@@ -84,3 +87,45 @@ def merged_noise(findings):
         "noise_per_sample", "device", min(c.probability for c in findings),
         sum(c.nats for c in findings), value=first.value, unit="1",
         interval_90=first.interval_90)]
+
+
+def registers(real, sim):
+    """Step, range and rate."""
+    numbers = []
+    noises = {kind: noise.per_sample for kind, noise in real.noise.items() if noise is not None}
+    for kind, name, index in (("accel", "force", 0), ("gyro", "rate", 1)):
+        a, b = (getattr(x, name) for x in (real, sim))
+        if a is None or b is None:
+            continue
+        scale = MG if kind == "accel" else DEG
+        unit = "mg" if kind == "accel" else "°/s"
+        for i, axis in enumerate("xyz"):
+            steps = [float(single_log.step(v, x.quantum[index])[i]) * scale
+                     for v, x in ((a, real), (b, sim))]
+            if steps[0] > 0 and steps[1] > 0:
+                coarse = steps[0] > COARSER * max(steps[1], real.quantum[index] * scale)
+                # A simulator's may be its printed digits, which matter where noise does not
+                # drown them.
+                coarse |= steps[1] > COARSER * steps[0] and steps[1] > scale * (
+                    noises[kind][i] if kind in noises else np.inf)
+                numbers.append(Parameter("step", kind, axis, unit, steps[0], None, steps[1], None,
+                                         steps[0] - steps[1], None, bool(coarse),
+                                         steps[0] if coarse else None))
+            numbers += ranges(kind, axis, unit, *(v[:, i] * scale for v in (a, b)))
+    numbers.append(Parameter("rate", "device", "", "Hz", real.rate_hz, None, sim.rate_hz, None,
+                             real.rate_hz - sim.rate_hz, None, False, None))
+    return numbers
+
+
+def ranges(kind, axis, unit, real, sim):
+    """[Parameter] where one channel, real (n,) or sim (m,), stops and the other goes on."""
+    ends = [float(np.abs(x).max()) for x in (real, sim)]
+    stop, theirs = single_log.limit(real), single_log.limit(sim)
+    if stop is not None and ends[1] > stop * RANGE_APART:
+        return [Parameter("range", kind, axis, unit, stop, None, theirs, None, stop - ends[1],
+                          None, True, stop)]
+    if theirs is not None and ends[0] > theirs * RANGE_APART:
+        # Where the real one would stop is not known: it goes as far as this at least.
+        return [Parameter("range", kind, axis, unit, stop, None, theirs, None, ends[0] - theirs,
+                          None, True, stop)]
+    return []

@@ -1,0 +1,165 @@
+"""What is left of the gap where conventions and parameters are put right: of the readings of one
+motion, each block by a fit that has not seen it; and, layer four, of what a robot makes of them.
+One attitude filter (imufusion, Madgwick's revised complementary filter) is run on the real log, on
+the simulator's and on the simulator's put right.
+"""
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from . import pairing
+from .hypotheses import DEG
+from .parameters import MG
+
+# s of a block that is held out as a whole: longer than what neighbouring samples have in common, a
+# move of a robot for instance, and short enough that half of a log of a minute has several.
+FOLD_S = 5.0
+UNSEEN = 1e6  # noise of a sample that a fit must not see, in units of the average
+# Times slow() of noise, of what is left of two logs of one motion and is no shaking: bumps that
+# shake a rover otherwise in each leave 1.1 to 1.8 (`make zoo`).
+SLOW = 3.0
+SETTLE_S = 3.0  # the filter's own start-up ramp
+
+
+def not_foretold(sensor_fit):
+    """(n, 3) of the simulator's log that conventions and parameters fitted on the other half's
+    blocks do not foretell, of a SensorFit."""
+    pair = sensor_fit.pair
+    fold = ((pair.t - pair.t[0]) / FOLD_S).astype(int) % 2
+    left = np.empty((len(pair.t), 3))
+    for k in (0, 1):
+        fit = sensor_fit.refitted(np.where(fold == k, UNSEEN, 1.0))
+        left[fold == k] = fit.left[fold == k] / fit.unit
+    return left
+
+
+def slow(left, band_hz):
+    """How large the means of what is left (n, 3) over a second are, root mean square, beside those
+    of noise in a band that is as large within the seconds: 1 of noise."""
+    second = int(pairing.GRID_HZ)
+    parts = left[:len(left) // second * second].reshape(-1, second, 3)
+    means = parts.mean(axis=1)
+    within = float(((parts - means[:, None]) ** 2).mean()) / max(2.0 * band_hz - 1.0, 0.2)
+    return float(np.sqrt((means ** 2).mean() / max(within, 1e-300)))
+
+
+def held_out(fits, not_explained, real, sim):
+    """{sensor: (before, after, noise alone)}: root mean square of simulator less real, mg and
+    deg/s, in the band compared; not_explained {sensor: not_foretold()}. Noise is 0 where a log
+    without a rest does not tell it."""
+    gaps = {}
+    for kind, sensor_fit in fits.items():
+        pair, scale = sensor_fit.pair, MG if kind == "accel" else DEG
+        before = pair.simulated(kind) - pair.real(kind)
+        left = not_explained[kind]
+        levels = [trace.noise[kind] for trace in (real, sim)]
+        noise = 0.0 if None in levels else sum(
+            (level.density ** 2).mean() * 2.0 * min(pair.band_hz, trace.rate_hz / 2)
+            for level, trace in zip(levels, (real, sim)))
+        gaps[kind] = tuple(float(scale * x) for x in (
+            np.sqrt((before ** 2).mean()), np.sqrt((left ** 2).mean()),
+            np.sqrt(noise)))
+    return gaps
+
+
+def wandering(fits, not_explained):
+    """frozenset of the sensors of which what is left goes on for seconds."""
+    return frozenset(kind for kind, sensor_fit in fits.items()
+                     if slow(not_explained[kind], sensor_fit.pair.band_hz) > SLOW)
+
+
+@dataclass(frozen=True)
+class Task:
+    """estimator; what the errors are against; attitude and heading, degrees: {"before": x,
+    "after": y}; attitude: root mean square of roll and pitch; heading: by the end of the log."""
+
+    estimator: str
+    against: str
+    attitude: dict
+    heading: dict
+
+
+def available():
+    """Whether imufusion is there."""
+    try:
+        import imufusion  # noqa: F401
+    except ImportError:
+        return False
+    return True
+
+
+def estimated(t, force, rate, g):
+    """(n, 3, 3) attitudes of the filter, body to world."""
+    import imufusion
+    period = float(np.median(np.diff(t)))
+    ahrs = imufusion.Ahrs()
+    settings = imufusion.AhrsSettings()
+    settings.sample_rate = 1.0 / period
+    ahrs.set_settings(settings)
+    attitudes = np.empty((len(t), 3, 3))
+    for i in range(len(t)):
+        ahrs.update_no_magnetometer(np.degrees(rate[i]), force[i] / g)
+        attitudes[i] = imufusion.quaternion_to_matrix(ahrs.get_quaternion()).reshape(3, 3)
+    return attitudes
+
+
+def attitude_errors(a, b, t):
+    """(root mean square of roll and pitch, heading at the end), degrees, of two courses of
+    attitudes (n, 3, 3), the heading equal after the filter's start."""
+    keep = t - t[0] > SETTLE_S
+    a, b = a[keep], b[keep]
+    up = np.degrees(np.arccos(np.clip((a[:, 2] * b[:, 2]).sum(axis=1), -1.0, 1.0)))
+    turn = np.einsum("nij,nkj->nik", a, b)
+    heading = np.unwrap(np.arctan2(turn[:, 1, 0] - turn[:, 0, 1], turn[:, 0, 0] + turn[:, 1, 1]))
+    return float(np.sqrt(np.mean(up ** 2))), float(np.degrees(heading[-1] - heading[0]))
+
+
+def task_of_one_motion(accel, gyro, g):
+    """Task of one motion, of two conventions.SensorFit; put right: what the simulator would say
+    with the conventions and parameters found, which is the real reading and what is left."""
+    t = np.intersect1d(accel.pair.t, gyro.pair.t)
+    at = [np.isin(x.pair.t, t) for x in (accel, gyro)]
+    real = accel.pair.force[at[0]], gyro.pair.rate[at[1]]
+    put_right = tuple(r + x.fit.left[k] @ x.fit.axes / x.fit.unit
+                      for r, x, k in zip(real, (accel, gyro), at))
+    simulated = accel.pair.sim_force[at[0]], gyro.pair.sim_rate[at[1]]
+    wanted = estimated(t, *real, g)
+    return task_from_errors("the same filter on the real log", [
+        attitude_errors(estimated(t, *values, g), wanted, t) for values in (simulated, put_right)])
+
+
+def task_of_two_motions(real, sim, own_real, own_sim):
+    """Task of two motions: each log's error against its own calibrated log, and by how much the
+    simulator's is other than the real one's; after: the simulator with the real one's sensor."""
+    def error(trace, sensor):
+        true = sensor.applied(trace)
+        return np.array(attitude_errors(
+            estimated(trace.t, trace.force, trace.rate, trace.g),
+            estimated(true.t, true.force, true.rate, trace.g), trace.t))
+
+    wanted = error(real, own_real)
+    true = own_sim.applied(sim)
+    as_real = replace(sim, force=true.force @ np.linalg.inv(own_real.accel).T + own_real.bias,
+                      rate=true.rate @ np.linalg.inv(own_real.gyro).T + own_real.gyro_bias)
+    before, after = (error(x, y) - wanted for x, y in ((sim, own_sim), (as_real, own_real)))
+    return task_from_errors("the error of the same filter on the real log, each against its "
+                            "calibrated log", [before, after])
+
+
+def task_from_errors(against, results):
+    """Task of ((tilt, heading) before, after), degrees."""
+    (tilt, heading), (tilt_after, heading_after) = results
+    return Task("imufusion", against,
+                {"before": abs(float(tilt)), "after": abs(float(tilt_after))},
+                {"before": abs(float(heading)), "after": abs(float(heading_after))})
+
+
+def tried(real, sim, own_real, own_sim, fits):
+    """(Task of the logs, or None where it cannot be tried; [sentence on why])."""
+    if own_real is None or own_sim is None:
+        return None, ["the task was not tried: it needs a gyro and a rest in both logs"]
+    if not available():
+        return None, ["the task was not tried: imufusion is not installed (pip install imufusion)"]
+    if len(fits) == 2:
+        return task_of_one_motion(fits["accel"], fits["gyro"], real.g), []
+    return task_of_two_motions(real, sim, own_real, own_sim), []
