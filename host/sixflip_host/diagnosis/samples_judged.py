@@ -193,7 +193,7 @@ def _dead_band(sensor, columns):
     found = _per_axis("dead_band", sensor, [registers.dead_band(c) for c in columns],
                       [codes.band_nats(c) for c in columns], words,
                       [codes.zeros(c) for c in columns])
-    bands = {axis: dead_band.of_columns([c[:, k] for c in columns])
+    bands = {axis: dead_band.band_of_columns([c[:, k] for c in columns])
              for k, axis in enumerate("xyz")}
     known = {axis for f in found for axis in f.axes}
     bands = {axis: band for axis, band in bands.items()

@@ -85,10 +85,10 @@ WIDE_RULES = ("15 bits without their sign", "low byte signed and added", "sign a
 @pytest.mark.parametrize("course", WIDE)
 def test_bytes_are_put_right_in_noise_that_is_wider_than_a_page(name, course):
     column = np.rint(WIDE[course](np.random.default_rng(2))).astype(np.int64)
-    assert byte_faults.of_column(column) is None
+    assert byte_faults.column_fault(column) is None
     rule, kind = RULES[name][2:]
     read = rule(column)
-    found = byte_faults.of_column(read)
+    found = byte_faults.column_fault(read)
     assert found is not None and found[0] == kind
     assert (found[2](read) == column).all()
 
@@ -97,7 +97,7 @@ def test_bytes_are_put_right_in_noise_that_is_wider_than_a_page(name, course):
 def test_a_wiped_high_byte_is_the_one_of_the_level_around(noise, level, right):
     column = np.rint(level + noise * np.random.default_rng(3).standard_normal(3000)).astype(int)
     read = low_or(column)
-    found = byte_faults.of_column(read)
+    found = byte_faults.column_fault(read)
     assert "wipes" in found[1] and "wrong by 256 where they leave it open" in found[1]
     assert (found[2](read) == column).mean() > right
 
@@ -106,7 +106,7 @@ def test_rests_whose_moves_were_cut_out_have_no_fault():
     """From one face to the opposite one in a sample is a step of 2 g: 2^15 counts."""
     faces = np.repeat([1, -1, 0, 0, 1, -1, 1, 0, -1], 100)
     column = np.rint(8150 * faces + 20 * np.random.default_rng(4).standard_normal(900))
-    assert byte_faults.of_column(column.astype(np.int64)) is None
+    assert byte_faults.column_fault(column.astype(np.int64)) is None
 
 
 @pytest.mark.parametrize("times", [2, 3])
@@ -186,8 +186,9 @@ def test_bytes_are_told_by_the_steps_that_a_rule_changes_not_by_how_quiet_the_re
         parts += [np.full(1500, level), level + np.sin(np.pi * u) ** 2 * swings]
     rates = np.concatenate(parts)
     sound = np.rint(rates + 1.6 * generator.standard_normal(len(rates))).astype(np.int64)
-    assert byte_faults.of_column(sound) is None
-    kind, words, back, _ = byte_faults.of_column(np.where(sound & 255 >= 128, sound - 256, sound))
+    assert byte_faults.column_fault(sound) is None
+    kind, words, back, _ = byte_faults.column_fault(
+        np.where(sound & 255 >= 128, sound - 256, sound))
     assert kind == "sign_extension" and words.startswith("the low byte has a sign of its own")
     assert np.array_equal(back(np.where(sound & 255 >= 128, sound - 256, sound)), sound)
 
@@ -197,9 +198,9 @@ def test_a_hands_turns_mirrored_are_no_sign_with_a_magnitude(seed, session):
     """A gyro of the blind generator that rests below zero: most of its course is as likely the
     other way up, so that it tells nothing of bytes."""
     rates = Case(Specification(seed)).counts(session).counts[:, 4].astype(np.int64)
-    assert byte_faults.of_column(rates) is None
+    assert byte_faults.column_fault(rates) is None
     told = np.where(rates < 0, -32768 - rates, rates)
-    _, words, back, _ = byte_faults.of_column(told)
+    _, words, back, _ = byte_faults.column_fault(told)
     assert words.startswith("negative readings are a sign and a magnitude")
     assert np.array_equal(back(told), rates)
 

@@ -43,7 +43,7 @@ def test_a_band_that_what_is_beyond_it_begins_at_0_of(band):
     generator = np.random.default_rng(5)
     true = swinging(20000, 25.0, generator)
     read = np.rint(np.sign(true) * np.maximum(np.abs(true) - band, 0.0))
-    found = dead_band.of_columns([read[:10000], read[10000:]])
+    found = dead_band.band_of_columns([read[:10000], read[10000:]])
     assert present(found.nats) == (band > 0)
     if band:
         assert found.counts == pytest.approx(band, rel=0.15)
@@ -192,7 +192,7 @@ def test_a_motion_without_a_rest_has_no_line_that_is_not_steady():
     moving.capture.accel = np.roll(moving.capture.accel, -3000, axis=0)[:6000]
     whole = shake_detector.Moving("s", moving.capture, 100.0)
     assert spectral_lines.strongest([whole], "accel", 2).hz < spectral_lines.MOTION_HZ
-    assert spectral_lines.of_axis([whole], "accel", 2) is None
+    assert spectral_lines.line_of_axis([whole], "accel", 2) is None
 
 
 def test_what_rests_near_0_and_swings_through_it_has_no_band():
@@ -201,7 +201,7 @@ def test_what_rests_near_0_and_swings_through_it_has_no_band():
     size = 1500.0 * np.exp(0.7 * np.sin(2.0 * np.pi * t / 1700.0))
     swings = size * np.sin(2.0 * np.pi * t / 60.0) * (t % 4000 > 800)
     column = np.rint(swings + generator.normal(0.0, 1.0, len(t))).astype(np.int64)
-    assert not present(dead_band.of_columns([column]).nats)
+    assert not present(dead_band.band_of_columns([column]).nats)
 
 
 def stamped(t_s):

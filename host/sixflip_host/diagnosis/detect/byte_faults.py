@@ -143,7 +143,7 @@ def _likeliest(tried, y):
     tried = [x for x in tried if (x != y).any()]
     if len(tried) < 2:
         return tried[0] if tried else y
-    return max(tried, key=lambda x: course_likelihood.of_samples(x).sum())
+    return max(tried, key=lambda x: course_likelihood.log_likelihoods(x).sum())
 
 
 RULES = [
@@ -169,7 +169,7 @@ def repaired(captures):
             if counts is None:
                 continue
             for axis in range(3):
-                fault = of_column(counts[:, axis].astype(np.int64))
+                fault = column_fault(counts[:, axis].astype(np.int64))
                 if fault is None:
                     continue
                 kind, words, back, nats = fault
@@ -185,7 +185,7 @@ def repaired(captures):
         for axes in [tuple(sorted({letter for letter, _ in seen}))]]
 
 
-def of_column(counts):
+def column_fault(counts):
     """(kind, words, rule that takes counts back, nats) of the fault of a column (n,) of int64, or
     None."""
     y = counts[:LONGEST]
@@ -203,11 +203,12 @@ def of_column(counts):
             continue
         if back is not _low_or and course_likelihood.coarse(x) < least:
             continue
-        nats = course_likelihood.of_samples(x, seen, _low_lost(y) if back is _low_or else None)
+        lost = _low_lost(y) if back is _low_or else None
+        nats = course_likelihood.log_likelihoods(x, seen, lost)
         if best is None or nats.sum() > best[3].sum():
             best = kind, words, back, nats, moved, _told(x, y)[seen[2:]]
     if best is None:
         return None
-    gain = np.where(best[5], best[3] - course_likelihood.of_samples(y, seen), 0.0)
+    gain = np.where(best[5], best[3] - course_likelihood.log_likelihoods(y, seen), 0.0)
     score = course_likelihood.score(gain, best[4]) - math.log(len(RULES))
     return (*best[:3], score) if present(score) else None

@@ -40,7 +40,7 @@ def distinct(counts):
 
 def zeros(counts):
     """(3,) number of runs of readings that are 0."""
-    return np.array([_runs(column == 0) for column in counts.T])
+    return np.array([number_of_runs(column == 0) for column in counts.T])
 
 
 def band_nats(counts):
@@ -55,9 +55,9 @@ def band_nats(counts):
         if least <= step:
             nats.append(_flat_nats(column))
             continue
-        beside = _runs((size > 0) & (size < 2 * least))
+        beside = number_of_runs((size > 0) & (size < 2 * least))
         missed = beside * (1.0 - step / least)
-        expected, zeros = max(beside * step / least, 1e-3), _runs(size == 0)
+        expected, zeros = max(beside * step / least, 1e-3), number_of_runs(size == 0)
         piled = zeros * math.log(max(zeros / expected, 1.0)) - max(zeros - expected, 0.0)
         nats.append(missed + piled - math.log(len(codes(size))) if zeros else 0.0)
     return np.array(nats)
@@ -69,7 +69,7 @@ def _flat_nats(column):
     if told is None or told[0] <= told[1]:
         return 0.0
     number, expected = told
-    return (number * math.log(number / expected) - (number - expected)) * _runs(
+    return (number * math.log(number / expected) - (number - expected)) * number_of_runs(
         column == 0) / number
 
 
@@ -116,5 +116,6 @@ def bit_nats(columns):
     return len(codes(np.concatenate(columns))) * math.log(2.0)
 
 
-def _runs(mask):
+def number_of_runs(mask):
+    """Number of unbroken runs of True."""
     return int(mask[0]) + int((mask[1:] & ~mask[:-1]).sum())

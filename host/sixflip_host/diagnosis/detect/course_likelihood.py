@@ -26,7 +26,7 @@ SETTLED, FITTED = 4, 5000  # rounds in which it settles, and about so many sampl
 ROUNDS = 12  # in which a width settles
 
 
-def of_samples(x, seen=None, lost=None):
+def log_likelihoods(x, seen=None, lost=None):
     """Log likelihood of each of the counts x (n,), but the first two, under the foresight that
     suits all of them best. seen (n,): False for samples that are not looked at, which are left
     out. lost (n,): True for samples of which only the low byte was read; their likelihood is that

@@ -46,7 +46,7 @@ class Band:
 NOTHING = Band(0.0, 1.0, 0)
 
 
-def of_columns(columns):
+def band_of_columns(columns):
     """Band of one axis, columns (n,) of counts of all sessions: what is missing about 0 beyond
     what seems to be about levels where no band can be, as far as the motion goes to and fro."""
     columns = [column.astype(np.int64) for column in columns]

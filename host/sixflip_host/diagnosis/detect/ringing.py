@@ -14,7 +14,7 @@ from .detection import present
 SETTLES_S = 1.0  # of a box that was put down, twice as long as a touch rings (noise_bursts.py)
 PART_S = 1.5  # of a rest, early and late
 FEWEST = 12  # rests: the scatter of what they say is known to a fifth
-GOES_ON = 0.5  # of a line's early power that is there late where something runs on
+GOES_ON = 0.5  # of a line's early power that is there late in a rest where something runs on
 LEAST_SHARE = 0.25  # of the noise's standard deviation, as of a line: smaller is no matter
 
 
@@ -72,3 +72,14 @@ def fades(sessions, sensor, axis, hertz):
                     x = counts[first:first + part]
                     powers.append(abs((x - x.mean()) @ wave) ** 2)
     return bool(early) and np.mean(late) < GOES_ON * np.mean(early)
+
+
+def fades_within(stretches, axis, cycles):
+    """Whether a line of so many cycles a sample fades within the stretches, as what was just put
+    down does."""
+    x = np.array([s[:, axis] - s[:, axis].mean() for s in stretches])
+    half = x.shape[1] // 2
+    wave = np.hanning(half) * np.exp(-2j * np.pi * cycles * np.arange(half))
+    early, late = (float((np.abs(part @ wave) ** 2).mean()) for part in (
+        x[:, :half], x[:, -half:]))
+    return late < GOES_ON * early

@@ -9,6 +9,7 @@ import numpy as np
 from scipy import special
 
 from ...capture.registers import RAIL, fixed_bits, steps
+from .codes import number_of_runs
 from .detection import BELOW, RANGE, Finding, present
 
 RAIL_CODES = 4  # the last codes of a range: scales that are rounded end a few short of 2^15
@@ -132,7 +133,7 @@ def peaks(x, at, moving=True):
     """(peaks that end at the level where `at` is True, those that end just inside of it)."""
     near, at = (x >= x[at].min() - _spread(x)[1]) & moving, at & moving
     reached = _reached(near, at)
-    return reached, _runs(near) - reached
+    return reached, number_of_runs(near) - reached
 
 
 def _spread(x):
@@ -147,8 +148,3 @@ def _reached(near, at):
     """Number of runs of `near` that hold a sample of `at`."""
     number = np.cumsum(np.concatenate([near[:1], near[1:] & ~near[:-1]]))
     return len(np.unique(number[at]))
-
-
-def _runs(mask):
-    """Number of runs of True."""
-    return int(mask[0]) + int((mask[1:] & ~mask[:-1]).sum())

@@ -24,7 +24,6 @@ LOWEST_HZ, LOWEST_MOVING_HZ = 0.7, 2.0  # a hand or a vehicle moves more slowly 
 MOTION_HZ = 15.0
 LEAST_CYCLES = 1.4  # of a line in a stretch: what settles in a rest has less
 BRIEF_S = 1.5  # a shorter stretch is all of its rest, and begins where the box was just put down
-GOES_ON = 0.5  # of a line's power in the first half of such stretches that the second has
 CHANCE = 0.001  # six axes together: well below what registers and spectra share, see odds.py
 FEWEST = 4  # stretches
 MEDIAN_SHARE = 0.25  # of the band: wider than any line, narrower than a filter's colour
@@ -47,7 +46,7 @@ def findings(sessions, rings=()):
     for sensor in ("accel", "gyro"):
         if any(getattr(s.capture, sensor) is None for s in sessions):
             continue
-        lines = [line for line in (of_axis(sessions, sensor, i) for i in range(3)) if line]
+        lines = [line for line in (line_of_axis(sessions, sensor, i) for i in range(3)) if line]
         lines = [line for line in lines if not ((sensor, line.letter) in rings and ringing.fades(
             sessions, sensor, line.axis, line.hz))]
         if lines:
@@ -55,7 +54,7 @@ def findings(sessions, rings=()):
     return vibrations
 
 
-def of_axis(sessions, sensor, axis):
+def line_of_axis(sessions, sensor, axis):
     """The Line of an axis by all files together or by one of them, whichever says more, with
     the frequency of every file that shows it; a slow one where nothing faster is there."""
     groups = [sessions, *([s] for s in sessions if len(sessions) > 1)]
@@ -151,17 +150,6 @@ def scatter(stretches, axis, k):
     return float(power.std(ddof=1) / max(power.mean(), 1e-300))
 
 
-def _rings_out(stretches, axis, cycles):
-    """Whether a line of so many cycles a sample fades within the stretches, as what was just put
-    down does."""
-    x = np.array([s[:, axis] - s[:, axis].mean() for s in stretches])
-    half = x.shape[1] // 2
-    wave = np.hanning(half) * np.exp(-2j * np.pi * cycles * np.arange(half))
-    early, late = (float((np.abs(part @ wave) ** 2).mean()) for part in (
-        x[:, :half], x[:, -half:]))
-    return late < GOES_ON * early
-
-
 def strongest(sessions, sensor, axis):
     """The Line that is strongest in the spectrum of short stretches, or None."""
     stretches = rests(sessions, sensor)
@@ -191,7 +179,7 @@ def strongest(sessions, sensor, axis):
     nats = -(log_beyond(ratio[k] * number / doubt, number) + math.log(3.0 * len(band)))
     if nats < -math.log(CHANCE):
         return None
-    if resting and n < BRIEF_S * rate and _rings_out(stretches, axis, (first + k) / n):
+    if resting and n < BRIEF_S * rate and ringing.fades_within(stretches, axis, (first + k) / n):
         return None
     near = slice(max(0, k - 2), k + 3)
     whole = plain[first:-1]

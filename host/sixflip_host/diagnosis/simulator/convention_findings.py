@@ -223,13 +223,13 @@ def _matrix(findings, kind):
     matrix = np.eye(3)
     for c in findings:
         if c.name in (kind + "_axes", "both_axes"):
-            matrix = matrix @ of_axes(c.value)
+            matrix = matrix @ axes_matrix(c.value)
         if c.name == "force_sign" and kind == "accel":
             matrix = -matrix
     return matrix
 
 
-def of_axes(value):
+def axes_matrix(value):
     """(3, 3) of {"x": "-y", ...}"""
     matrix = np.zeros((3, 3))
     for i, axis in enumerate("xyz"):

@@ -34,11 +34,11 @@ class Hold:
 
 def holds(trace):
     """{sensor: Hold} of a Trace."""
-    return {"accel": of_values(trace.force, trace.quantum[0], trace.rests),
-            "gyro": of_values(trace.rate, trace.quantum[1], trace.rests)}
+    return {"accel": sensor_hold(trace.force, trace.quantum[0], trace.rests),
+            "gyro": sensor_hold(trace.rate, trace.quantum[1], trace.rests)}
 
 
-def of_values(values, quantum, rests=()):
+def sensor_hold(values, quantum, rests=()):
     """The Hold of a sensor's values (n, 3) or None, read in steps of quantum; rests: where
     it stands still."""
     if values is None or len(values) < 4 * WINDOW_ROWS:
