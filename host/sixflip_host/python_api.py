@@ -117,7 +117,7 @@ def diagnose(captures, simulator=None, reference=None, certified_box=False, with
     found = diagnose.diagnose(_named(captures or ()), _named(simulator, gravity=False),
                               _named(reference),
                               certified_box, without)
-    said = answer.of(found)
+    said = answer.as_dict(found)
     return Diagnosis(said["verdict"], tuple(_cause(one) for one in said["causes"]),
                      _frozen(said["gap"]), _rows(said["where"]), _rows(said["unseen"]),
                      _rows(said["next"]), tuple(said["remarks"]), _frozen(said))

@@ -19,5 +19,6 @@ def at_rest(gyro):
     accel = [0.0, 0.0, 16384.0] + 46.0 * np.random.default_rng(1).standard_normal((n, 3))
     meta = {"sensor": "mpu6050", "accel_lsb_per_g": 16384.0, "gyro_lsb_per_dps": 65.5,
             "rate_hz": 100.0}
-    return blocks.of("s", Capture(meta, 10_000 * np.arange(n), np.rint(accel).astype(np.int16),
-                                  np.rint(gyro).astype(np.int16), pose=np.ones(n, np.int16)))
+    return blocks.session_of("s", Capture(
+        meta, 10_000 * np.arange(n), np.rint(accel).astype(np.int16),
+        np.rint(gyro).astype(np.int16), pose=np.ones(n, np.int16)))

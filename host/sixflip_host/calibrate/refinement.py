@@ -112,7 +112,7 @@ def session_of(capture, free=False, far_pairs=None):
     """(RestsAndMoves of a capture, where its rests come from, in words). far_pairs as there;
     default: where they are labelled."""
     runs, source = rests_of(capture, free)
-    return rests_and_moves.from_session(blocks.of("the session", capture, runs),
+    return rests_and_moves.from_session(blocks.session_of("the session", capture, runs),
                               source == LABELS if far_pairs is None else far_pairs), source
 
 

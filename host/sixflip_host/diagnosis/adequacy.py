@@ -55,7 +55,7 @@ class Adequacy:
     odd: str = ""
 
 
-def of(units, statistics, scored, usual_noise, shaken=(), by_hand=False):
+def goodness_of_fit(units, statistics, scored, usual_noise, shaken=(), by_hand=False):
     """Adequacy of a scored_sets.Scored; usual_noise: evidence.Levels; shaken: axes (0..2) that a
     line of the spectrum is on; by_hand: what a placement adds is the hand's doing, which has any
     distribution."""

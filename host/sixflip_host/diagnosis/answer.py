@@ -10,7 +10,7 @@ from .simulator import simulator_answer
 UNITS = {"accel": "mg", "gyro": "deg/s", "gyro_turns": "deg/s", "accel_motion": "mg"}
 
 
-def of(diagnosis):
+def as_dict(diagnosis):
     """dict for json.dumps, no NaN in it."""
     answer = {
         "format": 1, "verdict": diagnosis.verdict, "causes": causes(diagnosis),

@@ -37,7 +37,7 @@ def bent(causes):
     return any(hypotheses.domain(c.effect) in BENT for c in causes)
 
 
-def found(gap):
+def search(gap):
     """(list of Cause, Data they were found in) of a SensorGap of the accelerometer."""
     data, scored = _scored(gap, _certified(gap, few=True))
     # What gains less than any cost is spared the rest of the search, and a cost of its own.
@@ -45,8 +45,9 @@ def found(gap):
         return [], data
     units = _certified(gap, few=False)
     data, (without, best) = _scored(gap, units)
-    forms = hypotheses.of(units, gap.settings.without)
-    cost = cutoffs.of(units, [f for f in forms if f.effect == "box_tilt"], gap.noise).member
+    forms = hypotheses.forms_of(units, gap.settings.without)
+    boxes = [f for f in forms if f.effect == "box_tilt"]
+    cost = cutoffs.for_protocol(units, boxes, gap.noise).member
     gain = best.score - without.score
     if gain <= cost:
         return [], data
@@ -82,7 +83,7 @@ def _scored(gap, units):
     """(Data, (Scored without a crooked box, the best with one)); None instead of the two where no
     box can be told from the rest."""
     data = coefficient_fits.data_of(units)
-    forms = hypotheses.of(units, gap.settings.without)
+    forms = hypotheses.forms_of(units, gap.settings.without)
     mine = [f for f in forms if f.effect == "box_tilt"]
     if not mine:
         return data, None

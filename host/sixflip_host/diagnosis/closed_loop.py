@@ -194,7 +194,8 @@ def _session(gap, held, unit, effects):
     floor = unit.noise_energy(unit.grid[0][0], point[1])
     out = []
     for added in ([], effects):
-        twin = blocks.of(session.name, simulated(session, nominal, level, added, 1000 + held))
+        capture = simulated(session, nominal, level, added, 1000 + held)
+        twin = blocks.session_of(session.name, capture)
         y = nominal_rows.accel_rows(twin, gap.parts[held][1]) if gap.kind == "accel" else \
             twin.gyro.reshape(-1)
         difference = unit.z - unit.contrasts(y)

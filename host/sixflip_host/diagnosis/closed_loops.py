@@ -27,7 +27,7 @@ from .closed_loop import Loop
 ROUNDS = 3  # of a linear correction that is off by its square each time
 
 
-def of(found, named=()):
+def close_all(found, named=()):
     """{"accel", "gyro", "gyro_turns", "accel_motion": closed_loop.Loop} of a Diagnosis, those
     that have something to add; named: effects that are added whether they were found or not."""
     loops, reference_c = {}, found.conditions.reference_c
@@ -35,9 +35,9 @@ def of(found, named=()):
         progress.doing("the simulator again, with what was found")
         loops[kind] = closed_loop.close(_with(gap, named), reference_c)
     if found.turns:
-        loops["gyro_turns"] = of_turns(_with(found.turns, named), reference_c)
+        loops["gyro_turns"] = close_turns(_with(found.turns, named), reference_c)
     if found.motion:
-        loops["accel_motion"] = of_moves(_with(found.motion, named))
+        loops["accel_motion"] = close_moves(_with(found.motion, named))
     return {kind: loop for kind, loop in loops.items() if loop}
 
 
@@ -48,7 +48,7 @@ def _with(gap, named):
     return gap
 
 
-def of_turns(gap, reference_c):
+def close_turns(gap, reference_c):
     """Loop of the gyro in motion, each session by the others; None without causes
     that are made of rates (a dead band is made of counts)."""
     if not gap.chosen or any(form.effect == "dead_band" for form in gap.chosen):
@@ -92,7 +92,7 @@ def turned(turn, effects):
     return turn.read_as(np.stack(out, 1))
 
 
-def of_moves(gap):
+def close_moves(gap):
     """Loop of a MotionGap, each fold by the sizes of the others; None where nothing is found."""
     if gap is None or not gap.found:
         return None
@@ -135,7 +135,7 @@ def added(move, effects):
         turn = move.turn.read_as(move.turn.middle - 0.5 * (late[1:] + late[:-1]))
         body = inertial_fit.pinned(turn)
         out = out + 1000.0 * (np.einsum("nji,j->ni", body, turn.before) - felt)
-    return inertial_fit.Seen.of_turn(move.turn).of(out[:, :, None])[:, :, 0]
+    return inertial_fit.Seen.of_turn(move.turn).spectrum(out[:, :, None])[:, :, 0]
 
 
 def plan_of(session):

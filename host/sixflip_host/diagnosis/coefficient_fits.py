@@ -39,7 +39,7 @@ class Fit:
 def fit(unit, statistics, shared):
     """Fit of elimination.Columns (k,)."""
     quadratic, projections = statistics
-    gram, inner = unit.gram.of(shared.index), projections[:, shared.index]
+    gram, inner = unit.gram.at_all_points(shared.index), projections[:, shared.index]
     course = -0.5 * quadratic - unit.logdet[:, None]
     if len(shared):
         full = gram + np.diag(1.0 / shared.prior ** 2)

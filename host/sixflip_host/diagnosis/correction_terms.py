@@ -47,7 +47,7 @@ class Terms:
     record: object
 
 
-def of(diagnosis, record):
+def terms_for(diagnosis, record):
     """Terms of a Diagnosis for a record."""
     candidates, left_out = _candidates(diagnosis, record)
     found = []

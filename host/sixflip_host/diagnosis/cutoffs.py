@@ -43,7 +43,7 @@ class Cutoffs:
     own: dict = field(default_factory=dict)
     mimicry: Mimicry = Mimicry()
 
-    def of(self, form):
+    def nats(self, form):
         """Nats that this member of a set must gain; what is not in the library is rarer, unless it
         is no more than a level of noise. What takes a stranger's columns in, as a discrepancy
         beside its own, gains by chance what that does."""
@@ -62,7 +62,7 @@ def folder():
     return Path(root) / "thresholds"
 
 
-def of(units, forms, levels):
+def for_protocol(units, forms, levels):
     """Cutoffs in this protocol; where no form is left to compete, none can gain by chance."""
     if not forms:
         return Cutoffs(LEAST_NATS, mimicry.LEAST_SHARE)
@@ -121,7 +121,7 @@ def simulated(units, forms, levels, points):
     return _cost(start + scale * math.log(UPPER / CHANCE))
 
 
-def of_each(units, forms, levels, points):
+def simulated_each(units, forms, levels, points):
     """{Form: cost}, from RUNS simulated data sets. What a form gains by chance is counted in the
     scale of its own upper tail, and the cost is where the largest of all forms lies in CHANCE of
     the nulls: the search is in it, and no form's tail hides another [Westfall and Young,

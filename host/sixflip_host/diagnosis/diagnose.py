@@ -28,7 +28,7 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
     captures, held = held_values.as_read(captures)
     captures, damages = byte_faults.repaired(captures)
     damages = [*held, *damages]
-    sessions = [blocks.of(name, capture) for name, capture in captures]
+    sessions = [blocks.session_of(name, capture) for name, capture in captures]
     noise = {}
     for name, capture in reference:
         noise = flicker_levels(capture, name)
@@ -47,7 +47,7 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
             progress.doing("the simulator's own captures")
             own = against_simulator.read(list(simulated), list(names), settings)
             settings = replace(settings, simulated=own.known)
-    found = diagnosis.of(sessions, settings, own, comparisons, damages)
+    found = diagnosis.diagnose_sessions(sessions, settings, own, comparisons, damages)
     return _beyond(found, own, sessions, damages) if comparisons else found
 
 
@@ -63,14 +63,14 @@ def _beyond(found, own, sessions, damages):
         known = found.settings.simulated
         settings = replace(found.settings, simulated={
             **known, **{kind: [*known.get(kind, ()), *more] for kind, more in both.items()}})
-        found = diagnosis.of(sessions, settings, own, found.comparisons, damages)
+        found = diagnosis.diagnose_sessions(sessions, settings, own, found.comparisons, damages)
     return effects_beside.beyond(found)
 
 
 def flicker_levels(capture, path):
     """{sensor: flicker level (mg or deg/s)} of a capture's longest rest: what the sensor has when
     nothing else acts. BadFile when there is no such rest."""
-    session = blocks.of(path, capture)
+    session = blocks.session_of(path, capture)
     rest = long_rest.longest(session)
     if rest is None or (rest[1] - rest[0]) / session.rate < SHORTEST_REST_S:
         raise BadFile("%s: no rest of %g s or more to know the noise by" % (path, SHORTEST_REST_S))

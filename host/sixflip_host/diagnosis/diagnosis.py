@@ -80,7 +80,7 @@ class Diagnosis:
     def verdict(self):
         """One of the verdict's rows, on what was found in rests, turns, moves and samples."""
         claims = self._claims()
-        found = verdict.of(claims, [*self._nameless(), float(self.broken)], self.sees())
+        found = verdict.decide(claims, [*self._nameless(), float(self.broken)], self.sees())
         return simulator_answer.verdict(found, self.comparisons, verdict.any_of(
             [c.probability for c in claims]) > verdict.LIKELY) if self.comparisons else found
 
@@ -128,7 +128,8 @@ class Diagnosis:
         return detectability.visible_share(self) >= 0.5
 
 
-def of(sessions, settings=None, simulator=None, comparisons=(), damages=(), beside=False):
+def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), damages=(),
+                      beside=False):
     """Diagnosis of blocks.Sessions; simulator: against_simulator.Simulator or None, what is in it
     as well is left out; comparisons: of the logs with its own; damages: what was put right in the
     captures before; beside: these or others are held against a simulator, or are one's own."""
@@ -138,27 +139,27 @@ def of(sessions, settings=None, simulator=None, comparisons=(), damages=(), besi
     remarks += sample_clock.remarks(sessions, clocks)
     progress.doing("registers, clock and spectra")
     stuck = registers.stuck(sessions)
-    samples = samples_judged.of(sessions, settings.without, damages)
+    samples = samples_judged.judge(sessions, settings.without, damages)
     sessions = samples.sessions
     remarks += [*stuck, *samples.remarks]
     findings, nameless = list(samples.findings), list(samples.nameless)
-    rests = usable_rests.of(sessions, findings, stuck, samples.scaled)
+    rests = usable_rests.select(sessions, findings, stuck, samples.scaled)
     remarks += rests.remarks
     conditions = samples.conditions(rests.reference_c)
     gaps, rest, turns, motion, noise = {}, {}, None, None, {}
     if rests.nominal:
-        judged = rests_judged.of(rests, findings, settings, conditions)
+        judged = rests_judged.judge(rests, findings, settings, conditions)
         gaps, turns, motion = judged.gaps, judged.turns, judged.motion
         findings += judged.findings
         nameless += judged.nameless
         remarks += judged.remarks
     else:
-        noise = rest_noise.of(sessions)
+        noise = rest_noise.noise_by_sensor(sessions)
         progress.doing("the longest rest")
         # Beside a simulator what a robot does by itself is motion: it shakes on its way, and
         # settles in its rests, which a short one is full of.
         moving = (beside or bool(comparisons)) and any(len(s.runs) > 1 for s in sessions)
-        rest = rest_gap.of(sessions, settings, [
+        rest = rest_gap.gaps_by_sensor(sessions, settings, [
             (f.sensor, "xyz".index(key), hz) for f in findings for key, hz in f.hz.items()],
             rest_gap.SETTLES_S if moving else 0.0)
         if moving and not rest:

@@ -81,7 +81,7 @@ def _blocks(unit, points, rows, columns, elimination):
     return gram if elimination is None else gram - elimination.block(points, rows, columns)
 
 
-def one(fit, number):
+def fit_of_form(fit, number):
     """Fit of one of the forms."""
     own = slice(number, number + 1)
     return Fit(fit.index[own], fit.quadratic[own], fit.inner[own], fit.gram[own],

@@ -65,7 +65,7 @@ class Sums:
 NOTHING = Sums(0.0, 0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
 
 
-def of(data, chosen, index, usual, wanders=False):
+def shrinkage(data, chosen, index, usual, wanders=False):
     """Shrinkage of all sessions, each held out in turn; index: into each unit's grid, the
     likeliest levels of noise; usual: evidence.Levels; wanders: that it is more is named."""
     shared = hypotheses.columns_of(chosen)

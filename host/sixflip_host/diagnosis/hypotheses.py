@@ -80,7 +80,7 @@ def domain(effect):
     return strangers.domain(effect) if terms.is_stranger(effect) else terms.DOMAIN[effect]
 
 
-def of(units, without=(), drift=True):
+def forms_of(units, without=(), drift=True):
     """list of Form; those silent in all units are left out."""
     found, start = [], 0
     for design in units[0].designs:

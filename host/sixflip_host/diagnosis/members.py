@@ -40,7 +40,7 @@ def axes_of(model, found, form):
     most = max(gains.values(), default=0.0)
     share = found.cost.beside if form.generic else found.cost.form
     return [(axis, gain) for axis, gain in gains.items()
-            if gain == most or gain > found.cost.of(form) + share * most]
+            if gain == most or gain > found.cost.nats(form) + share * most]
 
 
 def _variants(model, forms, found, cause):

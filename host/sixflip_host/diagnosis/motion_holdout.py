@@ -22,7 +22,7 @@ class Held:
     alone: bool
 
 
-def of(gap, named, spread):
+def held_moves(gap, named, spread):
     """Held: before, after, floor as rms has them; each fold by what the others say of the sizes.
     The interval is that of the sizes themselves."""
     columns, fit, sizes = gap.columns(), gap.fit, gap.sizes

@@ -103,7 +103,7 @@ class MotionGap:
             moves_fit.EFFECTS[n] for n in (*self.chosen, *extra)])
 
 
-def of(sessions, usable, nominal, gyro, settings):
+def motion_gap(sessions, usable, nominal, gyro, settings):
     """MotionGap, or None where the gyro cannot carry gravity from rest to rest (gyro: SensorGap
     or None)."""
     if gyro is None:
@@ -138,13 +138,13 @@ def _searched(fit, without):
     units = [moves_unit.unit(
         fit.gram[fit.folds == f], fit.inner[fit.folds == f], left[fit.folds == f], competing,
         everything[len(competing):], fit.prior, energy, designs) for f in np.unique(fit.folds)]
-    forms = [f for f in hypotheses.of(units, without, drift=False)
+    forms = [f for f in hypotheses.forms_of(units, without, drift=False)
              if not f.generic or f.axis is None or f.variant == "speed"]
     model = scored_sets.Model(units, [u.statistics() for u in units], moves_unit.NO_LEVELS)
     # Each at its own cost: few moves of a hand carry most of what it adds, and a form that those
     # few mimic gains ten times in nulls what another does.
     least = least_nats(len(forms))
-    own = {form: max(nats, least) for form, nats in cutoffs.of_each(
+    own = {form: max(nats, least) for form, nats in cutoffs.simulated_each(
         units, forms, moves_unit.NO_LEVELS, [0] * len(units)).items()}
     found = posterior.search(model, forms, cutoffs.Cutoffs(least, STRANGE_SHARE, own=own))
     alone = model.scored(())
@@ -192,7 +192,7 @@ def _told(gap):
                   nameless=tuple(nameless), remarks=tuple(remarks))
     if not found:
         return gap
-    held = motion_holdout.of(gap, named, spread * named * named[:, None])
+    held = motion_holdout.held_moves(gap, named, spread * named * named[:, None])
     if not held.alone:
         remarks.append("no session alone shows all that was found in motion: it was held out by "
                        "every other move")

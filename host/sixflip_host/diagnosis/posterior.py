@@ -55,7 +55,7 @@ def search(model, forms, cost, most=MOST):
         return _worth(scored, cost)
     empty = model.scored(())
     beam, reached = [empty], [empty]
-    least = WORTH_TRYING * min((cost.of(form) + PRESENT for form in forms), default=0.0)
+    least = WORTH_TRYING * min((cost.nats(form) + PRESENT for form in forms), default=0.0)
     for _ in range(most):
         found = {}
         for base in beam:
@@ -76,7 +76,7 @@ def search(model, forms, cost, most=MOST):
                    cost)
 
 
-def again(model, forms, cost, likeliest):
+def from_likeliest(model, forms, cost, likeliest):
     """Posterior where the set that is likeliest for nearly the same data is known: a tuple of
     Forms of the same columns."""
     return _judged(model, forms, model.scored(likeliest), cost)
@@ -100,7 +100,7 @@ def _free(forms, scored, instead=""):
 
 def _worth(scored, cost):
     """Score less what the members cost, nats."""
-    return scored.score - sum(cost.of(form) + PRESENT for form in scored.forms)
+    return scored.score - sum(cost.nats(form) + PRESENT for form in scored.forms)
 
 
 def _refined(model, forms, best, cost):
@@ -127,7 +127,7 @@ def _pruned(model, best, cost):
         gains = _gains(model, best)
         alone = {f: max(gains[f], _alone(model, f)) for f in best.forms}
         energy = {f: max(gains[f], nats) for f, nats in _energies(best).items()}
-        needed = {form: cost.of(form) + PRESENT + max(
+        needed = {form: cost.nats(form) + PRESENT + max(
             [_unknown(form, f, cost) * (
                 alone if f.generic or form.effect == "drift"
                 else energy if discrepancy.may_be_left_by(form, f) else gains)[f]
@@ -182,10 +182,10 @@ def _place(model, forms, best, form, cost):
     """({effect or "": probability}, gain in nats) of one member's place."""
     others = tuple(f for f in best.forms if f is not form)
     empty = model.scored(others)
-    scores = {"": empty.score, form.effect: best.score - cost.of(form)}
+    scores = {"": empty.score, form.effect: best.score - cost.nats(form)}
     for rival, one in _rivals(model, forms, empty, form, cost):
         there = next(f for f in one.forms if f.effect == rival.effect)
-        scores[rival.effect] = max(one.score - cost.of(there), scores.get(rival.effect, -np.inf))
+        scores[rival.effect] = max(one.score - cost.nats(there), scores.get(rival.effect, -np.inf))
     return odds.shares(scores), best.score - empty.score
 
 

@@ -107,10 +107,10 @@ class RestGap:
         return rest_forms.limits(self.rest, self.kind, name) or "needs rests in several poses"
 
 
-def of(sessions, settings, lines=(), least_s=0.0):
+def gaps_by_sensor(sessions, settings, lines=(), least_s=0.0):
     """{sensor: RestGap} of blocks.Sessions, {} where nothing rests for long enough; least_s: of
     the longest rest."""
-    rest = long_rest.of(sessions, lines)
+    rest = long_rest.in_one_attitude(sessions, lines)
     if rest is None or rest.n < MEANS or np.bincount(rest.rest, rest.seconds).max() < least_s:
         return {}
     chip = sessions[0].capture.meta["sensor"]
@@ -130,17 +130,17 @@ def _jumps(sessions, kind):
 def _sensor(rest, kind, chip, settings, jumps):
     """RestGap: posterior, classes, adequacy, held-out figures."""
     progress.doing("the %s at rest" % ("gyro" if kind == "gyro" else "accelerometer"))
-    units = rest_units.of(rest, kind, chip, settings)
+    units = rest_units.axis_units(rest, kind, chip, settings)
     data = coefficient_fits.data_of(units)
     flicker, reference = adequacy.usual(chip, kind), settings.reference.get(kind)
     levels = rest_units.levels(rest, kind, flicker if reference is None else max(
         reference, flicker / 4.0), reference is not None)
     several = int(rest.rest.max()) > 0
-    forms = [f for f in hypotheses.of(units, settings.without)
+    forms = [f for f in hypotheses.forms_of(units, settings.without)
              if several or f.effect != SETTLED]
     model = scored_sets.Model(units, data.statistics, levels)
-    found = posterior.search(model, forms, cutoffs.of(units, forms, levels))
-    fits = adequacy.of(units, data.statistics, found.best, levels)
+    found = posterior.search(model, forms, cutoffs.for_protocol(units, forms, levels))
+    fits = adequacy.goodness_of_fit(units, data.statistics, found.best, levels)
     chosen = [f for f in found.best.forms if not f.generic and len(f.shared)]
     strange = [(f, ["xyz"[axis] for axis, _ in members.axes_of(model, found, f)])
                for f in found.best.forms

@@ -62,8 +62,9 @@ class RestModel:
         best = found.best
         causes = [members.in_full(model, forms, found, cause)
                   for cause in aliases.causes(found, units, forms)]
-        fitted = adequacy.of(units, data.statistics, best, noise,
-                             self.conditions.shaken.get(self.kind, ()), self.kind == "accel")
+        fitted = adequacy.goodness_of_fit(
+            units, data.statistics, best, noise, self.conditions.shaken.get(self.kind, ()),
+            self.kind == "accel")
         if "drift" in best.names and fitted.ok:
             p = wandering.in_leaps(self.kind, [session for session, _ in parts])
             if p < adequacy.DOUBTFUL_P:
@@ -90,17 +91,18 @@ class RestModel:
         units = [self.unit(*part, self.settings.certified) for part in parts]
         units += self.between(units, [nominal for _, nominal in parts])
         data = coefficient_fits.data_of(units)
-        options = hypotheses.by_fleet(hypotheses.of(units, self.settings.without, self.drifts),
-                                      self.kind, self.settings.prior)
+        options = hypotheses.by_fleet(
+            hypotheses.forms_of(units, self.settings.without, self.drifts), self.kind,
+            self.settings.prior)
         noise = self.usual()
         # A square beside a slope is for the board's record; here a discrepancy stands for it.
         forms = [f for f in options if not f.record]
-        cost = replace(cutoffs.of(units, [f for f in forms if not f.instead], noise),
+        cost = replace(cutoffs.for_protocol(units, [f for f in forms if not f.instead], noise),
                        form=self.form)
         model = scored_sets.Model(units, data.statistics, noise)
         progress.doing("what explains it best")
         found = posterior.search(model, forms, cost) if likeliest is None \
-            else posterior.again(model, forms, cost, likeliest)
+            else posterior.from_likeliest(model, forms, cost, likeliest)
         return units, data, options, noise, forms, cost, model, found
 
     def _turned_back(self, parts, searched):
@@ -138,7 +140,7 @@ class RestModel:
         if self.kind == "accel" and not self.settings.certified \
                 and "box_tilt" not in self.settings.without and box_tilt_test.possible(gap):
             progress.doing("whether the box is square")
-            box, data = box_tilt_test.found(gap)
+            box, data = box_tilt_test.search(gap)
             gap = replace(gap, causes=gap.causes + [
                 c for c in _sized(gap, box, data) if max(map(abs, c.value.values()), default=0.0)
                 >= box_tilt_test.LEAST_DEG])
@@ -159,7 +161,7 @@ class RestModel:
                 data = coefficient_fits.data_of([self.unit(*part, certified, wanted)
                                               for part in parts])
                 index = gap.halved_levels(data)
-        return replace(gap, shrinkage=holdout_gain.of(
+        return replace(gap, shrinkage=holdout_gain.shrinkage(
             data, gap.chosen, index, gap.noise, gap.wanders))
 
     def usual(self):

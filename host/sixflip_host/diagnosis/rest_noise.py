@@ -36,7 +36,7 @@ class RestNoise:
     allan: tuple
 
 
-def of(sessions):
+def noise_by_sensor(sessions):
     """{sensor: RestNoise} of blocks.Sessions, {} where nothing rests for SHORTEST_S."""
     found = {}
     for sensor, unit in (("accel", "mg"), ("gyro", "deg/s")):

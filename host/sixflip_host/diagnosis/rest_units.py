@@ -62,7 +62,7 @@ def levels(rest, kind, flicker, known):
     return RestLevels(tuple(offsets), flicker, known)
 
 
-def of(rest, kind, chip, settings):
+def axis_units(rest, kind, chip, settings):
     """[Unit] of the three axes, which share no coefficient: each has the columns of all, the
     others' being zero."""
     designs = rest_forms.designs(rest, kind, chip, settings)

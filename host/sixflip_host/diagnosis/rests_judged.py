@@ -25,7 +25,7 @@ class RestsJudged:
     remarks: tuple
 
 
-def of(rests, findings, settings, conditions):
+def judge(rests, findings, settings, conditions):
     """RestsJudged of UsableRests; findings: of their samples. Both sensors at rest and the gyro's
     turns go side by side where there are cores: the linear algebra lets other threads run."""
     sessions, nominal = rests.sessions, rests.nominal
@@ -49,7 +49,7 @@ def of(rests, findings, settings, conditions):
                     sessions, nominal)
         gaps = {kind: job.result() for kind, job in jobs.items()}
     progress.doing("what moves between the rests show")
-    motion = motion_model.of(rests.everything, sessions, nominal, turns, settings)
+    motion = motion_model.motion_gap(rests.everything, sessions, nominal, turns, settings)
     found, nameless, remarks = [], [], []
     if swapped is not None and swapped.effect not in settings.without:
         found.append(swapped)

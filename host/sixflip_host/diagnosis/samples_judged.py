@@ -60,7 +60,7 @@ class SamplesJudged:
         return Conditions(reference_c, coarse, axes("vibration"), axes("dead_band"))
 
 
-def of(sessions, without=(), damages=()):
+def judge(sessions, without=(), damages=()):
     """SamplesJudged of all sessions; without: effects left out of the library; damages: those
     that were put right before."""
     rings = ringing.ringing_axes(sessions)

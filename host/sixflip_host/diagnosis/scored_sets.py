@@ -110,7 +110,7 @@ class Model:
             for number, k in enumerate(places):
                 found[plain[k]] = Scored(
                     (*base.forms, forms[plain[k]]), float(scores[number]),
-                    tuple(forms_at_once.one(fit, number) for fit in fits), base.chosen)
+                    tuple(forms_at_once.fit_of_form(fit, number) for fit in fits), base.chosen)
         return found
 
     def _rough(self, base, form):

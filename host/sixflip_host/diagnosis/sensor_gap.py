@@ -127,5 +127,5 @@ class SensorGap:
         model = scored_sets.Model(self.units, self.data.statistics, self.noise)
         best = max(mine, key=lambda form: model.scored((*self.found.best.forms, form)).score)
         chosen = [*self.chosen, best]
-        return replace(self, chosen=chosen, shrinkage=holdout_gain.of(
+        return replace(self, chosen=chosen, shrinkage=holdout_gain.shrinkage(
             self.data, chosen, self.adequacy.index, self.noise, self.wanders))

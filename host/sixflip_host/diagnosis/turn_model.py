@@ -48,7 +48,7 @@ class TurnModel(RestModel):
     form = 0.06  # turns are linear in an effect only while it is small: a quarter of its size
 
     def unit(self, part, model, certified, wanted=None):
-        y, chosen = turns.calibrated(turns.of(part, model.up))
+        y, chosen = turns.calibrated(turns.usable_turns(part, model.up))
         names = [n for n in EFFECTS if n != "thermal_scale" or part.thermal]
         designs = [design(n, chosen, self.conditions.reference_c, self.chip) for n in names]
         if "dead_band" not in self.settings.without:
@@ -137,14 +137,15 @@ def _of_rates(effect, variant, chosen, functions, prior):
 
 def usable(session, nominal):
     """True when there are enough turns to judge."""
-    return session.gyro is not None and len(turns.of(session, nominal.up)) >= FEWEST_MOVES
+    return session.gyro is not None and len(
+        turns.usable_turns(session, nominal.up)) >= FEWEST_MOVES
 
 
 def swapped(sessions, nominal):
     """Finding of gyro axes that are swapped or inverted, or None; its read (3, 3) takes what is
     true to what is read."""
     # A turn about the vertical looks the same to gravity whichever way the axes point.
-    found = [t for s, m in zip(sessions, nominal) for t in turns.of(s, m.up)
+    found = [t for s, m in zip(sessions, nominal) for t in turns.usable_turns(s, m.up)
              if t.before @ t.after < 0.8][:10]
     plain = np.array([t.off() for t in found])
     if len(found) < 3 or plain.mean() < WRONG_DEG:  # the plain order does: no other is tried

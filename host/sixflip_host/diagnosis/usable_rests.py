@@ -28,7 +28,7 @@ class UsableRests:
     remarks: tuple = ()
 
 
-def of(sessions, findings, stuck, scaled=False):
+def select(sessions, findings, stuck, scaled=False):
     """UsableRests of sessions; findings: of their samples; stuck: a column never changes; scaled:
     the accelerometer's full scale is not the one stated."""
     usable = _enough(sessions)

@@ -28,7 +28,7 @@ class Claim:
     nameless: float = 0.0
 
 
-def of(claims, nameless, seen):
+def decide(claims, nameless, seen):
     """The verdict. claims: list of Claim; nameless: probabilities of strangers, of residuals
     beyond noise and of all else without a name; seen: whether a gap could have been seen."""
     named = any_of([c.probability for c in claims])

@@ -1,8 +1,8 @@
 """A capture cut into what an experiment is made of: rests in poses, and the moves between them.
 
-of() makes the Session of a capture, whose rests are cut into blocks. The moves have one definition
-for all who integrate the gyro over them: the diagnosis' turns (turns.py) and the refinement's
-rotations (calibrate/gyro_moves.py).
+session_of() makes the Session of a capture, whose rests are cut into blocks. The moves have one
+definition for all who integrate the gyro over them: the diagnosis' turns (turns.py) and the
+refinement's rotations (calibrate/gyro_moves.py).
 """
 import copy
 from dataclasses import dataclass
@@ -43,7 +43,7 @@ class Move:
     longest_s: float
 
 
-def of(name, capture, runs=None):
+def session_of(name, capture, runs=None):
     """Session of a capture; poses are found where nobody labelled any. runs: list of rests.Run,
     rests that were found in a way of their own, taken as labelled. The capture itself is not
     changed."""
@@ -57,7 +57,7 @@ def of(name, capture, runs=None):
     if not labelled and (capture.pose is None or not (capture.pose > 0).any()):
         capture = _labelled(capture)
     runs = tuple(runs_of(capture) if runs is None else runs)
-    smooth = thermometer.of(capture, t_s)
+    smooth = thermometer.of_capture(capture, t_s)
     return Session(name, capture, rate, t_s, timeless, labelled, runs, smooth,
                    **block_measures.of_runs(capture, runs, rate, t_s, labelled, smooth))
 

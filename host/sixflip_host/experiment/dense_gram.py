@@ -7,7 +7,7 @@ from . import covariance
 from .gram import Whitened
 
 
-def of(groups, grid, space, common, columns):
+def dense_products(groups, grid, space, common, columns):
     """DenseGram of columns (m, K). grid: list of (placement level, flicker level); space (m, p)
     orthonormal, projected out; common (m, c), coefficients known to 1. LinAlgError where a
     covariance is not positive definite."""
@@ -36,7 +36,7 @@ def _factors(groups, grid, across, common):
 
 
 class DenseGram(Whitened):
-    """The products of K columns at the G points of a grid, r contrasts; made by of().
+    """The products of K columns at the G points of a grid, r contrasts; made by dense_products().
 
     across (m, r): orthonormal, across what is projected out; columns (r, K), as contrasts; loud:
     which of the columns are not zero; lower (G, r, r): factors of the covariance at all points.
@@ -77,7 +77,7 @@ class DenseGram(Whitened):
     def _every(self, kept):
         return kept[:, self._place]
 
-    def of(self, columns):
+    def at_all_points(self, columns):
         """(G, k, k) of a few columns at every point; nothing is kept of it."""
         given = np.asfortranarray(self._columns[:, columns])
         white = np.stack([self._solved(point, given, 1) for point in range(len(self.grid))])

@@ -52,7 +52,7 @@ class FactoredGram(Whitened):
         self._fill(points)
         return Products.each(self, points, index)
 
-    def of(self, columns):
+    def at_all_points(self, columns):
         """(G, k, k) of a few columns at every point; nothing is kept of it."""
         out = np.empty((len(self.grid), len(columns), len(columns)))
         done = np.flatnonzero(self._done)

@@ -68,10 +68,10 @@ def read(path, chip):
     if not batches:
         raise BadFile("%s: no boards with a %s in it, expected a fleet of that chip: it has %s" % (
             path, chip, ", ".join(dict.fromkeys(g["chip"] for g in found["groups"])) or "none"))
-    return _of(path, batches)
+    return _of_batches(path, batches)
 
 
-def _of(path, batches):
+def _of_batches(path, batches):
     sums, rare, number = {}, {}, {}
     for batch in batches:
         share = {name: block.get("rare") or 0.0 for block in batch["blocks"]

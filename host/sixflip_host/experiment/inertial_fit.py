@@ -89,18 +89,18 @@ def move(turn, capture, nominal, course, session, by_hand, white, lag_ms=0.0):
     seen = Seen.of_turn(turn)
     scale = 1000.0 / capture.meta["accel_lsb_per_g"]
     measured = nominal.corrected(capture.accel[turn.first:turn.last] * scale)
-    y = seen.of(1000.0 * (measured - felt)[:, :, None])[:, :, 0]
+    y = seen.spectrum(1000.0 * (measured - felt)[:, :, None])[:, :, 0]
     m = moment(turn)
     effects = np.hstack([terms.columns_of(EFFECTS[name]("accel", {}), m, len(felt))[2]
                          for name in EFFECT_NAMES]).reshape(len(felt), 3, EFFECTS_NUMBER)
     if lag_ms:
         effects[:, :, EFFECTS_NUMBER - 1] = lagging(turn.t, felt, lag_ms)
-    own = seen.of(effects)
+    own = seen.spectrum(effects)
     edge = own[:, :, :3] @ frame.T * (not flat)
     # What bends with the attitude, and remembers the one before.
     static = seen.held(projection.by_axis([*terms.harmonics(felt, "accel"), felt[0] - felt]))
     bias = projection.by_axis(course[:, turn.first:turn.last])
-    strange = seen.of(_of_motion(felt, rate, np.stack(m.w_rate, 1)))
+    strange = seen.spectrum(_of_motion(felt, rate, np.stack(m.w_rate, 1)))
     shared = [own, strange, edge, _habits(seen.n, turn.seconds, flat), static]
     return Move(turn, session, by_hand, white, flat, turn.seconds, turn.seconds / seen.n, y,
                 np.concatenate([*shared, own[:, :, :3], seen.held(bias)], axis=2),
@@ -223,13 +223,14 @@ class Seen:
                    np.linspace(0, len(share), n + 1).astype(int), cosines)
 
     def held(self, values):
-        """of() what is there at rest, too: across gravity that was taken for its attitude."""
+        """spectrum() of what is there at rest, too: across gravity that was taken for the
+        attitude."""
         table = self.turned @ values
         share = self.share[:, None, None]
         table[:, :2] -= ((1.0 - share) * table[0] + share * table[-1])[:, :2]
         return self._frequencies(table)
 
-    def of(self, values):
+    def spectrum(self, values):
         """(n, 3, k) from (samples, 3, k) in the body."""
         return self._frequencies(self.turned @ values)
 

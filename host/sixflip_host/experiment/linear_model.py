@@ -220,8 +220,9 @@ def unit(rows, designs, wanted=None, **about):
         placements = placements[:1]
     grid = [(a, b) for a in placements for b in flickers]
     shape = len(placements), len(flickers)
-    kind = dense_gram.of if len(columns) <= covariance.FEW else factored_gram.FactoredGram
-    grams = kind(groups, grid, space, _common(rows), columns)
+    make = dense_gram.dense_products if len(columns) <= covariance.FEW \
+        else factored_gram.FactoredGram
+    grams = make(groups, grid, space, _common(rows), columns)
     quadratic, inner, logdet = grams.statistics(z)
     return Unit(rows, designs, grid, shape, groups, space, z[:, 0],
                 columns, len(z) - space.shape[1], 3.0 * (raw ** 2).mean(axis=0), silent, grams,

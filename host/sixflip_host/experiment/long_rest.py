@@ -91,7 +91,7 @@ class LongRest:
         return m
 
 
-def of(sessions, lines=()):
+def in_one_attitude(sessions, lines=()):
     """LongRest of blocks.Sessions, or None where nothing rests; lines: (sensor, axis, Hz) of
     sines that are taken off first."""
     runs = _one_attitude([(k, first, end) for k, s in enumerate(sessions)

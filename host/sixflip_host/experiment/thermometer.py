@@ -62,7 +62,7 @@ def of_course(t, c):
     return Thermometer(t, c, rate, float(np.ptp(c)))
 
 
-def of(capture, t_s):
+def of_capture(capture, t_s):
     """Thermometer of a capture whose samples were taken at t_s (N,) s, or None where it has no
     column of temperatures or lasts for less than three seconds."""
     if capture.temp is None:

@@ -121,17 +121,17 @@ def _even(t, period_s, uneven=False):
     return np.maximum.accumulate(t - least) + least
 
 
-def of(session, up):
+def usable_turns(session, up):
     """tuple of Turn, integrated: every usable one between neighbouring placements of a Session
     (of a part: of its own). up (placements, 3)."""
     known = _known.setdefault(session, {})
     key = up.tobytes()
     if key not in known:
-        known[key] = _of(session, up)
+        known[key] = _usable_turns(session, up)
     return known[key]
 
 
-def _of(session, up):
+def _usable_turns(session, up):
     kept = np.unique(session.placement).tolist()
     rest = {p: session.gyro[session.placement == p].mean(axis=0) for p in kept}
     pairs = [p for p in kept if p + 1 in rest]

@@ -46,7 +46,7 @@ def measure(capture):
     """{"accel": Triad, "gyro": Triad or absent}; CheckFailed where there is nothing to measure."""
     rate = capture.meta["rate_hz"]
     shortest = max(SHORTEST_S * rate, FEWEST_SAMPLES)
-    still = [(run.first, run.end) for run in blocks.of("the capture", capture).runs
+    still = [(run.first, run.end) for run in blocks.session_of("the capture", capture).runs
              if run.end - run.first >= shortest]
     if not still:
         raise CheckFailed("no rest of %g s or more in the capture: noise cannot be measured"

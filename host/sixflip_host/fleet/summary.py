@@ -136,8 +136,8 @@ def summarise(name, capture):
     solved = solution.solve(copy.copy(capture))
     labelled = capture.pose is not None
     placed = capture if labelled else _with_poses(capture)
-    session = blocks.of(name, capture)
-    judged = samples_judged.of([session])
+    session = blocks.session_of(name, capture)
+    judged = samples_judged.judge([session])
     session, = judged.sessions
     if any(f.effect == "saturation" and f.sensor == "accel" for f in judged.findings):
         session = session.without_samples(saturation.railed(session))

@@ -141,8 +141,8 @@ def gap(page, folder, paths):
     from ..diagnosis.diagnose import diagnose
     from . import gap_report, gap_words
     diagnosed = diagnose([(path, capture_file.read_samples(path)) for path in paths])
-    closed = closed_loops.of(diagnosed)
-    result = answer.of(diagnosed)
+    closed = closed_loops.close_all(diagnosed)
+    result = answer.as_dict(diagnosed)
     if closed:
         result["simulated"] = {kind: answer.of_loop(kind, one) for kind, one in closed.items()}
     page.heading("The gap to a nominal simulator")

@@ -98,12 +98,12 @@ def answered(args, without, record):
                          list(read([args.reference] if args.reference else [])),
                          args.certified_box, without, args.jobs, fleet_of(args.prior, captures))
     loops = closed(diagnosed, args)
-    result = answer.of(diagnosed)
+    result = answer.as_dict(diagnosed)
     if loops:
         result["simulated"] = {kind: answer.of_loop(kind, loop) for kind, loop in loops.items()}
     terms = None
     if record:
-        terms = correction_terms.of(diagnosed, record)
+        terms = correction_terms.terms_for(diagnosed, record)
         result["terms"] = correction_terms.answer(terms, args.output)
     if args.report:
         from ..present import gap_report
@@ -130,7 +130,7 @@ def closed(diagnosed, args):
                 name, NAMES, "expected found, or an effect out of: %s")))
     if not (args.add or args.scenario or args.report) or not diagnosed.gaps:
         return {}
-    closed_again = closed_loops.of(diagnosed, named)
+    closed_again = closed_loops.close_all(diagnosed, named)
     if args.scenario:
         closed_loops.write_scenario(args.scenario, diagnosed, [
             e for lo in closed_again.values() for e in lo.effects])
@@ -194,7 +194,7 @@ def of_this_part(captures, record, args):
     from ..experiment import blocks
     for _, capture in captures:
         verify_files.fits(record, capture)
-    correction_terms.fitting([blocks.of(*one) for one in captures], record, args.record)
+    correction_terms.fitting([blocks.session_of(*one) for one in captures], record, args.record)
 
 
 def write_terms(terms, args):

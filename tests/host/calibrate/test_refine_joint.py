@@ -58,11 +58,11 @@ def test_a_box_set_down_askew_gains_from_the_moves():
 def test_the_refinement_and_the_diagnosis_see_the_same_rests_and_moves_and_neither_writes():
     capture = hand_session.session(hand_session.Sensor(1), hand_session.free_poses(1, 6), 1)
     session, _ = refinement.session_of(capture)
-    seen = turns.of(session.session, session.force)
+    seen = turns.usable_turns(session.session, session.force)
     assert [turn.first for turn in seen] == [
         move.first for move in blocks.moves_of(session.session)]
     assert session.moves.seconds.tolist() == pytest.approx([turn.seconds for turn in seen])
-    assert blocks.of("the same", capture).runs == session.session.runs
+    assert blocks.session_of("the same", capture).runs == session.session.runs
     for array in (session.force, session.rate_error, session.move_error, session.moves.dt,
                   session.moves.before):
         with pytest.raises(ValueError, match="read-only"):

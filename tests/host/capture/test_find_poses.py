@@ -37,14 +37,14 @@ def test_the_papers_session():
 def test_poses_that_were_found_stay_a_guess_in_a_file(tmp_path):
     """The first of a face is called a: were b the first, the table would lean the other way."""
     capture = unlabelled(3)
-    before = blocks.of("s", capture)
+    before = blocks.session_of("s", capture)
     find_poses(capture).label(capture)
     capture_file.write(tmp_path / "c.csv", capture)
-    after = blocks.of("s", capture_file.read(tmp_path / "c.csv"))
+    after = blocks.session_of("s", capture_file.read(tmp_path / "c.csv"))
     assert not before.labelled and not after.labelled
     assert (after.face == -1).all() and np.array_equal(after.code, before.code)
     del capture.meta["poses"]
-    assert blocks.of("s", capture).labelled
+    assert blocks.session_of("s", capture).labelled
 
 
 def test_a_and_b_by_the_gyro_whatever_came_between():

@@ -33,7 +33,7 @@ def test_it_is_solved_as_the_capture_is(captured):
 def test_the_rests_of_both_are_the_same_rows(captured):
     _, capture, one = captured
     units = []
-    for session in (blocks.of("s", capture), one.session()):
+    for session in (blocks.session_of("s", capture), one.session()):
         nominal = attitude_fit.fit(session)
         model = rest_model.RestModel("gyro", "mpu6050", settings.Settings())
         units.append(model.unit(terms.agreed([session])[0], nominal, False))
@@ -44,7 +44,7 @@ def test_the_rests_of_both_are_the_same_rows(captured):
 
 def test_a_part_and_fewer_poses_are_those_of_the_capture(captured):
     _, capture, one = captured
-    both = blocks.of("s", capture), one.session()
+    both = blocks.session_of("s", capture), one.session()
     for change in (lambda s: s.part(range(3, 9)), lambda s: s.without_poses(["Z-a", "X+b"])):
         mine, kept = (change(session) for session in both)
         for name in OF_BLOCKS:
@@ -74,7 +74,7 @@ def test_the_kept_one_is_read_while_the_capture_is_the_same(captured, monkeypatc
 
 def test_the_effect_of_the_capture_is_in_its_information(captured):
     _, _, one = captured
-    found, _ = effects.information(usable_rests.of([one.session()], [], []), "mpu6050")
+    found, _ = effects.information(usable_rests.select([one.session()], [], []), "mpu6050")
     k = effects.NAMES["accel"].index("accel.thermal_bias.z")
     precision, score = found["accel"].precision, found["accel"].score
     sigma = 1.0 / np.sqrt(precision[k, k])

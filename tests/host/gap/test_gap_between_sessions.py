@@ -15,12 +15,12 @@ def sessions(effects=(), change=((0, 0, 0), (0, 0, 0)), seed=61):
     for capture, counts in zip(captures, change):
         capture.accel = (capture.accel + np.array(counts)).astype(np.int16)
         capture.gyro = None     # the accelerometer alone: half the work
-    return [blocks.of(str(k), c) for k, c in enumerate(captures)]
+    return [blocks.session_of(str(k), c) for k, c in enumerate(captures)]
 
 
 def test_a_bias_that_differs_from_session_to_session_is_found_there():
-    found = diagnosis.of(sessions(change=((0, 0, 0), (0, 1000, 0))),
-                                diagnosis.Settings())
+    found = diagnosis.diagnose_sessions(sessions(change=((0, 0, 0), (0, 1000, 0))),
+                                               diagnosis.Settings())
     between = found.gaps["accel"].units[-1]
     assert between.between
     # 1000 counts are 61 mg; the contrast is the difference over the root of two
@@ -33,17 +33,17 @@ def test_a_bias_that_differs_from_session_to_session_is_found_there():
 
 
 def test_an_ordinary_change_is_no_gap():
-    found = diagnosis.of(sessions(change=((0, 0, 0), (20, -20, 20))),
-                                diagnosis.Settings())
+    found = diagnosis.diagnose_sessions(sessions(change=((0, 0, 0), (20, -20, 20))),
+                                               diagnosis.Settings())
     assert found.verdict == "no gap"
-    assert not answer.of(found)["where"]
+    assert not answer.as_dict(found)["where"]
 
 
 def test_products_of_the_other_axes_leave_the_axis_open():
     """Where only the length of gravity is known x: f_y f_z and y: f_x f_z add the same."""
-    found = diagnosis.of(
+    found = diagnosis.diagnose_sessions(
         sessions([{"effect": "cross_quadratic", "sensor": "accel", "xyz": 4.0}]),
         diagnosis.Settings())
-    cause, = answer.of(found)["causes"]
+    cause, = answer.as_dict(found)["causes"]
     assert "cross_quadratic" in cause["class"]
     assert cause["axes"] == ["x", "y", "z"]

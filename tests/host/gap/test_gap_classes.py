@@ -31,8 +31,9 @@ def causes(captures, change):
             warm = capture.temp / capture.meta["temp_lsb_per_c"] - start
             mg = change(t, warm, capture.accel / LSB_G)
             capture.accel = np.rint(capture.accel + mg * LSB_G / 1000.0).astype(np.int16)
-        sessions = [blocks.of(str(k), c) for k, c in enumerate(captures)]
-        return answer.of(diagnosis.of(sessions, diagnosis.Settings(jobs=1)))["causes"]
+        sessions = [blocks.session_of(str(k), c) for k, c in enumerate(captures)]
+        found = diagnosis.diagnose_sessions(sessions, diagnosis.Settings(jobs=1))
+        return answer.as_dict(found)["causes"]
     finally:
         for capture, accel in zip(captures, kept):
             capture.accel = accel

@@ -14,8 +14,8 @@ def diagnosed(faces, tilt_deg=2.0):
     captures = [simulated_session.session(plan, k) for k in range(2)]
     for capture in captures:
         capture.gyro = None     # the accelerometer alone: half the work
-    sessions = [blocks.of(str(k), c) for k, c in enumerate(captures)]
-    return diagnosis.of(sessions, diagnosis.Settings())
+    sessions = [blocks.session_of(str(k), c) for k, c in enumerate(captures)]
+    return diagnosis.diagnose_sessions(sessions, diagnosis.Settings())
 
 
 def test_a_square_box_on_a_tilted_table():

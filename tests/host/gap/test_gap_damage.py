@@ -27,7 +27,7 @@ def sound():
 def damaged(capture):
     """[(kind, sensor, axes)] of all damages, and the recording as it is looked at further."""
     mended, found = byte_faults.repaired([("one", capture)])
-    session = blocks.of(*mended[0])
+    session = blocks.session_of(*mended[0])
     found = [*found, *held_values.findings([session]), *wrong_scale.findings([session])]
     return [(d.kind, d.sensor, d.axes) for d in found], session
 
@@ -136,7 +136,7 @@ def test_a_range_that_is_not_the_headers(sound, sensor, key, factor):
 def test_a_wrong_range_of_the_gyro_is_no_other_order_of_its_axes(sound, factor):
     other = copy.copy(sound)
     other.meta = dict(sound.meta, gyro_lsb_per_dps=sound.meta["gyro_lsb_per_dps"] / factor)
-    session = blocks.of("one", other)
+    session = blocks.session_of("one", other)
     assert turn_model.swapped([session], [attitude_fit.fit(session)]) is None
 
 
@@ -220,7 +220,7 @@ def test_rows_that_are_not_read_anew_are_no_samples(sound):
     assert damage.value["rows"] == lost.sum()
     assert np.array_equal(plain.t_us, sound.t_us[~lost])
     assert np.array_equal(plain.pose, sound.pose[~lost])
-    judged = samples_judged.of([blocks.of("one", plain)], damages=[damage])
+    judged = samples_judged.judge([blocks.session_of("one", plain)], damages=[damage])
     assert not judged.findings and any("not read" in remark for remark in judged.remarks)
 
 

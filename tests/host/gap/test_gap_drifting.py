@@ -53,12 +53,12 @@ def moved(captures, course):
         t = (capture.t_us - capture.t_us[0]) * 1e-6
         added = course(generator, t) * capture.meta["gyro_lsb_per_dps"]
         one.gyro = np.round(capture.gyro + added).astype(capture.gyro.dtype)
-        sessions.append(blocks.of(str(number), one))
+        sessions.append(blocks.session_of(str(number), one))
     return sessions
 
 
 def diagnosed(captures, course):
-    return diagnosis.of(moved(captures, course), diagnosis.Settings(jobs=1))
+    return diagnosis.diagnose_sessions(moved(captures, course), diagnosis.Settings(jobs=1))
 
 
 def test_a_random_walk_of_each_axis_drifts(captures):
@@ -111,7 +111,7 @@ def test_a_drift_of_one_axis_has_the_size_that_it_has_on_all(seed):
         plan = scenario.from_dict({
             "sensor": "mpu6050", "scene": "recommended", "seed": 100 + seed, "effects": [
                 dict(dict.fromkeys(axes, 0.06), effect="drift", sensor="gyro", seed=seed)]})
-        found[axes] = gyro_at_rest([blocks.of(str(k), simulated_session.session(plan, k))
+        found[axes] = gyro_at_rest([blocks.session_of(str(k), simulated_session.session(plan, k))
                                     for k in range(2)]).drift
     assert (found["y"].axes, found["xyz"].axes) == (("y",), ())
     assert found["y"].low < found["xyz"].level < found["y"].high
@@ -123,14 +123,14 @@ def test_what_moves_with_the_poses_only_is_not_called_drift(captures):
     walk is from rest to rest."""
     generator, sessions = np.random.default_rng(5), []
     for number, capture in enumerate(captures):
-        session = blocks.of(str(number), capture)
+        session = blocks.session_of(str(number), capture)
         course = np.zeros(len(capture))
         for run in session.runs[1:]:
             course[run.first:] += generator.choice([-1.0, 1.0]) * 0.05
         changed = copy.copy(capture)
         changed.gyro = np.rint(capture.gyro + course[:, None] * np.array([[0.0, 1.0, 0.0]])
                                * capture.meta["gyro_lsb_per_dps"]).astype(np.int16)
-        sessions.append(blocks.of(str(number), changed))
+        sessions.append(blocks.session_of(str(number), changed))
     gap = gyro_at_rest(sessions)
     assert not gap.drift and gap.unexplained
     assert gap.strangers and all(form.generic for form in gap.strangers)
@@ -155,8 +155,8 @@ def test_a_drift_between_the_levels_tried_is_explained_and_has_its_size():
     for number in range(2):
         capture = simulated_session.session(plan, number)
         capture.gyro = None
-        sessions.append(blocks.of(str(number), capture))
-    found = answer.of(diagnosis.of(sessions, diagnosis.Settings(jobs=1)))
+        sessions.append(blocks.session_of(str(number), capture))
+    found = answer.as_dict(diagnosis.diagnose_sessions(sessions, diagnosis.Settings(jobs=1)))
     cause, = found["causes"]
     assert found["verdict"] == "explained" and cause["effect"] == "drift"
     for low, high in cause["interval_90"].values():

@@ -57,11 +57,11 @@ def model_of(units):
 
 
 def form(units, effect):
-    return next(f for f in hypotheses.of(units) if f.effect == effect)
+    return next(f for f in hypotheses.forms_of(units) if f.effect == effect)
 
 
 def found(units):
-    forms = hypotheses.of(units)
+    forms = hypotheses.forms_of(units)
     return posterior.search(model_of(units), forms, cutoffs.Cutoffs(
         cutoffs.simulated(units, forms, USUAL, [0] * len(units)), 0.06))
 
@@ -186,8 +186,8 @@ def moves(generator, lag):
 
 
 def costs_of_moves(units):
-    forms = hypotheses.of(units, drift=False)
-    return forms, cutoffs.Cutoffs(0.0, 0.06, own=cutoffs.of_each(
+    forms = hypotheses.forms_of(units, drift=False)
+    return forms, cutoffs.Cutoffs(0.0, 0.06, own=cutoffs.simulated_each(
         units, forms, moves_unit.NO_LEVELS, [0, 0]))
 
 
@@ -238,7 +238,7 @@ def test_strangers_that_look_like_a_name_make_every_name_less_sure(monkeypatch):
     taken = {}
     for name, form in (("alike", np.linspace(-1.0, 1.0, 40)), ("unlike", (-1.0) ** np.arange(40))):
         units = [smooth(form), smooth(form)]
-        found = mimicry.simulated(units, hypotheses.of(units), USUAL, [0, 0])
+        found = mimicry.simulated(units, hypotheses.forms_of(units), USUAL, [0, 0])
         taken[name] = found.whole()
         assert found.whole(0.1) >= found.whole(0.5) >= taken[name]
         assert found.beside(0.1) >= found.beside(0.9)
@@ -251,7 +251,7 @@ def test_strangers_that_look_like_a_name_make_every_name_less_sure(monkeypatch):
 
 def test_where_no_form_is_left_to_compete_a_cost_is_not_simulated():
     """Half a session, whose few turns show no effect at all."""
-    assert cutoffs.of([], [], USUAL).member == cutoffs.LEAST_NATS
+    assert cutoffs.for_protocol([], [], USUAL).member == cutoffs.LEAST_NATS
 
 
 def test_what_is_not_in_the_library_is_rarer_and_a_level_of_noise_is_not():
@@ -259,8 +259,8 @@ def test_what_is_not_in_the_library_is_rarer_and_a_level_of_noise_is_not():
     named, nameless = (hypotheses.Form(name, shared=Columns(np.array([0]), np.ones(1)))
                        for name in ("thermal_bias", "orientation"))
     level = hypotheses.Form("session", free=frozenset(["switch_on"]))
-    assert cost.of(nameless) - cost.of(named) == pytest.approx(np.log(odds.INSIDE))
-    assert cost.of(level) == cost.of(named) == 5.0
+    assert cost.nats(nameless) - cost.nats(named) == pytest.approx(np.log(odds.INSIDE))
+    assert cost.nats(level) == cost.nats(named) == 5.0
 
 
 def lagging(generator, n=40):
@@ -279,7 +279,7 @@ def lagging(generator, n=40):
 
 def test_a_size_is_as_uncertain_as_the_lag_that_nothing_tells():
     units = [lagging(np.random.default_rng(seed)) for seed in (3, 4)]
-    model, forms = model_of(units), hypotheses.of(units)
+    model, forms = model_of(units), hypotheses.forms_of(units)
     best = posterior.search(model, forms, cutoffs.Cutoffs(5.0, 0.02))
     cause, = aliases.causes(best, units, forms)
     full = members.in_full(model, forms, best, cause)

@@ -25,7 +25,7 @@ def told(change=None, slope=0.0, wave=0.0):
     capture = Capture(dict(META), np.rint(t * 1e6).astype(np.int64), None,
                       change(counts) if change else counts,
                       np.rint(100.0 * warm).astype(np.int16))
-    return answer.of(diagnose([("gyro", capture)], jobs=1))
+    return answer.as_dict(diagnose([("gyro", capture)], jobs=1))
 
 
 def test_a_sound_gyro_has_its_bias_and_noise_and_no_gap():

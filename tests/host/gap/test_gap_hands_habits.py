@@ -67,13 +67,14 @@ def session(seed, late_s=0.0):
     gyro = rate + part.normal(0.0, 1.0, 3) + 0.05 * generator.standard_normal((n, 3))
     meta = {"sensor": "mpu6050", "rate_hz": RATE, "g": 9.80665, "accel_lsb_per_g": LSB_G,
             "gyro_lsb_per_dps": LSB_DPS}
-    return blocks.of(str(seed), Capture(
+    return blocks.session_of(str(seed), Capture(
         meta, np.rint(t * 1e6).astype(np.int64), np.rint(accel * LSB_G).astype(np.int16),
         np.rint(gyro * LSB_DPS).astype(np.int16), None, None, labels.astype(np.int16)))
 
 
 def motion(late_s=0.0):
-    found = diagnosis.of([session(1, late_s), session(2, late_s)], diagnosis.Settings(jobs=1))
+    found = diagnosis.diagnose_sessions([session(1, late_s), session(2, late_s)],
+                                        diagnosis.Settings(jobs=1))
     return [f for f in found.findings if f.domain == "motion"], [
         p for p in found.nameless if p.domain == "motion"]
 

@@ -58,7 +58,7 @@ def turned_by(off_deg):
     """SensorGap of the turns of a hand whose half turns are off by so much."""
     plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 4,
                                "world": {"flip_error_deg": off_deg}})
-    session = blocks.of("s", simulated_session.session(plan, 0))
+    session = blocks.session_of("s", simulated_session.session(plan, 0))
     return turn_model.TurnModel("gyro", "mpu6050", diagnosis.Settings(jobs=1)).fit(
         [session], [attitude_fit.fit(session)])
 
@@ -160,7 +160,7 @@ def test_the_angles_of_the_accelerometer_that_reads_the_ends_are_no_gap_of_the_g
     """Faces of a crooked box are read as angles between its axes, alike in every session."""
     plans = [scenario.from_dict({"sensor": "mpu6050", "scene": "paper", "seed": seed})
              for seed in (9, 10)]
-    sessions = [blocks.of("s", simulated_session.session(plan, 0)) for plan in plans]
+    sessions = [blocks.session_of("s", simulated_session.session(plan, 0)) for plan in plans]
     nominal = [attitude_fit.fit(session) for session in sessions]
     skewed = np.eye(3) + np.radians(0.15) * np.array([[0, 1, -1], [1, 0, 1], [-1, 1, 0]])
     read = [one.up @ skewed for one in nominal]
@@ -175,7 +175,7 @@ def test_the_earth_turns_round_with_a_box_that_is_turned_on_a_face():
     """A bias that followed orientation was seen in healthy gyros whose box always stood in the
     same heading: the Earth's horizontal rate, which changes sign with the flip."""
     plan = scenario.from_dict({"sensor": "mpu6050", "scene": "paper", "seed": 4})
-    session = blocks.of("s", simulated_session.session(plan, 0))
+    session = blocks.session_of("s", simulated_session.session(plan, 0))
     nominal = attitude_fit.fit(session)
     up = nominal.up[session.placement]
     heading = np.random.default_rng(1).uniform(0.0, 2.0 * np.pi, 6)
@@ -206,7 +206,7 @@ def short_rests(added, seconds=1.7, n=4000):
         accel[start:start + each] += added(np.arange(each) / 100.0, start / 100.0)[:, None]
     still = at_rest(flicker(5, n)).capture
     still.accel, still.pose = np.rint(accel).astype(np.int16), pose
-    return blocks.of("s", still)
+    return blocks.session_of("s", still)
 
 
 def test_a_line_shows_in_rests_of_less_than_two_seconds():

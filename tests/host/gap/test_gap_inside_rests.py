@@ -25,9 +25,9 @@ def diagnosed(captures, change):
         changed = kept.astype(float)
         change(t, changed, np.random.default_rng(number))
         capture.accel = np.rint(changed).astype(np.int16)
-        sessions.append(blocks.of(str(number), capture))
+        sessions.append(blocks.session_of(str(number), capture))
         restored.append(kept)
-    found = answer.of(diagnosis.of(sessions, diagnosis.Settings(jobs=1)))
+    found = answer.as_dict(diagnosis.diagnose_sessions(sessions, diagnosis.Settings(jobs=1)))
     for capture, kept in zip(captures, restored):
         capture.accel = kept
     return found
@@ -89,7 +89,7 @@ def test_what_rings_out_after_each_move_is_no_vibration(captures):
                 counts[run.first:run.end, 0] += mg * 16.384 * np.exp(-since / 1.2) * np.sin(
                     2.0 * np.pi * 2.0 * since)
         return change
-    runs = {len(c): blocks.of("", c).runs for c in captures}
+    runs = {len(c): blocks.session_of("", c).runs for c in captures}
     for mg in (15.0, 45.0):
         found = diagnosed(captures, ringing(mg))
         assert found["verdict"] == "unexplained" and found["causes"] == []

@@ -27,7 +27,7 @@ def found(effects=(), change=None, seed=5):
         capture = simulated_session.session(plan, number)
         if change:
             change(capture, np.random.default_rng(number))
-        sessions.append(blocks.of(str(number), capture))
+        sessions.append(blocks.session_of(str(number), capture))
     return {(f.effect, f.sensor): f for f in samples_judged.of_registers(sessions)}
 
 
@@ -72,7 +72,7 @@ def test_a_line_is_the_likelier_the_stronger_it_is_however_strong():
         plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 5,
                                    "effects": [{"effect": "vibration", "sensor": "accel",
                                                 "x": mg, "frequency_hz": 17.3}]})
-        session = blocks.of("0", simulated_session.session(plan, 0))
+        session = blocks.session_of("0", simulated_session.session(plan, 0))
         line, = spectral_lines.findings([session])
         assert "x" in line.axes and 0.9 < line.share <= 1.0
         scores.append(line.score)
@@ -149,12 +149,12 @@ def test_an_order_of_axes_is_held_against_the_plain_one_and_against_any_matrix()
     (0.99, 0.1, True, True, "explained"), (0.99, 0.1, False, True, "cannot tell"),
     (0.99, 0.9, True, True, "partly explained"), (0.3, 0.9, False, True, "unexplained")])
 def test_the_verdict_is_a_table(named, nameless, told, seen, said):
-    assert verdict.of([verdict.Claim(named, told)], [nameless], seen) == said
+    assert verdict.decide([verdict.Claim(named, told)], [nameless], seen) == said
 
 
 def test_what_stands_in_a_names_place_without_one_makes_it_doubtful():
-    assert verdict.of([verdict.Claim(0.4, True, 0.6)], [], True) == "unexplained"
-    assert verdict.of([], [], False) == "cannot tell"
+    assert verdict.decide([verdict.Claim(0.4, True, 0.6)], [], True) == "unexplained"
+    assert verdict.decide([], [], False) == "cannot tell"
 
 
 def test_probabilities_of_a_place_add_up_and_chance_bounds_them():

@@ -21,13 +21,13 @@ def rest(added=(0.0, 0.0, 0.0), celsius=None, seed=5, start_mg=(20.0, -15.0, 100
     temp = None if celsius is None else np.rint((celsius - 36.53) * 340.0).astype(np.int16)
     meta = {"sensor": "mpu6050", "rate_hz": RATE, "accel_lsb_per_g": 16384,
             "gyro_lsb_per_dps": 131, "temp_lsb_per_c": 340, "temp_offset_c": 36.53}
-    return blocks.of("rest", Capture(meta, np.rint(T * 1e6).astype(np.int64),
-                                     accel.astype(np.int16), gyro.astype(np.int16), temp, None,
-                                     np.ones(len(T), np.int16)))
+    return blocks.session_of("rest", Capture(
+        meta, np.rint(T * 1e6).astype(np.int64), accel.astype(np.int16), gyro.astype(np.int16),
+        temp, None, np.ones(len(T), np.int16)))
 
 
 def accel(*sessions):
-    return rest_gap.of(list(sessions), Settings())["accel"]
+    return rest_gap.gaps_by_sensor(list(sessions), Settings())["accel"]
 
 
 def test_a_drift_with_temperature_has_its_slope_and_its_figures():
@@ -82,13 +82,13 @@ def test_rests_that_differ_as_switching_on_makes_them_are_no_gap():
 
 def test_rests_in_another_attitude_are_left_out():
     leaning = rest(start_mg=(700.0, 0.0, 714.0), seed=2)
-    found = long_rest.of([rest(), rest(seed=1), leaning])
+    found = long_rest.in_one_attitude([rest(), rest(seed=1), leaning])
     assert set(found.session) == {0, 1}
 
 
 def test_a_line_is_taken_off_before_the_means_are_made():
     wave = 8.0 * np.sin(2.0 * np.pi * 0.311 * T)
-    plain, without = (long_rest.of([rest((0.0, 0.0, wave))], lines)
+    plain, without = (long_rest.in_one_attitude([rest((0.0, 0.0, wave))], lines)
                       for lines in ((), [("accel", 2, 0.31)]))
     assert plain.values["accel"][:, 2].std() > 1.0
     assert without.values["accel"][:, 2].std() < 0.4
@@ -111,7 +111,7 @@ def test_a_box_that_lies_another_way_in_each_rest_is_no_gap():
     pose = np.where(moved, 0, 1 + (T / 40.0).astype(int) % 2).astype(np.int16)
     capture = whole.capture
     capture.pose = pose
-    found = accel(blocks.of("rests", capture))
+    found = accel(blocks.session_of("rests", capture))
     assert not found.causes and not found.nameless and not found.places
     assert found.by_axis["x"].before == pytest.approx(found.by_axis["x"].floor, rel=0.25)
     assert found.by_axis["x"].floor < 1.0
@@ -121,7 +121,7 @@ def test_a_drift_shows_in_rests_that_each_lie_another_way():
     leaning, moved = put_down_again()
     whole = rest((leaning + 1.5 * (SWEEP - 25.0), 0.0, 0.0), SWEEP)
     whole.capture.pose = np.where(moved, 0, 1 + (T / 40.0).astype(int) % 2).astype(np.int16)
-    found = accel(blocks.of("rests", whole.capture))
+    found = accel(blocks.session_of("rests", whole.capture))
     assert [c.effect for c in found.causes] == ["thermal_bias"]
     low, high = found.causes[0].interval["x"]
     assert low < 1.5 < high
@@ -136,6 +136,6 @@ def test_rests_of_one_mean_each_have_figures():
     leaning, moved = put_down_again(every_s=6.0)
     whole = rest((leaning, 0.0, 0.0))
     whole.capture.pose = np.where(moved, 0, 1 + (T / 6.0).astype(int) % 2).astype(np.int16)
-    judged = accel(blocks.of("rests", whole.capture))
+    judged = accel(blocks.session_of("rests", whole.capture))
     assert not judged.causes and not judged.nameless
     assert all(judged.by_axis[axis].before > 0.0 for axis in "xyz")

@@ -113,7 +113,7 @@ def test_a_gap_that_hardly_closes_is_not_explained():
     named = [verdict.Claim(0.99, True)]
     for interval, said in (((0.1, 0.25), "partly explained"), ((0.7, 1.0), "explained")):
         left = verdict.not_closed(Shrinkage(4.0, 3.7, 1.0, 0.2, interval))
-        assert verdict.of(named, [left], True) == said
+        assert verdict.decide(named, [left], True) == said
 
 
 def test_a_spike_cuts_no_rest_in_two():
@@ -124,7 +124,7 @@ def test_a_spike_cuts_no_rest_in_two():
     spiked = generator.choice(np.arange(200, 5800), 60, replace=False)
     still.gyro = still.gyro.copy()
     still.gyro[spiked, 1] += np.int16(256)
-    found = blocks.of("s", still)
+    found = blocks.session_of("s", still)
     assert len(found.runs) == 1 and found.runs[0].end - found.runs[0].first > 5500
     assert still.gyro[spiked[0], 1] > 200  # the capture itself is as it was
     nats, number = torn_reads.paged(sample_neighbours.tabled(still.gyro[:, 1].astype(int), False))
@@ -176,7 +176,7 @@ def shaken(hz, moving):
     still.accel[3000:, 2] += np.rint((wave + (sway if moving else 0.0)) * np.ones(9000))[
         3000:].astype(np.int16)
     still.pose = np.where(t < 30.0, 1, 0).astype(np.int16)
-    return blocks.of("s", still)
+    return blocks.session_of("s", still)
 
 
 def test_what_runs_beside_a_log_shows_outside_of_its_rests():
@@ -208,7 +208,7 @@ def stamped(t_s):
     """Session of a rest with its samples stamped at t_s (n,) s."""
     still = at_rest(flicker(5, len(t_s))).capture
     still.t_us = np.rint(1e6 * t_s).astype(np.int64)
-    return blocks.of("s", still)
+    return blocks.session_of("s", still)
 
 
 def test_samples_that_come_at_uneven_times_are_told_from_stamps_that_scatter():
@@ -263,7 +263,7 @@ def test_a_band_about_a_bias_is_put_back_about_that():
     still.gyro = still.gyro.copy()
     still.gyro[:, 2] = np.rint(55.0 + np.sign(rate) * np.maximum(np.abs(rate) - 30.0, 0.0))
     found = Finding("dead_band", "gyro", ["z"], {"z": 30}, "counts", 50.0, "amplitude", "")
-    back = samples_judged._without_bands(blocks.of("s", still), [found]).capture.gyro[:, 2]
+    back = samples_judged._without_bands(blocks.session_of("s", still), [found]).capture.gyro[:, 2]
     assert (back[:2000] == 55).all() and still.gyro[2100, 2] + 30 == back[2100]
     away = np.abs(rate) > 31.0
     assert np.abs(back - 55.0 - rate)[away].max() <= 1.0
@@ -274,7 +274,7 @@ def test_spikes_that_are_pages_are_one_place():
     still.gyro = still.gyro.copy()
     spiked = np.random.default_rng(25).choice(np.arange(100, 7900), 90, replace=False)
     still.gyro[spiked, 1] += np.int16(256)
-    judged = samples_judged.of([blocks.of("s", still)])
+    judged = samples_judged.judge([blocks.session_of("s", still)])
     said = [words for words in judged.remarks if "spikes" in words or "256 counts" in words]
     assert len(said) == 2
     assert [(p.sensor, p.domain) for p in judged.nameless] == [("gyro", "noise")]

@@ -34,9 +34,9 @@ def no_flips(capture):
 def test_what_one_session_cannot_show_does_not_stop_the_others(change, which):
     found = captures()
     change(found[which])
-    sessions = [blocks.of(str(k), c) for k, c in enumerate(found)]
-    result = diagnosis.of(sessions, diagnosis.Settings(jobs=1))
-    cause, = [c for c in answer.of(result)["causes"] if c["sensor"] == "gyro"]
+    sessions = [blocks.session_of(str(k), c) for k, c in enumerate(found)]
+    result = diagnosis.diagnose_sessions(sessions, diagnosis.Settings(jobs=1))
+    cause, = [c for c in answer.as_dict(result)["causes"] if c["sensor"] == "gyro"]
     assert cause["effect"] == "g_sensitivity"
     assert cause["value"]["xy"] == pytest.approx(0.2, abs=0.02)
     for gap in result.gaps.values():

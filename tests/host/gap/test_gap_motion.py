@@ -24,10 +24,10 @@ def captures(effects, sensor="mpu6050", seed=4, sessions=1):
 
 def judged(found, more=(), without=()):
     """MotionGap of captures with poses, and of more without."""
-    posed = [blocks.of(str(k), c) for k, c in enumerate(found)]
+    posed = [blocks.session_of(str(k), c) for k, c in enumerate(found)]
     models = [attitude_fit.fit(s) for s in posed]
-    turned = [turns.calibrated(turns.of(s, m.up))[1] for s, m in zip(posed, models)]
-    others = [blocks.of("driven %d" % k, c) for k, c in enumerate(more)]
+    turned = [turns.calibrated(turns.usable_turns(s, m.up))[1] for s, m in zip(posed, models)]
+    others = [blocks.session_of("driven %d" % k, c) for k, c in enumerate(more)]
     return motion_model.judged(posed + others, models, turned, found[0].meta["sensor"], without)
 
 
@@ -83,7 +83,7 @@ def test_the_arm_is_found_where_it_is_and_nothing_else(off_axis):
 
 
 def test_the_loop_closes_when_the_moves_are_felt_again_with_the_arm(off_axis):
-    loop = closed_loops.of_moves(off_axis)
+    loop = closed_loops.close_moves(off_axis)
     assert [e["effect"] for e in loop.effects] == ["lever_arm"]
     assert loop.share > 0.9
     assert loop.after < 1.01 * loop.floor < loop.before
@@ -96,7 +96,7 @@ def test_the_one_that_is_behind_is_named_with_the_delay_between_them(sensor, chi
     found = judged(captures([{"effect": "filter_lag", "sensor": sensor, "tau": tau}], chip))
     assert [(f.effect, f.sensor) for f in found.found] == [("filter_lag", sensor)]
     assert inside(found.found[0], "tau", tau)
-    loop = closed_loops.of_moves(found)
+    loop = closed_loops.close_moves(found)
     assert loop.effects[0]["sensor"] == sensor
     assert loop.share > 0.8
 
@@ -105,7 +105,7 @@ def test_nothing_is_found_where_nothing_is(plain):
     found = judged(plain)
     assert found.seen
     assert found.found == []
-    assert closed_loops.of_moves(found) is None
+    assert closed_loops.close_moves(found) is None
     assert np.abs(found.theta[:3]).max() < 1.2
     assert found.least("lever_arm") < 3.0
 

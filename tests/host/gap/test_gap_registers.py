@@ -24,8 +24,8 @@ def diagnosed(two):
     """The diagnosis of their accelerometers alone, which is half the work."""
     for capture in two:
         capture.gyro = None
-    sessions = [blocks.of(str(k), c) for k, c in enumerate(two)]
-    return diagnosis.of(sessions, diagnosis.Settings())
+    sessions = [blocks.session_of(str(k), c) for k, c in enumerate(two)]
+    return diagnosis.diagnose_sessions(sessions, diagnosis.Settings())
 
 
 def test_rests_cut_off_at_a_rail_tell_of_the_rail_only():
@@ -39,7 +39,7 @@ def test_rests_cut_off_at_a_rail_tell_of_the_rail_only():
     one = found.findings[0]
     assert one.unit == "counts" and set(one.value.values()) == {16330}
     assert "cut off at 16330 counts (0.9967 g), below the rail of 2 g" in one.words
-    said = answer.of(found)
+    said = answer.as_dict(found)
     cause, = said["causes"]
     assert cause["effect"] == "saturation"  # the library's name of any level that cuts off
     assert cause["cut_off_at"] == dict.fromkeys(cause["axes"], "below_range")
@@ -50,8 +50,8 @@ def test_a_rail_of_the_chip_is_its_range():
     two = captures()
     for capture in two:
         capture.accel = np.clip(capture.accel.astype(int) * 2, -32768, 32767).astype(np.int16)
-    found, = saturation.saturation([blocks.of(str(k), c) for k, c in enumerate(two)], "accel",
-                                   [c.accel for c in two])
+    sessions = [blocks.session_of(str(k), c) for k, c in enumerate(two)]
+    found, = saturation.saturation(sessions, "accel", [c.accel for c in two])
     assert set(found.limits.values()) == {"range"}
 
 
@@ -120,7 +120,7 @@ def resting(noise, seed=5, n=200, **meta):
     accel = np.round(np.repeat(8192.0 * np.vstack([np.eye(3), -np.eye(3)]), n, axis=0)
                      + noise * rng.normal(size=(6 * n, 3))).astype(np.int16)
     head = {"sensor": "other", "rate_hz": 100.0, "accel_lsb_per_g": 8192.0, **meta}
-    return blocks.of("resting", capture_file.Capture(
+    return blocks.session_of("resting", capture_file.Capture(
         head, 10_000 * np.arange(6 * n), accel, pose=np.repeat(np.arange(1, 7), n)))
 
 
@@ -148,14 +148,14 @@ def test_what_rounding_leaves_of_a_mean(noise):
         x = level + noise * step * generator.standard_normal(4000)
         errors.append((step * np.rint(x / step)).mean() - level)
     capture = captures()[0]
-    session = blocks.of("s", capture)
+    session = blocks.session_of("s", capture)
     counts = session.capture.accel
     counts[:] = step * np.rint(counts / step)
     for a, b in zip(session.first, session.end):
         level = 5000.0 + step * generator.random(3)
         x = level + noise * step * generator.standard_normal((b - a, 3))
         counts[a:b] = step * np.rint(x / step)
-    session = blocks.of("s", session.capture)
+    session = blocks.session_of("s", session.capture)
     got = session.rounding_accel / 1000.0 * lsb
     # Sheppard's correction knows little of noise below a third of a step: rather too much.
     assert (got > 0.8 * np.std(errors) - 0.02 * step).all()
@@ -164,10 +164,10 @@ def test_what_rounding_leaves_of_a_mean(noise):
 
 def test_torn_reads_in_noise_of_a_fifth_of_a_page():
     torn = captures([{"effect": "torn_reads", "sensor": "accel", "chance": 0.5}], seed=5)
-    sessions = [blocks.of(str(k), c) for k, c in enumerate(torn)]
+    sessions = [blocks.session_of(str(k), c) for k, c in enumerate(torn)]
     assert [(f.effect, f.sensor) for f in samples_judged.of_registers(sessions)] == [
         ("torn_reads", "accel")]
-    sound = [blocks.of(str(k), c) for k, c in enumerate(captures(seed=5))]
+    sound = [blocks.session_of(str(k), c) for k, c in enumerate(captures(seed=5))]
     assert samples_judged.of_registers(sound) == []
 
 
@@ -177,7 +177,7 @@ def test_spikes_that_are_no_torn_reads():
     for capture in two:
         at = generator.choice(len(capture), 400, replace=False)
         capture.accel[at] += generator.integers(-600, 600, (400, 3)).astype(np.int16)
-    sessions = [blocks.of(str(k), c) for k, c in enumerate(two)]
+    sessions = [blocks.session_of(str(k), c) for k, c in enumerate(two)]
     assert samples_judged.of_registers(sessions) == []
 
 
@@ -205,7 +205,7 @@ def test_a_bit_that_sticks_is_said_and_what_it_does_has_no_other_name(sensor, bi
     found = diagnosed(two)
     assert counts.stuck_bits(found.sessions) == [("accel", "y", bit, value)]
     assert found.verdict == "unexplained"
-    assert answer.of(found)["causes"] == []
+    assert answer.as_dict(found)["causes"] == []
     assert ("accel", "y", "amplitude") in [(w.sensor, w.axis, w.domain) for w in found.where]
 
 

@@ -29,7 +29,7 @@ def accelerometer(added, sessions=2, world=None):
         capture = simulated_session.session(plan, number)
         more = added(capture.t_us * 1e-6, capture.accel / 16384.0, np.random.default_rng(number))
         capture.accel = np.rint(capture.accel + 16384.0 * more).astype(np.int16)
-        found.append(blocks.of(str(number), capture))
+        found.append(blocks.session_of(str(number), capture))
     return rest_model.RestModel("accel", "mpu6050", diagnosis.Settings(jobs=1)).fit(
         found, [attitude_fit.fit(session) for session in found])
 

@@ -25,8 +25,8 @@ def diagnosed(captures, change):
             t = (capture.t_us - capture.t_us[0]) * 1e-6
             changed = change(t, capture.accel.astype(float), capture.gyro.astype(float))
             capture.accel, capture.gyro = (np.rint(x).astype(np.int16) for x in changed)
-        sessions = [blocks.of(str(k), c) for k, c in enumerate(captures)]
-        return answer.of(diagnosis.of(sessions, diagnosis.Settings(jobs=1)))
+        sessions = [blocks.session_of(str(k), c) for k, c in enumerate(captures)]
+        return answer.as_dict(diagnosis.diagnose_sessions(sessions, diagnosis.Settings(jobs=1)))
     finally:
         for capture, (accel, gyro) in zip(captures, kept):
             capture.accel, capture.gyro = accel, gyro
@@ -92,7 +92,7 @@ def test_samples_lost_in_every_turn_under_a_steady_clock_are_a_gap():
             keep[first:first + 8] = whole.pose[first:first + 8] != 0
         lost = Capture(dict(whole.meta), whole.t_us[:keep.sum()], whole.accel[keep],
                        whole.gyro[keep], whole.temp[keep], None, whole.pose[keep])
-        sessions.append(blocks.of(str(number), lost))
-    found = answer.of(diagnosis.of(sessions, diagnosis.Settings(jobs=1)))
+        sessions.append(blocks.session_of(str(number), lost))
+    found = answer.as_dict(diagnosis.diagnose_sessions(sessions, diagnosis.Settings(jobs=1)))
     assert found["verdict"] == "unexplained" and not found["causes"]
     assert ("gyro", "motion") in {(w["sensor"], w["domain"]) for w in found["where"]}

@@ -80,7 +80,7 @@ def test_statistics_are_those_of_the_covariance_at_every_point(loud, few, monkey
         c = plain.covariance(*point)
         inverse, s, z = np.linalg.inv(c), q.T @ plain.columns, q.T @ plain.y
         products = s.T @ inverse @ s
-        assert unit.gram.of(few)[index] == pytest.approx(products[np.ix_(few, few)])
+        assert unit.gram.at_all_points(few)[index] == pytest.approx(products[np.ix_(few, few)])
         assert unit.gram.blocks(np.array([index]), few[:1], few) == pytest.approx(
             products[None, few[:1]][:, :, few])
         assert unit.gram.each(np.array([index]), few[None, :2])[0, 0] == pytest.approx(

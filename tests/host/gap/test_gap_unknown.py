@@ -20,8 +20,8 @@ def test_a_step_at_another_time_in_each_session_is_unexplained(two_sessions):
         after = np.arange(len(capture)) > share * len(capture)
         capture.accel[after] += np.array([50, -40, 60], np.int16)  # 3 mg
         capture.gyro = None  # the accelerometer alone: half the work
-    sessions = [blocks.of(str(k), c) for k, c in enumerate(two_sessions)]
-    found = answer.of(diagnosis.of(sessions, diagnosis.Settings()))
+    sessions = [blocks.session_of(str(k), c) for k, c in enumerate(two_sessions)]
+    found = answer.as_dict(diagnosis.diagnose_sessions(sessions, diagnosis.Settings()))
     assert found["verdict"] == "unexplained"
     assert [c["effect"] for c in found["causes"]] == []
     assert (found["where"][0]["sensor"], found["where"][0]["domain"]) == ("accel", "time")
@@ -40,8 +40,8 @@ def test_what_changes_once_in_one_session_is_no_drift(two_sessions, course, requ
             added = 150.0 * course(u) * (np.array([1.0, -0.7, 0.8]) if soaks
                                          else capture.accel / 16384.0)
             capture.accel = np.rint(capture.accel + added).astype(np.int16)
-    sessions = [blocks.of(str(k), c) for k, c in enumerate(two_sessions)]
-    found = answer.of(diagnosis.of(sessions, diagnosis.Settings()))
+    sessions = [blocks.session_of(str(k), c) for k, c in enumerate(two_sessions)]
+    found = answer.as_dict(diagnosis.diagnose_sessions(sessions, diagnosis.Settings()))
     assert found["verdict"] == "unexplained" and not found["causes"]
     assert (found["where"][0]["sensor"], found["where"][0]["domain"]) == ("accel", "time")
 
@@ -51,9 +51,9 @@ def test_a_scale_that_follows_the_temperature_is_no_drift_where_the_library_lack
         warm = capture.temp / capture.meta["temp_lsb_per_c"] - 25.0
         capture.accel = np.rint(capture.accel * (1.0 + 5e-4 * warm)[:, None]).astype(np.int16)
         capture.gyro = None  # the accelerometer alone: half the work
-    sessions = [blocks.of(str(k), c) for k, c in enumerate(two_sessions)]
+    sessions = [blocks.session_of(str(k), c) for k, c in enumerate(two_sessions)]
     settings = diagnosis.Settings(without=("thermal_scale",))
-    found = answer.of(diagnosis.of(sessions, settings))
+    found = answer.as_dict(diagnosis.diagnose_sessions(sessions, settings))
     assert found["verdict"] == "unexplained"
     assert found["where"][0]["domain"] == "temperature"
 
@@ -70,6 +70,7 @@ def test_a_log_without_a_rest_cannot_tell_that_there_is_no_gap():
     meta = {"sensor": "mpu6050", "rate_hz": 100, "accel_lsb_per_g": 16384.0,
             "gyro_lsb_per_dps": 65.5, "g": 9.80665}
     capture = capture_file.Capture(meta, (t * 1e6).astype(np.int64), *counts)
-    found = diagnosis.of([blocks.of("moving", capture)], diagnosis.Settings())
+    found = diagnosis.diagnose_sessions([blocks.session_of("moving", capture)],
+                                        diagnosis.Settings())
     assert not found.sessions[0].runs
     assert found.verdict == "cannot tell"

@@ -35,31 +35,31 @@ def capture():
 
 
 def test_blocks_cannot_be_changed(capture):
-    whole = blocks.of("s", capture)
+    whole = blocks.session_of("s", capture)
     with pytest.raises(dataclasses.FrozenInstanceError):
         whole.accel = None
     for name in (*OF_BLOCKS, "t_s", "noise_accel", "rounding_gyro"):
         with pytest.raises(ValueError, match="read-only"):
             getattr(whole, name)[0] = 0
     fewer = whole.without_poses(["Z+a"])
-    assert len(fewer.runs) < len(whole.runs) == len(blocks.of("s", capture).runs)
+    assert len(fewer.runs) < len(whole.runs) == len(blocks.session_of("s", capture).runs)
 
 
 def test_a_capture_that_nobody_labelled_stays_so(capture):
     bare = copy.copy(capture)
     bare.pose = None
-    found = blocks.of("s", bare)
+    found = blocks.session_of("s", bare)
     assert bare.pose is None and found.runs and not found.labelled
 
 
 def test_the_halves_of_a_session_have_turns_of_their_own(capture):
     """They once were the whole session's, and so held out against themselves."""
-    whole = blocks.of("s", capture)
+    whole = blocks.session_of("s", capture)
     up = attitude_fit.fit(whole).up
-    every = {(t.first, t.last) for t in turns.of(whole, up)}
+    every = {(t.first, t.last) for t in turns.usable_turns(whole, up)}
     half = whole.placements() // 2
     parts = [whole.part(range(half)), whole.part(range(half, whole.placements()))]
-    one, other = ({(t.first, t.last) for t in turns.of(part, up)} for part in parts)
+    one, other = ({(t.first, t.last) for t in turns.usable_turns(part, up)} for part in parts)
     assert one and other and not one & other
     assert one | other <= every and len(one | other) < len(every)  # the one between is neither's
     first = min(parts[1].first)
@@ -67,11 +67,11 @@ def test_the_halves_of_a_session_have_turns_of_their_own(capture):
 
 
 def test_a_half_is_not_changed_by_calibrating_the_whole(capture):
-    whole = blocks.of("s", capture)
+    whole = blocks.session_of("s", capture)
     up = attitude_fit.fit(whole).up
-    before = [turn.middle.copy() for turn in turns.of(whole, up)]
-    y, calibrated = turns.calibrated(turns.of(whole, up))
-    assert all(np.array_equal(a, t.middle) for a, t in zip(before, turns.of(whole, up)))
+    before = [turn.middle.copy() for turn in turns.usable_turns(whole, up)]
+    y, calibrated = turns.calibrated(turns.usable_turns(whole, up))
+    assert all(np.array_equal(a, t.middle) for a, t in zip(before, turns.usable_turns(whole, up)))
     assert any(not np.allclose(a, t.middle) for a, t in zip(before, calibrated))
 
 
@@ -80,8 +80,8 @@ def test_stamps_that_scatter_turn_no_box_and_two_of_the_same_time_stop_nothing(c
     scatter = np.rint(2500.0 * generator.standard_normal(len(capture))).astype(np.int64)
     scattered.t_us = np.maximum.accumulate(capture.t_us + scatter)
     assert (np.diff(scattered.t_us) == 0).any()
-    up = attitude_fit.fit(blocks.of("s", capture)).up
-    even, other = (turns.of(blocks.of("s", c), up) for c in (capture, scattered))
+    up = attitude_fit.fit(blocks.session_of("s", capture)).up
+    even, other = (turns.usable_turns(blocks.session_of("s", c), up) for c in (capture, scattered))
     assert len(even) == len(other)
     for one, same in zip(even, other):
         assert one.dt.min() > 0 and same.dt.min() > 0
@@ -105,12 +105,12 @@ def test_what_one_half_alone_shows_is_not_explained_in_the_other(capture, model,
     shares = []
     for both in (True, False):
         one = copy.copy(capture)
-        runs = blocks.of("s", capture).runs
+        runs = blocks.session_of("s", capture).runs
         some = slice(0, None if both else runs[len(runs) // 2].first)
         one.gyro = capture.gyro.copy()
         one.gyro[some] += np.rint(change(capture, some) * capture.meta["gyro_lsb_per_dps"]
                                   ).astype(np.int16)
-        session = blocks.of("s", one)
+        session = blocks.session_of("s", one)
         settings = diagnosis.Settings(jobs=1)
         gap = model("gyro", "mpu6050", settings).fit([session], [attitude_fit.fit(session)])
         assert gap.same_session
@@ -125,12 +125,12 @@ def found():
         (a, b) for a in "xyz" for b in "xyz")}
     two = [session([dict(SENSITIVE, **sizes), {"effect": "thermal_bias", "sensor": "accel",
                                                "z": -1.8}], 35, k) for k in range(2)]
-    return diagnosis.of([blocks.of(str(k), c) for k, c in enumerate(two)],
-                               diagnosis.Settings(jobs=1))
+    return diagnosis.diagnose_sessions([blocks.session_of(str(k), c) for k, c in enumerate(two)],
+                                              diagnosis.Settings(jobs=1))
 
 
 def test_every_coefficient_is_in_the_table_the_largest_too(found, capsys):
-    said = answer.of(found)
+    said = answer.as_dict(found)
     cause = next(c for c in said["causes"] if c["effect"] == "g_sensitivity")
     assert len(cause["value"]) == len(cause["interval_90"]) == 9
     gap_words.show(said)
@@ -141,7 +141,7 @@ def test_every_coefficient_is_in_the_table_the_largest_too(found, capsys):
 
 def test_the_share_is_that_of_the_figures_printed(found):
     """It was of whitened contrasts once, and the figures were not."""
-    for gap in answer.of(found)["gap"].values():
+    for gap in answer.as_dict(found)["gap"].values():
         before, after, floor = (gap[k] ** 2 for k in ("before", "after", "floor"))
         share = (before - after) / (before - floor)
         assert min(share, 1.0) == pytest.approx(gap["explained_share"], abs=0.005)
@@ -150,13 +150,13 @@ def test_the_share_is_that_of_the_figures_printed(found):
 
 
 def test_adding_an_effect_changes_nothing_that_was_found(found):
-    before = json.dumps(answer.of(found))
+    before = json.dumps(answer.as_dict(found))
     gap = found.gaps["accel"]
     more = gap.with_effect("creep")
     assert [f.effect for f in more.chosen] == [*(f.effect for f in gap.chosen), "creep"]
     assert gap.with_effect("thermal_bias") is gap
-    closed_loops.of(found, ["creep"])
-    assert json.dumps(answer.of(found)) == before
+    closed_loops.close_all(found, ["creep"])
+    assert json.dumps(answer.as_dict(found)) == before
     assert isinstance(more.shrinkage, holdout_gain.Shrinkage)
 
 
@@ -165,7 +165,7 @@ def test_an_interval_of_a_drift_is_that_of_its_likelihood():
     ratios = []
     for seed, size in ((41, 0.06), (42, 0.12)):
         drift = {"effect": "drift", "sensor": "gyro", "x": size, "y": size, "z": size}
-        whole = blocks.of("s", session([drift], seed))
+        whole = blocks.session_of("s", session([drift], seed))
         found = rest_model.RestModel("gyro", "mpu6050", diagnosis.Settings()).fit(
             [whole], [attitude_fit.fit(whole)]).drift
         assert found.low < found.level < found.high and 0.5 < found.share <= 1.0

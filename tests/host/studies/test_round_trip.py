@@ -22,7 +22,7 @@ def box():
 
 
 def answered(real, sim):
-    return as_json.of(diagnose([("real.csv", real)], [("sim.csv", sim)]))
+    return as_json.as_dict(diagnose([("real.csv", real)], [("sim.csv", sim)]))
 
 
 def captures(name, motion, **more):

@@ -60,7 +60,7 @@ def units(model, seed, effects, scatter):
         world = scenario.from_dict({
             "sensor": CHIP, "scene": "recommended", "seed": seed,
             "effects": [effect] if effect else [], "world": {"placement_scatter_deg": scatter}})
-        sessions.append(blocks.of(str(number), simulated_session.session(world, number)))
+        sessions.append(blocks.session_of(str(number), simulated_session.session(world, number)))
     nominal = [attitude_fit.fit(session) for session in sessions]
     found = [model.unit(*part, False) for part in zip(terms.agreed(sessions), nominal)]
     return found + model.between(found, nominal)
@@ -74,7 +74,7 @@ def case(seed):
     model = RestModel(kind, CHIP, Settings(jobs=1))
     whole, without = units(model, seed, effects, scatter), units(model, seed, [{}, {}], scatter)
     data = coefficient_fits.data_of(whole)
-    forms = hypotheses.of(whole, (), True)
+    forms = hypotheses.forms_of(whole, (), True)
     scores = scored_sets.Model(whole, data.statistics, model.usual())
     form = max((f for f in forms if f.effect == name and f.axis is None and not f.record),
                key=lambda f: scores.scored((f,)).score)
@@ -84,7 +84,7 @@ def case(seed):
         set_ = scores.scored((wider,))
     chosen = list(set_.forms)
     index = [int(fit.index[0]) for fit in set_.fits]
-    shrinkage = holdout_gain.of(data, chosen, index, model.usual())
+    shrinkage = holdout_gain.shrinkage(data, chosen, index, model.usual())
     index = excess.usual_levels(whole, index, model.usual().flicker)
     times = SIZES[seed // len(EFFECTS) % len(SIZES)]
     if shrinkage.interval is None:

@@ -218,7 +218,7 @@ def answered(pair):
 def judged(effect, mine, sim):
     """The answer of a diagnosis; of its first two layers where the effect is in them."""
     if effect.laps > 1:
-        return answer.of(diagnose([("real.csv", mine)], [("sim.csv", sim)]))
+        return answer.as_dict(diagnose([("real.csv", mine)], [("sim.csv", sim)]))
     found = comparison.compare([("real.csv", mine)], "sim.csv", sim)
     return {"verdict": simulator_answer.verdict("no gap", [found]), "causes": [],
             "simulator": simulator_answer.as_json([found])}
