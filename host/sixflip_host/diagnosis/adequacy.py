@@ -129,7 +129,7 @@ def _beyond(sessions, shared, column, usual):
         within = np.flatnonzero(level <= max(usual, level.min()))
         flat = np.zeros(len(unit.grid))
         every, few = (evidence.fit(unit, one, shared, private, flat, points)
-                      for points in (evidence.EVERY, within))
+                      for points in (None, within))
         nats += float(every.evidence[0] - few.evidence[0])
     return nats
 

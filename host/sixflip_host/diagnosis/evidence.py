@@ -76,15 +76,10 @@ class Fit:
     evidence: np.ndarray
 
 
-EVERY, COARSE = "every", "coarse"
-
-
-def fit(unit, statistics, shared, private, level, points=EVERY, elimination=None):
-    """Fit of one unit; level (G,) log prior of its grid; points: EVERY one of the grid, a COARSE
-    selection of them, or which; elimination: the Elimination of the private columns, if made."""
-    chosen = points
-    if isinstance(points, str):
-        chosen = np.arange(len(level)) if points == EVERY else unit.coarse
+def fit(unit, statistics, shared, private, level, points=None, elimination=None):
+    """Fit of one unit; level (G,) log prior of its grid; points: which of the grid, None: all;
+    elimination: the Elimination of the private columns, if made."""
+    chosen = np.arange(len(level)) if points is None else points
     if elimination is None or not len(private) or not len(shared):
         r = reduced(unit, statistics, shared, private, chosen)
     else:

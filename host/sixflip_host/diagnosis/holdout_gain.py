@@ -1,4 +1,4 @@
-"""Stage 6: how far the gap shrinks on the session held out, in one unit.
+"""Stage 6: how far the gap shrinks on what is held out, in one unit: a session, or moves.
 
 Of the contrasts z = mu + noise of the session held out and the prediction d of the causes, whose
 coefficients come from the other sessions, all figures are weighted root mean squares: before^2 =
@@ -11,17 +11,21 @@ that the contrasts show, each as often as it is likely, so their ratio has a Fie
 wanders more than any part's counts as noise only where it is named: else what a session has
 beyond the prediction would be taken for it. `python -m tests.studies.robustness.shares` prints
 how often the intervals hold what is true.
+
+In motion a session is held out at a time by what the others say of the sizes, or every other move
+where no session shows them alone.
 """
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from . import adequacy, coefficient_fits, excess, hypotheses, odds
+from . import adequacy, coefficient_fits, excess, hypotheses, moves_fit, odds
 
 DRAWN = 400  # of noise: their variance is known to 7 %, an interval's length to 4 %
-
 DRAWN_FLOOR = 100  # where its mean alone is asked for: a floor of 100 contrasts to half a percent
+UNTOLD = 0.1  # of an effect's power: a variance of its size of a tenth of its square
+RESAMPLED = 400  # of which 20 lie beyond either end of a 90 % interval
 
 
 @dataclass(frozen=True)
@@ -131,3 +135,65 @@ def fieller(gap, closed, variance_gap, variance_closed, both):
         return None, None
     low, high = (-b - math.sqrt(root)) / (2 * a), (-b + math.sqrt(root)) / (2 * a)
     return min(closed / gap, 1.0), (min(low, 1.0), min(high, 1.0))
+
+
+@dataclass(frozen=True, eq=False)
+class HeldMoves:
+    """What the sizes found do on the moves held out: shrinkage; by_others {fold: sizes (4,)} that
+    the other folds say; folds (moves,); alone: each session could be held out."""
+
+    shrinkage: Shrinkage
+    by_others: dict
+    folds: np.ndarray
+    alone: bool
+
+
+def held_moves(gap, named, spread):
+    """HeldMoves of a MotionGap: before, after, floor as rms has them; each fold by what the others
+    say of the sizes. The interval is that of the sizes themselves."""
+    columns, fit, sizes = gap.columns(), gap.fit, gap.sizes
+    folds, alone = fit.folds, True
+    if not _apart(gap, columns, folds, named):
+        folds, alone = np.arange(len(fit.moves)) % moves_fit.SINGLE_FOLDS, False
+    drawn = np.random.default_rng(2).multivariate_normal(sizes, spread, RESAMPLED,
+                                                         check_valid="ignore")
+    before, after = np.zeros(RESAMPLED), np.zeros(RESAMPLED)
+    own = other = 0.0
+    by_others = {}
+    for f in np.unique(folds):
+        power = fit.gram[folds == f, :4, :4].sum(axis=0)
+        theirs = by_others[f] = fit.sizes(columns, folds != f)[0] * named
+        before += np.einsum("ra,ab,rb->r", drawn, power, drawn)
+        after += np.einsum("ra,ab,rb->r", drawn - theirs, power, drawn - theirs)
+        noise = float((power * spread).sum())
+        own += sizes @ power @ sizes - noise
+        other += (sizes - theirs) @ power @ (sizes - theirs) + noise
+    floor = gap.floor()
+    total = sum(float(p.sum()) for p in fit.precision)
+    rms = [float(np.sqrt(floor ** 2 + max(v, 0.0) / total)) for v in (own, other)] + [floor]
+    if own <= 0.0:
+        return HeldMoves(Shrinkage(*rms, None, None), by_others, folds, alone)
+    low, high = np.quantile(1.0 - after / before, [0.05, 0.95])
+    return HeldMoves(Shrinkage(*rms, 1.0 - other / own, (float(low), float(high))),
+                by_others, folds, alone)
+
+
+def _apart(gap, columns, folds, named):
+    """True when all folds but one tell the sizes well enough for that one."""
+    for f in np.unique(folds):
+        power = gap.fit.gram[folds == f, :4, :4].sum(axis=0)
+        spread = gap.fit.sizes(columns, folds != f)[1] * named * named[:, None]
+        if (power * spread).sum() > UNTOLD * (gap.sizes @ power @ gap.sizes):
+            return False
+    return True
+
+
+def share_of_effect(gap, held, name):
+    """Share of the explainable gap that one of the effects found closes on what is held out, or
+    None where that is too small to measure."""
+    if held.shrinkage.share is None:
+        return None
+    power = gap.fit.gram[:, :4, :4].sum(axis=0)
+    without = gap.sizes * ~np.isin(np.arange(4), moves_fit.EFFECTS[name])
+    whole, rest = (float(v @ power @ v) for v in (gap.sizes, without))
+    return float(np.clip(held.shrinkage.share * (1.0 - rest / whole), 0.0, 1.0))

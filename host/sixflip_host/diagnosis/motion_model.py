@@ -17,9 +17,9 @@ from ..planning import detectable
 from . import (
     cutoffs,
     effect_estimates,
+    holdout_gain,
     hypotheses,
     localisation,
-    motion_holdout,
     moves_fit,
     moves_unit,
     odds,
@@ -43,7 +43,7 @@ class MotionGap:
     nats}, gains {effect: nats of each alone}; chosen: names in the likeliest set; found (list of
     Finding), remarks, nameless; theta, covariance of (lever arm x, y, z in cm; the
     accelerometer's delay behind the gyro in ms), sizes: of those found; bare (n, 3) mg of each
-    move, less hands' habits and bends; held: Held or None."""
+    move, less hands' habits and bends; held: HeldMoves or None."""
 
     chip: str
     fit: moves_fit.MovesFit | None
@@ -58,7 +58,7 @@ class MotionGap:
     covariance: np.ndarray | None = None
     sizes: np.ndarray | None = None
     bare: tuple = ()
-    held: motion_holdout.Held | None = None
+    held: holdout_gain.HeldMoves | None = None
 
     @property
     def seen(self):
@@ -192,14 +192,14 @@ def _told(gap):
                   nameless=tuple(nameless), remarks=tuple(remarks))
     if not found:
         return gap
-    held = motion_holdout.held_moves(gap, named, spread * named * named[:, None])
+    held = holdout_gain.held_moves(gap, named, spread * named * named[:, None])
     if not held.alone:
         remarks.append("no session alone shows all that was found in motion: it was held out by "
                        "every other move")
     remarks.append("what was found in motion is judged on %d moves; what the hand adds counts as "
                    "noise there" % len(gap.fit.moves))
     return replace(gap, held=held, remarks=tuple(remarks), found=[
-        replace(one, share=motion_holdout.share(gap, held, one.effect)) for one in found])
+        replace(one, share=holdout_gain.share_of_effect(gap, held, one.effect)) for one in found])
 
 
 def _strange(found):

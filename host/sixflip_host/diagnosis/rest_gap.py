@@ -19,7 +19,6 @@ from . import (
     effect_estimates,
     excess,
     hypotheses,
-    members,
     odds,
     posterior,
     rest_forms,
@@ -142,10 +141,10 @@ def _sensor(rest, kind, chip, settings, jumps):
     found = posterior.search(model, forms, cutoffs.for_protocol(units, forms, levels))
     fits = adequacy.goodness_of_fit(units, data.statistics, found.best, levels)
     chosen = [f for f in found.best.forms if not f.generic and len(f.shared)]
-    strange = [(f, ["xyz"[axis] for axis, _ in members.axes_of(model, found, f)])
+    strange = [(f, ["xyz"[axis] for axis, _ in effect_estimates.axes_of(model, found, f)])
                for f in found.best.forms
                if f.generic and not _settled(f, units, fits, levels, kind)]
-    causes = [members.in_full(model, forms, found, cause)
+    causes = [effect_estimates.in_full(model, forms, found, cause)
               for cause in aliases.causes(found, units, forms)]
     told = [_told(c, data, fits, chip, kind, chosen, found) for c in causes]
     beaten = [c for c, one in zip(causes, told) if _beaten(one, strange, found)]

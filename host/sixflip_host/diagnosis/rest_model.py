@@ -13,17 +13,15 @@ from . import (
     cutoffs,
     effect_estimates,
     evidence,
-    excess,
     holdout_gain,
     hypotheses,
-    members,
     posterior,
     scored_sets,
     session_offsets,
     strangers,
     wandering,
 )
-from .sensor_gap import SensorGap
+from .sensor_gap import DOUBT, SensorGap
 from .settings import Conditions, Settings
 
 ALONG_FREEDOM = 10  # contrasts along gravity that a half of a session must have
@@ -32,7 +30,6 @@ SECOND_ORDER_CHI2 = 2.0  # of what turned poses change in a cause: one nat, at m
 # and twice what a choice costs).
 MOVES = 10.0
 SHRUNK = 0.1  # of the usual sizes: of what next to nothing is known, next to nothing
-DOUBT = 0.5  # probability of something nameless, above which a cause is none that is named
 
 
 @dataclass(frozen=True)
@@ -60,7 +57,7 @@ class RestModel:
                 parts, searched = turned, again
         units, data, options, noise, forms, cost, model, found = searched
         best = found.best
-        causes = [members.in_full(model, forms, found, cause)
+        causes = [effect_estimates.in_full(model, forms, found, cause)
                   for cause in aliases.causes(found, units, forms)]
         fitted = adequacy.goodness_of_fit(
             units, data.statistics, best, noise, self.conditions.shaken.get(self.kind, ()),
@@ -77,11 +74,11 @@ class RestModel:
         gap = SensorGap(
             self, parts, units, data, options, forms, noise, cost, found,
             chosen, nameless, causes, fitted,
-            {f.effect: members.axes_of(model, found, f) for f in nameless},
+            {f.effect: effect_estimates.axes_of(model, found, f) for f in nameless},
             wandering.drift(self.kind, [session for session, _ in parts], units, data, noise,
                             found, fitted, chosen),
             not fitted.ok or bool(nameless) or doubted, crooked)
-        gap = _owned(model, replace(gap, causes=_sized(gap, causes, data)))
+        gap = replace(gap, causes=gap.sized(causes, data)).without_parts(model)
         return self.shrunk(self._tilted(gap))
 
     def _searched(self, parts, likeliest=None):
@@ -142,7 +139,7 @@ class RestModel:
             progress.doing("whether the box is square")
             box, data = box_tilt_test.search(gap)
             gap = replace(gap, causes=gap.causes + [
-                c for c in _sized(gap, box, data) if max(map(abs, c.value.values()), default=0.0)
+                c for c in gap.sized(box, data) if max(map(abs, c.value.values()), default=0.0)
                 >= box_tilt_test.LEAST_DEG])
         if box_tilt_test.bent(gap.causes):
             gap = replace(gap, crooked=[])  # a nonlinearity leans the faces as well
@@ -229,37 +226,6 @@ class RestModel:
         if not sizes.any():
             return rows
         return replace(rows, y=rows.y - np.hstack([d.columns for d in designs]) @ sizes)
-
-
-def _owned(model, gap):
-    """The gap without those causes that are likelier a part of something nameless beside them:
-    what they were found to be stands among the strangers."""
-    def a_part(found, names, share):
-        return gap.of_name(found, names, share, 1.0) <= DOUBT
-    parts = [c for c in gap.causes if a_part(sum(c.probabilities.values()), c.names, c.share)]
-    forms = [form for cause in parts for form in cause.chosen]
-    drift = gap.drift
-    if drift and a_part(gap.found.places["drift"]["drift"], ["drift"], drift.share):
-        drift = None
-        forms += [form for form in gap.found.best.forms if form.effect == "drift"]
-    if not forms:
-        return gap
-    return replace(gap, causes=[c for c in gap.causes if c not in parts], drift=drift,
-                   chosen=[form for form in gap.chosen if form not in forms],
-                   strangers=[*gap.strangers, *forms], unexplained=True,
-                   strange_axes={**gap.strange_axes, **{
-                       f.effect: members.axes_of(model, gap.found, f) for f in forms}})
-
-
-def _sized(gap, causes, data):
-    """The causes that were found in this data with their sizes and shares of the excess."""
-    index, found = gap.levels(data), []
-    every = [*gap.chosen, *(f for cause in causes for f in cause.chosen if f not in gap.chosen)]
-    for cause in causes:
-        rest = [form for form in every if form not in cause.chosen]
-        share = excess.share(data.units, data.statistics, index, (rest, index), (every, index))
-        found.append(effect_estimates.sized(cause, data, index, gap.chip, gap.kind, share))
-    return found
 
 
 def halves(kind, session, model, certified):

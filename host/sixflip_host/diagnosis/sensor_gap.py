@@ -5,7 +5,9 @@ from functools import cached_property
 from . import (
     adequacy,
     coefficient_fits,
+    effect_estimates,
     evidence,
+    excess,
     holdout_gain,
     hypotheses,
     odds,
@@ -14,6 +16,8 @@ from . import (
     wandering,
 )
 from .elimination import NONE
+
+DOUBT = 0.5  # probability of something nameless, above which a cause is none that is named
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,6 +121,39 @@ class SensorGap:
         """Index into the grid of each half's unit: the whole session's levels."""
         level = self.units[0].grid[self.adequacy.index[0]]
         return [u.grid.index(level) if level in u.grid else 0 for u in data.units]
+
+    def sized(self, causes, data):
+        """The causes that were found in this data with their sizes and shares of the excess."""
+        index, sized = self.levels(data), []
+        every = [*self.chosen, *(f for cause in causes for f in cause.chosen
+                                 if f not in self.chosen)]
+        for cause in causes:
+            rest = [form for form in every if form not in cause.chosen]
+            share = excess.share(data.units, data.statistics, index, (rest, index),
+                                 (every, index))
+            sized.append(effect_estimates.sized(cause, data, index, self.chip, self.kind, share))
+        return sized
+
+    def without_parts(self, model):
+        """The gap without those causes that are likelier a part of something nameless beside
+        them: what they were found to be stands among the strangers. model: scored_sets.Model."""
+        def a_part(probability, names, share):
+            return self.of_name(probability, names, share, 1.0) <= DOUBT
+        parts = [c for c in self.causes
+                 if a_part(sum(c.probabilities.values()), c.names, c.share)]
+        forms = [form for cause in parts for form in cause.chosen]
+        drift = self.drift
+        if drift and a_part(self.found.places["drift"]["drift"], ["drift"], drift.share):
+            drift = None
+            forms += [form for form in self.found.best.forms if form.effect == "drift"]
+        if not forms:
+            return self
+        return replace(self, causes=[c for c in self.causes if c not in parts], drift=drift,
+                       chosen=[form for form in self.chosen if form not in forms],
+                       strangers=[*self.strangers, *forms], unexplained=True,
+                       strange_axes={**self.strange_axes, **{
+                           f.effect: effect_estimates.axes_of(model, self.found, f)
+                           for f in forms}})
 
     def with_effect(self, name):
         """The same with an effect among the chosen ones, whether it passes the threshold or

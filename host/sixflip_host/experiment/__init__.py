@@ -9,7 +9,7 @@ session_rows              the moments of a session that is only planned
 nominal_rows, covariance (flicker)
                           rest readings as rows: what is unknown in them, and how they err
 terms, fleet_prior        the columns of every effect, and what a fleet knows of their sizes
-linear_model (gram, dense_gram, factored_gram)
+linear_model (gram, factored_gram)
                           rows and columns reduced to what all later questions need
 projection, signal_measures, noise_arrays
                           the arithmetic of columns, of recordings and of noise

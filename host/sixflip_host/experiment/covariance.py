@@ -12,7 +12,6 @@ import copy
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import linalg
 from scipy.linalg import lapack
 
 from .flicker import ALL_TIMES_S, flicker_kernel
@@ -29,7 +28,7 @@ class Group:
     unit level; kernel (r, r) of unit flicker within; from_before (r, J) how the states that
     groups before have left are felt, to_later (r, J) what it leaves to those after it, decay
     (J,) of the states over it; basis (r, r - l): across l directions that are a nuisance in
-    this group only, see across().
+    this group only, see nominal_rows.across().
     """
 
     rows: slice
@@ -88,20 +87,6 @@ def _of_axes(values, sizes):
     for axis, size in enumerate(sizes):
         out[:, axis, :, axis] = values * size
     return out.reshape(3 * len(values), -1)
-
-
-def across(columns):
-    """(3k, 3k - 2): orthonormal, across two columns (3k, 2) that are the same two directions in
-    each of k blocks: first the differences between the blocks, axis by axis, then the mean
-    across both directions."""
-    k = len(columns) // 3
-    first, second = columns[:3].T
-    helmert = np.zeros((k, k - 1))
-    for i in range(1, k):
-        helmert[:i, i - 1], helmert[i, i - 1] = -1.0 / i, 1.0
-    helmert /= np.linalg.norm(helmert, axis=0)
-    mean = np.tile(np.cross(first, second), k) / np.sqrt(k)
-    return np.hstack([np.kron(helmert, np.eye(3)), mean[:, None] / np.linalg.norm(mean)])
 
 
 def reduced(groups):
@@ -221,14 +206,6 @@ def inverses(lower):
     if lower.shape[1] <= SMALL:
         return np.linalg.inv(lower)
     return np.stack([lapack.dtrtri(one, lower=1)[0] for one in lower])
-
-
-def together(groups):
-    """[Group] of the same readings: one where they are few, which takes less time than many."""
-    if groups[-1].rows.stop > FEW or len(groups) == 1:
-        return groups
-    base, _, kernel = components(groups)
-    return alone(base, linalg.block_diag(*(g.lateral for g in groups)), kernel)
 
 
 def energies(groups, basis):

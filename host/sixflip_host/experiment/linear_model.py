@@ -15,8 +15,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
+from scipy import linalg
 
-from . import covariance, dense_gram, factored_gram, gram
+from . import covariance, factored_gram, gram
 from .nominal_rows import Rows
 
 AT_A_TIME = 256  # columns of a unit matrix that are there at once: memory, not time
@@ -152,7 +153,7 @@ class Unit:
 
     @cached_property
     def _together(self):
-        return covariance.together(self.groups)
+        return _together(self.groups)
 
     def _factor(self, index):
         """covariance.Factor at one point of the grid; the last one is kept."""
@@ -220,13 +221,20 @@ def unit(rows, designs, wanted=None, **about):
         placements = placements[:1]
     grid = [(a, b) for a in placements for b in flickers]
     shape = len(placements), len(flickers)
-    make = dense_gram.dense_products if len(columns) <= covariance.FEW \
-        else factored_gram.FactoredGram
+    make = gram.dense_products if len(columns) <= covariance.FEW else factored_gram.FactoredGram
     grams = make(groups, grid, space, _common(rows), columns)
     quadratic, inner, logdet = grams.statistics(z)
     return Unit(rows, designs, grid, shape, groups, space, z[:, 0],
                 columns, len(z) - space.shape[1], 3.0 * (raw ** 2).mean(axis=0), silent, grams,
                 logdet, quadratic[:, 0], inner[:, :, 0], **about)
+
+
+def _together(groups):
+    """[Group] of the same readings: one where they are few, which takes less time than many."""
+    if groups[-1].rows.stop > covariance.FEW or len(groups) == 1:
+        return groups
+    base, _, kernel = covariance.components(groups)
+    return covariance.alone(base, linalg.block_diag(*(g.lateral for g in groups)), kernel)
 
 
 def _common(rows):

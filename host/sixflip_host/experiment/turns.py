@@ -227,24 +227,6 @@ def nuisance(chosen):
     return np.vstack(parts)
 
 
-def squareness(chosen):
-    """Columns (m, 3), deg: the angles xy, xz and yz between the accelerometer's axes, by which all
-    gravity of a session was read. Faces of a box that is not square are read as such angles, and
-    so are half turns that were not quite half on a table that leans, alike in each session; the
-    part that turns all axes together is the gyro's misalignment."""
-    parts = []
-    for turn in chosen:
-        first, second = lateral_basis(turn.before)
-        added = np.zeros((2 + turn.flip, 3))
-        for k, (a, b) in enumerate(((0, 1), (0, 2), (1, 2))):
-            skewed = np.zeros((3, 3))
-            skewed[a, b] = skewed[b, a] = 1.0
-            back = turn.end @ (skewed @ turn.after) - skewed @ turn.before
-            added[:2, k] = back @ first, back @ second
-        parts.append(added / turn.seconds)
-    return np.vstack(parts)
-
-
 def calibrated(chosen):
     """(what is observed (m,), the turns) with the nominal scale, misalignment and bias taken
     out of the rates of all of them."""
