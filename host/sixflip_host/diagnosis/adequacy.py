@@ -62,13 +62,13 @@ def goodness_of_fit(units, statistics, scored, usual_noise, shaken=(), by_hand=F
     shared = scored.shared
     theta = evidence.coefficients(scored.fits, shared)[0][0]
     index, parts, before = [], [], 0.0
-    for unit, one, fit, private in zip(units, statistics, scored.fits, scored.private):
+    for unit, sums, fit, private in zip(units, statistics, scored.fits, scored.private):
         point = int(fit.index[0])
         index.append(point)
-        chi2 = _between_levels(unit, one, shared, private, theta, fit)
+        chi2 = _between_levels(unit, sums, shared, private, theta, fit)
         freedom = unit.freedom - len(shared) / len(units) - excess.taken(unit, point, private)
         parts.append((chi2, max(freedom, 1.0)))
-        before += float(one[0][point, 0]) - unit.freedom
+        before += float(sums[0][point, 0]) - unit.freedom
     chi2, freedom = (sum(part[k] for part in parts) for k in (0, 1))
     known = [unit.rows.known for unit in units]
     p = _by_chance(chi2, freedom, sum(k for k, u in zip(known, units) if not u.between))
@@ -111,8 +111,8 @@ def _between_levels(unit, statistics, shared, private, theta, fit):
 def wandering_nats(units, statistics, scored, usual_noise):
     """Nats by which the readings are likelier with more flicker than evidence.Levels say than
     with no more than that, beside a scored_sets.Scored."""
-    return _beyond([(one, *rest) for one, *rest in zip(units, statistics, scored.private)
-                    if not (one.between or one.turns)], scored.shared, 1, usual_noise.flicker)
+    return _beyond([(unit, *rest) for unit, *rest in zip(units, statistics, scored.private)
+                    if not (unit.between or unit.turns)], scored.shared, 1, usual_noise.flicker)
 
 
 def placement_nats(units, statistics, scored, usual):
@@ -124,11 +124,11 @@ def _beyond(sessions, shared, column, usual):
     """Nats of levels beyond a usual one over those within it, sum over [(Unit, statistics, private
     Columns)]; column: of the grid."""
     nats = 0.0
-    for unit, one, private in sessions:
+    for unit, sums, private in sessions:
         level = np.array(unit.grid)[:, column]
         within = np.flatnonzero(level <= max(usual, level.min()))
         flat = np.zeros(len(unit.grid))
-        every, few = (evidence.fit(unit, one, shared, private, flat, points)
+        every, few = (evidence.fit(unit, sums, shared, private, flat, points)
                       for points in (None, within))
         nats += float(every.evidence[0] - few.evidence[0])
     return nats
@@ -157,15 +157,15 @@ def oddity(x, shaken=(), alike=True):
     that is normal, independent between the axes and, where they are alike, of one size on all;
     shaken: axes that a line of the spectrum is on."""
     each = [column[np.isfinite(column)] for column in x.T]
-    if min(one.std() for one in each) < FROZEN:  # what always reads the same has no noise
+    if min(noise.std() for noise in each) < FROZEN:  # what always reads the same has no noise
         return "", 1.0
     # Of one axis that is louder than the others all together have tails.
-    p = tails(np.concatenate(each if alike else [stats.zscore(one) for one in each]))
+    p = tails(np.concatenate(each if alike else [stats.zscore(noise) for noise in each]))
     if p < 1.0:
         return "heavy tails", p
     # A line is noise with a name.
-    quiet = [one for axis, one in enumerate(each) if axis not in shaken] or each[:1]
-    small, large = (pick(quiet, key=lambda one: (one ** 2).mean()) for pick in (min, max))
+    quiet = [noise for axis, noise in enumerate(each) if axis not in shaken] or each[:1]
+    small, large = (pick(quiet, key=lambda noise: (noise ** 2).mean()) for pick in (min, max))
     p = louder(large, small)
     if alike and p < DOUBTFUL_P:
         return "one axis more than the others", p

@@ -66,10 +66,11 @@ class Cause:
         """{name: probability} of the names of its class, the likeliest first. Names that cannot
         be told in principle share what they have together alike: which of them fits better is
         a matter of their form, not of what is there."""
-        found = {name: self.place.get(name, 0.0) for name in self.names}
+        probabilities = {name: self.place.get(name, 0.0) for name in self.names}
         alike = [name for name in self.names if name == self.effect or name in self.alike]
-        found.update(dict.fromkeys(alike, sum(found[name] for name in alike) / len(alike)))
-        return dict(sorted(found.items(), key=lambda pair: -pair[1]))
+        equal = sum(probabilities[name] for name in alike) / len(alike)
+        probabilities.update(dict.fromkeys(alike, equal))
+        return dict(sorted(probabilities.items(), key=lambda pair: -pair[1]))
 
     @property
     def nameless(self):
@@ -77,29 +78,30 @@ class Cause:
         return odds.nameless(self.place)
 
 
-def causes(found, units, forms):
+def causes(posterior, units, forms):
     """list of Cause of the named members of a Posterior's best set, largest score first."""
-    best = found.best
+    best = posterior.best
     shared = best.shared
     if not len(shared):
         return []
     theta, covariance = (v[0] for v in evidence.coefficients(best.fits, shared))
     grams, each = _grams(units, best.fits)
-    out = []
+    of_members = []
     for form in best.forms:
         if form.generic or not len(form.shared):
             continue
         place = _places(shared.index, form.columns)
-        likely = {name: "probability %.2f" % found.places[form.effect][name]
-                  for name in found.alternatives(form.effect)
+        likely = {name: "probability %.2f" % posterior.places[form.effect][name]
+                  for name in posterior.alternatives(form.effect)
                   if name not in ("", form.effect, "drift") and not is_stranger(name)}
         alike = _aliases(form, theta[place], likely, forms, best.forms, grams, each)
-        out.append(Cause(form.effect, (form,), found.gains[form.effect],
-                         found.places[form.effect], {**likely, **alike}, frozenset(alike),
-                         theta[place], covariance[np.ix_(place, place)]))
+        of_members.append(Cause(
+            form.effect, (form,), posterior.gains[form.effect], posterior.places[form.effect],
+            {**likely, **alike}, frozenset(alike), theta[place],
+            covariance[np.ix_(place, place)]))
     kept = []
-    for cause in sorted(out, key=lambda c: -c.score):
-        same = [k for k, other in enumerate(kept) if _one(cause, other)]
+    for cause in sorted(of_members, key=lambda c: -c.score):
+        same = [k for k, other in enumerate(kept) if _same_cause(cause, other)]
         if same:
             kept[same[0]] = _joined(kept[same[0]], cause, shared.index, theta, covariance)
         else:
@@ -107,7 +109,7 @@ def causes(found, units, forms):
     return kept
 
 
-def _one(cause, other):
+def _same_cause(cause, other):
     """Whether two members of a set are one cause: on an axis that both have, each is in the
     class of the other."""
     axes = {axis for form in other.chosen for axis in form.axes}
@@ -143,7 +145,7 @@ def _aliases(form, theta, known, forms, beside, grams, each):
     sizes in principle, the other members of the set projected out."""
     own = [i for i, power in enumerate(form.powers) if power == 1]
     every, whole = form.columns, theta
-    mine, theta, found = every[own], theta[own], {}
+    mine, theta, reasons = every[own], theta[own], {}
     even = balanced(grams, mine)
     for name in dict.fromkeys(f.effect for f in forms if not f.generic and len(f.shared)):
         if name == form.effect or name in known:
@@ -164,10 +166,10 @@ def _aliases(form, theta, known, forms, beside, grams, each):
                            others[~np.isin(others, columns)])[1]
         if left[0] > SAME and not any(_told(g, mine, theta, spaces, free)
                                       for g in each if len(each) > 1):
-            found[name] = "alias index %.2f" % left[0]
+            reasons[name] = "alias index %.2f" % left[0]
         elif apart < SIGMAS:
-            found[name] = "%.1f standard deviations apart" % apart
-    return found
+            reasons[name] = "%.1f standard deviations apart" % apart
+    return reasons
 
 
 def balanced(grams, mine):
@@ -179,8 +181,8 @@ def balanced(grams, mine):
 
 def _told(gram, mine, theta, spaces, others):
     """Whether one session's gram alone tells an effect from another's variants."""
-    found = reproduced(gram, mine, theta, spaces, others)
-    return found is not None and found[0] <= SAME and found[1] >= SIGMAS
+    likeness = reproduced(gram, mine, theta, spaces, others)
+    return likeness is not None and likeness[0] <= SAME and likeness[1] >= SIGMAS
 
 
 def reproduced(gram, mine, theta, alternatives, others):
@@ -227,7 +229,7 @@ def alias_table(gram, options):
     for i, a in enumerate(names):
         for j, b in enumerate(names):
             if i != j:
-                found = reproduced(gram, first[a].columns, np.zeros(len(first[a].columns)),
-                                   [first[b].columns], np.zeros(0))
-                table[i, j] = found[0] if found else np.nan
+                likeness = reproduced(gram, first[a].columns, np.zeros(len(first[a].columns)),
+                                      [first[b].columns], np.zeros(0))
+                table[i, j] = likeness[0] if likeness else np.nan
     return names, table

@@ -30,25 +30,26 @@ def as_dict(diagnosis):
 
 def causes(diagnosis):
     """list of dict, the cause of the largest share first."""
-    found = [_finding(f) for f in diagnosis.findings]
-    found += [_cause(kind, c, diagnosis.conditions.reference_c) for kind, c in diagnosis.causes]
-    found += [_drift(kind, gap) for kind, gap in diagnosis.gaps.items() if gap.drift]
-    known = {(e.sensor, e.stands_for): e for one in diagnosis.comparisons for e in one.effects}
-    found = [_by_both_logs(_with_strangers(cause, diagnosis), known.get(
-        (cause["sensor"], tuple(cause["class"])))) for cause in found]
-    return sorted(found, key=lambda c: -(c["share"] or 0.0) - 1e-3 * c["score_nats"])
+    entries = [_finding(f) for f in diagnosis.findings]
+    entries += [_cause(kind, c, diagnosis.conditions.reference_c) for kind, c in diagnosis.causes]
+    entries += [_drift(kind, gap) for kind, gap in diagnosis.gaps.items() if gap.drift]
+    known = {(e.sensor, e.stands_for): e for comparison in diagnosis.comparisons
+             for e in comparison.effects}
+    entries = [_by_both_logs(_with_strangers(cause, diagnosis), known.get(
+        (cause["sensor"], tuple(cause["class"])))) for cause in entries]
+    return sorted(entries, key=lambda c: -(c["share"] or 0.0) - 1e-3 * c["score_nats"])
 
 
 def gaps(diagnosis):
     """{sensor: SensorGap}; that of the motion where only that shows something."""
-    found = {**diagnosis.rest, **diagnosis.gaps}
+    by_sensor = {**diagnosis.rest, **diagnosis.gaps}
     turns = diagnosis.turns
-    if turns and turns.causes and not found["gyro"].causes:
-        found["gyro"] = turns
+    if turns and turns.causes and not by_sensor["gyro"].causes:
+        by_sensor["gyro"] = turns
     moved = any(f.domain == "motion" for f in diagnosis.findings)
-    if diagnosis.motion and moved and not found["accel"].causes:
-        found["accel"] = diagnosis.motion
-    return found
+    if diagnosis.motion and moved and not by_sensor["accel"].causes:
+        by_sensor["accel"] = diagnosis.motion
+    return by_sensor
 
 
 def held_out(diagnosis):
@@ -84,22 +85,22 @@ def _entry(sensor, axes, probabilities, score, value, unit, interval, plausible,
 
 def _with_strangers(cause, diagnosis):
     """A cause with its probabilities lessened by what only looks like it."""
-    def stated(found):
-        return number(diagnosis.of_name(cause["sensor"], found, cause["class"],
+    def stated(probability):
+        return number(diagnosis.of_name(cause["sensor"], probability, cause["class"],
                                         cause["share"]))
     return {**cause, "probability": stated(cause["probability"]), "class_probabilities": {
-        name: stated(found) for name, found in cause["class_probabilities"].items()}}
+        name: stated(probability) for name, probability in cause["class_probabilities"].items()}}
 
 
 def _cause(kind, c, reference_c):
     """value_of: whose size is stated, where the class has several names; shape: the parameters of
     the library's effect that do not enter linearly."""
-    found = _entry(kind, c.letters, c.probabilities, c.score, c.value, c.unit, c.interval,
+    entry = _entry(kind, c.letters, c.probabilities, c.score, c.value, c.unit, c.interval,
                    c.plausible, c.share)
-    if len(found["class"]) > 1:
-        found["value_of"] = c.effect
+    if len(entry["class"]) > 1:
+        entry["value_of"] = c.effect
     shape = closed_loop.shape(c.effect, c.variant, reference_c)
-    return {**found, "shape": shape} if shape else found
+    return {**entry, "shape": shape} if shape else entry
 
 
 def _by_both_logs(cause, effect):
@@ -116,21 +117,21 @@ def _by_both_logs(cause, effect):
 
 
 def _finding(f):
-    found = _entry(f.sensor, f.axes, f.probabilities, f.score, f.value, f.unit,
+    entry = _entry(f.sensor, f.axes, f.probabilities, f.score, f.value, f.unit,
                    f.interval or {}, f.plausible, f.share)
     if f.share_interval:
-        found["share_interval_90"] = [number(v) for v in f.share_interval]
+        entry["share_interval_90"] = [number(v) for v in f.share_interval]
     if f.limits:
-        found["cut_off_at"] = f.limits
+        entry["cut_off_at"] = f.limits
     if f.hz:
-        found["hz"] = {key: number(hz, 7) for key, hz in f.hz.items()}
+        entry["hz"] = {key: number(hz, 7) for key, hz in f.hz.items()}
     if f.lines:
-        found["lines"] = line_frequency.answer(f.lines)
-    return found
+        entry["lines"] = line_frequency.answer(f.lines)
+    return entry
 
 
 def _drift(kind, gap):
-    there = {"drift": gap.found.places["drift"]["drift"]}
+    there = {"drift": gap.posterior.places["drift"]["drift"]}
     floor, low, high = (v * FLOOR_OF_KERNEL for v in (
         gap.drift.level, gap.drift.low, gap.drift.high))
     axes = gap.drift.axes or "xyz"
@@ -139,10 +140,11 @@ def _drift(kind, gap):
 
 
 def _gap(kind, gap):
-    found = _shrinkage(kind, gap.shrinkage)
+    figures = _shrinkage(kind, gap.shrinkage)
     if hasattr(gap, "by_axis"):
-        found["axes"] = {key: _shrinkage(kind, one) for key, one in gap.by_axis.items()}
-    return found
+        figures["axes"] = {key: _shrinkage(kind, shrinkage)
+                           for key, shrinkage in gap.by_axis.items()}
+    return figures
 
 
 def _shrinkage(kind, s):

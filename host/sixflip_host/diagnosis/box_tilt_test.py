@@ -61,21 +61,22 @@ def _certified(gap, few):
     """The units of a SensorGap with a box that is no nuisance; few: with the columns of the causes
     found and of the box alone, at levels of noise next to those found, else with those of every
     name, which may not be told from it, in the same places, at all levels."""
-    looked_at = {form.effect for form in gap.found.best.forms}
+    looked_at = {form.effect for form in gap.posterior.best.forms}
     designs = gap.units[0].designs
-    kept = [k for k, one in enumerate(designs) if one.effect in looked_at or (
-        one.effect == "box_tilt" if few else not (one.generic or one.choices or one.beside))]
-    first = np.cumsum([0] + [len(one.keys) for one in designs])
+    kept = [k for k, design in enumerate(designs) if design.effect in looked_at or (
+        design.effect == "box_tilt" if few
+        else not (design.generic or design.choices or design.beside))]
+    first = np.cumsum([0] + [len(design.keys) for design in designs])
     wanted = None if few else np.concatenate([np.arange(first[k], first[k + 1]) for k in kept])
     units = []
-    for one, point, (session, model) in zip(gap.units, gap.adequacy.index, gap.parts):
-        near = [one.grid[k] for k in one.around(point)]
+    for unit, point, (session, model) in zip(gap.units, gap.adequacy.index, gap.parts):
+        near = [unit.grid[k] for k in unit.around(point)]
         levels = tuple(tuple(sorted(set(values))) for values in zip(*near))
-        rows = replace(one.rows, nuisance=nominal_rows.accel_nuisance(session, model, True),
-                       levels=levels if few else one.rows.levels)
+        rows = replace(unit.rows, nuisance=nominal_rows.accel_nuisance(session, model, True),
+                       levels=levels if few else unit.rows.levels)
         units.append(linear_model.unit(
-            rows, [one.designs[k] for k in kept] if few else one.designs, wanted,
-            signature=one.signature, within=one.within))
+            rows, [unit.designs[k] for k in kept] if few else unit.designs, wanted,
+            signature=unit.signature, within=unit.within))
     return units
 
 
@@ -90,7 +91,7 @@ def _scored(gap, units):
     model = scored_sets.Model(units, data.statistics, gap.noise)
     same = tuple(f for f in forms if any(
         (f.effect, f.variant, f.axis, f.record) == (c.effect, c.variant, None, c.record)
-        for c in gap.found.best.forms))
+        for c in gap.posterior.best.forms))
     return data, (model.scored(same), max((model.scored((*same, f)) for f in mine),
                                           key=lambda s: s.score))
 
@@ -129,9 +130,9 @@ def squareness(session, nominal):
         return None
     rows = np.repeat(on, 3)
     y = nominal_rows.accel_rows(session, nominal)[rows]
-    found = sorted(set(session.face[on].tolist()))
+    seen_faces = sorted(set(session.face[on].tolist()))
     places, flipped = [], True
-    for face in found:
+    for face in seen_faces:
         for basis in projection.lateral_basis(nominal_rows.face_axes([face])[0]):
             places.append(np.where((session.face == face)[on, None], basis, 0.0).reshape(-1))
         codes = session.code[session.face == face] % 2
@@ -147,5 +148,5 @@ def squareness(session, nominal):
         return None
     deg = np.linalg.norm(size.reshape(-1, 2), axis=1) / MG_A_DEG
     chi2 = float((size ** 2).sum()) / PLACEMENT_MG ** 2
-    return Crooked({faces.pose_name(2 * f + 1)[:2]: float(d) for f, d in zip(found, deg)},
+    return Crooked({faces.pose_name(2 * f + 1)[:2]: float(d) for f, d in zip(seen_faces, deg)},
                    float(special.chdtrc(rank, chi2)), flipped)

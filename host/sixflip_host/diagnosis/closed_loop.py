@@ -42,15 +42,15 @@ class ReplayScene:
     g: float = STANDARD_G
     lever_arm: object = None
 
-    def fill(self, found, t_us):
+    def fill(self, motion, t_us):
         """Fill a scene_arrays.Motion."""
         t = np.asarray(t_us) * 1e-6
         place = np.clip(np.searchsorted(self.starts, t, side="right") - 1, 0, None)
-        found.attitude[:] = self.attitudes[place].T
-        found.f[:] = self.g * self.attitudes[place][:, 6:9].T
-        found.before[:] = self.g * self.attitudes[np.maximum(place - 1, 0)][:, 6:9].T
-        found.resting[:] = True
-        found.since[:] = np.maximum(t - self.starts[place], 0.0)
+        motion.attitude[:] = self.attitudes[place].T
+        motion.f[:] = self.g * self.attitudes[place][:, 6:9].T
+        motion.before[:] = self.g * self.attitudes[np.maximum(place - 1, 0)][:, 6:9].T
+        motion.resting[:] = True
+        motion.since[:] = np.maximum(t - self.starts[place], 0.0)
 
 
 def replayed(session, up):
@@ -79,7 +79,7 @@ def specs(gap, theta, reference_c):
     """[{effect, sensor, key: size, parameter: value}] of the chosen candidates; theta (k,). The
     simulator has the library's form alone: what a discrepancy adds beside it goes to the nearest
     sizes of that."""
-    found, start = [], 0
+    effects, start = [], 0
     for candidate in gap.chosen:
         mine = theta[start:start + len(candidate.keys)]
         start += len(candidate.keys)
@@ -97,21 +97,21 @@ def specs(gap, theta, reference_c):
                 continue
             spec[own] = float(np.clip(value, -cls.largest[gap.kind], cls.largest[gap.kind]))
         spec.update(shape(candidate.effect, candidate.variant, reference_c))
-        found.append(spec)
-    return found
+        effects.append(spec)
+    return effects
 
 
 def shape(effect, variant, reference_c):
     """The parameters that a variant's name stands for."""
     words = variant.split()
-    out = {}
+    parameters = {}
     if effect in ("thermal_bias", "thermal_scale"):
-        out["reference_c"] = round(reference_c, 3)
+        parameters["reference_c"] = round(reference_c, 3)
     if words[:1] == ["tau"]:
-        out["tau_s"] = float(words[1])
+        parameters["tau_s"] = float(words[1])
     if words[:1] == ["lag"] and effect == "thermal_bias" and float(words[1]) < 0:
-        out["lag_s"] = -float(words[1])
-    return out
+        parameters["lag_s"] = -float(words[1])
+    return parameters
 
 
 def simulated(session, nominal, level, effects, seed):
@@ -192,15 +192,15 @@ def _session(gap, held, unit, effects):
     level = {gap.kind: point[1]}
     # The twin lies as the real box lay: placement is in neither.
     floor = unit.noise_energy(unit.grid[0][0], point[1])
-    out = []
+    squares = []
     for added in ([], effects):
         capture = simulated(session, nominal, level, added, 1000 + held)
         twin = blocks.session_of(session.name, capture)
         y = nominal_rows.accel_rows(twin, gap.parts[held][1]) if gap.kind == "accel" else \
             twin.gyro.reshape(-1)
         difference = unit.z - unit.contrasts(y)
-        out.append(float(difference @ difference))
-    return np.array([*out, 2.0 * float(floor), float(unit.freedom)]), twin
+        squares.append(float(difference @ difference))
+    return np.array([*squares, 2.0 * float(floor), float(unit.freedom)]), twin
 
 
 def uncovered(gap, session, unit, nominal):

@@ -27,17 +27,17 @@ from .closed_loop import Loop
 ROUNDS = 3  # of a linear correction that is off by its square each time
 
 
-def close_all(found, named=()):
+def close_all(diagnosis, named=()):
     """{"accel", "gyro", "gyro_turns", "accel_motion": closed_loop.Loop} of a Diagnosis, those
     that have something to add; named: effects that are added whether they were found or not."""
-    loops, reference_c = {}, found.conditions.reference_c
-    for kind, gap in found.gaps.items():
+    loops, reference_c = {}, diagnosis.conditions.reference_c
+    for kind, gap in diagnosis.gaps.items():
         progress.doing("the simulator again, with what was found")
         loops[kind] = closed_loop.close(_with(gap, named), reference_c)
-    if found.turns:
-        loops["gyro_turns"] = close_turns(_with(found.turns, named), reference_c)
-    if found.motion:
-        loops["accel_motion"] = close_moves(_with(found.motion, named))
+    if diagnosis.turns:
+        loops["gyro_turns"] = close_turns(_with(diagnosis.turns, named), reference_c)
+    if diagnosis.motion:
+        loops["accel_motion"] = close_moves(_with(diagnosis.motion, named))
     return {kind: loop for kind, loop in loops.items() if loop}
 
 
@@ -86,15 +86,15 @@ def turned(turn, effects):
     m.w = tuple(turn.middle.T)
     if turn.temperature is not None:
         m.temperature = turn.temperature
-    out = list(turn.middle.T.copy())
+    rates = list(turn.middle.T.copy())
     for spec in effects:
-        make_effect(spec).add(m, out)
-    return turn.read_as(np.stack(out, 1))
+        make_effect(spec).add(m, rates)
+    return turn.read_as(np.stack(rates, 1))
 
 
 def close_moves(gap):
     """Loop of a MotionGap, each fold by the sizes of the others; None where nothing is found."""
-    if gap is None or not gap.found:
+    if gap is None or not gap.findings:
         return None
     made = [added(m, specs(gap, gap.held.by_others[f]))
             for m, f in zip(gap.fit.moves, gap.held.folds)]
@@ -108,8 +108,8 @@ def close_moves(gap):
 
 def specs(gap, sizes):
     """[{effect, sensor, key: size}] of the effects found, with these sizes (4,)."""
-    out = []
-    for name in [f.effect for f in gap.found]:
+    effects = []
+    for name in [f.effect for f in gap.findings]:
         values = sizes[moves_fit.EFFECTS[name]]
         if name == "filter_lag":
             sensor = "accel" if values[0] > 0.0 else "gyro"
@@ -117,25 +117,25 @@ def specs(gap, sizes):
         else:
             sensor = "accel"
         top = EFFECTS[name].largest[sensor]
-        out.append({"effect": name, "sensor": sensor,
-                    **{k: float("%.4g" % np.clip(v, -top, top))
-                       for k, v in zip(EFFECTS[name].keys, values)}})
-    return out
+        effects.append({"effect": name, "sensor": sensor,
+                        **{k: float("%.4g" % np.clip(v, -top, top))
+                           for k, v in zip(EFFECTS[name].keys, values)}})
+    return effects
 
 
 def added(move, effects):
     """(n, 3) mg: how far the simulated sensors with these effects (specs) are off in a move."""
     moment = inertial_fit.moment(move.turn)
     felt = np.stack(moment.f, 1)
-    out, late = (list(np.zeros((3, len(felt)))) for _ in range(2))
+    accel, late = (list(np.zeros((3, len(felt)))) for _ in range(2))
     for spec in effects:
-        make_effect(spec).add(moment, out if spec["sensor"] == "accel" else late)
-    out, late = np.stack(out, 1), np.stack(late, 1)
+        make_effect(spec).add(moment, accel if spec["sensor"] == "accel" else late)
+    accel, late = np.stack(accel, 1), np.stack(late, 1)
     if late.any():  # the motion was the one that such a gyro reads as it was read
         turn = move.turn.read_as(move.turn.middle - 0.5 * (late[1:] + late[:-1]))
         body = inertial_fit.pinned(turn)
-        out = out + 1000.0 * (np.einsum("nji,j->ni", body, turn.before) - felt)
-    return inertial_fit.Seen.of_turn(move.turn).spectrum(out[:, :, None])[:, :, 0]
+        accel = accel + 1000.0 * (np.einsum("nji,j->ni", body, turn.before) - felt)
+    return inertial_fit.Seen.of_turn(move.turn).spectrum(accel[:, :, None])[:, :, 0]
 
 
 def plan_of(session):

@@ -55,9 +55,9 @@ def fits(data, shared):
     return [fit(u, s, shared) for u, s in zip(data.units, data.statistics)]
 
 
-def coefficients(found, shared):
+def coefficients(fits, shared):
     """(theta (R, k), V (R, k, k)) of several Fits of these Columns together."""
-    total = sum(f.gram for f in found) + np.diag(1.0 / shared.prior ** 2)
+    total = sum(f.gram for f in fits) + np.diag(1.0 / shared.prior ** 2)
     covariance = np.linalg.inv(total)
-    theta = np.einsum("rij,rj->ri", covariance, sum(f.inner for f in found))
+    theta = np.einsum("rij,rj->ri", covariance, sum(f.inner for f in fits))
     return theta, covariance

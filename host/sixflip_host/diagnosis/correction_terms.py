@@ -40,9 +40,9 @@ class Term:
 
 @dataclass(frozen=True, eq=False)
 class Terms:
-    """found: tuple of Term; left_out: [(sensor, names, reason)]; record: with the terms found."""
+    """accepted: tuple of Term; left_out: [(sensor, names, reason)]; record: with the accepted."""
 
-    found: tuple
+    accepted: tuple
     left_out: list
     record: object
 
@@ -50,22 +50,23 @@ class Terms:
 def terms_for(diagnosis, record):
     """Terms of a Diagnosis for a record."""
     candidates, left_out = _candidates(diagnosis, record)
-    found = []
+    accepted = []
     for gap in {id(t.gap): t.gap for t in candidates}.values():
         shown, others = _shown(gap, [t for t in candidates if t.gap is gap], record, diagnosis)
-        found += shown
+        accepted += shown
         left_out += others
     written = copy.deepcopy(record)
-    for term in found:
+    for term in accepted:
         record_terms.put(written, term.name, term.fields)
-    if found:
+    if accepted:
         written.sequence = following(written.sequence)
-    return Terms(tuple(found), left_out, written)
+    return Terms(tuple(accepted), left_out, written)
 
 
 def _candidates(diagnosis, record):
     """([Term] of the causes that can become one, [(sensor, names, reason)] of the others)."""
-    out, left_out = [], [(f.sensor, [f.effect], "no term of a record") for f in diagnosis.findings]
+    candidates = []
+    left_out = [(f.sensor, [f.effect], "no term of a record") for f in diagnosis.findings]
     for gap in diagnosis.judged:
         if gap.drift:
             left_out.append((gap.kind, ["drift"], "no term of a record"))
@@ -74,8 +75,8 @@ def _candidates(diagnosis, record):
             if reason:
                 left_out.append((gap.kind, cause.names, reason))
             else:
-                out.append(Term(gap, cause, TERMS[gap.kind, cause.effect]))
-    return out, left_out
+                candidates.append(Term(gap, cause, TERMS[gap.kind, cause.effect]))
+    return candidates, left_out
 
 
 def _reason(gap, cause, record):
@@ -202,13 +203,13 @@ def fitted(gap, terms, data, diagnosis):
 
 def plain(gap, cause):
     """The candidates of a cause in the form that the board can take out."""
-    out = []
+    forms = []
     for c in (c for c in cause.chosen if c.effect == cause.effect):
         bent = c.discrepancy and cause.effect == "thermal_bias"
-        out += [o for o in gap.options
-                if (o.effect, o.axis, o.variant, o.record) == (c.effect, c.axis, "", bent)
-                and not any(np.isin(o.columns, one.columns).any() for one in out)]
-    return out
+        forms += [o for o in gap.options
+                  if (o.effect, o.axis, o.variant, o.record) == (c.effect, c.axis, "", bent)
+                  and not any(np.isin(o.columns, form.columns).any() for form in forms)]
+    return forms
 
 
 def fitting(sessions, record, path):
@@ -225,7 +226,8 @@ def fitting(sessions, record, path):
 
 def answer(terms, output):
     """dict of Terms for the JSON answer; output: the file they are written to."""
-    return {"written": output if terms.found else None,
-            "found": [dict(term_words.facts(t.name, t.fields), term=t.name) for t in terms.found],
+    return {"written": output if terms.accepted else None,
+            "found": [dict(term_words.facts(t.name, t.fields), term=t.name)
+                      for t in terms.accepted],
             "left_out": [{"sensor": sensor, "effects": names, "reason": reason}
                          for sensor, names, reason in terms.left_out]}

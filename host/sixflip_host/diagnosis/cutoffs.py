@@ -48,8 +48,8 @@ class Cutoffs:
         is no more than a level of noise. What takes a stranger's columns in, as a discrepancy
         beside its own, gains by chance what that does."""
         return (RARER if form.generic and not form.free else 0.0) + max(
-            (nats for one, nats in self.own.items() if one == form or
-             form.discrepancy and np.isin(one.columns, form.columns).any()), default=self.member)
+            (nats for other, nats in self.own.items() if other == form or
+             form.discrepancy and np.isin(other.columns, form.columns).any()), default=self.member)
 
 
 def folder():
@@ -74,15 +74,16 @@ def for_protocol(units, forms, levels):
         return _cutoffs(float(kept["member"]), Mimicry(
             tuple(map(float, kept["alike"])), tuple(map(float, kept["left"]))))
     except (OSError, ValueError, KeyError, TypeError):
-        found = _cutoffs(simulated(units, forms, levels, points),
-                         mimicry.simulated(units, forms, levels, points))
+        cutoffs = _cutoffs(simulated(units, forms, levels, points),
+                           mimicry.simulated(units, forms, levels, points))
     try:
         name.parent.mkdir(parents=True, exist_ok=True)
-        kept = {"member": found.member, "alike": found.mimicry.alike, "left": found.mimicry.left}
+        strangers = cutoffs.mimicry
+        kept = {"member": cutoffs.member, "alike": strangers.alike, "left": strangers.left}
         atomic_write.write_bytes(str(name), json.dumps(kept).encode())
     except OSError:
         pass  # a cache that cannot be written is no error
-    return found
+    return cutoffs
 
 
 def _cutoffs(member, strangers):
@@ -159,11 +160,11 @@ def _gain(form, units, statistics, prior, near, levels, base):
                 for u, s, p, own in zip(units, statistics, prior, near)]
         return evidence.score(fits, form.shared, units[0].apart, evidence.positive(units))
     total = 0.0
-    for unit, one, level, own, plain in zip(units, statistics, prior, near, base):
+    for unit, sums, level, own, plain in zip(units, statistics, prior, near, base):
         if unit.between:
             total = total + plain.evidence
             continue
-        best = np.max([evidence.fit(unit, one, NONE, choice, level, own).evidence
+        best = np.max([evidence.fit(unit, sums, NONE, choice, level, own).evidence
                        for choice in form.choices], axis=0)
         total = total + best - math.log(len(form.choices))
     return total

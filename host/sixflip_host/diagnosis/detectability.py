@@ -29,15 +29,15 @@ NOT_DETERMINED = "this capture does not determine its size"
 def listed(diagnosis):
     """[{effect, reason}] in the order of the library; an effect seen by one sensor is left out
     for the other only with the sensor named."""
-    found, named = [], _named(diagnosis)
+    unseen, named = [], _named(diagnosis)
     for name in NAMES:
         for sensor in sorted(EFFECTS[name].units):
             if name in ALWAYS_SEEN or (name, sensor) in named:
                 continue
             why = reason(diagnosis, name, sensor)
             if why:
-                found.append({"effect": name, "sensor": sensor, "reason": why})
-    return found
+                unseen.append({"effect": name, "sensor": sensor, "reason": why})
+    return unseen
 
 
 def _named(diagnosis):

@@ -11,7 +11,7 @@ from . import diagnosis
 from .detect import byte_faults, held_values
 from .settings import Settings
 
-MOST_AGAIN = 3  # times that what is in both logs is taken off
+MOST_ROUNDS = 3  # times that what is in both logs is taken off
 SHORTEST_REST_S = 20.0  # flicker shows from some seconds on
 
 
@@ -39,32 +39,32 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
         progress.doing("conventions and parameters of the simulator")
         comparisons = [comparison.compare(captures, *log) for log in simulator]
         # What a log with another convention reads is no effect of a sensor.
-        mended = [(name, convention_findings.capture_put_right(log, found.conventions))
-                  for (name, log), found in zip(simulator, comparisons)]
+        mended = [(name, convention_findings.capture_put_right(log, compared.conventions))
+                  for (name, log), compared in zip(simulator, comparisons)]
         sound = [log for log in mended if log[1] is not None]
         if sound:
             names, simulated = zip(*sound)
             progress.doing("the simulator's own captures")
             own = against_simulator.read(list(simulated), list(names), settings)
             settings = replace(settings, simulated=own.known)
-    found = diagnosis.diagnose_sessions(sessions, settings, own, comparisons, damages)
-    return _beyond(found, own, sessions, damages) if comparisons else found
+    result = diagnosis.diagnose_sessions(sessions, settings, own, comparisons, damages)
+    return _beyond(result, own, sessions, damages) if comparisons else result
 
 
-def _beyond(found, own, sessions, damages):
+def _beyond(result, own, sessions, damages):
     """The Diagnosis without what two logs of one motion show to be in both, and with the
     simulator's parameters beside the effects that it lacks."""
     from .simulator import effects_beside
     progress.doing("parameters beside the effects")
-    for _ in range(MOST_AGAIN):
-        both = effects_beside.in_both(found)
+    for _ in range(MOST_ROUNDS):
+        both = effects_beside.in_both(result)
         if not both:
             break
-        known = found.settings.simulated
-        settings = replace(found.settings, simulated={
+        known = result.settings.simulated
+        settings = replace(result.settings, simulated={
             **known, **{kind: [*known.get(kind, ()), *more] for kind, more in both.items()}})
-        found = diagnosis.diagnose_sessions(sessions, settings, own, found.comparisons, damages)
-    return effects_beside.beyond(found)
+        result = diagnosis.diagnose_sessions(sessions, settings, own, result.comparisons, damages)
+    return effects_beside.beyond(result)
 
 
 def flicker_levels(capture, path):
@@ -74,7 +74,7 @@ def flicker_levels(capture, path):
     rest = long_rest.longest(session)
     if rest is None or (rest[1] - rest[0]) / session.rate < SHORTEST_REST_S:
         raise BadFile("%s: no rest of %g s or more to know the noise by" % (path, SHORTEST_REST_S))
-    found = {}
+    levels = {}
     for sensor in ("accel", "gyro"):
         if getattr(capture, sensor) is None:
             continue
@@ -83,5 +83,5 @@ def flicker_levels(capture, path):
         m = max(1, len(x) // 12)
         tau = m / session.rate
         excess = np.maximum(allan(x, m) ** 2 - noise ** 2 / tau, 0.0)
-        found[sensor] = float(np.sqrt(excess.mean()))
-    return found
+        levels[sensor] = float(np.sqrt(excess.mean()))
+    return levels

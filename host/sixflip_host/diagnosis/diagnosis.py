@@ -53,11 +53,11 @@ class Diagnosis:
     @property
     def causes(self):
         """[(sensor, Cause)] of all sensors, the largest score first."""
-        found = [(kind, c) for gaps in (self.gaps, self.rest) for kind, gap in gaps.items()
-                 for c in gap.causes]
+        causes = [(kind, c) for gaps in (self.gaps, self.rest) for kind, gap in gaps.items()
+                  for c in gap.causes]
         if self.turns:
-            found += [("gyro", c) for c in self.turns.causes]
-        return sorted(found, key=lambda pair: -pair[1].score)
+            causes += [("gyro", c) for c in self.turns.causes]
+        return sorted(causes, key=lambda pair: -pair[1].score)
 
     @property
     def judged(self):
@@ -80,9 +80,9 @@ class Diagnosis:
     def verdict(self):
         """One of the verdict's rows, on what was found in rests, turns, moves and samples."""
         claims = self._claims()
-        found = verdict.decide(claims, [*self._nameless(), float(self.broken)], self.sees())
-        return simulator_answer.verdict(found, self.comparisons, verdict.any_of(
-            [c.probability for c in claims]) > verdict.LIKELY) if self.comparisons else found
+        row = verdict.decide(claims, [*self._nameless(), float(self.broken)], self.sees())
+        return simulator_answer.verdict(row, self.comparisons, verdict.any_of(
+            [c.probability for c in claims]) > verdict.LIKELY) if self.comparisons else row
 
     def _claims(self):
         claims = [verdict.Claim(f.named, told([f.effect, *f.rivals], f.share) and self._sized(f),
@@ -90,7 +90,7 @@ class Diagnosis:
         claims += [verdict.Claim(sum(c.probabilities.values()), told(c.names, c.share) and bool(
             c.effect == "drift" or gap.shrinkage.interval), c.nameless)
             for gap in [*self.judged, *self.rest.values()] for c in gap.causes if c.plausible]
-        return claims + [verdict.Claim(g.found.places["drift"]["drift"], True)
+        return claims + [verdict.Claim(g.posterior.places["drift"]["drift"], True)
                          for g in self.gaps.values() if g.drift]
 
     @cached_property
@@ -98,12 +98,12 @@ class Diagnosis:
         """Probability that something is there which no name of the library stands for."""
         return verdict.any_of(self._nameless())
 
-    def of_name(self, sensor, found, names, share):
+    def of_name(self, sensor, probability, names, share):
         """Probability of a cause of a sensor, found among all hypotheses to explain this share,
         less that of what only looks like it."""
         gap = self.gaps.get(sensor)
-        return gap.of_name(found, names, share, self.outside) if gap else odds.of_name(
-            found, mimicry.MIMICKED, self.outside)
+        return gap.of_name(probability, names, share, self.outside) if gap else odds.of_name(
+            probability, mimicry.MIMICKED, self.outside)
 
     def _sized(self, finding):
         """Whether the interval of a Finding's share is known; in motion, that of the gap."""
@@ -113,13 +113,15 @@ class Diagnosis:
 
     def _nameless(self):
         """Probabilities that something without a name is there."""
-        found = [p for g in self.judged for p in verdict.of_gap(g)]
-        found += [verdict.not_closed(g.shrinkage) for g in [*self.judged, *self.rest.values()]]
-        found += [p for gap in self.rest.values() for p in gap.nameless]
-        found += [1.0 - place.p for place in self.nameless]
+        gaps = [*self.judged, *self.rest.values()]
+        probabilities = [p for g in self.judged for p in verdict.of_gap(g)]
+        probabilities += [verdict.not_closed(g.shrinkage) for g in gaps]
+        probabilities += [p for gap in self.rest.values() for p in gap.nameless]
+        probabilities += [1.0 - place.p for place in self.nameless]
         # A size that no part has is a name for something else.
-        found += [f.named for f in self.findings if not f.plausible]
-        return found + [c.place.get(c.effect, 0.0) for _, c in self.causes if not c.plausible]
+        probabilities += [f.named for f in self.findings if not f.plausible]
+        return probabilities + [c.place.get(c.effect, 0.0) for _, c in self.causes
+                                if not c.plausible]
 
     def sees(self):
         """True when the capture would have shown most of what it is asked about."""
@@ -171,7 +173,7 @@ def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), d
                 f.effect == "vibration" and f.sensor == "accel" for f in findings):
             findings += [f for f in shake_detector.findings(sessions)
                          if f.effect not in settings.without]
-    compared_in_motion = any(one.motion_judged for one in comparisons)
+    compared_in_motion = any(comparison.motion_judged for comparison in comparisons)
     if simulator:
         remarks += simulator.remarks
         remarks += ["the simulator has %s (%s), the real sensor does not" % (f.effect, f.sensor)
@@ -198,10 +200,10 @@ def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), d
 def accepted(sessions):
     """(sessions of one chip, each once; sentences on what was left out or assumed)."""
     sessions, others = blocks.same_chip(sessions)
-    sessions, again = blocks.distinct(sessions)
+    sessions, repeated = blocks.distinct(sessions)
     remarks = ["%s is of another sensor (%s) and was left out" % (
         s.name, s.capture.meta["sensor"]) for s in others]
-    remarks += ["%s repeats a capture before it and was left out" % s.name for s in again]
+    remarks += ["%s repeats a capture before it and was left out" % s.name for s in repeated]
     remarks += ["%s: its timestamps stand still, rate_hz was used instead" % s.name
                 for s in sessions if s.timeless]
     return sessions, remarks + [said for s in sessions for said in s.capture.assumed]

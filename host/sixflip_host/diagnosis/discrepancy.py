@@ -57,24 +57,24 @@ def _meet(form, other, variables):
 def _of_variable(designs, forms, names, variant):
     """[(column, axis)] of the designs of these names: of those that compete, and of what is there
     to stand beside them; of each the variant, of the same lag for instance, or else the last."""
-    known, found, start = {form.effect for form in forms}, {}, 0
+    known, by_effect, start = {form.effect for form in forms}, {}, 0
     for design in designs:
         stands = design.effect in names and (design.beside or design.effect in known)
-        if stands and (not variant or found.get(design.effect, ("",))[0] != variant):
-            found[design.effect] = design.variant, list(zip(
+        if stands and (not variant or by_effect.get(design.effect, ("",))[0] != variant):
+            by_effect[design.effect] = design.variant, list(zip(
                 range(start, start + len(design.keys)), design.axes))
         start += len(design.keys)
-    return [pair for _, pairs in found.values() for pair in pairs]
+    return [pair for _, pairs in by_effect.values() for pair in pairs]
 
 
 def _of_effect(designs, form):
     """[(column, axis)] of a form's other variants."""
-    found, start = [], 0
+    pairs, start = [], 0
     for design in designs:
         if design.effect == form.effect and design.variant != form.variant:
-            found += zip(range(start, start + len(design.keys)), design.axes)
+            pairs += zip(range(start, start + len(design.keys)), design.axes)
         start += len(design.keys)
-    return found
+    return pairs
 
 
 def with_discrepancy(model, forms, scored, form):

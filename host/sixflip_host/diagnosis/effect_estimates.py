@@ -19,68 +19,68 @@ SIGNIFICANT = 3.0  # standard deviations at which an axis is said to have the ef
 FORM = 0.05  # of a size, standard deviation: parts do not have the library's very curves
 
 
-def in_full(model, forms, found, cause):
+def in_full(model, forms, posterior, cause):
     """An aliases.Cause of a Posterior's best set with other_axes and variants."""
-    return replace(cause, other_axes=_rival_axes(model, forms, found, cause.chosen[0]),
-                   variants=_variants(model, forms, found, cause))
+    return replace(cause, other_axes=_rival_axes(model, forms, posterior, cause.chosen[0]),
+                   variants=_variants(model, forms, posterior, cause))
 
 
-def _rival_axes(model, forms, found, form):
+def _rival_axes(model, forms, posterior, form):
     """Axes (0..2) on which the same effect would do as well as on the one it was found on: where
     a pose's attitude is free, x: f_y f_z and y: f_x f_z add the same along gravity."""
     if form.axis is None:
         return ()
-    others = _without(model, found, form)
-    return tuple(one.axis for one in forms if one.effect == form.effect
-                 and (one.variant, one.record) == (form.variant, form.record)
-                 and one.axis not in (None, form.axis)
-                 and model.extended(others, one).score > found.best.score - AS_WELL)
+    others = _without(model, posterior, form)
+    return tuple(other.axis for other in forms if other.effect == form.effect
+                 and (other.variant, other.record) == (form.variant, form.record)
+                 and other.axis not in (None, form.axis)
+                 and model.extended(others, other).score > posterior.best.score - AS_WELL)
 
 
-def axes_of(model, found, form):
+def axes_of(model, posterior, form):
     """[(axis 0..2, nats)] of a member of the best set: the axes that it does its work on, each
     by what it gains there alone; [] of a level of noise."""
-    others = _without(model, found, form)
+    others = _without(model, posterior, form)
     gains = {}
     for axis in range(3):
         part = hypotheses.on_axis(form, axis) if form.axes else None
         if part is not None:
             gains[axis] = model.extended(others, part).score - others.score
     most = max(gains.values(), default=0.0)
-    share = found.cost.beside if form.generic else found.cost.form
+    share = posterior.cost.beside if form.generic else posterior.cost.form
     return [(axis, gain) for axis, gain in gains.items()
-            if gain == most or gain > found.cost.nats(form) + share * most]
+            if gain == most or gain > posterior.cost.nats(form) + share * most]
 
 
-def _variants(model, forms, found, cause):
+def _variants(model, forms, posterior, cause):
     """((probability, Cause), ...): a cause in the variants of its effect that are as likely to
     within AS_WELL (a lag, a time constant), its own first: which of them it is makes a size as
     uncertain as noise does."""
-    form, others = cause.chosen[0], _without(model, found, cause.chosen[0])
-    told = [(found.best.score, cause)]
-    for one in forms:
-        if one.effect != form.effect or one.variant == form.variant or (
-                one.keys, one.record) != (form.keys[:len(one.keys)], form.record):
+    form, others = cause.chosen[0], _without(model, posterior, cause.chosen[0])
+    told = [(posterior.best.score, cause)]
+    for other in forms:
+        if other.effect != form.effect or other.variant == form.variant or (
+                other.keys, other.record) != (form.keys[:len(other.keys)], form.record):
             continue
-        scored = model.extended(others, one)
-        if scored.score > found.best.score - AS_WELL:
-            told.append((scored.score, _sized_as(cause, one, scored)))
-    weights = np.exp(np.array([score for score, _ in told]) - found.best.score)
-    return tuple((float(w), one) for w, (_, one) in zip(weights / weights.sum(), told))
+        scored = model.extended(others, other)
+        if scored.score > posterior.best.score - AS_WELL:
+            told.append((scored.score, _sized_as(cause, other, scored)))
+    weights = np.exp(np.array([score for score, _ in told]) - posterior.best.score)
+    return tuple((float(w), variant) for w, (_, variant) in zip(weights / weights.sum(), told))
 
 
 def _sized_as(cause, form, scored):
     """A cause whose own form is another one, with its coefficients in a Scored set with that."""
     chosen, columns = (form, *cause.chosen[1:]), scored.shared.index
     theta, covariance = (v[0] for v in evidence.coefficients(scored.fits, scored.shared))
-    place = [int(np.flatnonzero(columns == c)[0]) for one in chosen for c in one.columns]
+    place = [int(np.flatnonzero(columns == c)[0]) for part in chosen for c in part.columns]
     return replace(cause, chosen=chosen, theta=theta[place],
                    covariance=covariance[np.ix_(place, place)])
 
 
-def _without(model, found, form):
+def _without(model, posterior, form):
     """Scored of the likeliest set without a member."""
-    return model.scored(tuple(f for f in found.best.forms if f is not form))
+    return model.scored(tuple(f for f in posterior.best.forms if f is not form))
 
 
 def sized(cause, data, levels, chip, kind, share=None):
@@ -104,17 +104,17 @@ def sized(cause, data, levels, chip, kind, share=None):
 def _intervals(cause, gram, value, sigma):
     """{key: (low, high)}, 90 % of what a size may be in all variants of its effect that are as
     likely, each with its own uncertainty: which lag or time constant it is nothing tells."""
-    mixed = [(p, *effective(one, gram)) for p, one in cause.variants[1:]]
+    mixed = [(p, *effective(variant, gram)) for p, variant in cause.variants[1:]]
     own = 1.0 - sum(p for p, _, _ in mixed)
-    found = {}
+    intervals = {}
     for key, size in value.items():
         parts = [(own, size, sigma[key])]
         for p, theta, covariance in mixed:
             place = list(theta).index(key)
             parts.append((p, theta[key], math.sqrt(covariance[place, place])))
         low, high = _ends(*np.array(parts).T)
-        found[key] = (min(low, size), max(high, size))
-    return found
+        intervals[key] = (min(low, size), max(high, size))
+    return intervals
 
 
 def _ends(weights, means, spreads):
@@ -177,11 +177,11 @@ def _own(cause, gram):
 def _energy(candidate, cause, gram):
     """chi2 of what one of a cause's candidates adds."""
     start = 0
-    for one in cause.chosen:
-        theta = cause.theta[start:start + len(one.keys)]
-        start += len(one.keys)
-        if one is candidate:
-            return float(theta @ gram[np.ix_(one.columns, one.columns)] @ theta)
+    for other in cause.chosen:
+        theta = cause.theta[start:start + len(other.keys)]
+        start += len(other.keys)
+        if other is candidate:
+            return float(theta @ gram[np.ix_(other.columns, other.columns)] @ theta)
     return 0.0
 
 

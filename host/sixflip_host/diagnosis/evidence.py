@@ -169,8 +169,8 @@ def score(fits, shared, apart=False, bounded=None):
                    + (0.0 if bounded is None else _half(*coefficients([f], shared), bounded))
                    for f in fits)
     total = np.zeros(number)
-    for held, one in enumerate(fits):
-        total += predictive(one, *coefficients(fits[:held] + fits[held + 1:], shared))
+    for held, fit_held in enumerate(fits):
+        total += predictive(fit_held, *coefficients(fits[:held] + fits[held + 1:], shared))
     theta, covariance = coefficients(fits, shared)
     sigma = np.sqrt(np.einsum("rii->ri", covariance))
     beyond = np.maximum(np.abs(theta) - 2.0 * sigma, 0.0) / shared.prior

@@ -20,7 +20,7 @@ def fit(unit, statistics, index, prior, level, points, elimination=None, common=
     for Least Squares Problems (1996), section 2.2.3). common: how many those are, if known.
     """
     forms, number = index.shape[0], _common(index, prior) if common is None else common
-    quadratic, inner, logdet = (one[points] for one in (
+    quadratic, inner, logdet = (values[points] for values in (
         (statistics[0], statistics[1], unit.logdet) if elimination is None
         else elimination.at(points)))
     own = index[:, number:]
@@ -90,7 +90,7 @@ def fit_of_form(fit, number):
 
 def by_size(columns):
     """{k: places of the Columns (a list) that are k}"""
-    found = {}
-    for place, one in enumerate(columns):
-        found.setdefault(len(one), []).append(place)
-    return found
+    places = {}
+    for place, each in enumerate(columns):
+        places.setdefault(len(each), []).append(place)
+    return places

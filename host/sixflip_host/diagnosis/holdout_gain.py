@@ -56,11 +56,11 @@ class Sums:
                     self.floor + other.floor, self.weight + other.weight,
                     tuple(a + b for a, b in zip(self.spread, other.spread)))
 
-    def shrinkage(self, found):
-        """Shrinkage; found: something was named that can be foretold."""
+    def shrinkage(self, named):
+        """Shrinkage; named: something was found that can be foretold."""
         rms = [math.sqrt(max(v, 0.0) / self.weight) if self.weight > 0.0 else 0.0
                for v in (self.before, self.after, self.floor)]
-        if not found:
+        if not named:
             return Shrinkage(*rms, None, None)
         return Shrinkage(*rms, *fieller(self.before - self.floor, self.before - self.after,
                                         *self.spread))

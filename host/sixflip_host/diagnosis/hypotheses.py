@@ -82,20 +82,20 @@ def domain(effect):
 
 def forms_of(units, without=(), drift=True):
     """list of Form; those silent in all units are left out."""
-    found, start = [], 0
+    forms, start = [], 0
     for design in units[0].designs:
         columns = np.arange(start, start + len(design.keys))
         start += len(design.keys)
         if design.effect in without or design.beside:
             continue
         if design.variant == strangers.COURSE:
-            found += [_course(design, columns, variant)
+            forms += [_course(design, columns, variant)
                       for variant in strangers.COURSES[design.effect]]
             continue
         if design.choices:
-            found.append(_private(design, columns))
+            forms.append(_private(design, columns))
             if design.effect == "drift" and not units[0].apart:
-                found.append(_one_axis(design, columns))
+                forms.append(_one_axis(design, columns))
             continue
         for axis in (None, 0, 1, 2):
             mine = [i for i, a in enumerate(design.axes) if axis is None or a == axis]
@@ -104,7 +104,7 @@ def forms_of(units, without=(), drift=True):
             index = columns[mine]
             if all(u.silent[index].all() for u in units):
                 continue
-            found.append(Form(design.effect, design.variant, axis,
+            forms.append(Form(design.effect, design.variant, axis,
                               tuple(design.keys[i] for i in mine),
                               tuple(design.axes[i] for i in mine),
                               Columns(index, (1.0 if design.generic else TYPICAL)
@@ -113,8 +113,8 @@ def forms_of(units, without=(), drift=True):
                               record=design.record))
     for name, (level, _) in FREE.items():
         if drift and name not in without:
-            found.append(Form(name, free=frozenset([level])))
-    return found
+            forms.append(Form(name, free=frozenset([level])))
+    return forms
 
 
 def by_fleet(forms, sensor, prior):
@@ -122,17 +122,17 @@ def by_fleet(forms, sensor, prior):
     are. Bends beside a slope keep their own."""
     if prior is None:
         return forms
-    found = []
+    replaced = []
     for form in forms:
         told = [None if power != 1 else prior.deviation(sensor, form.effect, key, usual)
                 for key, power, usual in zip(form.keys, form.powers, form.shared.prior)]
         if form.generic or not any(told):
-            found.append(form)
+            replaced.append(form)
             continue
-        own = np.array([usual if one is None else one
-                        for one, usual in zip(told, form.shared.prior)])
-        found.append(replace(form, shared=Columns(form.shared.index, own), of_fleet=True))
-    return found
+        own = np.array([usual if deviation is None else deviation
+                        for deviation, usual in zip(told, form.shared.prior)])
+        replaced.append(replace(form, shared=Columns(form.shared.index, own), of_fleet=True))
+    return replaced
 
 
 def _course(design, columns, variant):
@@ -167,14 +167,14 @@ def on_axis(form, axis):
                     tuple(form.keys[i] for i in keep), (axis,) * len(keep),
                     Columns(form.shared.index[keep], form.shared.prior[keep]),
                     powers=tuple(form.powers[i] for i in keep))
-    choices = tuple(Columns(one.index[mine], one.prior[mine]) for one in form.choices
-                    for mine in [np.array([index[i] == axis for i in one.index])])
+    choices = tuple(Columns(choice.index[mine], choice.prior[mine]) for choice in form.choices
+                    for mine in [np.array([index[i] == axis for i in choice.index])])
     return Form(form.effect, form.variant, "only " + "xyz"[axis], choices=choices)
 
 
 def _private(design, columns):
     widths = WIDTHS if design.generic else WALKS
-    choices = tuple(Columns(columns[list(one)], width * design.prior[list(one)])
-                    for one in design.choices for width in widths)
+    choices = tuple(Columns(columns[list(choice)], width * design.prior[list(choice)])
+                    for choice in design.choices for width in widths)
     return Form(design.effect, design.variant, None, design.keys, design.axes, NONE, choices,
                 index=tuple(columns.tolist()))

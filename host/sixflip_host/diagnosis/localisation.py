@@ -42,24 +42,24 @@ def places(gap):
                                odds.chance(cause.score)))
     for form in gap.strangers:
         named += _strange(gap, form, tested)
-    if "drift" in gap.found.best.names:
-        gain = gap.found.gains["drift"]
+    if "drift" in gap.posterior.best.names:
+        gain = gap.posterior.gains["drift"]
         named += [Place(gap.kind, letter, "time", 1.0, odds.chance(gain))
                   for letter in (gap.drift.axes if gap.drift else ()) or (None,)]
     named = [replace(place, named=True) for place in named]
     known = {(p.axis, p.domain) for p in named}
-    found = named + [t for t in tested if (t.axis, t.domain) not in known
+    shown = named + [t for t in tested if (t.axis, t.domain) not in known
                      and t.share >= LEAST_SHARE]
-    if not found and not gap.adequacy.ok:
+    if not shown and not gap.adequacy.ok:
         # More than noise in all, and nowhere more than elsewhere.
-        found = [Place(gap.kind, None, gap.model.left_in, 1.0, gap.adequacy.p)]
-    return sorted(found, key=order)
+        shown = [Place(gap.kind, None, gap.model.left_in, 1.0, gap.adequacy.p)]
+    return sorted(shown, key=order)
 
 
 def _strange(gap, form, tested):
     """Places of a nameless member of the likeliest set: its axes where it has any, else those
     that the tests of its domain show."""
-    gain, domain = gap.found.gains[form.effect], hypotheses.domain(form.effect)
+    gain, domain = gap.posterior.gains[form.effect], hypotheses.domain(form.effect)
     share = gain / max(gain, 0.5 * gap.adequacy.excess_before, 1e-9)
     p = odds.chance(gain)
     letters = ["xyz"[axis] for axis, _ in gap.strange_axes[form.effect]] or [
@@ -74,10 +74,10 @@ def order(place):
 
 def strongest(tested):
     """The one with the largest share of each axis and domain: several strangers may have one."""
-    found = {}
-    for one in sorted(tested, key=lambda t: t.share):
-        found[one.axis, one.domain] = one
-    return list(found.values())
+    largest = {}
+    for place in sorted(tested, key=lambda t: t.share):
+        largest[place.axis, place.domain] = place
+    return list(largest.values())
 
 
 def _tested(gap, option):
@@ -157,23 +157,23 @@ def session(gap):
     unit = gap.units[-1]
     if not unit.between:
         return []
-    found = []
+    offsets = []
     z = unit.z.reshape(-1, 3)
     variance = np.diag(covariance.dense(
         unit.groups, session_offsets.ORDINARY_CHANGE[gap.kind], 0.0)).reshape(-1, 3)
     excess = max(gap.adequacy.excess_before, 1e-9)
     for axis in range(3):
         chi2 = float((z[:, axis] ** 2 / variance[:, axis]).sum())
-        found.append(Place(gap.kind, "xyz"[axis], "session", max(chi2 - len(z), 0.0) / max(
+        offsets.append(Place(gap.kind, "xyz"[axis], "session", max(chi2 - len(z), 0.0) / max(
             excess, chi2), special.chdtrc(len(z), chi2)))
-    return found
+    return offsets
 
 
 def controlled(tested):
     """Those that pass the false discovery rate."""
     by_p = sorted(tested, key=lambda t: t.p)
     last = -1
-    for rank, one in enumerate(by_p):
-        if one.p <= FALSE_DISCOVERIES * (rank + 1) / max(len(by_p), 1):
+    for rank, place in enumerate(by_p):
+        if place.p <= FALSE_DISCOVERIES * (rank + 1) / max(len(by_p), 1):
             last = rank
     return by_p[:last + 1]

@@ -46,7 +46,7 @@ class Mimicry:
 
 def _share_of(simulated_ones, least):
     """Share of them that are as large, by Laplace's rule of succession."""
-    return (sum(one >= least for one in simulated_ones) + 1.0) / (len(simulated_ones) + 2.0)
+    return (sum(gain >= least for gain in simulated_ones) + 1.0) / (len(simulated_ones) + 2.0)
 
 
 def simulated(units, forms, levels, points):
@@ -59,11 +59,11 @@ def simulated(units, forms, levels, points):
     data = _strange(units, nameless, points, generator)
     every = [u.statistics(z, u.coarse) for u, z in zip(units, data)]
     prior = [levels.prior(u, ()) for u in units]
-    near = [likely(u, one, level, u.coarse) for u, one, level in zip(units, every, prior)]
+    near = [likely(u, sums, level, u.coarse) for u, sums, level in zip(units, every, prior)]
 
     def scored(shared, statistics=every):
-        fits = [evidence.fit(u, one, shared, NONE, level, own)
-                for u, one, level, own in zip(units, statistics, prior, near)]
+        fits = [evidence.fit(u, sums, shared, NONE, level, own)
+                for u, sums, level, own in zip(units, statistics, prior, near)]
         return evidence.score(fits, shared)
     nothing = scored(NONE)
     gains = np.array([scored(f.shared) for f in nameless]) - nothing
@@ -78,13 +78,14 @@ def simulated(units, forms, levels, points):
         beside = np.max([scored(_together(nameless[place].shared, f.shared), mine)
                          for f in named], axis=0) - nothing[which] - alone
         shares += (np.maximum(beside, 0.0) / np.maximum(alone, FAINT_NATS)).tolist()
-    return Mimicry(*(tuple(np.round(np.sort(one), 3).tolist()) for one in (likeness, shares)))
+    return Mimicry(*(tuple(np.round(np.sort(values), 3).tolist())
+                     for values in (likeness, shares)))
 
 
-def _together(one, other):
+def _together(first, other):
     """Columns of both, each once."""
-    new = ~np.isin(other.index, one.index)
-    return one + Columns(other.index[new], other.prior[new])
+    new = ~np.isin(other.index, first.index)
+    return first + Columns(other.index[new], other.prior[new])
 
 
 def _strange(units, nameless, points, generator):
@@ -103,9 +104,9 @@ def _strange(units, nameless, points, generator):
                      for u, x in zip(units, raw)]
             chi2 = sum(u.chi2(m, k) for u, m, k in zip(units, moved, points))
             size = np.sqrt(STRANGE_CHI2 / max(chi2, 1e-9))
-            for found, unit, m, k in zip(every, units, moved, points):
-                found.append(size * m + unit.draw(k, generator, 1)[:, 0])
-    return [np.stack(found, axis=1) for found in every]
+            for drawn, unit, m, k in zip(every, units, moved, points):
+                drawn.append(size * m + unit.draw(k, generator, 1)[:, 0])
+    return [np.stack(drawn, axis=1) for drawn in every]
 
 
 def likely(unit, statistics, level, points):

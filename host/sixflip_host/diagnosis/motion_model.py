@@ -23,10 +23,10 @@ from . import (
     moves_fit,
     moves_unit,
     odds,
-    posterior,
     scored_sets,
 )
 from .detect.detection import Finding
+from .posterior import search_sets
 
 FEWEST_MOVES = 12  # three for each of the four sizes
 STRANGE_SHARE = 0.06  # of what a stranger gains, that a name must gain beside it: a quarter of
@@ -40,8 +40,8 @@ KNOWN_CM = 5.0  # standard deviation beyond which a direction of the arm is not 
 @dataclass(frozen=True, eq=False)
 class MotionGap:
     """chip; fit: MovesFit, or None where there are too few moves; Posterior, scores {effect:
-    nats}, gains {effect: nats of each alone}; chosen: names in the likeliest set; found (list of
-    Finding), remarks, nameless; theta, covariance of (lever arm x, y, z in cm; the
+    nats}, gains {effect: nats of each alone}; chosen: names in the likeliest set; findings (list
+    of Finding), remarks, nameless; theta, covariance of (lever arm x, y, z in cm; the
     accelerometer's delay behind the gyro in ms), sizes: of those found; bare (n, 3) mg of each
     move, less hands' habits and bends; held: HeldMoves or None."""
 
@@ -51,7 +51,7 @@ class MotionGap:
     scores: dict | None = None
     gains: dict | None = None
     chosen: tuple = ()
-    found: tuple = ()
+    findings: tuple = ()
     remarks: tuple = ()
     nameless: tuple = ()
     theta: np.ndarray | None = None
@@ -121,9 +121,9 @@ def judged(sessions, models, turned, chip, without=()):
     if len(moves) < FEWEST_MOVES:
         return MotionGap(chip, None)
     fit = moves_fit.fit(moves, chip)
-    found, gains = _searched(fit, without)
-    chosen = tuple(f.effect for f in found.best.forms if not f.generic)
-    return _told(MotionGap(chip, fit, found, found.gains, gains, chosen))
+    posterior, gains = _searched(fit, without)
+    chosen = tuple(f.effect for f in posterior.best.forms if not f.generic)
+    return _told(MotionGap(chip, fit, posterior, posterior.gains, gains, chosen))
 
 
 def _searched(fit, without):
@@ -146,9 +146,9 @@ def _searched(fit, without):
     least = least_nats(len(forms))
     own = {form: max(nats, least) for form, nats in cutoffs.simulated_each(
         units, forms, moves_unit.NO_LEVELS, [0] * len(units)).items()}
-    found = posterior.search(model, forms, cutoffs.Cutoffs(least, STRANGE_SHARE, own=own))
+    posterior = search_sets(model, forms, cutoffs.Cutoffs(least, STRANGE_SHARE, own=own))
     alone = model.scored(())
-    return found, {f.effect: model.scored((f,)).score - alone.score for f in forms}
+    return posterior, {f.effect: model.scored((f,)).score - alone.score for f in forms}
 
 
 def least_nats(number):
@@ -165,32 +165,32 @@ def _told(gap):
     theta, covariance = gap.fit.sizes(gap.columns(others))
     strange = _strange(gap.posterior)
     nameless, remarks = [p for p, _ in strange], [words for _, words in strange]
-    gap = replace(gap, theta=theta, covariance=covariance, found=[], nameless=tuple(nameless),
+    gap = replace(gap, theta=theta, covariance=covariance, findings=[], nameless=tuple(nameless),
                   remarks=tuple(remarks), held=None)
     if not gap.chosen:
         return gap
     sizes, spread = gap.fit.sizes(gap.columns())
-    found = []
+    findings = []
     for name in gap.chosen:
-        one = _finding(name, sizes, np.sqrt(np.diag(spread)), gap.scores[name],
-                       gap.posterior.places[name])
-        if not effect_estimates.believable(name, gap.chip, one.sensor, one.value):
+        finding = _finding(name, sizes, np.sqrt(np.diag(spread)), gap.scores[name],
+                           gap.posterior.places[name])
+        if not effect_estimates.believable(name, gap.chip, finding.sensor, finding.value):
             remarks.append("in motion %s would help, but at an impossible size: something else "
                            "acts" % name.replace("_", " "))
             nameless.append(localisation.Place("accel", None, "motion", 1.0,
-                                               odds.chance(one.score)))
-        elif name == "filter_lag" and one.value["tau"] < LEAST_LAG_MS:
+                                               odds.chance(finding.score)))
+        elif name == "filter_lag" and finding.value["tau"] < LEAST_LAG_MS:
             continue
         elif name == "lever_arm" and gap.one_hand:
             remarks.append("turned about a point %.1f cm from the accelerometer: the hand's grip "
                            "or the box, flips on a table tell"
-                           % np.linalg.norm(list(one.value.values())))
+                           % np.linalg.norm(list(finding.value.values())))
         else:
-            found.append(one)
-    named = np.isin(np.arange(4), [i for f in found for i in moves_fit.EFFECTS[f.effect]])
+            findings.append(finding)
+    named = np.isin(np.arange(4), [i for f in findings for i in moves_fit.EFFECTS[f.effect]])
     gap = replace(gap, sizes=sizes * named, bare=tuple(gap.fit.bare(gap.columns(), named)),
                   nameless=tuple(nameless), remarks=tuple(remarks))
-    if not found:
+    if not findings:
         return gap
     held = holdout_gain.held_moves(gap, named, spread * named * named[:, None])
     if not held.alone:
@@ -198,23 +198,24 @@ def _told(gap):
                        "every other move")
     remarks.append("what was found in motion is judged on %d moves; what the hand adds counts as "
                    "noise there" % len(gap.fit.moves))
-    return replace(gap, held=held, remarks=tuple(remarks), found=[
-        replace(one, share=holdout_gain.share_of_effect(gap, held, one.effect)) for one in found])
+    return replace(gap, held=held, remarks=tuple(remarks), findings=[
+        replace(finding, share=holdout_gain.share_of_effect(gap, held, finding.effect))
+        for finding in findings])
 
 
-def _strange(found):
+def _strange(posterior):
     """[(Place, sentence)] of what has no name in the likeliest set, axis by axis where it is on
     one."""
-    total, out = max(sum(map(abs, found.gains.values())), 1e-9), []
-    for form in found.best.forms:
+    total, strange = max(sum(map(abs, posterior.gains.values())), 1e-9), []
+    for form in posterior.best.forms:
         if form.generic:
-            gain = found.gains[form.effect]
+            gain = posterior.gains[form.effect]
             axis = None if form.axis is None else "xyz"[form.axis]
-            out.append((localisation.Place("accel", axis, "motion", gain / total,
-                                           odds.chance(gain)),
-                        "what the accelerometer reads in motion follows the %s in a way that no "
-                        "effect of the library does" % FOLLOWS[form.variant]))
-    return out
+            place = localisation.Place("accel", axis, "motion", gain / total, odds.chance(gain))
+            strange.append((
+                place, "what the accelerometer reads in motion follows the %s in a way that no "
+                "effect of the library does" % FOLLOWS[form.variant]))
+    return strange
 
 
 def _finding(name, sizes, sigma, score, place):

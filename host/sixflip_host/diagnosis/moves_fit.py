@@ -60,11 +60,11 @@ class MovesFit:
         each = without_each(gram, inner, prior) - theta
         grown = np.sqrt(np.maximum((each ** 2).sum(axis=0) / np.diag(covariance), 1.0))
         covariance = covariance * grown * grown[:, None]
-        out, spread = np.zeros(4), np.zeros((4, 4))
+        sizes, spread = np.zeros(4), np.zeros((4, 4))
         effects = np.flatnonzero(columns < 4)
-        out[columns[effects]] = theta[effects]
+        sizes[columns[effects]] = theta[effects]
         spread[np.ix_(columns[effects], columns[effects])] = covariance[np.ix_(effects, effects)]
-        return out, spread
+        return sizes, spread
 
     def rms(self, left):
         """mg of what is left of each move, (n, 3) mg: quiet moves, directions and frequencies
@@ -141,7 +141,7 @@ def _settled(gram, inner, wide, shared, sessions):
             prior[bends] *= bent
             prior[courses] *= wandered
             tried.append((_evidence(gram, inner, prior), -len(tried), prior))
-    return max(tried, key=lambda one: one[:2])[2]
+    return max(tried, key=lambda candidate: candidate[:2])[2]
 
 
 def solved(gram, inner, prior):
@@ -154,13 +154,13 @@ def solved(gram, inner, prior):
 def without_each(gram, inner, prior):
     """(moves, k): sizes from all moves but one."""
     total, right = gram.sum(axis=0), inner.sum(axis=0)
-    found = []
+    sizes = []
     for first in range(0, len(gram), AT_A_TIME):
         part = slice(first, first + AT_A_TIME)
         scaled = (total - gram[part]) * prior * prior[:, None] + np.eye(len(prior))
-        found.append(np.linalg.solve(scaled, ((right - inner[part]) * prior)[:, :, None]
+        sizes.append(np.linalg.solve(scaled, ((right - inner[part]) * prior)[:, :, None]
                                      )[:, :, 0] * prior)
-    return np.concatenate(found)
+    return np.concatenate(sizes)
 
 
 def _weighted(gram, inner, theta):
@@ -209,7 +209,7 @@ def spectra(moves, left, weights):
     groups = {}
     for number, move in enumerate(moves):
         groups.setdefault((move.session, move.flat), []).append(number)
-    out = [None] * len(moves)
+    variances = [None] * len(moves)
     for members in groups.values():
         flat = moves[members[0]].flat
         sums = {}
@@ -226,19 +226,19 @@ def spectra(moves, left, weights):
         level = _levels(sums)
         for number in members:
             band, weight = bands(moves[number])
-            found = np.stack([level[int(b)] for b in band])
+            levels = np.stack([level[int(b)] for b in band])
             # No level is below the sensor's own noise.
-            out[number] = white(moves[number]) + np.maximum(found, 0.0) * weight[:, None]
-    return out
+            variances[number] = white(moves[number]) + np.maximum(levels, 0.0) * weight[:, None]
+    return variances
 
 
 def _levels(sums):
     """{band: (3,)}; bands with too little in them are joined with the one before."""
-    out, before = {}, None
+    levels, before = {}, None
     for b in sorted(sums):
         total = sums[b].copy()
         if total[3] < FEWEST and before is not None and b > CARRIED + 1:
             total += before
-        out[b] = total[:3] / max(total[3], 1e-9)
+        levels[b] = total[:3] / max(total[3], 1e-9)
         before = total
-    return out
+    return levels

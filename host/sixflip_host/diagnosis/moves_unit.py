@@ -67,47 +67,47 @@ def unit(gram, inner, left, columns, nuisance, prior, energy, designs):
     taken = np.linalg.solve(block, total[np.ix_(nuisance, columns)])
     own = total[np.ix_(columns, columns)] - total[np.ix_(columns, nuisance)] @ taken
     power = np.diag(own)
-    return MovesUnit(Products(own[None]), *(one[:, columns] - one[:, nuisance] @ taken
-                                            for one in (inner, left)), energy, designs,
+    return MovesUnit(Products(own[None]), *(part[:, columns] - part[:, nuisance] @ taken
+                                            for part in (inner, left)), energy, designs,
                      power <= 1e-9 * max(power.max(), 1e-300), np.zeros(1), len(gram))
 
 
 def designs(prior):
     """list of Design of Move's columns that compete, in their order; prior: inertial_fit's."""
-    found, start = [], 0
+    designs, start = [], 0
     for effect, variant, axes in inertial_fit.COMPETING:
         part = slice(start, start + len(axes))
         keys = ["xyz"[a] for a in axes] if effect == "lever_arm" else [
             "tau"] if effect == "filter_lag" else ["%s%d" % ("xyz"[a], k)
                                                    for k, a in enumerate(axes)]
-        found.append(Design(effect, variant, keys, axes, np.zeros((0, len(axes))), prior[part]))
+        designs.append(Design(effect, variant, keys, axes, np.zeros((0, len(axes))), prior[part]))
         start += len(axes)
-    return found
+    return designs
 
 
 def moves(sessions, models, turned):
     """list of inertial_fit.Move. sessions: list of blocks.Session, the first len(models) with
     poses; models: their NominalSensor; turned: their calibrated turns."""
-    found = _moves(sessions, models, turned)
-    late = inertial_fit.way_lag(found)
-    return _moves(sessions, models, turned, late) if late else found
+    unlagged = _moves(sessions, models, turned)
+    late = inertial_fit.way_lag(unlagged)
+    return _moves(sessions, models, turned, late) if late else unlagged
 
 
 def _moves(sessions, models, turned, lag_ms=0.0):
-    found = []
+    moves = []
     for number, session in enumerate(sessions):
         if number < len(models):
             chosen, sensor, runs = turned[number], models[number], session.runs
         else:
-            chosen, sensor, runs = _driven(session, models, found)
+            chosen, sensor, runs = _driven(session, models, moves)
         if not chosen:
             continue
         course, white = _course(session.t_s), _white(session.capture, runs)
         railed = saturation.railed(session)
-        found += [inertial_fit.move(turn, session.capture, sensor, course, number,
+        moves += [inertial_fit.move(turn, session.capture, sensor, course, number,
                                     number < len(models), white, lag_ms)
                   for turn in chosen if railed[turn.first:turn.last].mean() <= MOST_BAD]
-    return found
+    return moves
 
 
 def _driven(session, models, known):
@@ -124,10 +124,10 @@ def _driven(session, models, known):
     bias = np.array([session.capture.gyro[a:b].mean(axis=0) for _, a, b in runs]
                     ) / session.capture.meta["gyro_lsb_per_dps"]
     matrix = np.mean([m.turn.matrix for m in known], axis=0)
-    found = [turns.between(session, up, 0.5 * (bias[place] + bias[place + 1]), place)
-             for place in range(len(runs) - 1)]
-    found = [turn.corrected(matrix, np.zeros(3)) for turn in found if turn.usable(session.rate)]
-    return found, sensor, runs
+    driven = [turns.between(session, up, 0.5 * (bias[place] + bias[place + 1]), place)
+              for place in range(len(runs) - 1)]
+    driven = [turn.corrected(matrix, np.zeros(3)) for turn in driven if turn.usable(session.rate)]
+    return driven, sensor, runs
 
 
 def _course(t):

@@ -34,15 +34,15 @@ def nameless(place):
     return sum(p for name, p in place.items() if name and is_stranger(name))
 
 
-def of_name(found, mimicked, outside, beside=1.0):
-    """Probability that a named cause is the one that is there. found: that among all hypotheses;
-    mimicked: share of the causes outside the library that look like one inside, so alike that no
-    likelihood tells them apart; outside: number of causes without a name in the same captures;
-    beside: BESIDE where one of them is in the same readings.
+def of_name(probability, mimicked, outside, beside=1.0):
+    """Probability that a named cause is the one that is there. probability: that among all
+    hypotheses; mimicked: share of the causes outside the library that look like one inside, so
+    alike that no likelihood tells them apart; outside: number of causes without a name in the
+    same captures; beside: BESIDE where one of them is in the same readings.
     Of all causes INSIDE to 1 are in the library before anything is seen, and each one seen outside
     counts as one [Laplace's rule of succession; Jaynes, Probability Theory (2003), section 18.6].
     """
-    return found / (1.0 + beside * (1.0 + outside) / INSIDE * mimicked)
+    return probability / (1.0 + beside * (1.0 + outside) / INSIDE * mimicked)
 
 
 def probability(score):

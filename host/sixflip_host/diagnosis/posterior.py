@@ -49,7 +49,7 @@ class Posterior:
         return odds.nameless(self.places[effect])
 
 
-def search(model, forms, cost, most=MOST):
+def search_sets(model, forms, cost, most=MOST):
     """Posterior over sets of Forms; cost: cutoffs.Cutoffs."""
     def worth(scored):
         return _worth(scored, cost)
@@ -57,26 +57,27 @@ def search(model, forms, cost, most=MOST):
     beam, reached = [empty], [empty]
     least = WORTH_TRYING * min((cost.nats(form) + PRESENT for form in forms), default=0.0)
     for _ in range(most):
-        found = {}
+        candidates = {}
         for base in beam:
-            for _, one in model.best(base, _free(forms, base)):
-                if one.names not in found or worth(one) > worth(found[one.names]):
-                    found[one.names] = one
-        ordered = sorted(found.values(), key=worth, reverse=True)[:BEAM]
+            for _, candidate in model.best(base, _free(forms, base)):
+                names = candidate.names
+                if names not in candidates or worth(candidate) > worth(candidates[names]):
+                    candidates[names] = candidate
+        ordered = sorted(candidates.values(), key=worth, reverse=True)[:BEAM]
         reach = least + max(s.score for s in beam)
         if max((s.score for s in ordered), default=-np.inf) < reach - MOST_OF_A_FORM * least:
             break
-        grown = sorted((_with_discrepancy(model, forms, one, cost) for one in ordered),
+        grown = sorted((_with_discrepancy(model, forms, candidate, cost) for candidate in ordered),
                        key=worth, reverse=True)
         if max(s.score for s in grown) < reach:
             break
         beam = grown
         reached += grown
-    return _judged(model, forms, max((_pruned(model, one, cost) for one in reached), key=worth),
-                   cost)
+    likely = max((_pruned(model, candidate, cost) for candidate in reached), key=worth)
+    return _judged(model, forms, likely, cost)
 
 
-def from_likeliest(model, forms, cost, likeliest):
+def judge_likeliest(model, forms, cost, likeliest):
     """Posterior where the set that is likeliest for nearly the same data is known: a tuple of
     Forms of the same columns."""
     return _judged(model, forms, model.scored(likeliest), cost)
@@ -111,7 +112,7 @@ def _refined(model, forms, best, cost):
         best, changed = _pruned(model, best, cost), False
         for form in best.forms:
             fewer = model.scored(tuple(f for f in best.forms if f is not form))
-            better = max((one for _, one in _rivals(model, forms, fewer, form, cost)),
+            better = max((rival for _, rival in _rivals(model, forms, fewer, form, cost)),
                          key=lambda s: _worth(s, cost))
             if _worth(better, cost) > _worth(best, cost) + 1e-3:
                 best, changed = _with_discrepancy(model, forms, better, cost), True
@@ -169,13 +170,13 @@ def _energies(best):
     if not len(shared):
         return dict.fromkeys(best.forms, 0.0)
     theta, covariance = (v[0] for v in evidence.coefficients(best.fits, shared))
-    found = {}
+    energies = {}
     for form in best.forms:
         mine = np.flatnonzero(np.isin(shared.index, form.columns))
         block = covariance[np.ix_(mine, mine)]
-        found[form] = 0.5 * float(theta[mine] @ np.linalg.solve(block, theta[mine])) \
+        energies[form] = 0.5 * float(theta[mine] @ np.linalg.solve(block, theta[mine])) \
             if len(mine) else 0.0
-    return found
+    return energies
 
 
 def _place(model, forms, best, form, cost):
@@ -183,9 +184,10 @@ def _place(model, forms, best, form, cost):
     others = tuple(f for f in best.forms if f is not form)
     empty = model.scored(others)
     scores = {"": empty.score, form.effect: best.score - cost.nats(form)}
-    for rival, one in _rivals(model, forms, empty, form, cost):
-        there = next(f for f in one.forms if f.effect == rival.effect)
-        scores[rival.effect] = max(one.score - cost.nats(there), scores.get(rival.effect, -np.inf))
+    for rival, exchanged in _rivals(model, forms, empty, form, cost):
+        there = next(f for f in exchanged.forms if f.effect == rival.effect)
+        scores[rival.effect] = max(exchanged.score - cost.nats(there),
+                                   scores.get(rival.effect, -np.inf))
     return odds.shares(scores), best.score - empty.score
 
 
@@ -193,14 +195,14 @@ def _rivals(model, forms, fewer, form, cost):
     """[(Form, Scored of the set with it in the place of a member)] of those Forms that
     come near to the best one. Names compete with their discrepancy there, as they do in the set,
     but not those of time for a stranger's place, of which everything is a function."""
-    found, seen = [], set()
-    for rival, one in model.best(fewer, _free(forms, fewer, form.effect)):
+    rivals, seen = [], set()
+    for rival, exchanged in model.best(fewer, _free(forms, fewer, form.effect)):
         if (rival.effect, rival.axis) not in seen and not (
                 form.generic and hypotheses.domain(rival.effect) == "time"):
             seen.add((rival.effect, rival.axis))
-            one = _wider(model, forms, one, cost, rival)
-        found.append((rival, one))
-    return found
+            exchanged = _wider(model, forms, exchanged, cost, rival)
+        rivals.append((rival, exchanged))
+    return rivals
 
 
 def _with_discrepancy(model, forms, scored, cost):
@@ -214,14 +216,14 @@ def _with_discrepancy(model, forms, scored, cost):
 def _wider(model, forms, scored, cost, form):
     """The set with a discrepancy beside this member where that is likelier."""
     others = tuple(f for f in scored.forms if f != form)
-    for one in forms:
-        if form.generic or (one.effect, one.axis) != (form.effect, form.axis):
+    for other in forms:
+        if form.generic or (other.effect, other.axis) != (form.effect, form.axis):
             continue
-        plain = model.scored((*others, one))
-        wider = discrepancy.with_discrepancy(model, forms, plain, one)
+        plain = model.scored((*others, other))
+        wider = discrepancy.with_discrepancy(model, forms, plain, other)
         if wider is None:
             break
-        found = model.scored((*others, wider))
-        if _worth(found, cost) > _worth(scored, cost) + FORM_COST:
-            scored = found
+        extended = model.scored((*others, wider))
+        if _worth(extended, cost) > _worth(scored, cost) + FORM_COST:
+            scored = extended
     return scored

@@ -25,14 +25,14 @@ ALONG = 0.5  # share of gravity that an axis feels at least when a scale can cha
 
 def designs(rest, sensor, chip, settings):
     """list of Design, columns (n, k): a function of each axis is in one column."""
-    found = []
+    designs = []
     if rest.moved_c >= MOVES_C:
-        found += _thermal(rest, sensor, chip)
+        designs += _thermal(rest, sensor, chip)
     for tau in sorted({*terms.WARM_UP_S, *(share * rest.span_s for share in DECAYS)}):
-        found.append(_library("warm_up", rest, sensor, chip, rest.moment(), "tau %.3g s" % tau,
-                              {"tau_s": float(np.clip(tau, 1.0, 7200.0))}))
-    found += _nameless(rest, sensor)
-    return [d for d in found if d.effect not in settings.without]
+        designs.append(_library("warm_up", rest, sensor, chip, rest.moment(), "tau %.3g s" % tau,
+                                {"tau_s": float(np.clip(tau, 1.0, 7200.0))}))
+    designs += _nameless(rest, sensor)
+    return [d for d in designs if d.effect not in settings.without]
 
 
 def _library(name, rest, sensor, chip, moment, variant, shape, axes=(0, 1, 2)):
@@ -48,17 +48,17 @@ def _library(name, rest, sensor, chip, moment, variant, shape, axes=(0, 1, 2)):
 def _thermal(rest, sensor, chip):
     """Slopes over the temperature with and without a lag, straight and bent; its rate; a scale
     that follows it, where an axis feels gravity."""
-    found, shape = [], {"reference_c": float(rest.temperature.mean())}
+    designs, shape = [], {"reference_c": float(rest.temperature.mean())}
     along = tuple(i for i in range(3) if abs(rest.up[i]) >= ALONG and sensor == "accel")
-    for lag in (one for one in terms.LAGS_S if rest.span_s >= LASTS * abs(one)):
+    for lag in (lag for lag in terms.LAGS_S if rest.span_s >= LASTS * abs(lag)):
         felt, label = rest.moment(lag), "lag %g s" % lag if lag else ""
         slope = _library("thermal_bias", rest, sensor, chip, felt, label, shape)
-        found += [slope, _bent(slope)]
-        found.append(_library("thermal_rate", rest, sensor, chip, felt, label, {}))
+        designs += [slope, _bent(slope)]
+        designs.append(_library("thermal_rate", rest, sensor, chip, felt, label, {}))
         if along:
-            found.append(_library("thermal_scale", rest, sensor, chip, felt, label, shape,
-                                  along))
-    return found
+            designs.append(_library("thermal_scale", rest, sensor, chip, felt, label, shape,
+                                    along))
+    return designs
 
 
 def _bent(slope):
@@ -66,29 +66,29 @@ def _bent(slope):
     t = slope.columns[:, 0]
     basis, size = [np.ones(len(t)), t - t.mean()], np.std(t)
     for power in (2, 3):
-        one = (t / max(size, 1e-12)) ** power
+        bend = (t / max(size, 1e-12)) ** power
         done = np.stack(basis, 1)
-        one = one - done @ np.linalg.lstsq(done, one, rcond=None)[0]
-        basis.append(one * size / max(float(np.std(one)), 1e-12))
+        bend = bend - done @ np.linalg.lstsq(done, bend, rcond=None)[0]
+        basis.append(bend * size / max(float(np.std(bend)), 1e-12))
     return replace(slope, variant=(slope.variant + " cube").strip(), keys=slope.keys * 3,
                    axes=slope.axes * 3, columns=np.hstack([slope.columns, *(
-                       np.repeat(one[:, None], 3, axis=1) for one in basis[2:])]),
+                       np.repeat(bend[:, None], 3, axis=1) for bend in basis[2:])]),
                    prior=np.concatenate([slope.prior, np.tile(BEND * slope.prior, 2)]),
                    powers=tuple(power for power in (1, 2, 3) for _ in slope.keys))
 
 
 def _nameless(rest, sensor):
     """What is smooth in time or temperature, jumps, waves and a walk."""
-    found = []
+    designs = []
 
     def add(name, functions, choices=(), variant=""):
         """Three columns a function; choices: of which functions one is taken."""
         keys = ["%s%d" % (letter, k) for k in range(len(functions)) for letter in "xyz"]
         columns = np.repeat(np.stack(functions, 1), 3, axis=1)
-        found.append(Design(name, variant, keys, [0, 1, 2] * len(functions), columns,
-                            np.full(len(keys), strangers.SCALE[sensor]),
-                            [tuple(3 * k + axis for k in one for axis in range(3))
-                             for one in choices]))
+        designs.append(Design(name, variant, keys, [0, 1, 2] * len(functions), columns,
+                              np.full(len(keys), strangers.SCALE[sensor]),
+                              [tuple(3 * k + axis for k in choice for axis in range(3))
+                               for choice in choices]))
     u = (rest.t - rest.t.min()) / max(float(np.ptp(rest.t)), 1e-9)
     add("time", strangers.hats(rest.t, CORNERS))
     if rest.moved_c >= MOVES_C:
@@ -102,7 +102,7 @@ def _nameless(rest, sensor):
         add("periodic", waves, [(2 * k, 2 * k + 1) for k in range(len(halves))])
     turns = (np.arange(WALK) + 0.5) * np.pi
     add("drift", [np.sqrt(2.0) * np.sin(k * u) / k for k in turns], [tuple(range(WALK))], "walk")
-    return found
+    return designs
 
 
 def limits(rest, sensor, name):

@@ -20,7 +20,6 @@ from . import (
     excess,
     hypotheses,
     odds,
-    posterior,
     rest_forms,
     rest_units,
     scored_sets,
@@ -28,6 +27,7 @@ from . import (
     wandering,
 )
 from .localisation import Place
+from .posterior import HOLDS, search_sets
 
 BENT = 4.0  # standard deviations of its square or cube at which an axis is bent
 MEANS = 12  # fewer say nothing of how a reading goes on
@@ -93,7 +93,7 @@ class RestGap:
     @property
     def by_axis(self):
         """{"x": holdout_gain.Shrinkage, ...}"""
-        return {k: one.shrinkage(self._named) for k, one in zip("xyz", self.sums)}
+        return {k: sums.shrinkage(self._named) for k, sums in zip("xyz", self.sums)}
 
     @property
     def _named(self):
@@ -138,33 +138,33 @@ def _sensor(rest, kind, chip, settings, jumps):
     forms = [f for f in hypotheses.forms_of(units, settings.without)
              if several or f.effect != SETTLED]
     model = scored_sets.Model(units, data.statistics, levels)
-    found = posterior.search(model, forms, cutoffs.for_protocol(units, forms, levels))
-    fits = adequacy.goodness_of_fit(units, data.statistics, found.best, levels)
-    chosen = [f for f in found.best.forms if not f.generic and len(f.shared)]
-    strange = [(f, ["xyz"[axis] for axis, _ in effect_estimates.axes_of(model, found, f)])
-               for f in found.best.forms
+    posterior = search_sets(model, forms, cutoffs.for_protocol(units, forms, levels))
+    fits = adequacy.goodness_of_fit(units, data.statistics, posterior.best, levels)
+    chosen = [f for f in posterior.best.forms if not f.generic and len(f.shared)]
+    strange = [(f, ["xyz"[axis] for axis, _ in effect_estimates.axes_of(model, posterior, f)])
+               for f in posterior.best.forms
                if f.generic and not _settled(f, units, fits, levels, kind)]
-    causes = [effect_estimates.in_full(model, forms, found, cause)
-              for cause in aliases.causes(found, units, forms)]
-    told = [_told(c, data, fits, chip, kind, chosen, found) for c in causes]
-    beaten = [c for c, one in zip(causes, told) if _beaten(one, strange, found)]
+    causes = [effect_estimates.in_full(model, forms, posterior, cause)
+              for cause in aliases.causes(posterior, units, forms)]
+    told = [_told(c, data, fits, chip, kind, chosen, posterior) for c in causes]
+    beaten = [c for c, rest_cause in zip(causes, told) if _beaten(rest_cause, strange, posterior)]
     chosen = [f for f in chosen if not any(f in c.chosen for c in beaten)]
-    told = [one for c, one in zip(causes, told) if c not in beaten]
+    told = [rest_cause for c, rest_cause in zip(causes, told) if c not in beaten]
     # What goes to and fro between levels wanders, but is no drift.
     leaps = {"xyz"[axis]: p for axis, p in enumerate(jumps)
-             if p < odds.CHANCE and "drift" in found.best.names}
-    told += _drift(found, units, data, levels, kind, chosen, fits.index, leaps)
+             if p < odds.CHANCE and "drift" in posterior.best.names}
+    told += _drift(posterior, units, data, levels, kind, chosen, fits.index, leaps)
     places = [Place(kind, letter, c.domain, 1.0 if c.share is None else c.share,
                     np.exp(-min(c.score, 600.0))) for c in told for letter in c.letters]
     for form, letters in strange:
-        gain = np.exp(-min(found.gains[form.effect], 600.0))
+        gain = np.exp(-min(posterior.gains[form.effect], 600.0))
         places += [Place(kind, k, hypotheses.domain(form.effect), 1.0, gain)
                    for k in letters or [None]]
     places += [Place(kind, letter, "time", 1.0, p) for letter, p in leaps.items()]
     if not fits.ok and not places:
         places = [Place(kind, None, "time", 1.0, fits.p)]
     return RestGap(kind, rest, tuple(told), tuple(places),
-                   (*(1.0 - found.places[f.effect].get("", 0.0) for f, _ in strange),
+                   (*(1.0 - posterior.places[f.effect].get("", 0.0) for f, _ in strange),
                     *([] if fits.ok else [1.0 - fits.p]), *(1.0 - p for p in leaps.values())),
                    tuple(rest_units.held_out(rest, unit, chosen, point, levels)
                          for unit, point in zip(units, fits.index)),
@@ -179,16 +179,16 @@ def _settled(form, units, fits, levels, kind):
         for u, k in zip(units, fits.index))
 
 
-def _told(cause, data, fits, chip, kind, chosen, found):
+def _told(cause, data, fits, chip, kind, chosen, posterior):
     """RestCause of an aliases.Cause; where the change from one rest to the next may be no more
     than that, what does it is among the names. Its share: what is lost without it."""
     cause = _with_bent(effect_estimates.sized(cause, data, list(fits.index), chip, kind), data,
                        list(fits.index))
     names = cause.names
-    place = found.places[cause.effect]
-    if place.get("drift", 0.0) > 1.0 - posterior.HOLDS:
+    place = posterior.places[cause.effect]
+    if place.get("drift", 0.0) > 1.0 - HOLDS:
         names = [*names, "drift"]  # one walk in many goes the way of a warm-up
-    if place.get(SETTLED, 0.0) > 1.0 - posterior.HOLDS:
+    if place.get(SETTLED, 0.0) > 1.0 - HOLDS:
         names = [*names, "drift", *(["table_tilt"] if kind == "accel" else [])]
     rest = [form for form in chosen if form not in cause.chosen]
     share = excess.share(data.units, data.statistics, fits.index, (rest, fits.index),
@@ -198,11 +198,11 @@ def _told(cause, data, fits, chip, kind, chosen, found):
                      terms.DOMAIN[cause.effect], cause.variant)
 
 
-def _beaten(cause, strange, found):
+def _beaten(cause, strange, posterior):
     """Whether something without a name says more on every axis of a cause: what the name gains
     may be no more than a part of that."""
     return bool(cause.letters) and all(any(
-        (not letters or letter in letters) and found.gains[form.effect] > cause.score
+        (not letters or letter in letters) and posterior.gains[form.effect] > cause.score
         for form, letters in strange) for letter in cause.letters)
 
 
@@ -225,14 +225,14 @@ def _with_bent(cause, data, index):
                        for key in half}}, letters=sorted({*cause.letters, *half}))
 
 
-def _drift(found, units, data, levels, kind, chosen, index, leaps):
+def _drift(posterior, units, data, levels, kind, chosen, index, leaps):
     """[RestCause] of a drift in the likeliest set: its Allan floor on the axes that wander more
     than is usual and do not leap, with a 90 % interval by the profile of the likelihood."""
-    if "drift" not in found.best.names:
+    if "drift" not in posterior.best.names:
         return []
     value, interval, free = {}, {}, frozenset(["flicker"])
     for key, unit, statistics in zip("xyz", units, data.statistics):
-        course = wandering.by_flicker(unit, statistics, found.best.shared,
+        course = wandering.by_flicker(unit, statistics, posterior.best.shared,
                                             levels.prior(unit, free))
         level, low, high = wandering.profile(sorted({b for _, b in unit.grid}), course)
         if low > levels.flicker and key not in leaps:
@@ -240,6 +240,6 @@ def _drift(found, units, data, levels, kind, chosen, index, leaps):
             interval[key] = (low * FLOOR_OF_KERNEL, high * FLOOR_OF_KERNEL)
     if not value:
         return []
-    share = excess.share_of_drift(units, data.statistics, found.best, chosen, index, levels)
-    return [RestCause(("drift",), dict(found.places["drift"]), found.gains["drift"], value,
+    share = excess.share_of_drift(units, data.statistics, posterior.best, chosen, index, levels)
+    return [RestCause(("drift",), dict(posterior.places["drift"]), posterior.gains["drift"], value,
                       interval, "mg" if kind == "accel" else "deg/s", True, share, "time")]

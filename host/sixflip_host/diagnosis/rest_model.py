@@ -15,12 +15,12 @@ from . import (
     evidence,
     holdout_gain,
     hypotheses,
-    posterior,
     scored_sets,
     session_offsets,
     strangers,
     wandering,
 )
+from .posterior import judge_likeliest, search_sets
 from .sensor_gap import DOUBT, SensorGap
 from .settings import Conditions, Settings
 
@@ -52,13 +52,13 @@ class RestModel:
         searched = self._searched(parts)
         turned = self._turned_back(parts, searched)
         if turned:
-            again = self._searched(turned, searched[-1].best.forms)
-            if again[-1].best.score > searched[-1].best.score:
-                parts, searched = turned, again
-        units, data, options, noise, forms, cost, model, found = searched
-        best = found.best
-        causes = [effect_estimates.in_full(model, forms, found, cause)
-                  for cause in aliases.causes(found, units, forms)]
+            refitted = self._searched(turned, searched[-1].best.forms)
+            if refitted[-1].best.score > searched[-1].best.score:
+                parts, searched = turned, refitted
+        units, data, options, noise, forms, cost, model, posterior = searched
+        best = posterior.best
+        causes = [effect_estimates.in_full(model, forms, posterior, cause)
+                  for cause in aliases.causes(posterior, units, forms)]
         fitted = adequacy.goodness_of_fit(
             units, data.statistics, best, noise, self.conditions.shaken.get(self.kind, ()),
             self.kind == "accel")
@@ -67,16 +67,16 @@ class RestModel:
             if p < adequacy.DOUBTFUL_P:
                 fitted = replace(fitted, ok=False, odd="leaps", p=p)
         nameless = [f for f in best.forms if f.generic]
-        doubted = any(found.stranger_share(c.effect) > DOUBT for c in causes)
+        doubted = any(posterior.stranger_share(c.effect) > DOUBT for c in causes)
         crooked = [box_tilt_test.squareness(*part) for part in parts
                    if self.kind == "accel"]
         chosen = [f for f in best.forms if not f.generic and len(f.shared)]
         gap = SensorGap(
-            self, parts, units, data, options, forms, noise, cost, found,
+            self, parts, units, data, options, forms, noise, cost, posterior,
             chosen, nameless, causes, fitted,
-            {f.effect: effect_estimates.axes_of(model, found, f) for f in nameless},
+            {f.effect: effect_estimates.axes_of(model, posterior, f) for f in nameless},
             wandering.drift(self.kind, [session for session, _ in parts], units, data, noise,
-                            found, fitted, chosen),
+                            posterior, fitted, chosen),
             not fitted.ok or bool(nameless) or doubted, crooked)
         gap = replace(gap, causes=gap.sized(causes, data)).without_parts(model)
         return self.shrunk(self._tilted(gap))
@@ -98,9 +98,9 @@ class RestModel:
                        form=self.form)
         model = scored_sets.Model(units, data.statistics, noise)
         progress.doing("what explains it best")
-        found = posterior.search(model, forms, cost) if likeliest is None \
-            else posterior.from_likeliest(model, forms, cost, likeliest)
-        return units, data, options, noise, forms, cost, model, found
+        posterior = search_sets(model, forms, cost) if likeliest is None \
+            else judge_likeliest(model, forms, cost, likeliest)
+        return units, data, options, noise, forms, cost, model, posterior
 
     def _turned_back(self, parts, searched):
         """The parts with NominalSensors fitted without all that any effect adds; None where that
@@ -111,7 +111,7 @@ class RestModel:
         units, best = searched[0], searched[-1].best
         if self.kind != "accel" or not len(best.shared):
             return None
-        found = evidence.coefficients(best.fits, best.shared)[0][0]
+        sizes = evidence.coefficients(best.fits, best.shared)[0][0]
         free = np.concatenate([np.full(len(d.keys), not (d.choices or d.record))
                                for d in units[0].designs])
         every = np.flatnonzero(free)
@@ -126,7 +126,7 @@ class RestModel:
             added = (unit.raw(every) @ theta).reshape(-1, 3)
             less = attitude_fit.fit(session, added @ np.linalg.inv(nominal.matrix).T)
             angle = np.linalg.norm(less.up - nominal.up, axis=1)[session.placement][:, None]
-            changed = 2.0 * angle * (unit.raw(best.shared.index) @ found).reshape(-1, 3)
+            changed = 2.0 * angle * (unit.raw(best.shared.index) @ sizes).reshape(-1, 3)
             chi2 += float((changed ** 2 * session.seconds[:, None]
                            / session.noise_accel ** 2).sum())
             turned.append((session, less))
@@ -201,19 +201,19 @@ class RestModel:
         nats = np.array([wandering.within_rests(
             part, self.kind, width * strangers.SCALE[self.kind],
             adequacy.usual(self.chip, self.kind)) for width in hypotheses.WALKS])
-        found = {("drift", "walk", k): float(row.sum()) for k, row in enumerate(nats)}
-        found.update({("drift", hypotheses.ONE_AXIS, k): float(v)
-                      for k, v in enumerate(nats.T.ravel())})
+        by_choice = {("drift", "walk", k): float(row.sum()) for k, row in enumerate(nats)}
+        by_choice.update({("drift", hypotheses.ONE_AXIS, k): float(v)
+                          for k, v in enumerate(nats.T.ravel())})
         # It is enough to know that it moves while the box lies still: so do other things, whose
         # own likelihood says so.
-        found = {key: min(value, MOVES) for key, value in found.items()}
-        return {**found, **strangers.looked_at(part.t, len(hypotheses.WIDTHS))}
+        by_choice = {key: min(value, MOVES) for key, value in by_choice.items()}
+        return {**by_choice, **strangers.looked_at(part.t, len(hypotheses.WIDTHS))}
 
     def between(self, units, nominal):
         """[Unit of what lies between the sessions], [] where there is nothing between."""
-        found = session_offsets.unit(self.kind, [u.rows for u in units], nominal,
-                                     [u.designs for u in units])
-        return [] if found is None else [found]
+        offsets = session_offsets.unit(self.kind, [u.rows for u in units], nominal,
+                                       [u.designs for u in units])
+        return [] if offsets is None else [offsets]
 
     def _less_known(self, rows, designs):
         """The rows without what the simulator compared with predicts already."""

@@ -38,7 +38,7 @@ class RestNoise:
 
 def noise_by_sensor(sessions):
     """{sensor: RestNoise} of blocks.Sessions, {} where nothing rests for SHORTEST_S."""
-    found = {}
+    noise = {}
     for sensor, unit in (("accel", "mg"), ("gyro", "deg/s")):
         if any(getattr(s.capture, sensor) is None for s in sessions):
             continue
@@ -52,12 +52,12 @@ def noise_by_sensor(sessions):
         walks = len(longest) >= WALK_S * rate
         each = [noise_spectrum.levels([x[:, axis] for x in rests], rate, walks)
                 for axis in range(3)]
-        levels = {name: tuple(one[k] for one in each) for k, name in enumerate(NAMES)
-                  if all(one[k] is not None for one in each)}
+        levels = {name: tuple(of_axis[k] for of_axis in each) for k, name in enumerate(NAMES)
+                  if all(of_axis[k] is not None for of_axis in each)}
         bias = _bias(rests) if sensor == "gyro" else (None, None)
-        found[sensor] = RestNoise(unit, sum(map(len, rests)) / rate, len(longest) / rate, *bias,
+        noise[sensor] = RestNoise(unit, sum(map(len, rests)) / rate, len(longest) / rate, *bias,
                                   levels, _allan(longest, rate))
-    return found
+    return noise
 
 
 def _bias(rests):
@@ -74,10 +74,10 @@ def _bias(rests):
     r = np.clip((off[1:] * off[:-1]).sum(axis=0) / power, 0.0, 0.9)
     half = odds.Z_90 * np.sqrt(power / (len(parts) - 1) / len(parts) * (1 + r) / (1 - r))
     values = np.concatenate(rests)
-    one = np.ptp(values, axis=0) == 0   # it lies anywhere within half a step of the others
-    if one.any():
+    constant = np.ptp(values, axis=0) == 0   # it lies anywhere within half a step of the others
+    if constant.any():
         apart = np.abs(np.diff(values, axis=0))
-        half = np.where(one, 0.5 * apart[apart > 0].min(initial=np.inf), half)
+        half = np.where(constant, 0.5 * apart[apart > 0].min(initial=np.inf), half)
         half = np.where(np.isfinite(half), half, 0.0)
     return mean, np.array([mean - half, mean + half])
 
@@ -91,23 +91,23 @@ def _allan(x, rate):
     return tuple((m / rate, signal_measures.allan(x, int(m))) for m in times)
 
 
-def answer(found):
+def answer(noise):
     """For --json."""
     def digits(value):
         return number(value, 5)
-    out = {}
-    for sensor, one in found.items():
-        out[sensor] = {"unit": spelled(one.unit), "seconds": digits(one.seconds),
-                       "longest_s": digits(one.longest_s),
-                       "allan": [{"tau_s": digits(tau), "deviation": [digits(v) for v in values]}
-                                 for tau, values in one.allan]}
-        if one.bias is not None:
-            out[sensor]["bias"] = dict(zip("xyz", map(digits, one.bias)))
-        if one.bias_90 is not None:
-            out[sensor]["bias_interval_90"] = {
-                key: [digits(v) for v in pair] for key, pair in zip("xyz", one.bias_90.T)}
-        for name, levels in one.levels.items():
-            out[sensor][name] = {key: digits(level.value) for key, level in zip("xyz", levels)}
-            out[sensor][name + "_interval_90"] = {
+    entries = {}
+    for sensor, own in noise.items():
+        allan = [{"tau_s": digits(tau), "deviation": [digits(v) for v in values]}
+                 for tau, values in own.allan]
+        entries[sensor] = {"unit": spelled(own.unit), "seconds": digits(own.seconds),
+                           "longest_s": digits(own.longest_s), "allan": allan}
+        if own.bias is not None:
+            entries[sensor]["bias"] = dict(zip("xyz", map(digits, own.bias)))
+        if own.bias_90 is not None:
+            entries[sensor]["bias_interval_90"] = {
+                key: [digits(v) for v in pair] for key, pair in zip("xyz", own.bias_90.T)}
+        for name, levels in own.levels.items():
+            entries[sensor][name] = {key: digits(level.value) for key, level in zip("xyz", levels)}
+            entries[sensor][name + "_interval_90"] = {
                 key: [digits(level.low), digits(level.high)] for key, level in zip("xyz", levels)}
-    return out
+    return entries

@@ -57,8 +57,8 @@ def levels(rest, kind, flicker, known):
     moved = kind == "accel" and rest.rest.max() > rest.session.max()
     leaning = 1000.0 * np.sin(np.radians(long_rest.SAME_DEG)) if moved else 0.0
     across = leaning * np.sqrt(np.maximum(1.0 - rest.up ** 2, 0.0))
-    offsets = [min(tried for tried in OFFSETS[kind] if tried >= min(one, OFFSETS[kind][-1]))
-               for one in across]
+    offsets = [min(tried for tried in OFFSETS[kind] if tried >= min(lean, OFFSETS[kind][-1]))
+               for lean in across]
     return RestLevels(tuple(offsets), flicker, known)
 
 
@@ -73,7 +73,7 @@ def axis_units(rest, kind, chip, settings):
     kernel = flicker_kernel(rest.t, rest.seconds) * (rest.session[:, None] == rest.session)
     warming = 0 if rest.temperature is None else int(round(
         float(rest.temperature[-1] - rest.temperature[0]) / 3.0))
-    found = []
+    units = []
     for axis in range(3):
         own = [replace(d, columns=d.columns * (np.array(d.axes) == axis)) for d in designs]
         group = covariance.alone(np.diag(rest.noise[kind][:, axis] ** 2), lateral, kernel)
@@ -82,8 +82,8 @@ def axis_units(rest, kind, chip, settings):
         signature = ("rest", axis, tuple(rest.rest.tolist()),
                      tuple((rest.t - rest.t[0]).round().astype(int).tolist()), warming)
         unit = linear_model.unit(rows, own, signature=signature, axis=axis)
-        found.append(replace(unit, energy=unit.energy / 3.0))  # the rows are those of one axis
-    return found
+        units.append(replace(unit, energy=unit.energy / 3.0))  # the rows are those of one axis
+    return units
 
 
 def held_out(rest, unit, chosen, index, levels):
@@ -125,13 +125,13 @@ def held_out(rest, unit, chosen, index, levels):
 def _pieces(rest):
     """(n,) number of the piece that each mean is in: about PIECES in all, FOLDS of each rest at
     least where it has so many means; one after the other through all rests."""
-    found, start = [], 0
+    pieces, start = [], 0
     for number in np.unique(rest):
         n = int((rest == number).sum())
         parts = min(n, max(FOLDS, int(round(PIECES * n / len(rest)))))
-        found.append(start + np.arange(n) * parts // n)
+        pieces.append(start + np.arange(n) * parts // n)
         start += parts
-    return np.concatenate(found)
+    return np.concatenate(pieces)
 
 
 def _foretelling(constants, x, prior, noise, train, held):
@@ -141,6 +141,6 @@ def _foretelling(constants, x, prior, noise, train, held):
     solved = np.linalg.solve(noise[np.ix_(train, train)], design[train])
     gram = design[train].T @ solved + np.diag(np.concatenate([
         np.zeros(constants.shape[1]), prior ** -2.0]))
-    out = np.eye(len(x))[held]
-    out[:, train] -= design[held] @ np.linalg.solve(gram, solved.T)
-    return out
+    operator = np.eye(len(x))[held]
+    operator[:, train] -= design[held] @ np.linalg.solve(gram, solved.T)
+    return operator

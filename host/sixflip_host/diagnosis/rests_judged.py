@@ -50,9 +50,9 @@ def judge(rests, findings, settings, conditions):
         gaps = {kind: job.result() for kind, job in jobs.items()}
     progress.doing("what moves between the rests show")
     motion = motion_model.motion_gap(rests.everything, sessions, nominal, turns, settings)
-    found, nameless, remarks = [], [], []
+    new_findings, nameless, remarks = [], [], []
     if swapped is not None and swapped.effect not in settings.without:
-        found.append(swapped)
+        new_findings.append(swapped)
     if turns:
         sound = not (gaps["accel"].causes or gaps["accel"].unexplained)
         astray = _astray(turns, sound)
@@ -61,14 +61,14 @@ def judge(rests, findings, settings, conditions):
     # What the rests do not explain would be carried into the moves.
     carried = [*gaps.values(), *([turns] if turns else [])]
     if motion and not any(gap.unexplained for gap in carried):
-        found += motion.found
+        new_findings += motion.findings
         remarks += motion.remarks
-        if not turns.found.best.forms:  # a gyro that bends carries gravity wrongly, too
+        if not turns.posterior.best.forms:  # a gyro that bends carries gravity wrongly, too
             nameless += motion.nameless
     if not conditions.coarse:
-        said = [one.remark() for one in gaps["accel"].crooked if one]
+        said = [squareness.remark() for squareness in gaps["accel"].crooked if squareness]
         remarks += dict.fromkeys(sentence for sentence in said if sentence)
-    return RestsJudged(gaps, turns, motion, tuple(found), tuple(nameless), tuple(remarks))
+    return RestsJudged(gaps, turns, motion, tuple(new_findings), tuple(nameless), tuple(remarks))
 
 
 def _astray(turns, sound):
@@ -76,7 +76,7 @@ def _astray(turns, sound):
     steady clock; sound: the accelerometer says rightly where gravity is."""
     nats, number = stray_turns.nats([stray_turns.ends(
         unit, turns.chosen, turn_model.ATTITUDE_DEG) for unit in turns.units])
-    scattered = adequacy.placement_nats(turns.units, turns.data.statistics, turns.found.best,
+    scattered = adequacy.placement_nats(turns.units, turns.data.statistics, turns.posterior.best,
                                         SCATTERED_DEG)
     if sound and present(scattered):
         degrees = max(u.grid[k][0] for u, k in zip(turns.units, turns.adequacy.index))

@@ -76,21 +76,22 @@ def judge(sessions, without=(), damages=()):
     jumpy = {f.sensor for f in findings if f.effect in ("torn_reads", "dead_band")}
     sessions = [_without_bands(s, findings) for s in sessions]
     without_spikes, wild = noise_bursts.without_spikes(sessions, leaping)
-    unsteady = [one for one in [*noise_bursts.unsteady(without_spikes), *wild]
-                if one[0] not in noisy]
+    unsteady = [burst for burst in [*noise_bursts.unsteady(without_spikes), *wild]
+                if burst[0] not in noisy]
     unsteady += torn_reads.jumps(sessions, jumpy)
-    remarks = [one.words for one in damages]
+    remarks = [damage.words for damage in damages]
     remarks += ["bit %d of the %s axis of the %s always reads %d"
                % (bit, axis, SENSOR[sensor], value) for sensor, axis, bit, value in bits]
     remarks += [words for _, _, words, _ in rings]
     # Spikes that are pages are one gap, by whichever of both they are told more surely.
-    noise = {sensor: min(p for one, _, p in unsteady if one == sensor)
+    noise = {sensor: min(p for other, _, p in unsteady if other == sensor)
              for sensor, _, _ in unsteady}
     nameless = [localisation.Place(sensor, None, "noise", 1.0, p) for sensor, p in noise.items()]
     nameless += [localisation.Place(sensor, axis, "time_since_move", 1.0, odds.chance(nats))
                  for sensor, axis, _, nats in rings]
-    nameless += [localisation.Place(one.sensor, axis, one.domain, 1.0, odds.chance(one.score))
-                 for one in damages for axis in one.axes or (None,)]
+    nameless += [localisation.Place(damage.sensor, axis, damage.domain, 1.0,
+                                    odds.chance(damage.score))
+                 for damage in damages for axis in damage.axes or (None,)]
     nameless += [localisation.Place(sensor, axis, "amplitude", 1.0, odds.chance(codes.bit_nats(
         [getattr(s.capture, sensor)[:, "xyz".index(axis)] for s in sessions])))
         for sensor, axis, _, _ in bits]
@@ -108,40 +109,40 @@ def judge(sessions, without=(), damages=()):
 def _uneven(sessions, coarse):
     """[(sensor, axis letter, nats)] whose codes at rest are not as frequent as those around them;
     coarse: sensors whose codes are known to be missing."""
-    found = []
-    for sensor in (one for one in SENSOR if one not in coarse):
+    uneven = []
+    for sensor in (kind for kind in SENSOR if kind not in coarse):
         rests = [getattr(s.capture, sensor)[run.first:run.end]
                  for s in registers.of_counts(sessions, sensor)
                  if getattr(s.capture, sensor) is not None for run in s.runs]
         for axis in range(3) if rests else ():
             nats = codes.uneven_nats([counts[:, axis] for counts in rests])
             if present(nats):
-                found.append((sensor, "xyz"[axis], nats))
-    return found
+                uneven.append((sensor, "xyz"[axis], nats))
+    return uneven
 
 
 def _without_bands(session, findings):
     """The session with what a dead band takes off put back on: where no code is missing, all that
     is read beyond the band is less by it, which bends every axis as no other effect does."""
     capture = copy.copy(session.capture)
-    for found in (f for f in findings if f.effect == "dead_band"):
-        counts = np.array(getattr(capture, found.sensor))
-        for axis, band in found.value.items():
+    for finding in (f for f in findings if f.effect == "dead_band"):
+        counts = np.array(getattr(capture, finding.sensor))
+        for axis, band in finding.value.items():
             column = counts[:, "xyz".index(axis)].astype(np.int64)
             off = column - codes.resting(column)
             if np.abs(off[off != 0]).min(initial=band) < band:
                 counts[:, "xyz".index(axis)] = np.clip(
                     column + band * np.sign(off), -RAIL - 1, RAIL)
-        setattr(capture, found.sensor, counts)
+        setattr(capture, finding.sensor, counts)
     return session.of_capture(capture) if any(
         f.effect == "dead_band" for f in findings) else session
 
 
 def _without_lines(session, findings):
     """The session with the means of its blocks without the slow lines that were found."""
-    for found in (f for f in findings if f.effect == "vibration"):
-        for axis, hz in found.hz.items():
-            session = line_across_rests.without(session, found.sensor, "xyz".index(axis), hz,
+    for finding in (f for f in findings if f.effect == "vibration"):
+        for axis, hz in finding.hz.items():
+            session = line_across_rests.without(session, finding.sensor, "xyz".index(axis), hz,
                                                 SLOW_HZ)
     return session
 
@@ -150,19 +151,19 @@ def of_registers(sessions):
     """list of Finding of the registers and the clock over all sessions: steps (common divisor), a
     dead band, torn reads, rails, clipped peaks, repeated and dropped samples, the true rate, axes
     swapped or inverted."""
-    found = []
+    findings = []
     for sensor in ("accel", "gyro"):
         columns = [getattr(s.capture, sensor) for s in sessions]
         if any(c is None for c in columns):
             continue
-        found += _per_axis("quantisation", sensor, [registers.steps(c) for c in columns],
-                           [codes.step_nats(c) for c in columns], "counts come in steps",
-                           [codes.distinct(c) for c in columns])
+        findings += _per_axis("quantisation", sensor, [registers.steps(c) for c in columns],
+                              [codes.step_nats(c) for c in columns], "counts come in steps",
+                              [codes.distinct(c) for c in columns])
         band = _dead_band(sensor, columns)
-        found += band + saturation.saturation(sessions, sensor, columns)
-        found += torn_reads.finding(sessions, sensor,
-                                    ["xyz".index(a) for f in band for a in f.axes])
-    return found + sample_clock.findings(sessions) + axis_order.swapped(sessions)
+        findings += band + saturation.saturation(sessions, sensor, columns)
+        findings += torn_reads.finding(sessions, sensor,
+                                       ["xyz".index(a) for f in band for a in f.axes])
+    return findings + sample_clock.findings(sessions) + axis_order.swapped(sessions)
 
 
 def _per_axis(effect, sensor, sizes, nats, words, numbers):
@@ -190,20 +191,20 @@ def _dead_band(sensor, columns):
             str(code) for code in dict.fromkeys(np.ravel(about).tolist()))
     columns = [np.clip(c.astype(np.int32) - np.array(code), -RAIL - 1, RAIL)
                for c, code in zip(columns, about)]
-    found = _per_axis("dead_band", sensor, [registers.dead_band(c) for c in columns],
-                      [codes.band_nats(c) for c in columns], words,
-                      [codes.zeros(c) for c in columns])
+    findings = _per_axis("dead_band", sensor, [registers.dead_band(c) for c in columns],
+                         [codes.band_nats(c) for c in columns], words,
+                         [codes.zeros(c) for c in columns])
     bands = {axis: dead_band.band_of_columns([c[:, k] for c in columns])
              for k, axis in enumerate("xyz")}
-    known = {axis for f in found for axis in f.axes}
+    known = {axis for f in findings for axis in f.axes}
     bands = {axis: band for axis, band in bands.items()
              if axis not in known and band.counts > 1.0 and present(band.nats)}
     if not bands:
-        return found
+        return findings
     value = {axis: round(band.counts) for axis, band in bands.items()}
     interval = {axis: band.interval for axis, band in bands.items()}
     score, number = (sum(getattr(b, name) for b in bands.values()) for name in ("nats", "number"))
-    for f in found:
+    for f in findings:
         value, interval = {**f.value, **value}, {**f.interval, **interval}
         score, number = score + f.score, number + f.number
     return [Finding("dead_band", sensor, sorted(value), value, "counts", score, "amplitude", words,

@@ -64,10 +64,10 @@ class Model:
 
     def scored(self, forms):
         """Scored of a tuple of Forms."""
-        found = self._empty
+        scored = self._empty
         for form in forms:
-            found = self.extended(found, form)
-        return found
+            scored = self.extended(scored, form)
+        return scored
 
     def extended(self, base, form):
         """Scored of a Scored set with one more Form; what each session chooses for the others is
@@ -75,7 +75,7 @@ class Model:
         key = frozenset((*base.forms, form))
         if key not in self._known:
             rough = self._looked_at.get(key) or self._rough(base, form)
-            self._known[key] = self._closer(self._chosen_again(rough))
+            self._known[key] = self._closer(self._rechosen(rough))
         return self._known[key]
 
     def best(self, base, forms):
@@ -83,7 +83,7 @@ class Model:
         is first. Found with few levels of noise, then looked at with all of them."""
         rough = sorted(enumerate(self._roughly(base, forms)),
                        key=lambda pair: (pair[1].score, pair[0]), reverse=True)
-        self._looked_at.update((frozenset(one.forms), one) for _, one in rough)
+        self._looked_at.update((frozenset(scored.forms), scored) for _, scored in rough)
         return sorted(((forms[place], self.extended(base, forms[place]))
                        for place, _ in rough[:NEAR]), key=lambda pair: -pair[1].score)
 
@@ -94,8 +94,8 @@ class Model:
     def _roughly(self, base, forms):
         """[_rough(base, form)] of many forms; those that only add shared columns are taken
         together."""
-        found = [self._rough(base, one) if one.choices or one.free else None for one in forms]
-        plain = [place for place, one in enumerate(found) if one is None]
+        scored = [self._rough(base, form) if form.choices or form.free else None for form in forms]
+        plain = [place for place, done in enumerate(scored) if done is None]
         free, private = _free(base.forms), base.private
         shared = [_distinct((*base.forms, forms[place])) for place in plain]
         for places in forms_at_once.by_size(shared).values():
@@ -108,10 +108,10 @@ class Model:
                 for number, (unit, statistics) in enumerate(zip(self.units, self.statistics))]
             scores = self._score(fits, Columns(index, prior)) + _worth(base.chosen)
             for number, k in enumerate(places):
-                found[plain[k]] = Scored(
+                scored[plain[k]] = Scored(
                     (*base.forms, forms[plain[k]]), float(scores[number]),
                     tuple(forms_at_once.fit_of_form(fit, number) for fit in fits), base.chosen)
-        return found
+        return scored
 
     def _rough(self, base, form):
         """Scored of a base with one more Form (both None: of no form), looked at with few levels
@@ -136,7 +136,7 @@ class Model:
         score = float(self._score(fits, shared)[0]) + _worth(chosen)
         return Scored(forms, score, tuple(fits), chosen)
 
-    def _chosen_again(self, rough):
+    def _rechosen(self, rough):
         """The Scored set with every session's choices made again beside all the others, as long
         as that makes it likelier: where a jump is depends on what else there is."""
         changed = len(rough.forms) > 1
@@ -155,11 +155,11 @@ class Model:
     def _with_choice(self, place, scored, form):
         """The choices of one unit with that of a form made again."""
         choices = scored.chosen[place]
-        others = tuple(one for one in choices if one.form != form)
+        others = tuple(choice for choice in choices if choice.form != form)
         if len(others) == len(choices):
             return choices
         best = self._choice(place, scored.shared, others, form, _free(scored.forms))
-        return tuple(best if one.form == form else one for one in choices)
+        return tuple(best if choice.form == form else choice for choice in choices)
 
     def _closer(self, rough):
         """The Scored set looked at with all levels of noise around its likeliest."""
@@ -203,10 +203,10 @@ class Model:
 
     def _choice(self, place, shared, beside, form, free):
         """The likeliest Choice of a form in one unit, beside a tuple of Choice of the others."""
-        unit, found = self.units[place], []
+        unit, tried = self.units[place], []
         elimination = self._elimination(place, _private(beside))
         # Integrated out by its prior a column is the same, shared or private.
-        together = [shared + one for one in form.choices]
+        together = [shared + choice for choice in form.choices]
         for numbers in forms_at_once.by_size(together).values():
             likelihoods = forms_at_once.fit(
                 unit, self.statistics[place], np.stack([together[n].index for n in numbers]),
@@ -214,19 +214,19 @@ class Model:
                 self._levels_tried(place, free), elimination).evidence
             for number, likelihood in zip(numbers, likelihoods.tolist()):
                 within = unit.within.get((form.effect, form.variant, number), 0.0)
-                found.append((likelihood + within, number, within))
-        _, number, within = max(found)
+                tried.append((likelihood + within, number, within))
+        _, number, within = max(tried)
         return Choice(form, number, within - float(np.log(len(form.choices))))
 
 
 def _private(choices):
     """Columns of a tuple of Choice."""
-    return sum((one.columns for one in choices), NONE)
+    return sum((choice.columns for choice in choices), NONE)
 
 
 def _worth(chosen):
     """Nats of all units' choices by themselves."""
-    return sum(one.nats for choices in chosen for one in choices)
+    return sum(choice.nats for choices in chosen for choice in choices)
 
 
 def _free(forms):

@@ -22,13 +22,13 @@ DOUBT = 0.5  # probability of something nameless, above which a cause is none th
 
 @dataclass(frozen=True, eq=False)
 class SensorGap:
-    """What rest_model.RestModel.fit found. parts: [(Session, NominalSensor)]; units, data;
-    options (all Forms), forms (those that compete), noise (evidence.Levels), cost
-    (cutoffs.Cutoffs); found (Posterior), chosen (its named Forms), strangers (the others: those
-    without a name, and those that explain so little beside them that they are likelier a part of
-    what has none), causes, adequacy, shrinkage; unexplained: bool; strange_axes: {effect: axes} of
-    the strangers; drift: wandering.Drift or None; crooked: box_tilt_test.Crooked or None of each
-    session, none of it where something bends the reading."""
+    """What rest_model.RestModel.fit found. parts: [(Session, NominalSensor)]; units, data; options
+    (all Forms), forms (those that compete), noise (evidence.Levels), cost (cutoffs.Cutoffs);
+    posterior (Posterior), chosen (its named Forms), strangers (the others: those without a name,
+    and those that explain so little beside them that they are likelier a part of what has none),
+    causes, adequacy, shrinkage; unexplained: bool; strange_axes: {effect: axes} of the strangers;
+    drift: wandering.Drift or None; crooked: box_tilt_test.Crooked or None of each session, none of
+    it where something bends the reading."""
 
     model: object
     parts: list
@@ -38,7 +38,7 @@ class SensorGap:
     forms: list
     noise: evidence.Levels
     cost: object
-    found: posterior.Posterior
+    posterior: posterior.Posterior
     chosen: list
     strangers: list
     causes: list
@@ -49,22 +49,22 @@ class SensorGap:
     crooked: list
     shrinkage: object = None
 
-    def of_name(self, found, names, share, outside):
+    def of_name(self, probability, names, share, outside):
         """odds.of_name of a cause of these names that explains this share of the excess. Beside
         something nameless it may be a part of that, the likelier the less it explains: of all
         that is there, where more than that is not even described, or what is left is no noise;
         else of what that gains. By itself it is all there is, and what shows in samples or moves
         is no part of what the rests show."""
-        gains = self.found.gains
+        gains = self.posterior.gains
         mine = max((gains[name] for name in names if name in gains), default=0.0)
         if not self.unexplained or share is None or not mine:
-            return odds.of_name(found, self.cost.mimicry.whole(), outside)
+            return odds.of_name(probability, self.cost.mimicry.whole(), outside)
         strange = max((gains[f.effect] for f in self.strangers if f.effect in gains), default=0.0)
         left = self.adequacy.excess / max(self.adequacy.excess_before, 1e-9)
         undescribed = left > share or not strange or not self.adequacy.ok
         mimicked = self.cost.mimicry.whole(share) if undescribed \
             else self.cost.mimicry.beside(mine / strange)
-        return odds.of_name(found, mimicked, outside, odds.BESIDE)
+        return odds.of_name(probability, mimicked, outside, odds.BESIDE)
 
     @property
     def kind(self):
@@ -104,7 +104,7 @@ class SensorGap:
     @property
     def wanders(self):
         """Whether noise that wanders more than it usually does is among what was found."""
-        return "drift" in self.found.best.names
+        return "drift" in self.posterior.best.names
 
     def unit(self, part, nominal, certified, wanted=None):
         """linear_model.Unit of a session, or of a part of one, as the model makes it."""
@@ -143,16 +143,16 @@ class SensorGap:
                  if a_part(sum(c.probabilities.values()), c.names, c.share)]
         forms = [form for cause in parts for form in cause.chosen]
         drift = self.drift
-        if drift and a_part(self.found.places["drift"]["drift"], ["drift"], drift.share):
+        if drift and a_part(self.posterior.places["drift"]["drift"], ["drift"], drift.share):
             drift = None
-            forms += [form for form in self.found.best.forms if form.effect == "drift"]
+            forms += [form for form in self.posterior.best.forms if form.effect == "drift"]
         if not forms:
             return self
         return replace(self, causes=[c for c in self.causes if c not in parts], drift=drift,
                        chosen=[form for form in self.chosen if form not in forms],
                        strangers=[*self.strangers, *forms], unexplained=True,
                        strange_axes={**self.strange_axes, **{
-                           f.effect: effect_estimates.axes_of(model, self.found, f)
+                           f.effect: effect_estimates.axes_of(model, self.posterior, f)
                            for f in forms}})
 
     def with_effect(self, name):
@@ -162,7 +162,7 @@ class SensorGap:
         if name in {c.effect for c in self.chosen} or not mine:
             return self
         model = scored_sets.Model(self.units, self.data.statistics, self.noise)
-        best = max(mine, key=lambda form: model.scored((*self.found.best.forms, form)).score)
+        best = max(mine, key=lambda form: model.scored((*self.posterior.best.forms, form)).score)
         chosen = [*self.chosen, best]
         return replace(self, chosen=chosen, shrinkage=holdout_gain.shrinkage(
             self.data, chosen, self.adequacy.index, self.noise, self.wanders))

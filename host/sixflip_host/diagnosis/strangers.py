@@ -65,30 +65,30 @@ def shared(session, up, sensor, reference_c):
     n, m = session.n, session.moment(up)
     f = np.stack(m.f, 1)
     scale = SCALE[sensor]
-    found = [_smooth("time", hats(session.t, HATS), n, scale)]
+    designs = [_smooth("time", hats(session.t, HATS), n, scale)]
     if session.thermal:
         # A part may lag behind its thermometer by itself, too: to first order that is a share of
         # the temperature's rate, which else would be named. Without a lag last: see hypotheses.
         for lag in sorted((lag for lag in LAGS_S if lag >= 0.0), reverse=True):
             t = (session.thermometer.lagged(session.t, lag) - reference_c) / 5.0
-            found.append(_smooth("temperature", [t, t ** 2, t ** 3], n, scale,
-                                 "lag %g s" % lag if lag else ""))
+            designs.append(_smooth("temperature", [t, t ** 2, t ** 3], n, scale,
+                                   "lag %g s" % lag if lag else ""))
         t = (session.temperature - reference_c) / 5.0
-        found.append(_smooth("thermal_orientation", [t * f[:, i] for i in range(3)], n, scale))
+        designs.append(_smooth("thermal_orientation", [t * f[:, i] for i in range(3)], n, scale))
     before = np.stack(m.before, 1)
     history = [before[:, i] for i in range(3)] + [before[:, i] * before[:, j] for i in range(3)
                                                   for j in range(i)]
-    found.append(_smooth("history", history, n, scale))
+    designs.append(_smooth("history", history, n, scale))
     for tau in FADES_S:
         fade = np.exp(-session.since / tau)
         since = [fade] + [(before[:, i] - f[:, i]) * fade for i in range(3)]
-        found.append(_smooth("time_since_move", since, n, scale, "tau %g s" % tau))
-    found.append(_smooth("orientation", harmonics(f, sensor), n, scale))
+        designs.append(_smooth("time_since_move", since, n, scale, "tau %g s" % tau))
+    designs.append(_smooth("orientation", harmonics(f, sensor), n, scale))
     if sensor == "accel":
-        found.append(bend(f, scale))
+        designs.append(bend(f, scale))
     if session.shaken_mg:
-        found.append(_shaking(session.vibration / session.shaken_mg, scale))
-    return [*found, _flip(session, scale)]
+        designs.append(_shaking(session.vibration / session.shaken_mg, scale))
+    return [*designs, _flip(session, scale)]
 
 
 def private(session, up, sensor, left):
@@ -114,12 +114,12 @@ def jumps(session):
     starts = np.unique(session.placement, return_index=True)[1][1:]
     if not len(starts):
         return [np.zeros(session.n)] * sum(JUMPS.values())
-    found = []
+    steps = []
     for seconds, times in JUMPS.items():
         for k in starts[np.linspace(0, len(starts) - 1, times).round().astype(int)]:
-            found.append(np.where(np.arange(session.n) < k, -0.5, 0.5) if not seconds else
+            steps.append(np.where(np.arange(session.n) < k, -0.5, 0.5) if not seconds else
                          0.5 * np.tanh(2.0 * (session.t - session.t[k]) / seconds))
-    return found
+    return steps
 
 
 def _own_scale(session, up, scale):
@@ -149,12 +149,12 @@ def strongest(t, left):
     if len(hz) <= 2 * OVER or not left.any():
         return np.full(STRONGEST, span)
     power = sum(signal.lombscargle(t, x, 2.0 * np.pi * hz) for x in left.T if x.any())
-    found = []
+    periods = []
     for _ in range(STRONGEST):
         k = int(power.argmax())
-        found.append(1.0 / hz[k])
+        periods.append(1.0 / hz[k])
         power[max(k - OVER, 0):k + OVER + 1] = 0.0
-    return np.array(found)
+    return np.array(periods)
 
 
 def _told_apart(t):

@@ -58,8 +58,8 @@ def nats(sessions):
                 for level in LEVELS_DEG + FAR_DEG for tail in TAILS)
     apart = [(level, far, tail) for level in LEVELS_DEG for far in FAR_DEG for tail in TAILS
              if far >= FAR_TIMES * level]
-    best, number = max(_likelihood(sessions, _apart(*one, share))
-                       for one in apart for share in SHARES)
+    best, number = max(_likelihood(sessions, _apart(*levels, share))
+                       for levels in apart for share in SHARES)
     return best - alike - np.log(len(SHARES) * len(FAR_DEG)), number
 
 
@@ -92,15 +92,16 @@ def _likelihood(sessions, density):
     integrated out. density(left (n, 2), known (n, 2)) -> log density (n,), precision (n, 2) with
     which each turn counts, chance (n,) that it is far off."""
     total = number = 0.0
-    for one in sessions:
-        precision = 1.0 / one.known
+    for session in sessions:
+        precision = 1.0 / session.known
         for _ in range(ROUNDS):
-            weighted = one.columns * precision[:, :, None]
-            gram = np.einsum("nki,nkj->ij", weighted, one.columns)
-            theta = np.linalg.solve(gram, np.einsum("nki,nk->i", weighted, one.off))
-            value, precision, chance = density(one.off - one.columns @ theta, one.known)
-        weighted = one.columns * precision[:, :, None]
-        gram = np.einsum("nki,nkj->ij", weighted, one.columns)
+            weighted = session.columns * precision[:, :, None]
+            gram = np.einsum("nki,nkj->ij", weighted, session.columns)
+            theta = np.linalg.solve(gram, np.einsum("nki,nk->i", weighted, session.off))
+            left = session.off - session.columns @ theta
+            value, precision, chance = density(left, session.known)
+        weighted = session.columns * precision[:, :, None]
+        gram = np.einsum("nki,nkj->ij", weighted, session.columns)
         total += float(value.sum()) - 0.5 * np.linalg.slogdet(gram)[1]
         number += float(chance.sum())
     return total, number

@@ -47,13 +47,13 @@ class Gains:
 
     def left(self, sections):
         """All contrasts (m,) with the terms {name: fields} of each part in the record."""
-        out = []
+        contrasts = []
         for (session, placements), unit, terms in zip(self.parts, self.units, sections):
             record = copy.deepcopy(self.record)
             for name, fields in terms.items():
                 record_terms.put(record, name, fields)
-            out.append(self._contrasts(corrected(session, record), placements, unit))
-        return np.concatenate(out)
+            contrasts.append(self._contrasts(corrected(session, record), placements, unit))
+        return np.concatenate(contrasts)
 
     def _contrasts(self, session, placements, unit):
         model = attitude_fit.fit(session)
@@ -77,9 +77,9 @@ def gains(gap, record, certified):
         parts = [(session, set(p.placement.tolist())) for p, _ in halves]
         data = coefficient_fits.data_of([gap.unit(p, m, certified) for p, m in halves])
         index = gap.halved_levels(data)
-    found = Gains(gap, record, certified, parts, data, 0.0)
-    energy = sum(u.noise_energy(*u.grid[k]) for u, k in zip(found.units, index))
-    return replace(found, floor=float(np.sqrt(energy / sum(u.freedom for u in found.units))))
+    held = Gains(gap, record, certified, parts, data, 0.0)
+    energy = sum(u.noise_energy(*u.grid[k]) for u, k in zip(held.units, index))
+    return replace(held, floor=float(np.sqrt(energy / sum(u.freedom for u in held.units))))
 
 
 def _turning(gap):

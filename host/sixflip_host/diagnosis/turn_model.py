@@ -34,10 +34,10 @@ def design(name, chosen, reference_c, chip):
         m.w = tuple(turn.middle.T)
         m.temperature = turn.temperature if turn.temperature is not None else m.temperature
         shape = {"reference_c": reference_c} if name == "thermal_scale" else None
-        one = terms.of_terms(name, "gyro", m, len(turn.dt), chip=chip, shape=shape)
-        added = one.columns.reshape(len(turn.dt), 3, -1)
+        own = terms.of_terms(name, "gyro", m, len(turn.dt), chip=chip, shape=shape)
+        added = own.columns.reshape(len(turn.dt), 3, -1)
         parts.append(turns.projected(turn, added))
-    return terms.Design(name, "", one.keys, one.axes, np.vstack(parts), one.prior)
+    return terms.Design(name, "", own.keys, own.axes, np.vstack(parts), own.prior)
 
 
 class TurnModel(RestModel):
@@ -164,18 +164,18 @@ def swapped(sessions, nominal):
     """Finding of gyro axes that are swapped or inverted, or None; its read (3, 3) takes what is
     true to what is read."""
     # A turn about the vertical looks the same to gravity whichever way the axes point.
-    found = [t for s, m in zip(sessions, nominal) for t in turns.usable_turns(s, m.up)
-             if t.before @ t.after < 0.8][:10]
-    plain = np.array([t.off() for t in found])
-    if len(found) < 3 or plain.mean() < WRONG_DEG:  # the plain order does: no other is tried
+    chosen = [t for s, m in zip(sessions, nominal) for t in turns.usable_turns(s, m.up)
+              if t.before @ t.after < 0.8][:10]
+    plain = np.array([t.off() for t in chosen])
+    if len(chosen) < 3 or plain.mean() < WRONG_DEG:  # the plain order does: no other is tried
         return None
     # Nor is the plain order in a range that is not the header's another order.
-    plain = min([plain, *(np.array([t.integrated(np.eye(3) / times).off() for t in found])
+    plain = min([plain, *(np.array([t.integrated(np.eye(3) / times).off() for t in chosen])
                           for times in wrong_scale.RANGES)], key=np.sum)
     if plain.mean() < WRONG_DEG:
         return None
-    off, matrix = min(((np.array([t.integrated(one).off() for t in found]), one)
-                       for one in axis_order.SIGNED), key=lambda pair: pair[0].mean())
+    off, matrix = min(((np.array([t.integrated(order).off() for t in chosen]), order)
+                       for order in axis_order.SIGNED), key=lambda pair: pair[0].mean())
     score = order_nats(off, plain)
     if not present(score):
         return None

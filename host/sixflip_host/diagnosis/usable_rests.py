@@ -55,7 +55,7 @@ def select(sessions, findings, stuck, scaled=False):
     if any(f.effect == "saturation" and f.sensor == "accel" for f in findings):
         # Rests that were cut off say nothing about the sensor but that.
         kept = {s: s.without_samples(saturation.railed(s)) for s in usable}
-        lost = sum(s.placements() - one.placements() for s, one in kept.items())
+        lost = sum(s.placements() - fewer.placements() for s, fewer in kept.items())
         remarks += ["%d rests on a rail were left out" % lost] if lost else []
         everything = [kept.get(s, s) for s in everything]
         usable = _enough(kept.values())

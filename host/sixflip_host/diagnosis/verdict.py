@@ -57,5 +57,5 @@ def not_closed(shrinkage):
 def of_gap(gap):
     """[probability] of what has no name in a sensor_gap.SensorGap: the strangers of the likeliest
     set, each in its place; and what is left, where it is more than noise."""
-    strange = [1.0 - gap.found.places[form.effect].get("", 0.0) for form in gap.strangers]
+    strange = [1.0 - gap.posterior.places[form.effect].get("", 0.0) for form in gap.strangers]
     return strange + ([] if gap.adequacy.ok else [1.0 - gap.adequacy.p])

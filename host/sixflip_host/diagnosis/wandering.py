@@ -33,26 +33,27 @@ class Drift:
     axes: tuple = ()
 
 
-def drift(kind, sessions, units, data, noise, found, fitted, chosen):
+def drift(kind, sessions, units, data, noise, posterior, fitted, chosen):
     """Drift where it is in the likeliest set, its interval by the profile of the likelihood, or
     None; what jumps, or is the same on several axes, is no noise, and has no name."""
-    if "drift" not in found.best.names or fitted.odd:
+    if "drift" not in posterior.best.names or fitted.odd:
         return None
     free = frozenset(["flicker"])
-    course = sum(by_flicker(unit, statistics, found.best.shared, noise.prior(unit, free))
+    course = sum(by_flicker(unit, statistics, posterior.best.shared, noise.prior(unit, free))
                  for unit, statistics in zip(units, data.statistics) if not unit.between)
     levels = sorted({b for _, b in units[0].grid})
     level, low, high = profile(levels, course)
-    left = _left(kind, units, data.statistics, found.best)
+    left = _left(kind, units, data.statistics, posterior.best)
     axes = _louder(left(level))
     if axes:
         # Of fewer axes less is known, in the logarithm of the level.
         spread, whole = (3.0 / len(axes)) ** 0.5, level
         level = _level_of(axes, left, levels) * _share_of(axes, kind, sessions)
         low, high = (level * (end / whole) ** spread for end in (low, high))
-    return Drift(level, low, high, found.gains["drift"],
-                 excess.share_of_drift(units, data.statistics, found.best, chosen, fitted.index,
-                                       noise), tuple("xyz"[k] for k in axes))
+    share = excess.share_of_drift(units, data.statistics, posterior.best, chosen, fitted.index,
+                                  noise)
+    return Drift(level, low, high, posterior.gains["drift"], share,
+                 tuple("xyz"[k] for k in axes))
 
 
 def _left(kind, units, statistics, scored):
@@ -60,10 +61,10 @@ def _left(kind, units, statistics, scored):
     whitened, beside all that was found but the drift."""
     theta = evidence.coefficients(scored.fits, scored.shared)[0][0]
     parts = []
-    for unit, one, choices in zip(units, statistics, scored.chosen):
+    for unit, sums, choices in zip(units, statistics, scored.chosen):
         if not unit.between:
             others = sum((c.columns for c in choices if c.form.effect != "drift"), NONE)
-            fit = evidence.fit(unit, one, scored.shared, others, np.zeros(len(unit.grid)))
+            fit = evidence.fit(unit, sums, scored.shared, others, np.zeros(len(unit.grid)))
             parts.append((unit, unit.grid[int(fit.index[0])][0], others,
                           unit.raw(scored.shared.index) @ theta))
     return lambda level: np.concatenate([adequacy.innovations(
@@ -104,12 +105,12 @@ def _readings(session, kind):
 def by_flicker(unit, statistics, shared, level):
     """(F,) largest log likelihood of a unit at each of its flicker levels, smallest first."""
     flickers = np.array([pair[1] for pair in unit.grid])
-    found = []
+    course = []
     for value in np.unique(flickers):
         points = np.flatnonzero(flickers == value)
-        one = evidence.fit(unit, statistics, shared, NONE, level, points)
-        found.append(one.evidence[0])
-    return np.array(found)
+        fit = evidence.fit(unit, statistics, shared, NONE, level, points)
+        course.append(fit.evidence[0])
+    return np.array(course)
 
 
 def profile(levels, course):

@@ -23,11 +23,11 @@ SHAPE, LEEWAY, OFFSET = 0.02, 5.0, 0.5
 
 def face_axes(face):
     """(n, 3) unit vectors of face indices (n,); zero where leaning (-1)."""
-    out = np.zeros((len(face), 3))
+    axes = np.zeros((len(face), 3))
     for i, f in enumerate(face):
         if f >= 0:
-            out[i, faces.AXIS[f]] = faces.SIGN[f]
-    return out
+            axes[i, faces.AXIS[f]] = faces.SIGN[f]
+    return axes
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +63,7 @@ def fit(session, added=0.0):
         prior = np.concatenate([(p[:9] - start[:9]) / SHAPE / LEEWAY, p[9:] / OFFSET])
         return np.concatenate([along, across.ravel() / ACROSS, prior])
 
-    found = least_squares(residual, start, x_scale=0.01, method="trf", max_nfev=60).x
-    matrix, offset = found[:9].reshape(3, 3), found[9:]
+    parameters = least_squares(residual, start, x_scale=0.01, method="trf", max_nfev=60).x
+    matrix, offset = parameters[:9].reshape(3, 3), parameters[9:]
     f = mean @ matrix.T + offset
     return NominalSensor(matrix, offset, f / np.linalg.norm(f, axis=1)[:, None])

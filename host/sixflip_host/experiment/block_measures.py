@@ -47,18 +47,18 @@ def of_runs(capture, runs, rate, t_s, labelled, smooth):
     # Where nobody labelled, a face is a guess, and only the length of gravity is used.
     face = np.array([faces.face_of_code(int(c)) if labelled else -1 for c in code], dtype=int)
     accel, gyro = readings(capture, first, end)
-    found = {"placement": placement, "code": code, "first": first, "end": end, "face": face,
-             "t": t, "since": t - starts[placement] if len(cut) else t,
-             "seconds": (end - first) / rate, "accel": accel, "gyro": gyro,
-             "temperature": smooth.at(t) if smooth else None,
-             "temperature_rate": smooth.rate_at(t) if smooth else None,
-             "vibration": np.zeros(len(cut)) if capture.accel is None
-             else vibration(capture, first, end), "noise_accel": None,
-             "noise_gyro": None, "rounding_accel": None, "rounding_gyro": None}
+    measures = {"placement": placement, "code": code, "first": first, "end": end, "face": face,
+                "t": t, "since": t - starts[placement] if len(cut) else t,
+                "seconds": (end - first) / rate, "accel": accel, "gyro": gyro,
+                "temperature": smooth.at(t) if smooth else None,
+                "temperature_rate": smooth.rate_at(t) if smooth else None,
+                "vibration": np.zeros(len(cut)) if capture.accel is None
+                else vibration(capture, first, end), "noise_accel": None,
+                "noise_gyro": None, "rounding_accel": None, "rounding_gyro": None}
     for sensor, counts, scale in _sensors(capture) if len(cut) else ():
-        found["noise_" + sensor] = white(counts, first, end, rate) * scale
-        found["rounding_" + sensor] = rounding(counts, first, end) * scale
-    return found
+        measures["noise_" + sensor] = white(counts, first, end, rate) * scale
+        measures["rounding_" + sensor] = rounding(counts, first, end) * scale
+    return measures
 
 
 def _sensors(capture):
@@ -69,10 +69,10 @@ def _sensors(capture):
 
 def readings(capture, first, end):
     """((n, 3) mg, (n, 3) deg/s): means of the blocks; None of a sensor that there is not."""
-    found = dict.fromkeys(("accel", "gyro"))
+    means = dict.fromkeys(("accel", "gyro"))
     for sensor, counts, scale in _sensors(capture):
-        found[sensor] = _means(counts, first, end) * scale
-    return found["accel"], found["gyro"]
+        means[sensor] = _means(counts, first, end) * scale
+    return means["accel"], means["gyro"]
 
 
 def _means(counts, first, end):

@@ -73,15 +73,15 @@ def runs_of(capture, by_hand=False):
 
 def _labelled(capture):
     """The capture with the poses that are found in it."""
-    found = copy.copy(capture)
-    found.meta = dict(capture.meta)
+    labelled = copy.copy(capture)
+    labelled.meta = dict(capture.meta)
     if capture.accel is None:
-        return rests_by_variance.label_still_gyro(found)
+        return rests_by_variance.label_still_gyro(labelled)
     try:
-        find_poses(_without_spikes(capture)).label(found)
+        find_poses(_without_spikes(capture)).label(labelled)
     except (ValueError, IndexError, ZeroDivisionError):
-        found.pose = np.zeros(len(capture), np.int16)
-    return found
+        labelled.pose = np.zeros(len(capture), np.int16)
+    return labelled
 
 
 def _without_spikes(capture):
@@ -106,13 +106,13 @@ def _without_spikes(capture):
 
 def distinct(sessions):
     """(sessions without those that repeat one before them, the repeated ones)."""
-    kept, again = [], []
+    kept, repeated = [], []
     for session in sessions:
         same = any(len(session.capture) == len(other.capture)
                    and all(np.array_equal(getattr(session.capture, k), getattr(other.capture, k))
                            for k in ("t_us", "accel", "gyro")) for other in kept)
-        (again if same else kept).append(session)
-    return kept, again
+        (repeated if same else kept).append(session)
+    return kept, repeated
 
 
 def same_chip(sessions):

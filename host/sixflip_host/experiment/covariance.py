@@ -50,13 +50,13 @@ def alone(base, lateral, kernel):
 def apart(bases, laterals, kernels):
     """[Group] of groups that leave nothing to those after them: base (r, r), lateral (r, q) and
     kernel (r, r) of each, the last with a level of its own."""
-    found, start = [], 0
+    groups, start = [], 0
     for base, lateral, kernel in zip(bases, laterals, kernels):
         n, none = len(base), np.zeros((len(base), 0))
-        found.append(Group(slice(start, start + n), base, lateral, kernel, none, none,
-                           np.zeros(0), np.eye(n)))
+        groups.append(Group(slice(start, start + n), base, lateral, kernel, none, none,
+                            np.zeros(0), np.eye(n)))
         start += n
-    return found
+    return groups
 
 
 def in_time(t, seconds, shares, parts):
@@ -64,7 +64,7 @@ def in_time(t, seconds, shares, parts):
     (3,): variance of each axis' flicker; parts: [(slice of blocks, base, lateral, basis)]."""
     times = np.array(ALL_TIMES_S)
     axes = np.sqrt(shares)
-    ends, found, before = t + 0.5 * seconds, [], None
+    ends, groups, before = t + 0.5 * seconds, [], None
     for blocks, base, lateral, basis in parts:
         own_t, own_s = t[blocks], seconds[blocks]
         last = ends[blocks].max()
@@ -73,33 +73,34 @@ def in_time(t, seconds, shares, parts):
         mean = (1.0 - np.exp(-x)) / x
         felt = mean * np.exp(-np.maximum(own_t - 0.5 * own_s - before, 0.0)[:, None] / times)
         left = mean * np.exp(-(last - ends[blocks])[:, None] / times)
-        found.append(Group(
+        groups.append(Group(
             slice(3 * blocks.start, 3 * blocks.stop), base, lateral,
             _of_axes(flicker_kernel(own_t, own_s), shares), _of_axes(felt, axes),
             _of_axes(left, axes), np.repeat(np.exp(-max(last - before, 0.0) / times), 3), basis))
         before = max(last, before)
-    return found
+    return groups
 
 
 def _of_axes(values, sizes):
     """Kronecker product of values (a, b) and the diagonal matrix of sizes (3,)."""
-    out = np.zeros((len(values), 3, values.shape[1], 3))
+    product = np.zeros((len(values), 3, values.shape[1], 3))
     for axis, size in enumerate(sizes):
-        out[:, axis, :, axis] = values * size
-    return out.reshape(3 * len(values), -1)
+        product[:, axis, :, axis] = values * size
+    return product.reshape(3 * len(values), -1)
 
 
 def reduced(groups):
     """The groups without the directions that are a nuisance of their own: readings in the basis
     across them."""
-    out, start = [], 0
+    reduced_groups, start = [], 0
     for g in groups:
         turned, n = g.basis.T, g.basis.shape[1]
-        out.append(Group(slice(start, start + n), turned @ g.base @ g.basis, turned @ g.lateral,
-                         turned @ g.kernel @ g.basis, turned @ g.from_before,
-                         turned @ g.to_later, g.decay, np.eye(n)))
+        reduced_groups.append(Group(
+            slice(start, start + n), turned @ g.base @ g.basis, turned @ g.lateral,
+            turned @ g.kernel @ g.basis, turned @ g.from_before, turned @ g.to_later, g.decay,
+            np.eye(n)))
         start += n
-    return out
+    return reduced_groups
 
 
 def turned(groups, x):
@@ -109,12 +110,12 @@ def turned(groups, x):
 
 def turned_back(groups, x):
     """(n, R) from (n', R): readings that have nothing in the directions left out."""
-    out, start = [], 0
+    readings, start = [], 0
     for g in groups:
         n = g.basis.shape[1]
-        out.append(g.basis @ x[start:start + n])
+        readings.append(g.basis @ x[start:start + n])
         start += n
-    return np.concatenate(out)
+    return np.concatenate(readings)
 
 
 class Factor:
@@ -149,33 +150,33 @@ class Factor:
         levels = len(self.logdet)
         state = np.zeros((levels, len(self.groups[0].decay), x.shape[1]))
         coupled = state.shape[1] > 0
-        found, rows = [], 0
+        pieces, rows = [], 0
         for g, inverse, gain in zip(self.groups, self.inverses, self.gains):
             left = x[g.rows] - g.from_before @ state if coupled else x[g.rows]
             white = inverse @ left
             if coupled:
                 state *= g.decay[:, None]
                 state += gain @ white
-            found.append(white)
+            pieces.append(white)
             rows += white.shape[1]
             if rows >= AT_A_TIME:
-                yield np.concatenate(found, axis=1)
-                found, rows = [], 0
-        if found:
-            yield np.concatenate(found, axis=1)
+                yield np.concatenate(pieces, axis=1)
+                pieces, rows = [], 0
+        if pieces:
+            yield np.concatenate(pieces, axis=1)
 
     def at(self, places):
         """The Factor at some of its placement levels."""
         chosen = copy.copy(self)
         chosen.logdet = self.logdet[places]
-        chosen.inverses = [one[places] for one in self.inverses]
-        chosen.gains = [one[places] for one in self.gains]
+        chosen.inverses = [matrices[places] for matrices in self.inverses]
+        chosen.gains = [matrices[places] for matrices in self.gains]
         return chosen
 
     def whitened_back(self, white):
         """(L, n, R): the transpose of the inverse of the factor times white (L, n, R), so that
         of whitened readings comes the inverse of the covariance times the readings."""
-        out = np.empty_like(white)
+        back = np.empty_like(white)
         state = np.zeros((len(self.logdet), len(self.groups[0].decay), white.shape[2]))
         coupled = state.shape[1] > 0
         for g, inverse, gain in zip(self.groups[::-1], self.inverses[::-1], self.gains[::-1]):
@@ -186,18 +187,18 @@ class Factor:
             if coupled:
                 state *= g.decay[:, None]
                 state -= g.from_before.T @ own
-            out[:, g.rows] = own
-        return out
+            back[:, g.rows] = own
+        return back
 
     def coloured(self, white):
         """(n, R): the factor of the first level times white (n, R)."""
-        out = np.empty_like(white)
+        coloured = np.empty_like(white)
         state = np.zeros((len(self.groups[0].decay), white.shape[1]))
         for g, inverse, gain in zip(self.groups, self.inverses, self.gains):
             own = white[g.rows]
-            out[g.rows] = lapack.dtrtrs(inverse[0].T, own, trans=1)[0] + g.from_before @ state
+            coloured[g.rows] = lapack.dtrtrs(inverse[0].T, own, trans=1)[0] + g.from_before @ state
             state = g.decay[:, None] * state + gain[0] @ own
-        return out
+        return coloured
 
 
 def inverses(lower):
@@ -205,7 +206,7 @@ def inverses(lower):
     small ones at once."""
     if lower.shape[1] <= SMALL:
         return np.linalg.inv(lower)
-    return np.stack([lapack.dtrtri(one, lower=1)[0] for one in lower])
+    return np.stack([lapack.dtrtri(triangle, lower=1)[0] for triangle in lower])
 
 
 def energies(groups, basis):
@@ -225,15 +226,15 @@ def energies(groups, basis):
 def components(groups):
     """(3, n, n): base, lateral lateral' and kernel of all readings, for what is small."""
     n = groups[-1].rows.stop
-    out, state = np.zeros((3, n, n)), np.zeros((len(groups[0].decay), n))
+    parts, state = np.zeros((3, n, n)), np.zeros((len(groups[0].decay), n))
     for g in groups:
         own, before = g.rows, slice(g.rows.start)
-        out[:, own, own] = g.base, g.lateral @ g.lateral.T, g.kernel
+        parts[:, own, own] = g.base, g.lateral @ g.lateral.T, g.kernel
         felt = g.from_before @ state[:, before]
-        out[2, own, before], out[2, before, own] = felt, felt.T
+        parts[2, own, before], parts[2, before, own] = felt, felt.T
         state[:, before] *= g.decay[:, None]
         state[:, own] = g.to_later.T
-    return out
+    return parts
 
 
 def dense(groups, placement, flicker):

@@ -54,12 +54,12 @@ class FactoredGram(Whitened):
 
     def at_all_points(self, columns):
         """(G, k, k) of a few columns at every point; nothing is kept of it."""
-        out = np.empty((len(self.grid), len(columns), len(columns)))
+        products = np.empty((len(self.grid), len(columns), len(columns)))
         done = np.flatnonzero(self._done)
-        out[done] = self.blocks(done, columns, columns)
+        products[done] = self.blocks(done, columns, columns)
         for points, left in self._products(np.flatnonzero(~self._done), columns):
-            out[points] = left
-        return out
+            products[points] = left
+        return products
 
     def statistics(self, z, points=None):
         """(quadratic (G, R), inner (G, K, R), logdet (G,)) of contrasts z (m, R), what is fixed
@@ -82,24 +82,24 @@ class FactoredGram(Whitened):
                 np.diagonal(metric, axis1=1, axis2=2)).sum(axis=1)
             left = data - fixed @ np.linalg.solve(metric.transpose(0, 2, 1), its)
             back = factor.whitened_back(left)
-            for point, one in zip(chosen, back):
+            for point, readings in zip(chosen, back):
                 inner[point] = 0.0
-                inner[point, self.loud] = loud @ one
+                inner[point, self.loud] = loud @ readings
         return quadratic, inner, logdet
 
     def _fill(self, points):
         new = np.unique(points[~self._done[points]])
         made = self._left if self._whitened else self._products
         for chosen, left in made(new, self.loud) if len(new) else ():
-            for point, one in zip(chosen, left):
+            for point, kept in zip(chosen, left):
                 if isinstance(self.loud, slice):
-                    self.values[point] = one
+                    self.values[point] = kept
                     continue
                 self.values[point] = 0.0
                 if self._whitened:
-                    self.values[point, self.loud] = one
+                    self.values[point, self.loud] = kept
                 else:
-                    self.values[point][np.ix_(self.loud, self.loud)] = one
+                    self.values[point][np.ix_(self.loud, self.loud)] = kept
             self._done[chosen] = True
 
     def _left(self, points, columns):

@@ -47,27 +47,27 @@ class FleetPrior:
     def size(self, sensor, effect):
         """Typical size over the keys of an effect: root of the mean square of the largest; None
         where nothing is known."""
-        found = [value for (s, e, _), value in self.second.items() if (s, e) == (sensor, effect)]
-        return math.sqrt(max(found)) if found else None
+        squares = [value for (s, e, _), value in self.second.items() if (s, e) == (sensor, effect)]
+        return math.sqrt(max(squares)) if squares else None
 
 
 def read(path, chip):
     """FleetPrior of a chip from a fleet.json; BadFile where it is none, or knows no such chip."""
     try:
-        found = FILE.take(json.loads(atomic_write.read_bytes(path).decode("utf-8")))
-        if found["kind"] != "sixflip fleet":
-            raise ValueError("its kind is %r" % found["kind"][:40])
+        content = FILE.take(json.loads(atomic_write.read_bytes(path).decode("utf-8")))
+        if content["kind"] != "sixflip fleet":
+            raise ValueError("its kind is %r" % content["kind"][:40])
     except Misfit as misfit:
         raise BadFile("%s: %s in what should be a fleet.json of sixflip fleet" % (path, misfit)) \
             from None
     except (ValueError, RecursionError) as error:
         raise BadFile("%s: %s, expected a fleet.json that sixflip fleet wrote" % (
             path, str(error)[:80].replace("\n", " "))) from None
-    batches = [batch for group in found["groups"] if group["chip"] == chip
+    batches = [batch for group in content["groups"] if group["chip"] == chip
                for batch in group["batches"]]
     if not batches:
         raise BadFile("%s: no boards with a %s in it, expected a fleet of that chip: it has %s" % (
-            path, chip, ", ".join(dict.fromkeys(g["chip"] for g in found["groups"])) or "none"))
+            path, chip, ", ".join(dict.fromkeys(g["chip"] for g in content["groups"])) or "none"))
     return _of_batches(path, batches)
 
 

@@ -58,8 +58,8 @@ class Whitened(Products):
     def rows(self, points, rows):
         self._fill(points)
         own = self._chosen(points[:, None], rows)
-        return np.stack([self._every(one @ self._at(point).T)
-                         for point, one in zip(points, own)])
+        return np.stack([self._every(white @ self._at(point).T)
+                         for point, white in zip(points, own)])
 
     def each(self, points, index):
         if index.size:
@@ -98,8 +98,8 @@ def _factors(groups, grid, across, common):
     base, lateral, kernel = covariance.components(groups)
     base, lateral, kernel = (across.T @ part @ across
                              for part in (base + common @ common.T, lateral, kernel))
-    out, slow = np.empty((len(grid), *base.shape)), np.empty_like(base)
-    for own, (placement, flicker) in zip(out, grid):
+    factors, slow = np.empty((len(grid), *base.shape)), np.empty_like(base)
+    for own, (placement, flicker) in zip(factors, grid):
         np.multiply(lateral, placement ** 2, out=own)
         np.multiply(kernel, flicker ** 2, out=slow)
         own += slow
@@ -107,7 +107,7 @@ def _factors(groups, grid, across, common):
         # In its own place; in the order of Fortran a lower factor is an upper one.
         if lapack.dpotrf(own.T, lower=0, clean=0, overwrite_a=1)[1]:
             raise np.linalg.LinAlgError("a covariance that is not positive definite")
-    return out
+    return factors
 
 
 class DenseGram(Whitened):
@@ -137,9 +137,9 @@ class DenseGram(Whitened):
         for point in points[self._slot[points] < 0]:
             if self._number == len(self.values):
                 self.values = np.concatenate([self.values, np.empty_like(self.values)])
-            one = self.values[self._number]
-            one[:-1] = self._solved(point, self._given, 1).T
-            one[-1] = 0.0
+            kept = self.values[self._number]
+            kept[:-1] = self._solved(point, self._given, 1).T
+            kept[-1] = 0.0
             self._slot[point] = self._number
             self._number += 1
 

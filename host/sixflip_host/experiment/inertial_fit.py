@@ -140,14 +140,14 @@ def _frame(turn, body, rate):
 def _habits(n, seconds, flat):
     """Up and down, and onwards, in the same way whenever a box is turned over; up and down
     whenever it is turned on the table: metres."""
-    out = np.zeros((n, 3, 3 * HABITS))
+    columns = np.zeros((n, 3, 3 * HABITS))
     size = MG_PER_METRE_S2 * (np.pi / seconds) ** 2 * np.sqrt(n / 2.0)
     for k in range(1, HABITS + 1):
         if flat:
-            out[k, 2, 2 * HABITS + k - 1] = size
+            columns[k, 2, 2 * HABITS + k - 1] = size
         else:
-            out[k, 2, k - 1] = out[k, 0, HABITS + k - 1] = size
-    return out
+            columns[k, 2, k - 1] = columns[k, 0, HABITS + k - 1] = size
+    return columns
 
 
 def priors(chip):
@@ -178,13 +178,13 @@ def way_lag(moves):
     """ms: how late the accelerometer is behind the gyro by the slowest frequencies of each move
     that turns the box over, the median of all; nil where that is no more than a column of its
     derivative shows as well."""
-    found = []
-    for one in moves:
+    lags = []
+    for move in moves:
         slow = slice(0, SLOW)
-        column, y = one.table[slow, :, EFFECTS_NUMBER - 1], one.y[slow]
-        if not one.flat:
-            found.append(float((column * y).sum() / max(float((column ** 2).sum()), 1e-300)))
-    late = float(np.median(found)) if found else 0.0
+        column, y = move.table[slow, :, EFFECTS_NUMBER - 1], move.y[slow]
+        if not move.flat:
+            lags.append(float((column * y).sum() / max(float((column ** 2).sum()), 1e-300)))
+    late = float(np.median(lags)) if lags else 0.0
     return float(np.clip(late, -MOST_LATE_MS, MOST_LATE_MS)) if abs(late) > LINEAR_MS else 0.0
 
 

@@ -74,10 +74,10 @@ class LongRest:
         """(temperature, its rate) (n,) that a part sees which follows the thermometer, or with a
         negative lag goes before it."""
         c, rate = np.empty(self.n), np.empty(self.n)
-        for k, one in enumerate(self.thermometers):
+        for k, thermometer in enumerate(self.thermometers):
             mine = self.session == k
-            c[mine] = one.lagged(self.t[mine], lag_s)
-            rate[mine] = one.lagged_rate(self.t[mine], lag_s)
+            c[mine] = thermometer.lagged(self.t[mine], lag_s)
+            rate[mine] = thermometer.lagged_rate(self.t[mine], lag_s)
         return c, rate
 
     def moment(self, lag_s=0.0):
@@ -113,10 +113,10 @@ def in_one_attitude(sessions, lines=()):
     seconds = np.array([(b - a) / sessions[k].rate for k, _, a, b in table])
     thermometers = tuple(s.thermometer for s in sessions)
     temperature = None
-    if all(one is not None for one in thermometers):
+    if all(thermometer is not None for thermometer in thermometers):
         temperature = np.empty(len(t))
-        for k, one in enumerate(thermometers):
-            temperature[number == k] = one.at(t[number == k])
+        for k, thermometer in enumerate(thermometers):
+            temperature[number == k] = thermometer.at(t[number == k])
     mean = values["accel"].mean(axis=0) if "accel" in values else np.zeros(3)
     return LongRest(t, seconds, np.array([r for _, r, _, _ in table]), number, temperature,
                     values, noise, mean / max(np.linalg.norm(mean), 1e-9), thermometers)
@@ -157,7 +157,7 @@ def _measured(sensor, sessions, runs, table, lines):
     in them), session by session."""
     values, noise = np.empty((len(table), 3)), np.empty((len(table), 3))
     for k in {k for k, _, _, _ in table}:
-        session, where = sessions[k], [i for i, one in enumerate(table) if one[0] == k]
+        session, where = sessions[k], [i for i, row in enumerate(table) if row[0] == k]
         first, end = (np.array([table[i][j] for i in where]) for j in (2, 3))
         counts = getattr(session.capture, sensor)
         scale = unit_of_count(session.capture.meta, sensor)
@@ -179,8 +179,8 @@ def without_line(x, t, hertz):
     def left(f):
         angle = 2.0 * np.pi * f * t
         columns = np.stack([np.sin(angle), np.cos(angle), np.ones(len(t)), t], 1)
-        found = np.linalg.lstsq(columns, x, rcond=None)[0]
-        return x - columns[:, :2] @ found[:2]
+        size = np.linalg.lstsq(columns, x, rcond=None)[0]
+        return x - columns[:, :2] @ size[:2]
     width = 0.5 / max(float(np.ptp(t)), 1e-9)
     tried = [left(hertz + share * width) for share in np.linspace(-1.0, 1.0, 9)]
-    return min(tried, key=lambda one: float(one.var()))
+    return min(tried, key=lambda rest: float(rest.var()))

@@ -60,17 +60,17 @@ def levels(rests, rate, walks):
                        for k in ("f", "power", "shape"))
     columns = np.stack([np.ones(len(f)), 1.0 / (2.0 * np.pi * f), 1.0 / (2.0 * np.pi * f) ** 2],
                        1)[:, :3 if walks else 2]
-    found, top = _likeliest(columns, power, shape)
-    out = [_level(columns, power, shape, found, top, k) for k in range(columns.shape[1])]
-    out = [_sparing(columns, power, shape, out, k) for k in range(len(out))]
-    return (*out, None) if not walks else tuple(out)
+    squares, top = _likeliest(columns, power, shape)
+    profiles = [_level(columns, power, shape, squares, top, k) for k in range(columns.shape[1])]
+    profiles = [_sparing(columns, power, shape, profiles, k) for k in range(len(profiles))]
+    return (*profiles, None) if not walks else tuple(profiles)
 
 
 def _sparing(columns, power, shape, levels, k):
     """A Level whose value is the likeliest one without the others that the data do not show: what
     cannot be negative would take a part of it on average. Their likelihoods differ by less than
     HALF_OF_90, so that its own interval holds it."""
-    absent = [j for j, one in enumerate(levels) if j and j != k and one.low == 0.0]
+    absent = [j for j, level in enumerate(levels) if j and j != k and level.low == 0.0]
     present = [j for j in range(len(levels)) if j not in absent]
     if not absent:
         return levels[k]
@@ -161,11 +161,11 @@ def _likeliest(columns, power, shape, held=None):
     return best
 
 
-def _level(columns, power, shape, found, top, k):
+def _level(columns, power, shape, squares, top, k):
     """Level of one of the squares by the profile of the likelihood."""
     def below(value):
         return top - _likeliest(columns, power, shape, (k, value))[1] - HALF_OF_90
-    square = float(found[k])
+    square = float(squares[k])
     unit = max(square, 1e-6 * np.median(power) / columns[:, k].mean())
     high = unit
     while below(high) < 0.0 and high < 1e12 * unit:

@@ -59,9 +59,9 @@ def accel_nuisance(session, nominal, certified):
     columns = []
     for i in range(3):
         for value in (np.ones(n), up[:, 0], up[:, 1], up[:, 2]):
-            one = _columns(n)
-            one[:, i] = value
-            columns.append(one)
+            column = _columns(n)
+            column[:, i] = value
+            columns.append(column)
     for face in np.unique(session.face[session.face >= 0]):
         on = session.face == face
         axis = face_axes([face])[0]
@@ -71,22 +71,22 @@ def accel_nuisance(session, nominal, certified):
             columns += _lateral(session, on, axis)
         if session.rounding_accel @ np.abs(axis) > COARSE_MG:
             # The same face rounds alike in every session: it says nothing along gravity.
-            one = _columns(n)
-            one[on] = axis
-            columns.append(one)
+            column = _columns(n)
+            column[on] = axis
+            columns.append(column)
     return np.stack([c.reshape(-1) for c in columns], 1)
 
 
 def _lateral(session, mask, axis, weight=None):
     """Two columns: the placements in the mask turned about the two directions across axis."""
-    found = []
+    columns = []
     for direction in lateral_basis(axis):
-        one = _columns(session.n)
-        one[mask] = direction
+        column = _columns(session.n)
+        column[mask] = direction
         if weight is not None:
-            one *= weight[:, None]
-        found.append(one)
-    return found
+            column *= weight[:, None]
+        columns.append(column)
+    return columns
 
 
 def axis_shares(session, values, noise):
@@ -195,13 +195,13 @@ def _earth(session, up):
     """(3n, c) deg/s: the Earth's rate, its coefficients of a standard deviation of 1: upward, and
     of each face in both directions across it, where half a turn on the face inverts it: the box
     has a heading in the room, and is turned by half a circle, whatever else a hand does."""
-    found = [EARTH_UP_DPS * up.reshape(-1)]
+    columns = [EARTH_UP_DPS * up.reshape(-1)]
     half = np.where(session.code % 2 == 1, EARTH_DPS[-1], -EARTH_DPS[-1])[:, None]
     for face in np.unique(session.face[session.face >= 0]) if session.labelled else ():
         on = (session.face == face)[:, None]
-        found += [(on * half * direction).reshape(-1)
-                  for direction in lateral_basis(face_axes(np.array([face]))[0])]
-    return np.stack(found, 1)
+        columns += [(on * half * direction).reshape(-1)
+                    for direction in lateral_basis(face_axes(np.array([face]))[0])]
+    return np.stack(columns, 1)
 
 
 def _gyro_rows(session, nominal):

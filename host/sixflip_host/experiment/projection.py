@@ -30,10 +30,10 @@ def cross(a, b):
 def by_axis(functions):
     """(n, 3, 3k): k functions, each (n,) on all axes or (n, 3) of each axis' own, with a
     coefficient an axis: those of the first function first."""
-    out = np.zeros((len(functions[0]), 3, len(functions), 3))
+    columns = np.zeros((len(functions[0]), 3, len(functions), 3))
     for number, values in enumerate(functions):
-        out[:, range(3), number, range(3)] = values.reshape(len(values), -1)
-    return out.reshape(len(out), 3, -1)
+        columns[:, range(3), number, range(3)] = values.reshape(len(values), -1)
+    return columns.reshape(len(columns), 3, -1)
 
 
 def basis(columns):

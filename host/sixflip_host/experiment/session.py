@@ -113,10 +113,10 @@ class Session(ReadOnlyArrays):
     @cached_property
     def at_rest(self):
         """(samples,) which samples are in one of the rests."""
-        found = np.zeros(len(self.capture), bool)
+        resting = np.zeros(len(self.capture), bool)
         for run in self.runs:
-            found[run.first:run.end] = True
-        return found
+            resting[run.first:run.end] = True
+        return resting
 
     @cached_property
     def period_s(self):
@@ -132,9 +132,9 @@ class Session(ReadOnlyArrays):
         scatter is that of the middle of them, without pauses."""
         if self.timeless or len(self.t_s) < FEWEST_STAMPS:
             return False
-        one, several = (float(np.subtract(*np.quantile(
+        single, several = (float(np.subtract(*np.quantile(
             self.t_s[k:] - self.t_s[:-k], (0.84, 0.16)))) for k in (1, STEPS))
-        return one > EVEN * self.period_s and several ** 2 > 0.5 * STEPS * one ** 2
+        return single > EVEN * self.period_s and several ** 2 > 0.5 * STEPS * single ** 2
 
     def without_samples(self, bad):
         """The same session without the placements with more than a few bad samples; bad (N,)."""
@@ -203,7 +203,7 @@ class Session(ReadOnlyArrays):
 
     def contradicted(self):
         """Names of labels that gravity contradicts: [(label, degrees off), ...]."""
-        found = {}
+        degrees = {}
         for place, (code, _, _) in enumerate(self.runs):
             face, mine = faces.face_of_code(code), self.placement == place
             if face < 0 or not mine.any():
@@ -212,8 +212,8 @@ class Session(ReadOnlyArrays):
             cosine = faces.SIGN[face] * mean[faces.AXIS[face]] / max(np.linalg.norm(mean), 1e-9)
             off = float(np.degrees(np.arccos(np.clip(cosine, -1, 1))))
             if off > FAR_OFF_DEG:
-                found[faces.pose_name(code)] = off
-        return sorted(found.items())
+                degrees[faces.pose_name(code)] = off
+        return sorted(degrees.items())
 
 
 def fading(starts, up, tau_s):

@@ -49,10 +49,10 @@ def line(x, rate_hz, above_hz=5.0):
     """(frequency, amplitude, phase in rad at the first sample) of the strongest line in x (n,),
     the frequency refined between the bins by the least squares fit of a sine."""
     n = len(x)
-    found = np.abs(np.fft.rfft((x - x.mean()) * np.hanning(n)))
+    amplitude = np.abs(np.fft.rfft((x - x.mean()) * np.hanning(n)))
     frequencies = np.fft.rfftfreq(n, 1.0 / rate_hz)
-    found[frequencies < above_hz] = 0.0
-    near = frequencies[found.argmax()]
+    amplitude[frequencies < above_hz] = 0.0
+    near = frequencies[amplitude.argmax()]
     best = max(near + np.linspace(-1.0, 1.0, 81) * rate_hz / n,
                key=lambda f: sine(x, rate_hz, f)[0])
     return (best,) + sine(x, rate_hz, best)

@@ -98,12 +98,12 @@ def of_terms(name, sensor, moment, n, variant="", only=None, shape=None, chip="m
 def columns_of(effect, moment, n, only=None):
     """(keys (k,), axes (k,), columns (3n, k)) of an effect at n moments, rows in the order x y z
     of each; axes: the first that a coefficient acts on; only: the keys wanted."""
-    found = {}
+    by_key = {}
     for key, axis, value in effect.terms(moment):
         if only is None or key in only:
-            found.setdefault(key, (axis, np.zeros((n, 3))))[1][:, axis] += value
-    axes, columns = zip(*found.values())
-    return list(found), axes, np.stack([column.reshape(-1) for column in columns], 1)
+            by_key.setdefault(key, (axis, np.zeros((n, 3))))[1][:, axis] += value
+    axes, columns = zip(*by_key.values())
+    return list(by_key), axes, np.stack([column.reshape(-1) for column in columns], 1)
 
 
 def corrected(designs, matrix):
@@ -142,31 +142,33 @@ def library(session, up, sensor, reference_c, chip):
     def design(name, variant="", moment=m, **options):
         return of_terms(name, sensor, moment, n, variant, chip=chip, **options)
 
-    found = _thermal(session, m, design, sensor, reference_c) if session.thermal else []
-    found += [design("warm_up", "tau %g s" % tau, shape={"tau_s": tau}) for tau in WARM_UP_S]
+    designs = _thermal(session, m, design, sensor, reference_c) if session.thermal else []
+    designs += [design("warm_up", "tau %g s" % tau, shape={"tau_s": tau}) for tau in WARM_UP_S]
     plain = design("hysteresis")
     if sensor == "gyro":
-        return [*found, plain, design("g_sensitivity")]
+        return [*designs, plain, design("g_sensitivity")]
     cross = design("cross_quadratic")
-    found += [plain, *remembered(session, m, plain), design("quadratic"), design("cubic"), cross,
-              design("cross_quadratic", "squares", only=[k for k in cross.keys if k[1] == k[2]]),
-              design("cross_quadratic", "products", only=[k for k in cross.keys if k[1] != k[2]]),
-              design("asymmetry"), *_creep(session, up, m, design)]
+    squares = [k for k in cross.keys if k[1] == k[2]]
+    products = [k for k in cross.keys if k[1] != k[2]]
+    designs += [plain, *remembered(session, m, plain), design("quadratic"), design("cubic"), cross,
+                design("cross_quadratic", "squares", only=squares),
+                design("cross_quadratic", "products", only=products),
+                design("asymmetry"), *_creep(session, up, m, design)]
     if session.shaken_mg:
-        found += _rectified(session, m, design)
-    return found
+        designs += _rectified(session, m, design)
+    return designs
 
 
 def _rectified(session, m, design):
     """Designs of vibration rectification. What shakes a chip hardest may be far beyond its filter,
     so that a coefficient is known by what the strongest vibration shifts, not by the bend."""
     prior = 10.0 * SHIFT_MG / (session.shaken_mg * 0.001) ** 2
-    found = [design("vibration_rectification", "vertical", shape={"vertical": 1})]
+    designs = [design("vibration_rectification", "vertical", shape={"vertical": 1})]
     for words, power in RECTIFIED.items():
         m = copy.copy(m)
         m.vibration_mg = session.shaken_mg * np.sqrt(power(session.vibration / session.shaken_mg))
-        found.append(design("vibration_rectification", words, m, shape={"vertical": 0}))
-    return [replace(one, prior=np.maximum(one.prior, prior)) for one in found]
+        designs.append(design("vibration_rectification", words, m, shape={"vertical": 0}))
+    return [replace(variant, prior=np.maximum(variant.prior, prior)) for variant in designs]
 
 
 def along_axes(session, nominal, chip):
@@ -186,29 +188,29 @@ def remembered(session, m, plain):
     side = np.tanh(3.0 * (np.stack(m.before, 1) - np.stack(m.f, 1)))
     forms = [("side", side)] + [("play %g g" % width, behind) for width, behind in zip(
         PLAY_G, session.played(PLAY_G))]
-    found = []
+    designs = []
     for variant, values in forms:
         columns = by_axis([values]).reshape(-1, 3)
-        found.append(Design("hysteresis", variant, plain.keys, plain.axes, columns, plain.prior))
-    return found
+        designs.append(Design("hysteresis", variant, plain.keys, plain.axes, columns, plain.prior))
+    return designs
 
 
 def _creep(session, up, m, design):
     """Designs of creep since the move from the placement before, and of what all have left."""
-    found = []
+    designs = []
     for tau in CREEP_S:
-        found.append(design("creep", "tau %g s" % tau, shape={"tau_s": tau}))
+        designs.append(design("creep", "tau %g s" % tau, shape={"tau_s": tau}))
         if tau >= LONG_MEMORY_S:  # what came before the placement before is not forgotten yet
             felt = copy.copy(m)
             felt.before = tuple(session.remembered(up, tau).T)
-            found.append(design("creep", "tau %g s, all placements" % tau, felt,
-                                shape={"tau_s": tau}))
-    return found
+            designs.append(design("creep", "tau %g s, all placements" % tau, felt,
+                                  shape={"tau_s": tau}))
+    return designs
 
 
 def _thermal(session, m, design, sensor, reference_c):
     """Designs of slopes over the temperature with and without a lag."""
-    found = []
+    designs = []
     for lag in LAGS_S:
         felt = copy.copy(m)
         felt.temperature = session.thermometer.lagged(session.t, lag)
@@ -216,14 +218,14 @@ def _thermal(session, m, design, sensor, reference_c):
         label = "lag %g s" % lag if lag else ""
         shape = {"reference_c": reference_c}
         bias = design("thermal_bias", label, felt, only=("x", "y", "z"), shape=shape)
-        found.append(bias)
+        designs.append(bias)
         if not lag:  # a record of the board holds a square, too
             dt = np.repeat(felt.temperature - reference_c, 3)[:, None]
-            found.append(squared(bias, bias.columns * dt, 0.1 * bias.prior[0]))
+            designs.append(squared(bias, bias.columns * dt, 0.1 * bias.prior[0]))
         if sensor == "accel":
-            found.append(design("thermal_scale", label, felt, shape=shape))
-        found.append(design("thermal_rate", label, felt))
-    return found
+            designs.append(design("thermal_scale", label, felt, shape=shape))
+        designs.append(design("thermal_rate", label, felt))
+    return designs
 
 
 def harmonics(f, sensor):

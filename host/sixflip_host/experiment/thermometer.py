@@ -47,12 +47,12 @@ class Thermometer:
 
 def _follow(values, lag_s):
     """One a second, after a first-order lag (s)."""
-    out = np.empty_like(values)
-    out[0] = values[0]
+    felt = np.empty_like(values)
+    felt[0] = values[0]
     share = 1.0 - np.exp(-STEP_S / lag_s)
-    for i in range(1, len(out)):
-        out[i] = out[i - 1] + share * (values[i] - out[i - 1])
-    return out
+    for i in range(1, len(felt)):
+        felt[i] = felt[i - 1] + share * (values[i] - felt[i - 1])
+    return felt
 
 
 def of_course(t, c):
@@ -88,10 +88,10 @@ def _smooth(values, seconds):
     if len(values) < 2 * half + 1:
         return values.copy()
     width = 2 * half + 1
-    out = np.empty(len(values))
+    smooth = np.empty(len(values))
     # In the middle of a line lies its mean.
-    out[half:-half] = np.convolve(values, np.full(width, 1.0 / width), "valid")
+    smooth[half:-half] = np.convolve(values, np.full(width, 1.0 / width), "valid")
     u = np.arange(width)
-    out[:half] = np.polyval(np.polyfit(u, values[:width], 1), u[:half])
-    out[-half:] = np.polyval(np.polyfit(u, values[-width:], 1), u[-half:])
-    return out
+    smooth[:half] = np.polyval(np.polyfit(u, values[:width], 1), u[:half])
+    smooth[-half:] = np.polyval(np.polyfit(u, values[-width:], 1), u[-half:])
+    return smooth

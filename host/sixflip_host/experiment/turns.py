@@ -140,9 +140,9 @@ def _usable_turns(session, up):
     # A bias that changes from rest to rest is known to about half of that in between.
     wander = np.sqrt(np.mean([(rest[p + 1] - rest[p]) ** 2 for p in pairs], axis=0)) / 2.0
     # What drifts is halfway between the rests before and after.
-    found = (between(session, up, 0.5 * (rest[p] + rest[p + 1]), p, wander) for p in pairs)
+    candidates = (between(session, up, 0.5 * (rest[p] + rest[p + 1]), p, wander) for p in pairs)
     pull = _pull(np.array([rest[p] for p in kept]), up[kept])
-    return tuple(_without_pull(turn.integrated(), pull) for turn in found
+    return tuple(_without_pull(turn.integrated(), pull) for turn in candidates
                  if turn.usable(session.rate))
 
 
@@ -152,12 +152,12 @@ def _pull(bias, up):
     what is left as noise."""
     x = up - up.mean(axis=0)
     y = bias - bias.mean(axis=0)
-    found = np.zeros((3, 3))
+    pull = np.zeros((3, 3))
     for _ in range(ROUNDS):
-        noise = np.mean((y - x @ found) ** 2, axis=0)
-        found = np.stack([np.linalg.solve(x.T @ x + np.eye(3) * (n / PULL_DPS ** 2 + 1e-12),
-                                          x.T @ y[:, k]) for k, n in enumerate(noise)], axis=1)
-    return found.T
+        noise = np.mean((y - x @ pull) ** 2, axis=0)
+        pull = np.stack([np.linalg.solve(x.T @ x + np.eye(3) * (n / PULL_DPS ** 2 + 1e-12),
+                                         x.T @ y[:, k]) for k, n in enumerate(noise)], axis=1)
+    return pull.T
 
 
 def _without_pull(turn, pull):
@@ -171,23 +171,23 @@ def rows(turn, axis_vectors):
     """(2 or 3, 3): what a small rotation (start frame, deg) does to what is observed."""
     first, second = axis_vectors
     # phi x up along two directions across up; a flip's turn about up itself
-    out = [cross(turn.before, first), cross(turn.before, second)]
+    directions = [cross(turn.before, first), cross(turn.before, second)]
     if turn.flip:
-        out.append(turn.before)
-    return np.array(out) / turn.seconds
+        directions.append(turn.before)
+    return np.array(directions) / turn.seconds
 
 
 def observed(turn):
     """(2 or 3,) deg/s: gravity carried back less gravity before; the flip's turn less 180."""
     axis_vectors = lateral_basis(turn.before)
     back = turn.end @ turn.after - turn.before
-    out = [np.degrees(back @ v) for v in axis_vectors]
+    angles = [np.degrees(back @ v) for v in axis_vectors]
     if turn.flip:
         first, second = axis_vectors
         carried = turn.end @ first
         angle = np.degrees(np.arctan2(carried @ second, carried @ first))
-        out.append((angle % 360.0) - 180.0)
-    return np.array(out) / turn.seconds
+        angles.append((angle % 360.0) - 180.0)
+    return np.array(angles) / turn.seconds
 
 
 def projected(turn, added):
@@ -221,9 +221,9 @@ def nuisance(chosen):
     for turn in chosen:
         every = [*(np.repeat(turn.middle[:, j:j + 1], 3, axis=1) for j in range(3)),
                  np.ones((len(turn.dt), 3))]
-        found = projected_by_axis(turn, every)
-        parts.append(np.hstack([found[:, [3 * j + i for i in range(3) for j in range(3)]],
-                                found[:, 9:]]))
+        columns = projected_by_axis(turn, every)
+        parts.append(np.hstack([columns[:, [3 * j + i for i in range(3) for j in range(3)]],
+                                columns[:, 9:]]))
     return np.vstack(parts)
 
 
@@ -232,7 +232,7 @@ def calibrated(chosen):
     out of the rates of all of them."""
     for _ in range(ROUNDS):
         y = np.concatenate([observed(turn) for turn in chosen])
-        found = np.linalg.lstsq(nuisance(chosen), y, rcond=1e-9)[0]
-        matrix = np.eye(3) - found[:9].reshape(3, 3)
-        chosen = tuple(turn.corrected(matrix, found[9:]) for turn in chosen)
+        sizes = np.linalg.lstsq(nuisance(chosen), y, rcond=1e-9)[0]
+        matrix = np.eye(3) - sizes[:9].reshape(3, 3)
+        chosen = tuple(turn.corrected(matrix, sizes[9:]) for turn in chosen)
     return np.concatenate([observed(turn) for turn in chosen]), chosen

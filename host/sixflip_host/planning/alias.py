@@ -112,10 +112,10 @@ class PlannedModel:
     def tilts_of(self, placement):
         """The two small turns of one placement as columns (3n, 2), a unit for a radian."""
         mask = self.rows.placement == placement
-        out = np.zeros((self.rows.n, 3, 2))
+        columns = np.zeros((self.rows.n, 3, 2))
         for k, direction in enumerate((self.rows.at.table_x, self.rows.at.table_y)):
-            out[mask, :, k] = np.stack(direction, 1)[mask]
-        return out.reshape(3 * self.rows.n, 2)
+            columns[mask, :, k] = np.stack(direction, 1)[mask]
+        return columns.reshape(3 * self.rows.n, 2)
 
     @cached_property
     def _without_box(self):

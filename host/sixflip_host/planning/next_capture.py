@@ -57,11 +57,11 @@ def _faces(codes):
 
 def pairs(diagnosis):
     """[(sensor, a, b)] that the captures leave unresolved."""
-    found = []
+    unresolved = []
     for kind, cause in diagnosis.causes:
         names = cause.names
-        found += [(kind, a, b) for i, a in enumerate(names) for b in names[i + 1:]]
-    return found
+        unresolved += [(kind, a, b) for i, a in enumerate(names) for b in names[i + 1:]]
+    return unresolved
 
 
 def proposed(diagnosis):
@@ -74,32 +74,34 @@ def proposed(diagnosis):
     wanted = pairs(diagnosis)
     if not wanted:
         return _unseen_help(diagnosis)
-    out = [(len(found) / minutes, words, minutes, found) for words, minutes, found in
-           _by_design(diagnosis, wanted) + _by_hand(wanted) if found]
-    out.sort(key=lambda entry: -entry[0])
+    ranked = [(len(resolves) / minutes, words, minutes, resolves) for words, minutes, resolves in
+              _by_design(diagnosis, wanted) + _by_hand(wanted) if resolves]
+    ranked.sort(key=lambda entry: -entry[0])
     return [{"capture": words, "minutes": round(minutes, 1),
-             "resolves": [[a, b] for _, a, b in found]} for _, words, minutes, found in out[:3]]
+             "resolves": [[a, b] for _, a, b in resolves]}
+            for _, words, minutes, resolves in ranked[:3]]
 
 
 def _by_design(diagnosis, wanted):
     """[(capture, minutes, pairs it resolves)] of the candidates, by their alias index."""
-    out = []
+    captures = []
     for name, plan in candidates().items():
         if plan.minutes > MOST_MINUTES:
             continue
         rows = rows_of(protocols.Protocol("added", [*present(diagnosis).sessions, plan]), 2)
-        found = []
+        resolves = []
         for kind in sorted({kind for kind, _, _ in wanted}):
             design = alias.PlannedModel(rows, kind, diagnosis.settings.certified)
-            found += resolved(design, kind, [p for p in wanted if p[0] == kind])
-        out.append((WORDS[name], plan.minutes, found))
-    return out
+            resolves += resolved(design, kind, [p for p in wanted if p[0] == kind])
+        captures.append((WORDS[name], plan.minutes, resolves))
+    return captures
 
 
 def _by_hand(wanted):
     """What no plan's single exponential of temperature can hold."""
-    found = [p for p in wanted if {p[1], p[2]} == {"thermal_bias", "thermal_rate"}]
-    return [("12 poses twice, the box warmed (hair dryer) and left to cool halfway", 7.0, found)]
+    resolves = [p for p in wanted if {p[1], p[2]} == {"thermal_bias", "thermal_rate"}]
+    return [("12 poses twice, the box warmed (hair dryer) and left to cool halfway", 7.0,
+             resolves)]
 
 
 def resolved(design, kind, wanted):
@@ -107,14 +109,15 @@ def resolved(design, kind, wanted):
     known = alias.ACCEL if kind == "accel" else alias.GYRO
     names = {n for _, a, b in wanted for n in (a, b)} & set(known)
     signature = {n: design.signature(n) for n in names}
-    found = []
+    apart = []
     for pair in wanted:
-        one, two = signature.get(pair[1]), signature.get(pair[2])
-        if one is None or two is None:
+        first, second = signature.get(pair[1]), signature.get(pair[2])
+        if first is None or second is None:
             continue
-        if max(projection.alias_index(one, two), projection.alias_index(two, one)) < SAME_CLASS:
-            found.append(pair)
-    return found
+        index = max(projection.alias_index(first, second), projection.alias_index(second, first))
+        if index < SAME_CLASS:
+            apart.append(pair)
+    return apart
 
 
 def _unseen_help(diagnosis):

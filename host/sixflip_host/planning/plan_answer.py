@@ -114,14 +114,14 @@ def ranked(protocol, base, sensor, certified_box, rate_hz, most_minutes=None,
            ranges=(None, None), prior=None):
     """Additions that resolve something, the most per minute first; those that would make the
     capture longer than most_minutes are left out."""
-    found = []
+    additions = []
     for name, other in candidates(protocol):
         if most_minutes is not None and other.minutes > most_minutes:
             continue
         new = findings_of(other, sensor, certified_box, rate_hz, ranges, prior)
-        found.append(Addition(name, other.minutes - protocol.minutes, *gains(base, new)))
-    found.sort(key=lambda a: (-a.per_minute, a.minutes))
-    return [a for a in found if a.resolves]
+        additions.append(Addition(name, other.minutes - protocol.minutes, *gains(base, new)))
+    additions.sort(key=lambda a: (-a.per_minute, a.minutes))
+    return [a for a in additions if a.resolves]
 
 
 def gains(base, new):

@@ -67,7 +67,7 @@ def findings_of(protocol, sensor="mpu6050", certified_box=False, rate_hz=100.0,
     """Findings of a Protocol for a sensor's name. rate_hz: of the samples; ranges: full scales in
     g and deg/s, None: the chip's usual ones; prior: FleetPrior, whose sizes stand for the data
     sheets'."""
-    found, matrices = [], {}
+    findings, matrices = [], {}
     blocks = 3 if sum(len(s.rests) for s in protocol.sessions) <= FEW_RESTS else 2
     rows = rows_of(protocol, blocks)
     for kind in kinds_of(sensor):
@@ -75,12 +75,12 @@ def findings_of(protocol, sensor="mpu6050", certified_box=False, rate_hz=100.0,
             rows = rows_of(protocol, 1, turns=True)
         design = alias.PlannedModel(rows, kind, certified_box)
         more, matrices[kind] = _of_rests(design, sensor, kind, rate_hz, ranges[kind == "gyro"])
-        found += more
-    found += [one for name in NAMES
-              for one in events_seen.findings(name, protocol, sensor, rate_hz, Finding, ranges)]
+        findings += more
+    for name in NAMES:
+        findings += events_seen.findings(name, protocol, sensor, rate_hz, Finding, ranges)
     if prior:
-        found = [_by_fleet(one, prior) for one in found]
-    return Findings(sorted(found, key=lambda f: (NAMES.index(f.effect), f.sensor)), matrices)
+        findings = [_by_fleet(finding, prior) for finding in findings]
+    return Findings(sorted(findings, key=lambda f: (NAMES.index(f.effect), f.sensor)), matrices)
 
 
 def _by_fleet(finding, prior):
@@ -99,11 +99,11 @@ def _of_rests(design, sensor, kind, rate_hz, full_scale):
     if "box_tilt" in design.own:  # the box as one effect among others, too
         square = design.without_own("box_tilt")
         tables.append(projection.alias_matrix({name: square.signature(name) for name in names}))
-    found = [_of_effect(design, power, name, sensor, tables) for name in names]
+    findings = [_of_effect(design, power, name, sensor, tables) for name in names]
     size, source = typical.size("drift", sensor, kind)
-    found.append(Finding("drift", kind, EFFECTS["drift"].units[kind], power.smallest_flicker(),
-                         size, source))
-    return found, tables[-1]
+    findings.append(Finding("drift", kind, EFFECTS["drift"].units[kind], power.smallest_flicker(),
+                            size, source))
+    return findings, tables[-1]
 
 
 def _of_effect(design, power, name, sensor, tables):
@@ -128,13 +128,13 @@ def _of_effect(design, power, name, sensor, tables):
 def aliased_with(name, tables):
     """{other: alias index} of those that reproduce more than SAME_CLASS of an effect in any of the
     tables [(names, index), ...]."""
-    found = {}
+    aliases = {}
     for names, index in tables:
         if name in names:
             for other, share in zip(names, index[names.index(name)]):
                 if other != name and share > SAME_CLASS:
-                    found[other] = max(float(share), found.get(other, 0.0))
-    return found
+                    aliases[other] = max(float(share), aliases.get(other, 0.0))
+    return aliases
 
 
 def kinds_of(sensor):

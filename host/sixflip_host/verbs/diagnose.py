@@ -200,7 +200,7 @@ def of_this_part(captures, record, args):
 def write_terms(terms, args):
     """The record with the terms; CheckFailed when there are none."""
     from .. import atomic_write
-    if not terms.found:
+    if not terms.accepted:
         raise CheckFailed("nothing was found that a record can take out: %s is not written"
                           % args.output)
     atomic_write.write_bytes(args.output, correction_record.encode(terms.record))

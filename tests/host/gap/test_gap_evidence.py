@@ -61,7 +61,7 @@ def form(units, effect):
 
 def found(units):
     forms = hypotheses.forms_of(units)
-    return posterior.search(model_of(units), forms, cutoffs.Cutoffs(
+    return posterior.search_sets(model_of(units), forms, cutoffs.Cutoffs(
         cutoffs.simulated(units, forms, USUAL, [0] * len(units)), 0.06))
 
 
@@ -197,7 +197,7 @@ def test_what_one_form_gains_by_chance_does_not_hide_another():
     lag, rate = (cost.own[f] for f in forms)
     assert lag < 15.0 < 4.0 * lag < rate
     assert cutoffs.simulated(units, forms, moves_unit.NO_LEVELS, [0, 0]) > 4.0 * lag
-    found = posterior.search(model, forms, cost)
+    found = posterior.search_sets(model, forms, cost)
     assert found.best.names == {"filter_lag"}
     assert found.places["filter_lag"]["filter_lag"] > 0.99
 
@@ -211,7 +211,7 @@ def test_costs_of_each_form_keep_the_chance_of_any():
     for _ in range(200):
         drawn = [u.statistics(u.draw(0, generator, 1)) for u in units]
         model = scored_sets.Model(units, drawn, moves_unit.NO_LEVELS)
-        wrong += bool(posterior.search(model, forms, cost).best.forms)
+        wrong += bool(posterior.search_sets(model, forms, cost).best.forms)
     assert wrong <= 4  # a chance of 0.5 % each
 
 
@@ -279,7 +279,7 @@ def lagging(generator, n=40):
 def test_a_size_is_as_uncertain_as_the_lag_that_nothing_tells():
     units = [lagging(np.random.default_rng(seed)) for seed in (3, 4)]
     model, forms = model_of(units), hypotheses.forms_of(units)
-    best = posterior.search(model, forms, cutoffs.Cutoffs(5.0, 0.02))
+    best = posterior.search_sets(model, forms, cutoffs.Cutoffs(5.0, 0.02))
     cause, = aliases.causes(best, units, forms)
     full = effect_estimates.in_full(model, forms, best, cause)
     assert len(full.variants) == 2 and sum(p for p, _ in full.variants) == pytest.approx(1.0)

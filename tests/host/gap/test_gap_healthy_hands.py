@@ -66,7 +66,7 @@ def turned_by(off_deg):
 @pytest.mark.parametrize("off_deg", [1.6, 10.0])
 def test_a_hand_that_turns_by_half_a_circle_carelessly_is_no_gap_of_the_gyro(off_deg):
     gap = turned_by(off_deg)
-    assert gap.adequacy.ok and not gap.found.best.forms
+    assert gap.adequacy.ok and not gap.posterior.best.forms
     assert gap.units[0].grid[gap.adequacy.index[0]][1] >= 0.5 * off_deg
 
 
@@ -168,7 +168,7 @@ def test_the_angles_of_the_accelerometer_that_reads_the_ends_are_no_gap_of_the_g
                for one, up in zip(nominal, read)]
     gap = turn_model.TurnModel("gyro", "mpu6050", diagnosis.Settings(jobs=1)).fit(
         sessions, nominal)
-    assert gap.adequacy.ok and not gap.found.best.forms
+    assert gap.adequacy.ok and not gap.posterior.best.forms
 
 
 def test_the_earth_turns_round_with_a_box_that_is_turned_on_a_face():

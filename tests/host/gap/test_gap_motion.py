@@ -70,8 +70,8 @@ def off_axis():
 
 
 def test_the_arm_is_found_where_it_is_and_nothing_else(off_axis):
-    assert [f.effect for f in off_axis.found] == ["lever_arm"]
-    arm = off_axis.found[0]
+    assert [f.effect for f in off_axis.findings] == ["lever_arm"]
+    arm = off_axis.findings[0]
     assert (arm.sensor, arm.unit, arm.domain) == ("accel", "cm", "motion")
     for key, true in zip("xyz", ARM_CM):
         assert inside(arm, key, true)
@@ -94,8 +94,8 @@ def test_the_loop_closes_when_the_moves_are_felt_again_with_the_arm(off_axis):
     ("gyro", "mpu6050", 9.0), ("accel", "gy85", 9.0), ("gyro", "gy85", 60.0)])
 def test_the_one_that_is_behind_is_named_with_the_delay_between_them(sensor, chip, tau):
     found = judged(captures([{"effect": "filter_lag", "sensor": sensor, "tau": tau}], chip))
-    assert [(f.effect, f.sensor) for f in found.found] == [("filter_lag", sensor)]
-    assert inside(found.found[0], "tau", tau)
+    assert [(f.effect, f.sensor) for f in found.findings] == [("filter_lag", sensor)]
+    assert inside(found.findings[0], "tau", tau)
     loop = closed_loops.close_moves(found)
     assert loop.effects[0]["sensor"] == sensor
     assert loop.share > 0.8
@@ -104,7 +104,7 @@ def test_the_one_that_is_behind_is_named_with_the_delay_between_them(sensor, chi
 def test_nothing_is_found_where_nothing_is(plain):
     found = judged(plain)
     assert found.seen
-    assert found.found == []
+    assert found.findings == []
     assert closed_loops.close_moves(found) is None
     assert np.abs(found.theta[:3]).max() < 1.2
     assert found.least("lever_arm") < 3.0
@@ -112,12 +112,12 @@ def test_nothing_is_found_where_nothing_is(plain):
 
 def test_what_both_have_in_common_is_not_taken_for_a_delay():
     found = judged(captures([{"effect": "filter_lag", "sensor": "device", "tau": 15.0}]))
-    assert found.found == []
+    assert found.findings == []
 
 
 def test_an_arm_longer_than_any_box_is_not_named():
     found = judged(captures([{"effect": "lever_arm", "x": 90.0}]))
-    assert [f.effect for f in found.found] == []
+    assert [f.effect for f in found.findings] == []
     assert any("lever arm would help, but at an impossible size" in r for r in found.remarks)
 
 
@@ -126,27 +126,27 @@ def test_a_hand_in_the_air_is_not_told_from_the_box():
     flipped = (one[0].pose <= 12) & (one[0].pose % 2 == 0)
     one[0].pose[flipped] = 0
     found = judged(one)
-    assert found.found == [] and found.chosen == ("lever_arm",)
+    assert found.findings == [] and found.chosen == ("lever_arm",)
     assert any("turned about a point" in r and "flips on a table tell" in r
                for r in found.remarks)
 
 
 def test_flips_on_a_table_tell_it_in_one_session():
-    found = judged(captures([ARM])).found
+    found = judged(captures([ARM])).findings
     assert [f.effect for f in found] == ["lever_arm"]
     assert inside(found[0], "x", ARM_CM[0])
 
 
 def test_an_effect_left_out_of_the_library_is_not_named():
     gap = judged(captures([ARM]), without={"lever_arm"})
-    assert gap.found == [] and gap.chosen == ()
+    assert gap.findings == [] and gap.chosen == ()
 
 
 def test_a_robot_that_turns_on_the_spot_tells_the_arm_across_the_vertical():
     found = judged(captures([{"effect": "lever_arm", "x": 1.5, "y": -0.8}], seed=5),
                    [driven((1.5, -0.8, 0.0))])
-    arm = found.found[0]
-    assert (arm.effect, len(found.found)) == ("lever_arm", 1)
+    arm = found.findings[0]
+    assert (arm.effect, len(found.findings)) == ("lever_arm", 1)
     assert arm.value["x"] == pytest.approx(1.5, abs=0.15)
     assert arm.value["y"] == pytest.approx(-0.8, abs=0.15)
     width = {k: high - low for k, (low, high) in arm.interval.items()}

@@ -65,8 +65,8 @@ def _size(finding, key):
 
 def read(captures, paths, settings):
     """Simulator from captures."""
-    diagnosis = stages.diagnose_sessions([blocks.session_of(p, c) for p, c in zip(paths, captures)], settings,
-                          beside=True)
+    diagnosis = stages.diagnose_sessions(
+        [blocks.session_of(p, c) for p, c in zip(paths, captures)], settings, beside=True)
     known = {kind: _known(gap) for kind, gap in diagnosis.gaps.items() if gap.chosen}
     return Simulator(diagnosis, known, tuple(_remarks(diagnosis)))
 
