@@ -25,10 +25,10 @@ class Cause:
     part of its work), score (nats); place: {name: probability} of what
     stands here, "" nothing; members ({effect: why it cannot be told}), alike: those of them that
     cannot be told from the effect in principle; theta (k,), covariance (k, k) over the form's
-    columns; other_axes: those that cannot be told from the axes chosen; variants: ((probability,
-    Cause), ...) of it in each variant of its effect that is as likely. Of its size, see
-    effect_estimates.sized: value and interval {key: ...} of the effect in its variant, letters of
-    the axes, plausible, share of the excess, domain, unit."""
+    columns; letters of the axes that are told and variants, ((probability, Cause), ...) of it in
+    each variant of its effect that is as likely: see members.in_full. Of its size, see
+    effect_estimates.sized: value and interval {key: ...} of the effect in its variant, plausible,
+    share of the excess, domain, unit."""
 
     effect: str
     chosen: tuple
@@ -38,7 +38,6 @@ class Cause:
     alike: frozenset = frozenset()
     theta: np.ndarray | None = None
     covariance: np.ndarray | None = None
-    other_axes: tuple = ()
     variants: tuple = ()
     value: dict = field(default_factory=dict)
     interval: dict = field(default_factory=dict)

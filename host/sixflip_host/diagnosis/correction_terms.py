@@ -85,6 +85,8 @@ def _reason(gap, cause, record):
         return "no term of a record"
     if len(cause.names) > 1:
         return "cannot be told apart"
+    if not cause.letters:
+        return "its axes cannot be told"
     if not cause.plausible:
         return "physically implausible"
     if cause.effect != "g_sensitivity" and record.temp_c is None:

@@ -156,20 +156,21 @@ def _one_axis(design, columns):
                 index=tuple(columns.tolist()))
 
 
-def on_axis(form, axis):
-    """The part of a form that is on one axis, or None."""
-    index = dict(zip(form.index, form.axes)) if form.choices else None
-    if index is None:
-        keep = [i for i, a in enumerate(form.axes) if a == axis]
-        if not keep:
-            return None
-        return Form(form.effect, form.variant, "only " + "xyz"[axis],
-                    tuple(form.keys[i] for i in keep), (axis,) * len(keep),
-                    Columns(form.shared.index[keep], form.shared.prior[keep]),
-                    powers=tuple(form.powers[i] for i in keep))
-    choices = tuple(Columns(choice.index[mine], choice.prior[mine]) for choice in form.choices
-                    for mine in [np.array([index[i] == axis for i in choice.index])])
-    return Form(form.effect, form.variant, "only " + "xyz"[axis], choices=choices)
+def on_axes(form, axes):
+    """The part of a form that is on a set of axes (0..2), or None."""
+    name = "only " + "".join("xyz"[axis] for axis in sorted(axes))
+    if form.choices:
+        axis_of = dict(zip(form.index, form.axes))
+        choices = tuple(Columns(choice.index[mine], choice.prior[mine]) for choice in form.choices
+                        for mine in [np.array([axis_of[i] in axes for i in choice.index])])
+        return Form(form.effect, form.variant, name, choices=choices)
+    keep = [i for i, axis in enumerate(form.axes) if axis in axes]
+    if not keep:
+        return None
+    return Form(form.effect, form.variant, name, tuple(form.keys[i] for i in keep),
+                tuple(form.axes[i] for i in keep),
+                Columns(form.shared.index[keep], form.shared.prior[keep]),
+                powers=tuple(form.powers[i] for i in keep), discrepancy=form.discrepancy)
 
 
 def _private(design, columns):

@@ -19,6 +19,7 @@ from . import (
     effect_estimates,
     excess,
     hypotheses,
+    members,
     odds,
     rest_forms,
     rest_units,
@@ -141,10 +142,10 @@ def _sensor(rest, kind, chip, settings, jumps):
     posterior = search_sets(model, forms, cutoffs.for_protocol(units, forms, levels))
     fits = adequacy.goodness_of_fit(units, data.statistics, posterior.best, levels)
     chosen = [f for f in posterior.best.forms if not f.generic and len(f.shared)]
-    strange = [(f, ["xyz"[axis] for axis, _ in effect_estimates.axes_of(model, posterior, f)])
+    strange = [(f, ["xyz"[axis] for axis, _ in members.axes_of(model, posterior, f)])
                for f in posterior.best.forms
                if f.generic and not _settled(f, units, fits, levels, kind)]
-    causes = [effect_estimates.in_full(model, forms, posterior, cause)
+    causes = [members.in_full(model, forms, posterior, cause)
               for cause in aliases.causes(posterior, units, forms)]
     told = [_told(c, data, fits, chip, kind, chosen, posterior) for c in causes]
     beaten = [c for c, rest_cause in zip(causes, told) if _beaten(rest_cause, strange, posterior)]

@@ -11,7 +11,6 @@ from . import (
     box_tilt_test,
     coefficient_fits,
     cutoffs,
-    effect_estimates,
     evidence,
     holdout_gain,
     hypotheses,
@@ -57,7 +56,7 @@ class RestModel:
                 parts, searched = turned, refitted
         units, data, options, noise, forms, cost, model, posterior = searched
         best = posterior.best
-        causes = [effect_estimates.in_full(model, forms, posterior, cause)
+        causes = [members.in_full(model, forms, posterior, cause)
                   for cause in aliases.causes(posterior, units, forms)]
         fitted = adequacy.goodness_of_fit(
             units, data.statistics, best, noise, self.conditions.shaken.get(self.kind, ()),
@@ -74,7 +73,7 @@ class RestModel:
         gap = SensorGap(
             self, parts, units, data, options, forms, noise, cost, posterior,
             chosen, nameless, causes, fitted,
-            {f.effect: effect_estimates.axes_of(model, posterior, f) for f in nameless},
+            {f.effect: members.axes_of(model, posterior, f) for f in nameless},
             wandering.drift(self.kind, [session for session, _ in parts], units, data, noise,
                             posterior, fitted, chosen),
             not fitted.ok or bool(nameless) or doubted, crooked)

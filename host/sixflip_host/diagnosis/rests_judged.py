@@ -3,6 +3,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 from .. import progress
+from ..capture.registers import SENSORS
 from . import adequacy, localisation, motion_model, odds, stray_turns, turn_model
 from .detect.detection import present
 from .rest_model import RestModel
@@ -65,6 +66,9 @@ def judge(rests, findings, settings, conditions):
         remarks += motion.remarks
         if not turns.posterior.best.forms:  # a gyro that bends carries gravity wrongly, too
             nameless += motion.nameless
+    remarks += ["on which axes the %s has %s these captures do not tell" % (
+        SENSORS[gap.kind], " or ".join(cause.names)) for gap in carried for cause in gap.causes
+        if not cause.letters and set(cause.names) - {"box_tilt"}]
     if not conditions.coarse:
         said = [squareness.remark() for squareness in gaps["accel"].crooked if squareness]
         remarks += dict.fromkeys(sentence for sentence in said if sentence)

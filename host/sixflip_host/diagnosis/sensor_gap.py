@@ -10,6 +10,7 @@ from . import (
     excess,
     holdout_gain,
     hypotheses,
+    members,
     odds,
     posterior,
     scored_sets,
@@ -152,7 +153,7 @@ class SensorGap:
                        chosen=[form for form in self.chosen if form not in forms],
                        strangers=[*self.strangers, *forms], unexplained=True,
                        strange_axes={**self.strange_axes, **{
-                           f.effect: effect_estimates.axes_of(model, self.posterior, f)
+                           f.effect: members.axes_of(model, self.posterior, f)
                            for f in forms}})
 
     def with_effect(self, name):

@@ -44,6 +44,20 @@ def test_products_of_the_other_axes_leave_the_axis_open():
     found = diagnosis.diagnose_sessions(
         sessions([{"effect": "cross_quadratic", "sensor": "accel", "xyz": 4.0}]),
         diagnosis.Settings())
-    cause, = answer.as_dict(found)["causes"]
+    said = answer.as_dict(found)
+    cause, = said["causes"]
     assert "cross_quadratic" in cause["class"]
-    assert cause["axes"] == ["x", "y", "z"]
+    assert cause["axes"] == []
+    low, high = cause["interval_90"][max(cause["value"], key=lambda k: abs(cause["value"][k]))]
+    assert low <= 0.0 <= high
+    assert ("on which axes the accelerometer has %s these captures do not tell" % " or ".join(
+        cause["class"])) in said["remarks"]
+
+
+def test_an_axis_that_another_name_of_the_class_denies_is_not_told():
+    """Along gravity, x: f_x f_x is a scale of x less y: f_x f_y and z: f_x f_z."""
+    found = diagnosis.diagnose_sessions(
+        sessions([{"effect": "quadratic", "sensor": "accel", "x": 4.0}]), diagnosis.Settings())
+    cause, = answer.as_dict(found)["causes"]
+    assert {"quadratic", "cross_quadratic"} <= set(cause["class"])
+    assert cause["axes"] in ([], ["x"])
