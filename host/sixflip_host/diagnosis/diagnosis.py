@@ -163,7 +163,8 @@ def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), d
         moving = (beside or bool(comparisons)) and any(len(s.runs) > 1 for s in sessions)
         rest = rest_gap.gaps_by_sensor(sessions, settings, [
             (f.sensor, "xyz".index(key), hz) for f in findings for key, hz in f.hz.items()],
-            rest_gap.SETTLES_S if moving else 0.0)
+            rest_gap.SETTLES_S if moving else 0.0,
+            {(place.sensor, place.axis) for place in nameless if place.domain == "frequency"})
         if moving and not rest:
             remarks.append("no rest of %g s: a robot that settles is not told from sensors that "
                            "drift" % rest_gap.SETTLES_S)

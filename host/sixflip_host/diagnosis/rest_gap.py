@@ -107,24 +107,26 @@ class RestGap:
         return rest_forms.limits(self.rest, self.kind, name) or "needs rests in several poses"
 
 
-def gaps_by_sensor(sessions, settings, lines=(), least_s=0.0):
+def gaps_by_sensor(sessions, settings, lines=(), least_s=0.0, tones=()):
     """{sensor: RestGap} of blocks.Sessions, {} where nothing rests for long enough; least_s: of
-    the longest rest."""
+    the longest rest; tones: (sensor, axis letter) that a tone without a steady frequency moves."""
     rest = long_rest.in_one_attitude(sessions, lines)
     if rest is None or rest.n < MEANS or np.bincount(rest.rest, rest.seconds).max() < least_s:
         return {}
     chip = sessions[0].capture.meta["sensor"]
-    return {kind: _sensor(rest, kind, chip, settings, _jumps(sessions, kind))
+    return {kind: _sensor(rest, kind, chip, settings, _jumps(sessions, kind, tones))
             for kind in rest.values}
 
 
-def _jumps(sessions, kind):
-    """(3,) probability of the longest rest's axes having tails as heavy as they have by noise."""
+def _jumps(sessions, kind, tones):
+    """[probability] of the longest rest's axes having tails as heavy as they have by noise; what
+    a tone does to the means is no leap."""
     session = max(sessions, key=lambda s: np.subtract(*(long_rest.longest(s) or (0, 0))[::-1])
                   / s.rate)
     first, end = long_rest.longest(session)
     rest = long_rest.scaled(session, kind)[first:end]
-    return [wandering.jumps([x], session.rate) for x in rest.T]
+    return [1.0 if (kind, axis) in tones else wandering.jumps([x], session.rate)
+            for axis, x in zip("xyz", rest.T)]
 
 
 def _sensor(rest, kind, chip, settings, jumps):
@@ -151,9 +153,8 @@ def _sensor(rest, kind, chip, settings, jumps):
     beaten = [c for c, rest_cause in zip(causes, told) if _beaten(rest_cause, strange, posterior)]
     chosen = [f for f in chosen if not any(f in c.chosen for c in beaten)]
     told = [rest_cause for c, rest_cause in zip(causes, told) if c not in beaten]
-    # What goes to and fro between levels wanders, but is no drift.
-    leaps = {"xyz"[axis]: p for axis, p in enumerate(jumps)
-             if p < odds.CHANCE and "drift" in posterior.best.names}
+    # What goes to and fro between levels wanders, but is no drift, however little it wanders.
+    leaps = {"xyz"[axis]: p for axis, p in enumerate(jumps) if p < odds.CHANCE}
     told += _drift(posterior, units, data, levels, kind, chosen, fits.index, leaps)
     places = [Place(kind, letter, c.domain, 1.0 if c.share is None else c.share,
                     np.exp(-min(c.score, 600.0))) for c in told for letter in c.letters]

@@ -14,6 +14,7 @@ from . import (
     evidence,
     holdout_gain,
     hypotheses,
+    members,
     scored_sets,
     session_offsets,
     strangers,

@@ -21,6 +21,7 @@ from .detect import (
     saturation,
     spectral_lines,
     torn_reads,
+    wandering_tone,
     wrong_scale,
 )
 from .detect.detection import Finding, present
@@ -101,6 +102,13 @@ def judge(sessions, without=(), damages=()):
                  for sensor, axis, nats in uneven]
     remarks += ["the %s axis of the %s reads some codes hardly ever and others too often"
                 % (axis, SENSOR[sensor]) for sensor, axis, _ in uneven]
+    tones = [(sensor, *tone) for sensor in SENSOR for tone in wandering_tone.axes(
+        sessions, sensor, [a for f in findings if f.effect == "vibration" and f.sensor == sensor
+                           for a in f.axes])]
+    nameless += [localisation.Place(sensor, axis, "frequency", 1.0, odds.chance(nats))
+                 for sensor, axis, nats, _ in tones]
+    remarks += ["the %s axis of the %s has a tone that wanders between %.2g and %.2g Hz"
+                % (axis, SENSOR[sensor], *hz) for sensor, axis, _, hz in tones]
     sessions = tuple(_without_lines(s, findings) for s in without_spikes)
     return SamplesJudged(sessions, tuple(findings), tuple(damages), tuple(nameless),
                          (*remarks, *(words for _, words, _ in unsteady)))

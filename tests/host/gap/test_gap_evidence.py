@@ -9,6 +9,7 @@ from sixflip_host.diagnosis import (
     effect_estimates,
     evidence,
     hypotheses,
+    members,
     mimicry,
     moves_unit,
     odds,
@@ -281,7 +282,7 @@ def test_a_size_is_as_uncertain_as_the_lag_that_nothing_tells():
     model, forms = model_of(units), hypotheses.forms_of(units)
     best = posterior.search_sets(model, forms, cutoffs.Cutoffs(5.0, 0.02))
     cause, = aliases.causes(best, units, forms)
-    full = effect_estimates.in_full(model, forms, best, cause)
+    full = members.in_full(model, forms, best, cause)
     assert len(full.variants) == 2 and sum(p for p, _ in full.variants) == pytest.approx(1.0)
     gram = sum(u.gram.at(int(f.index[0])) for u, f in zip(units, best.best.fits))
     sizes = {one.chosen[0].variant: effect_estimates.effective(one, gram)[0]["x"]

@@ -55,6 +55,17 @@ def test_a_ripple_as_slow_as_the_rests_is_a_line_and_no_drift(captures):
     assert cause["hz"]["z"] == pytest.approx(1.0 / 6.4, abs=0.002)
 
 
+def test_a_tone_that_wanders_is_a_gap_in_frequency(captures):
+    """It is a line of no one frequency, and was no gap."""
+    def chirp(t, counts, generator):
+        hz = 5.0 + 30.0 * (t / 90.0 % 1.0)
+        counts[:, 1] += 5e-3 * 16384 * np.sin(2.0 * np.pi * np.cumsum(hz) * 0.01)
+    found = diagnosed(captures, chirp)
+    assert found["verdict"] == "unexplained"
+    assert (found["where"][0]["axis"], found["where"][0]["domain"]) == ("y", "frequency")
+    assert any("a tone that wanders" in remark for remark in found["remarks"])
+
+
 def test_spikes_in_one_percent_of_the_samples_are_a_gap(captures):
     def spikes(t, counts, generator):
         hit = generator.random(len(t)) < 0.01

@@ -12,11 +12,11 @@ T = np.arange(int(RATE * SECONDS)) / RATE
 SWEEP = 25.0 + 6.0 * np.sin(2.0 * np.pi * T / 170.0)  # degC, uncorrelated with a decay
 
 
-def rest(added=(0.0, 0.0, 0.0), celsius=None, seed=5, start_mg=(20.0, -15.0, 1000.0)):
-    """Session of a rest with white noise of 0.4 mg/√Hz; added: mg a sample, axis by axis."""
+def rest(added=(0.0, 0.0, 0.0), celsius=None, seed=5, start_mg=(20.0, -15.0, 1000.0), noise=0.4):
+    """Session of a rest with white noise (mg/√Hz); added: mg a sample, axis by axis."""
     rng = np.random.default_rng(seed)
     mg = np.stack([np.full(len(T), start_mg[i]) + added[i] for i in range(3)], 1)
-    accel = np.rint((mg + rng.normal(0.0, 0.4 * np.sqrt(RATE), mg.shape)) * 16.384)
+    accel = np.rint((mg + rng.normal(0.0, noise * np.sqrt(RATE), mg.shape)) * 16.384)
     gyro = np.rint((0.3 + rng.normal(0.0, 0.02, mg.shape)) * 131.0)
     temp = None if celsius is None else np.rint((celsius - 36.53) * 340.0).astype(np.int16)
     meta = {"sensor": "mpu6050", "rate_hz": RATE, "accel_lsb_per_g": 16384,
@@ -61,6 +61,14 @@ def test_a_jump_has_no_name_but_a_place():
     found = accel(rest((0.0, 0.0, np.where(T < 230.0, 0.0, 4.0)), SWEEP))
     assert found.nameless and not found.causes
     assert {(p.axis, p.domain) for p in found.places} == {("z", "time")}
+
+
+def test_what_leaps_little_is_a_gap_as_well():
+    """Two levels 0.5 mg apart wander no more than many a chip does, and were no gap."""
+    leaps = np.random.default_rng(6).random(len(T)) < 1.0 / (8.0 * RATE)
+    found = accel(rest((0.0, 0.5 * (np.cumsum(leaps) % 2), 0.0), noise=0.05))
+    assert found.nameless and not found.causes
+    assert {(p.axis, p.domain) for p in found.places} == {("y", "time")}
 
 
 def test_a_quiet_rest_shows_nothing_and_its_floor_is_its_noise():

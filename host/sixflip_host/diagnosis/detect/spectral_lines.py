@@ -121,19 +121,23 @@ def _stretches(sessions, sensor, length, whole=False):
 
 
 def spectrum(stretches, axis):
-    """(mean power (k,), the same with every stretch counted alike, R, window)."""
-    window = np.hanning(len(stretches[0]))
-    x = np.array([s[:, axis] for s in stretches])
-    # What creeps or drifts is no line: a straight one is taken off.
-    course = np.linspace(-1.0, 1.0, x.shape[1])
-    x = x - x.mean(axis=1)[:, None] - np.outer(x @ course / (course @ course), course)
-    power = np.abs(np.fft.rfft(x * window, axis=1)) ** 2 / (window ** 2).sum()
+    """(mean power (k,), the same with every stretch counted alike, R)."""
+    power = periodograms(np.array([s[:, axis] for s in stretches]))
     # Every stretch counts alike: a burst of noise in one of them is no line.
     level = np.median(power[:, 1:], axis=1)
     alike = power
     if (level > 0.0).all():
         alike = power * (np.median(level) / level)[:, None]
-    return power.mean(axis=0), alike.mean(axis=0), power.shape[0], window
+    return power.mean(axis=0), alike.mean(axis=0), len(power)
+
+
+def periodograms(x):
+    """(R, k): power of stretches x (R, n), each bin that of a sample's noise on average."""
+    window = np.hanning(x.shape[1])
+    # What creeps or drifts is no line: a straight one is taken off.
+    course = np.linspace(-1.0, 1.0, x.shape[1])
+    x = x - x.mean(axis=1)[:, None] - np.outer(x @ course / (course @ course), course)
+    return np.abs(np.fft.rfft(x * window, axis=1)) ** 2 / (window ** 2).sum()
 
 
 def step(sessions, sensor, axis):
@@ -155,7 +159,7 @@ def strongest(sessions, sensor, axis):
     stretches = rests(sessions, sensor)
     if not stretches:
         return None
-    plain, mean, number, window = spectrum(stretches, axis)
+    plain, mean, number = spectrum(stretches, axis)
     resting = any(session.runs for session in sessions)
     if not resting:  # what shakes a sensor in use comes and goes
         mean = plain

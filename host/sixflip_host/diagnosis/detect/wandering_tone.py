@@ -1,0 +1,60 @@
+"""A tone whose frequency wanders: a chirp, a pump whose speed is regulated. In the mean of all
+spectra it is no line, in every stretch by itself it is one.
+
+Over the median of all stretches the power of one of them, bin by bin, is exponential with mean 1
+where there is only noise, and so is what comes and goes at one resonance; the largest of K bins is
+beyond x with a probability of 1 - (1 - exp(-x))^K [Fisher, Proc. R. Soc. A 125 (1929) 54].
+"""
+import math
+
+import numpy as np
+from scipy import stats
+
+from . import spectral_lines
+
+RARE = 0.001  # that noise has such a tone in one stretch; how many have one is judged
+# What that is taken for: a median of so few stretches is off by a fifth, which at exp(-12) makes
+# eleven times as many.
+DOUBTED, FEWEST = 0.02, 24
+OFTEN = 0.25  # share of the stretches that has one: less is a visit, no state of the sensor
+WANDERS = 3.0  # bins, quartile to quartile: the lobe of a steady line is four bins wide
+LOBE = 2
+
+
+def axes(sessions, sensor, known=()):
+    """[(axis letter, nats, (lowest, highest) Hz)] of a sensor at rest; known: axes that are shaken
+    at a frequency that is known."""
+    if any(getattr(s.capture, sensor) is None for s in sessions) or not any(
+            s.runs for s in sessions):
+        return []
+    stretches = spectral_lines.rests(sessions, sensor)
+    if len(stretches) < FEWEST:
+        return []
+    tones = [("xyz"[axis], *_tone(np.array([s[:, axis] for s in stretches]), sessions[0].rate))
+             for axis in range(3) if "xyz"[axis] not in known]
+    return [tone for tone in tones if tone[1] > 0.0]
+
+
+def _tone(x, rate):
+    """(nats, (lowest, highest) Hz) of stretches x (R, n); 0 nats where there is none."""
+    nothing = 0.0, (0.0, 0.0)
+    n = x.shape[1]
+    first = max(LOBE + 1, int(spectral_lines.LOWEST_HZ * n / rate) + 1)
+    power = spectral_lines.periodograms(x)
+    level = np.median(power[:, first:-1], axis=1)
+    if power.shape[1] - first < 2 * FEWEST or not (level > 0.0).all():
+        return nothing
+    alike = power / level[:, None]
+    usual = np.median(alike, axis=0) / math.log(2.0)
+    ratio = (alike / usual)[:, first:-1]
+    place = ratio.argmax(axis=1)
+    chance = -np.expm1(ratio.shape[1] * np.log1p(-np.exp(-ratio.max(axis=1))))
+    lobes = np.array([one[first + k - LOBE:first + k + LOBE + 1].sum() for one, k in zip(
+        power, place)]) - (2 * LOBE + 1) * level / math.log(2.0)
+    amplitude = np.sqrt(np.maximum(4.0 * lobes / n, 0.0))
+    tone = (chance < RARE) & (amplitude > spectral_lines.STRONG_SHARE * x.std(axis=1))
+    bins = place[tone]
+    if tone.mean() < OFTEN or np.subtract(*np.quantile(bins, (0.75, 0.25))) < WANDERS:
+        return nothing
+    hz = (first + np.quantile(bins, (0.05, 0.95))) * rate / n
+    return -float(stats.binom.logsf(tone.sum() - 1, len(tone), DOUBTED)), tuple(hz)
