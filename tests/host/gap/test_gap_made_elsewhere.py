@@ -278,3 +278,13 @@ def test_spikes_that_are_pages_are_one_place():
     said = [words for words in judged.remarks if "spikes" in words or "256 counts" in words]
     assert len(said) == 2
     assert [(p.sensor, p.domain) for p in judged.nameless] == [("gyro", "noise")]
+
+
+def test_noise_nearly_as_wide_as_a_page_has_no_jumps_by_pages():
+    """A jump up or down by a page had the density of both: 20 nats in noise of 63 counts."""
+    generator = np.random.default_rng(1)
+    columns = [np.rint(63.0 * generator.standard_normal(25000)).astype(np.int64)
+               for _ in range(6)]
+    nats, _ = torn_reads.paged(sample_neighbours.together(
+        [sample_neighbours.tabled(column, False) for column in columns]))
+    assert nats < 0.0

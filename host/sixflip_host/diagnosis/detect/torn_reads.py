@@ -215,8 +215,8 @@ def louder(times, freedom):
 
 
 def moved(part, paged_by):
-    """A jump by pages."""
-    return paged_by
+    """A jump by pages, up or down."""
+    return 0.5 * paged_by
 
 
 def torn_by(side):
