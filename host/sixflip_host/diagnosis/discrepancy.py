@@ -104,3 +104,22 @@ def with_discrepancy(model, forms, scored, form):
     return replace(form, keys=form.keys + tuple("xyz"[a] for a in axes),
                    axes=form.axes + tuple(axes), powers=form.powers + (BESIDE,) * len(axes),
                    shared=form.shared + Columns(np.array(columns), prior), discrepancy=True)
+
+
+def outgrows(scored, form):
+    """Whether the discrepancy beside a form of a Scored set shows more than the form itself does:
+    then the form is a part of something else. What stands beside those of OWN_FORMS is the effect
+    itself."""
+    if form.effect in OWN_FORMS:
+        return False
+    theta = evidence.coefficients(scored.fits, scored.shared)[0][0]
+    gram = sum(fit.gram[0] for fit in scored.fits)
+    beside = np.array(form.powers) == BESIDE
+    own, other = (np.isin(scored.shared.index, form.columns[part]) for part in (~beside, beside))
+    return _shown(theta[other], gram[np.ix_(other, other)]) > _shown(
+        theta[own], gram[np.ix_(own, own)])
+
+
+def _shown(theta, gram):
+    """chi2 of what coefficients add."""
+    return float(theta @ gram @ theta)

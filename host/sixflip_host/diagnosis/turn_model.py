@@ -23,6 +23,7 @@ WRONG_DEG = 25.0  # of a turn's end: as of a label that gravity contradicts (blo
 OFF_DEG = 6.0  # of a turn's end by a gyro not yet calibrated: a few percent of a half turn
 BANDS_DPS = (1.0, 4.0)  # widths over which a dead band bends the rates beyond it
 TIMES = (1.0, 10.0)  # the usual width of a dead band: no data sheet gives one
+JUMPS_AT = (-0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75)  # of a session from -1 to 1
 USUAL_DEG = 0.25  # of a move from rest to rest, beside white noise
 
 
@@ -57,6 +58,7 @@ class TurnModel(RestModel):
             designs += [banded(chosen, width, times, lsb, self.chip) for width in BANDS_DPS
                         for times in TIMES]
         designs += [nameless(chosen, name, functions) for name, functions in STRANGERS.items()]
+        designs += _in_time(chosen)
         if part.thermal:
             reference = self.conditions.reference_c
             designs.append(nameless(chosen, "thermal_orientation",
@@ -102,6 +104,20 @@ def _of_temperature(turn, reference_c):
     warm = (turn.temperature - reference_c)[:, None] / 5.0
     return [np.broadcast_to(warm * turn.middle[:, i:i + 1] / 100.0, turn.middle.shape)
             for i in range(3)]
+
+
+def _in_time(chosen):
+    """Designs of a scale of each axis that changes: steadily, alike in every session, or at once,
+    at a time of a session's own."""
+    first, last = chosen[0].t[0], chosen[-1].t[-1]
+
+    def course(turn):
+        return 2.0 * (0.5 * (turn.t[0] + turn.t[-1]) - first) / (last - first) - 1.0
+    steady = nameless(chosen, "time", lambda turn: [course(turn) * turn.middle / 100.0])
+    jump = nameless(chosen, "jump", lambda turn: [
+        np.sign(course(turn) - at) * turn.middle / 100.0 for at in JUMPS_AT])
+    return [steady, replace(jump, choices=[(3 * k, 3 * k + 1, 3 * k + 2)
+                                           for k in range(len(JUMPS_AT))])]
 
 
 STRANGERS = {"amplitude": _bends, "motion": _of_motion}

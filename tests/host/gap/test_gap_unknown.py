@@ -74,3 +74,43 @@ def test_a_log_without_a_rest_cannot_tell_that_there_is_no_gap():
                                         diagnosis.Settings())
     assert not found.sessions[0].runs
     assert found.verdict == "cannot tell"
+
+
+def test_a_fifth_power_is_cubic_and_no_product_of_axes(two_sessions):
+    """Products of axes with a discrepancy that showed forty times more than they did were named
+    as well."""
+    for capture in two_sessions:
+        f = capture.accel / 16384.0
+        capture.accel = np.rint(capture.accel + 82.0 * f ** 5 * [1.0, -1.0, 1.0]).astype(np.int16)
+        capture.gyro = None  # the accelerometer alone: half the work
+    sessions = [blocks.session_of(str(k), c) for k, c in enumerate(two_sessions)]
+    found = answer.as_dict(diagnosis.diagnose_sessions(sessions, diagnosis.Settings()))
+    assert [c["effect"] for c in found["causes"]] == ["cubic"]
+    assert found["verdict"] == "explained"
+
+
+def test_a_gyro_whose_scale_grows_is_a_gap_in_time(two_sessions):
+    """3 % over a session were no gap: nothing that turns show was a function of time."""
+    for capture in two_sessions:
+        grown = 1.0 + 0.03 * np.linspace(-0.5, 0.5, len(capture))[:, None]
+        rest = np.median(capture.gyro, axis=0)
+        capture.gyro = np.rint(rest + (capture.gyro - rest) * grown).astype(np.int16)
+    sessions = [blocks.session_of(str(k), c) for k, c in enumerate(two_sessions)]
+    found = answer.as_dict(diagnosis.diagnose_sessions(sessions, diagnosis.Settings()))
+    assert found["verdict"] == "unexplained" and not found["causes"]
+    assert (found["where"][0]["sensor"], found["where"][0]["domain"]) == ("gyro", "time")
+
+
+def test_noise_of_one_session_alone_is_a_gap(two_sessions):
+    """What shook a box all through a session was no gap, eight times as loud as the other."""
+    generator = np.random.default_rng(3)
+    loud = two_sessions[1]
+    loud.accel = np.rint(loud.accel + 330.0 * generator.standard_normal(loud.accel.shape)
+                         ).astype(np.int16)
+    for capture in two_sessions:
+        capture.gyro = None
+    sessions = [blocks.session_of("%d.csv" % k, c) for k, c in enumerate(two_sessions)]
+    found = answer.as_dict(diagnosis.diagnose_sessions(sessions, diagnosis.Settings()))
+    assert found["verdict"] == "unexplained"
+    assert found["where"][0]["domain"] == "noise"
+    assert any("noise of the accelerometer in 1.csv" in remark for remark in found["remarks"])

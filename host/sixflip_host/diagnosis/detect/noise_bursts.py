@@ -1,10 +1,12 @@
 """How the samples of the rests are distributed: seconds far louder than the others, noise that
-grows or dies down from rest to rest, and single samples far off their neighbours.
+grows or dies down from rest to rest or is another one in another session, and single samples far
+off their neighbours.
 
 No effect of the library does that, and no touch does it often: it is said where, not what.
 """
 import copy
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from scipy import special, stats
@@ -17,6 +19,8 @@ from .torn_reads import student
 
 WINDOW_S = 0.5  # a touch or a step on the floor rings for less
 LOUD = 9.0  # times the usual variance: three times as loud, which no touch is mistaken for
+ROUNDING = 1.0 / 6.0  # counts²: of differences of readings that nothing but rounding moves
+FEWEST_WINDOWS = 8  # of a session: four seconds at rest
 FEWEST, FEWEST_RESTS = 4, 3  # windows, rests with one: a single event rings in one rest, or in two
 FEWEST_SAMPLES = 64  # of a rest, whose noise is known to a tenth
 GROWN = 1.5  # times as loud at one end of a session as at the other: a filter set otherwise
@@ -25,22 +29,46 @@ FEWEST_COMPARED = 10  # rests whose noise is compared
 
 def loud(session, sensor):
     """(loud windows, rests with one, windows) of a session's rests, once the box has settled."""
+    power, place = _windows(session, sensor)
+    if not len(power):
+        return 0, 0, 0
+    usual = np.maximum(np.median(power, axis=0), ROUNDING)
+    high = (power > LOUD * usual).any(axis=1)
+    return int(high.sum()), len(np.unique(place[high])), len(high)
+
+
+def _windows(session, sensor):
+    """((w, 3) counts², (w,) number of the rest) of a session's half seconds at rest: the mean
+    square of the differences from one sample to the next."""
     counts = getattr(session.capture, sensor)
     m = max(8, int(WINDOW_S * session.rate))
     settles = int(SETTLES_S * session.rate)
-    power, place = [], []
+    power, place = [np.zeros((0, 3))], [np.zeros(0, int)]
     for number, (_, first, end) in enumerate(session.runs):
         x = np.diff(counts[first + settles:end].astype(float), axis=0)
         k = len(x) // m
-        if k:
-            power.append((x[:k * m].reshape(k, m, 3) ** 2).mean(axis=1))
-            place.append(np.full(k, number))
-    if not power:
-        return 0, 0, 0
-    power, place = np.concatenate(power), np.concatenate(place)
-    usual = np.maximum(np.median(power, axis=0), 1.0 / 6.0)  # counts: rounding alone
-    high = (power > LOUD * usual).any(axis=1)
-    return int(high.sum()), len(np.unique(place[high])), len(high)
+        power.append((x[:k * m].reshape(k, m, 3) ** 2).mean(axis=1))
+        place.append(np.full(k, number))
+    return np.concatenate(power), np.concatenate(place)
+
+
+def loudest(sessions, sensor):
+    """(times as loud, p, name of the loudest session, of the quietest) of the axis whose noise
+    differs most between sessions, that of the same time, in the median half second."""
+    levels = []
+    for session in sessions:
+        power, _ = _windows(session, sensor)
+        if len(power) < FEWEST_WINDOWS:
+            return 1.0, 1.0, "", ""
+        unit = registers.unit_of_count(session.capture.meta, sensor)
+        levels.append(np.maximum(np.median(power, axis=0), ROUNDING) * unit ** 2 / session.rate)
+    levels = np.array(levels)
+    axis = int((levels.max(axis=0) / levels.min(axis=0)).argmax())
+    high, low = levels[:, axis].argmax(), levels[:, axis].argmin()
+    ratio = levels[high, axis] / levels[low, axis]
+    freedom = FEWEST_WINDOWS * WINDOW_S * min(s.rate for s in sessions) / 3.0
+    return (float(np.sqrt(ratio)), float(special.fdtrc(freedom, freedom, ratio / LOUD)),
+            sessions[high].name, sessions[low].name)
 
 
 SPIKE = 4.5  # standard deviations of a single sample off its neighbours, which agree
@@ -171,7 +199,7 @@ def growing(session, sensor):
     for axis in range(3):
         power = np.array([(np.diff(counts[first:end, axis].astype(float)) ** 2).mean()
                           for first, end in rests])
-        level = 0.5 * np.log(np.maximum(power, 1.0 / 6.0))  # counts: rounding alone
+        level = 0.5 * np.log(np.maximum(power, ROUNDING))
         p = min(1.0, 3.0 * float(stats.kendalltau(t, level).pvalue))
         times = float(np.exp(stats.theilslopes(level, t).slope * np.ptp(t)))
         if p < best[1] and max(times, 1.0 / times) > GROWN:
@@ -180,7 +208,8 @@ def growing(session, sensor):
 
 
 def unsteady(sessions):
-    """[(sensor, sentence, p)] of noise that comes in bursts, or changes from rest to rest."""
+    """[(sensor, sentence, p)] of noise that comes in bursts, or changes from rest to rest or from
+    session to session."""
     sentences = []
     for sensor, words in registers.SENSORS.items():
         if any(getattr(s.capture, sensor) is None for s in sessions):
@@ -199,4 +228,10 @@ def unsteady(sessions):
             sentences.append((
                 sensor, "the noise of the %s at the end of a session is %.2g times what it was at "
                 "its begin" % (words, times), p * len(sessions)))
+            continue
+        times, p, high, low = loudest(sessions, sensor)
+        if present(-np.log(max(p, odds.SMALLEST))):
+            sentences.append((
+                sensor, "the noise of the %s in %s is %.2g times what it is in %s"
+                % (words, Path(high).name, times, Path(low).name), p))
     return sentences
