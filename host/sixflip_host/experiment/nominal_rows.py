@@ -19,10 +19,10 @@ from .projection import lateral_basis
 # two degrees.
 PLACEMENT_MG = (0.1, 0.45, 0.8, 1.4, 3.0, 8.0, 40.0)
 # Levels of flicker tried: factors of 1.4 apart where parts are (typical.FLICKER), two and more
-# beyond.
-FLICKER_MG = (0.005, 0.02, 0.033, 0.05, 0.075, 0.11, 0.15, 0.22, 0.4, 0.8, 1.6, 4.0)
-FLICKER_DPS = (0.0002, 0.001, 0.0018, 0.0026, 0.0037, 0.0053, 0.0075, 0.011, 0.016, 0.025, 0.04,
-               0.065, 0.1, 0.2)
+# beyond; twice as much as the nearest is seen as no noise in a session of the recommended plan.
+FLICKER_MG = (0.005, 0.01, 0.02, 0.033, 0.05, 0.075, 0.11, 0.15, 0.22, 0.4, 0.8, 1.6, 4.0)
+FLICKER_DPS = (0.0002, 0.00045, 0.001, 0.0018, 0.0026, 0.0037, 0.0053, 0.0075, 0.011, 0.016, 0.025,
+               0.04, 0.065, 0.1, 0.2)
 EARTH_UP_DPS = 0.003  # 15 deg/h at a latitude of 45 degrees
 # Levels tried of the Earth's horizontal rate, the box at an unknown azimuth: as much as upward,
 # and what is left of it where the box nearly always lies the same way.
