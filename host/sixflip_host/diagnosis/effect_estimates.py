@@ -105,9 +105,10 @@ def _energy(candidate, cause, gram):
 TIMES = 5.0  # the typical size, that is believed: more is numerically helpful only (GAP stage 3)
 TAIL = 2.0
 # Of those that are as large as a box is made, a sensor is mounted, a filter is set or a maker
-# wants; what warms up does so by more than it drifts.
-LOOSE = {"warm_up": 10.0, "dead_band": 1e9, "box_tilt": 20.0, "lever_arm": 10.0,
-         "filter_lag": 20.0}
+# wants; what warms up does so by more than it drifts; what shakes hardest may be beyond the
+# filter, so that what is left of it in the samples shifts by any multiple of its power.
+LOOSE = {"warm_up": 10.0, "dead_band": 1e9, "vibration_rectification": 1e9,
+         "box_tilt": 20.0, "lever_arm": 10.0, "filter_lag": 20.0}
 
 
 # What a part's drift with temperature amounts to while it warms up, and in what follows the

@@ -1,5 +1,5 @@
 """Rests cut into blocks, and what is measured of each block: its means (mg, deg/s), its time and
-temperature, and how noisy the sensor is in it: white noise, what rounding leaves, vibration.
+temperature, and how noisy the sensor is in it: white noise, what rounding leaves, how loud it is.
 
 A block is a range of samples: counts (N, 3) are those of the whole capture, first and end (n,)
 say which of them each of n blocks holds.
@@ -52,8 +52,8 @@ def of_runs(capture, runs, rate, t_s, labelled, smooth):
                 "seconds": (end - first) / rate, "accel": accel, "gyro": gyro,
                 "temperature": smooth.at(t) if smooth else None,
                 "temperature_rate": smooth.rate_at(t) if smooth else None,
-                "vibration": np.zeros(len(cut)) if capture.accel is None
-                else vibration(capture, first, end), "noise_accel": None,
+                "loudness": np.zeros(len(cut)) if capture.accel is None
+                else loudness(capture, first, end), "noise_accel": None,
                 "noise_gyro": None, "rounding_accel": None, "rounding_gyro": None}
     for sensor, counts, scale in _sensors(capture) if len(cut) else ():
         measures["noise_" + sensor] = white(counts, first, end, rate) * scale
@@ -157,13 +157,15 @@ def freedom(first, end, rate):
     return max(2.0 * float(number), 1.0)
 
 
-def vibration(capture, first, end):
-    """(n,) mg rms of each block above the quietest tenth of the blocks; zero where nothing stands
-    out."""
-    if not len(first):
-        return np.zeros(0)
-    power = np.array([np.diff(capture.accel[a:b].astype(float), axis=0).var(axis=0).sum()
-                      / 2.0 for a, b in zip(first, end)])
-    quiet = np.quantile(power, QUIETEST)
-    excess = np.where(power > STANDS_OUT * quiet, power - quiet, 0.0)
-    return np.sqrt(excess) * unit_of_count(capture.meta, "accel")
+def loudness(capture, first, end):
+    """(n,) mg rms of what changes from sample to sample in each block, all axes together."""
+    return np.sqrt([np.diff(capture.accel[a:b].astype(float), axis=0).var(axis=0).sum() / 2.0
+                    for a, b in zip(first, end)]) * unit_of_count(capture.meta, "accel")
+
+
+def vibrations(loud):
+    """[(n,)] mg rms of each block of several sessions above the quietest tenth of the quietest
+    one; zero where nothing stands out. loud: their loudness."""
+    quiet = min((np.quantile(one ** 2, QUIETEST) for one in loud if len(one)), default=0.0)
+    return [np.sqrt(np.where(one ** 2 > STANDS_OUT * quiet, one ** 2 - quiet, 0.0))
+            for one in loud]

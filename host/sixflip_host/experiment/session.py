@@ -27,7 +27,7 @@ STEPS, FEWEST_STAMPS, EVEN = 16, 1600, 0.01
 FAR_OFF_DEG = 25.0  # a label that gravity contradicts: a table does not lean by half of that
 USUAL_C = 25.0  # temperature where no thermometer tells it: of the effects' own reference
 OF_BLOCKS = ("placement", "code", "first", "end", "face", "t", "since", "seconds", "accel", "gyro",
-             "temperature", "temperature_rate", "vibration")
+             "temperature", "temperature_rate", "loudness", "vibration")
 
 
 class ReadOnlyArrays:
@@ -48,12 +48,13 @@ class Session(ReadOnlyArrays):
     stand still; labelled: by whoever captured it; runs: tuple of rests.Run, the placements;
     thermometer or None. Of the blocks (n,): placement (number of its run), code, face (-1:
     leaning), first, end (samples), t and since (s, since the capture's and the rest's begin),
-    seconds; accel (n, 3) mg and gyro (n, 3) deg/s as the chip gave them, None of a
-    sensor that there is not; temperature
-    and temperature_rate or None; vibration mg rms above the quietest. Of the sensor (3,):
+    seconds; accel (n, 3) mg and gyro (n, 3) deg/s as the chip gave them, None of a sensor that
+    there is not; temperature and temperature_rate or None; loudness mg rms from sample to sample.
+    Of the sensor (3,):
     noise_accel, noise_gyro of a mean over one second, mg and deg/s; rounding_accel,
     rounding_gyro of the mean of a rest, by steps of the counts; None without a gyro.
-    thermal, shaken_mg: what sessions that are judged together agreed to look for, see terms.
+    thermal, vibration (n,) mg rms, shaken_mg: what sessions that are judged together agreed to
+    look for, see terms.
     """
 
     name: str
@@ -76,12 +77,13 @@ class Session(ReadOnlyArrays):
     gyro: np.ndarray | None
     temperature: np.ndarray | None
     temperature_rate: np.ndarray | None
-    vibration: np.ndarray
+    loudness: np.ndarray
     noise_accel: np.ndarray | None
     noise_gyro: np.ndarray | None
     rounding_accel: np.ndarray | None
     rounding_gyro: np.ndarray | None
     thermal: bool = False
+    vibration: np.ndarray | None = None
     shaken_mg: float = 0.0
 
     @property
@@ -198,7 +200,7 @@ class Session(ReadOnlyArrays):
         still = np.zeros(self.n)
         m.w = m.w_rate = (still, still, still)
         m.session = np.full(self.n, number)
-        m.vibration_mg = self.vibration
+        m.vibration_mg = still if self.vibration is None else self.vibration
         return m
 
     def contradicted(self):

@@ -13,6 +13,7 @@ import numpy as np
 from sixflip_sim.effects import typical
 from sixflip_sim.effects.library import EFFECTS
 
+from . import block_measures
 from .projection import by_axis
 from .thermometer import MOVES_C
 
@@ -125,12 +126,15 @@ def squared(design, columns, prior):
 def agreed(sessions):
     """The sessions with what is looked for settled for all of them at once, so that the columns
     of one are those of the others: thermal (every one has a thermometer, and one of them
-    moved), shaken_mg (the strongest vibration of any rest, 0 where none is shaken)."""
+    moved), vibration above the quietest rests of all, shaken_mg (the strongest of any rest, 0
+    where none is shaken)."""
     thermal = all(s.thermometer is not None for s in sessions) and max(
         s.thermometer.moved for s in sessions) >= MOVES_C
-    strongest = max(float(s.vibration.max()) for s in sessions)
+    vibrations = block_measures.vibrations([session.loudness for session in sessions])
+    strongest = max(float(vibration.max()) for vibration in vibrations)
     shaken_mg = strongest if strongest > LEAST_VIBRATION_MG else 0.0
-    return [replace(session, thermal=thermal, shaken_mg=shaken_mg) for session in sessions]
+    return [replace(session, thermal=thermal, vibration=vibration, shaken_mg=shaken_mg)
+            for session, vibration in zip(sessions, vibrations)]
 
 
 def library(session, up, sensor, reference_c, chip):

@@ -98,6 +98,19 @@ def test_what_shifts_while_a_motor_is_on_is_rectified(rectified):
     assert gap.causes[0].share > 0.8
 
 
+def test_a_motor_that_is_on_in_one_session_rectifies_there():
+    """But for two poses all of that session was as loud as its own quietest rests, so that nothing
+    shook."""
+    sessions = iter((0.0, 1.0))
+
+    def added(t, g, generator):
+        on = next(sessions) * (t > 60.0)[:, None]
+        return on * (0.03 * generator.standard_normal(g.shape) + [0.03, 0.0, -0.02])
+    gap = accelerometer(added)
+    assert [cause.names for cause in gap.causes] == [["vibration_rectification"]]
+    assert list(gap.causes[0].letters) == ["x", "z"] and gap.causes[0].plausible
+
+
 def test_a_motor_that_shifts_nothing_is_no_rectification():
     gap = accelerometer(shaken(lambda strength: 0.0 * strength))
     assert not gap.causes
