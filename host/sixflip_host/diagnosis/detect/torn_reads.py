@@ -137,7 +137,7 @@ def competed(samples):
         beside = Densities(samples, freedom, knocked[likeliest][1], others[likeliest])
         for noise in (densities, beside):  # without others, and beside the likeliest share of them
             alone, ((by_pages, _), *torn) = noise.best(
-                (moved, number), *((torn_by(side), among) for side, among in chances.items()))
+                (led_back, number), *((torn_by(side), among) for side, among in chances.items()))
             nameless.append(alone + by_pages)
             named += [(alone + gain, noise, side, own) for side, (gain, own) in zip(chances, torn)]
     score, densities, side, own = max(named, key=lambda tear: tear[0])
@@ -217,6 +217,12 @@ def louder(times, freedom):
 def moved(part, paged_by):
     """A jump by pages, up or down."""
     return 0.5 * paged_by
+
+
+def led_back(part, paged_by):
+    """What a torn read is held against: a jump from wherever a page more or less leads, which way
+    it was being known. Knocks and gaits are no noise, and some of theirs look torn by chance."""
+    return paged_by
 
 
 def torn_by(side):
