@@ -79,25 +79,27 @@ def _of_effect(designs, form):
 
 def with_discrepancy(model, forms, scored, form):
     """The form with a discrepancy in its own variable beside it, whose standard deviation is
-    RELATIVE of the size that the form has in a Scored set; None where there is none."""
+    RELATIVE of the size that the form has in a Scored set, of what shows of both; None where there
+    is none. Of a form that calibration takes up, half of what it is would be any size of what is
+    left: a name for whatever is a function of the same variable."""
     if form.generic or not len(form.shared) or form.discrepancy:
         return None
     designs, variables = model.units[0].designs, _variable(form.effect)
     free = _of_effect(designs, form) if form.effect in OWN_FORMS else _of_variable(
         designs, forms, variables, form.variant)
-    shared = scored.shared
+    shared, own = scored.shared, form.shared.index
     theta = evidence.coefficients(scored.fits, shared)[0][0]
-    rms = np.sqrt(np.mean([u.energy for u in model.units if not u.between], axis=0))
+    shown = _shown(model.units, scored.fits, np.array([*own, *(c for c, _ in free)], dtype=int))
     size = np.zeros(3)
-    for column, axis in zip(form.shared.index, form.axes):
+    for column, axis, squares in zip(own, form.axes, shown):
         place = np.flatnonzero(shared.index == column)[0]
-        size[axis] = np.hypot(size[axis], theta[place] * rms[column])
+        size[axis] = np.hypot(size[axis], theta[place] * np.sqrt(squares))
     columns, prior, axes = [], [], []
-    for column, axis in free:
-        if size[axis] > 0.0 and rms[column] > 0.0 and column not in form.shared.index:
+    for (column, axis), squares in zip(free, shown[len(own):]):
+        if size[axis] > 0.0 and squares > 0.0 and column not in own:
             columns.append(column)
             axes.append(axis)
-            prior.append(RELATIVE * size[axis] / rms[column])
+            prior.append(RELATIVE * size[axis] / np.sqrt(squares))
     if not columns:
         return None
     prior = np.array(prior) / np.sqrt(np.bincount(axes, minlength=3)[axes])
@@ -106,20 +108,7 @@ def with_discrepancy(model, forms, scored, form):
                    shared=form.shared + Columns(np.array(columns), prior), discrepancy=True)
 
 
-def outgrows(scored, form):
-    """Whether the discrepancy beside a form of a Scored set shows more than the form itself does:
-    then the form is a part of something else. What stands beside those of OWN_FORMS is the effect
-    itself."""
-    if form.effect in OWN_FORMS:
-        return False
-    theta = evidence.coefficients(scored.fits, scored.shared)[0][0]
-    gram = sum(fit.gram[0] for fit in scored.fits)
-    beside = np.array(form.powers) == BESIDE
-    own, other = (np.isin(scored.shared.index, form.columns[part]) for part in (~beside, beside))
-    return _shown(theta[other], gram[np.ix_(other, other)]) > _shown(
-        theta[own], gram[np.ix_(own, own)])
-
-
-def _shown(theta, gram):
-    """chi2 of what coefficients add."""
-    return float(theta @ gram @ theta)
+def _shown(units, fits, columns):
+    """(k,) chi2 that a unit of each of some columns adds, at the levels of the Fits."""
+    return sum(unit.gram.at(int(fit.index[0]), columns).diagonal()
+               for unit, fit in zip(units, fits) if not unit.between)

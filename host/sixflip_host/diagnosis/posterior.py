@@ -224,7 +224,6 @@ def _wider(model, forms, scored, cost, form):
         if wider is None:
             break
         extended = model.scored((*others, wider))
-        if _worth(extended, cost) > _worth(scored, cost) + FORM_COST and not discrepancy.outgrows(
-                extended, wider):
+        if _worth(extended, cost) > _worth(scored, cost) + FORM_COST:
             scored = extended
     return scored
