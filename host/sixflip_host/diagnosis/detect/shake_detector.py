@@ -82,7 +82,7 @@ def shaken(sessions):
         off = 0.5 * 1.645 * np.sqrt(len(ranked))
         ends = ranked[[int(max(0.5 * len(ranked) - off, 0)),
                        int(min(0.5 * len(ranked) + off, len(ranked) - 1))]]
-        value["xyz"[i]] = float("%.3g" % _amplitude(usual[i], quiet[i]))
+        value["xyz"[i]] = float(_amplitude(usual[i], quiet[i]))
         interval["xyz"[i]] = tuple(float(_amplitude(end, quiet[i])) for end in ends)
         # Half of the windows above a level that QUIET of them are below, if they were alike.
         mean = float((level[:, i] ** 2).mean()) - quiet[i] ** 2

@@ -78,7 +78,7 @@ def line_of_axis(sessions, sensor, axis):
 def told(lines, sensor, rate):
     """Finding of the lines of a sensor."""
     top = max(lines, key=lambda line: line.nats)
-    value = {line.letter: float("%.3g" % line.amplitude) for line in lines}
+    value = {line.letter: line.amplitude for line in lines}
     interval = {line.letter: (line.amplitude * (1 - odds.Z_90 * line.error),
                               line.amplitude * (1 + odds.Z_90 * line.error)) for line in lines}
     steady = [line for line in lines if line.steady]

@@ -12,13 +12,14 @@ import numpy as np
 from ...experiment import blocks
 from .. import detectability, odds
 from .. import diagnosis as stages
+from . import hypotheses
 
 # Standard errors between two sizes from which on they are two effects: two of one size are as far
 # apart in one of 370 pairs (normal).
 APART = 3.0
 # Standard error of a size that has no interval, as a share of it: as well as two logs repeat a
 # line, a step or a clock. Less accuses healthy simulators, more hides a difference of a third
-# (make zoo).
+# (make zoo). With one, what a scale or a crooked axis makes of it, which no log is corrected for.
 RAW = 0.1
 
 
@@ -59,7 +60,8 @@ def _size(finding, key):
     value = finding.value.get(key, 0.0)
     interval = (finding.interval or {}).get(key)
     if interval is not None and interval[1] > interval[0]:
-        return value, (interval[1] - interval[0]) / 2.0 / odds.Z_90
+        return value, float(np.hypot((interval[1] - interval[0]) / 2.0 / odds.Z_90,
+                                     hypotheses.SHAPE * value))
     return value, RAW * max(abs(v) for v in finding.value.values())
 
 

@@ -130,18 +130,21 @@ def rounding(kind, real, sim, pair):
 
 
 def reliable(values, noise, band_hz, own=1.0):
-    """values (n, 3) of the real log, each channel drawn to its mean by the share of its variance
-    that its noise makes up in the band: what is expected of the motion, given the reading. What
-    follows from the motion alone is then fitted without being made too small, and a channel that
-    reads nothing but noise says nothing of the simulator's [Fuller, Measurement Error Models
-    (1987), section 1.1; Carroll et al., Measurement Error in Nonlinear Models (2006), chapter 4].
-    noise: single_log.Noise, None where it is not known; own: the share of it that is not in the
-    simulator's log as well."""
+    """values (n, 3) of the real log, drawn to their mean along each direction by the share of the
+    variance there that their noise makes up in the band: what is expected of the motion, given the
+    reading. What follows from the motion alone is then fitted without being made too small, and a
+    direction that reads nothing but noise, as all but one do where a thing turns about one axis,
+    says nothing of the simulator's [Fuller, Measurement Error Models (1987), section 2.2; Carroll
+    et al., Measurement Error in Nonlinear Models (2006), chapter 4]. noise: single_log.Noise, None
+    where it is not known; own: the share of it that is not in the simulator's log as well."""
     if noise is None:
         return values
-    mean, variance = values.mean(axis=0), values.var(axis=0)
-    share = 1.0 - 2.0 * band_hz * own * noise.density ** 2 / np.maximum(variance, 1e-30)
-    return mean + np.clip(share, 0.0, 1.0) * (values - mean)
+    mean = values.mean(axis=0)
+    sigma = np.maximum(np.sqrt(2.0 * band_hz * own) * noise.density, 1e-15)
+    white = (values - mean) / sigma
+    power, directions = np.linalg.eigh(white.T @ white / len(white))
+    share = np.clip(1.0 - 1.0 / np.maximum(power, 1e-30), 0.0, 1.0)
+    return mean + (white @ (directions * share)) @ directions.T * sigma
 
 
 def sized(own, log):

@@ -67,12 +67,15 @@ def at_rest(trace, values, quantum):
 def noise(trace, values):
     """Noise of values (n, 3) at the Trace's rests, or None where there is none."""
     m = max(2, int(SUBMEAN_S * trace.rate_hz))
+    # A line leaks into plain means by as much as their noise, now more and now less.
+    window = np.hanning(m + 2)[1:-1]
+    window /= window.sum()
     rests = []
     for a, b in trace.rests:
         x = values[a:b]
         k = len(x) // m
         if k >= 2:
-            means = x[:k * m].reshape(k, m, 3).mean(axis=1)
+            means = np.einsum("kmi,m->ki", x[:k * m].reshape(k, m, 3), window)
             rests.append((np.diff(means, axis=0) ** 2, np.diff(x, axis=0) ** 2))
     if len(rests) > 2:
         # A rest in which the robot still settles says nothing of the sensor's noise.
@@ -83,7 +86,7 @@ def noise(trace, values):
         return None
     # By the median: in a part of a rest one axis may still be moved.
     per_mean = np.median(squares, axis=0) / MEDIAN_OF_SQUARE / 2.0
-    return Noise(np.sqrt(per_mean * m / trace.rate_hz),
+    return Noise(np.sqrt(per_mean / (window ** 2).sum() / trace.rate_hz),
                  float(MEDIAN_SIGMA / np.sqrt(len(squares) / 1.5)),
                  np.sqrt(sample.mean(axis=0) / 2.0))
 
