@@ -86,7 +86,7 @@ def summary_of(part, plan, rng, name, number=0, board=None):
         "block_t": t, "block_since": t - starts[place], "block_seconds": seconds,
         "block_accel": accel, "block_gyro": gyro, "block_temperature": celsius(t),
         "block_temperature_rate": plan.change_c / plan.tau_s * np.exp(-t / plan.tau_s),
-        "block_vibration": np.zeros(len(t)),
+        "block_loudness": np.full(len(t), SAMPLE_MG * np.sqrt(3.0)),
         "block_noise_accel": white_mg * (1.0 + rng.normal(0.0, known, 3)),
         "block_noise_gyro": white_dps * (1.0 + rng.normal(0.0, known, 3)),
         "block_rounding_accel": np.zeros(3), "block_rounding_gyro": np.zeros(3)}

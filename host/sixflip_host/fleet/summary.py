@@ -20,7 +20,9 @@ from ..diagnosis.detect import saturation
 from ..experiment import blocks, terms, thermometer
 from ..experiment.session import OF_BLOCKS, Session, fading
 
-OF_SESSION = (*OF_BLOCKS, "noise_accel", "noise_gyro", "rounding_accel", "rounding_gyro")
+# What is a session's own; its vibration is what it and others agree on.
+OF_SESSION = (*(name for name in OF_BLOCKS if name != "vibration"), "noise_accel", "noise_gyro",
+              "rounding_accel", "rounding_gyro")
 PATH = 36  # numbers of Move.path
 KEPT = ("sensor", "rate_hz", "rate", "accel_lsb_per_g", "gyro_lsb_per_dps", "temp_lsb_per_c",
         "temp_offset_c", "accel_range_g", "gyro_range_dps", "g", "device_id", "session", "time",

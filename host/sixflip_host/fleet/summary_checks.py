@@ -119,7 +119,7 @@ def _blocks(tables):
         column = tables["block_" + name]
         _need(column.shape == (n,) and column.dtype.kind == "i", name)
     _need(_codes(tables["block_code"]) and (np.abs(tables["block_face"]) <= 5).all(), "block_code")
-    for name in ("t", "since", "seconds", "vibration", "temperature", "temperature_rate"):
+    for name in ("t", "since", "seconds", "loudness", "temperature", "temperature_rate"):
         column = tables.get("block_" + name)
         _need(column is None and name.startswith("temperature") or column is not None
               and column.shape == (n,) and (np.abs(column) < LARGEST).all(), name)

@@ -21,7 +21,7 @@ from ..diagnosis import cutoffs
 from ..errors import BadFile
 from . import summary, summary_checks
 
-FORMAT = 2
+FORMAT = 3
 SUFFIX = ".summary.npz"
 PIECE = 1 << 20
 ARRAYS = {  # columns of each table
