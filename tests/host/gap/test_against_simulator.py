@@ -21,7 +21,8 @@ def simulator(*findings, motion=None):
 @pytest.mark.parametrize("value,half,new", [
     ({"x": 10.0}, 1.0, False), ({"x": 12.0}, 1.0, False), ({"x": 12.0}, 0.1, True),
     ({"x": 14.0}, 1.0, True), ({"x": 14.0}, 3.0, False),
-    ({"x": 10.0, "z": 6.0}, 1.0, True), ({"x": 10.0, "z": 1.0}, 1.0, False)])
+    ({"x": 10.0, "z": 6.0}, 1.0, True), ({"x": 10.0, "z": 1.0}, 1.0, False),
+    ({"x": 10.3}, 0.01, False)], ids=str)  # as much as the scale of a part is off
 def test_two_sizes_are_equal_as_far_as_their_intervals_say(value, half, new):
     own = simulator(finding({"x": 10.0}, half))
     assert own.new(finding(value, half)) is new
