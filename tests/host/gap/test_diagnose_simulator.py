@@ -263,6 +263,17 @@ def test_gravity_of_another_strength_is_no_wrong_time_step(tmp_path, capsys):
     assert "time_step" not in names(answer)
 
 
+@pytest.mark.parametrize("seed", [1, 2], ids=["one motion", "another motion"])
+def test_rates_that_are_divided_by_the_wrong_time_step_are_named(real, tmp_path, capsys, seed):
+    """Of another motion they were gravity added after the rotation, of the same one something
+    that no convention explains."""
+    t, force, rate = turning(seed)
+    answer = diagnosed(capsys, real, capture(tmp_path / "sim.csv", t, force, 0.5 * rate, seed=5))
+    assert names(answer) == ["time_step"]
+    step, = answer["simulator"]["conventions"]
+    assert step["sensor"] == "gyro" and step["value"]["factor"] == pytest.approx(0.5, rel=0.02)
+
+
 def test_a_delay_of_the_real_gyro_is_no_delay_of_the_simulator(tmp_path, capsys):
     """The pair of logs does not say which is late; each by itself does."""
     t, force, rate = turning(1, 80.0)

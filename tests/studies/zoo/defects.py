@@ -156,6 +156,7 @@ DEFECTS = {
                                ("gravity_after_rotation",), "conventions", True),
     "motion_times_4": (lambda m: (gravity(m) + 4.0 * (m.force - gravity(m)), m.rate), {},
                        ("time_step",), "conventions", False),
+    "rates_half": (lambda m: (m.force, 0.5 * m.rate), {}, ("time_step",), "conventions", True),
     "transport": (lambda m: (m.force - np.cross(m.rate, np.einsum(
         "nji,nj->ni", m.turn, m.velocity)), m.rate), {}, ("no_centripetal_term",),
         "conventions", False),

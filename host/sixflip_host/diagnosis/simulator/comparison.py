@@ -166,7 +166,8 @@ def constant_channels(real, sim):
 def numbers_of(real, sim, mended, own, fits, findings):
     """([Parameter], [Convention] on the noise) of two Traces; mended: that of the simulator with
     the conventions found put right; own: OwnSensor or None of the real one, of the simulator."""
-    spoiled = [c for c in findings if c.name in convention_findings.SPOILED]
+    spoiled = [c for c in findings if c.name in convention_findings.SPOILED
+               or (c.name, c.sensor) == ("time_step", "gyro")]
     usable = {k: not any(c.sensor in (k, "device") for c in spoiled) for k in ("accel", "gyro")}
     densities, on_noise = noise_and_registers.noises(real, mended)
     return (parameters.shapes(*own, fits, usable) + densities

@@ -72,6 +72,8 @@ def candidates(hypothesis, measured, kind, live):
         c, s = np.cos(psi), np.sin(psi)
         return [(np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]), 1.0)]
     units = (1.0, DEG, 1.0 / DEG) if kind == "gyro" else (1.0, STANDARD_G, 1.0 / STANDARD_G)
+    if hypothesis.scaled and kind == "gyro":
+        units = units[:1]  # any factor on all that turns it is one of time
     free[~live] = 0.0
     tried = [(np.eye(3), unit) for unit in (units if hypothesis.name else units[:1])]
     if hypothesis.name:

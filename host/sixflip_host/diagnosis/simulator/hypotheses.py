@@ -87,6 +87,8 @@ def gyro(rate, motion, g):
     world = np.einsum("nij,nj->ni", motion.turn, rate)
     tried = [Hypothesis("healthy", rate, *none(n)),
              Hypothesis("world_frame_rates", world, *none(n), heading=True)]
+    tried += [Hypothesis("time_step", rate, rate[:, :, None], np.array([k - 1.0]),
+                         np.array([TIMES_SPREAD * k]), scaled=True) for k in TIMES]
     everything = np.concatenate([world, motion.rate_dot * 0.1, pairs(rate), motion.up,
                                  motion.moved / g], axis=1)
     return tried + [nameless(rate, everything, 1)]

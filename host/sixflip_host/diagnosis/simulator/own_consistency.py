@@ -14,7 +14,7 @@ from .. import odds
 from ..detect.axis_order import SIGNED
 from . import convention_findings, conventions, traces
 from . import gravity_directions as directions
-from .hypotheses import DEG
+from .hypotheses import DEG, TIMES
 
 NORM_SIGMA = 0.12  # of |force| / g at rest: 80 mg of offset, 3 % of scale [MPU-6000 PS table 6.2]
 RATIO_SIGMA = 1.0  # how alike two runs are in the size of their turn rates, natural logarithm
@@ -29,9 +29,9 @@ MOVES = 10.0  # times its noise at rest: a gyro that turns at all
 
 @dataclass(frozen=True)
 class Reading:
-    """A hypothesis on both sensors: accel and gyro, signed permutations (3, 3), the gyro's unit,
-    constant (gravity always along one axis of the sensor), world (rates along the world's
-    axes)."""
+    """A hypothesis on both sensors: accel and gyro, signed permutations (3, 3), the gyro's unit
+    or how many times too large a wrong time step makes its rates, constant (gravity always along
+    one axis of the sensor), world (rates along the world's axes)."""
 
     accel: np.ndarray
     gyro: np.ndarray
@@ -89,6 +89,10 @@ def conventions_of(real, sim):
         if np.array_equal(accel, eye) and not planar:
             tried.append((Reading(accel, eye, world=True),
                           seen + directions.world_log(body, ways)))
+    if not planar:
+        plain = directions.direction_log(ups, real, sim)
+        tried += [(Reading(eye, eye, gyro_unit=times), plain + directions.carried_log(
+            ups, ways, eye * times)) for times in TIMES]
     if says > TURNED:
         tried.append((Reading(eye, eye, constant=True), directions.constant_log(ups, ways, sim)))
     more = judged(tried)
@@ -168,17 +172,18 @@ def names_of(reading):
         if not np.array_equal(reading.gyro, eye):
             names.append("gyro_axes")
     if reading.gyro_unit != 1.0:
-        names.append("gyro_unit")
+        names.append("time_step" if reading.gyro_unit in TIMES else "gyro_unit")
     return names
 
 
 def log_prior(names):
     """Log probability of what a simulator does, by names, before looking; axes may be any of the
-    47 signed permutations that are none."""
+    47 signed permutations that are none, a time step off by any of TIMES."""
     if not names:
         return np.log(conventions.PRIOR_HEALTHY)
-    return sum(np.log(conventions.PRIOR_EACH / (47.0 if name.endswith("_axes") else 1.0))
-               for name in names)
+    return sum(np.log(conventions.PRIOR_EACH / (
+        47 if name.endswith("_axes") else len(TIMES) if name == "time_step" else 1))
+        for name in names)
 
 
 def judged(tried):
@@ -195,6 +200,11 @@ def convention_as(name, reading, probability, nats):
     """The Convention of a name that a Reading has."""
     if name == "gyro_unit":
         return convention_findings.other_unit("gyro", probability, nats, reading.gyro_unit)
+    if name == "time_step":
+        return convention_findings.finding(
+            name, "gyro", probability, nats, "its rates turn gravity %.3g times as far as it "
+            "moves: divide them by that, or the steps of its time stamps" % reading.gyro_unit,
+            value={"factor": float(reading.gyro_unit)}, unit="1")
     sensor = "gyro" if name in ("world_frame_rates", "gyro_axes") else \
         "device" if name == "both_axes" else "accel"
     if not name.endswith("_axes"):
