@@ -45,6 +45,12 @@ def tick(now_tray, now):
         now_tray = afresh(replace(now_tray, letter="b", flips=halves))
         return say(now_tray, "%s; %s" % (count(now_tray, 1), instruction(now_tray))) \
             if had else now_tray, []
+    if now_tray.letter == "b" and any(
+            one.port in now_tray.flips and not one.placements(now_tray.face)
+            for one in now_tray.running):
+        # It says late that it took its first placement back: that is to be taken, not missed.
+        now_tray = afresh(replace(now_tray, letter="a", flips=()))
+        return say(now_tray, "next: " + instruction(now_tray)), []
     return whole(now_tray)
 
 

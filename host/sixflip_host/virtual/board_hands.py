@@ -4,7 +4,8 @@ The hand of one board reads what a person at the board's terminal reads, and let
 while it is measured. Several boards in one jig have one hand, which turns all of them as they
 want it together: it hears what the boards say as `sixflip calibrate --all` does, and by the same
 rules; every board is then brought to its own pose, which is the jig's through the way it lies in
-the jig.
+the jig. A board calls the first placement on a face "a" however the jig lies; so the hand
+remembers in which half turn each took it, and turns the jig to the other one for its second.
 """
 
 import json
@@ -16,13 +17,18 @@ from ..board import board_events
 from ..guide.board_values import poses
 from ..guide.next_step import following
 from ..tray import tray_events
-from ..tray.jig import AS_THE_JIG, jig_to_own, learned
+from ..tray.jig import AS_THE_JIG, FACES, jig_to_own, learned
+from ..tray.leading import turned
 from ..tray.member import Member
-from ..tray.tray_value import tray
+from ..tray.tray_events import NOISE
+from ..tray.tray_value import put, tray
 
 LEAN = (0.6, 0.64, 0.48)    # 50 degrees off the nearest face
 LONGEST = 4096              # bytes of a line
 FIRST = "Z+a"               # how the jig lies in the beginning
+OTHER = {"a": "b", "b": "a"}
+AT_REST = 2                 # windows at rest, at least, before a box is moved as was asked for
+UNMOVED = 40                # windows at rest after which a box lay as was asked for already
 
 
 class Heard:
@@ -66,7 +72,6 @@ class AskedHand:
         return json.dumps(command).encode() + b"\n"
 
 
-
 def mounted(pairs):
     """The whole mounting {face of the board: face of the jig} of two of its pairs."""
     mounting = {}
@@ -80,6 +85,58 @@ WAYS = (AS_THE_JIG, mounted({"Z-": "Z+", "Y-": "Y+"}), mounted({"X+": "Y+", "Z+"
         mounted({"Y+": "Z+", "Z+": "X+"}))
 
 
+class Box:
+    """The box of one board, of which the hand learns late and only by the board's words.
+
+    lies      the jig's pose that the box lies in, or is being brought to
+    asked     the pose that its operator is asked for: kept to until the box moves, so that it is
+              known where to, or rests for so long that it must have lain so already
+    still     windows at rest since then
+    lacks     names of the placements that the board says are missing
+    firsts    {face of the jig: half turn "a" or "b" of the board's first placement there}
+    """
+
+    def __init__(self, mounting):
+        self.mounting = mounting
+        self.lies = self.asked = FIRST
+        self.still, self.lacks, self.firsts = 0, (), {}
+
+    def hear(self, event):
+        """Takes in how the box lies, and what the board has of it."""
+        if event["event"] == "state":
+            self.window(event.get("state"), event.get("reason"))
+        if isinstance(event.get("missing"), list):
+            self.lacks = poses(event["missing"])
+        for pose in poses([event.get("pose")]):
+            if event["event"] == "pose" and pose[2:] == "a":
+                self.took_first(self.mounting[pose[:2]])
+
+    def window(self, state, reason):
+        """A window: the box rests, or moves."""
+        moves = reason == "moving" or state == NOISE and reason == "noisy"
+        if self.still >= (AT_REST if moves else UNMOVED):
+            self.lies = self.asked
+        self.still = 0 if moves else self.still + 1
+
+    def took_first(self, face):
+        """Of the face the board is sure, even if no move to it showed."""
+        if face == self.asked[:2] != self.lies[:2]:
+            self.lies = self.asked
+        self.firsts[face] = self.lies[2]
+
+    def second(self, face):
+        """The half turn for the board's second placement on a face, "" unless it lacks just it."""
+        own = jig_to_own(self.mounting)[face]
+        halfway = own + "a" not in self.lacks and own + "b" in self.lacks
+        return OTHER[self.firsts.get(face, "a")] if halfway else ""
+
+    def ask(self, pose):
+        """The pose to ask for now, where this one is wanted."""
+        if self.lies == self.asked != pose:
+            self.asked, self.still = pose, 0
+        return self.asked
+
+
 class JigHand:
     """The jig, and its boards by any name. mountings: {name: {its face: the jig's}, see jig}."""
 
@@ -88,10 +145,8 @@ class JigHand:
         self.clock = clock
         self.lock = threading.Lock()    # every board is heard in a thread of its own
         self.tray = self.seated(tray(dict.fromkeys(mountings)))
+        self.boxes = {name: Box(mountings[name]) for name in mountings}
         self.lies = FIRST
-        self.lay = {}       # {face: the pose in which the jig lay on it last}
-        self.visit = None
-        self.swapped = False
 
     def of(self, name):
         """The jig's hand as one of its boards has it, for VirtualBoard."""
@@ -110,9 +165,13 @@ class JigHand:
         with self.lock:
             if event["event"] == "hello":
                 self.restarted(name)
+            self.boxes[name].hear(event)
+            self.stays(name, event)
             heard, _ = tray_events.after(self.tray, name, event, self.clock())
             self.tray = self.seated(heard)
-            return self.own(name, self.pose())
+            if event["event"] == "redo":
+                self.taken_back(name, event.get("face"))
+            return self.own(name, self.boxes[name].ask(self.turned_for(name, self.pose())))
 
     def seated(self, now_tray):
         """The Tray with every board as it sits in the jig, whatever its words made of that. A
@@ -127,23 +186,44 @@ class JigHand:
         members = tuple(Member(name, member.number) if member.port == name else member
                         for member in self.tray.members)
         self.tray = self.seated(replace(self.tray, members=members))
+        self.boxes[name] = Box(self.mountings[name])
         if not any(member.running and member.state.taken for member in members):
             self.tray = self.seated(tray(dict.fromkeys(self.mountings)))
-            self.lies, self.lay, self.visit = FIRST, {}, None
+            self.lies = FIRST
+
+    def stays(self, name, event):
+        """A board that speaks in its session has not left: that the host says, and stops it."""
+        if event["event"] == "state" and self.tray.member(name).gone:
+            self.tray = put(self.tray, replace(self.tray.member(name), gone="", missed=0))
+
+    def taken_back(self, name, own):
+        """The host leads to the face that it has a board take back: so the jig goes there too."""
+        if own in FACES and self.tray.face:
+            self.tray = turned(self.tray, self.mountings[name][own])
 
     def pose(self):
-        """The jig's pose. A face that is taken again as it lies begins with how it lies; one that
-        a board tells late of having taken, with how the jig lay on it before it was turned on."""
+        """The jig's pose. A face that is taken again as it lies begins with how it lies."""
         face = self.tray.face
         if face and self.tray.running:
-            visit = (face, self.tray.visits[face])
-            if visit != self.visit:
-                lay = self.lies if self.tray.letter == "a" else self.lay.get(face)
-                self.swapped = lay == face + "b"
-                self.visit = visit
-            self.lies = face + "ab"[(self.tray.letter == "b") != self.swapped]
-            self.lay[face] = self.lies
+            self.lies = face + self.half(face)
         return self.lies
+
+    def half(self, face):
+        """The half turn that is wanted on a face: that of the next board which has its first
+        placement in the other one; as long as some lack the first, the jig is not turned."""
+        seconds = [self.boxes[member.port].second(face)
+                   for member in (*self.tray.awaited(), *self.tray.running)]
+        lies = face == self.lies[:2]
+        if not any(seconds) or lies and self.tray.letter == "a":
+            return self.lies[2] if lies else "a"
+        return next(filter(None, seconds))
+
+    def turned_for(self, name, pose):
+        """The jig's pose for one board: where it lacks the second placement only, it takes that
+        as soon as it comes from another face, and so must come in the other half turn."""
+        face, box = pose[:2], self.boxes[name]
+        second = box.second(face)
+        return face + second if second and box.lies != face + OTHER[second] else pose
 
 
 class JigHandOf:

@@ -135,10 +135,12 @@ class PtyRelay(threading.Thread):
         self.asked_until = None
 
     def ask_operator(self, data):
-        """What the board says is heard by the one who handles the box, too."""
-        for command in self.board.hand_asked.hear(data) if self.board.hand_asked else ():
-            if not select.select([self.hand_read], [], [], 0)[0]:
-                os.write(self.hand_write, command)
+        """What the board says is heard by the one who handles the box, too. What is to be done
+        then is asked for only as long as the board has not said more."""
+        commands = self.board.hand_asked.hear(data) if self.board.hand_asked else []
+        waits, _, _ = select.select([self.hand_read, self.inner_master], [], [], 0)
+        if commands and not waits:
+            os.write(self.hand_write, commands[-1])
 
     def restart(self):
         """Start the process again; True when it died young for no reason of its own."""

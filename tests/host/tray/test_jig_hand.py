@@ -2,12 +2,15 @@
 
 import json
 
-from sixflip_host.virtual.board_hands import WAYS, JigHand
+from sixflip_host.tray.leading import leaves
+from sixflip_host.virtual.board_hands import UNMOVED, WAYS, Box, JigHand
 from sixflip_sim.operator import LOOKS_S, REACTS_S, Operator
 from tests.worlds.tray_rig import LIE_S, ScriptedBoard
 
 WINDOW_S = 0.25
 AT_REST, TROUBLED = {"state": "waiting", "reason": ""}, {"state": "waiting", "reason": "noisy"}
+REST = {"event": "state", "state": "moving", "reason": ""}
+MOVES = dict(REST, reason="moving")
 
 
 class Asked(JigHand):
@@ -67,11 +70,18 @@ class Jig:
     def begins(self, name):
         self.says(name, *self.boards[name].hello(name))
 
+    def moved(self, name):
+        """The jig's pose that a board's box is brought to, as the hand wants, and seen in."""
+        box = self.hand.boxes[name]
+        self.says(name, REST)
+        if box.asked != box.lies:
+            self.says(name, REST, REST, MOVES, MOVES)
+        return box.lies
+
     def lie(self, *names):
         """The jig lies as the hand has laid it, and these boards take what they lack."""
-        pose = self.hand.pose()
         for name in names:
-            self.says(name, *self.boards[name].lay(self.laid, pose))
+            self.says(name, *self.boards[name].lay(self.laid, self.moved(name)))
         self.laid, self.now = self.laid + 1, self.now + LIE_S
 
     def missing(self, most=20):
@@ -112,8 +122,77 @@ def test_half_a_turn_is_one_from_how_the_jig_lay_when_the_first_placement_was_ta
     jig = Jig()
     for name in (*jig.boards, "one"):
         jig.begins(name)
-    while jig.laid < 9 and jig.hand.pose() != "X+a":
-        jig.lie("one")
-    jig.says("two", *jig.boards["two"].lay(jig.laid, "Z+b"))    # taken as the jig was turned on
-    assert jig.hand.pose() == "Z+a"
+    jig.lie("one")
+    jig.says("one", *jig.boards["one"].lay(1, "Z+b"))
+    jig.says("two", REST, *jig.boards["two"].lay(1, "Z+a"))     # told late, before it is turned
+    assert jig.hand.pose() == "Z+b"
+
+
+def test_a_first_placement_taken_in_the_half_turn_is_followed_by_one_turned_back():
+    """As it is where a host has the face taken back after the half turn."""
+    jig = Jig()
+    for name in jig.boards:
+        jig.begins(name)
+        jig.hand.boxes[name].lies = jig.hand.boxes[name].asked = "Z+b"
+    for name in jig.boards:
+        jig.says(name, *jig.boards[name].lay(0, "Z+b"))
+    assert jig.hand.tray.letter == "b" and jig.hand.pose() == "Z+a"
+    assert jig.missing() == [[], []]
+
+
+def test_a_pose_asked_for_is_kept_to_until_the_box_is_moved_to_it_or_lay_so_already():
+    box = Box(WAYS[0])
+    assert box.ask("Z+b") == "Z+b" and box.ask("X+a") == "Z+b"
+    for event in (REST, REST, MOVES):
+        box.hear(event)
+    assert box.lies == "Z+b" and box.ask("X+a") == "X+a"
+    for event in (MOVES, MOVES, REST):      # the rest of the move before
+        box.hear(event)
+    assert box.lies == "Z+b"
+    for _ in range(UNMOVED):
+        box.hear(REST)
+    assert box.lies == "X+a"
+
+
+def test_the_jig_is_not_turned_under_a_board_that_lacks_its_first_placement():
+    jig = Jig()
+    for name in jig.boards:
+        jig.begins(name)
+    jig.says("one", *jig.boards["one"].lay(0, "Z+a"))
+    assert jig.hand.tray.letter == "a" and jig.hand.pose() == "Z+a"
+    jig.says("two", *jig.boards["two"].lay(0, "Z+a"))
+    assert jig.hand.pose() == "Z+b"
+
+
+def test_boards_that_took_their_first_placements_in_two_half_turns_are_each_turned():
+    jig = Jig()
+    for name in jig.boards:
+        jig.begins(name)
+    jig.says("one", *jig.boards["one"].lay(0, "Z+a"))
+    jig.hand.boxes["two"].lies = jig.hand.boxes["two"].asked = "Z+b"
+    jig.says("two", *jig.boards["two"].lay(0, "Z+b"))
+    boxes = jig.hand.boxes
+    assert [boxes[name].second("Z+") for name in boxes] == ["b", "a"]
+    for box in boxes.values():
+        box.lies = box.asked = "X+a"        # both were brought away and come again
+    assert [jig.hand.hear(name, REST) for name in boxes] == ["Z+b", "Z-a"]
+
+
+def test_a_board_that_takes_a_face_back_takes_the_jig_there():
+    jig = Jig()
+    for name in jig.boards:
+        jig.begins(name)
+    while jig.hand.pose()[:2] != "Y+":
+        jig.lie("one", "two")
+    jig.says("two", *jig.boards["two"].obey(jig.laid, {"cmd": "redo", "face": "Z-"}))
+    assert jig.hand.tray.face == "Z+" and jig.hand.tray.letter == "a"
+    assert jig.missing() == [[], []]
+
+
+def test_a_board_that_was_silent_for_faces_is_led_on_as_soon_as_it_speaks():
+    jig = Jig()
+    for name in jig.boards:
+        jig.begins(name)
+    jig.hand.tray = leaves(jig.hand.tray, jig.hand.tray.member("two"), "3 faces in a row")
+    jig.lie("one")
     assert jig.missing() == [[], []]

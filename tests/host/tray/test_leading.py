@@ -225,3 +225,16 @@ def test_who_never_takes_a_face_does_not_keep_the_others_from_theirs():
         assert len(rig.laid) < 20, rig.tray.log
         rig.lay(rig.asked())
     assert rig.member("p").state.verdict == "good" and rig.laid[-2:] == ["X+a", "X+b"]
+
+
+def test_a_board_that_tells_late_of_what_it_took_back_is_asked_for_it_and_has_missed_nothing():
+    rig = Rig({"p": ScriptedBoard(), "q": ScriptedBoard()})
+    rig.lay("Z+a")
+    assert rig.tray.letter == "b"
+    rig.boards["q"].jig = ""        # it is lifted when it hears of it
+    rig.hear("q", rig.boards["q"].obey(0, {"cmd": "redo", "face": "Z+"}))
+    rig.hear("p", rig.boards["p"].lay(1, "Z+b"))
+    assert (rig.tray.face, rig.tray.letter, rig.member("q").missed) == ("Z+", "a", 0)
+    assert [one.port for one in rig.tray.awaited()] == ["q"] and not rig.told
+    rig.play()
+    assert verdicts(rig) == {"p": "good", "q": "good"}
