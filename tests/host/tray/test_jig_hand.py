@@ -1,9 +1,13 @@
 """The hand of a jig and the operator of a box in it: what was not heard is asked for again."""
 
 import json
+import os
+import select
+from types import SimpleNamespace
 
 from sixflip_host.tray.leading import leaves
 from sixflip_host.virtual.board_hands import UNMOVED, WAYS, Box, JigHand
+from sixflip_host.virtual.pty_relay import PtyRelay
 from sixflip_sim.operator import LOOKS_S, REACTS_S, Operator
 from tests.worlds.tray_rig import LIE_S, ScriptedBoard
 
@@ -196,3 +200,16 @@ def test_a_board_that_was_silent_for_faces_is_led_on_as_soon_as_it_speaks():
     jig.hand.tray = leaves(jig.hand.tray, jig.hand.tray.member("two"), "3 faces in a row")
     jig.lie("one")
     assert jig.missing() == [[], []]
+
+
+def test_nothing_is_asked_for_by_words_that_are_not_the_newest():
+    hand = SimpleNamespace(hear=lambda data: [b"1\n", b"2\n"])
+    relay = PtyRelay(SimpleNamespace(hand_asked=hand))
+    os.write(relay.inner_slave, b"more")
+    relay.ask_operator(b"what it said before")
+    assert not select.select([relay.hand_read], [], [], 0)[0]
+    assert os.read(relay.inner_master, 10) == b"more"
+    for _ in range(2):      # what is not done yet is not asked for twice
+        relay.ask_operator(b"more")
+    assert os.read(relay.hand_read, 10) == b"2\n"
+    relay.close()
