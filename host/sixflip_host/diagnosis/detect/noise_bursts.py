@@ -27,9 +27,8 @@ GROWN = 1.5  # times as loud at one end of a session as at the other: a filter s
 FEWEST_COMPARED = 10  # rests whose noise is compared
 
 
-def loud(session, sensor):
-    """(loud windows, rests with one, windows) of a session's rests, once the box has settled."""
-    power, place = _windows(session, sensor)
+def loud(power, place):
+    """(loud windows, rests with one, windows) of a session's windows()."""
     if not len(power):
         return 0, 0, 0
     usual = np.maximum(np.median(power, axis=0), ROUNDING)
@@ -37,9 +36,9 @@ def loud(session, sensor):
     return int(high.sum()), len(np.unique(place[high])), len(high)
 
 
-def _windows(session, sensor):
-    """((w, 3) counts², (w,) number of the rest) of a session's half seconds at rest: the mean
-    square of the differences from one sample to the next."""
+def windows(session, sensor):
+    """((w, 3) counts², (w,) number of the rest) of a session's half seconds at rest, once the box
+    has settled: the mean square of the differences from one sample to the next."""
     counts = getattr(session.capture, sensor)
     m = max(8, int(WINDOW_S * session.rate))
     settles = int(SETTLES_S * session.rate)
@@ -52,12 +51,12 @@ def _windows(session, sensor):
     return np.concatenate(power), np.concatenate(place)
 
 
-def loudest(sessions, sensor):
+def loudest(sessions, powers, sensor):
     """(times as loud, p, name of the loudest session, of the quietest) of the axis whose noise
-    differs most between sessions, that of the same time, in the median half second."""
+    differs most between sessions, that of the same time, in the median half second; powers: those
+    of the sessions' windows()."""
     levels = []
-    for session in sessions:
-        power, _ = _windows(session, sensor)
+    for session, power in zip(sessions, powers):
         if len(power) < FEWEST_WINDOWS:
             return 1.0, 1.0, "", ""
         unit = registers.unit_of_count(session.capture.meta, sensor)
@@ -214,7 +213,8 @@ def unsteady(sessions):
     for sensor, words in registers.SENSORS.items():
         if any(getattr(s.capture, sensor) is None for s in sessions):
             continue
-        sums = np.sum([loud(s, sensor) for s in sessions], axis=0)
+        every = [windows(session, sensor) for session in sessions]
+        sums = np.sum([loud(*one) for one in every], axis=0)
         if sums[0] >= FEWEST and sums[1] >= FEWEST_RESTS:
             m = max(8, int(WINDOW_S * sessions[0].rate))
             chance = 3.0 * special.chdtrc(m / 2.0, LOUD * m / 2.0)  # differences share samples
@@ -229,7 +229,7 @@ def unsteady(sessions):
                 sensor, "the noise of the %s at the end of a session is %.2g times what it was at "
                 "its begin" % (words, times), p * len(sessions)))
             continue
-        times, p, high, low = loudest(sessions, sensor)
+        times, p, high, low = loudest(sessions, [power for power, _ in every], sensor)
         if present(-np.log(max(p, odds.SMALLEST))):
             sentences.append((
                 sensor, "the noise of the %s in %s is %.2g times what it is in %s"
