@@ -1,7 +1,9 @@
 """What lies between sessions: biases against each other, as one more unit of contrasts."""
+from types import SimpleNamespace
+
 import numpy as np
 
-from sixflip_host.diagnosis import answer, diagnosis, localisation
+from sixflip_host.diagnosis import answer, diagnosis, localisation, members
 from sixflip_host.experiment import blocks
 from sixflip_host.simulation import scenario, simulated_session
 
@@ -54,8 +56,24 @@ def test_products_of_the_other_axes_leave_the_axis_open():
         cause["class"])) in said["remarks"]
 
 
-def test_an_axis_that_another_name_of_the_class_denies_is_not_told():
-    """Along gravity, x: f_x f_x is a scale of x less y: f_x f_y and z: f_x f_z."""
+def test_an_axis_that_another_name_of_the_class_denies_is_not_told(monkeypatch):
+    """Along gravity, x: f_x f_x is a scale of x less y: f_x f_y and z: f_x f_z. A name that tells
+    no axis denies none."""
+    needed = {"cross_quadratic": {1, 2}, "quadratic": {0}, "asymmetry": {1}, "creep": set()}
+    monkeypatch.setattr(members, "_without", lambda *found: None)
+    monkeypatch.setattr(members, "_needed_axes", lambda model, forms, found, others, alike:
+                        needed[alike[0].effect])
+    forms = [SimpleNamespace(effect=name, axes=(0, 1, 2), choices=()) for name in needed]
+
+    def told(*others):
+        cause = SimpleNamespace(chosen=forms[:1], members=others)
+        return members._told_axes(None, forms, None, cause)
+    assert told() == told("creep") == {1, 2}
+    assert told("asymmetry") == {1}
+    assert told("quadratic") == set()
+
+
+def test_a_square_along_x_is_on_no_other_axis():
     found = diagnosis.diagnose_sessions(
         sessions([{"effect": "quadratic", "sensor": "accel", "x": 4.0}]), diagnosis.Settings())
     cause, = answer.as_dict(found)["causes"]

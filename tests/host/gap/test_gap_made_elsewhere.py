@@ -3,6 +3,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy import signal
 
 from sixflip_host.capture import registers
 from sixflip_host.diagnosis import samples_judged, verdict, wandering
@@ -15,6 +16,7 @@ from sixflip_host.diagnosis.detect import (
     shake_detector,
     spectral_lines,
     torn_reads,
+    wandering_tone,
 )
 from sixflip_host.diagnosis.detect.detection import Finding, present
 from sixflip_host.diagnosis.holdout_gain import Shrinkage
@@ -288,3 +290,18 @@ def test_noise_nearly_as_wide_as_a_page_has_no_jumps_by_pages():
     nats, _ = torn_reads.paged(sample_neighbours.together(
         [sample_neighbours.tabled(column, False) for column in columns]))
     assert nats < 0.0
+
+
+def test_noise_a_resonance_and_a_steady_line_are_no_tones_that_wander():
+    """By chance one of so few stretches has one less often than wandering_tone.DOUBTED says."""
+    generator, n = np.random.default_rng(2), 250
+    t = np.arange(30 * n) * 0.01
+    white = generator.standard_normal((30 * n, 200))
+    sway = signal.lfilter([1.0], [1.0, -1.9 * np.cos(0.9), 0.9025], white[:, :20], axis=0)
+    line = white[:, :20] + 2.0 * np.sin(2.0 * np.pi * 17.3 * t)[:, None]
+    for columns in (white, sway, line):
+        assert all(wandering_tone._tone(x.reshape(30, n), 100.0)[0] == 0.0 for x in columns.T)
+    found = np.concatenate([wandering_tone.chances(x.reshape(30, n), 100.0)[0] for x in white.T])
+    assert (found < wandering_tone.RARE).mean() < wandering_tone.DOUBTED
+    chirp = white[:, 0] + 2.0 * np.sin(2.0 * np.pi * np.cumsum(0.01 * (5.0 + t % 40.0)))
+    assert wandering_tone._tone(chirp.reshape(30, n), 100.0)[0] > 30.0

@@ -37,24 +37,28 @@ def axes(sessions, sensor, known=()):
 
 def _tone(x, rate):
     """(nats, (lowest, highest) Hz) of stretches x (R, n); 0 nats where there is none."""
-    nothing = 0.0, (0.0, 0.0)
     n = x.shape[1]
-    first = max(LOBE + 1, int(spectral_lines.LOWEST_HZ * n / rate) + 1)
-    power = spectral_lines.periodograms(x)
-    level = np.median(power[:, first:-1], axis=1)
-    if power.shape[1] - first < 2 * FEWEST or not (level > 0.0).all():
-        return nothing
-    alike = power / level[:, None]
-    usual = np.median(alike, axis=0) / math.log(2.0)
-    ratio = (alike / usual)[:, first:-1]
-    place = ratio.argmax(axis=1)
-    chance = -np.expm1(ratio.shape[1] * np.log1p(-np.exp(-ratio.max(axis=1))))
-    lobes = np.array([one[first + k - LOBE:first + k + LOBE + 1].sum() for one, k in zip(
-        power, place)]) - (2 * LOBE + 1) * level / math.log(2.0)
-    amplitude = np.sqrt(np.maximum(4.0 * lobes / n, 0.0))
+    chance, place, lobe = chances(x, rate)
+    amplitude = np.sqrt(np.maximum(4.0 * lobe / n, 0.0))
     tone = (chance < RARE) & (amplitude > spectral_lines.STRONG_SHARE * x.std(axis=1))
     bins = place[tone]
     if tone.mean() < OFTEN or np.subtract(*np.quantile(bins, (0.75, 0.25))) < WANDERS:
-        return nothing
-    hz = (first + np.quantile(bins, (0.05, 0.95))) * rate / n
+        return 0.0, (0.0, 0.0)
+    hz = np.quantile(bins, (0.05, 0.95)) * rate / n
     return -float(stats.binom.logsf(tone.sum() - 1, len(tone), DOUBTED)), tuple(hz)
+
+
+def chances(x, rate):
+    """Of each of the stretches x (R, n): (the probability of its largest bin by noise alone, the
+    bin, the power of its lobe beyond noise), (R,) each; ones where the spectra tell nothing."""
+    first = max(LOBE + 1, int(spectral_lines.LOWEST_HZ * x.shape[1] / rate) + 1)
+    power = spectral_lines.periodograms(x)
+    level = np.median(power[:, first:-1], axis=1)
+    if power.shape[1] - first < 2 * FEWEST or not (level > 0.0).all():
+        return np.ones(len(x)), np.zeros(len(x), int), np.zeros(len(x))
+    alike = power / level[:, None]
+    ratio = (alike / (np.median(alike, axis=0) / math.log(2.0)))[:, first:-1]
+    place = first + ratio.argmax(axis=1)
+    chance = -np.expm1(ratio.shape[1] * np.log1p(-np.exp(-ratio.max(axis=1))))
+    lobe = np.array([spectrum[k - LOBE:k + LOBE + 1].sum() for spectrum, k in zip(power, place)])
+    return chance, place, lobe - (2 * LOBE + 1) * level / math.log(2.0)
