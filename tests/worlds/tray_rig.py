@@ -56,7 +56,8 @@ class ScriptedBoard:
         if same and self.last not in self.missing:
             free = [self.last]
         if not free:
-            return [state, {"event": "refused", "pose": own, "reason": "already done"}]
+            return [state, {"event": "refused", "pose": own, "reason": "already done"},
+                    dict(state, pose=own, reason="already done")]
         self.last, self.rested = free[0], True
         self.missing = [pose for pose in self.missing if pose != self.last]
         found = [state, dict(state, state="capturing", pose=self.last, left_s=4),

@@ -7,6 +7,7 @@ from ..guide.session_state import CALIBRATING, OVER, WAITING, State
 from .jig import jig_to_own
 
 SHORT = 8       # characters of an id on a screen
+SILENT_S = 3    # a live state comes four times a second
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,11 @@ class Member:
         """How many of the two placements on a face of the jig it has; 0 where not known."""
         own = self.own(face)
         return sum(own + letter not in self.state.missing for letter in "ab") if own else 0
+
+    def silent_s(self, now):
+        """For how many seconds it has said nothing, 0 where it speaks."""
+        silence = now - self.state.now
+        return silence if silence > SILENT_S else 0
 
     def jig_up(self):
         """The face of the jig that is up by its vector, "" where that is not known."""

@@ -51,6 +51,8 @@ def after(now_tray, port, event, now):
         now_tray = taken(now_tray, member, own)
     elif event["event"] == "refused" and event.get("reason") == DONE and own:
         now_tray = had(now_tray, member, own)
+    elif event["event"] == "state" and rests_on_done(now_tray, member):
+        now_tray = sits(now_tray, member, member.state.pose[:2], now_tray.up())
     elif event["event"] == "state" and member.state.box == "capturing" != before.box:
         now_tray = put(now_tray, begins(member, now, now_tray.patience))
     elif member.state.box == NOISE and now_tray.since is not None:
@@ -117,6 +119,15 @@ def had(now_tray, member, own):
     if now_tray.first_at is None and said > "ab".index(now_tray.letter):
         now_tray = replace(now_tray, first_at=now_tray.now)
     return now_tray
+
+
+def rests_on_done(now_tray, member):
+    """Whether a live state tells first how a board sits in the jig. That it has a face whole it
+    says once a rest, perhaps before the sessions of the others began, when nothing is known yet
+    of how the jig lies; but as long as it lies there, every live state names the face."""
+    state = member.state
+    return bool(not member.mounting and state.reason == DONE and state.pose[:2] in FACES
+                and now_tray.face and now_tray.up())
 
 
 def taken(now_tray, member, own):

@@ -64,8 +64,12 @@ class Tray:
                 if one.port in self.flips and one.placements(self.face) == 1]
 
     def up(self):
-        """The jig's face that is up, by most of its boards; "" where nobody knows."""
-        votes = Counter(member.jig_up() for member in self.running)
+        """The jig's face that is up, by most of its boards; "" where nobody knows. One that has
+        been silent while another spoke, as while its USB port comes back, may have been turned
+        since."""
+        spoken = max((member.state.now for member in self.running), default=0.0)
+        votes = Counter(member.jig_up() for member in self.running
+                        if not member.silent_s(spoken))
         votes.pop("", None)
         most = max(votes.values(), default=0)
         best = [face for face in votes if votes[face] == most]

@@ -5,7 +5,6 @@ from ..guide.board_values import text
 from ..guide.next_step import why_it_waits
 from ..guide.session_state import CALIBRATING, SOLVING, WAITING
 
-SILENT_S = 3
 COLUMNS = ("board", "port", "verdict", "saved", "why")
 
 
@@ -26,8 +25,8 @@ def why_none(member):
 
 def why_not(member, now):
     """Why a board takes nothing."""
-    if now - member.state.now > SILENT_S:   # a live state comes four times a second
-        return "it has said nothing for %d s" % (now - member.state.now)
+    if member.silent_s(now):
+        return "it has said nothing for %d s" % member.silent_s(now)
     state = member.state
     return why_it_waits(state) or state.refusal or state.box or "it does not say why"
 

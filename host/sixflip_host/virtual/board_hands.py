@@ -137,6 +137,12 @@ class Box:
         return self.asked
 
 
+def tells_its_seat(event):
+    """Whether a tray learns of an event how the board sits in the jig."""
+    return event["event"] == "pose" or (
+        event["event"] == "refused" and event.get("reason") == tray_events.DONE)
+
+
 class JigHand:
     """The jig, and its boards by any name. mountings: {name: {its face: the jig's}, see jig}."""
 
@@ -144,7 +150,7 @@ class JigHand:
         self.mountings = mountings
         self.clock = clock
         self.lock = threading.Lock()    # every board is heard in a thread of its own
-        self.tray = self.seated(tray(dict.fromkeys(mountings)))
+        self.tray = tray(dict.fromkeys(mountings))
         self.boxes = {name: Box(mountings[name]) for name in mountings}
         self.lies = FIRST
 
@@ -161,34 +167,38 @@ class JigHand:
         return {"order": [self.own(name, FIRST)], "dwell_s": 0}
 
     def hear(self, name, event):
-        """The pose that the board is to be brought to now."""
+        """The pose that the board's box is asked for now, "" where it is not asked for any."""
         with self.lock:
             if event["event"] == "hello":
                 self.restarted(name)
             self.boxes[name].hear(event)
             self.stays(name, event)
+            if self.tray.face and tells_its_seat(event):
+                self.tray = put(self.tray, self.seated(self.tray.member(name)))
             heard, _ = tray_events.after(self.tray, name, event, self.clock())
-            self.tray = self.seated(heard)
+            self.tray = replace(heard, members=tuple(
+                self.seated(member) if member.mounting else member for member in heard.members))
             if event["event"] == "redo":
                 self.taken_back(name, event.get("face"))
+            if event["event"] != "state":
+                return ""
             return self.own(name, self.boxes[name].ask(self.turned_for(name, self.pose())))
 
-    def seated(self, now_tray):
-        """The Tray with every board as it sits in the jig, whatever its words made of that. A
-        board that was not yet moved, or that speaks late, would seem to sit otherwise than it
-        does, and would wait for ever for a face that is never up."""
-        return replace(now_tray, members=tuple(
-            replace(member, mounting=self.mountings[member.port])
-            for member in now_tray.members))
+    def seated(self, member):
+        """The Member as it sits in the jig, whatever its words made of that: one that was not yet
+        moved, or that speaks late, would seem to sit otherwise than it does, and would wait for
+        ever for a face that is never up. One that has told nothing of it yet stays unknown, as it
+        is to the host, which leads the person accordingly."""
+        return replace(member, mounting=self.mountings[member.port])
 
     def restarted(self, name):
         """A board begins anew; the jig does when nothing of a session is left."""
         members = tuple(Member(name, member.number) if member.port == name else member
                         for member in self.tray.members)
-        self.tray = self.seated(replace(self.tray, members=members))
+        self.tray = replace(self.tray, members=members)
         self.boxes[name] = Box(self.mountings[name])
         if not any(member.running and member.state.taken for member in members):
-            self.tray = self.seated(tray(dict.fromkeys(self.mountings)))
+            self.tray = tray(dict.fromkeys(self.mountings))
             self.lies = FIRST
 
     def stays(self, name, event):
@@ -243,6 +253,6 @@ class JigHandOf:
         commands = []
         for event in self.heard.events(data):
             pose = self.hand.hear(self.name, event)
-            if event["event"] == "state":
+            if pose:
                 commands.append(json.dumps({"pose": pose, "anew": False}).encode() + b"\n")
         return commands

@@ -9,7 +9,7 @@ from sixflip_host.tray.leading import leaves
 from sixflip_host.virtual.board_hands import UNMOVED, WAYS, Box, JigHand
 from sixflip_host.virtual.pty_relay import PtyRelay
 from sixflip_sim.operator import LOOKS_S, REACTS_S, Operator
-from tests.worlds.tray_rig import LIE_S, ScriptedBoard
+from tests.worlds.tray_rig import LIE_S, TWELVE, ScriptedBoard
 
 WINDOW_S = 0.25
 AT_REST, TROUBLED = {"state": "waiting", "reason": ""}, {"state": "waiting", "reason": "noisy"}
@@ -119,6 +119,34 @@ def test_a_board_that_tells_late_what_it_took_is_known_to_sit_as_it_does():
     jig.lie("one")
     jig.says("two", *jig.boards["two"].lay(jig.laid, "Z+a"))
     assert jig.hand.tray.member("two").mounting == WAYS[1]
+    assert jig.missing() == [[], []]
+
+
+def test_a_box_is_not_held_to_a_pose_that_its_operator_was_not_asked_for():
+    """Its board begins anew while the jig is still on the face of the session before."""
+    jig = Jig()
+    for name in jig.boards:
+        jig.begins(name)
+    while jig.hand.pose() != "X+b":
+        jig.lie("one", "two")
+    jig.boards = {name: ScriptedBoard(way) for name, way in jig.hand.mountings.items()}
+    for name in ("two", "one"):
+        jig.begins(name)
+    assert [box.asked for box in jig.hand.boxes.values()] == ["Z+a", "Z+a"]
+
+
+def test_the_jig_lies_until_the_host_knows_how_each_board_sits_in_a_session_that_goes_on():
+    """Where it was turned before, the host would take the face up for the one that it asks for."""
+    jig = Jig()
+    whole = {"one": "Z+", "two": "Z-"}
+    for name, face in whole.items():
+        jig.boards[name].missing = [pose for pose in TWELVE if pose[:2] != face]
+        jig.begins(name)
+    assert [jig.hand.hear(name, REST) for name in whole] == ["Z+a", "Z-a"]
+    jig.says("one", *jig.boards["one"].lay(0, "Z+a"))
+    assert jig.hand.pose() == "Z+a"
+    jig.says("two", *jig.boards["two"].lay(0, "Z+a"))
+    assert jig.hand.pose() == "X+a"
     assert jig.missing() == [[], []]
 
 

@@ -8,7 +8,7 @@ from sixflip_host.board.event_words import GUIDED_ORDER
 from sixflip_host.tray import leading
 from sixflip_host.tray.jig import AS_THE_JIG, FACES, across, jig_to_own, learned
 from sixflip_host.virtual.board_hands import WAYS
-from tests.worlds.tray_rig import Rig, ScriptedBoard
+from tests.worlds.tray_rig import LIE_S, Rig, ScriptedBoard
 
 UPSIDE_DOWN = WAYS[1]
 
@@ -145,6 +145,25 @@ def test_boards_go_on_with_what_they_have():
     assert len(rig.laid) <= 6
 
 
+def test_a_board_that_had_a_face_whole_before_another_began_is_known_to_lie_on_it():
+    rig = Rig({"p": ScriptedBoard(says=[]), "q": ScriptedBoard(UPSIDE_DOWN)})
+    for port, face in {"p": "Z+", "q": "Z-"}.items():
+        rig.boards[port].missing = [pose for pose in GUIDED_ORDER if pose[:2] != face]
+    rig.hear("q", rig.boards["q"].hello("q")[1:])
+    *_, lies = said = rig.boards["q"].lay(0, "Z+a")
+    rig.hear("q", said)
+    rig.boards["p"].says = None
+    rig.hear("p", rig.boards["p"].hello("p"))
+    assert rig.tray.face == "Z+" and not rig.tray.member("q").mounting
+    rig.hear("p", [{"event": "state", "state": "measuring noise", "live": [0, 0, 1000, 0, 0, 0]}])
+    rig.hear("q", [lies])
+    assert rig.tray.member("q").mounting == {"Z-": "Z+", "Z+": "Z-"}
+    assert rig.tray.face == "X+"
+    rig.play()
+    assert set(verdicts(rig).values()) == {"good"}
+    assert not any("Z+ taken" in line for line in rig.tray.log)
+
+
 def test_a_board_that_does_not_turn_with_the_jig_is_named():
     rig = Rig({port: ScriptedBoard() for port in "pqr"})
     for pose in GUIDED_ORDER[:4]:
@@ -154,6 +173,19 @@ def test_a_board_that_does_not_turn_with_the_jig_is_named():
     assert "3 (idr) does not turn with the others: is it loose in the jig?" in rig.tray.log
     rig.play()
     assert verdicts(rig)["p"] == verdicts(rig)["q"] == "good"
+
+
+def test_a_board_that_was_silent_while_the_jig_was_turned_does_not_make_another_seem_loose():
+    rig = Rig({"p": ScriptedBoard(), "q": ScriptedBoard(UPSIDE_DOWN)})
+    for pose in GUIDED_ORDER[:2]:
+        rig.lay(pose)
+    rig.take(leading.redo(rig.tray, "Z+", rig.now))     # q stays silent: the person goes on
+    rig.now += LIE_S
+    rig.hear("p", rig.boards["p"].lay(3, "X+a"))
+    assert rig.tray.face == "X+" and rig.tray.member("p").mounting == AS_THE_JIG
+    assert not any("loose" in line for line in rig.tray.log)
+    rig.play()
+    assert set(verdicts(rig).values()) == {"good"}
 
 
 def test_a_face_again_when_all_are_done():
