@@ -6,8 +6,6 @@ meant for an earlier session, or is done already, changes nothing, however often
 
 import contextlib
 import queue
-import subprocess
-import sys
 import threading
 import time
 from pathlib import Path
@@ -18,11 +16,10 @@ from ..guide.board_session import BoardSession
 from ..guide.session_state import CALIBRATING, OVER, State
 from ..narration import log
 from ..terminal import plain
-from . import snapshot
+from . import gap_report, snapshot
 
 TICK_S = 0.1
 ACTIONS = ("look", "start", "continue", "redo", "undo", "stop", "pull", "report")
-REPORT_S = 1800
 ANSWER_S = 3.0          # a board that has not answered by then is asked again
 
 
@@ -48,7 +45,7 @@ class Bench:
         self.link = None
         self.busy = ""
         self.problem = ""
-        self.found = ""         # where a board was, before the first session
+        self.board_port = ""    # where a board was, before the first session
         self.left = False       # it told of an unfinished session
         self.done = {}          # (number, action, what): when sent, and State.redone then
         self.pulled = None
@@ -70,7 +67,7 @@ class Bench:
         answer = snapshot.snapshot(state, self.step)
         answer.update(number=self.number, busy=self.busy, problem=self.problem,
                       live=self.link is not None, replay=self.capture is not None,
-                      found=plain(self.found), unfinished=self.unfinished(),
+                      found=plain(self.board_port), unfinished=self.unfinished(),
                       port=self.link.port if self.link else "",
                       pulled=plain(self.pulled) if self.pulled else "",
                       reporting=self.reporting is not None, report=self.report is not None)
@@ -146,13 +143,13 @@ class Bench:
     def look(self):
         """Before the first session: which board is there, and what it has left unfinished. That
         there is none is no fault yet; the port is left to others again."""
-        if self.number or self.found or self.capture is not None:
+        if self.number or self.board_port or self.capture is not None:
             return
         with contextlib.suppress(SixflipError, OSError):
             link = self.open_link()
             try:
                 self.left = calibration_request.unfinished(link)
-                self.found = link.port
+                self.board_port = link.port
             finally:
                 link.close()
 
@@ -230,23 +227,13 @@ class Bench:
         self.reporting = threading.Thread(target=self.write_report, args=(what,), daemon=True)
         self.reporting.start()
 
-    def report_command(self, what, path):
-        return [sys.executable, "-m", "sixflip_host", "report", str(what), "--gap", "-o",
-                str(path)]
+    report_command = staticmethod(gap_report.command)
 
     def write_report(self, what):
-        path = self.output / "gap-report.html"
-        try:
-            self.output.mkdir(parents=True, exist_ok=True)
-            answer = subprocess.run(self.report_command(what, path), capture_output=True,
-                                    text=True, timeout=REPORT_S, stdin=subprocess.DEVNULL)
-            if answer.returncode:
-                self.problem = plain(answer.stderr.strip())[:400] or "no report came of it"
-            else:
-                self.report = path.read_bytes()
-        except (OSError, subprocess.TimeoutExpired) as error:
-            self.problem = plain(str(error))[:400]
-        except Exception as error:      # noqa: BLE001  shown on the page, as everything is
-            self.problem = plain(internal_error(error))[:400]
+        page, problem = gap_report.page(self.report_command, what, self.output)
+        if problem:
+            self.problem = problem
+        else:
+            self.report = page
         self.reporting = None
         self.told()

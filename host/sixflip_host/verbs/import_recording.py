@@ -10,7 +10,7 @@ from .. import file_kinds, progress
 from ..capture import capture_file, clock, clock_words
 from ..capture.capture_header import SENSORS, STANDARD_G
 from ..capture.imports import presets
-from ..capture.imports.column_names import TIME_UNITS
+from ..capture.imports.column_vocabulary import TIME_UNITS
 from ..file_arguments import add_input, add_output
 from ..terminal import plain, say
 

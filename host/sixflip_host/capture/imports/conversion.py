@@ -11,7 +11,7 @@ from .. import clock, clock_words
 from ..capture_file import Capture, check_times
 from ..capture_header import ACCEL, GYRO, MAG, check_sensor
 from ..growing import Growing
-from . import column_names, csv_mapping, table_columns, temperature, time_stamps, units
+from . import column_vocabulary, csv_mapping, table_columns, temperature, time_stamps, units
 from .options import with_the_file
 from .told_units import ToldUnits
 
@@ -154,7 +154,7 @@ class Conversion:
                                      getattr(self.table, "rate_hz", None))
             self.assumed.append(words)
         scale = 1e6 / options.rate if unit == "samples" else {
-            **column_names.TIME_UNITS, **column_names.LONG_UNITS}[unit]
+            **column_vocabulary.TIME_UNITS, **column_vocabulary.LONG_UNITS}[unit]
         time_stamps.check_stretch(
             self.table.path, name, times, scale,
             lambda row: self.line_of(int(row if order is None else order[row])))

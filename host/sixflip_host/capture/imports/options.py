@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 from ...errors import UsageError
 from ..capture_header import STANDARD_G
-from . import column_names, units
+from . import column_vocabulary, units
 
 LSB_MAX = 1e9
 
@@ -58,9 +58,9 @@ def check_options(options):
     if options.time_unit == "samples" and options.rate is None:
         raise UsageError("--time-unit samples needs --rate HZ")
     if options.time_unit and options.time_unit != "samples" \
-            and options.time_unit not in column_names.TIME_UNITS:
+            and options.time_unit not in column_vocabulary.TIME_UNITS:
         raise UsageError("--time-unit %s: expected one of %s" % (
-            options.time_unit, " ".join([*column_names.TIME_UNITS, "samples"])))
+            options.time_unit, " ".join([*column_vocabulary.TIME_UNITS, "samples"])))
     if options.label_column and options.sections:
         raise UsageError("--label-column and --sections: expected one of the two")
     said_units(options.units)

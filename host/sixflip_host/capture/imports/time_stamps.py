@@ -4,7 +4,7 @@ microseconds."""
 import numpy as np
 
 from ...errors import BadFile
-from .column_names import TIME_UNITS
+from .column_vocabulary import TIME_UNITS
 
 # When a stamp counts from 1970 it lies between 2001 and 2065 in one unit only.
 EPOCH_S = (1e9, 3e9)

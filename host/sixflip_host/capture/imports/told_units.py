@@ -4,7 +4,7 @@ another unit than it says is a fault of the simulator, which diagnose is there t
 
 
 from ...errors import BadFile
-from . import column_names, gravity, units
+from . import column_vocabulary, gravity, units
 from .options import said_units
 
 GRAVITY_FREE = 0.3              # of what gravity would be: it has been taken out
@@ -29,7 +29,7 @@ class ToldUnits:
         if values is None:
             return None, None
         said = said_units(options.units)[0]
-        named = self.named_units.get(column_names.ACCEL)
+        named = self.named_units.get(column_vocabulary.ACCEL)
         unit = said or named
         seen = gravity.seen(values)
         whole = units.are_whole(values)
@@ -89,7 +89,7 @@ class ToldUnits:
         """The unit of the gyro, said, in its name, or by the accelerometer's."""
         if values is None:
             return None
-        said = said_units(self.options.units)[1] or self.named_units.get(column_names.GYRO)
+        said = said_units(self.options.units)[1] or self.named_units.get(column_vocabulary.GYRO)
         if said is None and self.options.gyro_lsb is not None and units.are_whole(values):
             said = "counts"
         if said is None:
