@@ -48,7 +48,7 @@ class BadFile(SixflipError):
     exit_code = 4
 
     @classmethod
-    def at(cls, path, line, found, expected=None):
+    def at(cls, path, line, fault, expected=None):
         """BadFile for one line of a text file; `line` counts from 1, 0 is the whole file."""
         where = "%s line %d" % (path, line) if line else str(path)
-        return cls("%s: %s" % (where, found) + (", expected %s" % expected if expected else ""))
+        return cls("%s: %s" % (where, fault) + (", expected %s" % expected if expected else ""))

@@ -24,6 +24,6 @@ def save(figure, path):
 
 def png(figure):
     """The bytes of a figure as PNG."""
-    out = io.BytesIO()
-    figure.savefig(out, format="png", dpi=DPI)
-    return out.getvalue()
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=DPI)
+    return buffer.getvalue()

@@ -64,15 +64,15 @@ def may_replace(written, force=False):
 
 def _names(value):
     """The names in an argument's value; none where it was not given."""
-    return [os.fspath(one) for one in (value if isinstance(value, list) else [value])
-            if one is not None]
+    return [os.fspath(name) for name in (value if isinstance(value, list) else [value])
+            if name is not None]
 
 
-def _same(one, other):
+def _same(name, other):
     """Whether two names are one regular file, through links of either kind."""
     try:
-        if os.path.exists(one) and os.path.exists(other):
-            return os.path.isfile(one) and os.path.samefile(one, other)
-        return os.path.realpath(one) == os.path.realpath(other)
+        if os.path.exists(name) and os.path.exists(other):
+            return os.path.isfile(name) and os.path.samefile(name, other)
+        return os.path.realpath(name) == os.path.realpath(other)
     except (OSError, ValueError):
         return False

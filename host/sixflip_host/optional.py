@@ -13,7 +13,7 @@ def how(extra):
     """The command that installs what an extra of sixflip asks for: the libraries by their own
     names, so that it does not matter where sixflip itself came from."""
     try:
-        wanted = [line for line in metadata.requires("sixflip") or [] if _of(line, extra)]
+        wanted = [line for line in metadata.requires("sixflip") or [] if _in_extra(line, extra)]
     except metadata.PackageNotFoundError:
         wanted = []
     if not wanted:      # run from a checkout that is not installed
@@ -22,15 +22,15 @@ def how(extra):
         "'%s'" % line.split(";")[0].strip() for line in wanted))
 
 
-def _of(requirement, extra):
+def _in_extra(requirement, extra):
     return re.search(r"extra *== *['\"]%s['\"]" % re.escape(extra), requirement)
 
 
 def need(what, extra, *modules):
     """The modules by name; UsageError naming what to install where one is missing."""
     try:
-        found = [importlib.import_module(name) for name in modules]
+        imported = [importlib.import_module(name) for name in modules]
     except ImportError as error:
         raise UsageError("%s needs %s, which is not installed: %s" % (
             what, error.name or modules[0], how(extra))) from None
-    return found if len(found) > 1 else found[0]
+    return imported if len(imported) > 1 else imported[0]

@@ -114,11 +114,11 @@ def diagnose(captures, simulator=None, reference=None, certified_box=False, with
     without    names of effects to leave out of the library
     """
     from .diagnosis import answer, diagnose
-    found = diagnose.diagnose(_named(captures or ()), _named(simulator, gravity=False),
-                              _named(reference),
-                              certified_box, without)
-    said = answer.as_dict(found)
-    return Diagnosis(said["verdict"], tuple(_cause(one) for one in said["causes"]),
+    diagnosed = diagnose.diagnose(_named(captures or ()), _named(simulator, gravity=False),
+                                  _named(reference),
+                                  certified_box, without)
+    said = answer.as_dict(diagnosed)
+    return Diagnosis(said["verdict"], tuple(_cause(cause) for cause in said["causes"]),
                      _frozen(said["gap"]), _rows(said["where"]), _rows(said["unseen"]),
                      _rows(said["next"]), tuple(said["remarks"]), _frozen(said))
 
@@ -136,8 +136,8 @@ def solve(capture, g=None, level=None):
     (_, read), *more = _named(capture)
     if more:
         raise UsageError("%d captures: expected one" % (1 + len(more)))
-    found = solution.solve(copy.copy(read), g, level)
-    said = finite(solution_json.to_json(found))
+    solved = solution.solve(copy.copy(read), g, level)
+    said = finite(solution_json.to_json(solved))
 
     def matrix(result):
         if result is None:
@@ -145,8 +145,8 @@ def solve(capture, g=None, level=None):
         values = np.array(result.P, dtype=float)
         values.flags.writeable = False
         return values
-    return Solution(found.verdict, found.reason, matrix(found.accel), matrix(found.gyro),
-                    tuple(found.remarks), _frozen(said))
+    return Solution(solved.verdict, solved.reason, matrix(solved.accel), matrix(solved.gyro),
+                    tuple(solved.remarks), _frozen(said))
 
 
 def plan(protocol="recommended", sensor="mpu6050", certified_box=False, rate_hz=100.0,
@@ -162,9 +162,10 @@ def plan(protocol="recommended", sensor="mpu6050", certified_box=False, rate_hz=
                          % (protocol, ", ".join(protocols.STILL)))
     said, _ = plan_answer.planned(planned, sensor, certified_box, rate_hz, minutes)
     effects = said["effects"]
-    return Plan(tuple((one["sensor"], one["effect"]) for one in effects if one["silent"]),
-                _frozen({(one["sensor"], one["effect"]): one["smallest"] for one in effects
-                         if one["smallest"] is not None}),
+    return Plan(tuple((effect["sensor"], effect["effect"]) for effect in effects
+                      if effect["silent"]),
+                _frozen({(effect["sensor"], effect["effect"]): effect["smallest"]
+                         for effect in effects if effect["smallest"] is not None}),
                 _rows(said["additions"]), _frozen(said))
 
 
@@ -190,9 +191,9 @@ def _named(captures, gravity=True):
         captures = [captures]
     if not len(captures):
         raise UsageError("no captures: expected one, or a sequence of them")
-    return [("capture %d" % number, one) if isinstance(one, capture_file.Capture)
-            else (os.fspath(one), open_recording.read_samples(one, gravity))
-            for number, one in enumerate(captures, 1)]
+    return [("capture %d" % number, item) if isinstance(item, capture_file.Capture)
+            else (os.fspath(item), open_recording.read_samples(item, gravity))
+            for number, item in enumerate(captures, 1)]
 
 
 def _cause(said):

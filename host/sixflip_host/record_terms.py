@@ -50,7 +50,7 @@ def terms(record):
 
 def put(record, name, fields):
     """fields as the term of that name, in place of one there is; ValueError likewise."""
-    tag = [one for one, known in TERMS if known == name][0]
+    tag = [term for term, known in TERMS if known == name][0]
     fields = dict(fields)
     while len(fields["source"].encode()) > TEXT:
         fields["source"] = fields["source"][:-1]
@@ -60,5 +60,5 @@ def put(record, name, fields):
         sizes = list(fields["k1"]) + list(fields.get("k2", ()))
         check(name, sizes + [fields[item[0]] for item in _RANGE], len(sizes), record)
     payload = pack(name, fields)
-    record.terms = [one for one in record.terms if one[0] != tag] + [(tag, payload)]
+    record.terms = [term for term in record.terms if term[0] != tag] + [(tag, payload)]
     record.terms.sort()

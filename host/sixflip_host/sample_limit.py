@@ -65,7 +65,7 @@ def little_memory():
     try:
         for kind, most in limits:
             soft, hard = resource.getrlimit(kind)
-            allowed = [one for one in (most, soft, hard) if one != resource.RLIM_INFINITY]
+            allowed = [limit for limit in (most, soft, hard) if limit != resource.RLIM_INFINITY]
             resource.setrlimit(kind, (min(allowed), hard))
         yield
     finally:

@@ -40,19 +40,19 @@ def console(stderr=False):
         """Strings and Texts are sentences: they break between words, or not at all."""
 
         def print(self, *objects, sep=" ", **more):
-            if objects and all(isinstance(one, (str, Text)) for one in objects):
+            if objects and all(isinstance(item, (str, Text)) for item in objects):
                 objects = [Sentence(Text(sep).join(
-                    one if isinstance(one, Text) else Text(one) for one in objects))]
+                    item if isinstance(item, Text) else Text(item) for item in objects))]
             super().print(*objects, sep=sep, crop=False, **more)
 
         def on_broken_pipe(self):
             """rich itself ends the program with 1 when a pipe is closed."""
             raise BrokenPipeError
 
-    out = OurConsole(stderr=stderr, highlight=False, markup=False, emoji=False,
-                     width=None if on_terminal else width())
-    out.breaks_lines = on_terminal
-    return out
+    ours = OurConsole(stderr=stderr, highlight=False, markup=False, emoji=False,
+                      width=None if on_terminal else width())
+    ours.breaks_lines = on_terminal
+    return ours
 
 
 class Sentence:
@@ -125,15 +125,15 @@ class Table:
         from rich import box
         from rich.table import Table as RichTable
         from rich.text import Text
-        out = RichTable(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+        drawn = RichTable(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
         last = len(self.columns) - 1
         for number, column in enumerate(self.columns):
             prose = self.prose and number == last
-            out.add_column(Text(column), justify="left" if prose or not number else "right",
-                           no_wrap=not prose)
+            drawn.add_column(Text(column), justify="left" if prose or not number else "right",
+                             no_wrap=not prose)
         for row in self.rows:
-            out.add_row(*row)
-        return out
+            drawn.add_row(*row)
+        return drawn
 
     @staticmethod
     def _widest(console, table):
@@ -176,9 +176,9 @@ def table(title, columns, rows, prose=False):
 
 def say(lines):
     """Print lines of sentences, escaped."""
-    out = console()
+    printer = console()
     for line in lines:
-        out.print(plain(line))
+        printer.print(plain(line))
 
 
 def styled(text, style):

@@ -14,7 +14,7 @@ from sixflip.record import correction_record
 from sixflip_host import cli
 from sixflip_host.board import firmware_update
 from sixflip_host.board.board_link import MpremoteLink
-from sixflip_host.virtual.board_hands import WAYS, JigHand
+from sixflip_host.virtual.jig_hand import WAYS, JigHand
 from sixflip_host.virtual.virtual_board import VirtualBoard
 from tests.worlds.dds_loopback import LOOPBACK
 from tests.worlds.micropython_tier import SESSION
@@ -65,7 +65,7 @@ def test_the_commands_of_a_page(page, micropython, tmp_path, monkeypatch):
         with contextlib.ExitStack() as jig:
             boards = [jig.enter_context(VirtualBoard(
                 dict(SESSION, **hand.first(name)), tmp_path / (name + ".img"),
-                micropython=micropython, speed=50, hand=hand.of(name)))
+                micropython=micropython, speed=50, hand=hand.hand_for(name)))
                 for name in hand.mountings]
             for line in commands(page):
                 run(line, tmp_path, " ".join(board.port for board in boards))

@@ -13,18 +13,18 @@ class NoSpace(SixflipError):
     """The board's flash is full."""
 
 
-def parse(port, out, kind):
+def parse(port, printed, kind):
     """A Python literal that the board printed, of a kind of board_schema's."""
     try:
-        if len(out) > LONGEST:
+        if len(printed) > LONGEST:
             raise ValueError
-        return kind.take(ast.literal_eval(out.decode("utf-8").strip()))
+        return kind.take(ast.literal_eval(printed.decode("utf-8").strip()))
     except Misfit as misfit:
         raise NoBoard("%s: cannot understand the board's answer %r: %s"
-                      % (port, out[:60], misfit)) from None
+                      % (port, printed[:60], misfit)) from None
     except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
         raise NoBoard("%s: cannot understand the board's answer %r, expected %s"
-                      % (port, out[:60], kind.expected)) from None
+                      % (port, printed[:60], kind.expected)) from None
 
 
 def short(error):

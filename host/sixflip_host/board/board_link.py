@@ -32,10 +32,10 @@ class MpremoteLink(RawRepl):
 
     def version(self):
         """(MicroPython's version, what the board calls itself), as text."""
-        out = self.run("import os\ntry:\n u = os.uname()\n print((u[3], u[4]))\nexcept "
-                       "AttributeError:\n import sys\n print((sys.version, sys.platform))\n",
-                       "asking for its version")
-        return parse(self.port, out, ANSWERS["version"])
+        printed = self.run("import os\ntry:\n u = os.uname()\n print((u[3], u[4]))\nexcept "
+                           "AttributeError:\n import sys\n print((sys.version, sys.platform))\n",
+                           "asking for its version")
+        return parse(self.port, printed, ANSWERS["version"])
 
     def platform(self):
         """sys.platform of the board: rp2, esp32, pyboard, linux …"""
@@ -50,10 +50,11 @@ class MpremoteLink(RawRepl):
 
     def board_id(self):
         """machine.unique_id() in hex; "board" where the port has none."""
-        out = self.run("import binascii\ntry:\n import machine\n print(binascii.hexlify("
-                       "machine.unique_id()).decode())\nexcept (ImportError, AttributeError):\n"
-                       " print()\n", "asking for its id").decode("ascii", "replace").strip()
-        return "".join(c for c in out if c in "0123456789abcdef")[:32] or "board"
+        printed = self.run("import binascii\ntry:\n import machine\n print(binascii.hexlify("
+                           "machine.unique_id()).decode())\n"
+                           "except (ImportError, AttributeError):\n print()\n",
+                           "asking for its id").decode("ascii", "replace").strip()
+        return "".join(c for c in printed if c in "0123456789abcdef")[:32] or "board"
 
     # -- files
 
@@ -63,18 +64,18 @@ class MpremoteLink(RawRepl):
         alone: list only those, and each has to be there.
         """
         wanted = None if hashed is None else set(hashed)
-        out = self.run(script("list_files", wanted=wanted, staged=STAGED, alone=alone),
-                       "listing its files", timeout=FILES_S)
-        found = {}
-        for line in out.splitlines():
+        printed = self.run(script("list_files", wanted=wanted, staged=STAGED, alone=alone),
+                           "listing its files", timeout=FILES_S)
+        files = {}
+        for line in printed.splitlines():
             name, size, digest = parse(self.port, line, ANSWERS["file"])
             if safe_name(name):
-                found[name] = (size, digest)
-        missing = set(wanted or ()) - set(found) if alone else ()
+                files[name] = (size, digest)
+        missing = set(wanted or ()) - set(files) if alone else ()
         if missing:
             raise NoBoard("%s: the board says nothing of %s, expected its size and hash"
                           % (self.port, ", ".join(sorted(missing))))
-        return found
+        return files
 
     def get(self, name, progress=None, size=None):
         """The bytes of a file. progress(done bytes) is called on the way; size: where it is

@@ -159,15 +159,15 @@ class BusAnswer:
         return (value[0], *OF_THE_BUS[value[0]].take(value[1:]))
 
 
-def event(found):
+def event(told):
     """The checked event of a dict with an "event", None of one that nobody knows.
 
     Where a value does not fit: {"event": "misfit", "of": the event, "why": what was expected}.
     """
-    name = found["event"]
+    name = told["event"]
     if name not in EVENTS:
         return None
     try:
-        return dict({"event": name}, **EVENTS[name].take(found))
+        return dict({"event": name}, **EVENTS[name].take(told))
     except Misfit as misfit:
         return {"event": "misfit", "of": name, "why": "%s: %s" % (name, misfit)}

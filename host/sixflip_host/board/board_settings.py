@@ -61,10 +61,10 @@ def help_table():
 
 def ranges(text):
     """{"accel_range_g": 8, "gyro_range_dps": 2000} of "8g,2000dps"."""
-    found = {}
+    wanted = {}
     for part in text.split(","):
         match = re.fullmatch(r"(\d+(?:\.\d+)?)(g|dps)", part.strip())
-        if not match or UNITS[match[2]] in found:
+        if not match or UNITS[match[2]] in wanted:
             raise UsageError("--range %s: expected a full scale in g, one in dps or both, such as "
                              "8g,2000dps" % text)
         key, value = UNITS[match[2]], float(match[1])
@@ -72,8 +72,8 @@ def ranges(text):
         if not low <= value <= high:
             raise UsageError("--range %s: %s is %g, expected %g to %g" % (text, key, value, low,
                                                                           high))
-        found[key] = int(value) if value == int(value) else value
-    return found
+        wanted[key] = int(value) if value == int(value) else value
+    return wanted
 
 
 def what_the_chip_offers(sensor, wanted):
@@ -88,9 +88,9 @@ def what_the_chip_offers(sensor, wanted):
             del had[key]
             said.append("the %s has no gyro: no range of one" % sensor)
             continue
-        had[key] = next((one for one in scales if one >= wanted[key]), scales[-1])
+        had[key] = next((scale for scale in scales if scale >= wanted[key]), scales[-1])
         said.append("the %s has no ±%g %s but %s: ±%g is taken" % (
-            sensor, wanted[key], unit, " ".join("%g" % one for one in scales), had[key]))
+            sensor, wanted[key], unit, " ".join("%g" % scale for scale in scales), had[key]))
     if wanted.get("rate_hz", 0) > driver.MOST_HZ:
         had["rate_hz"] = driver.MOST_HZ
         said.append("the %s is polled %d times a second at most: %d are taken"

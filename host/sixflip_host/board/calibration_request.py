@@ -79,8 +79,8 @@ def unfinished(link):
     return False
 
 
-def stop(link, again="sixflip calibrate --continue"):
-    """After Ctrl-C: end the session on the board; a sentence on what is kept. again: the command
+def stop(link, command="sixflip calibrate --continue"):
+    """After Ctrl-C: end the session on the board; a sentence on what is kept. command: the one
     that goes on with it."""
     kept = 0
     with contextlib.suppress(SixflipError, OSError):
@@ -95,5 +95,5 @@ def stop(link, again="sixflip calibrate --continue"):
         return "stopped; of a replay nothing is kept"
     if kept:
         return ("stopped; the %s samples so far stay on the board: %s goes on with them, "
-                "sixflip pull fetches them" % (kept, again))
+                "sixflip pull fetches them" % (kept, command))
     return "stopped; nothing on the board has changed"

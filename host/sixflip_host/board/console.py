@@ -15,12 +15,12 @@ class Console:
     step(at): what to do for that placement of a plan; typed: what the person is typing
     """
 
-    def __init__(self, out=None, step=None):
+    def __init__(self, stream=None, step=None):
         self.step = step
         self.typed = self.state = ""
         self.lock = threading.RLock()
-        self.out = sys.stdout if out is None else out
-        self.live = self.out.isatty()
+        self.stream = sys.stdout if stream is None else stream
+        self.live = self.stream.isatty()
         self.shown = ""
 
     def show(self, event):
@@ -41,7 +41,7 @@ class Console:
             # Not a terminal: only what keeps a pose from being taken, once each.
             kind = str(event["reason"])
             if kind != self.shown and kind not in ("moving", "noisy"):
-                print("  " + line, file=self.out, flush=True)
+                print("  " + line, file=self.stream, flush=True)
             self.shown = kind
 
     def echo(self, typed):
@@ -54,8 +54,8 @@ class Console:
         """The live line, cut to the width of the terminal: a wrapped one cannot be rewritten."""
         line = self.state + ("   > " + self.typed if self.typed else "")
         line = line[:max(20, shutil.get_terminal_size().columns - 1)]
-        self.out.write("\r" + line.ljust(len(self.shown)))
-        self.out.flush()
+        self.stream.write("\r" + line.ljust(len(self.shown)))
+        self.stream.flush()
         self.shown = line
 
     def say(self, line):
@@ -70,9 +70,9 @@ class Console:
         if self.live and len(line) > columns:
             line = textwrap.fill(line, max(20, columns), subsequent_indent="  ",
                                  break_long_words=False, break_on_hyphens=False)
-        print(line, file=self.out, flush=True)
+        print(line, file=self.stream, flush=True)
 
     def clear(self):
         if self.live and self.shown:
-            self.out.write("\r" + " " * len(self.shown) + "\r")
+            self.stream.write("\r" + " " * len(self.shown) + "\r")
         self.shown = ""

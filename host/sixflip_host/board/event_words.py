@@ -25,14 +25,14 @@ GUIDED_ORDER = [face + letter for face in ROUND for letter in "ab"]
 
 def faces_left(missing):
     """"Z+ and its flip, X- (flip)" of ["Z+a", "Z+b", "X-b"]."""
-    out = []
+    left = []
     for pose in missing:
         face = pose[:-1]
         if pose.endswith("a"):
-            out.append(face + (" and its flip" if face + "b" in missing else ""))
+            left.append(face + (" and its flip" if face + "b" in missing else ""))
         elif face + "a" not in missing:
-            out.append(face + " (flip)")
-    return ", ".join(out)
+            left.append(face + " (flip)")
+    return ", ".join(left)
 
 
 def why(event):

@@ -31,7 +31,7 @@ def findings(name, protocol, sensor, rate_hz, make, ranges=(None, None)):
     rule = RULES.get(name)
     if rule is None:
         return []
-    found = []
+    effects = []
     for kind in sorted(EFFECTS[name].units):
         chip_kind = "gyro" if kind == "device" and sensor == "itg3205" else kind
         chip_kind = "accel" if chip_kind == "device" else chip_kind
@@ -43,9 +43,9 @@ def findings(name, protocol, sensor, rate_hz, make, ranges=(None, None)):
         smallest, how = rule(protocol, rate_hz, sigma, kind)
         if name in ("filter_lag", "lever_arm") and sensor in ("adxl345", "itg3205"):
             smallest, how = math.inf, "the other sensor, which is not there"
-        found.append(make(name, kind, EFFECTS[name].units[kind], smallest, size, source, how=how,
-                          absorbed=how if math.isinf(smallest) else ""))
-    return found
+        effects.append(make(name, kind, EFFECTS[name].units[kind], smallest, size, source, how=how,
+                            absorbed=how if math.isinf(smallest) else ""))
+    return effects
 
 
 def _rare(protocol, rate_hz, sigma, kind):

@@ -67,14 +67,14 @@ class LocalLink:
         return path
 
     def files(self, hashed=None):
-        found = {}
+        files = {}
         for path in sorted(self.folder.rglob("*")):
             name = path.relative_to(self.folder).as_posix()
             if path.is_file() and "__pycache__" not in name:
                 data = path.read_bytes()
                 wanted = hashed is None or name.removeprefix(STAGED) in hashed
-                found[name] = (len(data), hashlib.sha256(data).hexdigest() if wanted else None)
-        return found
+                files[name] = (len(data), hashlib.sha256(data).hexdigest() if wanted else None)
+        return files
 
     def get(self, name, progress=None, size=None):
         return read_bytes(self.path(name))

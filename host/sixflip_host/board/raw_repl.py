@@ -172,13 +172,13 @@ class RawRepl:
             wire = transport.serial
             wire.deadline, wire.most = time.monotonic() + whole * self.patience, most
             try:
-                out, error = transport.exec_raw(code, (timeout or ANSWER_S) * self.patience,
-                                                consumer)
+                printed, error = transport.exec_raw(code, (timeout or ANSWER_S) * self.patience,
+                                                    consumer)
             finally:
                 wire.deadline = wire.most = None
             if error:
-                raise TransportExecError(out, error.decode("utf-8", "replace"))
-            return out
+                raise TransportExecError(printed, error.decode("utf-8", "replace"))
+            return printed
 
     # -- the running firmware
 

@@ -59,10 +59,10 @@ class Recording:
 
     def take(self, line):
         """Whether the line was a piece; it is on the disk then."""
-        found = decode_piece(line)
-        if found is None:
+        decoded = decode_piece(line)
+        if decoded is None:
             return False
-        _, samples, piece = found
+        _, samples, piece = decoded
         if piece[:4] == cb.MAGIC:
             self._begin(piece)
         elif self.file is None:

@@ -48,9 +48,9 @@ def identity(device):
 def same_device(wanted, device):
     """The port on which the device of an identity is now; `device` when it cannot be told, as of
     two bridges of a kind that have no serial number."""
-    found = [port.device for port in list_ports.comports()
+    ports = [port.device for port in list_ports.comports()
              if wanted is not None and (port.vid, port.pid, port.serial_number) == wanted]
-    return found[0] if len(found) == 1 else device
+    return ports[0] if len(ports) == 1 else device
 
 
 def why_not(device):

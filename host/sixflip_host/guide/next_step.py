@@ -35,13 +35,13 @@ def face_up(state):
     return "XYZ"[axis] + ("+" if state.vector[axis] > 0 else "-")
 
 
-def following(missing, again=""):
+def following(missing, taken_back=""):
     """The pose to take next of those missing: a flip that is due, else the face that was taken
     back, else the next of the round."""
     for pose in missing:
         if pose.endswith("b") and pose[:-1] + "a" not in missing:
             return pose
-    for face in (again, *ROUND):
+    for face in (taken_back, *ROUND):
         for letter in "ab":
             if face + letter in missing:
                 return face + letter
@@ -65,7 +65,7 @@ def next_step(state, step=None):
         return Step(REST, up, up, "leave the box alone", what)
     if state.plan:
         return planned(state, up, step)
-    pose = following(state.missing, state.again)
+    pose = following(state.missing, state.taken_back)
     if not pose:
         return Step(WAIT, "", up, "all six faces are done", "")
     face = pose[:2]
@@ -74,7 +74,7 @@ def next_step(state, step=None):
         return Step(FLIP, face, up, "half a turn, %s stays up" % face,
                     "lift it, turn it, put it down again" if no_gyro
                     else "turn it flat on the table, either way round")
-    if face == state.again == up:
+    if face == state.taken_back == up:
         return Step(PLACE, face, up, "%s again, as the box lies" % face, AS_IT_LIES)
     return Step(PLACE, face, up, "lay the box down with %s up" % face,
                 "flat on the table, then let go")
@@ -82,7 +82,7 @@ def next_step(state, step=None):
 
 def planned(state, up, step):
     """By a plan: the drawing where there is one, and the plan's own words."""
-    if state.again and state.again == state.next:
+    if state.taken_back and state.taken_back == state.next:
         leans = state.next[:1] == "L"
         return Step(LEAN if leans else PLACE, "" if leans else state.next[:2], up,
                     "%s again, as the box lies" % state.next, AS_IT_LIES)

@@ -142,7 +142,7 @@ def scale_of(ranges, counts_per_unit, full_scale):
 
 
 def counts_of(ranges):
-    return " or ".join("%g" % one for one in sorted({row[1] for row in ranges}))
+    return " or ".join("%g" % count for count in sorted({row[1] for row in ranges}))
 
 
 def settings_of(capture):
@@ -167,7 +167,7 @@ def settings_of(capture):
     rate = round(meta["rate_hz"])
     if not 10 <= rate <= 500:
         raise UsageError("the capture has %s samples a second, expected 10 to 500" % rate)
-    lengths = {one.n for one in capture.board_placements or ()}
+    lengths = {placement.n for placement in capture.board_placements or ()}
     return {"accel_range_g": ranges[0], "gyro_range_dps": ranges[1],
             "rate_hz": rate, "sensor": sensor, "g": min(9.9, max(9.7, capture.g)),
             "pose_samples": min(5000, max(50, lengths.pop())) if len(lengths) == 1 else 4 * rate,

@@ -61,8 +61,9 @@ def mark(state, pose):
 def faces(state, step):
     """The table of faces, or what a plan has done: lines of LEFT columns."""
     if state.plan:
-        share = state.at / max(1, state.of)
-        return [Text("placements of the plan", "bold"), Text("%d of %d" % (state.at, state.of)),
+        share = state.at / max(1, state.planned)
+        return [Text("placements of the plan", "bold"),
+                Text("%d of %d" % (state.at, state.planned)),
                 Text(bar(share, LEFT - 4)), Text(""), Text("next  " + state.next),
                 Text("now   " + (state.pose or state.box))]
     lines = [Text("face      first  turned", "bold")]
@@ -152,12 +153,12 @@ def foot(state, asking):
 
 def beside(left, right, rows, columns=LEFT):
     """Two columns as one; so many columns of the left one."""
-    out = []
+    lines = []
     for k in range(rows):
         line = left[k].copy() if k < len(left) else Text("")
         line.append(" " * max(0, columns - len(line)))
-        out.append(line + right[k] if k < len(right) else line)
-    return out
+        lines.append(line + right[k] if k < len(right) else line)
+    return lines
 
 
 def screen(state, where="", asking="", note="", step=None, ascii_only=False, height=HEIGHT):

@@ -25,7 +25,7 @@ class State:
     """stage     waiting (for the board), calibrating, solving, over
     taken        {pose: n samples} accepted and in force; of a plan the last one of that name
     missing      poses still to come, in a session of six faces
-    plan, at, of, next   a session by a plan: placements done, their number, the next one's name
+    plan, at, planned, next   a session by a plan: how many are done, of how many, the next
     box, pose, reason, value, limit, unit, progress, total, left_s   the live state, see
                  device/sixflip_device/session/teller.py; heard: number of live states
     vector, rate three numbers each, g and deg/s, or None; trail: tuple of (second, vector, rate)
@@ -35,7 +35,7 @@ class State:
     since, taken_at, now   seconds of the caller's clock: begin of the session, last placement
                  taken, last event; paces: seconds from placement to placement
     log          lasting lines, oldest first; error: the last one that is in force
-    redone       how often placements were taken back in this session; again: the face, or the
+    redone       how often placements were taken back in this session; taken_back: the face, or the
                  plan's pose, that was taken back last, "" once a placement is taken
     """
 
@@ -46,7 +46,7 @@ class State:
     missing: tuple = ()
     plan: bool = False
     at: int = 0
-    of: int = 0
+    planned: int = 0
     next: str = ""
     box: str = ""
     pose: str = ""
@@ -73,14 +73,14 @@ class State:
     log: tuple = ()
     error: str = ""
     redone: int = 0
-    again: str = ""
+    taken_back: str = ""
 
     def left(self):
         """Seconds until all placements are taken, at the usual pace so far; None before the
         first one."""
         if self.stage != CALIBRATING or not self.paces:
             return None
-        todo = self.of - self.at if self.plan else len(self.missing)
+        todo = self.planned - self.at if self.plan else len(self.missing)
         pace = median(self.paces)
         return max(0.0, pace * todo - min(self.now - self.taken_at, pace))
 
@@ -113,7 +113,8 @@ def _calibrating(state, event):
     taken = {} if plan else {pose: 0 for pose in SIX if pose not in missing}
     return replace(State(), board=state.board, chip=state.chip, log=state.log, record=state.record,
                    stage=CALIBRATING, plan=plan, missing=missing, taken=taken,
-                   of=len(missing) if plan else 0, next=missing[0] if plan and missing else "",
+                   planned=len(missing) if plan else 0,
+                   next=missing[0] if plan and missing else "",
                    vector=state.vector, trail=state.trail, since=state.now, taken_at=state.now,
                    now=state.now)
 
@@ -129,7 +130,7 @@ def _todo(state, event):
         return replace(state, missing=missing, taken=taken)
     if "at" in event:
         following = poses(event.get("next"))
-        return replace(state, plan=True, at=whole(event["at"]), of=whole(event.get("of")),
+        return replace(state, plan=True, at=whole(event["at"]), planned=whole(event.get("of")),
                        next=following[0] if following else "")
     return state
 
@@ -177,7 +178,7 @@ def _pose(state, event):
     for name in poses([event.get("pose")]):
         others = {pose: n for pose, n in state.taken.items() if pose != name}
         state = replace(state, taken={**others, name: whole(event.get("n"))})   # the last one
-    return replace(_todo(state, event), refusal="", error="", again="", taken_at=state.now,
+    return replace(_todo(state, event), refusal="", error="", taken_back="", taken_at=state.now,
                    paces=state.paces + (state.now - state.taken_at,))
 
 
@@ -185,7 +186,7 @@ def _redo(state, event):
     """Of a plan only the last placement lies as it was: one before it is laid down anew."""
     back = text(event.get("face"), 8)
     return replace(_todo(state, event), redone=state.redone + 1,
-                   again="" if state.plan and state.again else back)
+                   taken_back="" if state.plan and state.taken_back else back)
 
 
 def _refused(state, event):

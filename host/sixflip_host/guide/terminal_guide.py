@@ -65,13 +65,13 @@ class Keys:
 
     def read(self):
         """The keys pressed since; "esc" and "enter" by name, arrows and the like not at all."""
-        found = []
+        keys = []
         while select.select([self.descriptor], [], [], 0)[0]:
             data = os.read(self.descriptor, 64)
             if not data:
                 break
-            found += key_names(data)
-        return found
+            keys += key_names(data)
+        return keys
 
 
 def key_names(data):

@@ -40,37 +40,37 @@ def drifts(calibrations):
     calibrations  [(Happened, {name: (value, standard error)})] in the order of their time;
                   refused ones do not count
     """
-    usable = [(one, found) for one, found in calibrations if one.verdict != "refused"]
-    names = list(dict.fromkeys(name for _, found in usable for name in found))
-    out = []
+    usable = [(row, parameters) for row, parameters in calibrations if row.verdict != "refused"]
+    names = list(dict.fromkeys(name for _, parameters in usable for name in parameters))
+    all_drifts = []
     for name in names:
-        with_it = [(one, *found[name]) for one, found in usable if name in found]
+        with_it = [(row, *parameters[name]) for row, parameters in usable if name in parameters]
         if len(with_it) > 1:
-            out.append(_drift(name, with_it))
-    return out
+            all_drifts.append(_drift(name, with_it))
+    return all_drifts
 
 
 def _drift(name, points):
     values = np.array([value for _, value, _ in points])
-    out = Drift(name, float(values[-1] - values[0]))
-    days = np.array([one.at / DAY_S for one, _, _ in points])
-    celsius = np.array([np.nan if one.temp_c is None else one.temp_c for one, _, _ in points])
+    drift = Drift(name, float(values[-1] - values[0]))
+    days = np.array([row.at / DAY_S for row, _, _ in points])
+    celsius = np.array([np.nan if row.temp_c is None else row.temp_c for row, _, _ in points])
     columns = {}
     if np.isfinite(celsius).all() and np.ptp(celsius) >= LEAST_C:
         columns["per_c"] = celsius - celsius.mean()
     if np.ptp(days) >= LEAST_DAYS:
         columns["per_30_days"] = (days - days.mean()) / PER_DAYS
     if not columns:
-        out.note = "less than %g °C and %g days between them" % (LEAST_C, LEAST_DAYS)
+        drift.note = "less than %g °C and %g days between them" % (LEAST_C, LEAST_DAYS)
     elif len(points) < len(columns) + 2:
-        out.note = "%d calibrations, %d are needed" % (len(points), len(columns) + 2)
+        drift.note = "%d calibrations, %d are needed" % (len(points), len(columns) + 2)
     elif len(columns) == 2 and abs(np.corrcoef(*columns.values())[0, 1]) > TOGETHER:
-        out.note = "time and temperature went together: cannot be told apart"
+        drift.note = "time and temperature went together: cannot be told apart"
     else:
         sigma = np.array([np.nan if s is None else s for _, _, s in points])
         for key, slope in zip(columns, _slopes(values, sigma, list(columns.values()))):
-            setattr(out, key, slope)
-    return out
+            setattr(drift, key, slope)
+    return drift
 
 
 def _slopes(values, sigma, columns):

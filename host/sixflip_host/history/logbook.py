@@ -57,7 +57,7 @@ def pulled(folder, board):
     def rows():
         from ..calibrate import verify_files
         from ..capture import capture_binary, capture_file
-        found, known = [], board
+        kept, known = [], board
         capture = Path(folder) / "capture.bin"
         if capture.exists() and not capture_binary.is_empty(capture.read_bytes()):
             known = capture_file.read(capture).meta.get("device_id") or board
@@ -66,8 +66,8 @@ def pulled(folder, board):
             if path.exists():
                 record = verify_files.read_record(path)
                 if record.accel or record.gyro:
-                    found.append(_of_record(known, "pull", record, path.read_bytes()))
-        return found
+                    kept.append(_of_record(known, "pull", record, path.read_bytes()))
+        return kept
     _keep(rows)
 
 
@@ -89,26 +89,26 @@ def verified(capture, record, checks):
         temp_c=record.temp_c, answer={"comparisons": len(checks), "differ": failed})])
 
 
-def checked(board, found):
-    """A `check`: the calibration against a rest; found: its answer."""
-    _keep(lambda: [_row(board, "check", "check", "holds" if found["valid"] else "fails",
-                        "; ".join(map(str, found["against"])), temp_c=found["temp_c"],
-                        answer=found)])
+def checked(board, answer):
+    """A `check`: the calibration against a rest."""
+    _keep(lambda: [_row(board, "check", "check", "holds" if answer["valid"] else "fails",
+                        "; ".join(map(str, answer["against"])), temp_c=answer["temp_c"],
+                        answer=answer)])
 
 
-def refined(capture, found):
-    """A `refine` of a capture; found: its answer."""
+def refined(capture, answer):
+    """A `refine` of a capture."""
     def rows():
-        accel, celsius = found["accel"], None
+        accel, celsius = answer["accel"], None
         if capture.temp is not None and len(capture):
             celsius = float(capture.temp.mean()) / capture.meta["temp_lsb_per_c"] + \
                 capture.meta["temp_offset_c"]
         session = capture.meta.get("session")
-        return [_row(capture.meta.get("device_id"), "calibration", "refine", found["verdict"],
-                     found["reason"], chip=found["sensor"], session=session, temp_c=celsius,
+        return [_row(capture.meta.get("device_id"), "calibration", "refine", answer["verdict"],
+                     answer["reason"], chip=answer["sensor"], session=session, temp_c=celsius,
                      answer={"scale": accel["scale"], "v": accel["v"],
-                             "norm_off_mg_rms": found["norm_off_mg_rms"],
-                             "gyro": found["gyro"]})]
+                             "norm_off_mg_rms": answer["norm_off_mg_rms"],
+                             "gyro": answer["gyro"]})]
     _keep(rows)
 
 

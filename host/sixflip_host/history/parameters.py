@@ -28,12 +28,12 @@ def _accelerometer(record):
         return {}
     P, sigma = record.accel["P"], record.accel["sigma_P"]
     _, scale, v, inverse = scale_form(P)
-    out = {}
+    parameters = {}
     for k, axis in enumerate(AXES):
-        out["accel_scale_" + axis] = scale[k], sigma[k][k]
-        out["accel_bias_%s_mg" % axis] = (-1e3 * v[k] / record.g,
-                                         _scaled(1e3 / record.g, _sigma_v(v, inverse, sigma, k)))
-    return out
+        parameters["accel_scale_" + axis] = scale[k], sigma[k][k]
+        parameters["accel_bias_%s_mg" % axis] = (
+            -1e3 * v[k] / record.g, _scaled(1e3 / record.g, _sigma_v(v, inverse, sigma, k)))
+    return parameters
 
 
 def _sigma_v(v, inverse, sigma, i):
@@ -43,7 +43,7 @@ def _sigma_v(v, inverse, sigma, i):
         parts = [sigma[3][j]] + [sigma[k][j] and sigma[k][j] * v[k] for k in range(3)]
         if None in parts:
             return None
-        total += inverse[i][j] ** 2 * sum(one * one for one in parts)
+        total += inverse[i][j] ** 2 * sum(part * part for part in parts)
     return math.sqrt(total)
 
 
@@ -52,31 +52,32 @@ def _scaled(factor, sigma):
 
 
 def _gyro(record):
-    out = {}
+    parameters = {}
     if record.gyro is not None:
         P, sigma = record.gyro["P"], record.gyro["sigma_P"]
         bias = gyro_bias_dps(P)
         for k, axis in enumerate(AXES):
             if k not in record.gyro["missing"]:
-                out["gyro_scale_" + axis] = P[k][k], sigma[k][k]
-            out["gyro_bias_%s_dps" % axis] = bias[k], _scaled(math.degrees(1.0), sigma[3][k])
+                parameters["gyro_scale_" + axis] = P[k][k], sigma[k][k]
+            parameters["gyro_bias_%s_dps" % axis] = (
+                bias[k], _scaled(math.degrees(1.0), sigma[3][k]))
     if record.gyro_bias is not None:
         for axis, bias in zip(AXES, record.gyro_bias["bias_dps"]):
-            before = out.get("gyro_bias_%s_dps" % axis, (None, None))
-            out["gyro_bias_%s_dps" % axis] = bias, before[1]
-    return out
+            before = parameters.get("gyro_bias_%s_dps" % axis, (None, None))
+            parameters["gyro_bias_%s_dps" % axis] = bias, before[1]
+    return parameters
 
 
 def _told(happened):
     """What `calibrate` heard the board say, before anybody pulled the record."""
     scale, v = happened.answer.get("scale"), happened.answer.get("v")
-    out = {}
+    parameters = {}
     for k, axis in enumerate(AXES):
         if _three(scale):
-            out["accel_scale_" + axis] = scale[k], None
+            parameters["accel_scale_" + axis] = scale[k], None
         if _three(v):
-            out["accel_bias_%s_mg" % axis] = -1e3 * v[k] / STANDARD_G, None
-    return out
+            parameters["accel_bias_%s_mg" % axis] = -1e3 * v[k] / STANDARD_G, None
+    return parameters
 
 
 def _three(values):
@@ -86,15 +87,15 @@ def _three(values):
 
 def readable(rows):
     """[(Happened, its parameters)] of all calibrations, sentences for damaged ones."""
-    out, remarks = [], []
-    for one in rows:
-        if one.kind != "calibration":
+    calibrations, remarks = [], []
+    for row in rows:
+        if row.kind != "calibration":
             continue
         try:
-            out.append((one, calibration_numbers(one)))
+            calibrations.append((row, calibration_numbers(row)))
         except BadFile as error:
             remarks.append(str(error))
-    return out, remarks
+    return calibrations, remarks
 
 
 def gyro_bias_dps(P):

@@ -113,9 +113,9 @@ def read(file, board=None):
         if damage != "ok":
             raise _damaged(file, damage)
         where = "" if board is None else " WHERE board = :board"
-        found = connection.execute("SELECT %s FROM happened%s ORDER BY at, sequence, id" % (
+        rows = connection.execute("SELECT %s FROM happened%s ORDER BY at, sequence, id" % (
             ", ".join(COLUMNS), where), {"board": board}).fetchall()
-    return [_row(file, dict(zip(COLUMNS, values))) for values in found]
+    return [_row(file, dict(zip(COLUMNS, values))) for values in rows]
 
 
 @contextlib.contextmanager

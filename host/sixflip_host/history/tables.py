@@ -23,11 +23,11 @@ def calibration_rows(calibrations):
     """Every calibration with its scale, bias and gyro bias: head, rows of text."""
     return ["UTC", "by", "no.", "°C", "verdict", "scale x y z", "bias x y z, mg",
             "gyro bias x y z, deg/s"], [
-        [("~" if one.time_is == store.SEEN else "") + when(one.at), one.verb,
-         "-" if one.sequence is None else str(one.sequence), _cell(one.temp_c, "%.1f"),
-         one.verdict, _triple(found, "accel_scale_%s", "%.5f"),
-         _triple(found, "accel_bias_%s_mg", "%+.2f"),
-         _triple(found, "gyro_bias_%s_dps", "%+.3f")] for one, found in calibrations]
+        [("~" if row.time_is == store.SEEN else "") + when(row.at), row.verb,
+         "-" if row.sequence is None else str(row.sequence), _cell(row.temp_c, "%.1f"),
+         row.verdict, _triple(parameters, "accel_scale_%s", "%.5f"),
+         _triple(parameters, "accel_bias_%s_mg", "%+.2f"),
+         _triple(parameters, "gyro_bias_%s_dps", "%+.3f")] for row, parameters in calibrations]
 
 
 def check_rows(rows):
@@ -40,15 +40,15 @@ def check_rows(rows):
 def drift_rows(drifts):
     """What moved with time or temperature: head, rows of text."""
     return ["parameter", "change", "per °C", "per 30 days"], [
-        [one.name, "%+.5g" % one.change, _slope(one.per_c), _slope(one.per_30_days)]
-        for one in drifts if one.per_c or one.per_30_days]
+        [drift.name, "%+.5g" % drift.change, _slope(drift.per_c), _slope(drift.per_30_days)]
+        for drift in drifts if drift.per_c or drift.per_30_days]
 
 
 def drift_notes(drifts):
     """Sentences on why drifts are not named."""
-    moved = any(one.per_c or one.per_30_days for one in drifts)
+    moved = any(drift.per_c or drift.per_30_days for drift in drifts)
     return ["no drift of %s named: %s" % ("the others" if moved else "any parameter", note)
-            for note in dict.fromkeys(one.note for one in drifts if one.note)]
+            for note in dict.fromkeys(drift.note for drift in drifts if drift.note)]
 
 
 def _coloured_rows(head, rows, column):
@@ -60,8 +60,8 @@ def _cell(value, form):
     return "-" if value is None else form % value
 
 
-def _triple(found, pattern, form):
-    values = [found.get(pattern % axis, (None,))[0] for axis in AXES]
+def _triple(parameters, pattern, form):
+    values = [parameters.get(pattern % axis, (None,))[0] for axis in AXES]
     return "-" if None in values else " ".join(form % value for value in values)
 
 

@@ -76,8 +76,8 @@ def repeated_calibrations(seed, placing_deg):
             "tilt_deg": TILT_DEG, "tilt_dir_deg": 36.0 * number, "flip_error_deg": HAND_DEG,
             "placement_scatter_deg": placing_deg})
         session = capture_of(world)
-        found = accelerometer.solve(session.placements(), session.meta["accel_lsb_per_g"])
-        rows.append(parameters(found.T, found.scale, found.v))
+        fit = accelerometer.solve(session.placements(), session.meta["accel_lsb_per_g"])
+        rows.append(parameters(fit.T, fit.scale, fit.v))
     return np.array(rows)
 
 
@@ -167,6 +167,6 @@ def heading_turns(calibrations, seed):
         record, truth = calibrated(seed + number)
         sign = np.repeat([1 if (number + k) % 2 else -1 for k in range(len(TURNS))], REPETITIONS)
         taken, spans = floor(truth, seed + number, (sign * np.repeat(TURNS, REPETITIONS)).tolist())
-        for out, used, refresh in ((before, nominal(taken.meta), False), (after, record, True)):
-            out[number] = (sign * read(taken, spans, used, refresh)).reshape(len(TURNS), -1)
+        for turns, used, refresh in ((before, nominal(taken.meta), False), (after, record, True)):
+            turns[number] = (sign * read(taken, spans, used, refresh)).reshape(len(TURNS), -1)
     return before, after

@@ -72,7 +72,7 @@ def _rate(record):
 
 def _diagonal(variances):
     """Nine numbers; a variance that the record does not know makes all unknown."""
-    if not all(math.isfinite(one) for one in variances):
+    if not all(math.isfinite(variance) for variance in variances):
         return UNKNOWN
     return (variances[0], 0.0, 0.0, 0.0, variances[1], 0.0, 0.0, 0.0, variances[2])
 
@@ -112,7 +112,7 @@ class ImuMessages:
         self.frame_id, self.clock = frame_id, DeviceClock(say, now_ns)
         self.rate_covariance, self.force_covariance = covariances(record)
 
-    def of(self, t_us, values):
+    def message(self, t_us, values):
         """The ImuMessage of a corrected sample (ax ay az m/s², gx gy gz rad/s or NaN)."""
         force, rate = tuple(values[:3]), tuple(values[3:6])
         there = all(math.isfinite(x) for x in rate)

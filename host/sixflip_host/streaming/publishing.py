@@ -76,18 +76,18 @@ class Publishing:
 
     def publish(self, t_us, values):
         """One corrected sample to everybody."""
-        message = self.messages.of(t_us, values)
-        for one in self.open:
-            one.publish(message)
+        message = self.messages.message(t_us, values)
+        for publisher in self.open:
+            publisher.publish(message)
         self.taken += 1
 
 
 def record_of(link):
     """The Record a board uses, or None; its firmware is started anew when it has been read."""
-    found, there = [], link.files()
+    records, there = [], link.files()
     for name in RECORDS:
         if name in there:
             with contextlib.suppress(ValueError):   # a slot torn by a power cut
-                found.append(correction_record.decode(link.get(name)))
+                records.append(correction_record.decode(link.get(name)))
     link.restart_firmware()
-    return newest_of(found) if found else None
+    return newest_of(records) if records else None

@@ -64,7 +64,7 @@ class Ros2Publisher:
         participant = DomainParticipant(domain)
         others = BuiltinDataReader(participant, BuiltinTopicDcpsPublication)
         time.sleep(DISCOVERY_S)
-        if any(one.topic_name == "rt" + topic for one in others.take(N=1000)):
+        if any(publication.topic_name == "rt" + topic for publication in others.take(N=1000)):
             raise CheckFailed("%s has a publisher already in domain %d, expected none: --topic "
                               "names another" % (topic, domain))
         qos = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.Durability.Volatile,

@@ -46,8 +46,8 @@ def tick(now_tray, now):
         return say(now_tray, "%s; %s" % (count(now_tray, 1), instruction(now_tray))) \
             if had else now_tray, []
     if now_tray.letter == "b" and any(
-            one.port in now_tray.flips and not one.placements(now_tray.face)
-            for one in now_tray.running):
+            member.port in now_tray.flips and not member.placements(now_tray.face)
+            for member in now_tray.running):
         # It says late that it took its first placement back: that is to be taken, not missed.
         now_tray = afresh(replace(now_tray, letter="a", flips=()))
         return say(now_tray, "next: " + instruction(now_tray)), []
@@ -122,11 +122,11 @@ def onward(now_tray):
               if any(member.placements(face) < 2 for member in running)]
     if not wanted:
         return replace(now_tray, here={}, last=now_tray.face), []
-    face = min(wanted, key=lambda one: (now_tray.visits.get(one, 0), ROUND.index(one)))
+    face = min(wanted, key=lambda name: (now_tray.visits.get(name, 0), ROUND.index(name)))
     lies = now_tray.up() == face and now_tray.visits.get(face)
-    again = [member for member in running if member.own(face) and (
+    repeating = [member for member in running if member.own(face) and (
         member.placements(face) == 1 or lies and not member.placements(face))]
-    return repeat_face(turned(now_tray, face), face, again)
+    return repeat_face(turned(now_tray, face), face, repeating)
 
 
 def turned(now_tray, face):

@@ -42,31 +42,31 @@ class TrayGuide(terminal_guide.Guide):
 def ports_of(named):
     """The ports that the command line names, or $SIXFLIP_PORT, or all that boards are plugged
     into; NoBoard when there is none."""
-    found = list(dict.fromkeys(named or os.environ.get(VARIABLE, "").split() or
+    ports = list(dict.fromkeys(named or os.environ.get(VARIABLE, "").split() or
                                [row["port"] for row in serial_ports.boards()]))
-    if not found:
+    if not ports:
         raise NoBoard("no board is plugged in, expected some on USB; name their ports with --port "
                       "PORT --port PORT, or try without hardware: sixflip virtual-board "
                       "--boards 8")
-    return found
+    return ports
 
 
 def in_lines(session):
     """Line by line until all boards are done; True: the person quit in the middle."""
-    out, shown = Console(), 0
-    with typed_lines.TypedLines(out.echo) as typed:
+    screen, shown = Console(), 0
+    with typed_lines.TypedLines(screen.echo) as typed:
         if typed.live:
-            out.say(typed_lines.HELP)
+            screen.say(typed_lines.HELP)
         while True:
             log = session.tray.log
             for line in log[shown:]:
-                out.say(line)
+                screen.say(line)
             shown = len(log)
             if session.tray.over:
                 return False
             session.pump(TICK_S)
             line = typed.poll()
-            if line is not None and obey(session, line, out.say):
+            if line is not None and obey(session, line, screen.say):
                 return True
 
 

@@ -44,17 +44,17 @@ def title(tray):
 def marks(member, face):
     """The two placements on a face of the jig."""
     own, state = member.own(face), member.state
-    out = Text(" ")
+    cell = Text(" ")
     for letter in "ab":
         name = own + letter
         if own and state.stage == CALIBRATING and state.box == "capturing" and state.pose == name:
-            out.append("•", "bold cyan")
+            cell.append("•", "bold cyan")
         elif own and name in state.taken:
-            out.append("✓", "green")
+            cell.append("✓", "green")
         else:
-            out.append("·", "dim" if member.gone else "")
-    out.append(" ")
-    return out
+            cell.append("·", "dim" if member.gone else "")
+    cell.append(" ")
+    return cell
 
 
 def row(tray, member):

@@ -59,9 +59,9 @@ class Tray:
         if not self.face:
             return []
         if self.letter == "a":
-            return [one for one in self.running if not one.placements(self.face)]
-        return [one for one in self.running
-                if one.port in self.flips and one.placements(self.face) == 1]
+            return [member for member in self.running if not member.placements(self.face)]
+        return [member for member in self.running
+                if member.port in self.flips and member.placements(self.face) == 1]
 
     def up(self):
         """The jig's face that is up, by most of its boards; "" where nobody knows. One that has
@@ -86,7 +86,7 @@ def tray(boards, patience=1.0):
 def put(now_tray, member):
     """The Tray with a Member in its place."""
     return replace(now_tray, members=tuple(
-        member if one.port == member.port else one for one in now_tray.members))
+        member if before.port == member.port else before for before in now_tray.members))
 
 
 def say(now_tray, line):

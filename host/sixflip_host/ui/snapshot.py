@@ -24,10 +24,10 @@ def snapshot(state, step=None):
     """A dict for json.dumps."""
     here = next_step(state, step)
     share = noise_share(state)
-    pose = state.pose if here.kind == "hold" else following(state.missing, state.again)
+    pose = state.pose if here.kind == "hold" else following(state.missing, state.taken_back)
     return {
         "stage": state.stage, "board": state.board, "chip": state.chip,
-        "faces": faces(state), "plan": {"at": state.at, "of": state.of, "next": state.next}
+        "faces": faces(state), "plan": {"at": state.at, "of": state.planned, "next": state.next}
         if state.plan else None,
         "step": {"kind": here.kind, "face": here.face, "up": here.now, "head": here.head,
                  "detail": here.detail, "pose": pose},

@@ -37,11 +37,11 @@ class Rest:
 
 def rests(vectors, hz=STREAM_HZ):
     """Mean vectors of the still stretches, in their order."""
-    found = []
+    stretches = []
     for vector in vectors:
-        if not found or not found[-1].takes(vector):
-            found.append(Rest(vector))
-    return [rest.middle(hz) for rest in found if len(rest.vectors) >= SHORTEST_S * hz]
+        if not stretches or not stretches[-1].takes(vector):
+            stretches.append(Rest(vector))
+    return [rest.middle(hz) for rest in stretches if len(rest.vectors) >= SHORTEST_S * hz]
 
 
 def truth(world):

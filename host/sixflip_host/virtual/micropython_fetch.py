@@ -37,16 +37,16 @@ def version(executable):
             capture_output=True, text=True, timeout=20, stdin=subprocess.DEVNULL)
     except (OSError, subprocess.TimeoutExpired):
         return None
-    found = re.search(r"name='micropython', version=\((\d+), (\d+)", answer.stdout)
-    return tuple(map(int, found.groups())) if found else None
+    match = re.search(r"name='micropython', version=\((\d+), (\d+)", answer.stdout)
+    return tuple(map(int, match.groups())) if match else None
 
 
 def find():
     """Path of a usable MicroPython, or None. A wrong SIXFLIP_MICROPYTHON is an error."""
     named = os.environ.get("SIXFLIP_MICROPYTHON")
     if named:
-        found = version(named)
-        if found is None or found < OLDEST:
+        its_version = version(named)
+        if its_version is None or its_version < OLDEST:
             raise NoBoard("SIXFLIP_MICROPYTHON=%s is not a MicroPython %d.%d or newer"
                           % ((named,) + OLDEST))
         return named
@@ -73,9 +73,9 @@ def unpack(work, target):
 
 def fetch(say=print):
     """Path of a MicroPython, fetched when none is found; SixflipError when it cannot be had."""
-    found = find()
-    if found:
-        return found
+    path = find()
+    if path:
+        return path
     if not debian_packages.can_unpack():
         raise SixflipError("there is no apt-get and dpkg here to unpack one with; "
                            "put MicroPython %d.%d or newer on PATH" % OLDEST)

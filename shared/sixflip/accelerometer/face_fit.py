@@ -26,12 +26,12 @@ ZEROS_DOUBT = 18.5
 
 def judge_fit(r):
     """("doubtful" | "refused", sentence) about the worst disagreement, or None."""
-    found = [x for x in (_judge_spread(r), _judge_squareness(r), _judge_along(r),
-                         _judge_zeros(r)) if x]
-    for one in found:       # a doubt must not hide what is to be refused
-        if one[0] == "refused":
-            return one
-    return found[0] if found else None
+    faults = [x for x in (_judge_spread(r), _judge_squareness(r), _judge_along(r),
+                          _judge_zeros(r)) if x]
+    for fault in faults:       # a doubt must not hide what is to be refused
+        if fault[0] == "refused":
+            return fault
+    return faults[0] if faults else None
 
 
 def _judge_spread(r):

@@ -32,7 +32,7 @@ def influence(r):
 
 def face_residuals(r, h):
     """[face, rows, [x, y, z] in g, and per row how much of its error is left in it]."""
-    out = []
+    rows = []
     for face in range(6):
         mine = [i for i in range(len(r.poses)) if face_of_code(r.poses[i]) == face]
         if not mine:
@@ -46,8 +46,8 @@ def face_residuals(r, h):
         m = [sum([r.means[i][k] for i in mine]) / n for k in range(3)] + [1.0]
         kept = [(1.0 / n if i in mine else 0.0) - sum([m[k] * h[i][k] for k in range(4)])
                 for i in range(len(r.poses))]
-        out.append((face, n, left, kept))
-    return out
+        rows.append((face, n, left, kept))
+    return rows
 
 
 def residual_variance(r, kept, axis, placing):
@@ -78,14 +78,14 @@ def mean_variance(noise, n):
 
 def _scatter(r, h):
     """Variance of placing the box, g2, from the residuals beyond the noise; never below 0."""
-    found = noise = weight = 0.0
+    squares = noise = weight = 0.0
     for _, n, left, kept in face_residuals(r, h):
         for axis in range(3):
             v, s = residual_variance(r, kept, axis, 1.0)
-            found += n * left[axis] * left[axis]
+            squares += n * left[axis] * left[axis]
             noise += n * v
             weight += n * s
-    return max(0.0, found - noise) / weight if weight > 0.0 else 0.0
+    return max(0.0, squares - noise) / weight if weight > 0.0 else 0.0
 
 
 def _drift(r, used):
@@ -118,9 +118,9 @@ def spread(r, used, lsb_per_g):
     total = sum([p.noise[k] * p.noise[k] for p in used for k in range(3)])
     r.noise_g = math.sqrt(total / (3 * len(used))) / lsb_per_g
     h = influence(r)
-    found = _scatter(r, h)
-    r.scatter_g = math.sqrt(found)
-    found *= STUDENT * STUDENT
+    variance = _scatter(r, h)
+    r.scatter_g = math.sqrt(variance)
+    variance *= STUDENT * STUDENT
     _, _, v, inverse = scale_form(r.P)
     P = [[0.0] * 3 for _ in range(4)]
     u = [0.0] * 3
@@ -137,7 +137,7 @@ def spread(r, used, lsb_per_g):
         for j in range(3):
             d = r.variance[i][j]
             if AXIS[face_of_code(r.poses[i])] != j:
-                d += found
+                d += variance
             u[j] += at_v * at_v * d
             for k in range(4):
                 P[k][j] += h[i][k] * h[i][k] * d

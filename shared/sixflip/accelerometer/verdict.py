@@ -24,17 +24,17 @@ def judge_result(result, failure=""):
     """("good" | "doubtful" | "refused", sentence)."""
     if result is None:
         return "refused", failure or "the poses do not determine the twelve parameters"
-    found = _judge_parameters(result) or judge_fit(result) or _judge_uncertainty(result)
+    judgement = _judge_parameters(result) or judge_fit(result) or _judge_uncertainty(result)
     oblique = _judge_axes(result)
-    if oblique and not (found and found[0] == "refused"):
-        found = oblique if oblique[0] == "refused" else found or oblique
-    if found and found[0] == "refused":
-        return found
+    if oblique and not (judgement and judgement[0] == "refused"):
+        judgement = oblique if oblique[0] == "refused" else judgement or oblique
+    if judgement and judgement[0] == "refused":
+        return judgement
     if result.level == "no flips":
         return "doubtful", ("no flips, the table's tilt is in the result"
-                            + ("; " + found[1] if found else ""))
-    if found:
-        return found
+                            + ("; " + judgement[1] if judgement else ""))
+    if judgement:
+        return judgement
     if result.level == "flip average" and not result.tilt_deg < 0.5:
         return "doubtful", ("the flip average leaves a scale error at %.1f degrees of tilt, "
                             "0.5 is the limit" % result.tilt_deg)

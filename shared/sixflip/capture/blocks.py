@@ -51,11 +51,11 @@ WIDE = 128  # instead of a step: the number itself follows
 
 def places(columns):
     """Indices into the sample of the columns in a mask, in the order of the file."""
-    found = []
+    indices = []
     for mask, first, n in GROUPS:
         if columns & mask:
-            found.extend(range(first, first + n))
-    return found
+            indices.extend(range(first, first + n))
+    return indices
 
 
 def header(meta_bytes, columns):

@@ -29,10 +29,10 @@ class FrameWriter:
         self.sequence = 0
         self._kind = kind
         self._body = bytearray(SIZES[kind])
-        self._out = bytearray(SIZES[kind] + 4)
-        self._out[0] = SYNC
-        self._out[-2] = END
-        self._out[-1] = NEWLINE
+        self._encoded = bytearray(SIZES[kind] + 4)
+        self._encoded[0] = SYNC
+        self._encoded[-2] = END
+        self._encoded[-1] = NEWLINE
 
     def frame(self, t_us, values):
         """The bytes of a frame; they are valid until the next call."""
@@ -42,12 +42,12 @@ class FrameWriter:
         end = len(body) - 4
         struct.pack_into("<I", body, end, crc32(memoryview(body)[:end]) & 0xFFFFFFFF)
         self.sequence = (self.sequence + 1) & 0xFFFF
-        out = self._out
+        encoded = self._encoded
         code = 1  # where the distance to the next forbidden byte goes
         for i in range(len(body)):
-            out[i + 2] = body[i]
+            encoded[i + 2] = body[i]
             if body[i] == NEWLINE:
-                out[code] = (i + 2 - code) ^ NEWLINE
+                encoded[code] = (i + 2 - code) ^ NEWLINE
                 code = i + 2
-        out[code] = (len(body) + 2 - code) ^ NEWLINE
-        return out
+        encoded[code] = (len(body) + 2 - code) ^ NEWLINE
+        return encoded

@@ -45,9 +45,9 @@ class Fifo:
 
     def look(self):
         """How many samples there are to be read, or FULL."""
-        found = self._ask(None)
-        self.left = max(0, found)
-        return found
+        count = self._ask(None)
+        self.left = max(0, count)
+        return count
 
     def read_into(self, sample):
         """The next one of those that look() found, as a driver's read_into. Without one, False."""
@@ -94,8 +94,8 @@ class Fifo:
     def _words(self, at, columns, sample):
         return words_into(sample, self._burst, at, columns, self.imu.HIGH)
 
-    def _out_of_step(self, found):
-        raise OSError(EIO, "a frame of its FIFO begins with 0x%02x" % found)
+    def _out_of_step(self, header):
+        raise OSError(EIO, "a frame of its FIFO begins with 0x%02x" % header)
 
 
 class PairFifo(Fifo):

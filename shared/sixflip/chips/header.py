@@ -23,12 +23,12 @@ def metadata(imu):
 
 def _read_back(chip, prefix):
     """What scales and shifts; what a failing bus does not give in ATTEMPTS is left out."""
-    found = {}
+    registers = {}
     for r in [first + i for first, n in chip.setup + chip.offsets for i in range(n)]:
         for _ in range(ATTEMPTS):
             try:
-                found[prefix + "0x%02x" % r] = chip._read(r)
+                registers[prefix + "0x%02x" % r] = chip._read(r)
                 break
             except OSError:
                 continue
-    return found
+    return registers

@@ -46,11 +46,11 @@ def _identify(i2c, address, register, rows):
     twice in a row. The answer is None when nobody answers at the address."""
     answer = None
     for _ in range(_ATTEMPTS):
-        found = _answer(i2c, address, register)
-        if found is None:
+        answered = _answer(i2c, address, register)
+        if answered is None:
             continue
-        same = found[0] == answer
-        answer = found[0]
+        same = answered[0] == answer
+        answer = answered[0]
         if same:
             for row in rows:
                 if answer & row[6] in row[4]:
@@ -71,11 +71,11 @@ def _place(address):
 
 def _registers_at(address):
     """Identification registers of the chips that may be at an address, each once."""
-    found = []
+    registers = []
     for row in _rows_at(address):
-        if row[3] not in found:
-            found.append(row[3])
-    return found
+        if row[3] not in registers:
+            registers.append(row[3])
+    return registers
 
 
 def _ask(i2c, address):
@@ -144,7 +144,7 @@ def _stranger(i2c, address, answers):
 
 def _look(i2c, report):
     """({sensor: (address, id)}, {address: {register: answer}} of chips that are none of ours)."""
-    found, strangers = {}, {}
+    sensors, strangers = {}, {}
     for address in _addresses(i2c):
         row, answer, answers = _ask(i2c, address)
         if row is None and answers:
@@ -156,26 +156,26 @@ def _look(i2c, report):
                 said = ["0x%02x in register 0x%02x" % (answers[r], r) for r in sorted(answers)]
                 report.append("%s answers %s: %s" % (_place(address), ", ".join(said),
                                                      _stranger(i2c, address, answers)))
-        elif row[0] in found:
+        elif row[0] in sensors:
             report.append("%s: a second one, not used" % _place(address))
         else:
-            found[row[0]] = address, answer
+            sensors[row[0]] = address, answer
             report.append("%s: %s (who_am_i 0x%02x)" % (
                 _place(address), row[4][answer & row[6]], answer))
     if not getattr(i2c, "spi", False):
         _look_for_magnetometers(i2c, report)
-    return found, strangers
+    return sensors, strangers
 
 
 def _addresses(i2c):
     if getattr(i2c, "spi", False):
         return [0]
-    found = []
+    addresses = []
     for row in catalogue.CHIPS:
         for address in row[2]:
-            if address not in found:
-                found.append(address)
-    return found
+            if address not in addresses:
+                addresses.append(address)
+    return addresses
 
 
 def _look_for_magnetometers(i2c, report):
@@ -203,9 +203,9 @@ def find(i2c, sleep_ms=None, sensor="auto", ranges=(None, None)):
         raise ValueError("sensor is %r, expected auto or one of %s"
                          % (sensor, " ".join(catalogue.SENSORS)))
     report = []
-    found, strangers = _look(i2c, report)
+    sensors, strangers = _look(i2c, report)
     for name in catalogue.SENSORS if sensor == "auto" else (sensor,):
-        where = _where(name, found, strangers if sensor != "auto" else {}, report)
+        where = _where(name, sensors, strangers if sensor != "auto" else {}, report)
         if where:
             try:
                 driver = catalogue.driver(name)
@@ -213,21 +213,21 @@ def find(i2c, sleep_ms=None, sensor="auto", ranges=(None, None)):
                 raise NoChip(report + ["its driver is not on this board: sixflip provision "
                                        "--sensor %s" % name])
             imu = _make(driver, name, i2c, where, sleep_ms, ranges, report)
-            _others(found, name, report)
+            _others(sensors, name, report)
             return imu, report
     if not getattr(i2c, "spi", False) and _answer(i2c, _NOBODY, 0) is not None:
         raise BusStuck(["every address answers, the reserved 0x7c too: SDA is held low"],
                        errno.ETIMEDOUT)
-    raise NoChip(_complaint(i2c, sensor, found, strangers, report))
+    raise NoChip(_complaint(i2c, sensor, sensors, strangers, report))
 
 
-def _where(name, found, strangers, report):
+def _where(name, sensors, strangers, report):
     """What the driver of a sensor is made with: address and identification of each chip."""
     if name == "gy85":
-        both = "adxl345" in found and "itg3205" in found
-        return (found["adxl345"][0],) + found["itg3205"] if both else None
-    if name in found:
-        return found[name]
+        both = "adxl345" in sensors and "itg3205" in sensors
+        return (sensors["adxl345"][0],) + sensors["itg3205"] if both else None
+    if name in sensors:
+        return sensors[name]
     _, _, addresses, register, _, _, _ = catalogue.row_of(name)
     for address in addresses + (0,):
         answer = strangers.get(address, {}).get(register, 0)
@@ -255,24 +255,24 @@ def _make(driver, name, i2c, where, sleep_ms, ranges, report):
     return driver(i2c, *where, sleep_ms=sleep_ms, accel_range_g=got[0], gyro_range_dps=got[1])
 
 
-def _others(found, name, report):
+def _others(sensors, name, report):
     """Sensors that could be used as well, and how."""
-    if name == "adxl345" and "itg3205" not in found:
+    if name == "adxl345" and "itg3205" not in sensors:
         report.append("no gyro: lift the box for a flip, which is taken as 180 degrees")
     own = ("adxl345", "itg3205") if name in ("gy85", "adxl345") else (name,)
-    for other in found:
+    for other in sensors:
         if other in catalogue.SENSORS and other not in own:
             report.append("%s is there, too: sensor %s in the settings takes it instead"
                           % (other, other))
 
 
-def _complaint(i2c, sensor, found, strangers, report):
+def _complaint(i2c, sensor, sensors, strangers, report):
     if not report:
         report.append("nobody answers at %s: check power, SDA, SCL and pull-ups"
                       % " ".join(["0x%02x" % a for a in _addresses(i2c)]))
     elif sensor != "auto":
         report.append("the settings ask for %s, which is not there" % sensor)
-    for name in found:
+    for name in sensors:
         if name in catalogue.NOT_DRIVEN:
             report.append("%s: %s" % (name, catalogue.NOT_DRIVEN[name]))
     if strangers and getattr(i2c, "spi", False):
@@ -280,6 +280,6 @@ def _complaint(i2c, sensor, found, strangers, report):
     elif strangers:
         report.append("two chips at one address answer like that, too: unplug one of them; a "
                       "clone is used where the settings name its sensor")
-    elif not found and sensor == "auto" and len(report) and not report[0].startswith("nobody"):
+    elif not sensors and sensor == "auto" and len(report) and not report[0].startswith("nobody"):
         report.append("no accelerometer found")
     return report

@@ -27,7 +27,7 @@ class Registers:
         self.address = address
         self._i2c = i2c
         self._sleep_ms = sleep_ms
-        self._one = bytearray(1)
+        self._byte = bytearray(1)
         self._two = bytearray(2)
         self._interface = 0  # the bit that a chip on SPI has set in a register of its own
         self._held = []  # (first register, values as configured, room for what it reads)
@@ -49,23 +49,23 @@ class Registers:
         self._i2c.writeto_mem(self.address, register, buf)
 
     def _read(self, register):
-        self._fetch(register, self._one)
-        return self._one[0]
+        self._fetch(register, self._byte)
+        return self._byte[0]
 
     def _write(self, register, value):
-        self._one[0] = value
-        self._store(register, self._one)
+        self._byte[0] = value
+        self._store(register, self._byte)
 
     def _set(self, register, value):
         """Write and read back: SoftI2C returns as if all were well when data is not
         acknowledged. Three attempts, then OSError saying what was expected."""
         for _ in range(3):
             self._write(register, value)
-            found = self._read(register)
-            if found == value:
+            read = self._read(register)
+            if read == value:
                 return
         raise OSError(errno.EIO, "%s at 0x%02x: register 0x%02x reads 0x%02x, expected 0x%02x"
-                      % (self.chip, self.address, register, found, value))
+                      % (self.chip, self.address, register, read, value))
 
     def _no_i2c(self, register, bit):
         """On SPI: no more I2C, which would take the lines' edges for its own. The makers ask for
@@ -88,21 +88,21 @@ class Registers:
     def awake(self):
         """Whether setup and offsets are as configure() left them, which they are not after a
         brown-out. Short reads, no allocation: to be asked often, and when read_into says False."""
-        for first, kept, found in self._held:
-            self._fetch(first, found)
-            if found != kept:
+        for first, kept, buffer in self._held:
+            self._fetch(first, buffer)
+            if buffer != kept:
                 return False
         return True
 
     def shifted(self):
         """"" or a sentence: which offset somebody has changed. A reset changes none, it brings
         back what was configured (0) or the factory's trim."""
-        for first, kept, found in self._held[len(self.setup):]:
-            self._fetch(first, found)
+        for first, kept, buffer in self._held[len(self.setup):]:
+            self._fetch(first, buffer)
             for i in range(len(kept)):
-                if found[i] != kept[i]:
+                if buffer[i] != kept[i]:
                     return ("register 0x%02x of the %s was 0x%02x when it was configured and "
-                            "reads 0x%02x" % (first + i, self.chip, kept[i], found[i]))
+                            "reads 0x%02x" % (first + i, self.chip, kept[i], buffer[i]))
         return ""
 
     def metadata(self):
@@ -118,22 +118,22 @@ class Registers:
         """Wait until the bits of mask read as these, else OSError. A chip may leave its address
         unanswered while it resets, so errors count as "not yet"."""
         tries = 2000 if self._sleep_ms is None else 50
-        found = -1
+        read = -1
         for _ in range(tries):
             if self._sleep_ms is not None:
                 self._sleep_ms(5)
             try:
-                found = self._read(register)
+                read = self._read(register)
             except OSError:
                 continue
-            if found & mask == bits:
+            if read & mask == bits:
                 return
-        if found < 0:
+        if read < 0:
             raise OSError(errno.EIO, "%s at 0x%02x: no answer after its reset"
                           % (self.chip, self.address))
         raise OSError(errno.EIO, "%s at 0x%02x: reset not finished, register 0x%02x reads "
                       "0x%02x, expected 0x%02x in bits 0x%02x"
-                      % (self.chip, self.address, register, found, bits, mask))
+                      % (self.chip, self.address, register, read, bits, mask))
 
 
 def words_into(sample, burst, at, columns, high):

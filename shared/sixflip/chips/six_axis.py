@@ -102,12 +102,12 @@ def output_rate(rates, rate_hz):
 def narrow_enough(filters, rate_hz):
     """(code, Hz) of the widest filter not wider than half the polling rate, the narrowest if
     none is. filters: (code, Hz) in any order."""
-    found = None
+    best = None
     for row in filters:
-        if found is None or found[1] > rate_hz / 2:
-            better = found is None or row[1] < found[1]
+        if best is None or best[1] > rate_hz / 2:
+            better = best is None or row[1] < best[1]
         else:
-            better = found[1] < row[1] <= rate_hz / 2
+            better = best[1] < row[1] <= rate_hz / 2
         if better:
-            found = row
-    return found
+            best = row
+    return best

@@ -46,7 +46,7 @@ def wrong_axes(placements, moves, lsb_per_dps, bias):
 
 def _evidence(placements, moves, lsb_per_dps, bias):
     """[(face before, face after, turned [3] rad), ...] of the moves that can be trusted."""
-    out = []
+    evidence = []
     for m in moves:
         if m.before < 0 or m.after < 0 or m.saturated or not m.n > 0 or has_gap(m):
             continue
@@ -54,21 +54,21 @@ def _evidence(placements, moves, lsb_per_dps, bias):
         t = face_of_code(placements[m.after].pose)
         if f >= 0 and t >= 0:
             measured, T = turn(m, lsb_per_dps)
-            out.append((f, t, [measured[k] - bias[k] * T for k in range(3)]))
-    return out
+            evidence.append((f, t, [measured[k] - bias[k] * T for k in range(3)]))
+    return evidence
 
 
 def _misses(evidence, order, signs, most=None):
     """Squared distance by which each move misses the gravity after it; [] as soon as they cost
     as much as `most`."""
-    found = []
+    misses = []
     cost = 0.0
     for f, t, turned in evidence:
-        found.append(_miss(f, t, [signs[k] * turned[order[k]] for k in range(3)]))
-        cost += min(found[-1], 1.0)
+        misses.append(_miss(f, t, [signs[k] * turned[order[k]] for k in range(3)]))
+        cost += min(misses[-1], 1.0)
         if most is not None and cost >= most:
             return []
-    return found
+    return misses
 
 
 def _miss(before, after, turned):

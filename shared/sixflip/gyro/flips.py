@@ -140,7 +140,7 @@ NO_FLIP = 0.7
 def measured_angles(placements, moves, lsb_per_dps, P):
     """{face: rad} from a to b, right-handed about the face's axis, 0..2 pi; P 4 x 3."""
     bias = mean_rate(placements, lsb_per_dps)
-    found = {}
+    angles = {}
     for f in find_flips(placements, moves, lsb_per_dps, bias, P[:3]):
         # Its own test of the half turn is the point here, not a reason to leave it out.
         if f.used or f.fault == NOT_A_HALF_TURN:
@@ -148,8 +148,8 @@ def measured_angles(placements, moves, lsb_per_dps, P):
             raw = SIGN[f.face] * f.turned[k]
             turn = SIGN[f.face] * sum([f.turned[i] * P[i][k] for i in range(3)])
             angle = turn if abs((raw - f.angle) % (2.0 * math.pi)) < 1e-6 else -turn
-            found.setdefault(f.face, []).append(angle % (2.0 * math.pi))
-    return {face: sum(a) / len(a) for face, a in found.items()}
+            angles.setdefault(f.face, []).append(angle % (2.0 * math.pi))
+    return {face: sum(a) / len(a) for face, a in angles.items()}
 
 
 def worthwhile(angles, scale_sigma):

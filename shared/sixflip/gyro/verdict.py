@@ -28,9 +28,9 @@ def judge_gyroscope(r):
         if not abs(r.P[k][k] - 1.0) <= SCALE_OFF:
             return "refused", ("gyro scale of axis %s is %.3f, 0.8 to 1.2 is the limit: wrong "
                                "range or LSB?" % ("xyz"[k], r.P[k][k]))
-    out = ["%s (%s)" % (face, r.flips[face]["reason"]) for face in sorted(r.flips)
+    left_out = ["%s (%s)" % (face, r.flips[face]["reason"]) for face in sorted(r.flips)
                 if not r.flips[face]["used"]]
-    more = "; left out: " + ", ".join(out) if out else ""
+    more = "; left out: " + ", ".join(left_out) if left_out else ""
     without_sign = ["xyz"[k] for k in range(3) if k not in r.signs_seen]
     if without_sign:
         more += "; sign of %s not seen, no quarter turn about it" % " and ".join(without_sign)
@@ -73,24 +73,24 @@ HELD = 0.01
 
 def not_half_turns(r):
     """{axis: degrees by which its flips were too long} of axes where the moves show it."""
-    found = {}
+    too_long = {}
     for k in range(3):
         if r.excess and k not in r.missing:
             x, sigma = r.excess[0][k], r.excess[1][k]
             if abs(x) > SIGMAS * math.sqrt(sigma * sigma + PAIR * PAIR):
-                found[k] = 180.0 * x
-    return found
+                too_long[k] = 180.0 * x
+    return too_long
 
 
-def _off_half_turn(found, r):
+def _off_half_turn(too_long, r):
     """"every flip was short by 6.0 degrees", or those about one axis or two."""
-    worst = max(found, key=lambda k: abs(found[k]))
-    axes = [k for k in sorted(found)
-            if abs(found[k] - found[worst]) < SIGMAS * 180.0 * (r.excess[1][k] + PAIR)]
+    worst = max(too_long, key=lambda k: abs(too_long[k]))
+    axes = [k for k in sorted(too_long)
+            if abs(too_long[k] - too_long[worst]) < SIGMAS * 180.0 * (r.excess[1][k] + PAIR)]
     return "%s %s by %.1f degrees" % (
         "every flip was" if len(axes) == 3 else
         "the flips about %s were" % " and ".join(["xyz"[k] for k in axes]),
-        "too long" if found[worst] > 0 else "short", abs(found[worst]))
+        "too long" if too_long[worst] > 0 else "short", abs(too_long[worst]))
 
 
 def scale_off(r, tolerance):
@@ -111,10 +111,11 @@ def scale_doubt(r, tolerance):
     """The sentence about a gyro whose scale the moves contradict, or which no move confirms
     and its tolerance does not allow either; or ""."""
     if r.excess:
-        found = not_half_turns(r)
-        if found:
+        too_long = not_half_turns(r)
+        if too_long:
             return ("%s, by the moves between the faces: its scale is off by %.1f %%"
-                    % (_off_half_turn(found, r), max([abs(found[k]) for k in found]) / 1.8))
+                    % (_off_half_turn(too_long, r),
+                       max([abs(too_long[k]) for k in too_long]) / 1.8))
         known = max([0.0] + [r.excess[1][k] for k in range(3) if k not in r.missing])
         if not known <= HELD:
             return ("the moves between the faces tell by how much the flips turned to %.1f "
@@ -159,13 +160,13 @@ def accelerometer_doubt(r, tolerance, tilt_deg, known=()):
     if tilt_deg is None or r.wrong_axes:
         return ""
     for axis in range(3):
-        found = apart(r, axis)
-        if found and FACES.index(found[1]) not in known and found[0] > APART_DEG:
-            mg = error_mg(tilt_deg, found[0])
+        worst = apart(r, axis)
+        if worst and FACES.index(worst[1]) not in known and worst[0] > APART_DEG:
+            mg = error_mg(tilt_deg, worst[0])
             if mg > MATTERS_MG:
                 return ("the flip of %s or of the opposite face was off half a turn by %.1f "
                         "degrees, %.0f is the limit: about %.1f mg at %.1f degrees of tilt"
-                        % (found[1], found[0], APART_DEG, mg, tilt_deg))
+                        % (worst[1], worst[0], APART_DEG, mg, tilt_deg))
     if len(known) == 6:
         return ""
     if r.excess:

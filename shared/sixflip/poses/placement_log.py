@@ -139,15 +139,15 @@ class PlacementLog:
 
     def drop(self, code):
         """Withdraw every placement of a pose; its samples join the moves around it."""
-        found = False
+        dropped = False
         i = 0
         while i < len(self.placements):
             if self.placements[i].pose == code:
-                found = True
+                dropped = True
                 self.drop_at(i)
             else:
                 i += 1
-        return found
+        return dropped
 
     def drop_at(self, i):
         """Takes out the placement at an index; the moves around it become one."""

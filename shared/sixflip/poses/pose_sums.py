@@ -69,7 +69,7 @@ class PoseSums:
         """The Placement of the windows taken."""
         noise = array("f", [math.sqrt(v / self.added) for v in self.squares])
         span = self.span
-        made = Placement(self.pose, span.first, span.n, self.sums, noise, span.duration_us)
+        placement = Placement(self.pose, span.first, span.n, self.sums, noise, span.duration_us)
         if span.late[3]:
-            made.late = span.late
-        return made
+            placement.late = span.late
+        return placement

@@ -50,9 +50,9 @@ def _fault(values, name, what):
 
 def pack(name, fields):
     """Bytes of a section's dictionary; ValueError for a bad number or word."""
-    out = b""
-    for one in FIELDS[name]:
-        what, kind = one[0], one[1]
+    packed = b""
+    for field in FIELDS[name]:
+        what, kind = field[0], field[1]
         value = fields[what]
         if kind == "s":
             # Cut between characters, not inside one.
@@ -60,21 +60,21 @@ def pack(name, fields):
             while len(value.encode()) > 255:
                 value = value[:-1]
             text = value.encode()
-            out += struct.pack("<B", len(text)) + text
+            packed += struct.pack("<B", len(text)) + text
         elif kind == "B":
-            out += struct.pack("<B", sum([1 << axis for axis in value]))
+            packed += struct.pack("<B", sum([1 << axis for axis in value]))
         elif isinstance(kind, tuple):
             if value not in kind:
                 raise ValueError("%s.%s is %s: expected one of %s"
                                  % (name, what, value, ", ".join(kind)))
-            out += struct.pack("<B", kind.index(value))
+            packed += struct.pack("<B", kind.index(value))
         else:
-            values = _list(value, one[2:])
+            values = _list(value, field[2:])
             if kind == "d":
                 _fault(values, name, what)
             for x in values:
-                out += struct.pack("<" + kind, float("nan") if x is None else x)
-    return out
+                packed += struct.pack("<" + kind, float("nan") if x is None else x)
+    return packed
 
 
 def unpack(name, payload):
@@ -82,8 +82,8 @@ def unpack(name, payload):
     fields = {}
     at = 0
     try:
-        for one in FIELDS[name]:
-            fields[one[0]], at = _take(name, one, payload, at)
+        for field in FIELDS[name]:
+            fields[field[0]], at = _take(name, field, payload, at)
     except IndexError:
         raise ValueError("section %s of the record is too short" % name)
     if at > len(payload):
@@ -94,8 +94,8 @@ def unpack(name, payload):
     return fields
 
 
-def _take(name, one, payload, at):
-    what, kind = one[0], one[1]
+def _take(name, field, payload, at):
+    what, kind = field[0], field[1]
     if kind == "s":
         end = at + 1 + payload[at]
         return payload[at + 1:end].decode(), end
@@ -103,7 +103,7 @@ def _take(name, one, payload, at):
         return [axis for axis in range(3) if payload[at] & 1 << axis], at + 1
     if isinstance(kind, tuple):
         return kind[payload[at]], at + 1
-    shape = one[2:]
+    shape = field[2:]
     size = struct.calcsize("<" + kind)
     values = []
     for _ in range((shape or (1,))[0] * (shape[1] if len(shape) == 2 else 1)):

@@ -87,7 +87,7 @@ def compensation(mounting):
     R = rotation(math.radians(mounting["roll_deg"]), math.radians(mounting["pitch_deg"]),
                  mounting["order"])
     B = parse_axes(mounting["axes"])
-    out = [[sum([R[k][i] * B[k][j] for k in range(3)]) for j in range(3)] for i in range(3)]
+    turn = [[sum([R[k][i] * B[k][j] for k in range(3)]) for j in range(3)] for i in range(3)]
     if mounting["frame"] == "ned":
-        out = [out[0], [-x for x in out[1]], [-x for x in out[2]]]
-    return out
+        turn = [turn[0], [-x for x in turn[1]], [-x for x in turn[2]]]
+    return turn

@@ -35,11 +35,11 @@ _MOST = (100.0, 30.0, 2.0, 2.0, 10.0)
 
 def numbers(record):
     """[(name, [numbers])] of a Record's terms; ValueError, a sentence, when one cannot be."""
-    found = []
+    terms = []
     names = dict(TERMS)
     for tag, payload in record.terms:
         name = names[tag]
-        if [1 for known, _ in found if known == name]:
+        if [1 for known, _ in terms if known == name]:
             raise ValueError("section %s is there twice in the record" % name)
         sizes = 6 if tag < 18 else 3 if tag < 20 else 9
         n = sizes if tag == 20 else sizes + 5
@@ -47,8 +47,8 @@ def numbers(record):
             raise ValueError("section %s of the record is too short" % name)
         values = list(struct.unpack_from("<%dd" % n, payload, 0))
         check(name, values, sizes, record)
-        found.append((name, values))
-    return found
+        terms.append((name, values))
+    return terms
 
 
 def check(name, values, sizes, record):
@@ -139,12 +139,12 @@ class TermCorrection(Correction):
         if count == self._count:
             return
         self._count = count
-        for one in self.thermal:
-            t = one.celsius(count)
-            if self._tell and (t < one.low or t > one.high):
+        for term in self.thermal:
+            t = term.celsius(count)
+            if self._tell and (t < term.low or t > term.high):
                 tell, self._tell = self._tell, None
-                tell(t, one.low, one.high)
-            one.fill(t)
+                tell(t, term.low, term.high)
+            term.fill(t)
 
     def _in_sensor_axes(self, sample, out):
         self._look(sample[6])
@@ -177,8 +177,8 @@ class TermCorrection(Correction):
     def set_rest(self, means):
         """As Correction.set_rest; the gyro's terms count from this rest."""
         Correction.set_rest(self, means)
-        for one in self.thermal:
-            one.at_rest(means[6])
+        for term in self.thermal:
+            term.at_rest(means[6])
         self._count = None
         if self.coupling:
             a = self._in_sensor_axes(means, [0.0] * 6)
@@ -187,9 +187,9 @@ class TermCorrection(Correction):
                 self.gyro[3][j] += sum([self.coupling[j][k] * a[k] for k in range(3)])
 
 
-def fill(correction, found):
-    """A TermCorrection with what term_numbers.numbers() found."""
-    for name, values in found:
+def fill(correction, terms):
+    """A TermCorrection with the terms of numbers()."""
+    for name, values in terms:
         if name == "g_sensitivity":
             _couple(correction, values)
         elif name.endswith("scale"):
@@ -208,10 +208,10 @@ def _couple(correction, k):
 
 
 def _stretch(correction, name, values):
-    one = ThermalTerm(3 if name[0] == "g" else 0, correction.scale,
-                      [k / 100.0 for k in values[:3]], [0.0] * 3, 1.0, values[3:], False)
-    one.count_from(correction.record.temp_c)
-    correction.thermal.append(one)
+    term = ThermalTerm(3 if name[0] == "g" else 0, correction.scale,
+                       [k / 100.0 for k in values[:3]], [0.0] * 3, 1.0, values[3:], False)
+    term.count_from(correction.record.temp_c)
+    correction.thermal.append(term)
 
 
 def _drift(correction, name, values):
@@ -225,9 +225,9 @@ def _drift(correction, name, values):
     else:
         k1, k2 = [[k * 1e-3 * record.g for k in values[i:i + 3]] for i in (0, 3)]
         correction.range_c = values[7], values[8]
-    one = ThermalTerm(3 if gyro else 0, correction.shift, k1, k2, 0.0, values[6:], gyro)
-    one.count_from(then)
-    correction.thermal.append(one)
+    term = ThermalTerm(3 if gyro else 0, correction.shift, k1, k2, 0.0, values[6:], gyro)
+    term.count_from(then)
+    correction.thermal.append(term)
 
 
 def _rates(correction, dps):

@@ -188,7 +188,7 @@ def test_a_plan_in_its_own_words(at, following, kind):
     state = fed(dict(calibrating(["Z+a", "Z+b", "L1"]), plan=True),
                 live(at=at, of=3, next=following))
     step = steps.next_step(state, PLAN.__getitem__)
-    assert step.kind == kind and (state.at, state.of) == (at, 3)
+    assert step.kind == kind and (state.at, state.planned) == (at, 3)
 
 
 JSON = st.recursive(st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=9)

@@ -76,14 +76,14 @@ def test_the_robot_comes_round():
 
 def test_without_slam_the_path_is_the_odometry(small):
     for reading in drive.READINGS:
-        path = experiment.placed(small.made, small.maps[PLAIN.name, reading].path)
-        odometry = small.made.odometry(reading)
+        path = experiment.placed(small.driven, small.maps[PLAIN.name, reading].path)
+        odometry = small.driven.odometry(reading)
         assert np.abs(path[:, :2] - odometry[:, :2]).max() < 2e-3
         assert np.abs(floor_plan.wrapped(path[:, 2] - odometry[:, 2])).max() < 2e-3
 
 
 def test_a_true_odometry_draws_the_walls_where_they_are(program, small):
-    made = small.made
+    made = small.driven
     found = slam.run(program, PLAIN, made.pose, made.scans, made.t_s, reach_m=drive.REACH_M)
     quality = experiment.measured(made, found)
     assert quality.wall_m < slam.RESOLUTION_M and quality.corner_deg < 0.1
@@ -100,7 +100,7 @@ def test_each_reading_is_better_than_the_one_before_and_scan_matching_hides_it(s
 
 
 def test_a_seed_gives_the_same_map_twice(program, small):
-    made = small.made
+    made = small.driven
     again = slam.run(program, SAMPLING, made.odometry("Sixflip"), made.scans, made.t_s,
                      reach_m=drive.REACH_M)
     assert np.array_equal(again.grid, small.maps[SAMPLING.name, "Sixflip"].grid)
@@ -208,7 +208,7 @@ def test_a_log_cut_short_is_told(program, small, tmp_path, monkeypatch):
         data = gzip.decompress(path.read_bytes())
         path.write_bytes(gzip.compress(data[:len(data) // 2]))
     monkeypatch.setattr(rawlog, "write", cut)
-    made = small.made
+    made = small.driven
     with pytest.raises(BadFile, match="its log is cut short"):
         slam.run(program, PLAIN, made.pose, made.scans, made.t_s)
 

@@ -182,7 +182,7 @@ def test_stamps_are_the_devices_and_jumps_are_said():
 
 def test_a_sensor_without_a_gyro_has_no_rate():
     messages = imu_message.ImuMessages(of_a_gy85(), "imu", print, lambda: 0)
-    message = messages.of(0, (0.0, 0.0, G, math.nan, math.nan, math.nan))
+    message = messages.message(0, (0.0, 0.0, G, math.nan, math.nan, math.nan))
     assert message.rate is None and message.rate_covariance == imu_message.ABSENT
     assert message.force_covariance != imu_message.UNKNOWN
     assert len(message.cdr()) == 4 + 16 + 37 * 8

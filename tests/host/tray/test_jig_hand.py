@@ -6,7 +6,7 @@ import select
 from types import SimpleNamespace
 
 from sixflip_host.tray.leading import leaves
-from sixflip_host.virtual.board_hands import UNMOVED, WAYS, Box, JigHand
+from sixflip_host.virtual.jig_hand import UNMOVED, WAYS, Box, JigHand
 from sixflip_host.virtual.pty_relay import PtyRelay
 from sixflip_sim.operator import LOOKS_S, REACTS_S, Operator
 from tests.worlds.tray_rig import LIE_S, TWELVE, ScriptedBoard
@@ -28,7 +28,7 @@ class Asked(JigHand):
 
 def test_a_box_that_was_left_alone_while_its_board_spoke_of_noise_is_moved_all_the_same():
     hand = Asked({"one": WAYS[1]})
-    one = hand.of("one")
+    one = hand.hand_for("one")
     operator = Operator(first_pose=hand.own("one", "Z+a"))
     operator.rest(1.0)
     end_s = operator.scene.end_us() * 1e-6

@@ -7,7 +7,7 @@ import pytest
 from sixflip_host.board.event_words import GUIDED_ORDER
 from sixflip_host.tray import leading
 from sixflip_host.tray.jig import AS_THE_JIG, FACES, across, jig_to_own, learned
-from sixflip_host.virtual.board_hands import WAYS
+from sixflip_host.virtual.jig_hand import WAYS
 from tests.worlds.tray_rig import LIE_S, Rig, ScriptedBoard
 
 UPSIDE_DOWN = WAYS[1]

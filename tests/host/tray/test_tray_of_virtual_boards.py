@@ -12,7 +12,7 @@ from sixflip_host.board.board_link import MpremoteLink
 from sixflip_host.errors import NoBoard, UsageError
 from sixflip_host.history import store
 from sixflip_host.tray import leading, tray_guide
-from sixflip_host.virtual.board_hands import WAYS, JigHand
+from sixflip_host.virtual.jig_hand import WAYS, JigHand
 from sixflip_host.virtual.virtual_board import VirtualBoard
 from tests.worlds.terminal import Terminal
 
@@ -44,7 +44,7 @@ def jig(names, folder, flash, micropython, kind=JigHand, **worlds):
             image.write_bytes(flash)
             world = dict(WORLD, seed=seed, **hand.first(name), **worlds.get(name, {}))
             boards[name] = all_of_them.enter_context(VirtualBoard(
-                world, image, micropython=micropython, speed=20, hand=hand.of(name)))
+                world, image, micropython=micropython, speed=20, hand=hand.hand_for(name)))
         yield boards
 
 

@@ -16,7 +16,7 @@ from sixflip_host.errors import NoBoard
 from sixflip_host.tray import leading
 from sixflip_host.ui import tray_bench
 from sixflip_host.ui.tray_bench import TrayBench
-from sixflip_host.virtual.board_hands import WAYS, JigHand
+from sixflip_host.virtual.jig_hand import WAYS, JigHand
 from sixflip_host.virtual.virtual_board import VirtualBoard
 from tests.worlds.tray_rig import Rig, ScriptedBoard
 
@@ -146,7 +146,7 @@ def test_two_boards_in_a_browser(micropython, tmp_path):
     with contextlib.ExitStack() as stack:
         boards = [stack.enter_context(VirtualBoard(
             dict(WORLD, **hand.first(name)), tmp_path / name, micropython=micropython, speed=20,
-            hand=hand.of(name))) for name in hand.mountings]
+            hand=hand.hand_for(name))) for name in hand.mountings]
         served = stack.enter_context(Served(
             lambda told: TrayBench(lambda: [board.port for board in boards], told),
             page="tray.html"))

@@ -73,12 +73,12 @@ def _recording(data, path):
     bias = np.polyfit(imu_s[still], turned[still], 1)[0]
     raw = np.interp(t_s, imu_s, turned - turned[0])
     angle = -np.asarray(data["scan_theta_rad"], dtype=float)      # the recording's is clockwise
-    found = np.asarray(data["scan_range_m"], dtype=float)
-    found = np.where((found > 0.0) & np.isfinite(angle), found, np.nan)
+    ranges_m = np.asarray(data["scan_range_m"], dtype=float)
+    ranges_m = np.where((ranges_m > 0.0) & np.isfinite(angle), ranges_m, np.nan)
     when = (data["scan_time_us"] - zero) * 1e-6
     return Recording(t_s, 0.5 * (left + right), {
         "raw": raw, "rest": raw - bias * t_s, "wheels": (right - left) / BASELINE_M},
-        when, found, wrapped(angle))
+        when, ranges_m, wrapped(angle))
 
 
 def held_out(program, recording, engine, reading, scale=1.0, part=slice(None)):
@@ -93,11 +93,11 @@ def held_out(program, recording, engine, reading, scale=1.0, part=slice(None)):
     mapped = slam.run(program, engine, middle[::2], np.array([binned(c) for c in clouds[::2]]),
                       np.arange(len(middle[::2])) * 0.3, reach_m=REACH_M, resolution=RESOLUTION_M)
     tree = cKDTree(mapped.walls)
-    found = []
+    distances = []
     for k in range(1, len(clouds), 2):
         step = rawlog.between(middle[k - 1], middle[k])
-        found.append(tree.query(moved(clouds[k], after(mapped.path[k // 2], step)))[0])
-    return 1e3 * float(np.concatenate(found).mean())
+        distances.append(tree.query(moved(clouds[k], after(mapped.path[k // 2], step)))[0])
+    return 1e3 * float(np.concatenate(distances).mean())
 
 
 def unskewed(recording, odometry, part):
@@ -123,10 +123,10 @@ def binned(points):
     middle, NaN without."""
     place = (np.arctan2(points[:, 1], points[:, 0]) + math.pi) * BINS / (2.0 * math.pi)
     bins = np.minimum(place.astype(int), BINS - 1)
-    found = np.full(BINS, np.nan)
+    ranges_m = np.full(BINS, np.nan)
     for k in np.argsort(-np.abs(place - bins - 0.5)):
-        found[bins[k]] = np.hypot(*points[k])
-    return found
+        ranges_m[bins[k]] = np.hypot(*points[k])
+    return ranges_m
 
 
 def moved(points, pose):

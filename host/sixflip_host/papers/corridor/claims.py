@@ -26,16 +26,17 @@ def claim(text, value, holds):
 
 def rows(results):
     """[{engine, reading, and of each measure its median and worst over the gyros; closed}]."""
-    found = []
+    table = []
     for engine in dict.fromkeys(key[0] for key in results[0].quality):
         for reading in drive.READINGS:
             row = {"engine": engine, "reading": reading,
-                   "closed": sum(one.quality[engine, reading].closes for one in results)}
+                   "closed": sum(result.quality[engine, reading].closes for result in results)}
             for name in ("heading_deg", "corner_deg", "closure_m", "wall_m", "off"):
-                of = np.abs([getattr(one.quality[engine, reading], name) for one in results])
-                row[name] = {"median": float(np.median(of)), "worst": float(of.max())}
-            found.append(row)
-    return found
+                sizes = np.abs([getattr(result.quality[engine, reading], name)
+                                for result in results])
+                row[name] = {"median": float(np.median(sizes)), "worst": float(sizes.max())}
+            table.append(row)
+    return table
 
 
 def corridor(rows, gyros):
@@ -92,25 +93,26 @@ def best(mm):
     k = int(np.argmin(mm))
     if k in (0, len(SCALES) - 1):
         return SCALES[k]
-    near = [(scale, one) for scale, one in zip(SCALES, mm) if abs(scale - SCALES[k]) <= WINDOW]
-    offset, of = np.array(near).T
-    a, b, _ = np.polyfit(offset - SCALES[k], of, 2)
+    near = [(scale, distance) for scale, distance in zip(SCALES, mm)
+            if abs(scale - SCALES[k]) <= WINDOW]
+    offset, distances = np.array(near).T
+    a, b, _ = np.polyfit(offset - SCALES[k], distances, 2)
     return float(SCALES[k] - 0.5 * b / a) if a > 0 else SCALES[k]
 
 
-def real(found):
+def real(measures):
     """The claims on the recording, from recorded()."""
     plain, standard, _ = (engine.name for engine in botlab.LADDER)
-    halves = [found["best_scale"][name] for name in ("first half", "second half")]
+    halves = [measures["best_scale"][name] for name in ("first half", "second half")]
     return [
         claim("recording, %s: with the bias of the first rest, scans held out lie within %g mm of "
               "the map's walls" % (plain, BOTLAB_MM),
-              "%.1f mm" % found["ladder_mm"][plain]["rest"],
-              found["ladder_mm"][plain]["rest"] <= BOTLAB_MM),
+              "%.1f mm" % measures["ladder_mm"][plain]["rest"],
+              measures["ladder_mm"][plain]["rest"] <= BOTLAB_MM),
         claim("recording, %s: within %g mm" % (standard, BOTLAB_SLAM_MM),
-              "%.1f mm" % found["ladder_mm"][standard]["rest"],
-              found["ladder_mm"][standard]["rest"] <= BOTLAB_SLAM_MM),
+              "%.1f mm" % measures["ladder_mm"][standard]["rest"],
+              measures["ladder_mm"][standard]["rest"] <= BOTLAB_SLAM_MM),
         claim("recording: the best scale of the gyro is within %g %% of 1 on both halves"
               % (100 * SCALE), "%.4f and %.4f" % tuple(halves),
-              all(abs(one - 1.0) <= SCALE for one in halves)),
+              all(abs(scale - 1.0) <= SCALE for scale in halves)),
     ]

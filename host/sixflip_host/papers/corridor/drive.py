@@ -77,12 +77,12 @@ class Route:
 
     def pieces(self):
         """[(kind, seconds, metres or radians)] of the whole drive."""
-        found = [("rest", REST_S, 0.0)]
+        pieces = [("rest", REST_S, 0.0)]
         for number, metres in enumerate(self.legs()):
             if number:
-                found.append(("turn", TURN_S, 0.5 * math.pi))
-            found.append(("leg", metres / SPEED_MPS, metres))
-        return found
+                pieces.append(("turn", TURN_S, 0.5 * math.pi))
+            pieces.append(("leg", metres / SPEED_MPS, metres))
+        return pieces
 
     def at(self, t_s):
         """(pose (n, 3), leg (n,), metres (n,)) at the times (n,) in seconds."""
@@ -172,12 +172,12 @@ def _scans(corridor, route, t_s, scan, seed):
     pose, _, _ = route.at(sent.ravel())
     angle = pose[:, 2] + np.tile(2.0 * math.pi * (beam + 0.5) / BEAMS - math.pi, len(t_s))
     walls = corridor.walls()
-    found = np.concatenate([floor_plan.ranges(walls, pose[k:k + BEAMS, :2], angle[k:k + BEAMS],
-                                              REACH_M) for k in range(0, len(pose), BEAMS)])
+    ranges_m = np.concatenate([floor_plan.ranges(walls, pose[k:k + BEAMS, :2], angle[k:k + BEAMS],
+                                                 REACH_M) for k in range(0, len(pose), BEAMS)])
     stream = noise.key(seed, _LIDAR)
     k = (scan[:, None] * BEAMS + beam).ravel()
     scatter = noise_arrays.gauss(stream, k)
-    return (found + RANGE_M * scatter).reshape(len(t_s), BEAMS)
+    return (ranges_m + RANGE_M * scatter).reshape(len(t_s), BEAMS)
 
 
 def _yaw(counts, record, at_rest, t_s):

@@ -45,9 +45,9 @@ def kept():
 def fetch(say=print):
     """Path of a rbpf-slam, fetched when none is found; NoBoard or SixflipError where it cannot
     be had."""
-    found = find()
-    if found:
-        return found
+    program = find()
+    if program:
+        return program
     if not debian_packages.can_unpack():
         raise NoBoard(MISSING + "; there is no apt-get and dpkg here to unpack one with")
     target = kept()

@@ -46,7 +46,7 @@ class Result:
 
     seed: int
     quality: dict
-    made: drive.Drive = None
+    driven: drive.Drive = None
     maps: dict = None
 
 
@@ -57,14 +57,14 @@ def run(program, gyros, seed, corridor, ladder=slam.LADDER, jobs=None, keep=None
     with concurrent.futures.ThreadPoolExecutor(jobs or os.cpu_count()) as pool:
         for number in range(gyros):
             progress.doing("gyro %d of %d" % (number + 1, gyros))
-            made = drive.make(corridor, seed + number)
+            driven = drive.make(corridor, seed + number)
             logs = None if number else keep
             maps = dict(zip([(engine.name, reading) for engine, reading in tasks], pool.map(
-                lambda task, made=made, logs=logs: slam.run(
-                    program, task[0], made.odometry(task[1]), made.scans, made.t_s,
+                lambda task, driven=driven, logs=logs: slam.run(
+                    program, task[0], driven.odometry(task[1]), driven.scans, driven.t_s,
                     reach_m=drive.REACH_M, keep=log_folder(logs, *task)), tasks)))
-            quality = {key: measured(made, one) for key, one in maps.items()}
-            kept = {} if number else {"made": made, "maps": maps}
+            quality = {key: measured(driven, mapped) for key, mapped in maps.items()}
+            kept = {} if number else {"driven": driven, "maps": maps}
             results.append(Result(seed + number, quality, **kept))
     return results
 
@@ -74,52 +74,52 @@ def log_folder(folder, engine, reading):
     return folder and folder / ("%s-%s" % (engine.name, reading)).replace(" ", "_")
 
 
-def measured(made, found):
+def measured(driven, mapped):
     """Quality of the Map of a Drive."""
-    path = placed(made, found.path)
-    heading = np.unwrap(path[:, 2]) - made.pose[:, 2]
-    off = floor_plan.distances(made.corridor.walls(), placed(made, found.walls))
+    path = placed(driven, mapped.path)
+    heading = np.unwrap(path[:, 2]) - driven.pose[:, 2]
+    off = floor_plan.distances(driven.corridor.walls(), placed(driven, mapped.walls))
     return Quality(float(np.degrees(heading[-1])),
-                   float(np.abs(corners(made, heading)).max()),
-                   float(np.hypot(*(path[-1] - made.pose[-1])[:2])), float(off.mean()),
+                   float(np.abs(corners(driven, heading)).max()),
+                   float(np.hypot(*(path[-1] - driven.pose[-1])[:2])), float(off.mean()),
                    float((off >= OFF_M).mean()))
 
 
-def corners(made, heading):
+def corners(driven, heading):
     """(4,) degrees by which each corner is not what it is, from errors of heading (n,) rad: the
     mean of those seen within SEEN_M of it afterwards less that of those before."""
-    found = []
-    for number, place in enumerate(made.corridor.corners()):
-        near = np.hypot(*(made.pose[:, :2] - place).T) <= SEEN_M
-        before, after = (heading[near & (made.leg == k)].mean() for k in (number, number + 1))
-        found.append(np.degrees(after - before))
-    return np.array(found)
+    errors = []
+    for number, place in enumerate(driven.corridor.corners()):
+        near = np.hypot(*(driven.pose[:, :2] - place).T) <= SEEN_M
+        before, after = (heading[near & (driven.leg == k)].mean() for k in (number, number + 1))
+        errors.append(np.degrees(after - before))
+    return np.array(errors)
 
 
-def placed(made, points):
+def placed(driven, points):
     """Points (n, 2) or poses (n, 3) of the map's frame in that of the floor."""
-    first = made.pose[0]
+    first = driven.pose[0]
     c, s = np.cos(first[2]), np.sin(first[2])
-    found = np.array(points, dtype=float)
-    found[:, :2] = points[:, :2] @ np.array([[c, s], [-s, c]]) + first[:2]
-    found[:, 2:] += first[2]
-    return found
+    on_floor = np.array(points, dtype=float)
+    on_floor[:, :2] = points[:, :2] @ np.array([[c, s], [-s, c]]) + first[:2]
+    on_floor[:, 2:] += first[2]
+    return on_floor
 
 
 def draw(path, result):
     """Write a PNG of three steps of the ladder (rows) and three readings (columns)."""
     engines = list(dict.fromkeys(key[0] for key in result.maps))
     figure, axes = canvas(len(engines), len(drive.READINGS), 12.0, 8.6)
-    truth = result.made
+    truth = result.driven
     half = 0.5 * np.array([truth.corridor.length, truth.corridor.depth]) + MARGIN_M
     for row, engine in enumerate(engines):
         for column, reading in enumerate(drive.READINGS):
-            here, found = axes[row][column], result.maps[engine, reading]
+            here, mapped = axes[row][column], result.maps[engine, reading]
             quality = result.quality[engine, reading]
             for wall in truth.corridor.walls():
                 here.plot(*wall.T, color=WALL, lw=0.6)
-            here.plot(*placed(truth, found.walls).T, ".", color=DRAWN, ms=0.8)
-            here.plot(*placed(truth, found.path)[:, :2].T, color=WAY, lw=0.7)
+            here.plot(*placed(truth, mapped.walls).T, ".", color=DRAWN, ms=0.8)
+            here.plot(*placed(truth, mapped.path)[:, :2].T, color=WAY, lw=0.7)
             here.set(xlim=(-half[0], half[0]), ylim=(-half[1], half[1]), aspect="equal",
                      xticks=[], yticks=[])
             here.set_title("%s, %s: corner %.1f°, closure %.2f m" % (

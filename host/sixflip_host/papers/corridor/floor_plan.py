@@ -39,14 +39,14 @@ class Corridor:
 
     def walls(self):
         """(n, 2, 2) segments from point to point."""
-        found = []
+        segments = []
         for ring, side in enumerate((0.5 * WIDTH_M, -0.5 * WIDTH_M)):
             corners = self.corners(side)
             for k in range(4):
                 begin, end = corners[k - 1], corners[k]
-                found.append(_wall(begin, end, 1.0 if ring == 0 else -1.0,
-                                   noise.key(self.seed, _WALLS + 4 * ring + k)))
-        return np.concatenate(found)
+                segments.append(_wall(begin, end, 1.0 if ring == 0 else -1.0,
+                                      noise.key(self.seed, _WALLS + 4 * ring + k)))
+        return np.concatenate(segments)
 
 
 def _wall(begin, end, outside, stream):
@@ -86,11 +86,11 @@ def ranges(walls, origins, angles, reach):
 def distances(walls, points):
     """(n,) from each point (n, 2) to the nearest wall."""
     start, edge = walls[:, 0], walls[:, 1] - walls[:, 0]
-    found = np.full(len(points), np.inf)
+    nearest = np.full(len(points), np.inf)
     for a, e in zip(start, edge):
         part = np.clip((points - a) @ e / (e @ e), 0.0, 1.0)
-        found = np.minimum(found, np.hypot(*(points - a - part[:, None] * e).T))
-    return found
+        nearest = np.minimum(nearest, np.hypot(*(points - a - part[:, None] * e).T))
+    return nearest
 
 
 def wrapped(angle):

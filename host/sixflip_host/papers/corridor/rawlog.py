@@ -43,15 +43,15 @@ def write(path, odometry, scans, t_s, motion, aperture=2.0 * math.pi, reach_m=8.
     atomic_write.write_bytes(path, gzip.compress(b"".join(log), 1, mtime=0))
 
 
-def between(one, other):
+def between(pose, other):
     """(x, y, turn) of one pose seen from another."""
-    c, s = math.cos(one[2]), math.sin(one[2])
-    dx, dy = other[0] - one[0], other[1] - one[1]
-    turn = (other[2] - one[2] + math.pi) % (2.0 * math.pi) - math.pi
+    c, s = math.cos(pose[2]), math.sin(pose[2])
+    dx, dy = other[0] - pose[0], other[1] - pose[1]
+    turn = (other[2] - pose[2] + math.pi) % (2.0 * math.pi) - math.pi
     return c * dx + s * dy, c * dy - s * dx, turn
 
 
-def thing(name, version, fields):
+def mrpt_object(name, version, fields):
     """One object of a class of MRPT."""
     name = name.encode()
     return bytes([len(name) | 0x80]) + name + bytes([version]) + fields + END
@@ -59,12 +59,12 @@ def thing(name, version, fields):
 
 def actions(*moves):
     """CActionCollection."""
-    return thing("CActionCollection", 0, struct.pack("<I", len(moves)) + b"".join(moves))
+    return mrpt_object("CActionCollection", 0, struct.pack("<I", len(moves)) + b"".join(moves))
 
 
 def frame(*observations):
     """CSensoryFrame."""
-    return thing("CSensoryFrame", 2,
+    return mrpt_object("CSensoryFrame", 2,
                  struct.pack("<I", len(observations)) + b"".join(observations))
 
 
@@ -73,9 +73,9 @@ def movement(step, motion, stamp):
 
     motion: standard deviations a1 m/m, a2 m/rad, a3 rad/m, a4 rad/rad, and of every step m, rad
     """
-    pose = thing("CPose2D", 1, struct.pack("<3d", *step))
+    pose = mrpt_object("CPose2D", 1, struct.pack("<3d", *step))
     unused = struct.pack("<I6f", 10, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)  # Thrun's model
-    return thing("CActionRobotMovement2D", 7, struct.pack("<I", 0) + pose
+    return mrpt_object("CActionRobotMovement2D", 7, struct.pack("<I", 0) + pose
                  + struct.pack("<I6f", 0, *motion) + unused + struct.pack("<??Q", 0, 0, stamp))
 
 
@@ -83,9 +83,9 @@ def laser(scan, aperture, reach_m, other_way, stamp):
     """CObservation2DRangeScan of a lidar in the robot's middle."""
     scan = scan[::-1] if other_way else scan
     valid = np.isfinite(scan)
-    pose = thing("CPose3D", 3, struct.pack("<12d", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1))
+    pose = mrpt_object("CPose3D", 3, struct.pack("<12d", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1))
     label = b"lidar"
-    return thing(
+    return mrpt_object(
         "CObservation2DRangeScan", 7,
         struct.pack("<f?f", aperture, not other_way, reach_m) + pose + struct.pack("<I", len(scan))
         + np.where(valid, scan, 0.0).astype("<f4").tobytes() + valid.astype("u1").tobytes()
