@@ -1,8 +1,8 @@
 """The smallest size of each effect that a planned capture would show, at 80 % power.
 
-Generalised least squares with known variances: white noise over the samples of a row, the scatter
-of a placement by hand (two small turns), flicker as the diagnosis has it. The unit of replication
-is the placement, never the sample (GAP finding 3).
+Generalised least squares with the covariance that the diagnosis has (experiment/covariance.py), of
+known variances: white noise over the samples of a row, the scatter of a placement by hand (two
+small turns), flicker. The unit of replication is the placement, never the sample (GAP finding 3).
 """
 import math
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ import numpy as np
 
 from sixflip_sim.effects import typical
 
-from ..experiment.flicker import flicker_kernel
+from ..experiment import covariance
 from ..experiment.projection import basis, without
 from .alias import PlannedModel
 
@@ -27,24 +27,25 @@ MG_PER_RAD = 1000.0  # of gravity, across it
 
 @dataclass(frozen=True, eq=False)
 class Power:
-    """A PlannedModel (design) in rows of equal, independent noise: whitener (3n, 3n) takes rows
-    there, space (3n, r) is an orthonormal basis of what the nominal parameters take up there."""
+    """A PlannedModel (design) and the covariance of each session's rows: factors, list of (places
+    of its rows, covariance.Factor); space (3n, r) is an orthonormal basis of what the nominal
+    parameters take up of rows of equal, independent noise."""
 
     design: PlannedModel
-    whitener: np.ndarray
+    factors: list
     space: np.ndarray
 
-    def _white(self, columns):
-        return self.whitener @ columns
+    def whitened(self, columns):
+        """(3n, k): columns (3n, k) in rows of equal, independent noise."""
+        return _whitened(self.factors, columns)
 
     def smallest(self, name):
         """{key: smallest size seen with 80 % power}; SILENT where nothing of it is left."""
         keys, columns = self.design.raw(name)
         space = self.space
         if name in self.design.own:  # a nuisance itself: measured beside the others
-            rest = self.design.without_own(name)
-            space = basis(self._white(rest.space))
-        white = self._white(columns)
+            space = basis(self.whitened(self.design.without_own(name).space))
+        white = self.whitened(columns)
         left = without(space, white)
         sizes = {}
         for j, key in enumerate(keys):
@@ -56,8 +57,11 @@ class Power:
     def smallest_flicker(self):
         """Level of flicker on top of the white noise and the placements that would be told
         from them: the variance's standard error from its Fisher information."""
-        kernel = flicker(self.design.rows)
-        white = self.whitener @ kernel @ self.whitener.T
+        n = 3 * self.design.rows.n
+        kernel = np.zeros((n, n))
+        for places, factor in self.factors:
+            kernel[np.ix_(places, places)] = covariance.components(factor.groups)[2]
+        white = self.whitened(self.whitened(kernel).T)
         left = white - self.space @ (self.space.T @ white)
         left = left - (left @ self.space) @ self.space.T
         information = 0.5 * (left ** 2).sum()
@@ -67,35 +71,45 @@ class Power:
 def power_of(design, chip, rate_hz=100.0, step=0.0):
     """Power of a PlannedModel read by a chip (a key of typical.NOISE) at rate_hz; step: size of
     a count, mg or deg/s."""
-    noise = covariance(design, chip, rate_hz, step)
-    whitener = np.linalg.inv(np.linalg.cholesky(noise))
-    return Power(design, whitener, basis(whitener @ design.space))
+    noise = np.array(typical.noise_at(chip, rate_hz, step))
+    factors = []
+    for session in np.unique(design.rows.session):
+        own = np.flatnonzero(design.rows.session == session)
+        groups = _groups(design, own, noise ** 2 / rate_hz)
+        places = (3 * own[:, None] + np.arange(3)).ravel()
+        factors.append((places, covariance.Factor(groups, [1.0], typical.FLICKER[chip])))
+    return Power(design, factors, basis(_whitened(factors, design.space)))
 
 
-def flicker(rows):
-    """(3n, 3n) covariance of unit flicker, axes and sessions apart."""
-    kernel = flicker_kernel(rows.at.t, rows.seconds)
-    return np.kron(kernel * (rows.session[:, None] == rows.session[None]), np.eye(3))
+def _whitened(factors, columns):
+    white = np.empty_like(columns)
+    for places, factor in factors:
+        white[places] = factor.whitened(columns[places])[0]
+    return white
 
 
-def covariance(design, chip, rate_hz, step=0.0):
-    """(3n, 3n) in mg2 or (deg/s)2; step: of a count."""
-    rows = design.rows
-    sigma = np.array(typical.noise_at(chip, rate_hz, step))
-    white = sigma ** 2 / np.maximum(rows.seconds * rate_hz, 1.0)[:, None]
-    total = np.diag(white.reshape(-1)) + typical.FLICKER[chip] ** 2 * flicker(rows)
+def _groups(design, own, density):
+    """list of covariance.Group of the rows `own` of one session: of each placement, and of the
+    turn before it. density (3,): of white noise, mg2 s or (deg/s)2 s."""
+    rows, parts = design.rows, []
+    for placement in np.unique(rows.placement[own]):
+        places = np.flatnonzero(rows.placement[own] == placement)
+        mine = own[places]
+        white = np.diag((density / rows.seconds[mine][:, None]).ravel())
+        parts.append((slice(places[0], places[-1] + 1), white, _by_hand(design, placement, mine),
+                      np.eye(3 * len(mine))))
+    return covariance.in_time(rows.at.t[own], rows.seconds[own], np.ones(3), parts)
+
+
+def _by_hand(design, placement, mine):
+    """(3k, q) what a hand's placement and its half turn add to the k rows of a placement, each
+    of a standard deviation of 1."""
     if design.sensor == "accel":
-        level = (math.radians(PLACEMENT_DEG) * MG_PER_RAD) ** 2
-        for placement in np.unique(rows.placement):
-            mask = np.repeat(rows.placement == placement, 3)
-            turns = design.tilts_of(placement)[mask]
-            total[np.ix_(mask, mask)] += level * turns @ turns.T
-    else:  # a half turn by hand: an error of the angle, seen as rate along the axis turned
-        error = np.where(rows.rest, 0.0, FLIP_DEG / rows.seconds)
-        for k in np.flatnonzero(~rows.rest):
-            along = np.array([rows.at.up[i][k] * error[k] for i in range(3)])
-            total[3 * k:3 * k + 3, 3 * k:3 * k + 3] += np.outer(along, along)
-    return total
+        own = (3 * mine[:, None] + np.arange(3)).ravel()
+        return math.radians(PLACEMENT_DEG) * MG_PER_RAD * design.tilts_of(placement)[own]
+    # An error of the angle is seen as a rate along the axis turned about.
+    error = np.where(design.rows.rest[mine], 0.0, FLIP_DEG / design.rows.seconds[mine])
+    return (error[:, None] * np.stack(design.rows.at.up, 1)[mine]).reshape(-1, 1)
 
 
 def middle(sizes):

@@ -80,11 +80,12 @@ def test_a_simulated_drift_of_the_smallest_size_is_seen_four_times_in_five():
     size = power.smallest("quadratic")["x"]
     column = design.raw("quadratic")[1][:, 0]
     from sixflip_host.experiment.projection import without
-    left = without(power.space, power.whitener @ column[:, None])[:, 0]
+    left = without(power.space, power.whitened(column[:, None]))[:, 0]
     direction = left / np.linalg.norm(left)
     draw = np.random.default_rng(1)
-    noise = np.linalg.inv(power.whitener) @ draw.normal(size=(len(column), 4000))
-    z = direction @ (power.whitener @ (noise + size * column[:, None]))
+    noise = np.linalg.inv(power.whitened(np.eye(len(column)))) @ draw.normal(
+        size=(len(column), 4000))
+    z = direction @ power.whitened(noise + size * column[:, None])
     seen = (np.abs(z) > detectable.QUANTILE - detectable.POWER_80).mean()
     assert seen == pytest.approx(0.80, abs=0.03)
 
