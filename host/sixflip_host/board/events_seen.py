@@ -8,13 +8,14 @@ import math
 from sixflip_sim.effects import typical
 from sixflip_sim.effects.library import EFFECTS
 
+from ..experiment.inertial_fit import read_apart
+
 ONE_SEEN = math.log(5.0)  # events expected for one or more with 80 % chance: 1 - exp(-x) = 0.8
 TIMESTAMP_US = 500.0  # jitter of a timestamp taken after a bus read
 Z = 2.8  # 5 % and 80 %
 # In motion the hand is the noise: standard deviation that one move of 3 to 7 s leaves by a hand
 # that trembles by 15 mg, how well a hand holds its centre, and the threshold with 80 % power.
 LAG_A_MOVE_MS, ARM_A_MOVE_CM, HAND_CM, Z_MOTION, FEWEST_MOVES = 1.0, 1.0, 0.3, 4.5, 12
-LEAST_LAG_MS = 0.5  # two sensors of one chip are not sampled at the same moment either
 ALWAYS = "tested on the fitted matrix (nearest signed permutation)"
 
 
@@ -89,7 +90,8 @@ def _lag(protocol, rate_hz, sigma, kind):
     _, tilting = moves_of(protocol)
     if tilting < FEWEST_MOVES:
         return math.inf, "too few moves that tilt"
-    return max(LEAST_LAG_MS, Z_MOTION * LAG_A_MOVE_MS / math.sqrt(tilting)), \
+    apart_ms = read_apart(rate_hz) / math.sqrt(len(protocol.sessions))
+    return Z_MOTION * math.hypot(LAG_A_MOVE_MS / math.sqrt(tilting), apart_ms), \
         "gravity on the way, against the other"
 
 

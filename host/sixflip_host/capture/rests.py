@@ -86,6 +86,10 @@ class LongestRest:
         return float(np.sqrt(np.mean(noise ** 2))), float(noise.max())
 
 
+# deg/s that a bias moves at most from one rest to the next: 15 degC of an ITG-3205, of which
+# a degree moves it by 0.3. What is further from all rests turns at a steady rate, on a table or in
+# a bend, which is as still as a rest but for that.
+TURNS_DPS = 5.0
 MOSTLY = 0.5  # of a recording at rest: a shorter one is a pause of something that moves
 
 
@@ -120,7 +124,23 @@ def find(capture, stillness=POSES):
         by_hand = _rests(capture, windows, _steadied(capture, windows, stillness),
                          stillness.hand_s, True)
         rests += [rest for rest in by_hand if not taken[rest.first:rest.end].any()]
-    return Found(tuple(sorted(rests, key=lambda rest: rest.first)), noise)
+    return Found(tuple(_at_one_rate(capture, sorted(rests, key=lambda rest: rest.first))), noise)
+
+
+def _at_one_rate(capture, rests):
+    """Those of the rests, in time order, in which the gyro reads about the same: the most time."""
+    if capture.gyro is None or len(rests) < 2:
+        return rests
+    rates = np.array([capture.gyro[rest.first:rest.end].mean(axis=0) for rest in rests]
+                     ) / capture.meta["gyro_lsb_per_dps"]
+    near = np.linalg.norm(rates[:, None] - rates, axis=2) <= TURNS_DPS
+    while True:  # alike is what a chain of near ones leads to
+        further = near @ near
+        if (further == near).all():
+            break
+        near = further
+    seconds = near @ np.array([rest.end - rest.first for rest in rests])
+    return [rest for rest, alike in zip(rests, near[seconds.argmax()]) if alike]
 
 
 def longest(capture):

@@ -1,4 +1,5 @@
-"""Crooked faces as a cause: tested beside the causes found, the box no longer a nuisance.
+"""Crooked faces as a cause: tested beside the causes found, the box no longer a nuisance but for
+what any box is off, of which nothing is said.
 
 Twelve free angles take up much that is none: they are looked for last, where all else is
 explained, nothing in the registers moves readings near zero, and no nonlinearity was found: what
@@ -14,12 +15,13 @@ import numpy as np
 from scipy import special
 
 from sixflip.poses import faces
+from sixflip_sim.effects import typical
 
 from ..experiment import linear_model, nominal_rows, projection
 from . import aliases, coefficient_fits, cutoffs, hypotheses, odds, scored_sets
 from .posterior import Posterior
 
-LEAST_DEG = 0.1  # below that a placement by hand is as crooked
+USUAL_DEG = typical.SIZES["box_tilt"]["adxl345"][0]  # standard deviation of any box's faces
 BENT = ("orientation", "amplitude")  # domains of what bends the reading itself
 
 
@@ -39,18 +41,21 @@ def bent(causes):
 
 def search(gap):
     """(list of Cause, Data they were found in) of a SensorGap of the accelerometer."""
-    data, scored = _scored(gap, _certified(gap, few=True))
+    data, scored = _scored(gap, _usual(_certified(gap, few=True)))
     # What gains less than any cost is spared the rest of the search, and a cost of its own.
     if scored is None or scored[1].score - scored[0].score <= cutoffs.LEAST_NATS:
         return [], data
     units = _certified(gap, few=False)
-    data, (without, best) = _scored(gap, units)
+    off = _usual(units)
+    data, (without, best) = _scored(gap, off)
     forms = hypotheses.forms_of(units, gap.settings.without)
     boxes = [f for f in forms if f.effect == "box_tilt"]
-    cost = cutoffs.for_protocol(units, boxes, gap.noise).member
+    cost = cutoffs.for_protocol(off, boxes, gap.noise).member
     gain = best.score - without.score
     if gain <= cost:
         return [], data
+    # How far its faces lean is all that they do, what is usual with it.
+    data, (_, best) = _scored(gap, units)
     gains = dict.fromkeys((f.effect for f in best.forms), gain)
     places = {f.effect: odds.shares({"": cost, f.effect: gain}) for f in best.forms}
     said = Posterior(best, gap.cost, places, gains)
@@ -78,6 +83,21 @@ def _certified(gap, few):
             rows, [unit.designs[k] for k in kept] if few else unit.designs, wanted,
             signature=unit.signature, within=unit.within))
     return units
+
+
+def _usual(units):
+    """The units with what the faces of any box are off as a nuisance. It is alike in all sessions,
+    of which each has its own: so each has so much more that all together leave it as large."""
+    made = []
+    for unit in units:
+        places = np.concatenate([np.full(len(d.keys), d.effect == "box_tilt")
+                                 for d in unit.designs])
+        off = unit.raw(np.flatnonzero(places)) * USUAL_DEG * np.sqrt(len(units))
+        known = unit.rows.common
+        rows = replace(unit.rows, common=off if known is None else np.hstack([known, off]))
+        made.append(linear_model.unit(rows, unit.designs, np.flatnonzero(~unit.silent),
+                                      signature=unit.signature, within=unit.within))
+    return made
 
 
 def _scored(gap, units):

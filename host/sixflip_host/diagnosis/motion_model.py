@@ -33,7 +33,6 @@ STRANGE_SHARE = 0.06  # of what a stranger gains, that a name must gain beside i
 # the stranger's size, squared, is of another form than the strangers of motion have
 FOLLOWS = {"speed": "size of the rate", "rates": "rate", "squares": "products of the rates",
            "changes": "change of the rate", "scale": "size of the rate and gravity"}
-LEAST_LAG_MS = 0.5  # two sensors of one chip are not sampled at the same moment either
 KNOWN_CM = 5.0  # standard deviation beyond which a direction of the arm is not known
 
 
@@ -86,10 +85,11 @@ class MotionGap:
 
     def least(self, name):
         """Smallest size that would show, cm or ms."""
-        sigma = np.sort(np.sqrt(np.diag(self.covariance)[moves_fit.EFFECTS[name]]))
-        shown = (math.sqrt(2.0 * self.posterior.cost.member) + detectable.POWER_80) * float(
-            sigma[(len(sigma) - 1) // 2])
-        return max(shown, LEAST_LAG_MS) if name == "filter_lag" else shown
+        variance = np.sort(np.diag(self.covariance)[moves_fit.EFFECTS[name]])
+        if name == "filter_lag":
+            variance = variance + self.fit.apart_ms ** 2
+        return (math.sqrt(2.0 * self.posterior.cost.member) + detectable.POWER_80) * float(
+            math.sqrt(variance[(len(variance) - 1) // 2]))
 
     def floor(self):
         """mg: what is left with the sizes found."""
@@ -135,9 +135,12 @@ def _searched(fit, without):
     designs = moves_unit.designs(fit.prior)
     bins = sum(len(m.table) for m in fit.moves)
     energy = sum((m.table[:, :, competing] ** 2).sum(axis=(0, 1)) for m in fit.moves) / bins
+    # A row's two sensors are read at moments of each session's own.
+    varying = np.where(competing == inertial_fit.LAG, fit.apart_ms, 0.0)
     units = [moves_unit.unit(
         fit.gram[fit.folds == f], fit.inner[fit.folds == f], left[fit.folds == f], competing,
-        everything[len(competing):], fit.prior, energy, designs) for f in np.unique(fit.folds)]
+        everything[len(competing):], fit.prior, energy, designs, varying)
+        for f in np.unique(fit.folds)]
     forms = [f for f in hypotheses.forms_of(units, without, drift=False)
              if not f.generic or f.axis is None or f.variant == "speed"]
     model = scored_sets.Model(units, [u.statistics() for u in units], moves_unit.NO_LEVELS)
@@ -179,8 +182,6 @@ def _told(gap):
                            "acts" % name.replace("_", " "))
             nameless.append(localisation.Place("accel", None, "motion", 1.0,
                                                odds.chance(finding.score)))
-        elif name == "filter_lag" and finding.value["tau"] < LEAST_LAG_MS:
-            continue
         elif name == "lever_arm" and gap.one_hand:
             remarks.append("turned about a point %.1f cm from the accelerometer: the hand's grip "
                            "or the box, flips on a table tell"

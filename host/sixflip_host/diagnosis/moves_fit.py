@@ -44,6 +44,11 @@ class MovesFit:
     def nuisance(self):
         return np.arange(inertial_fit.COMPETING_NUMBER, len(self.prior))
 
+    @property
+    def apart_ms(self):
+        """inertial_fit.read_apart() of the moves' samples."""
+        return inertial_fit.read_apart(1.0 / float(np.median(self.moves[0].turn.dt)))
+
     def own(self, move):
         """Indices of the columns that a move has."""
         return _own(move, sorted({m.session for m in self.moves}))

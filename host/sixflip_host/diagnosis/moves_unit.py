@@ -20,6 +20,10 @@ from ..experiment.terms import Design
 from .detect import saturation
 from .evidence import Levels
 
+SLOW = 5  # frequencies that a way is in, and its mean
+# ms: a hand trembles at 10 Hz at most, of which this is a radian; buffers and drivers that read in
+# turns are some samples behind, a tenth of a second at most (GAP: a gyro 40 to 80 ms late).
+LINEAR_MS, MOST_LATE_MS = 15.0, 150.0
 NO_LEVELS = Levels(1.0, 1.0, 1.0)  # of noise to choose from: the moves' own spectra are taken
 
 
@@ -59,16 +63,21 @@ class MovesUnit:
         return generator.choice([-1.0, 1.0], (self.freedom, number))
 
 
-def unit(gram, inner, left, columns, nuisance, prior, energy, designs):
+def unit(gram, inner, left, columns, nuisance, prior, energy, designs, varying):
     """MovesUnit of the products of n moves: gram (n, k, k), inner and left (n, k); columns,
-    nuisance: indices of the hypotheses' and of the other columns, of prior (k,)."""
+    nuisance: indices of the hypotheses' and of the other columns, of prior (k,); varying (K,):
+    standard deviation of what each hypothesis' column is more or less in this session."""
     total = gram.sum(axis=0)
     block = total[np.ix_(nuisance, nuisance)] + np.diag(prior[nuisance] ** -2.0)
     taken = np.linalg.solve(block, total[np.ix_(nuisance, columns)])
     own = total[np.ix_(columns, columns)] - total[np.ix_(columns, nuisance)] @ taken
+    inner, left = (sums[:, columns] - sums[:, nuisance] @ taken for sums in (inner, left))
+    part = own * varying
+    share = np.linalg.solve(np.eye(len(own)) + varying[:, None] * part, varying[:, None] * own)
+    own = own - part @ share
+    inner, left = (sums - (sums * varying) @ share for sums in (inner, left))
     power = np.diag(own)
-    return MovesUnit(Products(own[None]), *(part[:, columns] - part[:, nuisance] @ taken
-                                            for part in (inner, left)), energy, designs,
+    return MovesUnit(Products(own[None]), inner, left, energy, designs,
                      power <= 1e-9 * max(power.max(), 1e-300), np.zeros(1), len(gram))
 
 
@@ -89,8 +98,22 @@ def moves(sessions, models, turned):
     """list of inertial_fit.Move. sessions: list of blocks.Session, the first len(models) with
     poses; models: their NominalSensor; turned: their calibrated turns."""
     unlagged = _moves(sessions, models, turned)
-    late = inertial_fit.way_lag(unlagged)
+    late = _way_lag(unlagged)
     return _moves(sessions, models, turned, late) if late else unlagged
+
+
+def _way_lag(moves):
+    """ms: how late the accelerometer is behind the gyro by the slowest frequencies of each move
+    that turns the box over, the median of all; nil where that is no more than a column of its
+    derivative shows as well."""
+    lags = []
+    for move in moves:
+        slow = slice(0, SLOW)
+        column, y = move.table[slow, :, inertial_fit.LAG], move.y[slow]
+        if not move.flat:
+            lags.append(float((column * y).sum() / max(float((column ** 2).sum()), 1e-300)))
+    late = float(np.median(lags)) if lags else 0.0
+    return float(np.clip(late, -MOST_LATE_MS, MOST_LATE_MS)) if abs(late) > LINEAR_MS else 0.0
 
 
 def _moves(sessions, models, turned, lag_ms=0.0):

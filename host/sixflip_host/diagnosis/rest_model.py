@@ -138,9 +138,7 @@ class RestModel:
                 and "box_tilt" not in self.settings.without and box_tilt_test.possible(gap):
             progress.doing("whether the box is square")
             box, data = box_tilt_test.search(gap)
-            gap = replace(gap, causes=gap.causes + [
-                c for c in gap.sized(box, data) if max(map(abs, c.value.values()), default=0.0)
-                >= box_tilt_test.LEAST_DEG])
+            gap = replace(gap, causes=gap.causes + gap.sized(box, data))
         if box_tilt_test.bent(gap.causes):
             gap = replace(gap, crooked=[])  # a nonlinearity leans the faces as well
         return gap

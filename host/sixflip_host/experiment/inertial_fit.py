@@ -27,6 +27,7 @@ COMPETING = (("lever_arm", "", EACH), ("filter_lag", "", (0,)), ("motion", "spee
              ("motion", "rates", EACH * 3), ("motion", "squares", EACH * 6),
              ("motion", "changes", EACH * 3), ("motion", "scale", EACH))
 EFFECTS_NUMBER = 4  # columns of those with a name
+LAG = EFFECTS_NUMBER - 1  # the column of the accelerometer's delay behind the gyro
 COMPETING_NUMBER = sum(len(axes) for _, _, axes in COMPETING)
 # deg/s and deg/s2 of a hand that turns a box over in one to two seconds: the nameless functions
 # are in units of them, so that PRIOR_MG is what one of them adds in a quick move.
@@ -51,10 +52,9 @@ BIAS_MG, STRANGE_BIAS_MG = 10.0, 60.0
 # would claim a lever arm where a hand only turns about another point, more would hide a small one.
 HAND_CM, WHEELS_CM = 0.3, 0.03
 MG_PER_METRE_S2 = 1000.0 / STANDARD_G  # mg
-SLOW = 5  # frequencies that a way is in, and its mean
-# ms: a hand trembles at 10 Hz at most, of which this is a radian; buffers and drivers that read in
-# turns are some samples behind, a tenth of a second at most (GAP: a gyro 40 to 80 ms late).
-LINEAR_MS, MOST_LATE_MS = 15.0, 150.0
+# ms and share of a sample's interval: a chip's own filters are up to 0.98 ms apart (RM-MPU-6000A,
+# DLPF_CFG), two chips are read in turn, a simulator's rates are those of a part of a step before.
+FILTERS_APART_MS, READ_WITHIN = 0.98, 0.1
 SMALL_DEG = 10.0  # of turning: in less the axis is as much the hand's wobble as the turn's
 
 
@@ -94,7 +94,7 @@ def move(turn, capture, nominal, course, session, by_hand, white, lag_ms=0.0):
     effects = np.hstack([terms.columns_of(EFFECTS[name]("accel", {}), m, len(felt))[2]
                          for name in EFFECT_NAMES]).reshape(len(felt), 3, EFFECTS_NUMBER)
     if lag_ms:
-        effects[:, :, EFFECTS_NUMBER - 1] = lagging(turn.t, felt, lag_ms)
+        effects[:, :, LAG] = lagging(turn.t, felt, lag_ms)
     own = seen.spectrum(effects)
     edge = own[:, :, :3] @ frame.T * (not flat)
     # What bends with the attitude, and remembers the one before.
@@ -174,18 +174,10 @@ def lagging(t, felt, lag_ms):
     return (late - felt) * (1000.0 / lag_ms)
 
 
-def way_lag(moves):
-    """ms: how late the accelerometer is behind the gyro by the slowest frequencies of each move
-    that turns the box over, the median of all; nil where that is no more than a column of its
-    derivative shows as well."""
-    lags = []
-    for move in moves:
-        slow = slice(0, SLOW)
-        column, y = move.table[slow, :, EFFECTS_NUMBER - 1], move.y[slow]
-        if not move.flat:
-            lags.append(float((column * y).sum() / max(float((column ** 2).sum()), 1e-300)))
-    late = float(np.median(lags)) if lags else 0.0
-    return float(np.clip(late, -MOST_LATE_MS, MOST_LATE_MS)) if abs(late) > LINEAR_MS else 0.0
+def read_apart(rate_hz):
+    """ms: standard deviation of the time between the moments at which the two sensors of a row
+    are read, in any log: what is less is no delay of one of them."""
+    return max(FILTERS_APART_MS, 1000.0 * READ_WITHIN / rate_hz)
 
 
 def path(turn):

@@ -26,7 +26,7 @@ FLICKER_DPS = (0.0002, 0.00045, 0.001, 0.0018, 0.0026, 0.0037, 0.0053, 0.0075, 0
 EARTH_UP_DPS = 0.003  # 15 deg/h at a latitude of 45 degrees
 # Levels tried of the Earth's horizontal rate, the box at an unknown azimuth: as much as upward,
 # and what is left of it where the box nearly always lies the same way.
-EARTH_DPS = (0.0005, EARTH_UP_DPS)
+EARTH_DPS = (0.0005, 0.0012, EARTH_UP_DPS)
 # Pairs of blocks from which on an axis' flicker is told from the others': twelve differences know
 # a variance to 41 %, and no axis is taken to have more or less than twice what all have.
 FEWEST_PAIRS, MOST_UNLIKE = 12, 2.0

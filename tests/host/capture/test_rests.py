@@ -86,3 +86,22 @@ def test_why_there_is_no_rest_is_said():
     short = recording()
     short = Capture(short.meta, short.t_us[:60], short.accel[:60], short.gyro[:60])
     assert rests.longest(short).reason == "0.6 s are too short, 1.0 s of rest are needed"
+
+
+def test_what_turns_at_a_steady_rate_is_no_rest():
+    """A table that turns step by step: gravity stays, and the gyro is as quiet as at rest. A bias
+    that creeps through the session by as much leaves its rests what they are."""
+    rng = np.random.default_rng(4)
+    moving = np.repeat(np.arange(15) % 2 == 1, 300)
+    accel = np.rint(rng.normal([100, -200, 16384], 40, (4500, 3)))
+    accel[moving] += np.rint(rng.normal(0, 2000, (moving.sum(), 3)))
+    shape = np.repeat(np.arange(15) // 2, 300)
+    for rates, number in ((np.where(shape % 2 == 1, 30.0 + 5.0 * shape, 0.4), 4),
+                          (0.4 + 1.5 * shape, 8)):
+        gyro = rng.normal(0, 12, (4500, 3))
+        gyro[:, 2] += 131.0 * rates
+        capture = Capture(dict(META), 10000 * np.arange(4500), accel.astype(np.int16),
+                          np.rint(gyro).astype(np.int16))
+        resting = rests.find(capture).rests
+        assert len(resting) == number
+        assert not moving[[(rest.first + rest.end) // 2 for rest in resting]].any()

@@ -167,9 +167,10 @@ def test_what_coefficients_explain_is_the_same_by_one_factor_and_by_two():
     assert same == pytest.approx(logdet, rel=1e-12)
 
 
-def moves(generator, lag):
+def moves(generator, lag, varying=0.0):
     """Two sessions of 12 moves. A lag changes the first column by `lag` in each move, beside
-    noise of 1; in two moves something large follows the second column, a rate, by chance."""
+    noise of 1, and may be `varying` more or less in each session; in two moves something large
+    follows the second column, a rate, by chance."""
     units = []
     for _ in range(2):
         inner = generator.standard_normal((12, 2))
@@ -181,7 +182,7 @@ def moves(generator, lag):
             ("filter_lag", "", "tau"), ("motion", "rates", "x0"))]
         units.append(moves_unit.unit(
             np.tile(np.eye(2), (12, 1, 1)), inner, left, np.arange(2), np.zeros(0, int), prior,
-            np.ones(2), designs))
+            np.ones(2), designs, np.array([varying, 0.0])))
     return units
 
 
@@ -201,6 +202,22 @@ def test_what_one_form_gains_by_chance_does_not_hide_another():
     found = posterior.search_sets(model, forms, cost)
     assert found.best.names == {"filter_lag"}
     assert found.places["filter_lag"]["filter_lag"] > 0.99
+
+
+def test_a_lag_within_what_each_session_has_of_its_own_is_none():
+    """The sums of a unit are those of readings whose covariance has the lag's own column in it."""
+    for varying in (0.0, 1.0):
+        units = moves(np.random.default_rng(3), 1.5, varying)
+        forms, cost = costs_of_moves(units)
+        model = scored_sets.Model(units, [u.statistics() for u in units], moves_unit.NO_LEVELS)
+        names = posterior.search_sets(model, forms, cost).best.names
+        assert names == (set() if varying else {"filter_lag"})
+    # 12 moves, each of an information of 1: the mean is known to 1/12 and the session's own 1.
+    assert units[0].gram.at(0)[0, 0] == pytest.approx(1.0 / (1.0 / 12.0 + 1.0))
+    strong = moves(np.random.default_rng(3), 8.0, 1.0)
+    forms, cost = costs_of_moves(strong)
+    model = scored_sets.Model(strong, [u.statistics() for u in strong], moves_unit.NO_LEVELS)
+    assert "filter_lag" in posterior.search_sets(model, forms, cost).best.names
 
 
 def test_costs_of_each_form_keep_the_chance_of_any():

@@ -101,6 +101,20 @@ def test_coarse_noise_repeats_rows_by_chance():
     assert not present(held_values.read_again(counts)[0])
 
 
+def test_a_quiet_sensor_that_rests_and_moves_repeats_rows_by_chance():
+    """Noise of a third of a count repeats in most rows at rest and in none on the way: a stretch
+    of both has a chance of its own for each, and what all axes share is no holding."""
+    generator = np.random.default_rng(12)
+    moving = np.repeat(np.arange(80) % 2 == 1, 150)
+    turned = np.where(moving, 300.0, 0.0)[:, None] * generator.standard_normal((12000, 3))
+    counts = np.rint(turned + [0.1, -0.2, 0.15] + 0.35 * generator.standard_normal((12000, 3)))
+    assert not present(held_values.repeats(counts)[0])
+    held = np.arange(1, len(counts), 5)
+    counts[held] = counts[held - 1]
+    nats, rows, every = held_values.repeats(counts)
+    assert present(nats) and rows / every == pytest.approx(0.2, rel=0.2)
+
+
 def test_what_leaps_between_levels_is_no_walk():
     generator = np.random.default_rng(10)
     noise = 4.0 * generator.standard_normal(90000)
@@ -186,6 +200,14 @@ def test_what_runs_beside_a_log_shows_outside_of_its_rests():
     found, = shake_detector.steady([shaken(24.2, moving=False)])
     assert found.axes == ["z"] and found.hz["z"] == pytest.approx(24.2, abs=0.01)
     assert shake_detector.steady([shaken(0.0, moving=True)]) == []
+
+
+def test_what_goes_on_legs_has_strides_and_no_vibration():
+    """A trot's strides, and its knocks at a multiple of them, were a vibration of 25 mg."""
+    assert shake_detector.steady([shaken(4.3, moving=False)]) == []
+    lines = [SimpleNamespace(hz=hz) for hz in (4.3, 12.9, 18.1)]
+    assert [line.hz for line in spectral_lines.without_strides(lines)] == [18.1]
+    assert spectral_lines.without_strides(lines[1:]) == lines[1:]
 
 
 def test_a_motion_without_a_rest_has_no_line_that_is_not_steady():

@@ -2,10 +2,11 @@
 
 Three axes that do not change from a row to the next may do so by chance: where each of them
 repeats with a chance of its own, all three do with the product of the three. Those chances are
-seen in the rows in which another axis changed, in short stretches of their own, for a sensor at
-rest repeats more often than one that moves. Held values repeat all three at once. Single rows
-that were read again are looked for where the sensor moves on before and after them. Where both
-sensors repeat in the same rows, now and then, a sample was not read: there is none.
+seen in the neighbouring rows in which another axis changed, for a sensor at rest repeats more
+often than one that moves: the product of means over both is less than the mean of products. Held
+values repeat all three at once. Single rows that were read again are looked for where the sensor
+moves on before and after them. Where both sensors repeat in the same rows, now and then, a sample
+was not read: there is none.
 """
 import copy
 import math
@@ -17,6 +18,7 @@ from .detection import Damage, present
 
 FEWEST = 200  # rows
 STRETCH = 256  # rows
+NEIGHBOURS = 25  # rows, half a second and less, in which a sensor rests or moves
 HELD = 0.05  # share of rows that are held: fewer are single rows, not a rate
 # Standard deviation of the spacing of held rows, of its mean: of rows that are lost at random it
 # is 1, and of a sensor that is read faster than it measures half a row at most.
@@ -128,13 +130,23 @@ def repeats(counts):
 
 def _stretch(same):
     """(nats, rows held) of one stretch: same (n, axes) bool, which of them repeat in a row."""
-    n, together, chance = len(same), int(same.all(axis=1).sum()), 1.0
+    n, together, chances = len(same), int(same.all(axis=1).sum()), np.ones(len(same))
     for axis in range(same.shape[1]):
         others = ~np.delete(same, axis, axis=1).all(axis=1)
-        chance *= (same[others, axis].sum() + 1.0) / (others.sum() + 1.0)
-    chance, share = (min(max(p, 1e-4), 1.0 - 1e-4) for p in (chance, together / n))
+        counted = same[:, axis] & others
+        whole = (counted.sum() + 1.0) / (others.sum() + 1.0)
+        chances *= (_around(counted) + whole) / (_around(others) + 1.0)
+    chance, share = (min(max(p, 1e-4), 1.0 - 1e-4) for p in (chances.mean(), together / n))
     if share <= chance:
         return 0.0, 0.0
     nats = together * math.log(share / chance) + (n - together) * math.log(
         (1.0 - share) / (1.0 - chance)) - 0.5 * math.log(n)
     return nats, n * (share - chance) / (1.0 - chance)
+
+
+def _around(rows):
+    """(n,) how many of the neighbours of each row are among `rows` (n,) bool."""
+    sums = np.concatenate([[0], np.cumsum(rows)])
+    place = np.arange(len(rows))
+    first = np.maximum(place - NEIGHBOURS // 2, 0)
+    return sums[np.minimum(place + NEIGHBOURS // 2 + 1, len(rows))] - sums[first]

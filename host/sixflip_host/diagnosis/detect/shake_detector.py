@@ -32,13 +32,13 @@ def findings(sessions):
 
 def steady(sessions):
     """list of Finding: a line of the accelerometer that is there where nothing rests, steady in
-    its frequency, which no motion of a hand, a vehicle or a robot is."""
+    its frequency, which no motion of a hand, a vehicle or a robot is, but that of legs."""
     moves = [move for move in map(_longest_move, sessions) if move]
     if not moves or any(s.capture.accel is None for s in sessions):
         return []
     lines = [line_frequency.refined(line, moves, "accel") for line in (
         spectral_lines.strongest(moves, "accel", axis) for axis in range(3)) if line]
-    lines = [line for line in lines if line.steady]
+    lines = spectral_lines.without_strides([line for line in lines if line.steady])
     return [spectral_lines.told(lines, "accel", moves[0].rate)] if lines else []
 
 

@@ -22,6 +22,9 @@ LOWEST_HZ, LOWEST_MOVING_HZ = 0.7, 2.0  # a hand or a vehicle moves more slowly 
 # What has no steady frequency is a motion's own up to here, where nothing rests: a hand trembles
 # at 4 to 12 Hz [Elble & Koller, Tremor (1990)], steps and swings are slower.
 MOTION_HZ = 15.0
+# What runs on legs goes steadily at the frequency of its strides, and its steps and knocks at
+# multiples of it.
+STRIDES_HZ, MULTIPLE = 5.0, 0.005
 LEAST_CYCLES = 1.4  # of a line in a stretch: what settles in a rest has less
 BRIEF_S = 1.5  # a shorter stretch is all of its rest, and begins where the box was just put down
 CHANCE = 0.001  # six axes together: well below what registers and spectra share, see odds.py
@@ -63,6 +66,7 @@ def line_of_axis(sessions, sensor, axis):
     resting = any(s.runs for s in sessions)
     lines = [line for line in lines if line and (
         resting or line.steady or line.hz > MOTION_HZ)]
+    lines = lines if resting else without_strides(lines)
     if lines:
         return max(lines, key=lambda line: line.nats)
     slow = line_frequency.slow(sessions, sensor, axis)
@@ -73,6 +77,15 @@ def line_of_axis(sessions, sensor, axis):
         if stretches else LOWEST_MOVING_HZ
     across = [line_across_rests.strongest(s, sensor, axis, fastest) for s in sessions if s.runs]
     return max((line for line in across if line), key=lambda line: line.nats, default=None)
+
+
+def without_strides(lines):
+    """Those of the lines of what moves that are no strides, nor multiples of one."""
+    def multiple(hz, stride):
+        times = hz / stride
+        return round(times) >= 1 and abs(times - round(times)) < MULTIPLE * times
+    strides = [line.hz for line in lines if line.hz < STRIDES_HZ]
+    return [line for line in lines if not any(multiple(line.hz, hz) for hz in strides)]
 
 
 def told(lines, sensor, rate):
