@@ -1,4 +1,5 @@
 """Crooked faces are said to be the box's, by the face, and are no gap of the sensor."""
+import numpy as np
 import pytest
 
 from sixflip_host.diagnosis import diagnosis
@@ -32,3 +33,14 @@ def test_a_pair_of_faces_that_is_not_parallel():
     assert off.worst == pytest.approx(0.8, abs=0.1)
     assert any("crooked box" in remark for remark in found.remarks)
     assert ("across_gravity", None) in [(w.domain, w.axis) for w in found.where]
+
+
+@pytest.mark.parametrize("deg, said", [(0.1, False), (0.3, True)])
+def test_a_box_off_by_what_boxes_are_is_no_gap(deg, said):
+    """Of a healthy sensor in a box off by a tenth of a degree it was "explained"."""
+    names = [face + axis for face in ("Z+", "Z-", "X+", "X-", "Y+", "Y-")
+             for axis in "xyz".replace(face[0].lower(), "")]
+    angles = np.random.default_rng(6).normal(0.0, deg, len(names))
+    found = diagnosed(dict(zip(names, angles.tolist())))
+    assert any("box_tilt" in cause.names for _, cause in found.causes) is said
+    assert (found.verdict == "no gap") is not said
