@@ -88,8 +88,9 @@ class LongestRest:
 
 # deg/s that a bias moves at most from one rest to the next: 15 degC of an ITG-3205, of which
 # a degree moves it by 0.3. What is further from all rests turns at a steady rate, on a table or in
-# a bend, which is as still as a rest but for that.
-TURNS_DPS = 5.0
+# a bend, which is as still as a rest but for that, and takes a while to come to it: what reads
+# otherwise from one moment to the next (the windows around that are not still) has not moved.
+TURNS_DPS, AT_ONCE_S = 5.0, 1.5
 MOSTLY = 0.5  # of a recording at rest: a shorter one is a pause of something that moves
 
 
@@ -128,12 +129,17 @@ def find(capture, stillness=POSES):
 
 
 def _at_one_rate(capture, rests):
-    """Those of the rests, in time order, in which the gyro reads about the same: the most time."""
+    """Those of the rests, in time order, in which the gyro reads about the same: the most time. A
+    rest that follows at once is the same one, whatever the gyro reads."""
     if capture.gyro is None or len(rests) < 2:
         return rests
     rates = np.array([capture.gyro[rest.first:rest.end].mean(axis=0) for rest in rests]
                      ) / capture.meta["gyro_lsb_per_dps"]
     near = np.linalg.norm(rates[:, None] - rates, axis=2) <= TURNS_DPS
+    for place, (rest, following) in enumerate(zip(rests, rests[1:])):
+        at_once = following.first - rest.end <= AT_ONCE_S * capture.meta["rate_hz"]
+        near[place, place + 1] |= at_once
+        near[place + 1, place] |= at_once
     while True:  # alike is what a chain of near ones leads to
         further = near @ near
         if (further == near).all():

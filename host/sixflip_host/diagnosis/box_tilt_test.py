@@ -21,7 +21,8 @@ from ..experiment import linear_model, nominal_rows, projection
 from . import aliases, coefficient_fits, cutoffs, hypotheses, odds, scored_sets
 from .posterior import Posterior
 
-USUAL_DEG = typical.SIZES["box_tilt"]["adxl345"][0]  # standard deviation of any box's faces
+# Standard deviation of the faces of any box.
+USUAL_DEG = typical.size("box_tilt", "mpu6050", "accel")[0]
 BENT = ("orientation", "amplitude")  # domains of what bends the reading itself
 
 

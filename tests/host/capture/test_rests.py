@@ -94,6 +94,7 @@ def test_what_turns_at_a_steady_rate_is_no_rest():
     rng = np.random.default_rng(4)
     moving = np.repeat(np.arange(15) % 2 == 1, 300)
     accel = np.rint(rng.normal([100, -200, 16384], 40, (4500, 3)))
+    still = accel.copy()
     accel[moving] += np.rint(rng.normal(0, 2000, (moving.sum(), 3)))
     shape = np.repeat(np.arange(15) // 2, 300)
     for rates, number in ((np.where(shape % 2 == 1, 30.0 + 5.0 * shape, 0.4), 4),
@@ -105,3 +106,9 @@ def test_what_turns_at_a_steady_rate_is_no_rest():
         resting = rests.find(capture).rests
         assert len(resting) == number
         assert not moving[[(rest.first + rest.end) // 2 for rest in resting]].any()
+    # A bias that jumps while nothing moves is not lost with all that follows.
+    levels = np.where(np.arange(4500) < 1800, 0.4, 9.0)
+    gyro = rng.normal(0, 12, (4500, 3)) + 131.0 * levels[:, None]
+    jumped = Capture(dict(META), 10000 * np.arange(4500), still.astype(np.int16),
+                     np.rint(gyro).astype(np.int16))
+    assert sum(rest.end - rest.first for rest in rests.find(jumped).rests) > 4200
