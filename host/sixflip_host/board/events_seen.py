@@ -8,8 +8,6 @@ import math
 from sixflip_sim.effects import typical
 from sixflip_sim.effects.library import EFFECTS
 
-from ..experiment.inertial_fit import read_apart
-
 ONE_SEEN = math.log(5.0)  # events expected for one or more with 80 % chance: 1 - exp(-x) = 0.8
 TIMESTAMP_US = 500.0  # jitter of a timestamp taken after a bus read
 Z = 2.8  # 5 % and 80 %
@@ -90,7 +88,7 @@ def _lag(protocol, rate_hz, sigma, kind):
     _, tilting = moves_of(protocol)
     if tilting < FEWEST_MOVES:
         return math.inf, "too few moves that tilt"
-    apart_ms = read_apart(rate_hz) / math.sqrt(len(protocol.sessions))
+    apart_ms = typical.read_apart(rate_hz) / math.sqrt(len(protocol.sessions))
     return Z_MOTION * math.hypot(LAG_A_MOVE_MS / math.sqrt(tilting), apart_ms), \
         "gravity on the way, against the other"
 

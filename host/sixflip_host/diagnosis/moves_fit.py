@@ -11,6 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sixflip_sim.effects import typical
+
 from ..experiment import inertial_fit
 
 FEWEST_FLAT = 6  # turns on a table, if there is one session only
@@ -46,8 +48,8 @@ class MovesFit:
 
     @property
     def apart_ms(self):
-        """inertial_fit.read_apart() of the moves' samples."""
-        return inertial_fit.read_apart(1.0 / float(np.median(self.moves[0].turn.dt)))
+        """typical.read_apart() of the moves' samples."""
+        return typical.read_apart(1.0 / float(np.median(self.moves[0].turn.dt)))
 
     def own(self, move):
         """Indices of the columns that a move has."""

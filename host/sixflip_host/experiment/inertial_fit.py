@@ -52,9 +52,6 @@ BIAS_MG, STRANGE_BIAS_MG = 10.0, 60.0
 # would claim a lever arm where a hand only turns about another point, more would hide a small one.
 HAND_CM, WHEELS_CM = 0.3, 0.03
 MG_PER_METRE_S2 = 1000.0 / STANDARD_G  # mg
-# ms and share of a sample's interval: a chip's own filters are up to 0.98 ms apart (RM-MPU-6000A,
-# DLPF_CFG), two chips are read in turn, a simulator's rates are those of a part of a step before.
-FILTERS_APART_MS, READ_WITHIN = 0.98, 0.1
 SMALL_DEG = 10.0  # of turning: in less the axis is as much the hand's wobble as the turn's
 
 
@@ -172,12 +169,6 @@ def lagging(t, felt, lag_ms):
     read late by lag_ms: of a delay as long as a hand's tremor the derivative is no measure."""
     late = np.stack([np.interp(t - 0.001 * lag_ms, t, axis) for axis in felt.T], 1)
     return (late - felt) * (1000.0 / lag_ms)
-
-
-def read_apart(rate_hz):
-    """ms: standard deviation of the time between the moments at which the two sensors of a row
-    are read, in any log: what is less is no delay of one of them."""
-    return max(FILTERS_APART_MS, 1000.0 * READ_WITHIN / rate_hz)
 
 
 def path(turn):

@@ -10,7 +10,7 @@ from ..did_you_mean import instead
 from ..errors import UsageError
 from ..experiment import fleet_prior
 from ..file_arguments import add_input, add_output
-from ..planning import plan_answer, plan_file, protocols
+from ..planning import plan_file, protocols
 from ..terminal import plain
 
 EXAMPLE = "sixflip plan --protocol recommended --sensor mpu6050 --save session.json"
@@ -43,6 +43,7 @@ def add_arguments(parser):
 
 
 def run(args):
+    from ..planning import plan_answer
     if not 1.0 <= args.rate <= 10000.0:
         raise UsageError("--rate is %g, expected 1 to 10000 Hz" % args.rate)
     if args.minutes is not None and not 0.0 < args.minutes <= 10000.0:

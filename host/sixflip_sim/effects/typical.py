@@ -126,6 +126,17 @@ def noise_of(sensor, kind, rate_hz, full_scale=None):
     return noise_at(chip_of(sensor, kind), rate_hz, step_of(sensor, kind, full_scale))
 
 
+# ms and share of a sample's interval: a chip's own filters are up to 0.98 ms apart (RM-MPU-6000A,
+# DLPF_CFG), two chips are read in turn, a simulator's rates are those of a part of a step before.
+FILTERS_APART_MS, READ_WITHIN = 0.98, 0.1
+
+
+def read_apart(rate_hz):
+    """ms: standard deviation of the time between the moments at which the two sensors of a row
+    are read, in any log: what is less is no delay of one of them."""
+    return max(FILTERS_APART_MS, 1000.0 * READ_WITHIN / rate_hz)
+
+
 # The widest range of sizes that the diagnosis believes is 20 times the typical one (a crooked
 # box); where only far larger ones would show, a capture says nothing about the effect at all.
 DETERMINED_TIMES = 100.0
