@@ -87,7 +87,7 @@ class MotionGap:
         """Smallest size that would show, cm or ms."""
         variance = np.sort(np.diag(self.covariance)[moves_fit.EFFECTS[name]])
         if name == "filter_lag":
-            variance = variance + self.fit.apart_ms ** 2
+            variance = variance + self.fit.apart_ms ** 2 / len(np.unique(self.fit.folds))
         return (math.sqrt(2.0 * self.posterior.cost.member) + detectable.POWER_80) * float(
             math.sqrt(variance[(len(variance) - 1) // 2]))
 
