@@ -109,6 +109,8 @@ def shape(effect, variant, reference_c):
         parameters["reference_c"] = round(reference_c, 3)
     if words[:1] == ["tau"]:
         parameters["tau_s"] = float(words[1])
+    if words[:1] == ["level"]:
+        parameters["level"] = float(words[1])
     if words[:1] == ["lag"] and effect == "thermal_bias" and float(words[1]) < 0:
         parameters["lag_s"] = -float(words[1])
     return parameters

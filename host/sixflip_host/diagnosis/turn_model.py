@@ -14,7 +14,7 @@ from .detect.detection import Finding, present
 from .evidence import Levels
 from .rest_model import RestModel
 
-EFFECTS = ("asymmetry", "quadratic", "cubic", "thermal_scale")
+EFFECTS = ("asymmetry", "quadratic", "cubic")
 ATTITUDE_DEG = 0.03  # of gravity's direction at rest
 # Of half a turn by hand, a level of its own: a careless one is five to ten degrees off.
 FLIPS_DEG = (0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8)
@@ -23,22 +23,25 @@ WRONG_DEG = 25.0  # of a turn's end: as of a label that gravity contradicts (blo
 OFF_DEG = 6.0  # of a turn's end by a gyro not yet calibrated: a few percent of a half turn
 BANDS_DPS = (1.0, 4.0)  # widths over which a dead band bends the rates beyond it
 TIMES = (1.0, 10.0)  # the usual width of a dead band: no data sheet gives one
+# Levels from which on a rate may read as less than it is, half an octave apart: from slow turns by
+# hand to a jerk.
+AT_END = 0.03  # of the largest rate read: as wide as noise and bias leave what is cut off
+LEVELS_DPS = (40.0, 57.0, 80.0, 113.0, 160.0, 226.0)
 JUMPS_AT = (-0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75)  # of a session from -1 to 1
 USUAL_DEG = 0.25  # of a move from rest to rest, beside white noise
 
 
-def design(name, chosen, reference_c, chip):
+def design(name, chosen, chip, variant="", shape=None):
     """Design of an effect of the gyro in motion over the rows of all turns."""
     parts = []
     for turn in chosen:
         m = noise_arrays.moment()
         m.w = tuple(turn.middle.T)
         m.temperature = turn.temperature if turn.temperature is not None else m.temperature
-        shape = {"reference_c": reference_c} if name == "thermal_scale" else None
-        own = terms.of_terms(name, "gyro", m, len(turn.dt), chip=chip, shape=shape)
+        own = terms.of_terms(name, "gyro", m, len(turn.dt), variant, chip=chip, shape=shape)
         added = own.columns.reshape(len(turn.dt), 3, -1)
         parts.append(turns.projected(turn, added))
-    return terms.Design(name, "", own.keys, own.axes, np.vstack(parts), own.prior)
+    return terms.Design(name, variant, own.keys, own.axes, np.vstack(parts), own.prior)
 
 
 class TurnModel(RestModel):
@@ -51,8 +54,12 @@ class TurnModel(RestModel):
 
     def unit(self, part, model, certified, wanted=None):
         y, chosen = turns.calibrated(turns.usable_turns(part, model.up))
-        names = [n for n in EFFECTS if n != "thermal_scale" or part.thermal]
-        designs = [design(n, chosen, self.conditions.reference_c, self.chip) for n in names]
+        designs = [design(name, chosen, self.chip) for name in EFFECTS]
+        if part.thermal:
+            designs.append(design("thermal_scale", chosen, self.chip,
+                                  shape={"reference_c": self.conditions.reference_c}))
+        if "saturation" not in self.settings.without:
+            designs += limited(chosen, self.chip)
         if "dead_band" not in self.settings.without:
             lsb = part.capture.meta["gyro_lsb_per_dps"]
             designs += [banded(chosen, width, times, lsb, self.chip) for width in BANDS_DPS
@@ -137,6 +144,19 @@ def banded(chosen, width, times, lsb, chip):
     prior = 10.0 * times * typical.size("dead_band", chip, "gyro")[0]
     return replace(_of_rates("dead_band", "%g times, over %g deg/s" % (times, width), chosen, less,
                              prior), positive=True)
+
+
+def limited(chosen, chip):
+    """Designs of rates that read as less than they are: of what exceeds a level, the library's
+    form, and of what reads as much as anything does, however much that was."""
+    designs = [design("saturation", chosen, chip, "level %g" % level, {"level": level})
+               for level in LEVELS_DPS]
+    top = np.max([np.abs(turn.middle).max(axis=0) for turn in chosen], axis=0)
+
+    def lost(turn):
+        return [-np.sign(turn.middle) * (np.abs(turn.middle) > (1.0 - AT_END) * top) * top]
+    designs.append(_of_rates("saturation", "at its end", chosen, lost, designs[0].prior[0]))
+    return [replace(limit, positive=True) for limit in designs]
 
 
 def _of_rates(effect, variant, chosen, functions, prior):

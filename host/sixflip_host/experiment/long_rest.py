@@ -21,6 +21,9 @@ MEANS = 96
 # of few rows a second, two samples in each half.
 SHORTEST_S, FEWEST_SAMPLES = 2.0 * block_measures.SUBMEAN_S, 4
 SHORTEST_REST_S = 4.0 * SHORTEST_S  # fewer means have no course
+# s that what drives takes to stop and to start: 0.02 g of braking and 0.2 deg/s of nodding are as
+# still as a rest where an engine shakes it. A board or a person labels what has come to rest.
+STOPS_S = 2.0
 
 
 def longest(session):
@@ -123,10 +126,18 @@ def in_one_attitude(sessions, lines=()):
 
 
 def _inner(session):
-    """(first, end) of a session's rests without their edges."""
+    """(first, end) of a session's rests without their edges, and without what may be the end or
+    the beginning of a motion that nobody says has ended."""
     edge = int(block_measures.EDGE_S * session.rate)
-    return [(first + edge, end - edge) for _, first, end in session.runs
-            if end - first - 2 * edge >= SHORTEST_REST_S * session.rate]
+    stops = edge if session.labelled else int(STOPS_S * session.rate)
+    length, inner = len(session.capture), []
+    for _, first, end in session.runs:
+        # The finder leaves less than a window at the ends of a recording.
+        first += edge if first < stops else stops
+        end -= edge if end > length - stops else stops
+        if end - first >= SHORTEST_REST_S * session.rate:
+            inner.append((first, end))
+    return inner
 
 
 def _one_attitude(runs, sessions):

@@ -25,9 +25,14 @@ class BoxTilt(Effect):
                "thermal_bias")
 
     def terms(self, m):
+        # Gravity turns, so that on a tilted table, too, its length stays what it is.
         for key in self.keys:
             there = (m.face == FACES.index(key[:2])) * MG_PER_DEG
-            yield key, AXES.index(key[2]), there
+            towards = AXES.index(key[2])
+            yield key, towards, there - there * m.up[towards] * m.up[towards]
+            for i in range(3):
+                if i != towards:
+                    yield key, i, there * -m.up[towards] * m.up[i]
 
 
 class TableTilt(Effect):

@@ -6,7 +6,7 @@ in any unit: its correlation where they match best, and the offset and drift at 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
+from scipy import fft
 
 GRID_HZ = 100.0  # sixteen steps in a period of the band: the first offset, before it is refined
 BAND_HZ = 6.0  # of what is compared: beyond it a simulator's contacts are not repeatable
@@ -17,6 +17,7 @@ ALIKE = 0.85
 # is off by more. By half a step of 0.1 % a log of a minute is 30 ms off at its end, a fifth of a
 # period of the band.
 DRIFTS = np.linspace(-0.03, 0.03, 61)
+FADED = 2.0  # periods of the band's end in which what lies beyond the ends has faded to 1e-4
 LEAST_S = 8.0  # of a log: its turn rate has a hundred independent values in BAND_HZ
 
 
@@ -72,12 +73,19 @@ def force_off(trace):
 
 
 def smooth(x, rate_hz, band_hz=BAND_HZ):
-    """x (n,) or (n, k) without what is faster than the band; no delay."""
+    """x (n,) or (n, k) without what is faster than the band, by 1 / (1 + (f / band)^4); no delay.
+    The same at any rate: a recursive filter's slope depends on it, and of two logs of different
+    rates one would be the smoother."""
     band = min(band_hz, 0.4 * rate_hz)
     if len(x) < 40:
         return x
-    return sosfiltfilt(butter(2, band, fs=rate_hz, output="sos"), x, axis=0,
-                       padlen=min(len(x) - 1, int(rate_hz)))
+    beyond = min(len(x) - 1, int(rate_hz * max(1.0, FADED / band)))
+    longer = np.concatenate([2.0 * x[:1] - x[beyond:0:-1], x, 2.0 * x[-1:] - x[-2:-beyond - 2:-1]])
+    number = fft.next_fast_len(len(longer), real=True)
+    gain = 1.0 / (1.0 + (fft.rfftfreq(number, 1.0 / rate_hz) / band) ** 4)
+    spectrum = fft.rfft(longer, number, axis=0)
+    slow = fft.irfft((spectrum.T * gain).T, number, axis=0)
+    return slow[beyond:beyond + len(x)]
 
 
 def coarse(a, b, drift):
