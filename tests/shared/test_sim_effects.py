@@ -1,10 +1,13 @@
 """Effects of the library in a live chip: each shows up where it belongs, by its size."""
 
+import math
 import unittest
 from array import array
 
 from sixflip.chips import probe
+from sixflip.poses.faces import FACES
 from sixflip_sim import worlds
+from sixflip_sim.effects import library, moment
 
 
 def reading(seconds, *effects, **more):
@@ -43,6 +46,18 @@ class Effects(unittest.TestCase):
         effect = {"effect": "box_tilt", "Z+x": 0.5}
         self.assertAlmostEqual(reading(1, effect)[0], 16384 * 0.0087266, delta=1)
         self.assertEqual(reading(12, effect, order=["Z+a", "X+a"])[2], 0)
+
+    def test_box_tilt_turns_gravity_on_a_tilted_table_too(self):
+        """On a table that leans by 3.4 degrees a face off by half a degree added 0.5 mg to |f|."""
+        at = moment.Moment()
+        at.face = FACES.index("Z+")
+        at.f = at.up = (0.06, -0.08, math.sqrt(0.99))
+        felt = [1000.0 * f for f in at.f]
+        for key, axis, value in library.make({"effect": "box_tilt", "Z+x": 0.5}).terms(at):
+            felt[axis] += 0.5 * value if key == "Z+x" else 0.0
+        length = math.sqrt(sum(f * f for f in felt))
+        self.assertAlmostEqual(length, 1000.0, delta=0.05)
+        self.assertAlmostEqual(felt[0], 60.0 + 8.7266 * (1.0 - 0.06 ** 2), delta=0.01)
 
     def test_counts(self):
         step = reading(1, {"effect": "quantisation", "sensor": "accel", "z": 1000})

@@ -151,10 +151,12 @@ def limited(chosen, chip):
     form, and of what reads as much as anything does, however much that was."""
     designs = [design("saturation", chosen, chip, "level %g" % level, {"level": level})
                for level in LEVELS_DPS]
-    top = np.max([np.abs(turn.middle).max(axis=0) for turn in chosen], axis=0)
+    ends = [np.max([(sign * turn.middle).max(axis=0) for turn in chosen], axis=0)
+            for sign in (1.0, -1.0)]
 
     def lost(turn):
-        return [-np.sign(turn.middle) * (np.abs(turn.middle) > (1.0 - AT_END) * top) * top]
+        return [sum(-sign * top * (sign * turn.middle > (1.0 - AT_END) * top)
+                    for sign, top in zip((1.0, -1.0), ends))]
     designs.append(_of_rates("saturation", "at its end", chosen, lost, designs[0].prior[0]))
     return [replace(limit, positive=True) for limit in designs]
 

@@ -1,4 +1,6 @@
 """One long rest, or several in one attitude: what its readings follow, held out in time."""
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -134,6 +136,17 @@ def test_a_drift_shows_in_rests_that_each_lie_another_way():
     low, high = found.causes[0].interval["x"]
     assert low < 1.5 < high
     assert found.by_axis["x"].after < 1.4 * found.by_axis["x"].floor
+
+
+def test_what_brakes_where_a_rest_begins_is_no_drift_of_the_sensor():
+    """A car's log: 20 mg of braking in the first second of what looks like a rest."""
+    braking = np.where(T % 40.0 < 2.0, 20.0 * np.exp(-(T % 40.0)), 0.0)
+    capture = rest((braking, 0.0, 0.0)).capture
+    capture.pose = np.where(T % 40.0 > 38.5, 0, 1).astype(np.int16)
+    found = accel(replace(blocks.session_of("stops", capture), labelled=False))
+    assert not found.causes and not found.nameless and not found.places
+    # Who labels a rest says that it has begun.
+    assert accel(blocks.session_of("stops", capture)).by_axis["x"].before > 1.0
 
 
 def test_rests_of_one_mean_each_have_figures():

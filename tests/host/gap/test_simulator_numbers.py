@@ -135,3 +135,13 @@ def test_a_line_is_no_noise_of_a_log():
         2.0 * np.pi * 37.0 * t + 0.4)[:, None]).density
     np.testing.assert_allclose(alone, 0.2 / np.sqrt(200.0), rtol=0.2)
     np.testing.assert_allclose(shaken, alone, rtol=0.2)
+
+
+@pytest.mark.parametrize("hertz", [1.0, 4.0, 5.5])
+def test_what_is_compared_is_as_smooth_of_a_slow_log_as_of_a_fast_one(hertz):
+    """A robot's 200 rows a second against a simulator's 50 were "a low-pass is missing"."""
+    left = [np.std(alignment.smooth(np.sin(2.0 * np.pi * hertz * np.arange(0, 30, 1.0 / rate)),
+                                    rate)[2 * rate:-2 * rate]) for rate in (50, 200)]
+    assert left[0] == pytest.approx(left[1], rel=1e-6)
+    assert left[0] == pytest.approx(np.sqrt(0.5) / (1.0 + (hertz / alignment.BAND_HZ) ** 4),
+                                    rel=1e-3)
