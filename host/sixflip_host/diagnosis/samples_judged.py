@@ -167,7 +167,7 @@ def of_registers(sessions):
         findings += _per_axis("quantisation", sensor, [registers.steps(c) for c in columns],
                               [codes.step_nats(c) for c in columns], "counts come in steps",
                               [codes.distinct(c) for c in columns])
-        band = _dead_band(sensor, columns)
+        band = _dead_band(sensor, columns, [s.at_rest for s in sessions])
         findings += band + saturation.saturation(sessions, sensor, columns)
         findings += torn_reads.finding(sessions, sensor,
                                        ["xyz".index(a) for f in band for a in f.axes])
@@ -189,9 +189,9 @@ def _per_axis(effect, sensor, sizes, nats, words, numbers):
                     {k: (v, v) for k, v in value.items()}, share=1.0, number=number)]
 
 
-def _dead_band(sensor, columns):
+def _dead_band(sensor, columns, at_rest):
     """[Finding] of readings near 0 that are 0, by the codes that are missing or too frequent; on
-    other axes by how the readings pass through 0."""
+    other axes by how the readings pass through 0, and by how quiet they are at rest there."""
     words = "counts near 0 read 0"
     about = [[codes.resting(column) for column in c.T] for c in columns]
     if np.any(about):  # a bias was taken off before, and put back on
@@ -202,16 +202,24 @@ def _dead_band(sensor, columns):
     findings = _per_axis("dead_band", sensor, [registers.dead_band(c) for c in columns],
                          [codes.band_nats(c) for c in columns], words,
                          [codes.zeros(c) for c in columns])
-    bands = {axis: dead_band.band_of_columns([c[:, k] for c in columns])
-             for k, axis in enumerate("xyz")}
     known = {axis for f in findings for axis in f.axes}
-    bands = {axis: band for axis, band in bands.items()
-             if axis not in known and band.counts > 1.0 and present(band.nats)}
-    if not bands:
+    nats, least = dead_band.nats_of_rests(columns, at_rest)
+    value, interval, score, number = {}, {}, 0.0, 0
+    for k, axis in enumerate("xyz"):
+        if axis in known:
+            continue
+        band = dead_band.band_of_columns([c[:, k] for c in columns])
+        if band.counts > 1.0 and present(band.nats):
+            value[axis], interval[axis] = round(band.counts), band.interval
+            score, number = score + band.nats, number + band.number
+        elif present(nats[k]):
+            value[axis] = max(1, round(least[k]))
+            # Beyond the largest reading it does not reach; more is not known.
+            interval[axis] = value[axis], float(max(np.abs(c[:, k]).max() for c in columns))
+            score, number = score + nats[k], number + int(np.sum([codes.zeros(c)[k]
+                                                                  for c in columns]))
+    if not value:
         return findings
-    value = {axis: round(band.counts) for axis, band in bands.items()}
-    interval = {axis: band.interval for axis, band in bands.items()}
-    score, number = (sum(getattr(b, name) for b in bands.values()) for name in ("nats", "number"))
     for f in findings:
         value, interval = {**f.value, **value}, {**f.interval, **interval}
         score, number = score + f.score, number + f.number

@@ -86,6 +86,24 @@ def test_noise_that_grows_through_a_session_is_a_gap(captures):
     assert any("at the end of a session" in remark for remark in found["remarks"])
 
 
+def test_noise_that_goes_with_the_end_of_an_axis_that_is_up_is_a_gap(captures):
+    def louder(t, counts, generator):
+        counts[:, 1] += 6.0 * 16.384 * np.clip(counts[:, 1] / 16384.0, 0.0, 1.0) * (
+            generator.standard_normal(len(t)))
+    found = diagnosed(captures, louder)
+    assert found["verdict"] in ("unexplained", "partly explained")
+    assert found["where"][0]["domain"] == "noise" and not found["causes"]
+    assert any("with y up" in remark for remark in found["remarks"])
+
+
+def test_noise_of_the_surroundings_along_the_vertical_goes_with_neither_end(captures):
+    """Whichever end is up: what a desk does, and is heard by a quiet chip."""
+    def shaking(t, counts, generator):
+        counts += 3.0 * 16.384 * np.abs(counts / 16384.0) * generator.standard_normal(counts.shape)
+    found = diagnosed(captures, shaking)
+    assert not any("up is" in remark for remark in found["remarks"])
+
+
 def test_without_either_there_is_no_gap(captures):
     found = diagnosed(captures, lambda t, counts, generator: None)
     assert found["verdict"] == "no gap" and not found["where"]

@@ -1,16 +1,19 @@
-"""A dead band at whose edges readings begin at 0, so that no code is missing: what passes through
-0 stays there for as long as the band takes.
+"""A dead band without a code that is missing, by two things that it does.
 
-Each time a column goes through 0 its rate before and after says how far it has come, and the
-readings say how far it seems to have come: what is missing is twice the band. Only what moves much
-faster than the noise is asked, and a pause at 0 is no band.
+At rest an axis within it reads 0 with no noise, or with less than its sensor's others let it have.
+What passes through it, where readings begin at 0 at its edges, stays at 0 for as long as the band
+takes: each time a column goes through 0 its rate before and after says how far it has come, and
+the readings say how far it seems to have come. What is missing is twice the band. Only what moves
+much faster than the noise is asked, and a pause at 0 is no band.
 """
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import special
 
-from ...capture.registers import LEAST_NOISE, QUIET, WINDOW
+from ...capture.registers import LEAST_NOISE, QUIET, WINDOW, steps
 from ..odds import Z_90
+from .codes import number_of_runs
 
 FASTER = 3.0  # than the noise, from a sample to the next: its sign is that of the motion
 LONGEST = 8  # samples at 0 while something passes; more is a pause
@@ -22,6 +25,7 @@ FEWEST = 20  # passages, whose median is known to a fifth of their scatter
 # Standard deviation of a median over that of a mean, and of a normal one over the median of its
 # sizes [Kendall & Stuart, The Advanced Theory of Statistics 1, section 10.10].
 OF_MEDIAN, OF_SIZES = 1.2533, 1.4826
+QUIETER = 2.0  # times that an axis' noise is below the others' at most: Z of a MEMS gyro, 1.5
 
 
 @dataclass(frozen=True)
@@ -44,6 +48,34 @@ class Band:
 
 
 NOTHING = Band(0.0, 1.0, 0)
+
+
+def nats_of_rests(columns, at_rest):
+    """((3,) nats of an axis' reading 0 at rest more often than the noise of its sensor's others
+    lets it; (3,) counts, half the width that this takes at least). columns: list of (n, 3) counts;
+    at_rest: list of (n,) bool."""
+    nats, widths = np.zeros(3), np.full(3, np.inf)
+    for counts, resting in zip(columns, at_rest):
+        x, step = counts[resting].astype(np.int64), np.maximum(steps(counts), 1)
+        together = np.diff(np.flatnonzero(resting)) == 1
+        if not together.any():
+            return np.zeros(3), np.zeros(3)
+        noise = np.diff(x, axis=0)[together].std(axis=0) / np.sqrt(2.0)
+        for axis in range(3):
+            usual = float(np.median(np.delete(noise, axis)))
+            zero = x[:, axis] == 0
+            moves = (counts[~resting, axis] != 0).any()  # what never leaves 0 is stuck
+            chance = special.erf(0.5 * step[axis] * QUIETER / max(usual, 1e-9) / np.sqrt(2.0))
+            share = min(zero.mean(), 1.0 - 1.0 / len(x))
+            if not moves or share <= chance:
+                widths[axis] = 0.0
+                continue
+            each = share * np.log(share / chance) + (1.0 - share) * np.log(
+                (1.0 - share) / (1.0 - chance))
+            # What is held says one thing a window.
+            nats[axis] += each * max(number_of_runs(zero) / share, len(x) / WINDOW)
+            widths[axis] = min(widths[axis], usual * special.ndtri(0.5 + 0.5 * share))
+    return nats, widths
 
 
 def band_of_columns(columns):

@@ -1,6 +1,6 @@
 """How the samples of the rests are distributed: seconds far louder than the others, noise that
-grows or dies down from rest to rest or is another one in another session, and single samples far
-off their neighbours.
+grows or dies down from rest to rest, goes with the end of an axis that is up or is another one in
+another session, and single samples far off their neighbours.
 
 No effect of the library does that, and no touch does it often: it is said where, not what.
 """
@@ -23,7 +23,7 @@ ROUNDING = 1.0 / 6.0  # counts²: of differences of readings that nothing but ro
 FEWEST_WINDOWS = 8  # of a session: four seconds at rest
 FEWEST, FEWEST_RESTS = 4, 3  # windows, rests with one: a single event rings in one rest, or in two
 FEWEST_SAMPLES = 64  # of a rest, whose noise is known to a tenth
-GROWN = 1.5  # times as loud at one end of a session as at the other: a filter set otherwise
+GROWN = 1.5  # times as loud at one end of a session, or of an axis, as at the other
 FEWEST_COMPARED = 10  # rests whose noise is compared
 
 
@@ -186,23 +186,48 @@ def _without(session, sensor, spiky):
     return session.of_capture(capture)
 
 
-def growing(session, sensor):
-    """(times as loud at the end of a session as at its begin, p) of the axis that says most: the
-    noise of its rests against their order, which a loud one does not change by much [Kendall,
-    Biometrika 30 (1938) 81; Theil-Sen]."""
-    counts, best = getattr(session.capture, sensor), (1.0, 1.0)
+@dataclass(frozen=True)
+class Following:
+    """What the noise of a session's rests goes with: variable, "time" or the axis that points up;
+    times as loud at the one end of it as at the other; p of that in noise that is the same."""
+
+    variable: str = "time"
+    times: float = 1.0
+    p: float = 1.0
+
+    def words(self, sensor):
+        """A sentence of a sensor, in words."""
+        if self.variable == "time":
+            return ("the noise of the %s at the end of a session is %.2g times what it was at its "
+                    "begin" % (sensor, self.times))
+        return "the noise of the %s with %s up is %.2g times what it is with %s down" % (
+            sensor, self.variable, self.times, self.variable)
+
+
+def following(session, sensor):
+    """Following of the axis and the variable that say most: the noise of its rests against their
+    order or against an axis' share of gravity, which a loud one does not change by much [Kendall,
+    Biometrika 30 (1938) 81; Theil-Sen]. What shakes the surroundings is felt along the vertical,
+    whichever end of an axis is up."""
+    counts, best = getattr(session.capture, sensor), Following()
     rests = [(first, end) for _, first, end in session.runs if end - first >= FEWEST_SAMPLES]
     if len(rests) < FEWEST_COMPARED:
         return best
-    t = np.array([session.t_s[first] for first, _ in rests])
+    variables = {"time": np.array([session.t_s[first] for first, _ in rests])}
+    if session.capture.accel is not None:
+        up = np.array([session.capture.accel[first:end].mean(axis=0) for first, end in rests])
+        variables |= dict(zip("xyz", (up / session.capture.meta["accel_lsb_per_g"]).T))
     for axis in range(3):
         power = np.array([(np.diff(counts[first:end, axis].astype(float)) ** 2).mean()
                           for first, end in rests])
         level = 0.5 * np.log(np.maximum(power, ROUNDING))
-        p = min(1.0, 3.0 * float(stats.kendalltau(t, level).pvalue))
-        times = float(np.exp(stats.theilslopes(level, t).slope * np.ptp(t)))
-        if p < best[1] and max(times, 1.0 / times) > GROWN:
-            best = times, p
+        for name, value in variables.items():
+            if not np.ptp(value):
+                continue
+            p = min(1.0, 3.0 * len(variables) * float(stats.kendalltau(value, level).pvalue))
+            times = float(np.exp(stats.theilslopes(level, value).slope * np.ptp(value)))
+            if p < best.p and max(times, 1.0 / times) > GROWN:
+                best = Following(name, times, p)
     return best
 
 
@@ -223,11 +248,10 @@ def unsteady(sessions):
                 "in bursts" % (words, sums[0], sums[2]),
                 float(special.bdtrc(sums[0] - 1, sums[2], min(chance, 1.0)))))
             continue
-        times, p = min((growing(s, sensor) for s in sessions), key=lambda change: change[1])
-        if present(-np.log(max(p * len(sessions), odds.SMALLEST))):
-            sentences.append((
-                sensor, "the noise of the %s at the end of a session is %.2g times what it was at "
-                "its begin" % (words, times), p * len(sessions)))
+        follows = min((following(s, sensor) for s in sessions), key=lambda one: one.p)
+        p = follows.p * len(sessions)
+        if present(-np.log(max(p, odds.SMALLEST))):
+            sentences.append((sensor, follows.words(words), p))
             continue
         times, p, high, low = loudest(sessions, [power for power, _ in every], sensor)
         if present(-np.log(max(p, odds.SMALLEST))):
