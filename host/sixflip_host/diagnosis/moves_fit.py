@@ -1,7 +1,8 @@
 """All moves of all sessions fitted together: what each says of the columns that all have.
 
 A move is the unit of replication: its own information on the sizes, weighted by how well it agrees
-with the others (Student's t), habits of the hand and bends of the sensor beside them. How strongly
+with the others (Student's t), habits of the hand and bends of the sensor beside them. The point that it
+is turned about is another one in each, by as much as the moves themselves say. How strongly
 hands (or wheels) shake and shift the box on its way is told frequency by frequency: a spectrum for
 each kind of move of each session, along each direction, from the moves themselves. The lowest four
 frequencies of a move are how it was carried (metres, whatever its length), those above how it
@@ -21,6 +22,10 @@ ROUNDS, FREEDOM = 4, 4.0  # of weighting; Student's t
 BENT, WANDERED = (0.03, 0.1, 0.3, 1.0), (0.1, 0.3, 1.0)  # of the widest priors
 EFFECTS = {"lever_arm": np.arange(3), "filter_lag": np.array([3])}  # their columns
 AT_A_TIME = 64  # moves left out together
+CENTRE = EFFECTS["lever_arm"]
+# cm, tried: how far apart the points are that single moves turn about. A box on an axle, a hand
+# that rolls it over its edges, one that holds it in the air.
+CENTRES_CM = (0.0, 0.1, 0.3, 1.0, 3.0)
 # A hand moves with the least jerk [Flash & Hogan, J. Neurosci. 5 (1985) 1688]: 96 % of the square
 # of such a move's acceleration is in its first four cosines.
 CARRIED = 4
@@ -101,15 +106,19 @@ def fit(moves, chip):
         folds = np.arange(len(moves)) % SINGLE_FOLDS
     shared = inertial_fit.priors(chip)
     wide = np.concatenate([shared, *(inertial_fit.local_priors(by_hand[s]) for s in sessions)])
-    left, weights = [m.y for m in moves], np.ones(len(moves))
+    squares, weights = [m.y ** 2 for m in moves], np.ones(len(moves))
+    hands, theta = np.array([m.by_hand for m in moves]), np.zeros(len(wide))
     for _ in range(ROUNDS):
-        variances = spectra(moves, left, weights)
-        gram, inner = _information(moves, sessions, variances, len(wide))
+        variances = spectra(moves, squares, weights)
+        plain = _information(moves, sessions, variances, len(wide))
+        apart = _apart(*plain, theta, hands)
+        gram, inner = _each_about_its_own(*plain, apart)
         total = np.tensordot(weights, gram, axes=1), weights @ inner
         prior = _settled(*total, wide, len(shared), len(sessions))
         theta, _ = solved(*total, prior)
         weights, excess = _weighted(gram, inner, theta)
-        left = [m.y - m.table @ theta[_own(m, sessions)] for m in moves]
+        squares = [_expected(m, m.y - m.table @ theta[_own(m, sessions)], *about)
+                   for m, *about in zip(moves, *_centres(*plain, theta, apart))]
     weights = weights / excess
     gram *= weights[:, None, None]
     inner *= weights[:, None]
@@ -133,6 +142,50 @@ def _information(moves, sessions, variances, k):
         gram[j][np.ix_(own, own)] = scaled.T @ scaled
         inner[j, own] = scaled.T @ (move.y * root).ravel()
     return gram, inner
+
+
+def _apart(gram, inner, theta, hands):
+    """(moves,) cm, the likeliest of CENTRES_CM: how far from the others' the point is that each
+    move turns about, for the moves of hands (moves,) bool and for others; theta (k,): of all."""
+    block = gram[:, CENTRE[:, None], CENTRE]
+    rest = inner[:, CENTRE] - gram[:, CENTRE] @ theta
+    nats = []
+    for sigma in CENTRES_CM:
+        inside = np.eye(len(CENTRE)) + sigma ** 2 * block
+        gained = np.einsum("ja,ja->j", rest, np.linalg.solve(
+            inside, sigma ** 2 * rest[:, :, None])[:, :, 0])
+        nats.append(0.5 * (gained - np.linalg.slogdet(inside)[1]))
+    apart = np.zeros(len(hands))
+    for kind in (hands, ~hands):
+        if kind.any():
+            apart[kind] = CENTRES_CM[int(np.sum(np.array(nats)[:, kind], axis=1).argmax())]
+    return apart
+
+
+def _each_about_its_own(gram, inner, apart):
+    """(gram, inner) of moves each of which turns about a point of its own, apart (moves,) cm from
+    the others': that point integrated out."""
+    across = gram[:, :, CENTRE]
+    inside = np.eye(len(CENTRE)) + apart[:, None, None] ** 2 * across[:, CENTRE]
+    taken = np.linalg.solve(inside, apart[:, None, None] ** 2 * np.swapaxes(across, 1, 2))
+    return (gram - across @ taken,
+            inner - (np.swapaxes(taken, 1, 2) @ inner[:, CENTRE, None])[:, :, 0])
+
+
+def _centres(gram, inner, theta, apart):
+    """((moves, 3) cm, (moves, 3, 3) covariance): where each turns about, off what theta (k,) says
+    of all."""
+    rest = inner[:, CENTRE] - gram[:, CENTRE] @ theta
+    inside = np.eye(len(CENTRE)) + apart[:, None, None] ** 2 * gram[:, CENTRE[:, None], CENTRE]
+    covariance = np.linalg.inv(inside) * apart[:, None, None] ** 2
+    return (covariance @ rest[:, :, None])[:, :, 0], covariance
+
+
+def _expected(move, left, centre, covariance):
+    """(n, 3) mg²: squares that are expected of what is left of a move about its own centre, which
+    is known to a covariance only [Dempster, Laird & Rubin, J. R. Stat. Soc. B 39 (1977) 1]."""
+    columns = move.table[:, :, CENTRE]
+    return (left - columns @ centre) ** 2 + ((columns @ covariance) * columns).sum(axis=2)
 
 
 def _settled(gram, inner, wide, shared, sessions):
@@ -210,8 +263,8 @@ def white(move):
     return move.white ** 2 / move.bin_s
 
 
-def spectra(moves, left, weights):
-    """list of (n, 3) variances, one of each move. left: what is unexplained of each (n, 3);
+def spectra(moves, squares, weights):
+    """list of (n, 3) variances, one of each move. squares: of what is unexplained of each (n, 3);
     weights (moves,): how far each is believed."""
     groups = {}
     for number, move in enumerate(moves):
@@ -222,7 +275,7 @@ def spectra(moves, left, weights):
         sums = {}
         for number in members:
             band, weight = bands(moves[number])
-            square = left[number] ** 2
+            square = squares[number]
             if flat:  # no way is onwards
                 square = np.stack([0.5 * (square[:, 0] + square[:, 1])] * 2 + [square[:, 2]], 1)
             excess = (square - white(moves[number])) / weight[:, None]

@@ -177,7 +177,7 @@ def test_a_hands_spectrum_is_that_of_its_moves():
     kinds = [Kind(40) for _ in range(400)]
     sizes = np.where(np.arange(40) < 5, 20.0, 4.0)[:, None] * [1.0, 2.0, 0.5]
     left = [rng.standard_normal((40, 3)) * sizes for _ in kinds]
-    found = moves_fit.spectra(kinds, left, np.ones(400))
+    found = moves_fit.spectra(kinds, [x ** 2 for x in left], np.ones(400))
     assert np.sqrt(found[0]) == pytest.approx(sizes, rel=0.12)
 
 
