@@ -1,12 +1,12 @@
 """All moves of all sessions fitted together: what each says of the columns that all have.
 
 A move is the unit of replication: its own information on the sizes, weighted by how well it agrees
-with the others (Student's t), habits of the hand and bends of the sensor beside them. The point that it
-is turned about is another one in each, by as much as the moves themselves say. How strongly
-hands (or wheels) shake and shift the box on its way is told frequency by frequency: a spectrum for
-each kind of move of each session, along each direction, from the moves themselves. The lowest four
-frequencies of a move are how it was carried (metres, whatever its length), those above how it
-trembled (a density), the mean how well gravity is known on the way.
+with the others (Student's t), habits of the hand and bends of the sensor beside them. The point
+that it is turned about is another one in each, by as much as the moves themselves say. How
+strongly hands (or wheels) shake and shift the box on its way is told frequency by frequency: a
+spectrum for each kind of move of each session, along each direction, from the moves themselves.
+The lowest four frequencies of a move are how it was carried (metres, whatever its length), those
+above how it trembled (a density), the mean how well gravity is known on the way.
 """
 from dataclasses import dataclass
 

@@ -41,7 +41,7 @@ HATS = 4  # of the bias's course over a session: a straight line, or one that be
 # Cosines that hands have in common when they turn a box: most of a way is in four of them
 # (moves_fit.py), but what is alike in all moves is as strong evidence in the faster ones.
 HABITS = 10
-BENDS = 39  # columns of what bends with the attitude, or remembers the one before
+BENDS = 42  # columns of what bends with the attitude, or remembers the one before
 # Standard deviations: of a hand's way, of a centre of turning in a box as large as a hand, and of
 # what has no name (strangers.SCALE: as large as the library's effects are).
 PRIOR_METRES, PRIOR_CM, PRIOR_MG = 0.1, 10.0, 5.0
@@ -95,7 +95,8 @@ def move(turn, capture, nominal, course, session, by_hand, white, lag_ms=0.0):
     own = seen.spectrum(effects)
     edge = own[:, :, :3] @ frame.T * (not flat)
     # What bends with the attitude, and remembers the one before.
-    static = seen.held(projection.by_axis([*terms.harmonics(felt, "accel"), felt[0] - felt]))
+    static = seen.held(projection.by_axis([*terms.harmonics(felt, "accel"), np.abs(felt),
+                                           felt[0] - felt]))
     bias = projection.by_axis(course[:, turn.first:turn.last])
     strange = seen.spectrum(_of_motion(felt, rate, np.stack(m.w_rate, 1)))
     shared = [own, strange, edge, _habits(seen.n, turn.seconds, flat), static]
