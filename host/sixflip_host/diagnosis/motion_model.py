@@ -121,22 +121,25 @@ def judged(sessions, models, turned, chip, without=()):
     if len(moves) < FEWEST_MOVES:
         return MotionGap(chip, None)
     fit = moves_fit.fit(moves, chip)
-    posterior, gains = _searched(fit, without)
+    rounding = max(float(s.rounding_accel.max(initial=0.0)) for s in sessions)
+    posterior, gains = _searched(fit, without, rounding)
     chosen = tuple(f.effect for f in posterior.best.forms if not f.generic)
     return _told(MotionGap(chip, fit, posterior, posterior.gains, gains, chosen))
 
 
-def _searched(fit, without):
+def _searched(fit, without, rounding=0.0):
     """(Posterior of the likeliest set of effects and of strangers of motion, {effect: nats that
-    it gains alone})."""
+    it gains alone}); rounding: mg that it leaves in the means of the rests."""
     competing, everything = np.arange(inertial_fit.COMPETING_NUMBER), np.arange(len(fit.prior))
     others = moves_fit.without_each(fit.gram, fit.inner, fit.prior)
     left = fit.inner - (fit.gram @ others[:, :, None])[:, :, 0]
     designs = moves_unit.designs(fit.prior)
     bins = sum(len(m.table) for m in fit.moves)
     energy = sum((m.table[:, :, competing] ** 2).sum(axis=(0, 1)) for m in fit.moves) / bins
-    # A row's two sensors are read at moments of each session's own.
-    varying = np.where(competing == inertial_fit.LAG, fit.apart_ms, 0.0)
+    # A row's two sensors are read at moments of each session's own; and what rounding leaves in
+    # the rests is not in the moves, whose readings go through many codes.
+    varying = np.where(competing == inertial_fit.LAG, fit.apart_ms, np.where(
+        competing >= inertial_fit.EFFECTS_NUMBER, rounding, 0.0))
     units = [moves_unit.unit(
         fit.gram[fit.folds == f], fit.inner[fit.folds == f], left[fit.folds == f], competing,
         everything[len(competing):], fit.prior, energy, designs, varying)

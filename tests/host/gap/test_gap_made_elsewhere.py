@@ -182,6 +182,23 @@ def test_a_band_about_a_bias_is_a_dead_band():
     assert samples_judged._dead_band("gyro", [plain], still) == []
 
 
+def test_a_coarse_sensor_that_moves_in_bursts_holds_nothing():
+    """Eight bits, noise of an eighth of a count: two rows in five repeat, all axes together."""
+    generator = np.random.default_rng(1)
+    moves = np.repeat(generator.random(160) < 0.5, 100).astype(float)
+    moves = np.convolve(moves, np.hanning(100) / np.hanning(100).sum(), "same")[:, None]
+    course = np.cumsum(0.3 * moves * generator.standard_normal((16000, 3)), axis=0)
+    x = course + [0.2, -0.3, 64.1] + (0.12 + 1.5 * moves) * generator.standard_normal((16000, 3))
+    counts = np.rint(x).astype(np.int16)
+    assert (counts[1:] == counts[:-1]).all(axis=1).mean() > 0.2
+    def said(accel):
+        capture = SimpleNamespace(accel=accel, gyro=None)
+        return [d.value for d in held_values.findings([SimpleNamespace(capture=capture)])]
+    assert said(counts) == []
+    twice, = said(np.repeat(counts[::2], 2, axis=0))
+    assert twice["times"] == pytest.approx(2.0, rel=0.05)
+
+
 def test_an_axis_that_is_quieter_at_rest_than_its_sensor_lets_it_has_a_dead_band():
     """Within the band all rests read 0, and no code beyond it is missing."""
     generator = np.random.default_rng(8)

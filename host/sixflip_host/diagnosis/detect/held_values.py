@@ -19,6 +19,7 @@ from .detection import Damage, present
 FEWEST = 200  # rows
 STRETCH = 256  # rows
 NEIGHBOURS = 25  # rows, half a second and less, in which a sensor rests or moves
+AT_REST = 8  # rows that repeat on end: no log is read so many times faster than its sensor
 HELD = 0.05  # share of rows that are held: fewer are single rows, not a rate
 # Standard deviation of the spacing of held rows, of its mean: of rows that are lost at random it
 # is 1, and of a sensor that is read faster than it measures half a row at most.
@@ -115,8 +116,10 @@ def read_again(counts):
 
 def repeats(counts):
     """(nats of rows being held over repeating by chance, rows held, rows) of counts (n, axes)."""
-    # All of them at 0 is what a dead band reads at rest.
-    same = (counts[1:] == counts[:-1])[counts[1:].any(axis=1)]
+    same = counts[1:] == counts[:-1]
+    # All of them at 0 is what a dead band reads at rest, and what never changes for long is at
+    # rest with less noise than a count: neither says that it was not read.
+    same = same[counts[1:].any(axis=1) & (_lengths(same.all(axis=1)) < AT_REST)]
     number = len(same) // STRETCH
     nats = held = 0.0
     if not number:
@@ -142,6 +145,15 @@ def _stretch(same):
     nats = together * math.log(share / chance) + (n - together) * math.log(
         (1.0 - share) / (1.0 - chance)) - 0.5 * math.log(n)
     return nats, n * (share - chance) / (1.0 - chance)
+
+
+def _lengths(rows):
+    """(n,) the length of the unbroken run of rows (n,) bool that each is in; 0 outside of them."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], rows, [False]])))
+    lengths = np.zeros(len(rows), dtype=int)
+    for first, end in zip(edges[::2], edges[1::2]):
+        lengths[first:end] = end - first
+    return lengths
 
 
 def _around(rows):
