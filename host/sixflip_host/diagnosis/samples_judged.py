@@ -69,7 +69,9 @@ def judge(sessions, without=(), damages=()):
         sessions, [(sensor, axis) for sensor, axis, _, _ in rings]) if f.effect not in without]
     if any(d.kind == held_values.NOT_READ for d in damages):
         findings = [f for f in findings if f.effect != "dropped_samples"]
-    damages = [*damages, *held_values.findings(sessions), *wrong_scale.findings(sessions)]
+    coarse = {(f.sensor, axis) for f in findings if f.effect in COARSE for axis in f.axes}
+    damages = [*damages, *held_values.findings(sessions),
+               *held_values.stuck_for_a_while(sessions, coarse), *wrong_scale.findings(sessions)]
     bits = registers.stuck_bits(sessions)
     leaping = {sensor for sensor, *_ in bits} | {
         f.sensor for f in findings if f.effect == "dead_band"}

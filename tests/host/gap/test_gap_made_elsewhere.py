@@ -199,6 +199,23 @@ def test_a_coarse_sensor_that_moves_in_bursts_holds_nothing():
     assert twice["times"] == pytest.approx(2.0, rel=0.05)
 
 
+def test_an_axis_that_keeps_its_value_while_the_others_change_is_stuck():
+    """Runs of 5 to 40 rows, one row in fifty, were no gap."""
+    generator = np.random.default_rng(3)
+    turned = 300.0 * np.sin(np.arange(8000) / 90.0) * (np.arange(8000) % 2000 > 900)
+    counts = np.rint(turned[:, None] + generator.normal(0.0, 3.0, (8000, 3))).astype(np.int16)
+
+    def said(gyro):
+        capture = SimpleNamespace(accel=None, gyro=gyro)
+        return [(d.axes, d.value["rows"]) for d in held_values.stuck_for_a_while(
+            [SimpleNamespace(capture=capture)])]
+    assert said(counts) == []
+    for first in range(500, 8000, 1000):
+        counts[first:first + 20, 1] = counts[first, 1]
+    (axes, rows), = said(counts)
+    assert axes == ("y",) and rows == pytest.approx(20, abs=2)
+
+
 def test_an_axis_that_is_quieter_at_rest_than_its_sensor_lets_it_has_a_dead_band():
     """Within the band all rests read 0, and no code beyond it is missing."""
     generator = np.random.default_rng(8)

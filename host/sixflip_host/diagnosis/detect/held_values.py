@@ -6,14 +6,14 @@ seen in the neighbouring rows in which another axis changed, for a sensor at res
 often than one that moves: the product of means over both is less than the mean of products. Held
 values repeat all three at once. Single rows that were read again are looked for where the sensor
 moves on before and after them. Where both sensors repeat in the same rows, now and then, a sample
-was not read: there is none.
+was not read: there is none. One axis that keeps its value while the others change is stuck.
 """
 import copy
 import math
 
 import numpy as np
 
-from ...capture.registers import SENSORS
+from ...capture.registers import SENSORS, steps
 from .detection import Damage, present
 
 FEWEST = 200  # rows
@@ -24,6 +24,11 @@ HELD = 0.05  # share of rows that are held: fewer are single rows, not a rate
 # Standard deviation of the spacing of held rows, of its mean: of rows that are lost at random it
 # is 1, and of a sensor that is read faster than it measures half a row at most.
 AT_RANDOM = 0.5
+AGAIN = 3  # repeats on end
+# Rows of a window; share of the windows that are the quietest, in which a sensor rests; counts of
+# noise from which on a code is read less than three times in four.
+WINDOW, QUIETEST, LEAST_NOISE = 64, 0.1, 0.5
+NEAR_END = 0.97  # of the largest reading: beyond it a soft limit keeps a reading as well
 MOVES = 8.0  # times the noise, from a row to the next: six deviations of a difference at rest
 NOT_READ = "not read"  # kind of the Damage of samples that are missing though rows are not
 TIMES = {2: "twice", 3: "three times", 4: "four times"}
@@ -56,6 +61,56 @@ def findings(sessions):
             "repeats", sensor, (), "timing", "the %s gives %s: it is read faster than it measures,"
             " or rows were filled in" % (words, said), nats, {"times": round(times, 3)}))
     return damages
+
+
+def stuck_for_a_while(sessions, coarse=()):
+    """[Damage] of single axes that keep a value while others of their sensor change; coarse:
+    (sensor, axis letter) of those whose codes are few.
+
+    Whatever it measures, noise of s counts lets no code be read more often than a normal density
+    of that width has room for: a value that was read AGAIN times on end is read once more with
+    that chance.
+    """
+    damages = []
+    for sensor, words in SENSORS.items():
+        columns = [getattr(s.capture, sensor) for s in sessions]
+        if any(c is None or len(c) < FEWEST for c in columns):
+            continue
+        for axis in range(3):
+            if (sensor, "xyz"[axis]) in coarse:
+                continue
+            nats, longest = 0.0, 0
+            for counts in columns:
+                more, rows = _kept(counts, axis)
+                nats, longest = nats + more, max(longest, rows)
+            if present(nats):
+                letter = "xyz"[axis]
+                said = ("the %s axis of the %s keeps its value for up to %d rows while the others "
+                        "change") % (letter, words, longest + 1)
+                damages.append(Damage("repeats", sensor, (letter,), "timing", said, nats,
+                                      {"rows": longest + 1}))
+    return damages
+
+
+def _kept(counts, axis):
+    """(nats, length of the longest run of repeats) of an axis of counts (n, 3)."""
+    column, step = counts[:, axis].astype(np.int64), max(int(steps(counts)[axis]), 1)
+    windows = np.diff(column)[:(len(column) - 1) // WINDOW * WINDOW].reshape(-1, WINDOW)
+    noise = float(np.quantile(windows.std(axis=1), QUIETEST)) / math.sqrt(2.0) / step
+    chance = math.erf(0.5 / max(noise, 1e-9) / math.sqrt(2.0))
+    same = (counts[1:] == counts[:-1])
+    # What a dead band or a rail holds is theirs; where all axes repeat no row was read.
+    held = same[:, axis] & ~same.all(axis=1) & (column[1:] != 0) & (
+        np.abs(column[1:]) < NEAR_END * np.abs(column).max())
+    before = np.flatnonzero(np.convolve(held, np.ones(AGAIN), "valid") == AGAIN) + AGAIN
+    before = before[before < len(held)]
+    again, number = int(held[before].sum()), len(before)
+    if noise < LEAST_NOISE or again <= chance * number:
+        return 0.0, 0
+    share = min(again / number, 1.0 - 1.0 / (number + 1.0))
+    nats = again * math.log(share / chance) + (number - again) * math.log(
+        (1.0 - share) / (1.0 - chance)) - 0.5 * math.log(number)
+    return nats, int(_lengths(held).max())
 
 
 def as_read(captures):

@@ -125,14 +125,16 @@ def compare_traces(real, sim, aligned):
     mended = convention_findings.trace_put_right(sim_free, findings)
     own_sim = own_calibration.fitted(mended)
     numbers, of_numbers = numbers_of(real, sim, mended, (own_real, own_sim), fits, findings)
+    left = {kind: remaining_gap.not_foretold(sensor_fit) for kind, sensor_fit in fits.items()}
+    gap = remaining_gap.held_out(fits, left, real, sim)
+    numbers = parameters.together(numbers, fits, gap)
     numbers += parameters.timing(late, late_sigma, fits, aligned)
     findings += of_numbers + parameters.bias_sign(numbers)
     if any(c.name == "noise_per_sample" for c in findings):
         numbers = [p for p in numbers if p.name != "noise_density"]
     task, why_not = remaining_gap.tried(real_free, mended, own_real, own_sim, fits)
-    left = {kind: remaining_gap.not_foretold(sensor_fit) for kind, sensor_fit in fits.items()}
-    return Comparison(sim.name, real.name, aligned, tuple(findings), tuple(numbers), task,
-                      remaining_gap.held_out(fits, left, real, sim), fits, own_real, own_sim,
+    return Comparison(sim.name, real.name, aligned, tuple(findings), tuple(numbers), task, gap,
+                      fits, own_real, own_sim,
                       (*said_of(real, sim, aligned), *why_not), tuple(unseen),
                       judged or convention_findings.only_in_motion(findings),
                       None if real.celsius is None else float(real.celsius.mean()),

@@ -12,11 +12,15 @@ from sixflip import STANDARD_G
 
 from .. import odds
 from . import convention_findings
+from .alignment import errors
 from .hypotheses import DEG
 
 # Some thirty numbers are compared: at this many standard errors one log pair in 500 shows a
 # difference that is none (Bonferroni, normal).
 DIFFERS = 4.0
+# Times the noise and what is left, root mean square, from which on numbers that do not differ by
+# themselves do so together; how many of them at most.
+TOGETHER, FEW = 1.5, 4
 MG = 1000.0 / STANDARD_G
 # An engine whose rates are half a physics step older than its forces (MuJoCo, Featherstone's
 # semi-implicit step) differs from itself by as much at two step sizes of 1 and 2 ms.
@@ -118,6 +122,69 @@ def shapes(real, sim, fits, usable):
                                         "xyz"[i] + ("" if i == j else "xyz"[j]),
                                         "%" if i == j else "°", a, sa, b, sb, *pair))
     return numbers
+
+
+def together(numbers, fits, gaps):
+    """The numbers, where those of a sensor differ together though none does by itself: a bias that
+    a log of one attitude does not tell from a scale. Those that close most of the gap, one after
+    the other, then differ, the others taken for equal. gaps: see Comparison."""
+    for kind, sensor_fit in fits.items():
+        before, after, noise = gaps[kind]
+        enough = TOGETHER * max(after, noise)
+        if before <= enough or sensor_fit.conventions or any(
+                p.differs for p in numbers if p.sensor == kind):
+            continue
+        found = _closing(sensor_fit.pair, kind, enough)
+        numbers = [_alone(p, *found[p.name, p.axis]) if p.sensor == kind and (
+            p.name, p.axis) in found else p for p in numbers]
+    return numbers
+
+
+def _closing(pair, kind, enough):
+    """{(name, axis) of a Parameter: (difference, standard error)} of the fewest that leave less of
+    the gap than `enough`, mg or deg/s, at most FEW."""
+    simulated = pair.simulated(kind)
+    off = pair.real(kind) - simulated
+    scale, ones = (MG if kind == "accel" else DEG), np.ones(len(off))
+    columns = {}
+    for i, row in enumerate("xyz"):
+        columns["bias", row] = i, ones, scale
+        for j, column in enumerate("xyz"):
+            key = ("scale", row) if i == j else ("misalignment", row + column)
+            columns[key] = i, simulated[:, j], 100.0 if i == j else DEG
+    chosen, left = [], off
+
+    def without(keys):
+        """(n, 3) what is left of the gap."""
+        rest = off.copy()
+        for i in range(3):
+            own = [columns[key][1] for key in keys if columns[key][0] == i]
+            if own:
+                own = np.stack(own, 1)
+                rest[:, i] -= own @ np.linalg.lstsq(own, off[:, i], rcond=None)[0]
+        return rest
+    while scale * np.sqrt((left ** 2).mean()) > enough and len(chosen) < FEW:
+        chosen.append(min((key for key in columns if key not in chosen),
+                          key=lambda key: float((without([*chosen, key]) ** 2).sum())))
+        left = without(chosen)
+    found = {}
+    for key in chosen:
+        i, _, unit = columns[key]
+        beside = [other for other in chosen if columns[other][0] == i]
+        own = np.stack([columns[other][1] for other in beside], 1)
+        place = beside.index(key)
+        size = np.linalg.lstsq(own, off[:, i], rcond=None)[0]
+        found[key] = unit * size[place], unit * errors(own, left[:, i])[place]
+    return found
+
+
+def _alone(parameter, difference, sigma):
+    """The Parameter with the difference that it has where others are equal."""
+    value, span = parameter.simulated, parameter.simulated_interval
+    own = np.inf if span is None else (span[1] - span[0]) / 2.0 / odds.Z_90
+    return replace(parameter, difference=float(difference),
+                   difference_interval=_span(difference, sigma), differs=True,
+                   set_to=None if value is None else to_set(value, own, difference))
 
 
 def own(sensor, kind):
