@@ -87,7 +87,7 @@ def test_a_clock_is_as_uncertain_as_a_controllers_phase_wanders():
 
 def test_an_effect_that_is_seen_under_two_names_is_not_no_gap():
     logs = [SimpleNamespace(unexplained=False, conventions=(), differs=[], motion_judged=True,
-                            alignment=SimpleNamespace(same=True))]
+                            shaken=[], alignment=SimpleNamespace(same=True))]
     assert simulator_answer.verdict("cannot tell", logs) == "no gap"
     assert simulator_answer.verdict("cannot tell", logs, named_effects=True) == "cannot tell"
 
@@ -104,7 +104,7 @@ def test_a_step_is_told_so_exactly_that_its_multiples_are_the_chips():
     (False, None, "cannot tell"), (False, "known", "no gap"), (True, None, "no gap")])
 def test_logs_of_two_motions_and_no_rest_are_not_no_gap(same, simulated, said):
     logs = [SimpleNamespace(unexplained=False, conventions=(), differs=[], motion_judged=False,
-                            alignment=SimpleNamespace(same=same), real="known",
+                            shaken=[], alignment=SimpleNamespace(same=same), real="known",
                             simulated=simulated)]
     assert simulator_answer.verdict("no gap", logs) == said
 
@@ -170,3 +170,28 @@ def test_a_bias_that_no_attitude_tells_from_a_scale_is_no_no_gap(off_mg):
         assert (bias.name, bias.axis) == ("bias", "x")
         low, high = bias.difference_interval
         assert low < -40.0 < high and high - low < 0.5
+
+
+def moving(mg, seed, hertz=37.0):
+    """Trace of a thing that drives and stops, and shakes by mg (root mean square) as it drives."""
+    generator = np.random.default_rng(seed)
+    t = np.arange(8000) / 200.0
+    drives = (t % 10.0) > 4.0
+    force = 0.03 * generator.standard_normal((len(t), 3)) + [0.0, 0.0, 9.81]
+    force[:, 0] += drives * np.sin(0.9 * t)
+    phase = 2.0 * np.pi * np.cumsum(hertz + 3.0 * np.sin(0.3 * t)) / 200.0
+    force[:, 2] += drives * np.sqrt(2.0) * mg / parameters.MG * np.sin(phase)
+    rests = tuple((2000 * k + 20, 2000 * k + 780) for k in range(4))
+    return SimpleNamespace(rate_hz=200.0, t=t, force=force, rate=None, rests=rests)
+
+
+@pytest.mark.parametrize("real, simulated, differs", [
+    (20.0, 0.0, ["z"]), (20.0, 14.0, []), (0.0, 0.0, []), (0.0, 20.0, ["z"])])
+def test_what_motors_shake_on_the_way_is_compared_by_its_power(real, simulated, differs):
+    """A line that follows the speed is none of the rests, and was no gap."""
+    numbers = noise_and_registers.shaking(moving(real, 1), moving(simulated, 2, 31.0))
+    assert [p.axis for p in numbers if p.differs] == differs
+    z, = [p for p in numbers if p.axis == "z"]
+    assert z.real == pytest.approx(real, rel=0.1, abs=1.0)
+    assert z.simulated == pytest.approx(simulated, rel=0.1, abs=1.0)
+    assert z.set_to is None and bool(z.how) is bool(differs)

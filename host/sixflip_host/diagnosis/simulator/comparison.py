@@ -23,6 +23,7 @@ RAILED = 0.5  # share of a log at the end of its range: what is left of it is no
 # Times the noise, root mean square, of what is left of two logs of one motion: 0.8 to 1.2 where
 # they differ in nothing but noise, 2.8 of a rover that bumps shake otherwise in each (`make zoo`).
 ABOVE = 1.5
+FAR_ABOVE = 4.0  # times the noise: more than any two runs over one floor differ by
 
 
 @dataclass(frozen=True)
@@ -62,6 +63,13 @@ class Comparison:
     def unexplained(self):
         return bool(self.left) or any(c.name == "unknown" and not c.one_of
                                       for c in self.conventions)
+
+    @property
+    def shaken(self):
+        """Sensors of which far more is left than noise, and nothing that goes on for seconds: it
+        may be shaking that each log has of its own, and may be the sensor's."""
+        return [kind for kind, (before, after, noise) in self.gap.items()
+                if kind not in self.wanders and min(before, after) > FAR_ABOVE * noise > 0.0]
 
     @property
     def left(self):
@@ -128,6 +136,8 @@ def compare_traces(real, sim, aligned):
     left = {kind: remaining_gap.not_foretold(sensor_fit) for kind, sensor_fit in fits.items()}
     gap = remaining_gap.held_out(fits, left, real, sim)
     numbers = parameters.together(numbers, fits, gap)
+    if len(fits) == 2 and not findings:
+        numbers += noise_and_registers.shaking(real, sim)
     numbers += parameters.timing(late, late_sigma, fits, aligned)
     findings += of_numbers + parameters.bias_sign(numbers)
     if any(c.name == "noise_per_sample" for c in findings):

@@ -18,8 +18,8 @@ from .hypotheses import DEG
 # Some thirty numbers are compared: at this many standard errors one log pair in 500 shows a
 # difference that is none (Bonferroni, normal).
 DIFFERS = 4.0
-# Times the noise and what is left, root mean square, from which on numbers that do not differ by
-# themselves do so together; how many of them at most.
+# Times the noise, root mean square, of a gap from which on numbers that do not differ by
+# themselves do so together, and less than which they leave; how many of them at most.
 TOGETHER, FEW = 1.5, 4
 MG = 1000.0 / STANDARD_G
 # An engine whose rates are half a physics step older than its forces (MuJoCo, Featherstone's
@@ -130,8 +130,8 @@ def together(numbers, fits, gaps):
     the other, then differ, the others taken for equal. gaps: see Comparison."""
     for kind, sensor_fit in fits.items():
         before, after, noise = gaps[kind]
-        enough = TOGETHER * max(after, noise)
-        if before <= enough or sensor_fit.conventions or any(
+        enough = TOGETHER * noise
+        if not after < enough < before or sensor_fit.conventions or any(
                 p.differs for p in numbers if p.sensor == kind):
             continue
         found = _closing(sensor_fit.pair, kind, enough)
@@ -142,7 +142,7 @@ def together(numbers, fits, gaps):
 
 def _closing(pair, kind, enough):
     """{(name, axis) of a Parameter: (difference, standard error)} of the fewest that leave less of
-    the gap than `enough`, mg or deg/s, at most FEW."""
+    the gap than `enough`, mg or deg/s; none where more than FEW would have to."""
     simulated = pair.simulated(kind)
     off = pair.real(kind) - simulated
     scale, ones = (MG if kind == "accel" else DEG), np.ones(len(off))
@@ -167,6 +167,8 @@ def _closing(pair, kind, enough):
         chosen.append(min((key for key in columns if key not in chosen),
                           key=lambda key: float((without([*chosen, key]) ** 2).sum())))
         left = without(chosen)
+    if scale * np.sqrt((left ** 2).mean()) > enough:
+        return {}
     found = {}
     for key in chosen:
         i, _, unit = columns[key]

@@ -99,7 +99,7 @@ def verdict(effects, comparisons, named_effects=False):
         return "partly explained" if explains or effects == "partly explained" else "unexplained"
     if explains:
         return "explained"
-    if undecided:
+    if undecided or any(x.shaken for x in comparisons):
         return "cannot tell"
     if effects == "cannot tell" and not named_effects and all(
             x.alignment.same and x.motion_judged for x in comparisons):
