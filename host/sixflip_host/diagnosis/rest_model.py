@@ -184,10 +184,14 @@ class RestModel:
 
     def _banded(self, rows, part):
         """The rows where what a dead band takes off on either side of 0, known to some counts
-        only, is a nuisance of its axes."""
-        axes = self.conditions.banded.get(self.kind, ()) if self.kind == "accel" else ()
-        if not axes:
+        only, is a nuisance of its axes. A gyro rests within its band, and what such an axis reads
+        then is one: it says nothing of the Earth's rate, which the others feel."""
+        axes = self.conditions.banded.get(self.kind, ())
+        if not axes or self.kind == "gyro" and len(axes) == 3:
             return rows
+        if self.kind == "gyro":
+            own = np.eye(3 * part.n)[:, np.isin(np.arange(3 * part.n) % 3, axes)]
+            return replace(rows, nuisance=np.hstack([rows.nuisance, own]))
         columns = np.zeros((part.n, 3, len(axes)))
         for number, axis in enumerate(axes):
             columns[:, axis, number] = np.sign(np.rint(part.accel[:, axis]))

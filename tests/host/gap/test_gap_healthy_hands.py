@@ -10,6 +10,7 @@ from sixflip_host.diagnosis import (
     discrepancy,
     hypotheses,
     localisation,
+    rest_model,
     stray_turns,
     turn_model,
 )
@@ -20,6 +21,7 @@ from sixflip_host.diagnosis.detect import (
     torn_reads,
 )
 from sixflip_host.diagnosis.detect.detection import present
+from sixflip_host.diagnosis.settings import Conditions
 from sixflip_host.experiment import attitude_fit, block_measures, blocks, nominal_rows
 from sixflip_host.experiment.attitude_fit import face_axes
 from sixflip_host.experiment.projection import lateral_basis
@@ -251,3 +253,21 @@ def test_a_dozen_rests_that_settle_each_in_its_own_way_are_no_slow_line(seed):
         lambda t, start: 600.0 * generator.standard_normal() * np.exp(-t / 2.5), 5.0, 580 * 12)
     assert len(capture.runs) == 12
     assert line_across_rests.strongest(capture, "accel", 0, 1.0) is None
+
+
+@pytest.mark.parametrize("banded, found", [({}, ["g_sensitivity"]), ({"gyro": [0]}, [])])
+def test_an_axis_that_rests_in_its_dead_band_says_nothing_of_the_earths_rate(banded, found):
+    """The others turn with the Earth and it does not, which is a sensitivity to gravity of its
+    own only where nothing is known of the band."""
+    plan = scenario.from_dict({
+        "sensor": "mpu6050", "scene": "recommended", "seed": 3, "world": {"gyro_noise_dps": 0.02},
+        "effects": [{"effect": "earth_rate", "up": 0.003, "table_x": 0.002}]})
+    captures = [simulated_session.session(plan, k) for k in range(2)]
+    for capture in captures:
+        off = capture.gyro[:, 0] - np.median(capture.gyro[capture.pose > 0, 0])
+        capture.gyro[:, 0] = np.where(np.abs(off) < 40, 0, off)
+    sessions = [blocks.session_of(str(k), capture) for k, capture in enumerate(captures)]
+    gap = rest_model.RestModel(
+        "gyro", "mpu6050", diagnosis.Settings(jobs=1), Conditions(banded=banded)).fit(
+            sessions, [attitude_fit.fit(session) for session in sessions])
+    assert [form.effect for form in gap.posterior.best.forms] == found
