@@ -28,6 +28,10 @@ AGAIN = 3  # repeats on end
 # Rows of a window; share of the windows that are the quietest, in which a sensor rests; counts of
 # noise from which on a code is read less than three times in four.
 WINDOW, QUIETEST, LEAST_NOISE = 64, 0.1, 0.5
+# Of a third repeat being followed by another at least: noise that comes and goes from row to row,
+# in the quiet of which half of them are (the rests of imucal_ferraris).
+BY_CHANCE = 0.6
+ORDERS = (1, 2, 3, 4)  # of differences
 NEAR_END = 0.97  # of the largest reading: beyond it a soft limit keeps a reading as well
 MOVES = 8.0  # times the noise, from a row to the next: six deviations of a difference at rest
 NOT_READ = "not read"  # kind of the Damage of samples that are missing though rows are not
@@ -95,9 +99,8 @@ def stuck_for_a_while(sessions, coarse=()):
 def _kept(counts, axis):
     """(nats, length of the longest run of repeats) of an axis of counts (n, 3)."""
     column, step = counts[:, axis].astype(np.int64), max(int(steps(counts)[axis]), 1)
-    windows = np.diff(column)[:(len(column) - 1) // WINDOW * WINDOW].reshape(-1, WINDOW)
-    noise = float(np.quantile(windows.std(axis=1), QUIETEST)) / math.sqrt(2.0) / step
-    chance = math.erf(0.5 / max(noise, 1e-9) / math.sqrt(2.0))
+    noise = _unforeseen(column / step)
+    chance = max(math.erf(0.5 / max(noise, 1e-9) / math.sqrt(2.0)), BY_CHANCE)
     same = (counts[1:] == counts[:-1])
     # What a dead band or a rail holds is theirs; where all axes repeat no row was read.
     held = same[:, axis] & ~same.all(axis=1) & (column[1:] != 0) & (
@@ -111,6 +114,20 @@ def _kept(counts, axis):
     nats = again * math.log(share / chance) + (number - again) * math.log(
         (1.0 - share) / (1.0 - chance)) - 0.5 * math.log(number)
     return nats, int(_lengths(held).max())
+
+
+def _unforeseen(x):
+    """Counts: standard deviation of what the samples before do not foretell of a column (n,) where
+    it is the quietest. White noise has the same in differences of every order, over the root of
+    the sum of their weights' squares; what a filter leaves of it has less, and rounding adds its
+    own."""
+    variances = []
+    for order in ORDERS:
+        left = np.diff(x, n=order)
+        windows = left[:len(left) // WINDOW * WINDOW].reshape(-1, WINDOW)
+        variances.append(float(np.quantile((windows ** 2).mean(axis=1), QUIETEST))
+                         / math.comb(2 * order, order))
+    return math.sqrt(max(min(variances) - 1.0 / 12.0, 0.0))
 
 
 def as_read(captures):
