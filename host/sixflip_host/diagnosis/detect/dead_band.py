@@ -64,7 +64,9 @@ def nats_of_rests(columns, at_rest):
         for axis in range(3):
             usual = float(np.median(np.delete(noise, axis)))
             zero = x[:, axis] == 0
-            moves = (counts[~resting, axis] != 0).any()  # what never leaves 0 is stuck
+            # What never leaves 0 is stuck, and what leaves it to one side has its end there.
+            moves = counts[:, axis].min() < 0 < counts[:, axis].max() and counts[
+                ~resting, axis].any()
             chance = special.erf(0.5 * step[axis] * QUIETER / max(usual, 1e-9) / np.sqrt(2.0))
             share = min(zero.mean(), 1.0 - 1.0 / len(x))
             if not moves or share <= chance:
