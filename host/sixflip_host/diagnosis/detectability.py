@@ -59,7 +59,7 @@ def reason(diagnosis, name, sensor):
         if sensor in diagnosis.rest:
             return diagnosis.rest[sensor].reason(name)
         return "needs rests in several poses"
-    if name == "saturation":
+    if name == "saturation" and sensor == "accel":
         return ABSORBED[name]
     if name in STILL_ONLY.get(sensor, ()):
         if diagnosis.turns is None:

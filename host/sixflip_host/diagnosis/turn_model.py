@@ -23,9 +23,9 @@ WRONG_DEG = 25.0  # of a turn's end: as of a label that gravity contradicts (blo
 OFF_DEG = 6.0  # of a turn's end by a gyro not yet calibrated: a few percent of a half turn
 BANDS_DPS = (1.0, 4.0)  # widths over which a dead band bends the rates beyond it
 TIMES = (1.0, 10.0)  # the usual width of a dead band: no data sheet gives one
+AT_END = 0.03  # of the largest rate read: as wide as noise and bias leave what is cut off
 # Levels from which on a rate may read as less than it is, half an octave apart: from slow turns by
 # hand to a jerk.
-AT_END = 0.03  # of the largest rate read: as wide as noise and bias leave what is cut off
 LEVELS_DPS = (40.0, 57.0, 80.0, 113.0, 160.0, 226.0)
 JUMPS_AT = (-0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75)  # of a session from -1 to 1
 USUAL_DEG = 0.25  # of a move from rest to rest, beside white noise

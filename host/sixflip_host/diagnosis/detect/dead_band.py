@@ -59,7 +59,7 @@ def nats_of_rests(columns, at_rest):
         x, step = counts[resting].astype(np.int64), np.maximum(steps(counts), 1)
         together = np.diff(np.flatnonzero(resting)) == 1
         if not together.any():
-            return np.zeros(3), np.zeros(3)
+            continue
         noise = np.diff(x, axis=0)[together].std(axis=0) / np.sqrt(2.0)
         for axis in range(3):
             usual = float(np.median(np.delete(noise, axis)))
