@@ -120,8 +120,8 @@ def run(args):
                         for k in range(2, args.boards + 1)]
     with contextlib.ExitStack() as all_of_them:
         boards = [all_of_them.enter_context(board) for board in boards_of(args, images, spec)]
-        say(args, boards)
         try:
+            say(args, boards)  # it says that Ctrl-C ends it
             while all(board.relay.is_alive() for board in boards):
                 time.sleep(0.2)
         except KeyboardInterrupt:
