@@ -76,24 +76,22 @@ def test_spikes_in_one_percent_of_the_samples_are_a_gap(captures):
     assert any("spikes" in remark for remark in found["remarks"])
 
 
-def test_noise_that_grows_through_a_session_is_a_gap(captures):
-    def growing(t, counts, generator):
-        counts += (3e-3 * 16384 * 3.0 * t / t[-1])[:, None] * generator.standard_normal(
-            counts.shape)
-    found = diagnosed(captures, growing)
-    assert found["verdict"] in ("unexplained", "partly explained")
-    assert found["where"][0]["domain"] == "noise" and not found["causes"]
-    assert any("at the end of a session" in remark for remark in found["remarks"])
+def growing(t, counts, generator):
+    counts += (3e-3 * 16384 * 3.0 * t / t[-1])[:, None] * generator.standard_normal(counts.shape)
 
 
-def test_noise_that_goes_with_the_end_of_an_axis_that_is_up_is_a_gap(captures):
-    def louder(t, counts, generator):
-        counts[:, 1] += 6.0 * 16.384 * np.clip(counts[:, 1] / 16384.0, 0.0, 1.0) * (
-            generator.standard_normal(len(t)))
-    found = diagnosed(captures, louder)
+def louder_with_y_up(t, counts, generator):
+    counts[:, 1] += 6.0 * 16.384 * np.clip(counts[:, 1] / 16384.0, 0.0, 1.0) * (
+        generator.standard_normal(len(t)))
+
+
+@pytest.mark.parametrize("noise, words", [
+    (growing, "at the end of a session"), (louder_with_y_up, "with y up")])
+def test_noise_that_goes_with_time_or_an_axis_that_is_up_is_a_gap(captures, noise, words):
+    found = diagnosed(captures, noise)
     assert found["verdict"] in ("unexplained", "partly explained")
     assert found["where"][0]["domain"] == "noise" and not found["causes"]
-    assert any("with y up" in remark for remark in found["remarks"])
+    assert any(words in remark for remark in found["remarks"])
 
 
 def test_noise_of_the_surroundings_along_the_vertical_goes_with_neither_end(captures):
