@@ -8,6 +8,7 @@ import time
 PATIENCE_S = 1.0
 
 _running = None         # the Stages of the verb under way
+_silent = False         # whether this process shows nothing
 
 
 @contextlib.contextmanager
@@ -33,10 +34,16 @@ def doing(step):
         stages.next(step)
 
 
+def silence():
+    """In a copy of this process: the line on the terminal is the original's."""
+    global _running, _silent
+    _running, _silent = None, True
+
+
 def steps(items, what):
     """Iterate over a sequence; a bar appears once it has taken longer than a second."""
     items = list(items)
-    if not sys.stderr.isatty():
+    if _silent or not sys.stderr.isatty():
         yield from items
         return
     if _running is not None:

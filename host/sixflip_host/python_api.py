@@ -104,7 +104,8 @@ class Plan:
     json: dict
 
 
-def diagnose(captures, simulator=None, reference=None, certified_box=False, without=()):
+def diagnose(captures, simulator=None, reference=None, certified_box=False, without=(),
+             jobs=1):
     """The Diagnosis of one capture or several, a session each.
 
     captures   a path or Capture, or a sequence of them
@@ -112,11 +113,12 @@ def diagnose(captures, simulator=None, reference=None, certified_box=False, with
     reference  a capture at rest, to know the noise by
     certified_box  the box is known to be square
     without    names of effects to leave out of the library
+    jobs       processors, 0: all; with more than one, copies of this process do a part (Linux)
     """
     from .diagnosis import answer, diagnose
     diagnosed = diagnose.diagnose(_named(captures or ()), _named(simulator, gravity=False),
                                   _named(reference),
-                                  certified_box, without)
+                                  certified_box, without, jobs)
     said = answer.as_dict(diagnosed)
     return Diagnosis(said["verdict"], tuple(_cause(cause) for cause in said["causes"]),
                      _frozen(said["gap"]), _rows(said["where"]), _rows(said["unseen"]),

@@ -7,7 +7,7 @@ capture shows, or as the chip's data sheet and published plots have.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import special, stats
+from scipy import special
 
 from sixflip_sim.effects import typical
 from sixflip_sim.effects.drift import FLOOR_OF_KERNEL
@@ -160,7 +160,8 @@ def oddity(x, shaken=(), alike=True):
     if min(noise.std() for noise in each) < FROZEN:  # what always reads the same has no noise
         return "", 1.0
     # Of one axis that is louder than the others all together have tails.
-    p = tails(np.concatenate(each if alike else [stats.zscore(noise) for noise in each]))
+    p = tails(np.concatenate(each if alike else [
+        (noise - noise.mean()) / noise.std() for noise in each]))
     if p < 1.0:
         return "heavy tails", p
     # A line is noise with a name.
@@ -184,7 +185,8 @@ def oddity(x, shaken=(), alike=True):
 def tails(x):
     """Probability of such heavy tails of a normal x (n,); 1.0 where they are not beyond what
     chance and noise of not quite the kernel's colour have."""
-    beyond, error = float(stats.kurtosis(x)), np.sqrt(24.0 / len(x))
+    moments = ((x - x.mean()) ** np.array([[2], [4]])).mean(axis=1)
+    beyond, error = moments[1] / moments[0] ** 2 - 3.0, np.sqrt(24.0 / len(x))
     if beyond <= KURTOSIS_SIGMAS * error + 0.5:
         return 1.0
     return float(special.ndtr(-(beyond - 0.5) / error))

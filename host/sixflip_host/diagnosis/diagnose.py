@@ -15,18 +15,18 @@ MOST_ROUNDS = 3  # times that what is in both logs is taken off
 SHORTEST_REST_S = 20.0  # flicker shows from some seconds on
 
 
-def diagnose(captures, simulator=(), reference=(), certified_box=False, without=(), jobs=0,
+def diagnose(captures, simulator=(), reference=(), certified_box=False, without=(), jobs=1,
              prior=None):
     """The diagnosis.Diagnosis of captures.
 
     captures, simulator   [(name, Capture)], one a session
     reference  [(name, Capture)] of one capture at rest, to know the noise by, or empty
     certified_box  the box is known to be square; without: effects left out of the library
-    jobs       threads, 0: one a core
+    jobs       processors, 0: all
     prior      fleet_prior.FleetPrior of boards of this kind, None: the data sheets' sizes
     """
     captures, held = held_values.as_read(captures)
-    captures, damages = byte_faults.repaired(captures)
+    captures, damages = byte_faults.repaired(captures, Settings(jobs=jobs).processors)
     damages = [*held, *damages]
     sessions = [blocks.session_of(name, capture) for name, capture in captures]
     noise = {}

@@ -141,7 +141,7 @@ def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), d
     remarks += sample_clock.remarks(sessions, clocks)
     progress.doing("registers, clock and spectra")
     stuck = registers.stuck(sessions)
-    samples = samples_judged.judge(sessions, settings.without, damages)
+    samples = samples_judged.judge(sessions, settings, damages)
     sessions = samples.sessions
     remarks += [*stuck, *samples.remarks]
     findings, nameless = list(samples.findings), list(samples.nameless)

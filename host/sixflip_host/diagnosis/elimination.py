@@ -107,7 +107,9 @@ def reduced(unit, statistics, shared, private, points):
     """Reduced of one unit without anything made before, for R data sets."""
     k, p = len(shared), len(private)
     both = (private + shared).index
-    gram = unit.gram.blocks(points, both, both)
+    # What is looked at everywhere once, few columns of it, is not kept.
+    gram = unit.gram.at_all_points(both) if len(points) == len(unit.grid) \
+        else unit.gram.blocks(points, both, both)
     inner = statistics[1][points[:, None], both]
     if not p:
         return Reduced(gram, inner, statistics[0][points], unit.logdet[points])

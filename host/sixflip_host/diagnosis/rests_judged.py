@@ -1,8 +1,7 @@
 """The third stage: what the rests, the turns between them and the moves say of both sensors."""
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
-from .. import progress
+from .. import progress, side_by_side
 from ..capture.registers import SENSORS
 from . import adequacy, localisation, motion_model, odds, stray_turns, turn_model
 from .detect.detection import present
@@ -27,30 +26,19 @@ class RestsJudged:
 
 
 def judge(rests, findings, settings, conditions):
-    """RestsJudged of UsableRests; findings: of their samples. Both sensors at rest and the gyro's
-    turns go side by side where there are cores: the linear algebra lets other threads run."""
+    """RestsJudged of UsableRests; findings: of their samples. The accelerometer's rests and all
+    that is the gyro's go side by side where there are processors for it."""
     sessions, nominal = rests.sessions, rests.nominal
     chip = sessions[0].capture.meta["sensor"]
-    swapped = turns = None
-    with ThreadPoolExecutor(settings.threads) as pool:
-        model = RestModel("accel", chip, settings, conditions)
-        jobs = {"accel": pool.submit(model.fit, sessions, nominal)}
-        if all(s.gyro is not None for s in sessions):
-            swapped = turn_model.swapped(sessions, nominal)
-            # The Earth's rate on the wrong axes looks like gravity in the gyro.
-            put_right = sessions if swapped is None else [
-                s.with_gyro_axes(swapped.read) for s in sessions]
-            model = RestModel("gyro", chip, settings, conditions)
-            jobs["gyro"] = pool.submit(model.fit, put_right, nominal)
-            bent = any(f.sensor == "gyro" and f.effect in ("dead_band", "saturation")
-                       for f in findings)
-            if swapped is None and not bent and all(
-                    turn_model.usable(s, m) for s, m in zip(sessions, nominal)):
-                turns = turn_model.TurnModel("gyro", chip, settings, conditions).fit(
-                    sessions, nominal)
-        gaps = {kind: job.result() for kind, job in jobs.items()}
-    progress.doing("what moves between the rests show")
-    motion = motion_model.motion_gap(rests.everything, sessions, nominal, turns, settings)
+    swapped = turns = motion = None
+    models = [RestModel(kind, chip, settings, conditions) for kind in ("accel", "gyro")]
+    jobs = [lambda: models[0].fit(sessions, nominal)]
+    if all(s.gyro is not None for s in sessions):
+        jobs.append(lambda: _of_gyro(rests, findings, models[1]))
+    accel, *gyro = side_by_side.results(jobs, settings.processors)
+    gaps = {"accel": accel}
+    if gyro:
+        gaps["gyro"], swapped, turns, motion = gyro[0]
     new_findings, nameless, remarks = [], [], []
     if swapped is not None and swapped.effect not in settings.without:
         new_findings.append(swapped)
@@ -73,6 +61,26 @@ def judge(rests, findings, settings, conditions):
         said = [squareness.remark() for squareness in gaps["accel"].crooked if squareness]
         remarks += dict.fromkeys(sentence for sentence in said if sentence)
     return RestsJudged(gaps, turns, motion, tuple(new_findings), tuple(nameless), tuple(remarks))
+
+
+def _of_gyro(rests, findings, model):
+    """(SensorGap at rest, Finding of swapped axes or None, SensorGap of its turns or None,
+    MotionGap or None of the moves that it carries gravity through) of the gyro of UsableRests;
+    model: its RestModel."""
+    sessions, nominal = rests.sessions, rests.nominal
+    swapped = turn_model.swapped(sessions, nominal)
+    # The Earth's rate on the wrong axes looks like gravity in the gyro.
+    gap = model.fit(sessions if swapped is None else [
+        s.with_gyro_axes(swapped.read) for s in sessions], nominal)
+    bent = any(f.sensor == "gyro" and f.effect in ("dead_band", "saturation") for f in findings)
+    if swapped is not None or bent or not all(
+            turn_model.usable(s, m) for s, m in zip(sessions, nominal)):
+        return gap, swapped, None, None
+    turns = turn_model.TurnModel("gyro", model.chip, model.settings, model.conditions).fit(
+        sessions, nominal)
+    progress.doing("what moves between the rests show")
+    return gap, None, turns, motion_model.motion_gap(
+        rests.everything, sessions, nominal, turns, model.settings)
 
 
 def _astray(turns, sound):

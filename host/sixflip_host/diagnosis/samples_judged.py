@@ -7,6 +7,7 @@ import numpy as np
 
 from sixflip import RAIL
 
+from .. import side_by_side
 from ..capture import registers
 from . import localisation, odds
 from .detect import (
@@ -25,7 +26,7 @@ from .detect import (
     wrong_scale,
 )
 from .detect.detection import Finding, present
-from .settings import Conditions
+from .settings import Conditions, Settings
 
 COARSE = ("quantisation", "dead_band", "saturation", "torn_reads")
 # What makes some seconds louder, and some samples leap.
@@ -33,6 +34,7 @@ NOISY = ("vibration", "torn_reads", "saturation", "dead_band")
 SLOW_HZ = 1.0  # of a line that the means of rests have something of
 SCALES = ("full_scale", "gravity")  # damages that every reading of a sensor has
 SENSOR = registers.SENSORS
+ALONE = Settings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,12 +63,13 @@ class SamplesJudged:
         return Conditions(reference_c, coarse, axes("vibration"), axes("dead_band"))
 
 
-def judge(sessions, without=(), damages=()):
-    """SamplesJudged of all sessions; without: effects left out of the library; damages: those
-    that were put right before."""
-    rings = ringing.ringing_axes(sessions)
-    findings = [f for f in of_registers(sessions) + spectral_lines.findings(
-        sessions, [(sensor, axis) for sensor, axis, _, _ in rings]) if f.effect not in without]
+def judge(sessions, settings=ALONE, damages=()):
+    """SamplesJudged of all sessions; settings: settings.Settings; damages: those that were put
+    right before."""
+    without = settings.without
+    registers_say, (rings, lines) = side_by_side.results(
+        [lambda: of_registers(sessions), lambda: _of_spectra(sessions)], settings.processors)
+    findings = [f for f in registers_say + lines if f.effect not in without]
     if any(d.kind == held_values.NOT_READ for d in damages):
         findings = [f for f in findings if f.effect != "dropped_samples"]
     coarse = {(f.sensor, axis) for f in findings if f.effect in COARSE for axis in f.axes}
@@ -155,6 +158,13 @@ def _without_lines(session, findings):
             session = line_across_rests.without(session, finding.sensor, "xyz".index(axis), hz,
                                                 SLOW_HZ)
     return session
+
+
+def _of_spectra(sessions):
+    """(what rings after it was put down, Findings of lines beside that)."""
+    rings = ringing.ringing_axes(sessions)
+    return rings, spectral_lines.findings(sessions, [
+        (sensor, axis) for sensor, axis, _, _ in rings])
 
 
 def of_registers(sessions):

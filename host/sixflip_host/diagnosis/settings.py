@@ -7,19 +7,19 @@ from dataclasses import dataclass, field
 @dataclass(frozen=True, eq=False)
 class Settings:
     """certified: the box is square; without: effects left out of the library; reference: {sensor:
-    flicker level of a noise capture}; jobs: threads, 0: one a core; simulated: {sensor: [(effect,
+    flicker level of a noise capture}; jobs: processors, 0: all; simulated: {sensor: [(effect,
     variant, key, coefficient)]} that the simulator compared with has already; prior: FleetPrior
     of boards of this kind, or None."""
 
     certified: bool = False
     without: tuple = ()
     reference: dict = field(default_factory=dict)
-    jobs: int = 0
+    jobs: int = 1
     simulated: dict = field(default_factory=dict)
     prior: object = None
 
     @property
-    def threads(self):
+    def processors(self):
         return self.jobs or os.cpu_count() or 1
 
 

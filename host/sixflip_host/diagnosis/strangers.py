@@ -10,7 +10,6 @@ stranger no size is known.
 """
 import numpy as np
 from numpy.polynomial import legendre
-from scipy import signal
 
 from sixflip.poses import faces
 
@@ -148,13 +147,25 @@ def strongest(t, left):
     left = left - left.mean(axis=0)
     if len(hz) <= 2 * OVER or not left.any():
         return np.full(STRONGEST, span)
-    power = sum(signal.lombscargle(t, x, 2.0 * np.pi * hz) for x in left.T if x.any())
+    power = _periodogram(t, left, hz)
     periods = []
     for _ in range(STRONGEST):
         k = int(power.argmax())
         periods.append(1.0 / hz[k])
         power[max(k - OVER, 0):k + OVER + 1] = 0.0
     return np.array(periods)
+
+
+def _periodogram(t, x, hz):
+    """(f,) power of x (n, 3), all axes together, at frequencies hz (f,): as
+    scipy.signal.lombscargle's, which takes a second to import [Lomb, equation 7]."""
+    angle = 2.0 * np.pi * hz[:, None] * t
+    delay = 0.5 * np.arctan2(np.sin(2.0 * angle).sum(axis=1), np.cos(2.0 * angle).sum(axis=1))
+    power = 0.0
+    for wave in (np.cos(angle - delay[:, None]), np.sin(angle - delay[:, None])):
+        energy = np.maximum((wave ** 2).sum(axis=1), 1e-9)  # of a sine that is 0 all the while
+        power = power + 0.5 * ((wave @ x) ** 2).sum(axis=1) / energy
+    return power
 
 
 def _told_apart(t):

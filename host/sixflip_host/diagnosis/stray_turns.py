@@ -51,57 +51,71 @@ def ends(unit, forms, attitude_deg):
                 wander * seconds[:, None] ** 2 + attitude_deg ** 2)
 
 
+@dataclass(frozen=True, eq=False)
+class Kinds:
+    """Densities of turns, D at once: level (D,) degrees, tail (D,) degrees of freedom of turns
+    that are alike; share (D,) of them that are far_deg (D,) off instead, 0: none."""
+
+    level: np.ndarray
+    tail: np.ndarray
+    far_deg: np.ndarray
+    share: np.ndarray
+
+    def of(self, left, known):
+        """(log density (D, n), precision (D, n, 2) with which each turn counts, chance (D, n) that
+        it is far off) of what is left (D, n, 2), degrees; known (n, 2) deg^2."""
+        near, precision = _student(left, known, self.level, self.tail)
+        if not self.share.any():
+            return near, precision, np.zeros_like(near)
+        normal = np.full_like(self.tail, TAILS[-1])
+        off, off_precision = _student(left, known, self.far_deg, normal)
+        share = self.share[:, None]
+        near, off = near + np.log1p(-share), off + np.log(share)
+        chance = special.expit(off - near)
+        return (np.logaddexp(near, off),
+                precision + chance[..., None] * (off_precision - precision), chance)
+
+
 def nats(sessions):
     """(nats, number of turns) by which some turns of sessions (list of Ends) being far off is
     likelier than all being alike."""
-    alike = max(_likelihood(sessions, _alike(level, tail))[0]
-                for level in LEVELS_DEG + FAR_DEG for tail in TAILS)
-    apart = [(level, far, tail) for level in LEVELS_DEG for far in FAR_DEG for tail in TAILS
-             if far >= FAR_TIMES * level]
-    best, number = max(_likelihood(sessions, _apart(*levels, share))
-                       for levels in apart for share in SHARES)
-    return best - alike - np.log(len(SHARES) * len(FAR_DEG)), number
+    alike = [(level, tail, 1.0, 0.0) for level in LEVELS_DEG + FAR_DEG for tail in TAILS]
+    apart = [(level, tail, far, share) for level in LEVELS_DEG for far in FAR_DEG
+             if far >= FAR_TIMES * level for tail in TAILS for share in SHARES]
+    usual, _ = _likelihoods(sessions, Kinds(*np.array(alike).T))
+    nats, number = _likelihoods(sessions, Kinds(*np.array(apart).T))
+    best = int(nats.argmax())
+    return (float(nats[best] - usual.max() - np.log(len(SHARES) * len(FAR_DEG))),
+            float(number[best]))
 
 
-def _alike(level, tail):
-    """Density of turns that are off by one level: see _likelihood."""
-    def density(left, known):
-        variance = known + level ** 2
-        square = (left ** 2 / variance).sum(axis=1)
-        value = -0.5 * (tail + 2.0) * np.log1p(square / tail) - 0.5 * np.log(variance).sum(axis=1)
-        weight = (tail + 2.0) / (tail + square)
-        return value, weight[:, None] / variance, np.zeros(len(left))
-    return density
+def _student(left, known, level, tail):
+    """(log density (D, n), precision (D, n, 2)) of Student's t in two dimensions."""
+    variance = known + level[:, None, None] ** 2
+    square, tail = (left ** 2 / variance).sum(axis=2), tail[:, None]
+    value = -0.5 * (tail + 2.0) * np.log1p(square / tail) - 0.5 * np.log(variance).sum(axis=2)
+    return value, ((tail + 2.0) / (tail + square))[..., None] / variance
 
 
-def _apart(level, far, tail, share):
-    """Density of turns of which a share is off by a far larger level: see _likelihood."""
-    usual, lost = _alike(level, tail), _alike(far, TAILS[-1])
-
-    def density(left, known):
-        (near, near_precision, _), (off, off_precision, _) = usual(left, known), lost(left, known)
-        near, off = near + np.log1p(-share), off + np.log(share)
-        chance = special.expit(off - near)
-        return (np.logaddexp(near, off), near_precision
-                + chance[:, None] * (off_precision - near_precision), chance)
-    return density
-
-
-def _likelihood(sessions, density):
-    """(log likelihood, expected number of turns far off) with what is unknown of each session
-    integrated out. density(left (n, 2), known (n, 2)) -> log density (n,), precision (n, 2) with
-    which each turn counts, chance (n,) that it is far off."""
-    total = number = 0.0
+def _likelihoods(sessions, kinds):
+    """(log likelihood (D,), expected number (D,) of turns far off) of Kinds, with what is unknown
+    of each session integrated out."""
+    total, number = np.zeros(len(kinds.level)), np.zeros(len(kinds.level))
     for session in sessions:
-        precision = 1.0 / session.known
+        columns = session.columns.reshape(session.off.size, -1)
+        precision = np.broadcast_to(1.0 / session.known, (len(total), *session.known.shape))
         for _ in range(ROUNDS):
-            weighted = session.columns * precision[:, :, None]
-            gram = np.einsum("nki,nkj->ij", weighted, session.columns)
-            theta = np.linalg.solve(gram, np.einsum("nki,nk->i", weighted, session.off))
-            left = session.off - session.columns @ theta
-            value, precision, chance = density(left, session.known)
-        weighted = session.columns * precision[:, :, None]
-        gram = np.einsum("nki,nkj->ij", weighted, session.columns)
-        total += float(value.sum()) - 0.5 * np.linalg.slogdet(gram)[1]
-        number += float(chance.sum())
+            weighted = _weighted(columns, precision)
+            inner = (weighted @ session.off.ravel())[..., None]
+            theta = np.linalg.solve(weighted @ columns, inner)
+            left = session.off - (columns @ theta).reshape(precision.shape)
+            value, precision, chance = kinds.of(left, session.known)
+        total += value.sum(axis=1) - 0.5 * np.linalg.slogdet(
+            _weighted(columns, precision) @ columns)[1]
+        number += chance.sum(axis=1)
     return total, number
+
+
+def _weighted(columns, precision):
+    """(D, p, 2 n) of columns (2 n, p) and precision (D, n, 2)."""
+    return columns.T * precision.reshape(len(precision), 1, -1)

@@ -31,6 +31,10 @@ class FactoredGram(Whitened):
         self._done = np.zeros(len(grid), bool)
         self._factors = {}
 
+    def __reduce__(self):
+        """What was worked out is worked out again: it is much, and of few points."""
+        return type(self), (self.groups, self.grid, self.space, self.common, self._columns)
+
     def __len__(self):
         return len(self.grid)
 

@@ -32,6 +32,10 @@ class Products:
         """(P, r, K) products of columns rows (r,) with every column."""
         return self.values[points[:, None], rows]
 
+    def at_all_points(self, columns):
+        """(G, k, k) products of a few columns at every point."""
+        return self.blocks(np.arange(len(self.values)), columns, columns)
+
     def each(self, points, index):
         """(P, F, k, k) products of columns index (F, k) with one another."""
         return gathered(self.values, index, points)
@@ -124,10 +128,14 @@ class DenseGram(Whitened):
     def __init__(self, grid, across, columns, loud, lower):
         super().__init__(np.empty(((len(grid) + 1) // 2, len(loud) + 1, len(columns))))
         self.grid, self._across, self._columns, self._lower = grid, across, columns, lower
-        self._given = np.asfortranarray(columns[:, loud])
+        self._loud, self._given = loud, np.asfortranarray(columns[:, loud])
         self._place = np.full(columns.shape[1], len(loud))
         self._place[loud] = np.arange(len(loud))
         self._slot, self._number = np.full(len(grid), -1), 0
+
+    def __reduce__(self):
+        """As factored_gram.FactoredGram's."""
+        return type(self), (self.grid, self._across, self._columns, self._loud, self._lower)
 
     def at(self, point, columns=None):
         every = np.arange(len(self._place)) if columns is None else columns

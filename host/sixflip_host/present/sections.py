@@ -140,7 +140,8 @@ def gap(page, folder, paths):
     from ..diagnosis import answer, closed_loops
     from ..diagnosis.diagnose import diagnose
     from . import gap_report, gap_words
-    diagnosed = diagnose([(path, capture_file.read_samples(path)) for path in paths])
+    diagnosed = diagnose([(path, capture_file.read_samples(path)) for path in paths],
+                         jobs=0)
     closed = closed_loops.close_all(diagnosed)
     result = answer.as_dict(diagnosed)
     if closed:

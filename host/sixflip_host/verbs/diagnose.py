@@ -48,7 +48,7 @@ def add_arguments(parser):
         help="exit 1 when the gap of a sensor exceeds X times its noise floor")
     add_output(parser, "--junit", metavar="FILE", kinds=(file_kinds.JUNIT,),
                help="also write the checks as JUnit XML")
-    add("--jobs", type=int, default=0, metavar="N", help="threads (default: one a core)")
+    add("--jobs", type=int, default=0, metavar="N", help="processors (default: all)")
 
 
 def run(args):

@@ -9,10 +9,12 @@ as the counts as they were read (course_likelihood.py).
 """
 import copy
 import math
+from functools import partial
 
 import numpy as np
 from scipy import ndimage
 
+from ... import side_by_side
 from ...capture.registers import RAIL, SENSORS
 from . import course_likelihood
 from .detection import Damage, present
@@ -158,31 +160,37 @@ RULES = [
     *[_unsigned(bits) for bits in WIDTHS], *[_folded(bits) for bits in WIDTHS]]
 
 
-def repaired(captures):
+def repaired(captures, processors=1):
     """([(name, Capture)] with the bytes put right, [Damage]): a recording is looked at further as
-    it was meant. The captures given are not changed."""
-    mended_captures, faults = [], {}
-    for name, capture in captures:
-        mended = copy.copy(capture)
-        for sensor in ("accel", "gyro"):
-            counts = getattr(capture, sensor)
-            if counts is None:
-                continue
-            for axis in range(3):
-                fault = column_fault(counts[:, axis].astype(np.int64))
-                if fault is None:
-                    continue
-                kind, words, back, nats = fault
-                faults.setdefault((kind, sensor, words), []).append(("xyz"[axis], nats))
-                values = np.array(getattr(mended, sensor))
-                values[:, axis] = np.clip(back(counts[:, axis].astype(np.int64)), -RAIL - 1, RAIL)
-                setattr(mended, sensor, values)
-        mended_captures.append((name, mended))
-    return mended_captures, [Damage(kind, sensor, axes, "amplitude", "the %s of the %s: %s" % (
-        ", ".join(axes) + (" axes" if len(axes) > 1 else " axis"), SENSORS[sensor], words),
-        sum(nats for _, nats in seen))
+    it was meant. The captures given are not changed; processors: that captures share."""
+    mended = side_by_side.results([partial(_mended, capture) for _, capture in captures],
+                                  processors)
+    faults = {}
+    for fault, *seen in (one for _, found in mended for one in found):
+        faults.setdefault(fault, []).append(seen)
+    return [(name, capture) for (name, _), (capture, _) in zip(captures, mended)], [
+        Damage(kind, sensor, axes, "amplitude", "the %s of the %s: %s" % (
+            ", ".join(axes) + (" axes" if len(axes) > 1 else " axis"), SENSORS[sensor], words),
+            sum(nats for _, nats in seen))
         for (kind, sensor, words), seen in faults.items()
         for axes in [tuple(sorted({letter for letter, _ in seen}))]]
+
+
+def _mended(capture):
+    """(Capture with the bytes put right, [((kind, sensor, words), axis letter, nats)])."""
+    mended, found = copy.copy(capture), []
+    for sensor in ("accel", "gyro"):
+        counts = getattr(capture, sensor)
+        for axis in range(3 if counts is not None else 0):
+            fault = column_fault(counts[:, axis].astype(np.int64))
+            if fault is None:
+                continue
+            kind, words, back, nats = fault
+            found.append(((kind, sensor, words), "xyz"[axis], nats))
+            values = np.array(getattr(mended, sensor))
+            values[:, axis] = np.clip(back(counts[:, axis].astype(np.int64)), -RAIL - 1, RAIL)
+            setattr(mended, sensor, values)
+    return mended, found
 
 
 def column_fault(counts):

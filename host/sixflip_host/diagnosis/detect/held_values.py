@@ -182,8 +182,7 @@ def read_again(counts):
     same = (steps[1:-1] == 0)[far[:-2] & far[2:]]
     if len(same) < FEWEST:
         return 0.0, 0.0
-    nats, held = _stretch(same)
-    return nats, held
+    return tuple(float(v[0]) for v in _stretches(same[None]))
 
 
 def repeats(counts):
@@ -193,30 +192,27 @@ def repeats(counts):
     # rest with less noise than a count: neither says that it was not read.
     same = same[counts[1:].any(axis=1) & (_lengths(same.all(axis=1)) < AT_REST)]
     number = len(same) // STRETCH
-    nats = held = 0.0
     if not number:
         return 0.0, 0.0, len(same)
-    parts = same[:number * STRETCH].reshape(number, STRETCH, -1)
-    for part in parts:
-        more, rows = _stretch(part)
-        nats, held = nats + more, held + rows
-    return nats, held, number * STRETCH
+    nats, held = _stretches(same[:number * STRETCH].reshape(number, STRETCH, -1))
+    return float(nats.sum()), float(held.sum()), number * STRETCH
 
 
-def _stretch(same):
-    """(nats, rows held) of one stretch: same (n, axes) bool, which of them repeat in a row."""
-    n, together, chances = len(same), int(same.all(axis=1).sum()), np.ones(len(same))
-    for axis in range(same.shape[1]):
-        others = ~np.delete(same, axis, axis=1).all(axis=1)
-        counted = same[:, axis] & others
-        whole = (counted.sum() + 1.0) / (others.sum() + 1.0)
-        chances *= (_around(counted) + whole) / (_around(others) + 1.0)
-    chance, share = (min(max(p, 1e-4), 1.0 - 1e-4) for p in (chances.mean(), together / n))
-    if share <= chance:
-        return 0.0, 0.0
-    nats = together * math.log(share / chance) + (n - together) * math.log(
+def _stretches(same):
+    """(nats (s,), rows held (s,)) of stretches: same (s, n, axes) bool, which of them repeat in a
+    row."""
+    n, together = same.shape[1], same.all(axis=2).sum(axis=1)
+    chances = np.ones(same.shape[:2])
+    for axis in range(same.shape[2]):
+        others = ~np.delete(same, axis, axis=2).all(axis=2)
+        counted = same[:, :, axis] & others
+        whole = (counted.sum(axis=1) + 1.0) / (others.sum(axis=1) + 1.0)
+        chances *= (_around(counted) + whole[:, None]) / (_around(others) + 1.0)
+    chance, share = (np.clip(p, 1e-4, 1.0 - 1e-4) for p in (chances.mean(axis=1), together / n))
+    nats = together * np.log(share / chance) + (n - together) * np.log(
         (1.0 - share) / (1.0 - chance)) - 0.5 * math.log(n)
-    return nats, n * (share - chance) / (1.0 - chance)
+    more = share > chance
+    return np.where(more, nats, 0.0), np.where(more, n * (share - chance) / (1.0 - chance), 0.0)
 
 
 def _lengths(rows):
@@ -229,8 +225,8 @@ def _lengths(rows):
 
 
 def _around(rows):
-    """(n,) how many of the neighbours of each row are among `rows` (n,) bool."""
-    sums = np.concatenate([[0], np.cumsum(rows)])
-    place = np.arange(len(rows))
-    first = np.maximum(place - NEIGHBOURS // 2, 0)
-    return sums[np.minimum(place + NEIGHBOURS // 2 + 1, len(rows))] - sums[first]
+    """(s, n) how many of the neighbours of each row of a stretch are among `rows` (s, n) bool."""
+    sums = np.pad(np.cumsum(rows, axis=1), ((0, 0), (1, 0)))
+    place, number = np.arange(rows.shape[1]), rows.shape[1]
+    return (sums[:, np.minimum(place + NEIGHBOURS // 2 + 1, number)]
+            - sums[:, np.maximum(place - NEIGHBOURS // 2, 0)])

@@ -44,7 +44,9 @@ def finding(sessions, sensor, banded=()):
     """[Finding] of torn reads in a sensor, or []; banded: axes on which readings near 0 read 0,
     which are jumps with a name."""
     samples = _samples(sessions, sensor, banded, PAGE)
-    if not len(samples):
+    # Beside what has no name being torn gains less, so that most sensors need no competition.
+    if not len(samples) or not present(_at_most(samples, [
+            (torn_by(side), among) for side, among in _chances(samples).items()])):
         return []
     nats, number, others = competed(samples)
     if present(nats):
@@ -105,7 +107,7 @@ def paged(samples):
     """(nats of jumps by whole pages over none, over jumps of any size and over samples that are
     louder, as where the box is put down; their number) of Samples, among calm ones."""
     samples = samples.subset(samples.calm.astype(bool) & (samples.sigma < PAGE / BEYOND))
-    if len(samples) < FEWEST:
+    if len(samples) < FEWEST or not present(_at_most(samples, [(moved, len(samples))])):
         return 0.0, 0.0
     whole, other, number = [], [], len(samples)
     for freedom in FREEDOM:
@@ -124,10 +126,7 @@ def competed(samples):
     with the page of the sample before or of the one after, or with the low byte before. Shares of
     jumps and tails of the noise are the likeliest of those tried, in each hypothesis by itself;
     what was tried for the name's sake is paid."""
-    chances = {side: float(len(samples) - getattr(samples, side).sum())
-               for side in ("before", "after")}
-    chances["stale"] = chances["before"]
-    number, named, nameless = len(samples), [], []
+    chances, number, named, nameless = _chances(samples), len(samples), [], []
     for freedom in FREEDOM:
         densities = Densities(samples, freedom)
         others = [anywhere, *(louder(times, freedom) for times in KNOCKED)]
@@ -145,6 +144,19 @@ def competed(samples):
     tried = math.log(len(chances) * len(SHARES))
     return (score - max(nameless) - tried, densities.held(torn, own),
             densities.jumping(torn, own))
+
+
+def _chances(samples):
+    """{side: among how many of Samples one may be torn so}"""
+    chances = {side: float(len(samples) - getattr(samples, side).sum())
+               for side in ("before", "after")}
+    return {**chances, "stale": chances["before"]}
+
+
+def _at_most(samples, jumps):
+    """Nats that Samples gain at most by jumps, as Densities.best takes them, whatever competes."""
+    return max(gain for freedom in FREEDOM
+               for gain, _ in Densities(samples, freedom).best(*jumps)[1])
 
 
 @dataclass(frozen=True, eq=False)

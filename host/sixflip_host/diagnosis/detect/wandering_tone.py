@@ -6,9 +6,10 @@ where there is only noise, and so is what comes and goes at one resonance; the l
 beyond x with a probability of 1 - (1 - exp(-x))^K [Fisher, Proc. R. Soc. A 125 (1929) 54].
 """
 import math
+import sys
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from . import spectral_lines
 
@@ -45,7 +46,8 @@ def _tone(x, rate):
     if tone.mean() < OFTEN or np.subtract(*np.quantile(bins, (0.75, 0.25))) < WANDERS:
         return 0.0, (0.0, 0.0)
     hz = np.quantile(bins, (0.05, 0.95)) * rate / n
-    return -float(stats.binom.logsf(tone.sum() - 1, len(tone), DOUBTED)), tuple(hz)
+    chance = special.bdtrc(tone.sum() - 1, len(tone), DOUBTED)
+    return -math.log(max(chance, sys.float_info.min)), tuple(hz)
 
 
 def chances(x, rate):
