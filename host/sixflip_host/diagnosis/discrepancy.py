@@ -49,6 +49,17 @@ def may_be_left_by(form, other):
     return _meet(form, other, variables | ({"time"} if "temperature" in variables else set()))
 
 
+def names_of(forms, stranger):
+    """[Form] of each named effect that is a function of what a stranger is, on its axis; none
+    where a Form has a name."""
+    found = {}
+    for form in forms:
+        if stranger.generic and not form.generic and len(form.shared) and (
+                form.axis == stranger.axis and stranger.effect in _variable(form.effect)):
+            found.setdefault(form.effect, form)
+    return list(found.values())
+
+
 def _meet(form, other, variables):
     return bool(variables.intersection(_variable(form.effect)) and set(form.axes) & set(
         other.axes))

@@ -194,9 +194,16 @@ def _place(model, forms, best, form, cost):
 def _rivals(model, forms, fewer, form, cost):
     """[(Form, Scored of the set with it in the place of a member)] of those Forms that
     come near to the best one. Names compete with their discrepancy there, as they do in the set,
-    but not those of time for a stranger's place, of which everything is a function."""
+    but not those of time for a stranger's place, of which everything is a function. A stranger
+    competes with every name of its variable: with a discrepancy that is near which was not
+    without."""
     rivals, seen = [], set()
-    for rival, exchanged in model.best(fewer, _free(forms, fewer, form.effect)):
+    free = _free(forms, fewer, form.effect)
+    near = model.best(fewer, free)
+    tried = {(rival.effect, rival.axis) for rival, _ in near}
+    near += [(name, model.extended(fewer, name)) for name in discrepancy.names_of(free, form)
+             if (name.effect, name.axis) not in tried]
+    for rival, exchanged in near:
         if (rival.effect, rival.axis) not in seen and not (
                 form.generic and hypotheses.domain(rival.effect) == "time"):
             seen.add((rival.effect, rival.axis))

@@ -73,8 +73,8 @@ def judge(sessions, settings=ALONE, damages=()):
     if any(d.kind == held_values.NOT_READ for d in damages):
         findings = [f for f in findings if f.effect != "dropped_samples"]
     coarse = {(f.sensor, axis) for f in findings if f.effect in COARSE for axis in f.axes}
-    damages = [*damages, *held_values.findings(sessions),
-               *held_values.stuck_for_a_while(sessions, coarse), *wrong_scale.findings(sessions)]
+    stuck = held_values.stuck_for_a_while(sessions, coarse)
+    damages = [*damages, *held_values.findings(sessions), *stuck, *wrong_scale.findings(sessions)]
     bits = registers.stuck_bits(sessions)
     leaping = {sensor for sensor, *_ in bits} | {
         f.sensor for f in findings if f.effect == "dead_band"}
@@ -115,6 +115,8 @@ def judge(sessions, settings=ALONE, damages=()):
     remarks += ["the %s axis of the %s has a tone that wanders between %.2g and %.2g Hz"
                 % (axis, SENSOR[sensor], *hz) for sensor, axis, _, hz in tones]
     sessions = tuple(_without_lines(s, findings) for s in without_spikes)
+    if stuck:  # an axis that keeps its value says nothing of how it rests
+        sessions = tuple(s.without_samples(held_values.stuck_rows(s, stuck)) for s in sessions)
     return SamplesJudged(sessions, tuple(findings), tuple(damages), tuple(nameless),
                          (*remarks, *(words for _, words, _ in unsteady)))
 

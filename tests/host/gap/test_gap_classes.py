@@ -1,9 +1,12 @@
 """The class of a cause: likelier the larger it is, the same for other forms than the library's,
 and found beside a second cause, one in the registers too."""
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
+from scipy import signal
 
-from sixflip_host.diagnosis import answer, diagnosis
+from sixflip_host.diagnosis import answer, diagnosis, discrepancy
 from sixflip_host.experiment import blocks, linear_model
 from sixflip_host.simulation import scenario, simulated_session
 
@@ -66,10 +69,20 @@ def test_levels_of_noise_that_are_far_behind_change_no_answer(captures, change, 
     assert causes(captures, change) == short
 
 
+def late(t, warm):
+    """A temperature behind a package of two masses, of 8 and 15 s."""
+    for lag_s in (8.0, 15.0):
+        share = np.median(np.diff(t)) / lag_s
+        warm = signal.lfilter([share], [1.0, share - 1.0], warm - warm[0]) + warm[0]
+    return warm
+
+
 # Beside it in the class: what has the same variable, and the box that spans all even functions.
 BESIDE = {"thermal_bias": (), "cubic": (),
           "quadratic": ("asymmetry", "cross_quadratic", "cubic", "box_tilt")}
 FORMS = {"levels off": ("thermal_bias", lambda t, warm, g: on_z(8.0 * np.tanh(0.15 * warm))),
+         "levels off late": ("thermal_bias", lambda t, warm, g: on_z(
+             12.0 * np.tanh(0.3 * (late(t, warm) - 4.0)))),
          "seventh power": ("cubic", lambda t, warm, g: on_z(20.0 * g[:, 2] ** 7)),
          "square": ("quadratic", lambda t, warm, g: on_z(10.0 * g[:, 2] ** 2)),
          "fourth power": ("quadratic", lambda t, warm, g: on_z(10.0 * g[:, 2] ** 4)),
@@ -90,6 +103,20 @@ def test_a_cause_of_another_form_than_the_library_s_ends_in_its_class(captures, 
     assert effect in cause["class"] and cause["axes"] == ["z"]
     assert set(cause["class"]) <= {effect, *BESIDE[effect]}
     assert cause["share"] > 0.95
+
+
+def test_a_stranger_is_held_against_every_name_of_its_variable():
+    """A bias that levels off behind a slow package was a stranger of temperature: without its
+    discrepancy no bias in proportion came near, and so none was tried with it."""
+    def form(effect, axis, generic=False, shared=(0,)):
+        return SimpleNamespace(effect=effect, axis=axis, generic=generic, shared=shared)
+    forms = [form("thermal_bias", 1), form("thermal_bias", 1), form("thermal_bias", 2),
+             form("thermal_rate", 1), form("cubic", 1), form("drift", 1, shared=()),
+             form("temperature", 1, generic=True)]
+    stranger = forms[-1]
+    assert discrepancy.names_of(forms, stranger) == [forms[0], forms[3]]
+    assert discrepancy.names_of(forms, form("orientation", 1, generic=True)) == [forms[4]]
+    assert discrepancy.names_of(forms, forms[0]) == []
 
 
 def test_a_pair_of_which_one_is_in_the_registers(captures):

@@ -216,6 +216,50 @@ def test_an_axis_that_keeps_its_value_while_the_others_change_is_stuck():
     assert axes == ("y",) and rows == pytest.approx(20, abs=2)
 
 
+def test_an_axis_that_is_stuck_for_minutes_says_nothing_of_its_rests():
+    """Its own quiet hid it: the noise of the quietest tenth was that of what is stuck."""
+    generator = np.random.default_rng(4)
+    counts = np.rint(generator.normal(40.0, 3.0, (8000, 3))).astype(np.int16)
+    counts[4000:5500, 2] = counts[4000, 2]
+    session = SimpleNamespace(capture=SimpleNamespace(accel=None, gyro=counts))
+    damage, = held_values.stuck_for_a_while([session])
+    assert damage.axes == ("z",)
+    rows = held_values.stuck_rows(session, [damage])
+    assert rows[4000:5500].mean() > 0.95 and rows[:4000].mean() < 0.02  # three alike by chance
+
+
+def test_an_axis_beside_one_that_leaps_has_no_dead_band():
+    """Its sensor's noise was half that of what leaps by 256 counts now and then."""
+    generator = np.random.default_rng(5)
+    turned = 400.0 * np.sin(np.arange(8000) / 60.0) * (np.arange(8000) % 1000 > 800)
+    counts = np.rint(turned[:, None] + generator.normal(0.0, 2.7, (8000, 3)) + [245.0, -4.0, 6.5])
+    counts[generator.random(8000) < 0.07, 0] -= 256.0
+    nats, _ = dead_band.nats_of_rests([counts], [np.arange(8000) % 1000 <= 800])
+    assert not present(nats.max())
+
+
+def test_slow_noise_in_a_few_rests_is_no_line():
+    """Of a random walk held back within a second four rests made "vibration" of 1.3 Hz."""
+    generator = np.random.default_rng(6)
+    t = np.arange(520) / 100.0
+
+    def lines(wave=0.0, seeds=12):
+        found = 0
+        for _ in range(seeds):
+            slow = signal.lfilter([1.0], [1.0, -0.99], generator.standard_normal((4, 720)))
+            x = 0.012 * slow[:, 200:] + 0.015 * generator.standard_normal((4, 520))
+            x += wave * np.sin(2.0 * np.pi * 2.2 * t)
+            counts = np.rint(x * 65.5).astype(np.int16)
+            capture = SimpleNamespace(gyro=np.repeat(counts.reshape(-1, 1), 3, axis=1),
+                                      meta={"gyro_lsb_per_dps": 65.5})
+            rests = SimpleNamespace(capture=capture, rate=100.0, runs=[
+                (0, first, first + 520) for first in range(0, 2080, 520)])
+            found += spectral_lines.strongest([rests], "gyro", 0) is not None
+        return found
+    assert lines() == 0
+    assert lines(0.5) == 12
+
+
 def test_an_axis_that_is_quieter_at_rest_than_its_sensor_lets_it_has_a_dead_band():
     """Within the band all rests read 0, and no code beyond it is missing."""
     generator = np.random.default_rng(8)

@@ -60,7 +60,11 @@ def nats_of_rests(columns, at_rest):
         together = np.diff(np.flatnonzero(resting)) == 1
         if not together.any():
             continue
-        noise = np.diff(x, axis=0)[together].std(axis=0) / np.sqrt(2.0)
+        change = np.diff(x, axis=0)[together]
+        # Jumps are no noise of an axis; where most samples repeat their median says nothing.
+        middle = OF_SIZES * np.median(np.abs(change), axis=0)
+        noise = np.where(middle > 0.0, np.minimum(middle, change.std(axis=0)),
+                         change.std(axis=0)) / np.sqrt(2.0)
         for axis in range(3):
             usual = float(np.median(np.delete(noise, axis)))
             zero = x[:, axis] == 0

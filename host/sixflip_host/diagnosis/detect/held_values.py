@@ -101,10 +101,7 @@ def _kept(counts, axis):
     column, step = counts[:, axis].astype(np.int64), max(int(steps(counts)[axis]), 1)
     noise = _unforeseen(column / step)
     chance = max(math.erf(0.5 / max(noise, 1e-9) / math.sqrt(2.0)), BY_CHANCE)
-    same = (counts[1:] == counts[:-1])
-    # What a dead band or a rail holds is theirs; where all axes repeat no row was read.
-    held = same[:, axis] & ~same.all(axis=1) & (column[1:] != 0) & (
-        np.abs(column[1:]) < NEAR_END * np.abs(column).max())
+    held = _held(counts, axis)
     before = np.flatnonzero(np.convolve(held, np.ones(AGAIN), "valid") == AGAIN) + AGAIN
     before = before[before < len(held)]
     again, number = int(held[before].sum()), len(before)
@@ -116,6 +113,22 @@ def _kept(counts, axis):
     return nats, int(_lengths(held).max())
 
 
+def _held(counts, axis):
+    """(n - 1,) which of the rows of counts (n, 3) after the first have an axis as the row before
+    and not all others. What a dead band or a rail holds is theirs; where all axes repeat no row
+    was read."""
+    column, same = counts[:, axis].astype(np.int64), counts[1:] == counts[:-1]
+    return same[:, axis] & ~same.all(axis=1) & (column[1:] != 0) & (
+        np.abs(column[1:]) < NEAR_END * np.abs(column).max())
+
+
+def stuck_rows(session, damages):
+    """(n,) rows of a Session in which an axis that is stuck by one of damages keeps its value."""
+    return np.any([_lengths(np.append(False, _held(
+        getattr(session.capture, damage.sensor), "xyz".index(letter)))) >= AGAIN
+        for damage in damages for letter in damage.axes], axis=0)
+
+
 def _unforeseen(x):
     """Counts: standard deviation of what the samples before do not foretell of a column (n,) where
     it is the quietest. White noise has the same in differences of every order, over the root of
@@ -125,8 +138,10 @@ def _unforeseen(x):
     for order in ORDERS:
         left = np.diff(x, n=order)
         windows = left[:len(left) // WINDOW * WINDOW].reshape(-1, WINDOW)
-        variances.append(float(np.quantile((windows ** 2).mean(axis=1), QUIETEST))
-                         / math.comb(2 * order, order))
+        power = (windows ** 2).mean(axis=1)
+        power = power[power > 0.0]  # what never changes is stuck there, or has no noise anywhere
+        variances.append(float(np.quantile(power, QUIETEST)) / math.comb(2 * order, order)
+                         if len(power) else 0.0)
     return math.sqrt(max(min(variances) - 1.0 / 12.0, 0.0))
 
 

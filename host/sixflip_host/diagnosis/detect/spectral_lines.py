@@ -35,6 +35,10 @@ LEAST_STEPS = 0.5  # of the counts: rounding makes lines as large as that
 # steadies the box, or a motor under load, has a wider bump.
 BESIDE, NARROW = 10, 0.6
 SWEPT, FALLS = 2, 0.5  # the lowest bins hold the straight line taken off; of a line's power
+LINE_BINS = 3  # to each side, of a line whose frequency lies between two bins
+# Of slow noise: bins of its corner beyond the first, levels there over the largest power of all.
+CORNERS = np.array([1.0, 3.0, 10.0, 30.0])
+LEVELS = tuple(2.0 ** -k for k in range(16))
 LEAST_SHARE = 0.25  # of the standard deviation of the noise: smaller is no matter
 # A bench or a table sways at its own frequencies, by chance: from stretch to stretch the power
 # there scatters as much as its mean (noise through a resonance is exponential). Something that
@@ -192,7 +196,12 @@ def strongest(sessions, sensor, axis):
     k = int(ratio.argmax())
     if not ratio[k] > 0.0:
         return None
-    doubt = 1.0 + 2.0 * 1.25 / math.sqrt(width * number)  # the floor is a median itself
+    # Nor does it stand out of slow noise that falls there by chance and rises again.
+    slow = slow_noise(band, np.maximum(floor, 1e-12), k, number)
+    known = width if slow[k] < floor[k] else np.count_nonzero(slow > floor)  # bins it is told by
+    floor = floor + slow
+    ratio[k] = band[k] / max(floor[k], 1e-12)
+    doubt = 1.0 + 2.0 * 1.25 / math.sqrt(known * number)  # the floor is a median itself
     nats = -(log_beyond(ratio[k] * number / doubt, number) + math.log(3.0 * len(band)))
     if nats < -math.log(CHANCE):
         return None
@@ -217,6 +226,21 @@ def strongest(sessions, sensor, axis):
     lobe, beside = (float((band - floor)[max(0, k - w):k + w + 1].sum()) for w in (2, BESIDE))
     return Line(axis, hz, rate / n, nats, amplitude, error, narrow=lobe > NARROW * beside,
                 power=excess, excess=beyond)
+
+
+def slow_noise(band, even, at, number):
+    """(k,) power of noise below a corner frequency beyond an even floor, as that of a sensor that
+    wanders is (an Ornstein-Uhlenbeck process; with its corner at the first bin, nearly a random
+    walk): the likeliest in a mean of `number` spectra beside a line at one bin [Whittle; Percival
+    & Walden, equation 10.3]."""
+    others = np.abs(np.arange(len(band)) - at) > LINE_BINS
+    bins = 1.0 + np.arange(len(band))
+    shapes = 1.0 / (1.0 + (bins / CORNERS[:, None]) ** 2)
+    noise = even + np.concatenate([
+        np.zeros((1, len(band))),
+        *(level * band[others].max() * shapes / shapes[:, :1] for level in LEVELS)])
+    cost = number * (np.log(noise) + band / noise)[:, others].sum(axis=1)
+    return noise[int(cost.argmin())] - even
 
 
 def log_beyond(x, number):
