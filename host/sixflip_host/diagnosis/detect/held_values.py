@@ -115,11 +115,16 @@ def _kept(counts, axis):
 
 def _held(counts, axis):
     """(n - 1,) which of the rows of counts (n, 3) after the first have an axis as the row before
-    and not all others. What a dead band or a rail holds is theirs; where all axes repeat no row
-    was read."""
+    and not all others. What a dead band or a rail holds is theirs, and so is a code that an axis
+    comes to rest at again and again, as one does that is gated about its bias; where all axes
+    repeat no row was read."""
     column, same = counts[:, axis].astype(np.int64), counts[1:] == counts[:-1]
+    first = np.flatnonzero(np.append(True, ~same[:, axis]))
+    long = column[first[np.diff(np.append(first, len(column))) >= WINDOW]]
+    gates, times = np.unique(long, return_counts=True)
     return same[:, axis] & ~same.all(axis=1) & (column[1:] != 0) & (
-        np.abs(column[1:]) < NEAR_END * np.abs(column).max())
+        np.abs(column[1:]) < NEAR_END * np.abs(column).max()) & ~np.isin(
+            column[1:], gates[times > 1])
 
 
 def stuck_rows(session, damages):
