@@ -7,67 +7,75 @@ import os
 import pickle
 import signal
 import sys
+from typing import NamedTuple
 
 from . import progress
 
 
+class Copy(NamedTuple):
+    """A copy of this process that calls functions, and ends: its number (None: the system had none
+    to give), and the pipe that their results come by."""
+
+    functions: list
+    pid: int | None
+    pipe: object
+
+
 def results(functions, processors):
-    """[what each of functions, called without arguments, returns], in their order. With more than
-    one processor all but the first run in a copy of this process each, where the system has cheap
+    """[what each of functions, called without arguments, returns], in their order. They are dealt
+    out to this process and to a copy of it for each further processor, where the system has cheap
     copies (Linux; elsewhere they run here, one after the other): what they return has to be
     picklable, and what they change is changed in the copy only. What one raises is raised here."""
     functions = list(functions)
-    if processors < 2 or len(functions) < 2 or sys.platform != "linux":
+    number = min(processors, len(functions)) if sys.platform == "linux" else 1
+    if number < 2:
         return [function() for function in functions]
-    copies = [_Copy(function) for function in functions[1:]]
+    copies = [_started(functions[k::number]) for k in range(1, number)]
     try:
-        return [functions[0](), *(copy.result() for copy in copies)]
+        dealt = [[function() for function in functions[::number]], *map(_results_of, copies)]
+        return [dealt[k % number][k // number] for k in range(len(functions))]
     finally:
         for copy in copies:
-            copy.end()
+            _ended(copy)
 
 
-class _Copy:
-    """A copy of this process that calls a function and ends; a system that has no more processes
-    to give leaves the function to this one."""
-
-    def __init__(self, function):
-        self.function, self.pid = function, None
-        out, into = os.pipe()
-        try:
-            self.pid = os.fork()
-        except OSError:
-            os.close(into)
-        if self.pid == 0:
-            _answer(function, into)
-        if self.pid:
-            os.close(into)
-        self.out = os.fdopen(out, "rb")
-
-    def result(self):
-        try:
-            outcome, value = pickle.load(self.out)
-        except EOFError:  # it was ended from outside, as where memory is short
-            return self.function()
-        if outcome == "raised":
-            raise value
-        return value
-
-    def end(self):
-        self.out.close()
-        if self.pid:
-            os.kill(self.pid, signal.SIGKILL)
-            os.waitpid(self.pid, 0)
-            self.pid = None
+def _started(functions):
+    """Copy at work on these functions."""
+    out, into = os.pipe()
+    try:
+        pid = os.fork()
+    except OSError:
+        pid = None
+    if pid == 0:
+        _answer(functions, into)
+    os.close(into)
+    return Copy(functions, pid, os.fdopen(out, "rb"))
 
 
-def _answer(function, into):
-    """In the copy: write what the function returns, and end without what the original does at its
+def _results_of(copy):
+    try:
+        outcome, value = pickle.load(copy.pipe)
+    except EOFError:  # there is none, or it was ended from outside, as where memory is short
+        return [function() for function in copy.functions]
+    if outcome == "raised":
+        raise value
+    return value
+
+
+def _ended(copy):
+    copy.pipe.close()
+    if copy.pid is not None:
+        os.kill(copy.pid, signal.SIGKILL)
+        os.waitpid(copy.pid, 0)
+
+
+def _answer(functions, into):
+    """In the copy: write what the functions return, and end without what the original does at its
     end."""
     try:
         progress.silence()
         try:
-            outcome = "returned", function()
+            outcome = "returned", [function() for function in functions]
         except Exception as error:
             outcome = "raised", error
         with os.fdopen(into, "wb") as pipe:

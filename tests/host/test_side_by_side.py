@@ -16,10 +16,17 @@ copies = pytest.mark.skipif(sys.platform != "linux", reason="copies of a process
 
 @copies
 def test_what_is_returned_is_in_order_and_from_processes_of_their_own():
-    found = side_by_side.results([lambda k=k: (k, os.getpid()) for k in range(3)], 2)
+    found = side_by_side.results([lambda k=k: (k, os.getpid()) for k in range(3)], 3)
     assert [k for k, _ in found] == [0, 1, 2]
     assert found[0][1] == os.getpid()
     assert len({pid for _, pid in found}) == 3
+
+
+@copies
+def test_many_functions_take_no_more_processes_than_processors():
+    found = side_by_side.results([lambda k=k: (k, os.getpid()) for k in range(31)], 2)
+    assert [k for k, _ in found] == list(range(31))
+    assert len({pid for _, pid in found}) == 2
 
 
 def test_one_processor_makes_no_copies():

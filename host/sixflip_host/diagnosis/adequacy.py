@@ -185,6 +185,7 @@ def oddity(x, shaken=(), alike=True):
 def tails(x):
     """Probability of such heavy tails of a normal x (n,); 1.0 where they are not beyond what
     chance and noise of not quite the kernel's colour have."""
+    # As scipy.stats.kurtosis has it, which takes a second to import.
     moments = ((x - x.mean()) ** np.array([[2], [4]])).mean(axis=1)
     beyond, error = moments[1] / moments[0] ** 2 - 3.0, np.sqrt(24.0 / len(x))
     if beyond <= KURTOSIS_SIGMAS * error + 0.5:

@@ -25,14 +25,14 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
     jobs       processors, 0: all
     prior      fleet_prior.FleetPrior of boards of this kind, None: the data sheets' sizes
     """
-    captures, held = held_values.as_read(captures)
-    captures, damages = byte_faults.repaired(captures, Settings(jobs=jobs).processors)
-    damages = [*held, *damages]
-    sessions = [blocks.session_of(name, capture) for name, capture in captures]
     noise = {}
     for name, capture in reference:
         noise = flicker_levels(capture, name)
     settings = Settings(certified_box, tuple(without), noise, jobs, prior=prior)
+    captures, held = held_values.as_read(captures)
+    captures, damages = byte_faults.repaired(captures, settings.processors)
+    damages = [*held, *damages]
+    sessions = [blocks.session_of(name, capture) for name, capture in captures]
     own, comparisons = None, []
     if simulator:
         from .simulator import against_simulator, comparison, convention_findings

@@ -21,7 +21,6 @@ FLIPS_DEG = (0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8)
 FEWEST_MOVES = 6  # two equations each: as many as nine of the matrix and three of the bias
 WRONG_DEG = 25.0  # of a turn's end: as of a label that gravity contradicts (blocks.FAR_OFF_DEG)
 OFF_DEG = 6.0  # of a turn's end by a gyro not yet calibrated: a few percent of a half turn
-ASTRAY = (0.01, 0.1, 0.3, 0.99)  # shares of turns that end anywhere
 BANDS_DPS = (1.0, 4.0)  # widths over which a dead band bends the rates beyond it
 TIMES = (1.0, 10.0)  # the usual width of a dead band: no data sheet gives one
 AT_END = 0.03  # of the largest rate read: as wide as noise and bias leave what is cut off
@@ -206,11 +205,13 @@ def swapped(sessions, nominal):
     chosen = [t for s, m in zip(sessions, nominal) for t in turns.usable_turns(s, m.up)
               if t.before @ t.after < 0.8][:10]
     plain = np.array([t.off() for t in chosen])
-    if len(chosen) < 3 or plain.max() < WRONG_DEG:  # the plain order does: no other is tried
+    if len(chosen) < 3 or plain.mean() < WRONG_DEG:  # the plain order does: no other is tried
         return None
     # Nor is the plain order in a range that is not the header's another order.
     plain = min([plain, *(np.array([t.integrated(np.eye(3) / times).off() for t in chosen])
                           for times in wrong_scale.RANGES)], key=np.sum)
+    if plain.mean() < WRONG_DEG:
+        return None
     off, matrix = min(((np.array([t.integrated(order).off() for t in chosen]), order)
                        for order in axis_order.SIGNED), key=lambda pair: pair[0].mean())
     score = order_nats(off, plain)
@@ -227,11 +228,10 @@ def swapped(sessions, nominal):
 
 def order_nats(off, plain):
     """Log likelihood ratio (nats) of turns whose ends are off (n,) degrees in an order of the
-    axes, as a direction normal about the right one, against the plain order's (n,); in either the
-    likeliest share of them may lie anywhere on the sphere, as where samples were lost."""
+    axes, as a direction normal about the right one, against the plain order's (n,), and against
+    ends that lie anywhere on the sphere."""
     def likelihood(degrees):
-        near = -0.5 * (degrees / OFF_DEG) ** 2 - np.log(2.0 * np.pi * np.radians(OFF_DEG) ** 2)
-        return max(float(np.logaddexp(near + np.log1p(-share),
-                                      np.log(share) - np.log(4.0 * np.pi)).sum())
-                   for share in ASTRAY)
-    return likelihood(off) - likelihood(plain) - np.log(len(axis_order.SIGNED))
+        return float((-0.5 * (degrees / OFF_DEG) ** 2
+                      - np.log(2.0 * np.pi * np.radians(OFF_DEG) ** 2)).sum())
+    anywhere = -len(off) * np.log(4.0 * np.pi)
+    return likelihood(off) - max(likelihood(plain), anywhere) - np.log(len(axis_order.SIGNED))
