@@ -91,30 +91,6 @@ def test_rows_read_again_while_the_box_turns_are_counted():
     assert present(nats) and rows == pytest.approx(len(again), rel=0.3)
 
 
-def test_coarse_noise_repeats_rows_by_chance():
-    """Of a sensor that moves and rests in one stretch all three axes repeat together."""
-    generator = np.random.default_rng(9)
-    slow = np.cumsum(generator.standard_normal((30000, 3)), axis=0) * 0.02
-    moves = np.repeat(generator.random(300) < 0.4, 100)[:, None] * np.cumsum(
-        generator.standard_normal((30000, 3)), axis=0)
-    counts = np.rint(slow + moves + 0.8 * generator.standard_normal((30000, 3)))
-    assert not present(held_values.read_again(counts)[0])
-
-
-def test_a_quiet_sensor_that_rests_and_moves_repeats_rows_by_chance():
-    """Noise of a third of a count repeats in most rows at rest and in none on the way: a stretch
-    of both has a chance of its own for each, and what all axes share is no holding."""
-    generator = np.random.default_rng(12)
-    moving = np.repeat(np.arange(80) % 2 == 1, 150)
-    turned = np.where(moving, 300.0, 0.0)[:, None] * generator.standard_normal((12000, 3))
-    counts = np.rint(turned + [0.1, -0.2, 0.15] + 0.35 * generator.standard_normal((12000, 3)))
-    assert not present(held_values.repeats(counts)[0])
-    held = np.arange(1, len(counts), 5)
-    counts[held] = counts[held - 1]
-    nats, rows, every = held_values.repeats(counts)
-    assert present(nats) and rows / every == pytest.approx(0.2, rel=0.2)
-
-
 def test_what_leaps_between_levels_is_no_walk():
     generator = np.random.default_rng(10)
     noise = 4.0 * generator.standard_normal(90000)
@@ -180,56 +156,6 @@ def test_a_band_about_a_bias_is_a_dead_band():
     assert found.axes == ["z"] and found.value["z"] == pytest.approx(86, abs=2)
     plain = np.rint(np.column_stack([others, 55.0 + rate])).astype(np.int16)
     assert samples_judged._dead_band("gyro", [plain], still) == []
-
-
-def test_a_coarse_sensor_that_moves_in_bursts_holds_nothing():
-    """Eight bits, noise of an eighth of a count: two rows in five repeat, all axes together."""
-    generator = np.random.default_rng(1)
-    moves = np.repeat(generator.random(160) < 0.5, 100).astype(float)
-    moves = np.convolve(moves, np.hanning(100) / np.hanning(100).sum(), "same")[:, None]
-    course = np.cumsum(0.3 * moves * generator.standard_normal((16000, 3)), axis=0)
-    x = course + [0.2, -0.3, 64.1] + (0.12 + 1.5 * moves) * generator.standard_normal((16000, 3))
-    counts = np.rint(x).astype(np.int16)
-    assert (counts[1:] == counts[:-1]).all(axis=1).mean() > 0.2
-    def said(accel):
-        capture = SimpleNamespace(accel=accel, gyro=None)
-        return [d.value for d in held_values.findings([SimpleNamespace(capture=capture)])]
-    assert said(counts) == []
-    twice, = said(np.repeat(counts[::2], 2, axis=0))
-    assert twice["times"] == pytest.approx(2.0, rel=0.05)
-
-
-def test_an_axis_that_keeps_its_value_while_the_others_change_is_stuck():
-    """Runs of 5 to 40 rows, one row in fifty, were no gap."""
-    generator = np.random.default_rng(3)
-    turned = 300.0 * np.sin(np.arange(8000) / 90.0) * (np.arange(8000) % 2000 > 900)
-    counts = np.rint(turned[:, None] + generator.normal(0.0, 3.0, (8000, 3))).astype(np.int16)
-
-    def said(gyro):
-        capture = SimpleNamespace(accel=None, gyro=gyro)
-        return [(d.axes, d.value["rows"]) for d in held_values.stuck_for_a_while(
-            [SimpleNamespace(capture=capture)])]
-    assert said(counts) == []
-    for first in range(500, 8000, 1000):
-        counts[first:first + 20, 1] = counts[first, 1]
-    (axes, rows), = said(counts)
-    assert axes == ("y",) and rows == pytest.approx(20, abs=2)
-
-
-def test_an_axis_that_is_stuck_for_minutes_says_nothing_of_its_rests():
-    """Its own quiet hid it: the noise of the quietest tenth was that of what is stuck."""
-    generator = np.random.default_rng(4)
-    counts = np.rint(generator.normal(40.0, 3.0, (8000, 3))).astype(np.int16)
-    counts[4000:5500, 2] = counts[4000, 2]
-    session = SimpleNamespace(capture=SimpleNamespace(accel=None, gyro=counts))
-    damage, = held_values.stuck_for_a_while([session])
-    assert damage.axes == ("z",)
-    rows = held_values.stuck_rows(session, [damage])
-    assert rows[4000:5500].mean() > 0.95 and rows[:4000].mean() < 0.02  # three alike by chance
-    for first in (1000, 2000, 6000):  # a gate about the bias comes back to the same code
-        counts[first:first + 500, 1] = 41
-    damage, = held_values.stuck_for_a_while([session])
-    assert damage.axes == ("z",)
 
 
 def test_an_axis_beside_one_that_leaps_has_no_dead_band():
