@@ -1,5 +1,6 @@
 """The command line: one line and one exit code for every error, never a traceback."""
 
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -82,6 +83,23 @@ def test_ctrl_c(monkeypatch, capsys):
     monkeypatch.setattr("sixflip_host.verbs.solve.run", interrupted)
     assert main(["solve", "x"]) == cli.INTERRUPTED
     assert capsys.readouterr().err == "sixflip: stopped\n"
+
+
+def test_ctrl_c_of_which_a_library_makes_another_error(monkeypatch, capsys):
+    def loading(args):
+        try:
+            signal.raise_signal(signal.SIGINT)
+        except KeyboardInterrupt:
+            raise ImportError("the C-extensions failed") from None
+    monkeypatch.setattr("sixflip_host.verbs.solve.run", loading)
+    assert main(["solve", "x"]) == cli.INTERRUPTED
+    assert capsys.readouterr().err == "sixflip: stopped\n"
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_ctrl_c_before_is_not_remembered(monkeypatch, capsys):
+    test_ctrl_c_of_which_a_library_makes_another_error(monkeypatch, capsys)
+    test_a_bug_is_one_line_too(monkeypatch, capsys)
 
 
 PRESSED = """
