@@ -139,37 +139,34 @@ def main(argv=None):
     quiet = "--quiet" in argv and "--json" not in argv and not set(TALKS) & set(argv)
     argv = [word for word in argv if word not in GLOBAL]
     prepare_streams()
-    with ctrl_c.remembered() as presses:
+    try:
+        with narrated(verbose), silenced(quiet), ctrl_c.kept():
+            log.info("sixflip %s", " ".join(argv))
+            code = run(argv)
+            sys.stdout.flush()
+            log.info("exit code %d", code)
+        return code
+    except SystemExit as stop:      # argparse after --help
+        return stop.code or 0
+    except KeyboardInterrupt:
+        return complain("stopped", INTERRUPTED, debug)
+    except BrokenPipeError:         # `sixflip show x | head`: not an error worth a word
+        throw_away_stdout()
+        return BROKEN_PIPE
+    except SixflipError as error:
+        return complain(str(error), error.exit_code, debug)
+    except OSError as error:
+        name = "%s: " % error.filename if error.filename else ""
+        code = 4 if error.filename else 1
         try:
-            with narrated(verbose), silenced(quiet):
-                log.info("sixflip %s", " ".join(argv))
-                code = run(argv)
-                sys.stdout.flush()
-                log.info("exit code %d", code)
-            return code
-        except SystemExit as stop:      # argparse after --help
-            return stop.code or 0
-        except KeyboardInterrupt:
-            return complain("stopped", INTERRUPTED, debug)
-        except BrokenPipeError:         # `sixflip show x | head`: not an error worth a word
+            sys.stdout.flush()
+        except OSError:                 # a full disk behind stdout: Python would say so again
             throw_away_stdout()
-            return BROKEN_PIPE
-        except SixflipError as error:
-            return complain(str(error), error.exit_code, debug)
-        except OSError as error:
-            name = "%s: " % error.filename if error.filename else ""
-            code = 4 if error.filename else 1
-            try:
-                sys.stdout.flush()
-            except OSError:                 # a full disk behind stdout: Python would say so again
-                throw_away_stdout()
-            return complain("%s%s" % (name, error.strerror or error), code, debug)
-        except MemoryError:
-            return complain("there is not enough memory for this", 4, debug)
-        except Exception as error:
-            if presses:                 # what a library made of Ctrl-C
-                return complain("stopped", INTERRUPTED, debug)
-            return complain(internal_error(error), INTERNAL_ERROR, debug)  # ours: still one line
+        return complain("%s%s" % (name, error.strerror or error), code, debug)
+    except MemoryError:
+        return complain("there is not enough memory for this", 4, debug)
+    except Exception as error:      # a bug of ours: still one line
+        return complain(internal_error(error), INTERNAL_ERROR, debug)
 
 
 @contextlib.contextmanager

@@ -1,4 +1,4 @@
-"""Ctrl-C, remembered: a library that is interrupted while it loads says something else."""
+"""Ctrl-C in the middle of an import: the library that is interrupted says something else."""
 
 import contextlib
 import signal
@@ -6,13 +6,12 @@ import threading
 
 
 @contextlib.contextmanager
-def remembered():
-    """While it lasts Ctrl-C raises KeyboardInterrupt as ever; yields the list of its presses.
+def kept():
+    """While it lasts, what an import made of Ctrl-C is raised as KeyboardInterrupt again.
 
     numpy makes an ImportError with a page of advice of a KeyboardInterrupt in the middle of its
-    own import: whoever sees an error of that kind has to know that a key was pressed. Python
-    lets only the main thread say what a signal does, and a caller with a handler of his own
-    keeps it.
+    own import, and an optional library would seem not to be installed. Python lets only the main
+    thread say what a signal does, and a caller with a handler of his own keeps it.
     """
     presses = []
 
@@ -25,7 +24,20 @@ def remembered():
     if ours:
         signal.signal(signal.SIGINT, press)
     try:
-        yield presses
+        yield
+    except Exception as error:
+        if presses and _of_an_import(error):
+            raise KeyboardInterrupt from error
+        raise
     finally:
         if ours and signal.getsignal(signal.SIGINT) is press:
             signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def _of_an_import(error):
+    """Whether an import that failed is what an error came from."""
+    while error is not None:
+        if isinstance(error, (ImportError, SystemError)):  # the latter is what C makes of it
+            return True
+        error = error.__cause__ or error.__context__
+    return False

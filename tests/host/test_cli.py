@@ -1,5 +1,6 @@
 """The command line: one line and one exit code for every error, never a traceback."""
 
+import contextlib
 import signal
 import subprocess
 import sys
@@ -10,6 +11,7 @@ import pytest
 from sixflip.record import correction_record
 from sixflip_host import cli, terminal
 from sixflip_host.cli import VERBS, main
+from sixflip_host.errors import SixflipError
 from tests.worlds.written_records import of_a_gy85
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -85,21 +87,44 @@ def test_ctrl_c(monkeypatch, capsys):
     assert capsys.readouterr().err == "sixflip: stopped\n"
 
 
-def test_ctrl_c_of_which_a_library_makes_another_error(monkeypatch, capsys):
-    def loading(args):
-        try:
+def pressed_while(makes):
+    """The run() of a verb that is interrupted, and what it makes of that."""
+    def run(args):
+        with contextlib.suppress(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
-        except KeyboardInterrupt:
-            raise ImportError("the C-extensions failed") from None
-    monkeypatch.setattr("sixflip_host.verbs.solve.run", loading)
+        makes()
+    return run
+
+
+def fails_to_import():
+    raise ImportError("the C-extensions failed")
+
+
+def seems_not_installed():
+    try:
+        fails_to_import()
+    except ImportError as error:
+        raise SixflipError("a library is not installed") from error
+
+
+@pytest.mark.parametrize("makes", [fails_to_import, seems_not_installed])
+def test_ctrl_c_of_which_an_import_makes_another_error(makes, monkeypatch, capsys):
+    monkeypatch.setattr("sixflip_host.verbs.solve.run", pressed_while(makes))
     assert main(["solve", "x"]) == cli.INTERRUPTED
     assert capsys.readouterr().err == "sixflip: stopped\n"
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
-def test_ctrl_c_before_is_not_remembered(monkeypatch, capsys):
-    test_ctrl_c_of_which_a_library_makes_another_error(monkeypatch, capsys)
-    test_a_bug_is_one_line_too(monkeypatch, capsys)
+def test_an_import_that_fails_by_itself_is_not_stopped(monkeypatch, capsys):
+    monkeypatch.setattr("sixflip_host.verbs.solve.run", lambda args: fails_to_import())
+    assert main(["solve", "x"]) == cli.INTERNAL_ERROR
+    assert "the C-extensions failed" in capsys.readouterr().err
+
+
+def test_a_bug_after_a_ctrl_c_that_was_obeyed_is_a_bug(monkeypatch, capsys):
+    monkeypatch.setattr("sixflip_host.verbs.solve.run", pressed_while(lambda: 1 / 0))
+    assert main(["solve", "x"]) == cli.INTERNAL_ERROR
+    assert "ZeroDivisionError" in capsys.readouterr().err
 
 
 PRESSED = """

@@ -125,17 +125,17 @@ def specs(gap, sizes):
 
 def added(move, effects):
     """(n, 3) mg: how far the simulated sensors with these effects (specs) are off in a move."""
-    moment = inertial_fit.moment(move.turn)
-    felt = np.stack(moment.f, 1)
+    body, felt, rate = inertial_fit.carried(move.turn)
+    moment = inertial_fit.moment(move.turn, felt, rate)
     accel, late = (list(np.zeros((3, len(felt)))) for _ in range(2))
     for spec in effects:
         make_effect(spec).add(moment, accel if spec["sensor"] == "accel" else late)
     accel, late = np.stack(accel, 1), np.stack(late, 1)
     if late.any():  # the motion was the one that such a gyro reads as it was read
         turn = move.turn.read_as(move.turn.middle - 0.5 * (late[1:] + late[:-1]))
-        body = inertial_fit.pinned(turn)
-        accel = accel + 1000.0 * (np.einsum("nji,j->ni", body, turn.before) - felt)
-    return inertial_fit.Seen.of_turn(move.turn).spectrum(accel[:, :, None])[:, :, 0]
+        there = inertial_fit.pinned(turn)
+        accel = accel + 1000.0 * (np.einsum("nji,j->ni", there, turn.before) - felt)
+    return inertial_fit.Seen.of_turn(move.turn, body, rate).spectrum(accel[:, :, None])[:, :, 0]
 
 
 def plan_of(session):

@@ -26,16 +26,17 @@ class RestsJudged:
 
 
 def judge(rests, findings, settings, conditions):
-    """RestsJudged of UsableRests; findings: of their samples. The accelerometer's rests and all
-    that is the gyro's go side by side where there are processors for it."""
+    """RestsJudged of UsableRests; findings: of their samples. All that is the gyro's and the
+    accelerometer's rests go side by side where there are processors for it; the gyro's, which is
+    more, is what need not be handed back."""
     sessions, nominal = rests.sessions, rests.nominal
     chip = sessions[0].capture.meta["sensor"]
     swapped = turns = motion = None
     models = [RestModel(kind, chip, settings, conditions) for kind in ("accel", "gyro")]
     jobs = [lambda: models[0].fit(sessions, nominal)]
     if all(s.gyro is not None for s in sessions):
-        jobs.append(lambda: _of_gyro(rests, findings, models[1]))
-    accel, *gyro = side_by_side.results(jobs, settings.processors)
+        jobs.insert(0, lambda: _of_gyro(rests, findings, models[1]))
+    *gyro, accel = side_by_side.results(jobs, settings.processors)
     gaps = {"accel": accel}
     if gyro:
         gaps["gyro"], swapped, turns, motion = gyro[0]

@@ -2,6 +2,7 @@
 and without."""
 import copy
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -67,15 +68,16 @@ def judge(sessions, settings=ALONE, damages=()):
     """SamplesJudged of all sessions; settings: settings.Settings; damages: those that were put
     right before."""
     without = settings.without
-    registers_say, (rings, lines) = side_by_side.results(
-        [lambda: of_registers(sessions), lambda: _of_spectra(sessions)], settings.processors)
-    findings = [f for f in registers_say + lines if f.effect not in without]
+    *found, whole, (rings, lines) = side_by_side.results(
+        [partial(say, sessions) for say in (*FOUND_BY, _of_whole_axes, _of_spectra)],
+        settings.processors)
+    findings = [f for f in sum(found, []) + lines if f.effect not in without]
     if any(d.kind == held_values.NOT_READ for d in damages):
         findings = [f for f in findings if f.effect != "dropped_samples"]
     coarse = {(f.sensor, axis) for f in findings if f.effect in COARSE for axis in f.axes}
     stuck = held_values.stuck_for_a_while(sessions, coarse)
-    damages = [*damages, *held_values.findings(sessions), *stuck, *wrong_scale.findings(sessions)]
-    bits = registers.stuck_bits(sessions)
+    held, scales, bits = whole
+    damages = [*damages, *held, *stuck, *scales]
     leaping = {sensor for sensor, *_ in bits} | {
         f.sensor for f in findings if f.effect == "dead_band"}
     noisy = leaping | {f.sensor for f in findings if f.effect in NOISY}
@@ -169,23 +171,34 @@ def _of_spectra(sessions):
         (sensor, axis) for sensor, axis, _, _ in rings])
 
 
-def of_registers(sessions):
-    """list of Finding of the registers and the clock over all sessions: steps (common divisor), a
-    dead band, torn reads, rails, clipped peaks, repeated and dropped samples, the true rate, axes
-    swapped or inverted."""
-    findings = []
-    for sensor in ("accel", "gyro"):
-        columns = [getattr(s.capture, sensor) for s in sessions]
-        if any(c is None for c in columns):
-            continue
-        findings += _per_axis("quantisation", sensor, [registers.steps(c) for c in columns],
-                              [codes.step_nats(c) for c in columns], "counts come in steps",
-                              [codes.distinct(c) for c in columns])
-        band = _dead_band(sensor, columns, [s.at_rest for s in sessions])
-        findings += band + saturation.saturation(sessions, sensor, columns)
-        findings += torn_reads.finding(sessions, sensor,
-                                       ["xyz".index(a) for f in band for a in f.axes])
-    return findings + sample_clock.findings(sessions) + axis_order.swapped(sessions)
+def _of_whole_axes(sessions):
+    """(Damages of values that are held, of scales, axes with a bit that is stuck)."""
+    return (held_values.findings(sessions), wrong_scale.findings(sessions),
+            registers.stuck_bits(sessions))
+
+
+def _of_registers(sensor, sessions):
+    """list of Finding of a sensor's registers over all sessions: steps (common divisor), a dead
+    band, rails, clipped peaks, torn reads."""
+    columns = [getattr(s.capture, sensor) for s in sessions]
+    if any(c is None for c in columns):
+        return []
+    band = _dead_band(sensor, columns, [s.at_rest for s in sessions])
+    return (_per_axis("quantisation", sensor, [registers.steps(c) for c in columns],
+                      [codes.step_nats(c) for c in columns], "counts come in steps",
+                      [codes.distinct(c) for c in columns])
+            + band + saturation.saturation(sessions, sensor, columns)
+            + torn_reads.finding(sessions, sensor, ["xyz".index(a) for f in band for a in f.axes]))
+
+
+def _of_rows(sessions):
+    """list of Finding of whole rows: repeated and dropped samples, the true rate, axes swapped or
+    inverted."""
+    return sample_clock.findings(sessions) + axis_order.swapped(sessions)
+
+
+# Functions of sessions: what they find is told in this order.
+FOUND_BY = (partial(_of_registers, "accel"), partial(_of_registers, "gyro"), _of_rows)
 
 
 def _per_axis(effect, sensor, sizes, nats, words, numbers):

@@ -91,6 +91,14 @@ class FactoredGram(Whitened):
                 inner[point, self.loud] = loud @ readings
         return quadratic, inner, logdet
 
+    def _chosen(self, points, columns):
+        self._fill(points)
+        return self.values[points.reshape(-1, *np.ones(np.ndim(columns), int)), columns]
+
+    def _at(self, point):
+        self._fill(np.array([point]))
+        return self.values[point]
+
     def _fill(self, points):
         new = np.unique(points[~self._done[points]])
         made = self._left if self._whitened else self._products

@@ -7,6 +7,8 @@ the whitened columns, of which any products are a short sum, or the products the
 there are few readings, one matrix of all of them is factored at each point, across what is
 projected out (DenseGram); the covariance of a long session is factored in time (factored_gram.py).
 """
+from functools import cached_property
+
 import numpy as np
 from scipy.linalg import lapack
 
@@ -49,37 +51,37 @@ def gathered(values, index, points=None):
 
 
 class Whitened(Products):
-    """Products of K whitened columns of r contrasts each: values (G, K, r), those of a point there
-    after _fill(points), which whoever inherits from this defines."""
+    """Products of K whitened columns of r contrasts each, of which whoever inherits from this
+    makes those that are asked for."""
 
     def blocks(self, points, rows, columns):
-        if len(rows) and len(columns):
-            self._fill(points)
-        others = self._chosen(points[:, None], columns)
-        own = others if rows is columns else self._chosen(points[:, None], rows)
+        if not len(rows) or not len(columns):
+            return np.zeros((len(points), len(rows), len(columns)))
+        others = self._chosen(points, columns)
+        own = others if rows is columns else self._chosen(points, rows)
         return own @ others.transpose(0, 2, 1)
 
     def rows(self, points, rows):
-        self._fill(points)
-        own = self._chosen(points[:, None], rows)
+        own = self._chosen(points, rows)
         return np.stack([self._every(white @ self._at(point).T)
                          for point, white in zip(points, own)])
 
     def each(self, points, index):
-        if index.size:
-            self._fill(points)
+        if not index.size:
+            return np.zeros((len(points), *index.shape, index.shape[1]))
         own, place = np.unique(index, return_inverse=True)
         if len(own) ** 2 < index.size * index.shape[1]:  # most columns are in most of them
             return gathered(self.blocks(points, own, own), place.reshape(index.shape))
-        white = self._chosen(points[:, None, None], index)
+        white = self._chosen(points, index)
         return white @ white.transpose(0, 1, 3, 2)
 
     def _chosen(self, points, columns):
-        return self.values[points, columns]
+        """(P, ..., r) columns (...), one or more, at points (P,), whitened."""
+        raise NotImplementedError
 
     def _at(self, point):
-        """(l, r) what is kept of a point."""
-        return self.values[point]
+        """(l, r) what there is to keep of a point: all columns, whitened."""
+        raise NotImplementedError
 
     def _every(self, kept):
         """(r, K) of what is kept for (r, l) columns."""
@@ -88,17 +90,15 @@ class Whitened(Products):
 
 def dense_products(groups, grid, space, common, columns):
     """DenseGram of columns (m, K). grid: list of (placement level, flicker level); space (m, p)
-    orthonormal, projected out; common (m, c), coefficients known to 1. LinAlgError where a
-    covariance is not positive definite."""
+    orthonormal, projected out; common (m, c), coefficients known to 1."""
     across = np.linalg.qr(space, mode="complete")[0][:, space.shape[1]:]
     loud = np.flatnonzero((columns != 0.0).any(axis=0))
-    return DenseGram(grid, across, across.T @ columns, loud,
-                     _factors(groups, grid, across, common))
+    return DenseGram(groups, grid, across, common, across.T @ columns, loud)
 
 
 def _factors(groups, grid, across, common):
     """(G, r, r) lower factors of the covariance at all points; what is above them is not
-    zero, but not read."""
+    zero, but not read. LinAlgError where a covariance is not positive definite."""
     base, lateral, kernel = covariance.components(groups)
     base, lateral, kernel = (across.T @ part @ across
                              for part in (base + common @ common.T, lateral, kernel))
@@ -118,44 +118,59 @@ class DenseGram(Whitened):
     """The products of K columns at the G points of a grid, r contrasts; made by dense_products().
 
     across (m, r): orthonormal, across what is projected out; columns (r, K), as contrasts; loud:
-    which of the columns are not zero; lower (G, r, r): factors of the covariance at all points.
-    values (P, l + 1, r): the l loud columns, whitened, and zero for all others, at the points
-    asked for so far, in their order. There is room for half of all points at first, which is more
-    than a search needs: memory that was just given back costs nothing to take again, and a larger
-    piece is always new.
+    which of the columns are not zero; the others as dense_products() has them. The covariance is
+    factored when it is first asked for, which is LinAlgError where it is not positive definite.
+    Of a point (l + 1, r) are kept: the l loud columns, whitened when they are first asked for,
+    and zero for all others. A search asks for all of them at few points, and for few at the others
+    around. (Beside which others a column is whitened shows in its last digit.)
     """
 
-    def __init__(self, grid, across, columns, loud, lower):
-        super().__init__(np.empty(((len(grid) + 1) // 2, len(loud) + 1, len(columns))))
-        self.grid, self._across, self._columns, self._lower = grid, across, columns, lower
-        self._loud, self._given = loud, np.asfortranarray(columns[:, loud])
+    def __init__(self, groups, grid, across, common, columns, loud):
+        super().__init__(None)
+        self.groups, self.grid, self._across, self._common = groups, grid, across, common
+        self._columns, self._loud = columns, loud
+        self._given = np.asfortranarray(columns[:, loud])
         self._place = np.full(columns.shape[1], len(loud))
         self._place[loud] = np.arange(len(loud))
-        self._slot, self._number = np.full(len(grid), -1), 0
+        self._kept, self._done = {}, np.zeros((len(grid), len(loud) + 1), bool)
 
     def __reduce__(self):
         """As factored_gram.FactoredGram's."""
-        return type(self), (self.grid, self._across, self._columns, self._loud, self._lower)
+        return type(self), (self.groups, self.grid, self._across, self._common, self._columns,
+                            self._loud)
+
+    @cached_property
+    def _lower(self):
+        return _factors(self.groups, self.grid, self._across, self._common)
 
     def at(self, point, columns=None):
         every = np.arange(len(self._place)) if columns is None else columns
         return super().at(point, every)
 
-    def _fill(self, points):
-        for point in points[self._slot[points] < 0]:
-            if self._number == len(self.values):
-                self.values = np.concatenate([self.values, np.empty_like(self.values)])
-            kept = self.values[self._number]
-            kept[:-1] = self._solved(point, self._given, 1).T
-            kept[-1] = 0.0
-            self._slot[point] = self._number
-            self._number += 1
+    def _fill(self, points, places):
+        """Whiten the columns at these places (k,) at points (P,) where they are not yet."""
+        for at in np.flatnonzero(~self._done[points[:, None], places].all(axis=1)):
+            point, last = points[at], len(self._loud)
+            if point not in self._kept:
+                self._kept[point] = np.empty((last + 1, self._given.shape[0]))
+                self._kept[point][last] = 0.0
+                self._done[point, last] = True
+            new = np.unique(places[~self._done[point, places]])
+            self._kept[point][new] = self._solved(
+                point, self._given if len(new) == last else self._given[:, new], 1).T
+            self._done[point, new] = True
 
     def _chosen(self, points, columns):
-        return self.values[self._slot[points], self._place[columns]]
+        places = self._place[columns]
+        self._fill(points, places.ravel())
+        chosen = np.empty((len(points), *places.shape, self._given.shape[0]))
+        for white, point in zip(chosen, points):
+            np.take(self._kept[point], places, axis=0, out=white, mode="clip")
+        return chosen
 
     def _at(self, point):
-        return self.values[self._slot[point]]
+        self._fill(np.array([point]), np.arange(len(self._loud) + 1))
+        return self._kept[point]
 
     def _every(self, kept):
         return kept[:, self._place]

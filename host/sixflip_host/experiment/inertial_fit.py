@@ -83,11 +83,11 @@ def move(turn, capture, nominal, course, session, by_hand, white, lag_ms=0.0):
     about how late the accelerometer is behind the gyro, see lagging()."""
     body, felt, rate = carried(turn)
     frame, flat = _frame(turn, body, rate)
-    seen = Seen.of_turn(turn)
+    seen = Seen.of_turn(turn, body, rate)
     scale = 1000.0 / capture.meta["accel_lsb_per_g"]
     measured = nominal.corrected(capture.accel[turn.first:turn.last] * scale)
     y = seen.spectrum(1000.0 * (measured - felt)[:, :, None])[:, :, 0]
-    m = moment(turn)
+    m = moment(turn, felt, rate)
     effects = np.hstack([terms.columns_of(EFFECTS[name]("accel", {}), m, len(felt))[2]
                          for name in EFFECT_NAMES]).reshape(len(felt), 3, EFFECTS_NUMBER)
     if lag_ms:
@@ -113,9 +113,8 @@ def carried(turn):
             turn.rate @ turn.matrix.T - turn.shift)
 
 
-def moment(turn):
-    """moment.Moment of a turn's samples."""
-    _, felt, rate = carried(turn)
+def moment(turn, felt, rate):
+    """moment.Moment of a turn's samples; felt, rate as carried() has them."""
     m = noise_arrays.moment()
     m.f, m.w = tuple(felt.T), tuple(rate.T)
     m.w_rate = tuple(np.gradient(rate, turn.t, axis=0).T)
@@ -196,8 +195,7 @@ class Seen:
     cosines: np.ndarray
 
     @classmethod
-    def of_turn(cls, turn):
-        body, _, rate = carried(turn)
+    def of_turn(cls, turn, body, rate):
         share = path(turn)
         n = int(np.clip(len(share) // 5, FEWEST_BINS, MOST_BINS))
         k = np.arange(n)

@@ -70,7 +70,7 @@ def test_bytes_put_together_wrongly_are_named_and_put_right(sound, name):
     again = getattr(session.capture, sensor)[:, axis].astype(int)
     true = getattr(sound, sensor)[:, axis].astype(int)
     assert (again == true).mean() > (0.9 if "or-ed" in name else 0.9999)
-    assert samples_judged.of_registers([session]) == []
+    assert samples_judged.judge([session]).findings == ()
 
 
 WIDE = {"white": lambda g: 300 * g.standard_normal(2000),

@@ -28,7 +28,7 @@ def found(effects=(), change=None, seed=5):
         if change:
             change(capture, np.random.default_rng(number))
         sessions.append(blocks.session_of(str(number), capture))
-    return {(f.effect, f.sensor): f for f in samples_judged.of_registers(sessions)}
+    return {(f.effect, f.sensor): f for f in samples_judged.judge(sessions).findings}
 
 
 def torn(column, share, generator):

@@ -165,10 +165,10 @@ def test_what_rounding_leaves_of_a_mean(noise):
 def test_torn_reads_in_noise_of_a_fifth_of_a_page():
     torn = captures([{"effect": "torn_reads", "sensor": "accel", "chance": 0.5}], seed=5)
     sessions = [blocks.session_of(str(k), c) for k, c in enumerate(torn)]
-    assert [(f.effect, f.sensor) for f in samples_judged.of_registers(sessions)] == [
+    assert [(f.effect, f.sensor) for f in samples_judged.judge(sessions).findings] == [
         ("torn_reads", "accel")]
     sound = [blocks.session_of(str(k), c) for k, c in enumerate(captures(seed=5))]
-    assert samples_judged.of_registers(sound) == []
+    assert samples_judged.judge(sound).findings == ()
 
 
 def test_spikes_that_are_no_torn_reads():
@@ -178,7 +178,7 @@ def test_spikes_that_are_no_torn_reads():
         at = generator.choice(len(capture), 400, replace=False)
         capture.accel[at] += generator.integers(-600, 600, (400, 3)).astype(np.int16)
     sessions = [blocks.session_of(str(k), c) for k, c in enumerate(two)]
-    assert samples_judged.of_registers(sessions) == []
+    assert samples_judged.judge(sessions).findings == ()
 
 
 @pytest.mark.parametrize("noise", [0.2, 0.5, 1.0])

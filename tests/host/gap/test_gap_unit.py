@@ -224,3 +224,20 @@ def test_twice_the_placements_need_no_more_than_twice_the_memory():
         assert unit.freedom == 5 * number - 12 and 0.0 < unit.quadratic[0] < unit.freedom
     assert peaks[1] < 2.4 * peaks[0]
     assert peaks[1] < (5 * 300) ** 2 * 8
+
+
+@pytest.mark.parametrize("few", [0, covariance.FEW])
+@pytest.mark.parametrize("asked", [[60], [3, 3], [], [60, 5, 3, 5], [4]])
+def test_what_was_asked_for_first_is_nothing_to_what_is_asked_for_next(asked, few, monkeypatch):
+    monkeypatch.setattr(covariance, "FEW", few)
+    once, asked, points = Plain(60).unit.gram, np.array(asked, dtype=int), np.array([2, 0, 2])
+    again, every = Plain(60).unit.gram, np.arange(61)
+    part = once.blocks(points, asked, every)
+    single = once.each(points, asked[:, None])
+    products = again.blocks(points, every, every)
+    assert part.shape == (3, len(asked), 61) and single.shape == (3, len(asked), 1, 1)
+    assert part == pytest.approx(products[:, asked])
+    assert single[:, :, 0, 0] == pytest.approx(products[:, asked, asked])
+    assert once.blocks(points, every, every) == pytest.approx(products)
+    if len(asked):
+        assert once.rows(points, asked) == pytest.approx(products[:, asked])
