@@ -231,3 +231,14 @@ def test_the_verb_says_it_in_json_and_words_and_writes_the_scenario(tmp_path, ca
     assert "accelerometer in motion" in said
     again = scenario.read(str(toml))
     assert [e["effect"] for e in again.effects] == ["lever_arm"]
+
+
+@pytest.mark.parametrize("seed", [5, 6])
+def test_what_rounding_leaves_in_rests_is_no_matter_of_motion(seed):
+    found = captures([], seed=seed)
+    for capture in found:
+        capture.accel[:] = np.rint(capture.accel / 512.0) * 512     # steps of 31 mg
+    gap = judged(found)
+    assert gap.seen and gap.posterior.best.forms == ()
+    as_if_fine, _ = motion_model._searched(gap.fit, ())
+    assert as_if_fine.best.forms != ()
