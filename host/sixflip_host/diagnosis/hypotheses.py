@@ -12,6 +12,7 @@ from .elimination import NONE, Columns
 
 TYPICAL = 0.2  # of a design's prior, which is ten times the typical size: twice typical
 WIDTHS = (0.2, 1.0)  # of the strangers' scale, tried for what is a session's own
+PARTS = ((0, 1, 2), (0,), (1,), (2,))  # and the axes that have it
 # A random walk's width, of the strangers' scale: from a chip's own flicker (0.3 to 0.45 mg, GAP)
 # to ten times the largest effects of the library. Halfway between two of them a prior is off
 # by 1.8, which costs half a nat a coefficient at most: ln r + (1 / r^2 - 1) / 2.
@@ -174,8 +175,11 @@ def on_axes(form, axes):
 
 
 def _private(design, columns):
-    widths = WIDTHS if design.generic else WALKS
-    choices = tuple(Columns(columns[list(choice)], width * design.prior[list(choice)])
-                    for choice in design.choices for width in widths)
+    """What is a session's own, as wide as one of its widths; a stranger on all axes or on one."""
+    axes, (widths, parts) = np.array(design.axes), \
+        (WIDTHS, PARTS) if design.generic else (WALKS, PARTS[:1])
+    choices = tuple(Columns(columns[mine], width * design.prior[mine])
+                    for choice in map(np.array, design.choices) for part in parts
+                    for mine in [choice[np.isin(axes[choice], part)]] for width in widths)
     return Form(design.effect, design.variant, None, design.keys, design.axes, NONE, choices,
                 index=tuple(columns.tolist()))

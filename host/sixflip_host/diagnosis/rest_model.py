@@ -209,7 +209,8 @@ class RestModel:
         # It is enough to know that it moves while the box lies still: so do other things, whose
         # own likelihood says so.
         by_choice = {key: min(value, MOVES) for key, value in by_choice.items()}
-        return {**by_choice, **strangers.looked_at(part.t, len(hypotheses.WIDTHS))}
+        return {**by_choice, **strangers.looked_at(
+            part.t, len(hypotheses.PARTS) * len(hypotheses.WIDTHS))}
 
     def between(self, units, nominal):
         """[Unit of what lies between the sessions], [] where there is nothing between."""

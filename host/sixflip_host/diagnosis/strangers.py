@@ -25,7 +25,8 @@ JUMPS = {0.0: 24, 20.0: 12, 60.0: 6}
 DEGREES = 6  # of a bend: a box in few poses shows no finer one
 # From 16 s, faster than which rests with moves between them do not follow, to the whole session:
 # in a quarter of an hour each is 1.3 times the one before, and a wave between two of them keeps
-# step with one for two of its periods; the strongest of all between them are tried as well. Faster
+# step with one for two of its periods; the strongest of all between them are tried as well, as are
+# the largest of all jumps. Faster
 # ones are looked for in the spectrum of the rests.
 PERIODS, STRONGEST = 16, 2
 FASTEST_S, OVER = 16.0, 4  # frequencies for each that a session can tell
@@ -97,7 +98,7 @@ def private(session, up, sensor, left):
     own = _smooth("own_time", hats(session.t, OWN_HATS), n, scale,
                   choices=[tuple(range(3 * OWN_HATS))])
     course = _smooth("own_time", courses(session.t), n, scale, COURSE, [tuple(range(3 * WALK))])
-    steps = jumps(session)
+    steps = [*jumps(session), *highest(session.t, left)]
     jump = _smooth("jump", steps, n, scale,
                    choices=[tuple(range(3 * k, 3 * k + 3)) for k in range(len(steps))])
     periods = [*periods_of(session.t), *strongest(session.t, left)]
@@ -173,13 +174,32 @@ def _told_apart(t):
     return int(max(float(np.ptp(t)), 1.0) / FASTEST_S)
 
 
-def looked_at(t, widths):
+def highest(t, left):
+    """[(n,)] STRONGEST steps between two blocks, of one rest as well: those that take most of
+    readings left (n, 3) by themselves."""
+    n = len(t)
+    steps = np.where(np.arange(n)[:, None] < np.arange(1, n), -0.5, 0.5).T
+    if not len(steps):
+        return [np.zeros(n)] * STRONGEST
+    before = np.arange(1, n)
+    sums = np.cumsum(left - left.mean(axis=0), axis=0)[:-1]
+    power = (sums ** 2).sum(axis=1) / (before * (n - before))
+    found = []
+    for _ in range(STRONGEST):
+        k = int(power.argmax())
+        found.append(steps[k])
+        power[max(k - OVER, 0):k + OVER + 1] = 0.0
+    return found
+
+
+def looked_at(t, each):
     """{(effect, variant, number of its choice): nats} that a choice costs which was looked for
-    beforehand: the strongest period is one of all that a session can tell; widths: number of
-    those that each period is tried with."""
-    cost = float(np.log(max(_told_apart(t) / STRONGEST, 1.0)))
-    return {("periodic", "", number): -cost
-            for number in range(PERIODS * widths, (PERIODS + STRONGEST) * widths)}
+    beforehand: the strongest period is one of all that a session can tell, the highest step one
+    of those between any two blocks; each: number of choices that each period or step has."""
+    tried = {"periodic": (PERIODS, _told_apart(t)), "jump": (sum(JUMPS.values()), len(t) - 1)}
+    return {(effect, "", number): -float(np.log(max(every / STRONGEST, 1.0)))
+            for effect, (before, every) in tried.items()
+            for number in range(before * each, (before + STRONGEST) * each)}
 
 
 def courses(t):

@@ -144,6 +144,25 @@ def test_what_is_no_random_walk_is_not_called_drift(course, captures):
     assert any(place.domain in ("time", "frequency") for place in localisation.places(gap))
 
 
+@pytest.mark.parametrize("part", [0.3, 0.5])
+def test_a_jump_of_one_axis_is_not_called_drift(part):
+    """2.5 mg along z, once in one session of two: between two rests, and in the middle of one.
+    All axes had to jump together, and between rests only: a walk was the likelier."""
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 4})
+    sessions = []
+    for number in range(2):
+        capture = simulated_session.session(plan, number)
+        capture.gyro = None
+        if number:
+            after = capture.t_us - capture.t_us[0] > part * (capture.t_us[-1] - capture.t_us[0])
+            capture.accel[after, 2] += round(2.5e-3 * capture.meta["accel_lsb_per_g"])
+        sessions.append(blocks.session_of(str(number), capture))
+    gap = rest_model.RestModel("accel", "mpu6050", diagnosis.Settings(jobs=1)).fit(
+        sessions, [attitude_fit.fit(session) for session in sessions])
+    assert not gap.drift and [form.effect for form in gap.strangers] == ["jump"]
+    assert [axis for axis, _ in gap.strange_axes["jump"]] == [2]
+
+
 def test_a_drift_between_the_levels_tried_is_explained_and_has_its_size():
     """The levels of noise lie a factor of two apart there: what was left beside the nearest one
     was half as much again as noise, and the interval did not hold the size."""
