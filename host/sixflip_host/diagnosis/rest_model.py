@@ -100,6 +100,14 @@ class RestModel:
         progress.doing("what explains it best")
         posterior = search_sets(model, forms, cost) if likeliest is None \
             else judge_likeliest(model, forms, cost, likeliest)
+        if len(posterior.best.forms) > 1 and any(
+                form.effect == "drift" and form.choices for form in posterior.best.forms):
+            # What else is there moves within the rests as well.
+            units = [replace(unit, within=self._within(parts[place][0], wandering.beside_others(
+                unit, sums, posterior.best, place))) if not unit.between else unit
+                for place, (unit, sums) in enumerate(zip(units, data.statistics))]
+            model = scored_sets.Model(units, data.statistics, noise)
+            posterior = judge_likeliest(model, forms, cost, posterior.best.forms)
         return units, data, options, noise, forms, cost, model, posterior
 
     def _turned_back(self, parts, searched):
@@ -197,11 +205,11 @@ class RestModel:
             columns[:, axis, number] = np.sign(np.rint(part.accel[:, axis]))
         return replace(rows, nuisance=np.hstack([rows.nuisance, columns.reshape(-1, len(axes))]))
 
-    def _within(self, part):
+    def _within(self, part, explained=0.0):
         """{(effect, variant, number of its choice): nats}: what the rests say of each walk, and
         what the choice of a period costs."""
         nats = np.array([wandering.within_rests(
-            part, self.kind, width * strangers.SCALE[self.kind],
+            part, self.kind, explained, width * strangers.SCALE[self.kind],
             adequacy.usual(self.chip, self.kind)) for width in hypotheses.WALKS])
         by_choice = {("drift", "walk", k): float(row.sum()) for k, row in enumerate(nats)}
         by_choice.update({("drift", hypotheses.ONE_AXIS, k): float(v)

@@ -126,11 +126,26 @@ def profile(levels, course):
     return tuple(float(np.exp(v)) for v in (middle, middle - half, middle + half))
 
 
-def within_rests(part, kind, size, flicker):
+def beside_others(unit, statistics, scored, place):
+    """(n, 3) of the readings of a unit, the place-th, what all members of a Scored set but the
+    drift explain, as the unit alone has it."""
+    own = scored.shared + sum((c.columns for c in scored.chosen[place]), NONE)
+    walk = [index for c in scored.chosen[place] if c.form.effect == "drift"
+            for index in c.columns.index]
+    fit = evidence.fit(unit, statistics, own, NONE, np.zeros(len(unit.grid)),
+                       scored.fits[place].index)
+    theta = evidence.coefficients([fit], own)[0][0]
+    others = ~np.isin(own.index, walk)
+    return (unit.raw(own.index[others]) @ theta[others]).reshape(-1, 3)
+
+
+def within_rests(part, kind, explained, size, flicker):
     """(3,) log likelihood ratio (nats), axis by axis, of the differences between neighbouring
     blocks of the rests of a session: a random walk that ends `size` off on average, against
-    noise and usual flicker alone. size, flicker in mg or deg/s."""
+    noise and usual flicker alone. size, flicker in mg or deg/s, explained (n, 3) what
+    something else explains of the blocks' readings."""
     values, noise = _readings(part, kind)
+    values = values - explained
     same = np.flatnonzero(np.diff(part.placement) == 0)
     if not len(same):
         return np.zeros(3)

@@ -5,7 +5,7 @@ import copy
 import numpy as np
 import pytest
 
-from sixflip_host.diagnosis import answer, diagnosis, localisation, rest_model
+from sixflip_host.diagnosis import answer, diagnosis, localisation, rest_model, wandering
 from sixflip_host.experiment import attitude_fit, blocks
 from sixflip_host.simulation import scenario, simulated_session
 
@@ -89,6 +89,24 @@ def test_a_slope_beside_a_walk_keeps_its_name(captures):
     assert (sensor, cause.effect) == ("gyro", "thermal_bias") and "y" in cause.letters
     low, high = cause.interval["y"]
     assert low < 0.4 < high
+    gap = found.gaps["gyro"]
+    for place, session in enumerate(gap.sessions):
+        beside = wandering.beside_others(gap.units[place], gap.data.statistics[place],
+                                         gap.posterior.best, place)
+        slopes = np.polyfit(session.temperature, beside, 1)[0]
+        assert slopes == pytest.approx([0.0, 0.4, 0.0], abs=0.1)
+
+
+def test_what_something_else_explains_says_nothing_of_a_walk(captures):
+    """A sine in the rests is one of many things that move while the box lies still."""
+    plain, swaying = blocks.session_of("0", captures[0]), moved(captures[:1], sways)[0]
+    sine = swaying.gyro - plain.gyro
+
+    def nats(session, explained=0.0):
+        return wandering.within_rests(session, "gyro", explained, 0.05, 0.003)
+
+    assert (nats(plain) < 1.0).all() and (nats(swaying) > 10.0).all()
+    assert nats(swaying, sine) == pytest.approx(nats(plain), abs=0.1)  # the noise is found anew
 
 
 def gyro_at_rest(sessions):
