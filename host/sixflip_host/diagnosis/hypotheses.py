@@ -94,7 +94,7 @@ def forms_of(units, without=(), drift=True):
                       for variant in strangers.COURSES[design.effect]]
             continue
         if design.choices:
-            forms.append(_private(design, columns))
+            forms.append(_private(design, columns, units[0].apart))
             if design.effect == "drift" and not units[0].apart:
                 forms.append(_one_axis(design, columns))
             continue
@@ -174,12 +174,14 @@ def on_axes(form, axes):
                 powers=tuple(form.powers[i] for i in keep), discrepancy=form.discrepancy)
 
 
-def _private(design, columns):
-    """What is a session's own, as wide as one of its widths; a stranger on all axes or on one."""
-    axes, (widths, parts) = np.array(design.axes), \
-        (WIDTHS, PARTS) if design.generic else (WALKS, PARTS[:1])
+def _private(design, columns, apart):
+    """What is a session's own, as wide as one of its widths; a stranger on all axes or on one;
+    apart: the units are axes."""
+    axes = np.array(design.axes)
+    widths, parts = (WIDTHS, PARTS) if design.generic else (WALKS, PARTS[:1])
     choices = tuple(Columns(columns[mine], width * design.prior[mine])
-                    for choice in map(np.array, design.choices) for part in parts
+                    for choice in map(np.array, design.choices)
+                    for part in (PARTS[:1] if apart else parts)
                     for mine in [choice[np.isin(axes[choice], part)]] for width in widths)
     return Form(design.effect, design.variant, None, design.keys, design.axes, NONE, choices,
                 index=tuple(columns.tolist()))

@@ -29,6 +29,7 @@ SECOND_ORDER_CHI2 = 2.0  # of what turned poses change in a cause: one nat, at m
 # Nats that a drift has for it at most from what it does within the rests: beyond doubt (odds.COST
 # and twice what a choice costs).
 MOVES = 10.0
+JUDGED_AGAIN = 3  # times, at most, that a set is with what a walk does beside the rest of it
 SHRUNK = 0.1  # of the usual sizes: of what next to nothing is known, next to nothing
 
 
@@ -100,14 +101,18 @@ class RestModel:
         progress.doing("what explains it best")
         posterior = search_sets(model, forms, cost) if likeliest is None \
             else judge_likeliest(model, forms, cost, likeliest)
-        if len(posterior.best.forms) > 1 and any(
-                form.effect == "drift" and form.choices for form in posterior.best.forms):
+        for _ in range(JUDGED_AGAIN):
+            if not wandering.walks_beside_others(posterior.best):
+                break
             # What else is there moves within the rests as well.
+            before = posterior.best.names
             units = [replace(unit, within=self._within(parts[place][0], wandering.beside_others(
                 unit, sums, posterior.best, place))) if not unit.between else unit
                 for place, (unit, sums) in enumerate(zip(units, data.statistics))]
             model = scored_sets.Model(units, data.statistics, noise)
             posterior = judge_likeliest(model, forms, cost, posterior.best.forms)
+            if posterior.best.names == before:
+                break
         return units, data, options, noise, forms, cost, model, posterior
 
     def _turned_back(self, parts, searched):
@@ -207,7 +212,7 @@ class RestModel:
 
     def _within(self, part, explained=0.0):
         """{(effect, variant, number of its choice): nats}: what the rests say of each walk, and
-        what the choice of a period costs."""
+        what the choice of a period or of a step costs; explained: see wandering.within_rests."""
         nats = np.array([wandering.within_rests(
             part, self.kind, explained, width * strangers.SCALE[self.kind],
             adequacy.usual(self.chip, self.kind)) for width in hypotheses.WALKS])

@@ -25,11 +25,11 @@ JUMPS = {0.0: 24, 20.0: 12, 60.0: 6}
 DEGREES = 6  # of a bend: a box in few poses shows no finer one
 # From 16 s, faster than which rests with moves between them do not follow, to the whole session:
 # in a quarter of an hour each is 1.3 times the one before, and a wave between two of them keeps
-# step with one for two of its periods; the strongest of all between them are tried as well, as are
-# the largest of all jumps. Faster
+# step with one for two of its periods; the strongest of all between them are tried as well. Faster
 # ones are looked for in the spectrum of the rests.
 PERIODS, STRONGEST = 16, 2
 FASTEST_S, OVER = 16.0, 4  # frequencies for each that a session can tell
+ANOTHER = 4  # blocks on either side of the largest step, within which none is another one
 WALK = 16  # terms of a random walk, and of any other course
 SCALE_TERMS = 6  # of the course of a scale: with more, each pose would have one of its own
 COURSE = "course"  # variant of what is a session's own in time
@@ -175,20 +175,19 @@ def _told_apart(t):
 
 
 def highest(t, left):
-    """[(n,)] STRONGEST steps between two blocks, of one rest as well: those that take most of
-    readings left (n, 3) by themselves."""
+    """[(n,)] STRONGEST steps between two blocks, which may be of one rest: those that take most of
+    the readings left (n, 3) of any axis by themselves, some blocks off each other."""
     n = len(t)
-    steps = np.where(np.arange(n)[:, None] < np.arange(1, n), -0.5, 0.5).T
-    if not len(steps):
-        return [np.zeros(n)] * STRONGEST
+    left = left - left.mean(axis=0)
+    taken = np.cumsum(left, axis=0)[:-1] ** 2 / np.maximum((left ** 2).sum(axis=0), 1e-12)
     before = np.arange(1, n)
-    sums = np.cumsum(left - left.mean(axis=0), axis=0)[:-1]
-    power = (sums ** 2).sum(axis=1) / (before * (n - before))
-    found = []
-    for _ in range(STRONGEST):
-        k = int(power.argmax())
-        found.append(steps[k])
-        power[max(k - OVER, 0):k + OVER + 1] = 0.0
+    share = taken.max(axis=1) / (before * (n - before))
+    found = [np.zeros(n)] * STRONGEST
+    for number in range(STRONGEST):
+        if share.any():
+            k = int(share.argmax())
+            found[number] = np.where(np.arange(n) <= k, -0.5, 0.5)
+            share[max(k - ANOTHER, 0):k + ANOTHER + 1] = 0.0
     return found
 
 

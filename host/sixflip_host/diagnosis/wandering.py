@@ -126,6 +126,12 @@ def profile(levels, course):
     return tuple(float(np.exp(v)) for v in (middle, middle - half, middle + half))
 
 
+def walks_beside_others(scored):
+    """Whether a Scored set has a walk and something else."""
+    return len(scored.forms) > 1 and any(
+        form.effect == "drift" and form.choices for form in scored.forms)
+
+
 def beside_others(unit, statistics, scored, place):
     """(n, 3) of the readings of a unit, the place-th, what all members of a Scored set but the
     drift explain, as the unit alone has it."""

@@ -41,8 +41,9 @@ class Unit:
     K), in the basis of the rows' groups without what space (m, p), orthonormal, holds; freedom;
     energy (K,), silent (K,) bool; gram: gram.Products, logdet (G,), quadratic (G,),
     inner (G, K).
-    signature: what the protocol is known by, see cutoffs.py. within: {(effect, number of its
-    choice): nats that the blocks of the rests say for it}. between: it lies between the
+    signature: what the protocol is known by, see cutoffs.py. within: {(effect, variant, number
+    of its choice): nats that the blocks of the rests say for it, less what it cost to look for
+    it}. between: it lies between the
     sessions, see session_offsets.py. turns: the turns that it was made of, where all columns
     are asked for. axis: 0..2 where the units are axes, which have no coefficient in common.
     """

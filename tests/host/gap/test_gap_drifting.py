@@ -5,7 +5,15 @@ import copy
 import numpy as np
 import pytest
 
-from sixflip_host.diagnosis import answer, diagnosis, localisation, rest_model, wandering
+from sixflip_host.diagnosis import (
+    answer,
+    diagnosis,
+    hypotheses,
+    localisation,
+    rest_model,
+    strangers,
+    wandering,
+)
 from sixflip_host.experiment import attitude_fit, blocks
 from sixflip_host.simulation import scenario, simulated_session
 
@@ -89,24 +97,28 @@ def test_a_slope_beside_a_walk_keeps_its_name(captures):
     assert (sensor, cause.effect) == ("gyro", "thermal_bias") and "y" in cause.letters
     low, high = cause.interval["y"]
     assert low < 0.4 < high
-    gap = found.gaps["gyro"]
-    for place, session in enumerate(gap.sessions):
-        beside = wandering.beside_others(gap.units[place], gap.data.statistics[place],
-                                         gap.posterior.best, place)
-        slopes = np.polyfit(session.temperature, beside, 1)[0]
-        assert slopes == pytest.approx([0.0, 0.4, 0.0], abs=0.1)
 
 
 def test_what_something_else_explains_says_nothing_of_a_walk(captures):
-    """A sine in the rests is one of many things that move while the box lies still."""
-    plain, swaying = blocks.session_of("0", captures[0]), moved(captures[:1], sways)[0]
-    sine = swaying.gyro - plain.gyro
+    """A sine moves while the box lies still as well, and an axis that has one does not walk."""
+    def course(generator, t):
+        sine = np.sin(2.0 * np.pi * t[:, None] / 40.0) * np.array([[1.0, 0.0, 0.0]])
+        return 3.0 * one_axis(generator, t) + 0.1 * sine
 
-    def nats(session, explained=0.0):
-        return wandering.within_rests(session, "gyro", explained, 0.05, 0.003)
-
-    assert (nats(plain) < 1.0).all() and (nats(swaying) > 10.0).all()
-    assert nats(swaying, sine) == pytest.approx(nats(plain), abs=0.1)  # the noise is found anew
+    sessions = moved(captures, course)
+    gap = gyro_at_rest(sessions)
+    assert gap.posterior.best.names == {"periodic", "drift"}
+    for place, session in enumerate(gap.sessions):
+        beside = wandering.beside_others(gap.units[place], gap.data.statistics[place],
+                                         gap.posterior.best, place)
+        sine = 0.1 * np.sin(2.0 * np.pi * session.t / 40.0)
+        sizes = np.polyfit(sine, beside, 1)[0]
+        assert sizes == pytest.approx([1.0, 0.0, 0.0], abs=0.1)
+        within = [max(gap.units[place].within["drift", hypotheses.ONE_AXIS, k]
+                      for k in range(axis * len(hypotheses.WALKS),
+                                     (axis + 1) * len(hypotheses.WALKS))) for axis in range(3)]
+        alone = wandering.within_rests(session, "gyro", 0.0, 0.05, 0.003)
+        assert within[0] < 1.0 < within[1] and alone[0] > rest_model.MOVES
 
 
 def gyro_at_rest(sessions):
@@ -160,6 +172,35 @@ def test_what_is_no_random_walk_is_not_called_drift(course, captures):
     assert not gap.drift
     assert gap.unexplained
     assert any(place.domain in ("time", "frequency") for place in localisation.places(gap))
+
+
+def test_what_was_looked_for_costs_what_was_looked_through(captures):
+    """The numbers of the choices that cost are those of the strongest periods and steps."""
+    gap = gyro_at_rest(moved(captures[:1], walks))
+    designs = {d.effect: d for d in gap.units[0].designs if d.choices and d.generic}
+    start = np.cumsum([0] + [len(d.keys) for d in gap.units[0].designs])
+    first = {d.effect: begin for begin, d in zip(start, gap.units[0].designs)}
+    for form in gap.options:
+        if form.effect not in ("periodic", "jump"):
+            continue
+        fixed = len(designs[form.effect].choices) - strangers.STRONGEST
+        last = first[form.effect] + designs[form.effect].choices[fixed][0]
+        cost = [gap.units[0].within.get((form.effect, "", k), 0.0)
+                for k in range(len(form.choices))]
+        assert [c < 0.0 for c in cost] == [choice.index[0] >= last for choice in form.choices]
+        assert {len(choice) for choice in form.choices} == {3, 1} if form.effect == "jump" \
+            else {6, 2}
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 40])
+def test_the_largest_step_is_found_on_the_axis_that_has_it(n):
+    """One axis is a hundred times as noisy as the one that jumps."""
+    left = np.random.default_rng(2).normal(0.0, 1.0, (n, 3)) * np.array([100.0, 0.1, 0.1])
+    left[n // 2:, 2] += 5.0
+    first, *others = strangers.highest(np.arange(n), left)
+    assert first.shape == (n,) and len(others) == strangers.STRONGEST - 1
+    if n > 2:
+        assert np.flatnonzero(np.diff(first)).tolist() == [n // 2 - 1]
 
 
 @pytest.mark.parametrize("part", [0.3, 0.5])
