@@ -127,7 +127,7 @@ class Diagnosis:
         """True when the capture would have shown most of what it is asked about."""
         if not self.gaps:
             return any(s.runs and s.t_s[-1] >= LEAST_S for s in self.sessions)
-        return detectability.visible_share(self) >= 0.5
+        return detectability.visible_share(self) > 0.5
 
 
 def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), damages=(),

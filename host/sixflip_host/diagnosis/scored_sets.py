@@ -81,9 +81,12 @@ class Model:
     def best(self, base, forms):
         """[(Form, Scored of a base with it)] of the Forms that come near to the best one, which
         is first. Found with few levels of noise, then looked at with all of them."""
-        rough = sorted(enumerate(self._roughly(base, forms)),
+        keys = [frozenset((*base.forms, form)) for form in forms]
+        new = [place for place, key in enumerate(keys) if key not in self._looked_at]
+        for place, scored in zip(new, self._roughly(base, [forms[place] for place in new])):
+            self._looked_at[keys[place]] = scored
+        rough = sorted(enumerate(self._looked_at[key] for key in keys),
                        key=lambda pair: (pair[1].score, pair[0]), reverse=True)
-        self._looked_at.update((frozenset(scored.forms), scored) for _, scored in rough)
         return sorted(((forms[place], self.extended(base, forms[place]))
                        for place, _ in rough[:NEAR]), key=lambda pair: -pair[1].score)
 
@@ -205,12 +208,14 @@ class Model:
         """The likeliest Choice of a form in one unit, beside a tuple of Choice of the others."""
         unit, tried = self.units[place], []
         elimination = self._elimination(place, _private(beside))
-        # Integrated out by its prior a column is the same, shared or private.
-        together = [shared + choice for choice in form.choices]
-        for numbers in forms_at_once.by_size(together).values():
+        for numbers in forms_at_once.by_size(form.choices).values():
+            # Integrated out by its prior a column is the same, shared or private.
+            index, prior = (np.hstack([
+                np.tile(getattr(shared, name), (len(numbers), 1)),
+                np.stack([getattr(form.choices[n], name) for n in numbers])])
+                for name in ("index", "prior"))
             likelihoods = forms_at_once.fit(
-                unit, self.statistics[place], np.stack([together[n].index for n in numbers]),
-                np.stack([together[n].prior for n in numbers]), self._prior(place, free),
+                unit, self.statistics[place], index, prior, self._prior(place, free),
                 self._levels_tried(place, free), elimination).evidence
             for number, likelihood in zip(numbers, likelihoods.tolist()):
                 within = unit.within.get((form.effect, form.variant, number), 0.0)
@@ -236,8 +241,8 @@ def _free(forms):
 
 def _distinct(forms):
     """Shared Columns of all forms, each column once."""
-    shared = NONE
+    priors = {}
     for form in forms:
-        new = ~np.isin(form.shared.index, shared.index)
-        shared = shared + Columns(form.shared.index[new], form.shared.prior[new])
-    return shared
+        for index, prior in zip(form.shared.index.tolist(), form.shared.prior.tolist()):
+            priors.setdefault(index, prior)
+    return Columns(np.array(list(priors), int), np.array(list(priors.values()), float))

@@ -112,11 +112,19 @@ class Unit:
         return covariance.turned_back(self.rows.groups, z[:, None])[:, 0]
 
     def noise_energy(self, placement, level):
-        """Expected sum of squares of the contrasts where there is nothing but noise."""
+        """Expected sum of squares of the contrasts where there is nothing but noise; of
+        coefficients known beforehand, with what the readings themselves leave open of them."""
         base, lateral, kernel = covariance.energies(self.groups, self.space)
+        factor = covariance.Factor(self._together, [placement], level)
         common = self._common()
+        white = factor.whitened(np.hstack([self.space, common]))[0]
+        number = self.space.shape[1]
+        taken = np.linalg.lstsq(white[:, :number], white[:, number:], rcond=None)[0]
+        left = white[:, number:] - white[:, :number] @ taken
+        open_still = np.linalg.inv(np.eye(common.shape[1]) + left.T @ left)
         common = common - self.space @ (self.space.T @ common)
-        return base + placement ** 2 * lateral + level ** 2 * kernel + (common ** 2).sum()
+        return (base + placement ** 2 * lateral + level ** 2 * kernel
+                + float(((common @ open_still) * common).sum()))
 
     def _common(self):
         return _common(self.rows)

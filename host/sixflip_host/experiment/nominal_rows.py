@@ -1,10 +1,10 @@
 """Readings at rest as rows of the nominal model: the readings, the columns of what is unknown (the
 nuisance), and the covariance of what they err by.
 
-Nuisance of the accelerometer: twelve parameters; the lateral position of every pose (table and
-box; with a certified box only what changes sign with the flip); two free angles of each leaning
-placement. Of the gyro: a bias and the Earth's vertical rate. Their covariance is white / n +
-placement + flicker.
+Nuisance of the accelerometer: twelve parameters, of which the misalignments are known beforehand
+to a degree; the lateral position of every pose (table and box; with a certified box only what
+changes sign with the flip); two free angles of each leaning placement. Of the gyro: a bias and the
+Earth's vertical rate. Their covariance is white / n + placement + flicker.
 """
 from dataclasses import dataclass, replace
 
@@ -31,6 +31,11 @@ EARTH_DPS = (0.0005, 0.0012, EARTH_UP_DPS)
 # a variance to 41 %, and no axis is taken to have more or less than twice what all have.
 FEWEST_PAIRS, MOST_UNLIKE = 12, 2.0
 STILL = 1e-6  # share of an axis that does not wander at all: not 0, which has no logarithm
+# Of the twelve parameters' columns, as accel_nuisance has them, those of the misalignments. They
+# are known beforehand to what the faces of a box may lie off right angles, a degree. Were they
+# free, on a table that leans they would take up what the two poses of a face read differently.
+MISALIGNED = [4 * i + 1 + j for i in range(3) for j in range(3) if i != j]
+ASKEW_MG = 1000.0 * np.radians(1.0)
 # mg that rounding leaves in the mean of a rest from which on it is a nuisance of the face: half of
 # what a hand scatters a placement by (0.87 mg), below which that hides it.
 COARSE_MG = 0.5
@@ -187,8 +192,10 @@ def rows(kind, session, nominal, certified=False):
         return lateral_basis(face_axes(session.face[place.start:place.start + 1])[0]), None
     groups = _groups(session, session.accel, session.noise_accel, session.rounding_accel,
                      directions)
-    return Rows(accel_rows(session, nominal), groups, accel_nuisance(session, nominal, certified),
-                (PLACEMENT_MG, FLICKER_MG), (0, 4, 8), None, _known(session))
+    nuisance = accel_nuisance(session, nominal, certified)
+    free = np.delete(nuisance, MISALIGNED, axis=1)
+    return Rows(accel_rows(session, nominal), groups, free, (PLACEMENT_MG, FLICKER_MG), (0, 2, 4),
+                ASKEW_MG * nuisance[:, MISALIGNED], _known(session))
 
 
 def _earth(session, up):

@@ -15,8 +15,9 @@ from ..capture import clock
 from ..capture.capture_file import Capture
 from . import block_measures, noise_arrays, thermometer
 
+PLAY_G = (0.1, 0.2, 0.4)  # widths of a play operator: octaves below half of what a pose changes by
 # s, step at which hysteresis follows the way: a hand takes a second and more from pose to pose, so
-# the reading changes by about the narrowest width (terms.PLAY_G) within it, at most.
+# the reading changes by about the narrowest width within it, at most.
 PLAY_S = 0.1
 # Share of bad samples up to which a rest is kept: two of a protocol's rest of 500. What they add
 # to its mean is then at most that share of what is wrong with them.
@@ -172,21 +173,20 @@ class Session(ReadOnlyArrays):
         starts = np.array([self.t_s[run[1]] for run in self.runs])
         return fading(starts, up, tau_s)[self.placement]
 
-    def played(self, widths_g):
-        """[(n, 3)] a width: how far a play operator of that width (g) lags behind the specific
+    @cached_property
+    def play(self):
+        """(n, widths, 3): how far a play operator of each width of PLAY_G lags behind the specific
         force of each axis, over the whole way that the box was taken, -1 to 1 [Krejci,
         Hysteresis, Convexity and Dissipation in Hyperbolic Equations (1996), chapter II]."""
         step = max(1, int(PLAY_S * self.rate))
         counts = self.capture.accel[:len(self.capture.accel) // step * step]
         f = counts.reshape(-1, step, 3).mean(axis=1) / self.capture.meta["accel_lsb_per_g"]
-        width = np.array(widths_g)[:, None]
-        state, behind = np.repeat(f[:1], len(widths_g), axis=0), np.empty(
-            (len(f), len(widths_g), 3))
+        width = np.array(PLAY_G)[:, None]
+        state, behind = np.repeat(f[:1], len(PLAY_G), axis=0), np.empty((len(f), len(PLAY_G), 3))
         for k, now in enumerate(f):
             state = np.minimum(np.maximum(state, now - width), now + width)
             behind[k] = (state - now) / width
-        middle = np.minimum((self.first + self.end) // 2 // step, len(f) - 1)
-        return [behind[middle, k] for k in range(len(widths_g))]
+        return behind[np.minimum((self.first + self.end) // 2 // step, len(f) - 1)]
 
     def moment(self, up, number=0):
         """moment.Moment of all blocks; up (placements, 3): unit vectors against gravity."""

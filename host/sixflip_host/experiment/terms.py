@@ -15,13 +15,13 @@ from sixflip_sim.effects.library import EFFECTS
 
 from . import block_measures
 from .projection import by_axis
+from .session import PLAY_G
 from .thermometer import MOVES_C
 
 LAGS_S = (0.0, 15.0, 30.0, 60.0, -30.0)  # GAP: a neighbouring thermometer, 10-60 s
 WARM_UP_S = (30.0, 60.0, 120.0, 240.0, 480.0)  # GAP: 60-300 s, and an octave to both sides
 CREEP_S = (5.0, 15.0, 30.0, 60.0, 120.0)  # GAP: 60-70 s seen on Z; down to a rest's length
 LONG_MEMORY_S = 30.0  # longer than two rests with the move between them
-PLAY_G = (0.1, 0.2, 0.4)  # widths of a play operator: octaves below half of what a pose changes by
 SHIFT_MG = 5.0  # typical of what a vibration shifts, as of the library's other effects
 # What a vibration all round shifts by its rms, the strongest 1: as its power, as |f| rectifies it,
 # and all of it at once, as what rattles.
@@ -191,7 +191,7 @@ def remembered(session, m, plain):
     side the pose was reached, and a play operator along the whole way."""
     side = np.tanh(3.0 * (np.stack(m.before, 1) - np.stack(m.f, 1)))
     forms = [("side", side)] + [("play %g g" % width, behind) for width, behind in zip(
-        PLAY_G, session.played(PLAY_G))]
+        PLAY_G, session.play.transpose(1, 0, 2))]
     designs = []
     for variant, values in forms:
         columns = by_axis([values]).reshape(-1, 3)

@@ -17,7 +17,7 @@ from ..capture.capture_file import Capture
 from ..capture.find_poses import find_poses
 from ..diagnosis import samples_judged
 from ..diagnosis.detect import saturation
-from ..experiment import blocks, terms, thermometer
+from ..experiment import blocks, thermometer
 from ..experiment.session import OF_BLOCKS, Session, fading
 
 # What is a session's own; its vibration is what it and others agree on.
@@ -48,7 +48,7 @@ class SummarisedCapture(Capture):
 @dataclass(frozen=True, eq=False)
 class SummarySession(Session):
     """A Session without samples. starts (placements,): s since the capture's begin at
-    which each began; play (n, widths, 3): what played() says at terms.PLAY_G."""
+    which each began; play (n, widths, 3): Session.play."""
 
     starts: np.ndarray = None
     play: np.ndarray = None
@@ -70,9 +70,6 @@ class SummarySession(Session):
 
     def remembered(self, up, tau_s):
         return fading(self.starts, up, tau_s)[self.placement]
-
-    def played(self, widths_g):
-        return [self.play[:, terms.PLAY_G.index(width)] for width in widths_g]
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,8 +192,7 @@ def _blocks(session):
               if getattr(session, name) is not None}
     arrays["runs"] = np.array([(*run,) for run in session.runs], np.int64).reshape(-1, 3)
     arrays["starts"] = np.array([session.t_s[run.first] for run in session.runs], float)
-    arrays["play"] = np.stack(session.played(terms.PLAY_G), 1).astype(float) if session.n \
-        else np.zeros((0, len(terms.PLAY_G), 3))
+    arrays["play"] = session.play
     if session.thermometer is not None:
         arrays["thermometer"] = np.concatenate([session.thermometer.t[:1], session.thermometer.c])
     return arrays

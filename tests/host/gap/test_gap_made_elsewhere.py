@@ -285,14 +285,28 @@ def test_pages_are_told_where_noise_is_a_fifth_of_one():
     assert present(nats) and number == pytest.approx(spiked.sum(), rel=0.25)
 
 
-def test_a_low_byte_of_the_sample_before_is_a_torn_read():
-    x = rustling(22)
+@pytest.mark.parametrize("step", [1, 16])  # counts
+@pytest.mark.parametrize("other", [1, -1])  # whose low byte it is: of the sample before, after
+def test_a_low_byte_of_another_sample_is_a_torn_read(other, step):
+    """A high byte read before the registers changed and a low one after it, which the next sample
+    has as well: 86 of them among 93,000 samples were "no gap"."""
+    x = rustling(22) // step * step
     assert not present(torn_reads.competed(sample_neighbours.tabled(x, False))[0])
-    stale = np.random.default_rng(23).random(len(x)) < 0.02
-    torn = np.where(stale, (x & ~255) | np.roll(x, 1) & 255, x)
+    mixed = np.random.default_rng(23).random(len(x)) < 0.02
+    torn = np.where(mixed, (x & ~255) | np.roll(x, other) & 255, x)
     moved = (np.abs(torn - x) > 128).sum()
     nats, number, _ = torn_reads.competed(sample_neighbours.tabled(torn, False))
-    assert nats > 100.0 and number == pytest.approx(moved, rel=0.3)
+    assert nats > 80.0 and number == pytest.approx(moved, rel=0.3)
+
+
+def test_a_low_byte_of_sixteen_values_is_often_that_of_the_sample_before():
+    """Where the low bits are cut off one knock in 16 leads to it, and torn reads were named beside
+    the steps."""
+    for seed in range(3):
+        generator = np.random.default_rng(seed)
+        knocks = 200.0 * generator.standard_normal(24000) * (generator.random(24000) < 0.03)
+        x = np.rint(generator.normal(16390.0, 10.0, 24000) + knocks).astype(np.int64) // 16 * 16
+        assert not present(torn_reads.competed(sample_neighbours.tabled(x, False))[0])
 
 
 def test_pages_of_a_quiet_chip_are_no_low_bytes_of_the_sample_before():

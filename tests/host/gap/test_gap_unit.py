@@ -92,7 +92,12 @@ def test_statistics_are_those_of_the_covariance_at_every_point(loud, few, monkey
         other = q.T @ others
         assert quadratic[index] == pytest.approx(np.einsum("ir,ij,jr->r", other, inverse, other))
         assert projections[index] == pytest.approx(s.T @ inverse @ other)
-        assert unit.noise_energy(*point) == pytest.approx(np.trace(c))
+        known = q.T @ plain.common
+        # What the readings leave open of a coefficient of standard deviation 1.
+        left = 1.0 - known.T @ inverse @ known
+        assert 0.0 < left < 0.9
+        assert unit.noise_energy(*point) == pytest.approx(
+            np.trace(c) - (1.0 - left) * float((known ** 2).sum()))
         assert unit.chi2(unit.z, index) == pytest.approx(z @ inverse @ z)
         assert unit.weight(index) == pytest.approx(np.trace(inverse))
 

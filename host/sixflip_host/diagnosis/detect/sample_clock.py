@@ -14,7 +14,10 @@ from .axis_order import explained
 from .detection import Finding, present
 
 FEWEST = 200  # samples: two seconds at 100 Hz, over which stamps late by 0.5 ms tell 2 % from none
-CRYSTAL = 2e-4  # standard deviation of a clock that is as it says: crystal and driver together
+# Standard deviations of a clock that is as it says, alike in all sessions (a crystal and the
+# divider behind it: half a turn counted by it is off by 0.05 deg, which no hand turns to) and in
+# each.
+STATED, DRIVER = 3e-4, 2e-4
 OSCILLATOR = 0.02  # and of a sensor's own oscillator [ITG-3205 PS rev 1.0, table 3.1: 2 %]
 # Share of its error that an oscillator changes by from session to session, as it follows the
 # temperature, which differs by some 9 degC between a warming and a cooling session.
@@ -47,7 +50,7 @@ def rate(sessions, clocks):
                        for session, timing in zip(sessions, clocks)])
     widths = [np.ptp(timing.interval_hz) / 4.0 / session.rate  # 95 %: two standard errors each way
               for session, timing in zip(sessions, clocks)]
-    known = np.diag(np.square(widths) + CRYSTAL ** 2)
+    known = np.diag(np.square(widths) + DRIVER ** 2) + STATED ** 2
     alike = OSCILLATOR ** 2 * ((1.0 - WANDERS ** 2) + WANDERS ** 2 * np.eye(len(errors)))
     sound, own, common = (_log_normal(errors, c)
                           for c in (known, known + OSCILLATOR ** 2 * np.eye(len(errors)),

@@ -4,6 +4,8 @@ from dataclasses import dataclass, fields
 import numpy as np
 from scipy import ndimage
 
+from ...capture import registers
+
 PAGE = 256  # counts that share a high byte
 FEWEST = 50  # samples before the noise of a column is known, to a sixth
 # Standard deviations that the six neighbours of a sample at rest may span: of normal noise they
@@ -23,8 +25,9 @@ AT_A_TIME = 1 << 16  # samples that are looked at at once: memory, not time
 class Samples:
     """n samples against those around them: off, moved (n,): what those predict, and that by whole
     pages but 0, in standard deviations sigma (n,) counts; calm (n,) bool: those around agree;
-    before, after (n,) bool: the page is that of the sample before, of the one after; stale (n,)
-    bool: it is another one than before, and the low byte is that of the sample before."""
+    before, after (n,) bool: the page is that of the sample before, of the one after; stale, ahead
+    (n,) codes a count: one in as many as the axis counts in, where the page is another one than
+    before, or after, and the low byte is that of the sample there, 0 elsewhere."""
 
     off: np.ndarray
     moved: np.ndarray
@@ -33,6 +36,7 @@ class Samples:
     before: np.ndarray
     after: np.ndarray
     stale: np.ndarray
+    ahead: np.ndarray
 
     def __len__(self):
         return len(self.off)
@@ -82,10 +86,12 @@ def tabled(column, banded, at_rest=None, again=None, width=PAGE):
     off, sigma, page = off[keep], sigma[keep], column // width
     pages = np.rint(off / width)
     pages = np.where(pages == 0.0, np.where(off < 0.0, -1.0, 1.0), pages)
-    before, after = ((page[3:-3] == page[3 + k:len(page) - 3 + k])[keep] for k in (-1, 1))
-    low = column % width
+    (before, after), (stale, ahead) = (
+        [(byte[3:-3] == byte[3 + k:len(byte) - 3 + k])[keep] for k in (-1, 1)]
+        for byte in (page, column % width))
+    codes = 1.0 / registers.steps(column[:, None])[0]
     return Samples(off / sigma, (off - width * pages) / sigma, sigma, calm[keep], before, after,
-                   (low[3:-3] == low[2:-4])[keep] & ~before)
+                   codes * (stale & ~before), codes * (ahead & ~after))
 
 
 def _beside(around):

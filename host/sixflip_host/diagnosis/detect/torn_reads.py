@@ -3,7 +3,7 @@
 Each sample is judged by those around it. Sound, it lies as far from what they predict as the
 noise of the axis allows. Torn, it has the page (high byte) of the sample before, or after, and
 would lie so near with a page more or less; or it has a page of its own and the low byte of the
-sample before. What has no name jumps by any amount, or by whole
+sample before, or after. What has no name jumps by any amount, or by whole
 pages whatever the pages around. Torn reads are found where a share of the samples being torn
 makes all samples likelier than the same jumps do without a name.
 """
@@ -123,7 +123,7 @@ def paged(samples):
 
 def competed(samples):
     """(nats over what has no name, samples torn, samples that jump otherwise) of Samples, torn
-    with the page of the sample before or of the one after, or with the low byte before. Shares of
+    with the page, or with the low byte, of the sample before or of the one after. Shares of
     jumps and tails of the noise are the likeliest of those tried, in each hypothesis by itself;
     what was tried for the name's sake is paid."""
     chances, number, named, nameless = _chances(samples), len(samples), [], []
@@ -150,7 +150,7 @@ def _chances(samples):
     """{side: among how many of Samples one may be torn so}"""
     chances = {side: float(len(samples) - getattr(samples, side).sum())
                for side in ("before", "after")}
-    return {**chances, "stale": chances["before"]}
+    return {**chances, "stale": chances["before"], "ahead": chances["after"]}
 
 
 def _at_most(samples, jumps):
@@ -239,9 +239,9 @@ def led_back(part, paged_by):
 
 def torn_by(side):
     """A jump by a page that the sample before, or after, does not have; or to where the low byte
-    before leads on another page, which is one count."""
-    if side == "stale":
-        return lambda part, _: CROSSED * part.stale
+    before, or after, leads on another page, which is one count."""
+    if side in ("stale", "ahead"):
+        return lambda part, _: CROSSED * getattr(part, side)
     return lambda part, paged_by: paged_by * getattr(part, side)
 
 
