@@ -2,9 +2,10 @@
 nuisance), and the covariance of what they err by.
 
 Nuisance of the accelerometer: twelve parameters, of which the misalignments are known beforehand
-to a degree; the lateral position of every pose (table and box; with a certified box only what
-changes sign with the flip); two free angles of each leaning placement. Of the gyro: a bias and the
-Earth's vertical rate. Their covariance is white / n + placement + flicker.
+to a degree where hardly a pose leans; the lateral position of every pose (table and box; with a
+certified box only what changes sign with the flip); two free angles of each leaning placement. Of
+the gyro: a bias and the Earth's vertical rate. Their covariance is white / n + placement +
+flicker.
 """
 from dataclasses import dataclass, replace
 
@@ -33,7 +34,8 @@ FEWEST_PAIRS, MOST_UNLIKE = 12, 2.0
 STILL = 1e-6  # share of an axis that does not wander at all: not 0, which has no logarithm
 # Of the twelve parameters' columns, as accel_nuisance has them, those of the misalignments. They
 # are known beforehand to what the faces of a box may lie off right angles, a degree. Were they
-# free, on a table that leans they would take up what the two poses of a face read differently.
+# free, on a table that leans they would take up what the two poses of a face read differently;
+# poses that lean, as many as there are, tell them better than that by themselves.
 MISALIGNED = [4 * i + 1 + j for i in range(3) for j in range(3) if i != j]
 ASKEW_MG = 1000.0 * np.radians(1.0)
 # mg that rounding leaves in the mean of a rest from which on it is a nuisance of the face: half of
@@ -192,10 +194,12 @@ def rows(kind, session, nominal, certified=False):
         return lateral_basis(face_axes(session.face[place.start:place.start + 1])[0]), None
     groups = _groups(session, session.accel, session.noise_accel, session.rounding_accel,
                      directions)
-    nuisance = accel_nuisance(session, nominal, certified)
-    free = np.delete(nuisance, MISALIGNED, axis=1)
-    return Rows(accel_rows(session, nominal), groups, free, (PLACEMENT_MG, FLICKER_MG), (0, 2, 4),
-                ASKEW_MG * nuisance[:, MISALIGNED], _known(session))
+    nuisance, known, bias = accel_nuisance(session, nominal, certified), None, (0, 4, 8)
+    if len(np.unique(session.placement[session.face < 0])) < len(MISALIGNED):
+        nuisance, known = np.delete(nuisance, MISALIGNED, 1), ASKEW_MG * nuisance[:, MISALIGNED]
+        bias = (0, 2, 4)
+    return Rows(accel_rows(session, nominal), groups, nuisance, (PLACEMENT_MG, FLICKER_MG), bias,
+                known, _known(session))
 
 
 def _earth(session, up):

@@ -33,10 +33,6 @@ MEDIAN_SHARE = 0.25  # of the band: wider than any line, narrower than a filter'
 # Of the counts: rounding makes lines as large as that, unless the noise is half a step or more,
 # by which it is noise itself [Widrow & Kollar, Quantization Noise (2008), section 19.3].
 LEAST_STEPS, DITHERED = 0.5, 0.5
-# Variance of the power in three bins of Hann's window, of a line's times that of the noise in one
-# of them and of the latter's square: neighbours have 2/3 of their noise in common, with its sign,
-# and the next ones 1/6.
-HANN = 3.9, 4.8
 # Bins to each side; a line has that share of the power in them in its own lobe. A hand that
 # steadies the box, or a motor under load, has a wider bump.
 BESIDE, NARROW = 10, 0.6
@@ -132,19 +128,15 @@ def rests(sessions, sensor):
 
 
 def _stretches(sessions, sensor, length, whole=False):
-    return [getattr(session.capture, sensor)[start:start + length] * unit_of_count(
-        session.capture.meta, sensor) for session, start, _ in _starts(sessions, length, whole)]
-
-
-def _starts(sessions, length, whole=False):
-    """[(Session, first sample, pose code)] of stretches of this length, of rests or of it all."""
-    starts = []
+    stretches = []
     for session in sessions:
-        for code, first, end in [(0, 0, len(session.capture))] if whole else session.runs:
+        scale = unit_of_count(session.capture.meta, sensor)
+        counts = getattr(session.capture, sensor)
+        for _, first, end in [(0, 0, len(counts))] if whole else session.runs:
             first, end = first + int(0.1 * session.rate), end - int(0.1 * session.rate)
-            starts += [(session, start, code)
-                       for start in range(first, end - length + 1, length)]
-    return starts
+            for start in range(first, end - length + 1, length):
+                stretches.append(counts[start:start + length] * scale)
+    return stretches
 
 
 def spectrum(stretches, axis):
@@ -173,27 +165,12 @@ def step(sessions, sensor, axis):
     return scale * min(int(steps(getattr(s.capture, sensor)[:, [axis]])[0]) for s in sessions)
 
 
-def scatter(stretches, axis, k, poses):
-    """How much the power of a line around index k scatters from stretch to stretch, over its mean,
-    beyond what the noise beside it makes of a steady one: 0 of a sine, 1 of noise through a
-    resonance, which is exponential. poses: one a stretch, whose lines are compared; what shakes
-    the room goes along another axis in another pose."""
+def scatter(stretches, axis, k):
+    """Standard deviation over mean of the power around index k, from stretch to stretch."""
     window = np.hanning(len(stretches[0]))
     x = np.array([s[:, axis] - s[:, axis].mean() for s in stretches])
-    every = np.abs(np.fft.rfft(x * window, axis=1)) ** 2
-    power = every[:, max(0, k - 1):k + 2].sum(axis=1)
-    beside = np.abs(np.arange(every.shape[1]) - k)
-    noise = every[:, (beside > LINE_BINS) & (beside <= BESIDE)].mean()
-    _, pose, number = np.unique(poses, return_inverse=True, return_counts=True)
-    if number.max() == 1:  # none was there twice
-        pose, number = np.zeros_like(pose), np.array([len(pose)])
-    mean = np.bincount(pose, power) / number
-    variance = np.bincount(pose, (power - mean[pose]) ** 2) / np.maximum(number - 1, 1)
-    line = mean - 3.0 * noise
-    beyond = variance - HANN[0] * line * noise - HANN[1] * noise ** 2
-    again = number * (number > 1)  # what was there once says nothing
-    usual = float(again @ (line ** 2 - variance / number))
-    return math.sqrt(max(float(again @ beyond), 0.0) / usual) if usual > 0.0 else math.inf
+    power = (np.abs(np.fft.rfft(x * window, axis=1)) ** 2)[:, max(0, k - 1):k + 2].sum(axis=1)
+    return float(power.std(ddof=1) / max(power.mean(), 1e-300))
 
 
 def strongest(sessions, sensor, axis):
@@ -246,7 +223,7 @@ def strongest(sessions, sensor, axis):
             spread < DITHERED * counted and amplitude < LEAST_STEPS * counted):
         return None
     if resting and amplitude < STRONG_SHARE * spread and scatter(
-            stretches, axis, first + k, [pose for *_, pose in _starts(sessions, n)]) > STEADY:
+            stretches, axis, first + k) > STEADY:
         return None
     error = 1.0 / math.sqrt(max(2.0 * number * ratio[k], 1.0))
     hz = line_frequency.peak(mean, first + k) * rate / n
