@@ -3,7 +3,7 @@ simulated before and after, on each session held out (GAP stage 6, last sentence
 
 The simulated sensor repeats the real session: its attitudes, timing and temperature, its noise
 and flicker, the twelve parameters fitted. What is compared are the contrasts, so that nothing
-nominal is in the difference.
+nominal is in the difference but misalignments that are known beforehand, the same in both.
 """
 import math
 from dataclasses import dataclass

@@ -58,7 +58,7 @@ class Model:
 
     def __init__(self, units, statistics, levels):
         self.units, self.statistics, self.levels = units, statistics, levels
-        self._known, self._looked_at, self._priors = {}, {}, {}
+        self._known, self._looked_at, self._roughly_known, self._priors = {}, {}, {}, {}
         self._eliminations, self._tried = {}, {}
         self._positive = evidence.positive(units)
 
@@ -81,12 +81,12 @@ class Model:
     def best(self, base, forms):
         """[(Form, Scored of a base with it)] of the Forms that come near to the best one, which
         is first. Found with few levels of noise, then looked at with all of them."""
-        keys = [frozenset((*base.forms, form)) for form in forms]
-        new = [place for place, key in enumerate(keys) if key not in self._looked_at]
-        for place, scored in zip(new, self._roughly(base, [forms[place] for place in new])):
-            self._looked_at[keys[place]] = scored
-        rough = sorted(enumerate(self._looked_at[key] for key in keys),
+        known = self._roughly_known.setdefault((base.forms, base.chosen), {})
+        new = [form for form in forms if form not in known]
+        known.update(zip(new, self._roughly(base, new)))
+        rough = sorted(enumerate(known[form] for form in forms),
                        key=lambda pair: (pair[1].score, pair[0]), reverse=True)
+        self._looked_at.update((frozenset(scored.forms), scored) for _, scored in rough)
         return sorted(((forms[place], self.extended(base, forms[place]))
                        for place, _ in rough[:NEAR]), key=lambda pair: -pair[1].score)
 

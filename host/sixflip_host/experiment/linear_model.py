@@ -112,19 +112,23 @@ class Unit:
         return covariance.turned_back(self.rows.groups, z[:, None])[:, 0]
 
     def noise_energy(self, placement, level):
-        """Expected sum of squares of the contrasts where there is nothing but noise; of
-        coefficients known beforehand, with what the readings themselves leave open of them."""
+        """Expected sum of squares of the contrasts where there is nothing but noise."""
         base, lateral, kernel = covariance.energies(self.groups, self.space)
-        factor = covariance.Factor(self._together, [placement], level)
         common = self._common()
+        left = common - self.space @ (self.space.T @ common)
+        known = left @ self._open_still(common, placement, level) if self.rows.fitted else left
+        return (base + placement ** 2 * lateral + level ** 2 * kernel
+                + float((known * left).sum()))
+
+    def _open_still(self, common, placement, level):
+        """(c, c) covariance of coefficients of columns common (m, c), known to 1 beforehand, with
+        what the readings tell of them at these levels of noise."""
+        factor = covariance.Factor(self._together, [placement], level)
         white = factor.whitened(np.hstack([self.space, common]))[0]
         number = self.space.shape[1]
         taken = np.linalg.lstsq(white[:, :number], white[:, number:], rcond=None)[0]
         left = white[:, number:] - white[:, :number] @ taken
-        open_still = np.linalg.inv(np.eye(common.shape[1]) + left.T @ left)
-        common = common - self.space @ (self.space.T @ common)
-        return (base + placement ** 2 * lateral + level ** 2 * kernel
-                + float(((common @ open_still) * common).sum()))
+        return np.linalg.inv(np.eye(common.shape[1]) + left.T @ left)
 
     def _common(self):
         return _common(self.rows)

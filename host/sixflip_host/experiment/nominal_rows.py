@@ -34,8 +34,9 @@ FEWEST_PAIRS, MOST_UNLIKE = 12, 2.0
 STILL = 1e-6  # share of an axis that does not wander at all: not 0, which has no logarithm
 # Of the twelve parameters' columns, as accel_nuisance has them, those of the misalignments. They
 # are known beforehand to what the faces of a box may lie off right angles, a degree. Were they
-# free, on a table that leans they would take up what the two poses of a face read differently;
-# poses that lean, as many as there are, tell them better than that by themselves.
+# free, on a table that leans they would take up what the two poses of a face read differently.
+# Where six poses lean or more they are free: those tell three sums of two by themselves, and the
+# three differences, by which the whole sensor turns, not.
 MISALIGNED = [4 * i + 1 + j for i in range(3) for j in range(3) if i != j]
 ASKEW_MG = 1000.0 * np.radians(1.0)
 # mg that rounding leaves in the mean of a rest from which on it is a nuisance of the face: half of
@@ -159,7 +160,8 @@ class Rows:
     """Readings of one session before projection: y (n,), groups (list of covariance.Group),
     nuisance (n, p), bias: which of its columns are the sensor's, levels (of placement, of
     flicker), common (n, c): columns whose coefficients have a standard deviation of 1, known:
-    degrees of freedom with which the size of its noise is known."""
+    degrees of freedom with which the size of its noise is known; fitted: y is without what the
+    readings say of common, which the nominal sensor has taken up."""
 
     y: np.ndarray
     groups: list
@@ -168,6 +170,7 @@ class Rows:
     bias: tuple = ()
     common: np.ndarray | None = None
     known: float = np.inf
+    fitted: bool = False
 
     def left(self):
         """(n, 3) what the nuisance leaves of the readings, by plain least squares."""
@@ -194,12 +197,13 @@ def rows(kind, session, nominal, certified=False):
         return lateral_basis(face_axes(session.face[place.start:place.start + 1])[0]), None
     groups = _groups(session, session.accel, session.noise_accel, session.rounding_accel,
                      directions)
-    nuisance, known, bias = accel_nuisance(session, nominal, certified), None, (0, 4, 8)
-    if len(np.unique(session.placement[session.face < 0])) < len(MISALIGNED):
-        nuisance, known = np.delete(nuisance, MISALIGNED, 1), ASKEW_MG * nuisance[:, MISALIGNED]
-        bias = (0, 2, 4)
-    return Rows(accel_rows(session, nominal), groups, nuisance, (PLACEMENT_MG, FLICKER_MG), bias,
-                known, _known(session))
+    nuisance = accel_nuisance(session, nominal, certified)
+    free = Rows(accel_rows(session, nominal), groups, nuisance, (PLACEMENT_MG, FLICKER_MG),
+                (0, 4, 8), None, _known(session))
+    if len(np.unique(session.placement[session.face < 0])) >= len(MISALIGNED):
+        return free
+    return replace(free, nuisance=np.delete(nuisance, MISALIGNED, 1), bias=(0, 2, 4),
+                   common=ASKEW_MG * nuisance[:, MISALIGNED], fitted=True)
 
 
 def _earth(session, up):

@@ -186,7 +186,9 @@ class Session(ReadOnlyArrays):
         for k, now in enumerate(f):
             state = np.minimum(np.maximum(state, now - width), now + width)
             behind[k] = (state - now) / width
-        return behind[np.minimum((self.first + self.end) // 2 // step, len(f) - 1)]
+        play = behind[np.minimum((self.first + self.end) // 2 // step, len(f) - 1)]
+        play.setflags(write=False)
+        return play
 
     def moment(self, up, number=0):
         """moment.Moment of all blocks; up (placements, 3): unit vectors against gravity."""

@@ -228,13 +228,14 @@ def test_what_rings_out_after_a_box_is_put_down_is_no_line(hz, tau):
 
 @pytest.mark.parametrize("step", [1, 64])  # counts
 def test_a_line_is_smaller_than_the_steps_that_the_noise_covers(step):
-    """1.6 mg at 14 Hz were "no gap" where a count is 3.9 mg, and the noise as large."""
+    """1.6 mg at 14 Hz were "no gap" where a count is 3.9 mg, and the noise 0.6 of that."""
     session = short_rests(
         lambda t, start: 26.0 * np.sin(2.0 * np.pi * 31.0 * (start + t)), n=12000)
     session.capture.accel = (session.capture.accel // step * step).astype(np.int16)
     found, = spectral_lines.findings([session])
     assert found.effect == "vibration" and found.sensor == "accel"
     assert found.value["x"] == pytest.approx(26.0 / 16.384, rel=0.15)
+    assert found.hz["x"] == pytest.approx(31.0, abs=0.2)
 
 
 def test_a_slow_line_shows_in_many_short_rests_together():

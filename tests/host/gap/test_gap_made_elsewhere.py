@@ -296,7 +296,7 @@ def test_a_low_byte_of_another_sample_is_a_torn_read(other, step):
     torn = np.where(mixed, (x & ~255) | np.roll(x, other) & 255, x)
     moved = (np.abs(torn - x) > 128).sum()
     nats, number, _ = torn_reads.competed(sample_neighbours.tabled(torn, False))
-    assert nats > 80.0 and number == pytest.approx(moved, rel=0.3)
+    assert nats > (100.0 if step == 1 else 80.0) and number == pytest.approx(moved, rel=0.3)
 
 
 def test_a_low_byte_of_sixteen_values_is_often_that_of_the_sample_before():
@@ -306,6 +306,7 @@ def test_a_low_byte_of_sixteen_values_is_often_that_of_the_sample_before():
         generator = np.random.default_rng(seed)
         knocks = 200.0 * generator.standard_normal(24000) * (generator.random(24000) < 0.03)
         x = np.rint(generator.normal(16390.0, 10.0, 24000) + knocks).astype(np.int64) // 16 * 16
+        x[7] += 1  # one that is off the grid does not make them finer
         assert not present(torn_reads.competed(sample_neighbours.tabled(x, False))[0])
 
 

@@ -1,5 +1,6 @@
 """A session's sufficient statistics against the plain algebra, point by point of the grid."""
 import tracemalloc
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -7,11 +8,18 @@ from scipy import linalg
 
 from sixflip_host.diagnosis import adequacy
 from sixflip_host.diagnosis.elimination import NONE
-from sixflip_host.experiment import covariance, linear_model
+from sixflip_host.experiment import (
+    attitude_fit,
+    blocks,
+    covariance,
+    linear_model,
+    nominal_rows,
+)
 from sixflip_host.experiment.flicker import flicker_kernel
 from sixflip_host.experiment.nominal_rows import Rows, across
 from sixflip_host.experiment.projection import lateral_basis
 from sixflip_host.experiment.terms import Design
+from sixflip_host.simulation import scenario, simulated_session
 
 SECONDS = np.array([2.0, 2.0, 2.5, 2.5, 2.5, 4.0, 1.5, 1.5, 3.0, 3.0])
 T = np.cumsum(SECONDS) - 0.5 * SECONDS + 7.0 * np.array([0, 0, 1, 1, 1, 2, 3, 3, 4, 4])
@@ -92,11 +100,13 @@ def test_statistics_are_those_of_the_covariance_at_every_point(loud, few, monkey
         other = q.T @ others
         assert quadratic[index] == pytest.approx(np.einsum("ir,ij,jr->r", other, inverse, other))
         assert projections[index] == pytest.approx(s.T @ inverse @ other)
+        assert unit.noise_energy(*point) == pytest.approx(np.trace(c))
         known = q.T @ plain.common
         # What the readings leave open of a coefficient of standard deviation 1.
         left = 1.0 - known.T @ inverse @ known
         assert 0.0 < left < 0.9
-        assert unit.noise_energy(*point) == pytest.approx(
+        fitted = replace(unit, rows=replace(unit.rows, fitted=True))
+        assert fitted.noise_energy(*point) == pytest.approx(
             np.trace(c) - (1.0 - left) * float((known ** 2).sum()))
         assert unit.chi2(unit.z, index) == pytest.approx(z @ inverse @ z)
         assert unit.weight(index) == pytest.approx(np.trace(inverse))
@@ -246,3 +256,23 @@ def test_what_was_asked_for_first_is_nothing_to_what_is_asked_for_next(asked, fe
     assert once.blocks(points, every, every) == pytest.approx(products)
     if len(asked):
         assert once.rows(points, asked) == pytest.approx(products[:, asked])
+
+
+@pytest.mark.parametrize("leaning", [0, 5, 6, 12])
+def test_the_columns_of_a_bias_are_its_own_however_many_poses_lean(leaning):
+    """Six that lean tell the misalignments, which are known beforehand to a degree else."""
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 3})
+    session = blocks.session_of("s", simulated_session.session(plan, 0))
+    lean = np.unique(session.placement[session.face < 0])
+    assert len(lean) >= 12
+    session = session.part([p for p in range(session.placements()) if p not in lean[leaning:]])
+    rows = nominal_rows.rows("accel", session, attitude_fit.fit(session))
+    for axis, column in enumerate(rows.bias):
+        assert np.array_equal(rows.nuisance[:, column],
+                              np.kron(np.ones(session.n), np.eye(3)[axis]))
+    known = rows.common
+    assert (known is None) == (leaning >= 6) and rows.fitted == (leaning < 6)
+    if known is not None:
+        assert known.shape == (3 * session.n, 6)
+        up = attitude_fit.fit(session).up[session.placement]
+        assert np.allclose(known[0::3, 0], nominal_rows.ASKEW_MG * up[:, 1])

@@ -89,7 +89,9 @@ def tabled(column, banded, at_rest=None, again=None, width=PAGE):
     (before, after), (stale, ahead) = (
         [(byte[3:-3] == byte[3 + k:len(byte) - 3 + k])[keep] for k in (-1, 1)]
         for byte in (page, column % width))
-    codes = 1.0 / registers.steps(column[:, None])[0]
+    values, times = np.unique(column, return_counts=True)
+    # What was read once may lie anywhere: a jump, a rail.
+    codes = 1.0 / registers.steps(values[times > 1][:, None])[0]
     return Samples(off / sigma, (off - width * pages) / sigma, sigma, calm[keep], before, after,
                    codes * (stale & ~before), codes * (ahead & ~after))
 

@@ -31,7 +31,7 @@ CHANCE = 0.001  # six axes together: well below what registers and spectra share
 FEWEST = 4  # stretches
 MEDIAN_SHARE = 0.25  # of the band: wider than any line, narrower than a filter's colour
 # Of the counts: rounding makes lines as large as that, unless the noise is half a step or more,
-# by which it is noise itself [Widrow & Kollar, Quantization Noise (2008), section 19.3].
+# which makes its error noise as well [Widrow & Kollar, Quantization Noise (2008)].
 LEAST_STEPS, DITHERED = 0.5, 0.5
 # Bins to each side; a line has that share of the power in them in its own lobe. A hand that
 # steadies the box, or a motor under load, has a wider bump.
@@ -219,8 +219,9 @@ def strongest(sessions, sensor, axis):
     amplitude = math.sqrt(max(4.0 * excess / n, 0.0))
     spread = np.mean([s[:, axis].std() for s in stretches])
     counted = step(sessions, sensor, axis)
+    noise = math.sqrt(float(np.median(floor)))
     if amplitude < LEAST_SHARE * spread or (
-            spread < DITHERED * counted and amplitude < LEAST_STEPS * counted):
+            noise < DITHERED * counted and amplitude < LEAST_STEPS * counted):
         return None
     if resting and amplitude < STRONG_SHARE * spread and scatter(
             stretches, axis, first + k) > STEADY:
