@@ -2,7 +2,7 @@
 nuisance), and the covariance of what they err by.
 
 Nuisance of the accelerometer: twelve parameters, of which the misalignments are known beforehand
-to a degree where hardly a pose leans; the lateral position of every pose (table and box; with a
+to a degree where no pose leans; the lateral position of every pose (table and box; with a
 certified box only what changes sign with the flip); two free angles of each leaning placement. Of
 the gyro: a bias and the Earth's vertical rate. Their covariance is white / n + placement +
 flicker.
@@ -35,8 +35,8 @@ STILL = 1e-6  # share of an axis that does not wander at all: not 0, which has n
 # Of the twelve parameters' columns, as accel_nuisance has them, those of the misalignments. They
 # are known beforehand to what the faces of a box may lie off right angles, a degree. Were they
 # free, on a table that leans they would take up what the two poses of a face read differently.
-# Where six poses lean or more they are free: those tell three sums of two by themselves, and the
-# three differences, by which the whole sensor turns, not.
+# Where poses lean they are free: those tell three sums of two by themselves, and the three
+# differences, by which the whole sensor turns, not.
 MISALIGNED = [4 * i + 1 + j for i in range(3) for j in range(3) if i != j]
 ASKEW_MG = 1000.0 * np.radians(1.0)
 # mg that rounding leaves in the mean of a rest from which on it is a nuisance of the face: half of
@@ -200,7 +200,7 @@ def rows(kind, session, nominal, certified=False):
     nuisance = accel_nuisance(session, nominal, certified)
     free = Rows(accel_rows(session, nominal), groups, nuisance, (PLACEMENT_MG, FLICKER_MG),
                 (0, 4, 8), None, _known(session))
-    if len(np.unique(session.placement[session.face < 0])) >= len(MISALIGNED):
+    if (session.face < 0).any():
         return free
     return replace(free, nuisance=np.delete(nuisance, MISALIGNED, 1), bias=(0, 2, 4),
                    common=ASKEW_MG * nuisance[:, MISALIGNED], fitted=True)
