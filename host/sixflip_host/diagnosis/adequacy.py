@@ -12,7 +12,7 @@ from scipy import special
 from sixflip_sim.effects import typical
 from sixflip_sim.effects.drift import FLOOR_OF_KERNEL
 
-from . import evidence, excess, odds, session_offsets
+from . import between_sessions, evidence, excess, odds
 from .evidence import Levels
 
 PLACEMENT = {"accel": 0.87, "gyro": 0.003}  # 0.05 deg across gravity, mg; the Earth's rate
@@ -35,10 +35,11 @@ def usual(sensor, kind):
 
 def levels(sensor, kind, reference=None):
     """evidence.Levels of a chip; reference: flicker level of a capture of noise."""
+    changes = (between_sessions.UNUSUAL[quantity][kind] for quantity in ("bias", "scale"))
     if reference is not None:
         return Levels(PLACEMENT[kind], max(reference, usual(sensor, kind) / 4.0),
-                      session_offsets.UNUSUAL[kind], True)
-    return Levels(PLACEMENT[kind], usual(sensor, kind), session_offsets.UNUSUAL[kind])
+                      *changes, known=True)
+    return Levels(PLACEMENT[kind], usual(sensor, kind), *changes)
 
 
 @dataclass(frozen=True)
@@ -63,6 +64,8 @@ def goodness_of_fit(units, statistics, scored, usual_noise, shaken=(), by_hand=F
     theta = evidence.coefficients(scored.fits, shared)[0][0]
     index, parts, before = [], [], 0.0
     for unit, sums, fit, private in zip(units, statistics, scored.fits, scored.private):
+        if unit.between:  # a change of more than is usual is no noise
+            fit = _usual_change(unit, sums, shared, private, usual_noise)
         point = int(fit.index[0])
         index.append(point)
         chi2 = _between_levels(unit, sums, shared, private, theta, fit)
@@ -82,6 +85,13 @@ def goodness_of_fit(units, statistics, scored, usual_noise, shaken=(), by_hand=F
     odd, chance = _odd(units, scored, theta, shaken, by_hand) if wanders else ("", 1.0)
     p = min(p, looks * worst if not ok else 1.0, chance if odd else 1.0)
     return Adequacy(ok and not odd, p, tuple(index), chi2 - freedom, before, odd)
+
+
+def _usual_change(unit, statistics, shared, private, levels):
+    """Fit of what is between the sessions where no more than is usual changes at a switch-on."""
+    prior = levels.prior(unit, ())
+    return evidence.fit(unit, statistics, shared, private, prior,
+                        np.flatnonzero(prior == prior.max()))
 
 
 def _chi2(fit, theta):
@@ -117,7 +127,8 @@ def wandering_nats(units, statistics, scored, usual_noise):
 
 def placement_nats(units, statistics, scored, usual):
     """The same of placement beyond a level: of turns, degrees that their ends are off."""
-    return _beyond(list(zip(units, statistics, scored.private)), scored.shared, 0, usual)
+    return _beyond([(unit, *rest) for unit, *rest in zip(units, statistics, scored.private)
+                    if not unit.between], scored.shared, 0, usual)
 
 
 def _beyond(sessions, shared, column, usual):

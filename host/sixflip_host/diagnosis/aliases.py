@@ -130,7 +130,7 @@ def _grams(units, fits):
     grams, each = [0.0, 0.0], []
     for unit, fit in zip(units, fits):
         gram = unit.gram.at(fit.index[0])
-        grams[unit.between] = grams[unit.between] + gram
+        grams[bool(unit.between)] = grams[bool(unit.between)] + gram
         each += [] if unit.between else [gram]
     return grams, each
 

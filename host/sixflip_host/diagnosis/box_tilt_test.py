@@ -80,8 +80,8 @@ def _certified(gap, few):
         levels = tuple(tuple(sorted(set(values))) for values in zip(*near))
         # Beside a box that is no nuisance the readings tell the misalignments.
         rows = replace(unit.rows, nuisance=nominal_rows.accel_nuisance(session, model, True),
-                       levels=levels if few else unit.rows.levels, bias=(0, 4, 8), common=None,
-                       fitted=False)
+                       levels=levels if few else unit.rows.levels, bias=(0, 4, 8),
+                       scale=(1, 6, 11), common=None, fitted=False)
         units.append(linear_model.unit(
             rows, [unit.designs[k] for k in kept] if few else unit.designs, wanted,
             signature=unit.signature, within=unit.within))

@@ -54,7 +54,7 @@ def close_turns(gap, reference_c):
     if not gap.chosen or any(form.effect == "dead_band" for form in gap.chosen):
         return None
     before = after = floor = number = 0.0
-    for held, unit in enumerate(gap.units):
+    for held, unit in enumerate(gap.units[:len(gap.parts)]):
         theta = gap.coefficients(held)
         motion = [consistent(t) for t in unit.turns]
         squares = []

@@ -24,31 +24,34 @@ from .elimination import reduced
 
 # A standard deviation of each level's logarithm. Placement may be anything: a box that is put
 # down in any heading on a tilted table scatters by degrees.
-USUAL_FACTOR = {"placement": 8.0, "flicker": 2.0, "switch_on": 1.2}
+USUAL_FACTOR = {"placement": 8.0, "flicker": 2.0, "bias": 1.2, "scale": 1.2}
 KNOWN_FACTOR = 1.4  # and where a capture of noise alone was given
 
 
 @dataclass(frozen=True)
 class Levels:
     """What is usual: placement, flicker and the change of a bias from one switch-on to the next
-    (mg or deg/s); known: the flicker was measured."""
+    (mg or deg/s), of a scale (thousandths); known: the flicker was measured."""
 
     placement: float
     flicker: float
-    switch_on: float
+    bias: float
+    scale: float = 0.3
     known: bool = False
 
     def usual(self, unit):
         """(placement, flicker) that a unit has at most; of what is between the sessions (change
         from one switch-on to the next, 0)."""
-        return (self.switch_on, 0.0) if unit.between else (self.placement, self.flicker)
+        if unit.between:
+            return getattr(self, unit.between), 0.0
+        return self.placement, self.flicker
 
     def prior(self, unit, free):
         """(G,) log prior of each point of a unit's grid; free: names of levels that may be
         anything. Less than usual is as good as usual."""
         grid = np.array(unit.grid)
         if unit.between:
-            usual = {"switch_on": (grid[:, 0], self.switch_on)}
+            usual = {unit.between: (grid[:, 0], self.usual(unit)[0])}
         else:
             usual = {"placement": (grid[:, 0], self.placement),
                      "flicker": (grid[:, 1], self.flicker)}

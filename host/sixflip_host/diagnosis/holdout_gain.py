@@ -20,7 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import adequacy, coefficient_fits, excess, hypotheses, moves_fit, odds
+from . import adequacy, between_sessions, coefficient_fits, excess, hypotheses, moves_fit, odds
 
 DRAWN = 400  # of noise: their variance is known to 7 %, an interval's length to 4 %
 DRAWN_FLOOR = 100  # where its mean alone is asked for: a floor of 100 contrasts to half a percent
@@ -77,18 +77,36 @@ def shrinkage(data, chosen, index, usual, wanders=False):
     largest = usual.flicker * (math.inf if wanders else adequacy.TIMES_TYPICAL)
     metrics = excess.usual_levels(data.units, index, usual.flicker)
     total, generator = NOTHING, np.random.default_rng(20190919)
+    drawn = DRAWN if chosen else DRAWN_FLOOR
     for held, (unit, point, metric) in enumerate(zip(data.units, index, metrics)):
-        if unit.between:
-            continue
-        foretold = np.zeros(len(unit.z))
-        if len(shared):
+        if not unit.between:
             others = fits[:held] + fits[held + 1:] or fits
-            foretold = unit.columns[:, shared.index] @ coefficient_fits.coefficients(
-                others, shared)[0][0]
-        noise = _drawn(unit, fits[held], point, largest, generator,
-                       DRAWN if chosen else DRAWN_FLOOR)
-        total = total + _sums(unit, metric, foretold, noise)
+            noise = _drawn(unit, fits[held], point, largest, generator, drawn)
+            total = total + _sums(unit, metric, _foretold(unit, others, shared), noise)
+    for own, point, others in _between(data.units, fits, index, shared):
+        foretold = _foretold(own, others, shared)
+        total = total + _sums(own, point, foretold, own.draw(point, generator, drawn))
     return total.shrinkage(bool(chosen))
+
+
+def _foretold(unit, others, shared):
+    """(m,) contrasts by what other coefficient_fits.Fits say of the shared columns."""
+    if not len(shared):
+        return np.zeros(len(unit.z))
+    return unit.columns[:, shared.index] @ coefficient_fits.coefficients(others, shared)[0][0]
+
+
+def _between(units, fits, index, shared):
+    """What each of three sessions and more has beside the others: (Unit, point of its grid, Fits
+    of the others within and among themselves). It is independent of what is left within it."""
+    within = [fit for unit, fit in zip(units, fits) if not unit.between]
+    between = [(unit, point) for unit, point in zip(units, index) if unit.between]
+    for session in range(len(within) if len(within) > 2 else 0):
+        apart = [(*between_sessions.held_out(unit, session), point) for unit, point in between]
+        others = within[:session] + within[session + 1:] + [
+            coefficient_fits.fit(rest, rest.statistics(), shared) for _, rest, _ in apart]
+        for own, _, point in apart:
+            yield own, point, others
 
 
 def _drawn(unit, fit, point, largest, generator, drawn):

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import special
 
 from ..experiment import covariance, linear_model
-from . import box_tilt_test, hypotheses, odds, session_offsets
+from . import between_sessions, box_tilt_test, hypotheses, odds
 
 FALSE_DISCOVERIES = 0.01  # one in a hundred of the places shown is there by chance: a stated rate
 LEAST_SHARE = 0.01  # of the excess: less is no place to look at
@@ -153,20 +153,19 @@ def along(gap):
 
 
 def session(gap):
-    """The biases of the sessions against each other, beyond what switching on changes."""
-    unit = gap.units[-1]
-    if not unit.between:
-        return []
-    offsets = []
-    z = unit.z.reshape(-1, 3)
-    variance = np.diag(covariance.dense(
-        unit.groups, session_offsets.ORDINARY_CHANGE[gap.kind], 0.0)).reshape(-1, 3)
+    """The biases, and the scales, of the sessions against each other, beyond what switching on
+    changes."""
+    changes = []
     excess = max(gap.adequacy.excess_before, 1e-9)
-    for axis in range(3):
-        chi2 = float((z[:, axis] ** 2 / variance[:, axis]).sum())
-        offsets.append(Place(gap.kind, "xyz"[axis], "session", max(chi2 - len(z), 0.0) / max(
-            excess, chi2), special.chdtrc(len(z), chi2)))
-    return offsets
+    for unit in (u for u in gap.units if u.between):
+        z = unit.z.reshape(-1, 3)
+        ordinary = between_sessions.ORDINARY_CHANGE[unit.between][gap.kind]
+        variance = np.diag(covariance.dense(unit.groups, ordinary, 0.0)).reshape(-1, 3)
+        for axis in range(3):
+            chi2 = float((z[:, axis] ** 2 / variance[:, axis]).sum())
+            changes.append(Place(gap.kind, "xyz"[axis], "session", max(chi2 - len(z), 0.0) / max(
+                excess, chi2), special.chdtrc(len(z), chi2)))
+    return changes
 
 
 def controlled(tested):

@@ -109,7 +109,7 @@ def motion_gap(sessions, usable, nominal, gyro, settings):
     if gyro is None:
         return None
     others = [s for s in sessions if s not in usable and s.capture.gyro is not None]
-    turned = [unit.turns for unit in gyro.units]
+    turned = [unit.turns for unit in gyro.units if not unit.between]
     return judged([*usable, *others], nominal, turned, sessions[0].capture.meta["sensor"],
                   settings.without)
 

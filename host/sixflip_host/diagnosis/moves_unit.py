@@ -43,7 +43,7 @@ class MovesUnit:
     logdet: np.ndarray
     freedom: int
 
-    between, turns, apart, within, rows = False, False, False, MappingProxyType({}), None
+    between, turns, apart, within, rows = "", False, False, MappingProxyType({}), None
     grid, shape, coarse = ((0.0, 0.0),), (1, 1), np.array([0])
 
     def tried(self, likelihood, points=None):

@@ -14,6 +14,7 @@ from ..experiment import long_rest, terms
 from . import (
     adequacy,
     aliases,
+    between_sessions,
     coefficient_fits,
     cutoffs,
     effect_estimates,
@@ -24,7 +25,6 @@ from . import (
     rest_forms,
     rest_units,
     scored_sets,
-    session_offsets,
     wandering,
 )
 from .localisation import Place
@@ -177,7 +177,7 @@ def _settled(form, units, fits, levels, kind):
     """Whether a member of the set is no more than what switching on again, or putting down
     again, does to a reading."""
     return form.effect == SETTLED and all(
-        u.grid[k][0] <= max(session_offsets.UNUSUAL[kind], levels.usual(u)[0])
+        u.grid[k][0] <= max(between_sessions.UNUSUAL["bias"][kind], levels.usual(u)[0])
         for u, k in zip(units, fits.index))
 
 

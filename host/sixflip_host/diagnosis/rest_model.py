@@ -8,6 +8,7 @@ from ..experiment import attitude_fit, linear_model, nominal_rows, terms
 from . import (
     adequacy,
     aliases,
+    between_sessions,
     box_tilt_test,
     coefficient_fits,
     cutoffs,
@@ -16,7 +17,6 @@ from . import (
     hypotheses,
     members,
     scored_sets,
-    session_offsets,
     strangers,
     wandering,
 )
@@ -226,10 +226,16 @@ class RestModel:
             part.t, len(hypotheses.PARTS) * len(hypotheses.WIDTHS))}
 
     def between(self, units, nominal):
-        """[Unit of what lies between the sessions], [] where there is nothing between."""
-        offsets = session_offsets.unit(self.kind, [u.rows for u in units], nominal,
-                                       [u.designs for u in units])
-        return [] if offsets is None else [offsets]
+        """[Unit of what lies between the sessions], none where there is nothing between."""
+        designs, levels = units[0].designs, self.usual()
+        found = between_sessions.unit("bias", self.kind, [
+            between_sessions.biases(self.kind, u.rows, model, u.designs)
+            for u, model in zip(units, nominal)], designs)
+        if self.kind == "accel":
+            found += between_sessions.unit("scale", self.kind, [
+                between_sessions.scales(u, model.matrix, levels)
+                for u, model in zip(units, nominal)], designs)
+        return found
 
     def _less_known(self, rows, designs):
         """The rows without what the simulator compared with predicts already."""

@@ -88,11 +88,13 @@ def _astray(turns, sound):
     """[(Place, sentence)] of turns that end far from where gravity says: samples lost under a
     steady clock; sound: the accelerometer says rightly where gravity is."""
     nats, number = stray_turns.nats([stray_turns.ends(
-        unit, turns.chosen, turn_model.ATTITUDE_DEG) for unit in turns.units])
+        unit, turns.chosen, turn_model.ATTITUDE_DEG) for unit in turns.units
+        if not unit.between])
     scattered = adequacy.placement_nats(turns.units, turns.data.statistics, turns.posterior.best,
                                         SCATTERED_DEG)
     if sound and present(scattered):
-        degrees = max(u.grid[k][0] for u, k in zip(turns.units, turns.adequacy.index))
+        degrees = max(u.grid[k][0] for u, k in zip(turns.units, turns.adequacy.index)
+                      if not u.between)
         return [(localisation.Place("gyro", None, "motion", 1.0, odds.chance(scattered)),
                  "the turns end about %.1f deg from where gravity says, each by itself: samples "
                  "may be lost although their times are steady" % degrees)]

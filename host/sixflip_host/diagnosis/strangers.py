@@ -13,6 +13,7 @@ from numpy.polynomial import legendre
 
 from sixflip.poses import faces
 
+from ..experiment import flicker
 from ..experiment.terms import LAGS_S, RECTIFIED, Design, harmonics
 
 SCALE = {"accel": 5.0, "gyro": 0.05}  # mg, deg/s: as large as the library's effects are
@@ -215,13 +216,10 @@ def roughness(variant):
 
 
 def walk(session, scale):
-    """Design of the library's drift as a random walk of each axis: the first terms of its
-    expansion in sines over the session [Karhunen-Loeve; Loeve, Probability Theory II, section
-    37], which end `scale` off on average. A session of its own choice."""
-    u = (session.t - session.t.min()) / max(float(np.ptp(session.t)), 1.0)
-    terms = (np.arange(WALK) + 0.5) * np.pi
-    return _smooth("drift", [np.sqrt(2.0) * np.sin(k * u) / k for k in terms], session.n, scale,
-                   "walk", [tuple(range(3 * WALK))])
+    """Design of the library's drift as a random walk of each axis, which ends `scale` off on
+    average. A session of its own choice."""
+    return _smooth("drift", flicker.walk(session.t, WALK), session.n, scale, "walk",
+                   [tuple(range(3 * WALK))])
 
 
 def _shaking(rms, scale):

@@ -8,7 +8,7 @@ from sixflip_sim.effects import typical
 from ..experiment import covariance, linear_model, noise_arrays, nominal_rows, terms, turns
 from ..experiment.projection import lateral_basis
 from ..planning.detectable import FLIP_DEG
-from . import stray_turns
+from . import between_sessions, stray_turns
 from .detect import axis_order, wrong_scale
 from .detect.detection import Finding, present
 from .evidence import Levels
@@ -45,8 +45,8 @@ def design(name, chosen, chip, variant="", shape=None):
 
 
 class TurnModel(RestModel):
-    """The gyro in motion: no bias between the sessions, and in flicker's place how far half a turn
-    by hand is off."""
+    """The gyro in motion: of what lies between the sessions the scales alone, and in flicker's
+    place how far half a turn by hand is off."""
 
     drifts = False
     left_in = "motion"
@@ -77,17 +77,20 @@ class TurnModel(RestModel):
                                           for b, t in zip(bases, chosen)], by_hand)
         flips = FLIPS_DEG if any(t.flip for t in chosen) else (FLIP_DEG,)
         nuisance = np.hstack([turns.nuisance(chosen), squareness(chosen)])
-        rows = nominal_rows.Rows(y, groups, nuisance, (stray_turns.LEVELS_DEG, flips))
+        rows = nominal_rows.Rows(y, groups, nuisance, (stray_turns.LEVELS_DEG, flips),
+                                 scale=(0, 4, 8))
         # Of a half only sizes are asked: its turns, all of their samples, need not stay.
         return linear_model.unit(
             rows, designs, wanted, turns=chosen if wanted is None else (),
             signature=("turns", tuple((t.flip, round(t.turned, -1)) for t in chosen)))
 
     def usual(self):
-        return Levels(USUAL_DEG, FLIP_DEG, 1.0)
+        return Levels(USUAL_DEG, FLIP_DEG, 1.0, between_sessions.UNUSUAL["scale"]["gyro"])
 
     def between(self, units, nominal):
-        return []
+        return between_sessions.unit("scale", "gyro", [
+            between_sessions.scales(u, u.turns[0].matrix, self.usual(), 1000.0) for u in units],
+            units[0].designs)
 
 
 def _bends(turn):

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import progress
-from ..experiment import attitude_fit
+from ..experiment import attitude_fit, thermometer
 from .detect import saturation
 
 FEWEST_PLACEMENTS = 6  # an axis' bias and scale, and one more to tell an effect by
@@ -76,6 +76,6 @@ def temperature_remarks(sessions):
     """Sentences on a temperature that is not there, or hardly changes."""
     if any(s.temperature is None for s in sessions):
         return ["no usable temperature column: effects of temperature cannot be looked for"]
-    moved = max(s.thermometer.moved for s in sessions)
+    moved = thermometer.moved_c(sessions)
     return [] if moved >= 1.0 else [
         "the temperature moved by %.1f degC only: little can be said about it" % moved]

@@ -1,4 +1,5 @@
-"""Flicker, the slow noise of a sensor, as the covariance of means over stretches of time."""
+"""The slow noise of a sensor: flicker, as the covariance of means over stretches of time, and a
+random walk, as the first terms of its expansion."""
 import numpy as np
 
 from sixflip_sim.effects.drift import TIMES_S
@@ -27,6 +28,14 @@ def flicker_kernel(t, seconds):
         own = own + (2.0 / x * (1.0 - (1.0 - np.exp(-x)) / x)).sum(axis=0)
     np.fill_diagonal(kernel, own)
     return kernel
+
+
+def walk(t, number):
+    """[(n,)] number functions of times t (n,) s whose coefficients, independent of each other with
+    a standard deviation of 1, make a random walk that ends 1 off on average [Karhunen-Loeve;
+    Loeve, Probability Theory II, section 37]."""
+    u = (t - t.min()) / max(float(np.ptp(t)), 1.0)
+    return [np.sqrt(2.0) * np.sin(k * u) / k for k in (np.arange(number) + 0.5) * np.pi]
 
 
 def differences(gap, block):

@@ -41,6 +41,9 @@ HATS = 4  # of the bias's course over a session: a straight line, or one that be
 # Cosines that hands have in common when they turn a box: most of a way is in four of them
 # (moves_fit.py), but what is alike in all moves is as strong evidence in the faster ones.
 HABITS = 10
+# A hand turns a box smoothly: at 13 % of the time it is 2 % of the way [Flash and Hogan, J.
+# Neuroscience 5 (1985) 1688, equation 9: the way of least jerk].
+TURNED, BY_THEN = 0.02, 0.13
 BENDS = 42  # columns of what bends with the attitude, or remembers the one before
 # Standard deviations: of a hand's way, of a centre of turning in a box as large as a hand, and of
 # what has no name (strangers.SCALE: as large as the library's effects are).
@@ -99,7 +102,8 @@ def move(turn, capture, nominal, course, session, by_hand, white, lag_ms=0.0):
                                            felt[0] - felt]))
     bias = projection.by_axis(course[:, turn.first:turn.last])
     strange = seen.spectrum(_of_motion(felt, rate, np.stack(m.w_rate, 1)))
-    shared = [own, strange, edge, _habits(seen.n, turn.seconds, flat), static]
+    habits = seen.frequencies(_habits(turn, seen.share, flat))
+    shared = [own, strange, edge, habits, static]
     return Move(turn, session, by_hand, white, flat, turn.seconds, turn.seconds / seen.n, y,
                 np.concatenate([*shared, own[:, :, :3], seen.held(bias)], axis=2),
                 sum(part.shape[2] for part in shared))
@@ -134,16 +138,21 @@ def _frame(turn, body, rate):
         leaned.min() > np.cos(np.radians(FLAT_DEG)))
 
 
-def _habits(n, seconds, flat):
-    """Up and down, and onwards, in the same way whenever a box is turned over; up and down
-    whenever it is turned on the table: metres."""
-    columns = np.zeros((n, 3, 3 * HABITS))
-    size = MG_PER_METRE_S2 * (np.pi / seconds) ** 2 * np.sqrt(n / 2.0)
-    for k in range(1, HABITS + 1):
-        if flat:
-            columns[k, 2, 2 * HABITS + k - 1] = size
-        else:
-            columns[k, 2, k - 1] = columns[k, 0, HABITS + k - 1] = size
+def _habits(turn, share, flat):
+    """(samples, 3, 3 HABITS) up and down, and onwards, in the same way whenever a box is turned
+    over; up and down whenever it is turned on the table: metres. A hand waits before it turns the
+    box and after, now longer, now shorter: the way lasts as long as the turn does."""
+    since, until = np.interp([TURNED, 1.0 - TURNED], share, turn.t)
+    seconds = (until - since) / (1.0 - 2.0 * BY_THEN)
+    u = (turn.t - since) / seconds + BY_THEN
+    k = np.arange(1, HABITS + 1)
+    course = (MG_PER_METRE_S2 * (np.pi / seconds) ** 2 * np.cos(np.pi * k * u[:, None])
+              * ((u >= 0.0) & (u <= 1.0))[:, None])
+    columns = np.zeros((len(u), 3, 3 * HABITS))
+    if flat:
+        columns[:, 2, 2 * HABITS:] = course
+    else:
+        columns[:, 2, :HABITS] = columns[:, 0, HABITS:2 * HABITS] = course
     return columns
 
 
@@ -210,13 +219,14 @@ class Seen:
         table = self.turned @ values
         share = self.share[:, None, None]
         table[:, :2] -= ((1.0 - share) * table[0] + share * table[-1])[:, :2]
-        return self._frequencies(table)
+        return self.frequencies(table)
 
     def spectrum(self, values):
         """(n, 3, k) from (samples, 3, k) in the body."""
-        return self._frequencies(self.turned @ values)
+        return self.frequencies(self.turned @ values)
 
-    def _frequencies(self, table):
+    def frequencies(self, table):
+        """(n, 3, k) from (samples, 3, k) onwards, along the axis and up."""
         means = np.add.reduceat(table, self.edges[:-1], axis=0)
         means /= np.diff(self.edges)[:, None, None]
         return np.tensordot(self.cosines, means, axes=1)

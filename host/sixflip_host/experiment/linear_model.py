@@ -43,9 +43,9 @@ class Unit:
     inner (G, K).
     signature: what the protocol is known by, see cutoffs.py. within: {(effect, variant, number
     of its choice): nats that the blocks of the rests say for it, less what it cost to look for
-    it}. between: it lies between the
-    sessions, see session_offsets.py. turns: the turns that it was made of, where all columns
-    are asked for. axis: 0..2 where the units are axes, which have no coefficient in common.
+    it}. between: what of the sessions it is the difference of, "bias" or "scale", or "", see
+    between_sessions.py. turns: the turns that it was made of, where all columns are asked
+    for. axis: 0..2 where the units are axes, which have no coefficient in common.
     """
 
     rows: Rows
@@ -65,7 +65,7 @@ class Unit:
     inner: np.ndarray
     signature: tuple = ()
     within: dict = field(default_factory=dict)
-    between: bool = False
+    between: str = ""
     turns: tuple = ()
     axis: int | None = None
     _factors: dict = field(default_factory=dict, init=False, repr=False)
@@ -196,9 +196,12 @@ class Unit:
         fitted = np.hstack([self.rows.nuisance, self.raw(private)])
         x = covariance.turned(self.rows.groups, np.column_stack(
             [fitted, self.rows.y - explained]))
-        white = factor.whitened(np.hstack([self._common(), x]))[0]
-        basis, s, _ = np.linalg.svd(white[:, :-1], full_matrices=False)
-        basis = basis[:, s > 1e-9 * s[0]]
+        common = self._common()
+        white = factor.whitened(np.hstack([common, x]))[0]
+        # Coefficients known to a standard deviation of 1 are observed as 0 with that error.
+        known = np.eye(common.shape[1], white.shape[1])
+        basis, s, _ = np.linalg.svd(np.vstack([white, known])[:, :-1], full_matrices=False)
+        basis = basis[:len(white), s > 1e-9 * s[0]]
         left = white[:, -1] - basis @ (basis.T @ white[:, -1])
         leverage = (basis ** 2).sum(axis=1)
         if loose:

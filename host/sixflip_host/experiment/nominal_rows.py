@@ -4,14 +4,16 @@ nuisance), and the covariance of what they err by.
 Nuisance of the accelerometer: twelve parameters, of which the misalignments are known beforehand
 to a degree where no pose leans; the lateral position of every pose (table and box; with a
 certified box only what changes sign with the flip); two free angles of each leaning placement. Of
-the gyro: a bias and the Earth's vertical rate. Their covariance is white / n + placement +
-flicker.
+the gyro: a bias, the Earth's rate and the walk of the bias that any such chip has. Their
+covariance is white / n + placement + flicker.
 """
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from . import block_measures, covariance
+from sixflip_sim.effects import typical
+
+from . import block_measures, covariance, flicker
 from .attitude_fit import face_axes
 from .projection import lateral_basis
 
@@ -28,6 +30,8 @@ EARTH_UP_DPS = 0.003  # 15 deg/h at a latitude of 45 degrees
 # Levels tried of the Earth's horizontal rate, the box at an unknown azimuth: as much as upward,
 # and what is left of it where the box nearly always lies the same way.
 EARTH_DPS = (0.0005, 0.0012, EARTH_UP_DPS)
+# Terms of a chip's own walk: what is left of it is an eighth of where it ends.
+WALK_TERMS = 6
 # Pairs of blocks from which on an axis' flicker is told from the others': twelve differences know
 # a variance to 41 %, and no axis is taken to have more or less than twice what all have.
 FEWEST_PAIRS, MOST_UNLIKE = 12, 2.0
@@ -158,8 +162,8 @@ def _groups(session, values, noise, rounding, directions):
 @dataclass(frozen=True, eq=False)
 class Rows:
     """Readings of one session before projection: y (n,), groups (list of covariance.Group),
-    nuisance (n, p), bias: which of its columns are the sensor's, levels (of placement, of
-    flicker), common (n, c): columns whose coefficients have a standard deviation of 1, known:
+    nuisance (n, p), bias and scale: which of its columns are the sensor's, levels (of placement,
+    of flicker), common (n, c): columns whose coefficients have a standard deviation of 1, known:
     degrees of freedom with which the size of its noise is known; fitted: y is without what the
     readings say of common, which the nominal sensor has taken up."""
 
@@ -168,6 +172,7 @@ class Rows:
     nuisance: np.ndarray
     levels: tuple
     bias: tuple = ()
+    scale: tuple = ()
     common: np.ndarray | None = None
     known: float = np.inf
     fitted: bool = False
@@ -199,11 +204,11 @@ def rows(kind, session, nominal, certified=False):
                      directions)
     nuisance = accel_nuisance(session, nominal, certified)
     free = Rows(accel_rows(session, nominal), groups, nuisance, (PLACEMENT_MG, FLICKER_MG),
-                (0, 4, 8), None, _known(session))
+                (0, 4, 8), (1, 6, 11), known=_known(session))
     if (session.face < 0).any():
         return free
     return replace(free, nuisance=np.delete(nuisance, MISALIGNED, 1), bias=(0, 2, 4),
-                   common=ASKEW_MG * nuisance[:, MISALIGNED], fitted=True)
+                   scale=(1, 3, 5), common=ASKEW_MG * nuisance[:, MISALIGNED], fitted=True)
 
 
 def _earth(session, up):
@@ -219,14 +224,22 @@ def _earth(session, up):
     return np.stack(columns, 1)
 
 
+def _walk(session):
+    """(3n, c) deg/s: the walk of each axis' bias, its coefficients of a standard deviation of
+    1."""
+    chip = typical.chip_of(session.capture.meta["sensor"], "gyro")
+    size = typical.WALK[chip] * np.sqrt(np.ptp(session.t))
+    return size * np.kron(np.stack(flicker.walk(session.t, WALK_TERMS), 1), np.eye(3))
+
+
 def _gyro_rows(session, nominal):
-    """Bias, and the Earth's rate known to a standard deviation."""
+    """Bias, and the Earth's rate and a walk known to a standard deviation."""
     up = nominal.up[session.placement]
     groups = _groups(session, session.gyro, session.noise_gyro, session.rounding_gyro,
                      lambda place, placement: (lateral_basis(nominal.up[placement]), None))
     return Rows(session.gyro.reshape(-1), groups, np.kron(np.ones((session.n, 1)), np.eye(3)),
-                (EARTH_DPS, FLICKER_DPS), (0, 1, 2), _earth(session, up),
-                _known(session))
+                (EARTH_DPS, FLICKER_DPS), (0, 1, 2), known=_known(session),
+                common=np.hstack([_earth(session, up), _walk(session)]))
 
 
 def _known(session):

@@ -16,11 +16,12 @@ from sixflip_sim.effects.library import EFFECTS
 from . import block_measures
 from .projection import by_axis
 from .session import PLAY_G
-from .thermometer import MOVES_C
+from .thermometer import MOVES_C, moved_c
 
 LAGS_S = (0.0, 15.0, 30.0, 60.0, -30.0)  # GAP: a neighbouring thermometer, 10-60 s
 WARM_UP_S = (30.0, 60.0, 120.0, 240.0, 480.0)  # GAP: 60-300 s, and an octave to both sides
 CREEP_S = (5.0, 15.0, 30.0, 60.0, 120.0)  # GAP: 60-70 s seen on Z; down to a rest's length
+LEVELS_OFF = 3.0  # times faster than where a rate's effect begins to level off
 LONG_MEMORY_S = 30.0  # longer than two rests with the move between them
 SHIFT_MG = 5.0  # typical of what a vibration shifts, as of the library's other effects
 # What a vibration all round shifts by its rms, the strongest 1: as its power, as |f| rectifies it,
@@ -125,11 +126,10 @@ def squared(design, columns, prior):
 
 def agreed(sessions):
     """The sessions with what is looked for settled for all of them at once, so that the columns
-    of one are those of the others: thermal (every one has a thermometer, and one of them
-    moved), vibration above the quietest rests of all, shaken_mg (the strongest of any rest, 0
+    of one are those of the others: thermal (every one has a thermometer, and they moved, all
+    together), vibration above the quietest rests of all, shaken_mg (the strongest of any rest, 0
     where none is shaken)."""
-    thermal = all(s.thermometer is not None for s in sessions) and max(
-        s.thermometer.moved for s in sessions) >= MOVES_C
+    thermal = moved_c(sessions) >= MOVES_C
     vibrations = block_measures.vibrations([session.loudness for session in sessions])
     strongest = max(float(vibration.max()) for vibration in vibrations)
     shaken_mg = strongest if strongest > LEAST_VIBRATION_MG else 0.0
@@ -229,6 +229,11 @@ def _thermal(session, m, design, sensor, reference_c):
         if sensor == "accel":
             designs.append(design("thermal_scale", label, felt, shape=shape))
         designs.append(design("thermal_rate", label, felt))
+    # As much however fast the temperature changes: what a package is strained by levels off.
+    felt = copy.copy(m)
+    fastest = max(float(np.abs(m.temperature_rate).max()), 1e-9)
+    felt.temperature_rate = fastest * np.tanh(LEVELS_OFF * m.temperature_rate / fastest)
+    designs.append(design("thermal_rate", "levels off", felt))
     return designs
 
 

@@ -15,12 +15,12 @@ MOVES_C = 0.4
 @dataclass(frozen=True, eq=False)
 class Thermometer:
     """The temperature c (n,) degC at times t (n,) s, one each STEP_S, its rate (n,) degC/s and
-    moved: degC between its lowest and its highest."""
+    range_c: its lowest and its highest, degC."""
 
     t: np.ndarray
     c: np.ndarray
     rate: np.ndarray
-    moved: float
+    range_c: tuple
 
     def at(self, t):
         """degC at times t."""
@@ -55,11 +55,19 @@ def _follow(values, lag_s):
     return felt
 
 
+def moved_c(sessions):
+    """degC between the lowest and the highest temperature of all Sessions, nil where one of them
+    has no thermometer."""
+    if any(s.thermometer is None for s in sessions):
+        return 0.0
+    return float(np.ptp([end for s in sessions for end in s.thermometer.range_c]))
+
+
 def of_course(t, c):
     """Thermometer of temperatures c (n,) degC that are smooth already, at times t (n,) s that are
     STEP_S apart."""
     rate = np.gradient(_smooth(c, RATE_S), STEP_S) if len(c) > 2 else np.zeros(len(c))
-    return Thermometer(t, c, rate, float(np.ptp(c)))
+    return Thermometer(t, c, rate, (float(c.min()), float(c.max())))
 
 
 def of_capture(capture, t_s):

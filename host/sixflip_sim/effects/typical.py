@@ -28,6 +28,9 @@ FLICKER = {  # level of each of the exponentials of 10...1000 s, mg or deg/s
 FLOOR = {
     "mpu6050-accel": 0.08, "mpu6050-gyro": 0.002, "adxl345": 0.08, "itg3205": 0.008,
 }
+# Rate random walk of a gyro, deg/s per root of a second: judged from published Allan plots, whose
+# deviation grows again from some minutes on (an accelerometer's does after hours).
+WALK = {"mpu6050-gyro": 3e-4, "itg3205": 1.2e-3}
 SIZES = {"thermal_bias": {}, "thermal_scale": {}, "quadratic": {}, "cubic": {}, "filter_lag": {}}
 STANDS_IN = {
     "warm_up": {
@@ -192,6 +195,8 @@ def _add(sensor):
         quieter = max(density) / datasheets.figure("mpu6050", kind, "density")
         FLICKER.setdefault(chip, quieter * FLICKER[like])
         FLOOR.setdefault(chip, quieter * FLOOR[like])
+        if kind == "gyro":
+            WALK.setdefault(chip, quieter * WALK[like])
         for effect, size_ in _of_the_data_sheet(sensor, kind, hz).items():
             SIZES[effect][chip] = size_, source
         for effect, known in STANDS_IN.items():

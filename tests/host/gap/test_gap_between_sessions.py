@@ -1,11 +1,20 @@
 """What lies between sessions: biases against each other, as one more unit of contrasts."""
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from sixflip_host.diagnosis import answer, detectability, diagnosis, localisation, members
-from sixflip_host.experiment import blocks
+from sixflip_host.diagnosis import (
+    answer,
+    between_sessions,
+    detectability,
+    diagnosis,
+    localisation,
+    members,
+    rest_model,
+)
+from sixflip_host.experiment import attitude_fit, blocks, covariance, terms
 from sixflip_host.simulation import scenario, simulated_session
 
 
@@ -24,8 +33,7 @@ def sessions(effects=(), change=((0, 0, 0), (0, 0, 0)), seed=61):
 def test_a_bias_that_differs_from_session_to_session_is_found_there():
     found = diagnosis.diagnose_sessions(sessions(change=((0, 0, 0), (0, 1000, 0))),
                                                diagnosis.Settings())
-    between = found.gaps["accel"].units[-1]
-    assert between.between
+    (between,) = [u for u in found.gaps["accel"].units if u.between == "bias"]
     # 1000 counts are 61 mg; the contrast is the difference over the root of two
     changed = between.z
     np.testing.assert_allclose(np.abs(changed), [0, 61.0 / np.sqrt(2), 0], atol=1.5)
@@ -104,3 +112,85 @@ def test_a_square_along_x_is_on_no_other_axis():
     cause, = answer.as_dict(found)["causes"]
     assert {"quadratic", "cross_quadratic"} <= set(cause["class"])
     assert cause["axes"] in ([], ["x"])
+
+
+def stood_at(temperatures, sensor, slope, axis):
+    """Sessions of one part, each at a temperature (degC) of its own; slope: %/degC of an axis of
+    the sensor's scale."""
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 5,
+                               "world": {"placement_scatter_deg": 0.05}})
+    part = plan.worlds[0]
+    plan.worlds[:] = [dict(part, seed=part["seed"] + 1000 * k) for k in range(len(temperatures))]
+    made = []
+    for k, celsius in enumerate(temperatures):
+        capture = simulated_session.session(plan, k)
+        raw = (celsius - capture.meta["temp_offset_c"]) * capture.meta["temp_lsb_per_c"]
+        capture.temp = np.full(len(capture), round(raw), dtype=np.int16)
+        counts = getattr(capture, sensor).astype(float)
+        counts[:, axis] *= 1.0 + slope / 100.0 * (celsius - 25.0)
+        setattr(capture, sensor, np.rint(counts).astype(np.int16))
+        if sensor == "accel":
+            capture.gyro = None
+        made.append(blocks.session_of(str(k), capture))
+    return made
+
+
+@pytest.mark.parametrize("sensor", ["accel", "gyro"])
+def test_a_scale_that_goes_with_temperature_shows_between_sessions_of_one_each(sensor):
+    """Within each of these sessions the temperature stands still: the scale of each was a
+    nuisance, and the answer "no gap"."""
+    found = diagnosis.diagnose_sessions(stood_at((20.0, 35.0, 28.0), sensor, 0.02, 1),
+                                        diagnosis.Settings())
+    gap = found.gaps["accel"] if sensor == "accel" else found.turns
+    assert [cause.names for _, cause in found.causes] == [["thermal_scale"]]
+    cause = gap.causes[0]
+    assert list(cause.value) == ["y"] and cause.value["y"] == pytest.approx(0.02, abs=0.002)
+    # Each session is foretold by the two others.
+    assert found.verdict == "explained" and gap.shrinkage.share > 0.9
+    between = [unit for unit in gap.units if unit.between == "scale"][0]
+    # 15 degC are 3 thousandths; the contrast is the difference over the root of two
+    np.testing.assert_allclose(np.abs(between.z[:3]), [0.0, 3.0 / np.sqrt(2), 0.0], atol=0.6)
+
+
+def test_scales_that_differ_without_a_temperature_have_no_name():
+    """0.6 % of one axis from one session to the next, at one temperature."""
+    made = stood_at((25.0, 25.0), "accel", 0.0, 2)
+    made[1].capture.accel[:, 2] = np.rint(made[1].capture.accel[:, 2] * 1.006)
+    found = diagnosis.diagnose_sessions(
+        [blocks.session_of(s.name, s.capture) for s in made], diagnosis.Settings())
+    assert found.verdict == "unexplained" and not found.causes
+    places = localisation.places(found.gaps["accel"])
+    assert (places[0].domain, places[0].axis) == ("session", "z")
+
+
+def test_what_scales_change_by_in_an_ordinary_session_is_known_to_its_error():
+    """Of twelve simulated pairs of sessions the contrasts are normal with the errors stated."""
+    standard = []
+    for seed in range(12):
+        made = sessions(seed=200 + seed)
+        model = rest_model.RestModel("accel", "mpu6050", diagnosis.Settings())
+        nominal = [attitude_fit.fit(session) for session in made]
+        units = [model.unit(*part, False) for part in zip(terms.agreed(made), nominal)]
+        (scale,) = [u for u in model.between(units, nominal) if u.between == "scale"]
+        standard.append(scale.z / np.sqrt(np.diag(covariance.dense(scale.groups, 0.0, 0.0))))
+    # 36 standard normals: their mean square is 1 within 0.24 (one standard deviation)
+    assert 0.4 < np.mean(np.square(standard)) < 1.8
+
+
+def test_a_session_held_out_and_the_others_are_all_that_lies_between_them():
+    generator = np.random.default_rng(3)
+    constants = [between_sessions.Constants(
+        generator.normal(size=3), np.diag(generator.uniform(0.1, 0.2, 3)),
+        generator.normal(size=(3, 2)), True) for _ in range(4)]
+    designs = [terms.Design("quadratic", "", ["x", "y"], [0, 1], np.zeros((0, 2)), np.ones(2))]
+    (unit,) = between_sessions.unit("bias", "accel", constants, designs)
+    own, others = between_sessions.held_out(unit, 2)
+    values = np.array([c.value for c in constants])
+    difference = values[2] - np.delete(values, 2, 0).mean(axis=0)
+    np.testing.assert_allclose(np.abs(own.z), np.abs(difference) * np.sqrt(3.0 / 4.0))
+    # The others know nothing of the one held out.
+    changed = [replace(c, value=c.value + 5.0) if k == 2 else c for k, c in enumerate(constants)]
+    (moved,) = between_sessions.unit("bias", "accel", changed, designs)
+    np.testing.assert_allclose(between_sessions.held_out(moved, 2)[1].z, others.z, atol=1e-12)
+    assert np.abs(between_sessions.held_out(moved, 2)[0].z - own.z).min() > 1.0
+    assert (unit.z ** 2).sum() == pytest.approx((own.z ** 2).sum() + (others.z ** 2).sum())

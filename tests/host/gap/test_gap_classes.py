@@ -78,9 +78,11 @@ def late(t, warm):
 
 
 # Beside it in the class: what has the same variable, and the box that spans all even functions.
-BESIDE = {"thermal_bias": (), "cubic": (),
+BESIDE = {"thermal_bias": (), "thermal_rate": (), "cubic": (),
           "quadratic": ("asymmetry", "cross_quadratic", "cubic", "box_tilt")}
 FORMS = {"levels off": ("thermal_bias", lambda t, warm, g: on_z(8.0 * np.tanh(0.15 * warm))),
+         "rate levels off": ("thermal_rate", lambda t, warm, g: on_z(
+             6.0 * np.tanh(60.0 * np.gradient(late(t, warm), t)))),
          "levels off late": ("thermal_bias", lambda t, warm, g: on_z(
              12.0 * np.tanh(0.3 * (late(t, warm) - 4.0)))),
          "seventh power": ("cubic", lambda t, warm, g: on_z(20.0 * g[:, 2] ** 7)),

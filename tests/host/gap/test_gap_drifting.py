@@ -16,6 +16,7 @@ from sixflip_host.diagnosis import (
 )
 from sixflip_host.experiment import attitude_fit, blocks
 from sixflip_host.simulation import scenario, simulated_session
+from sixflip_sim.effects import typical
 
 SIZE_DPS = 0.15
 
@@ -74,6 +75,20 @@ def test_a_random_walk_of_each_axis_drifts(captures):
     assert found.gaps["gyro"].drift and found.verdict == "explained"
     assert not found.gaps["accel"].drift
     assert not found.causes  # nothing slow that a walk follows by chance for a while
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_walk_that_any_such_gyro_has_is_no_drift(captures, seed):
+    """3e-4 deg/s per root of a second, of each axis: 0.008 deg/s in this session. It was a drift,
+    or a function of time or temperature without a name."""
+    own = np.random.default_rng(seed)
+
+    def usual(_, t):
+        per_sample = typical.WALK["mpu6050-gyro"] * np.sqrt(np.diff(t, prepend=t[0]))
+        return (own.standard_normal((len(t), 3)) * per_sample[:, None]).cumsum(axis=0)
+
+    gap = gyro_at_rest(moved(captures, usual))
+    assert not gap.drift and not gap.posterior.best.names and gap.adequacy.ok
 
 
 def test_a_walk_as_wide_as_no_other_effect_drifts(captures):

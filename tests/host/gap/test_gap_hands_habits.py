@@ -22,8 +22,10 @@ def least_jerk(u):
     return u ** 3 * (10.0 - 15.0 * u + 6.0 * u ** 2)
 
 
-def course(generator):
-    """(t, attitudes, heights m, poses) of a session: twelve poses in random order."""
+def course(generator, waits=False):
+    """(attitudes, heights m, poses) of a session: twelve poses in random order. waits: the hand
+    holds the box still before and after it turns it, now longer, now shorter, and lifts it higher
+    or less."""
     poses = [(face, half) for face in generator.permutation(list(FACES)) for half in "ab"]
     attitudes, heights, labels, last = [], [], [], None
     for face, half in poses:
@@ -41,8 +43,16 @@ def course(generator):
             hz = generator.uniform(5.0, 9.0, 3)
             tremble = 0.3 * bump[:, None] * np.sin(2.0 * np.pi * hz * np.arange(n)[:, None] / RATE)
             attitudes.append(way * Rotation.from_euler("xyz", tremble, degrees=True))
-            heights.append((0.004 if half == "b" else 0.07) * bump)
+            height = (0.004 if half == "b" else 0.07) * (generator.uniform(0.5, 1.5) if waits
+                                                         else 1.0)
+            heights.append(height * bump)
             labels.append(np.zeros(n))
+            if waits:
+                before, after = (generator.uniform(0.3, 1.8, 2) * RATE).astype(int)
+                attitudes[-1] = Rotation.concatenate([last] * before + [attitudes[-1]]
+                                                     + [turned] * after)
+                heights[-1] = np.pad(heights[-1], (before, after))
+                labels[-1] = np.pad(labels[-1], (before, after))
         n = int(REST_S * RATE)
         attitudes.append(Rotation.concatenate([turned] * n))
         heights.append(np.zeros(n))
@@ -51,10 +61,10 @@ def course(generator):
     return Rotation.concatenate(attitudes), np.concatenate(heights), np.concatenate(labels)
 
 
-def session(seed, late_s=0.0):
+def session(seed, late_s=0.0, waits=False):
     """blocks.Session of one and the same MPU6050 whose gyro is late by so many seconds."""
     generator, part = np.random.default_rng(seed), np.random.default_rng(0)
-    attitude, height, labels = course(generator)
+    attitude, height, labels = course(generator, waits)
     n = len(labels)
     up = np.gradient(np.gradient(height)) * RATE ** 2 / 9.80665
     force = attitude.inv().apply(np.stack([np.zeros(n), np.zeros(n), 1.0 + up], 1))
@@ -72,9 +82,9 @@ def session(seed, late_s=0.0):
         np.rint(gyro * LSB_DPS).astype(np.int16), None, None, labels.astype(np.int16)))
 
 
-def motion(late_s=0.0):
-    found = diagnosis.diagnose_sessions([session(1, late_s), session(2, late_s)],
-                                        diagnosis.Settings(jobs=1))
+def motion(late_s=0.0, waits=False, number=2):
+    found = diagnosis.diagnose_sessions(
+        [session(1 + k, late_s, waits) for k in range(number)], diagnosis.Settings(jobs=1))
     return [f for f in found.findings if f.domain == "motion"], [
         p for p in found.nameless if p.domain == "motion"]
 
@@ -83,6 +93,13 @@ def test_a_hand_that_always_lifts_in_the_same_way_is_no_gap():
     """A guard: with the hands of another generator it was a reading that follows the size of the
     rate and gravity, by a chance of 1e-160."""
     assert motion() == ([], [])
+
+
+def test_a_hand_that_waits_now_longer_now_shorter_has_the_same_habit():
+    """In shares of the time from rest to rest, the waiting included, each lift had a course of its
+    own, and what goes with the rate follows the lift better: a reading that follows the size of
+    the rate and gravity, in six of twenty healthy sensors of another generator."""
+    assert motion(waits=True, number=4) == ([], [])
 
 
 def test_a_gyro_that_is_late_by_more_than_the_tremor_s_period_has_its_delay():
