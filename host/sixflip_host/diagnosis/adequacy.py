@@ -62,14 +62,16 @@ def goodness_of_fit(units, statistics, scored, usual_noise, shaken=(), by_hand=F
     distribution."""
     shared = scored.shared
     theta = evidence.coefficients(scored.fits, shared)[0][0]
-    index, parts, before = [], [], 0.0
+    index, parts, before, within = [], [], 0.0, sum(not unit.between for unit in units)
     for unit, sums, fit, private in zip(units, statistics, scored.fits, scored.private):
+        index.append(int(fit.index[0]))
         if unit.between:  # a change of more than is usual is no noise
             fit = _usual_change(unit, sums, shared, private, usual_noise)
         point = int(fit.index[0])
-        index.append(point)
         chi2 = _between_levels(unit, sums, shared, private, theta, fit)
-        freedom = unit.freedom - len(shared) / len(units) - excess.taken(unit, point, private)
+        freedom = unit.freedom - excess.taken(unit, point, private)
+        if not unit.between:
+            freedom -= len(shared) / within
         parts.append((chi2, max(freedom, 1.0)))
         before += float(sums[0][point, 0]) - unit.freedom
     chi2, freedom = (sum(part[k] for part in parts) for k in (0, 1))

@@ -12,7 +12,8 @@ The bias of each session by generalised least squares at an ordinary point of th
 is then independent of the contrasts that are left in that session (Gauss-Markov), so this unit
 stands beside the others as one more session would. The scale at the point that is likeliest by
 noise alone: whatever else a session has passes for noise there, and moves the scale by no more
-than that noise would.
+than that noise would. Six faces tell a bias and a scale independently of each other, and other
+poses nearly so: these two count as if it were so.
 """
 from dataclasses import dataclass, replace
 

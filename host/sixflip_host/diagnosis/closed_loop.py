@@ -192,8 +192,9 @@ def _session(gap, held, unit, effects):
         nominal = uncovered(gap, session, unit, nominal)
     point = unit.grid[gap.adequacy.index[held]]
     level = {gap.kind: point[1]}
-    # The twin lies as the real box lay: placement is in neither.
-    floor = unit.noise_energy(unit.grid[0][0], point[1])
+    # The twin lies as the real box lay: placement is in neither, and what is known of the nominal
+    # sensor beforehand is in the real one alone.
+    floor = sum(unit.noise_energy(unit.grid[0][0], point[1], common) for common in (True, False))
     squares = []
     for added in ([], effects):
         capture = simulated(session, nominal, level, added, 1000 + held)
@@ -202,7 +203,7 @@ def _session(gap, held, unit, effects):
             twin.gyro.reshape(-1)
         difference = unit.z - unit.contrasts(y)
         squares.append(float(difference @ difference))
-    return np.array([*squares, 2.0 * float(floor), float(unit.freedom)]), twin
+    return np.array([*squares, float(floor), float(unit.freedom)]), twin
 
 
 def uncovered(gap, session, unit, nominal):

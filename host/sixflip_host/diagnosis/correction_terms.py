@@ -194,7 +194,7 @@ def fitted(gap, terms, data, diagnosis):
     theta, covariance = coefficient_fits.coefficients(
         coefficient_fits.fits(gap.data, shared), shared)
     fits = coefficient_fits.fits(data, shared)
-    between, held = [getattr(u, "between", False) for u in data.units], []
+    between, held = [bool(u.between) for u in data.units], []
     for place in range(between.count(False)):
         # What lies between the sessions knows of the one held out.
         others = [f for k, f in enumerate(fits) if k != place and not between[k]]

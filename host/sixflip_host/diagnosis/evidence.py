@@ -24,14 +24,14 @@ from .elimination import reduced
 
 # A standard deviation of each level's logarithm. Placement may be anything: a box that is put
 # down in any heading on a tilted table scatters by degrees.
-USUAL_FACTOR = {"placement": 8.0, "flicker": 2.0, "bias": 1.2, "scale": 1.2}
+USUAL_FACTOR = {"placement": 8.0, "flicker": 2.0, "switch_on": 1.2}
 KNOWN_FACTOR = 1.4  # and where a capture of noise alone was given
 
 
 @dataclass(frozen=True)
 class Levels:
-    """What is usual: placement, flicker and the change of a bias from one switch-on to the next
-    (mg or deg/s), of a scale (thousandths); known: the flicker was measured."""
+    """What is usual: placement and flicker, mg or deg/s, and the change from one switch-on to the
+    next, of a bias in the same and of a scale in thousandths; known: the flicker was measured."""
 
     placement: float
     flicker: float
@@ -51,7 +51,7 @@ class Levels:
         anything. Less than usual is as good as usual."""
         grid = np.array(unit.grid)
         if unit.between:
-            usual = {unit.between: (grid[:, 0], self.usual(unit)[0])}
+            usual = {"switch_on": (grid[:, 0], self.usual(unit)[0])}
         else:
             usual = {"placement": (grid[:, 0], self.placement),
                      "flicker": (grid[:, 1], self.flicker)}

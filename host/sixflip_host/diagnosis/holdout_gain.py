@@ -9,8 +9,9 @@ The share is that of these figures, (before^2 - after^2) / (before^2 - floor^2):
 that the contrasts show, each as often as it is likely, so their ratio has a Fieller interval
 [Fieller, JRSS B 16 (1954) 175]; unbounded means that the gap is too small to measure. Noise that
 wanders more than any part's counts as noise only where it is named: else what a session has
-beyond the prediction would be taken for it. `python -m tests.studies.robustness.shares` prints
-how often the intervals hold what is true.
+beyond the prediction would be taken for it. What lies between three sessions and more counts for
+the share; the figures are of what is within a session.
+`python -m tests.studies.robustness.shares` prints how often the intervals hold what is true.
 
 In motion a session is held out at a time by what the others say of the sizes, or every other move
 where no session shows them alone.
@@ -56,14 +57,23 @@ class Sums:
                     self.floor + other.floor, self.weight + other.weight,
                     tuple(a + b for a, b in zip(self.spread, other.spread)))
 
-    def shrinkage(self, named):
-        """Shrinkage; named: something was found that can be foretold."""
+    def times(self, factor):
+        """The same with so much of the weight."""
+        return Sums(factor * self.before, factor * self.after, factor * self.floor,
+                    factor * self.weight, tuple(factor * v for v in self.spread))
+
+    def shrinkage(self, named, beside=None):
+        """Shrinkage; named: something was found that can be foretold; beside: Sums of what counts
+        for the share only, of whose gap the others' noise, where it is overrated, takes nothing
+        off."""
         rms = [math.sqrt(max(v, 0.0) / self.weight) if self.weight > 0.0 else 0.0
                for v in (self.before, self.after, self.floor)]
         if not named:
             return Shrinkage(*rms, None, None)
-        return Shrinkage(*rms, *fieller(self.before - self.floor, self.before - self.after,
-                                        *self.spread))
+        gap, every = self.before - self.floor, self
+        if beside is not None and beside.weight > 0.0:
+            gap, every = max(gap, 0.0) + beside.before - beside.floor, self + beside
+        return Shrinkage(*rms, *fieller(gap, every.before - every.after, *every.spread))
 
 
 NOTHING = Sums(0.0, 0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
@@ -83,10 +93,12 @@ def shrinkage(data, chosen, index, usual, wanders=False):
             others = fits[:held] + fits[held + 1:] or fits
             noise = _drawn(unit, fits[held], point, largest, generator, drawn)
             total = total + _sums(unit, metric, _foretold(unit, others, shared), noise)
+    beside, sessions = NOTHING, sum(not unit.between for unit in data.units)
     for own, point, others in _between(data.units, fits, index, shared):
-        foretold = _foretold(own, others, shared)
-        total = total + _sums(own, point, foretold, own.draw(point, generator, drawn))
-    return total.shrinkage(bool(chosen))
+        noise = own.draw(point, generator, drawn)
+        beside = beside + _sums(own, point, _foretold(own, others, shared), noise)
+    # Each session against the others: one more contrast than there are apart from each other.
+    return total.shrinkage(bool(chosen), beside.times((sessions - 1.0) / sessions))
 
 
 def _foretold(unit, others, shared):
@@ -98,7 +110,8 @@ def _foretold(unit, others, shared):
 
 def _between(units, fits, index, shared):
     """What each of three sessions and more has beside the others: (Unit, point of its grid, Fits
-    of the others within and among themselves). It is independent of what is left within it."""
+    of the others within and among themselves). It is independent of what is left within it
+    (Gauss-Markov), and of the others where the errors of all are alike."""
     within = [fit for unit, fit in zip(units, fits) if not unit.between]
     between = [(unit, point) for unit, point in zip(units, index) if unit.between]
     for session in range(len(within) if len(within) > 2 else 0):

@@ -87,7 +87,7 @@ class RestModel:
         causes, with all that they were looked for with, of [(Session, NominalSensor)]; likeliest:
         the set that was found at other poses."""
         units = [self.unit(*part, self.settings.certified) for part in parts]
-        units += self.between(units, [nominal for _, nominal in parts])
+        units += self.between(units, parts)
         data = coefficient_fits.data_of(units)
         options = hypotheses.by_fleet(
             hypotheses.forms_of(units, self.settings.without, self.drifts), self.kind,
@@ -225,16 +225,18 @@ class RestModel:
         return {**by_choice, **strangers.looked_at(
             part.t, len(hypotheses.PARTS) * len(hypotheses.WIDTHS))}
 
-    def between(self, units, nominal):
-        """[Unit of what lies between the sessions], none where there is nothing between."""
+    def between(self, units, parts):
+        """[Unit of what lies between the sessions], none where there is nothing between; parts:
+        [(Session, NominalSensor)]. Without a thermometer another scale may be that of another
+        temperature, and says nothing."""
         designs, levels = units[0].designs, self.usual()
         found = between_sessions.unit("bias", self.kind, [
             between_sessions.biases(self.kind, u.rows, model, u.designs)
-            for u, model in zip(units, nominal)], designs)
-        if self.kind == "accel":
+            for u, (_, model) in zip(units, parts)], designs)
+        if self.kind == "accel" and all(session.thermometer for session, _ in parts):
             found += between_sessions.unit("scale", self.kind, [
                 between_sessions.scales(u, model.matrix, levels)
-                for u, model in zip(units, nominal)], designs)
+                for u, (_, model) in zip(units, parts)], designs)
         return found
 
     def _less_known(self, rows, designs):

@@ -87,7 +87,9 @@ class TurnModel(RestModel):
     def usual(self):
         return Levels(USUAL_DEG, FLIP_DEG, 1.0, between_sessions.UNUSUAL["scale"]["gyro"])
 
-    def between(self, units, nominal):
+    def between(self, units, parts):
+        if not all(session.thermometer for session, _ in parts):
+            return []
         return between_sessions.unit("scale", "gyro", [
             between_sessions.scales(u, u.turns[0].matrix, self.usual(), 1000.0) for u in units],
             units[0].designs)

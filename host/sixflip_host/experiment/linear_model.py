@@ -111,14 +111,17 @@ class Unit:
         """(n,) the contrasts as readings: what the nuisance leaves."""
         return covariance.turned_back(self.rows.groups, z[:, None])[:, 0]
 
-    def noise_energy(self, placement, level):
-        """Expected sum of squares of the contrasts where there is nothing but noise."""
+    def noise_energy(self, placement, level, with_common=True):
+        """Expected sum of squares of the contrasts where there is nothing but noise; with_common:
+        and what is known beforehand to a standard deviation."""
         base, lateral, kernel = covariance.energies(self.groups, self.space)
+        noise = base + placement ** 2 * lateral + level ** 2 * kernel
+        if not with_common:
+            return noise
         common = self._common()
         left = common - self.space @ (self.space.T @ common)
         known = left @ self._open_still(common, placement, level) if self.rows.fitted else left
-        return (base + placement ** 2 * lateral + level ** 2 * kernel
-                + float((known * left).sum()))
+        return noise + float((known * left).sum())
 
     def _open_still(self, common, placement, level):
         """(c, c) covariance of coefficients of columns common (m, c), known to 1 beforehand, with

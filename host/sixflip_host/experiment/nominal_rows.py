@@ -172,10 +172,10 @@ class Rows:
     nuisance: np.ndarray
     levels: tuple
     bias: tuple = ()
-    scale: tuple = ()
     common: np.ndarray | None = None
     known: float = np.inf
     fitted: bool = False
+    scale: tuple = ()
 
     def left(self):
         """(n, 3) what the nuisance leaves of the readings, by plain least squares."""
@@ -204,7 +204,7 @@ def rows(kind, session, nominal, certified=False):
                      directions)
     nuisance = accel_nuisance(session, nominal, certified)
     free = Rows(accel_rows(session, nominal), groups, nuisance, (PLACEMENT_MG, FLICKER_MG),
-                (0, 4, 8), (1, 6, 11), known=_known(session))
+                (0, 4, 8), known=_known(session), scale=(1, 6, 11))
     if (session.face < 0).any():
         return free
     return replace(free, nuisance=np.delete(nuisance, MISALIGNED, 1), bias=(0, 2, 4),

@@ -54,8 +54,8 @@ class Session(ReadOnlyArrays):
     Of the sensor (3,):
     noise_accel, noise_gyro of a mean over one second, mg and deg/s; rounding_accel,
     rounding_gyro of the mean of a rest, by steps of the counts; None without a gyro.
-    thermal, vibration (n,) mg rms, shaken_mg: what sessions that are judged together agreed to
-    look for, see terms.
+    thermal, fastest (degC/s), vibration (n,) mg rms, shaken_mg: what sessions that are judged
+    together agreed to look for, see terms.
     """
 
     name: str
@@ -84,6 +84,7 @@ class Session(ReadOnlyArrays):
     rounding_accel: np.ndarray | None
     rounding_gyro: np.ndarray | None
     thermal: bool = False
+    fastest: float = 0.0
     vibration: np.ndarray | None = None
     shaken_mg: float = 0.0
 

@@ -127,14 +127,15 @@ def squared(design, columns, prior):
 def agreed(sessions):
     """The sessions with what is looked for settled for all of them at once, so that the columns
     of one are those of the others: thermal (every one has a thermometer, and they moved, all
-    together), vibration above the quietest rests of all, shaken_mg (the strongest of any rest, 0
-    where none is shaken)."""
+    together), fastest (of any temperature's changes), vibration above the quietest rests of all,
+    shaken_mg (the strongest of any rest, 0 where none is shaken)."""
     thermal = moved_c(sessions) >= MOVES_C
+    fastest = max(float(np.abs(s.thermometer.rate).max()) for s in sessions) if thermal else 0.0
     vibrations = block_measures.vibrations([session.loudness for session in sessions])
     strongest = max(float(vibration.max()) for vibration in vibrations)
     shaken_mg = strongest if strongest > LEAST_VIBRATION_MG else 0.0
-    return [replace(session, thermal=thermal, vibration=vibration, shaken_mg=shaken_mg)
-            for session, vibration in zip(sessions, vibrations)]
+    return [replace(session, thermal=thermal, fastest=fastest, vibration=vibration,
+                    shaken_mg=shaken_mg) for session, vibration in zip(sessions, vibrations)]
 
 
 def library(session, up, sensor, reference_c, chip):
@@ -231,7 +232,7 @@ def _thermal(session, m, design, sensor, reference_c):
         designs.append(design("thermal_rate", label, felt))
     # As much however fast the temperature changes: what a package is strained by levels off.
     felt = copy.copy(m)
-    fastest = max(float(np.abs(m.temperature_rate).max()), 1e-9)
+    fastest = max(session.fastest, 1e-9)
     felt.temperature_rate = fastest * np.tanh(LEVELS_OFF * m.temperature_rate / fastest)
     designs.append(design("thermal_rate", "levels off", felt))
     return designs

@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from sixflip_host.diagnosis import (
+    adequacy,
     answer,
     between_sessions,
     detectability,
     diagnosis,
+    hypotheses,
     localisation,
     members,
     rest_model,
@@ -171,10 +173,12 @@ def test_what_scales_change_by_in_an_ordinary_session_is_known_to_its_error():
         model = rest_model.RestModel("accel", "mpu6050", diagnosis.Settings())
         nominal = [attitude_fit.fit(session) for session in made]
         units = [model.unit(*part, False) for part in zip(terms.agreed(made), nominal)]
-        (scale,) = [u for u in model.between(units, nominal) if u.between == "scale"]
-        standard.append(scale.z / np.sqrt(np.diag(covariance.dense(scale.groups, 0.0, 0.0))))
+        (scale,) = [u for u in model.between(units, list(zip(made, nominal)))
+                    if u.between == "scale"]
+        errors = covariance.dense(scale.groups, 0.0, 0.0)
+        standard.append(np.linalg.solve(np.linalg.cholesky(errors), scale.z))
     # 36 standard normals: their mean square is 1 within 0.24 (one standard deviation)
-    assert 0.4 < np.mean(np.square(standard)) < 1.8
+    assert 0.5 < np.mean(np.square(standard)) < 1.6
 
 
 def test_a_session_held_out_and_the_others_are_all_that_lies_between_them():
@@ -188,9 +192,38 @@ def test_a_session_held_out_and_the_others_are_all_that_lies_between_them():
     values = np.array([c.value for c in constants])
     difference = values[2] - np.delete(values, 2, 0).mean(axis=0)
     np.testing.assert_allclose(np.abs(own.z), np.abs(difference) * np.sqrt(3.0 / 4.0))
+    columns = np.array([c.columns for c in constants])
+    difference = columns[2] - np.delete(columns, 2, 0).mean(axis=0)
+    np.testing.assert_allclose(np.abs(own.raw(slice(None))), np.abs(difference) * np.sqrt(0.75))
+    variance = np.array([np.diag(c.covariance) for c in constants])
+    np.testing.assert_allclose(
+        np.diag(covariance.dense(own.groups, 0.0, 0.0)),
+        0.75 * variance[2] + 0.75 * np.delete(variance, 2, 0).mean(axis=0) / 3.0)
     # The others know nothing of the one held out.
     changed = [replace(c, value=c.value + 5.0) if k == 2 else c for k, c in enumerate(constants)]
     (moved,) = between_sessions.unit("bias", "accel", changed, designs)
     np.testing.assert_allclose(between_sessions.held_out(moved, 2)[1].z, others.z, atol=1e-12)
     assert np.abs(between_sessions.held_out(moved, 2)[0].z - own.z).min() > 1.0
     assert (unit.z ** 2).sum() == pytest.approx((own.z ** 2).sum() + (others.z ** 2).sum())
+
+
+def test_a_change_at_switching_on_is_a_hypothesis_of_what_lies_between():
+    """What it frees are the levels of this very unit."""
+    constants = [between_sessions.Constants(
+        np.full(3, 30.0 * k), np.eye(3), np.zeros((3, 0)), True) for k in range(2)]
+    for quantity in ("bias", "scale"):
+        (unit,) = between_sessions.unit(quantity, "accel", constants, [])
+        levels = adequacy.levels("mpu6050", "accel")
+        assert levels.prior(unit, ()).min() < -20.0
+        assert not levels.prior(unit, hypotheses.FREE["session"][0]).any()
+
+
+def test_scales_of_sessions_without_a_thermometer_say_nothing():
+    """0.1 % apart is what ten degrees of another temperature do."""
+    made = stood_at((20.0, 25.0), "accel", 0.02, 1)
+    for session in made:
+        session.capture.temp = None
+    found = diagnosis.diagnose_sessions(
+        [blocks.session_of(s.name, s.capture) for s in made], diagnosis.Settings())
+    assert not found.causes and found.verdict in ("no gap", "cannot tell")
+    assert not [u for u in found.gaps["accel"].units if u.between == "scale"]

@@ -233,7 +233,7 @@ def test_the_verb_says_it_in_json_and_words_and_writes_the_scenario(tmp_path, ca
     assert [e["effect"] for e in again.effects] == ["lever_arm"]
 
 
-@pytest.mark.parametrize("seed", [5, 6])
+@pytest.mark.parametrize("seed", [6, 8])
 def test_what_rounding_leaves_in_rests_is_no_matter_of_motion(seed):
     found = captures([], seed=seed)
     for capture in found:
