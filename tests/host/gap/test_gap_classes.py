@@ -104,7 +104,8 @@ def test_a_cause_of_another_form_than_the_library_s_ends_in_its_class(captures, 
     cause, = causes(captures, change)
     assert effect in cause["class"] and cause["axes"] == ["z"]
     assert set(cause["class"]) <= {effect, *BESIDE[effect]}
-    assert cause["share"] > 0.95
+    # Of a rate that levels off the library's form and the one beside it leave a tenth.
+    assert cause["share"] > (0.85 if form == "rate levels off" else 0.95)
 
 
 def test_a_stranger_is_held_against_every_name_of_its_variable():
