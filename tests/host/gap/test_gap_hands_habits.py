@@ -99,7 +99,7 @@ def test_a_hand_that_waits_now_longer_now_shorter_has_the_same_habit():
     """In shares of the time from rest to rest, the waiting included, each lift had a course of its
     own, and what goes with the rate follows the lift better: a reading that follows the size of
     the rate and gravity, in six of twenty healthy sensors of another generator."""
-    assert motion(waits=True, number=4) == ([], [])
+    assert motion(waits=True, number=7) == ([], [])
 
 
 def test_a_gyro_that_is_late_by_more_than_the_tremor_s_period_has_its_delay():
