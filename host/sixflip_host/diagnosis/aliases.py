@@ -175,8 +175,7 @@ def balanced(grams, mine):
     """Both grams together, the energy of `mine` between sessions as large as within them."""
     within, between = (np.trace(np.atleast_2d(g)[np.ix_(mine, mine)]) if np.ndim(g) else 0.0
                        for g in grams)
-    return grams[0] + grams[1] * (within / between if min(within, between) > 0.0
-                                   else 1.0)
+    return grams[0] + grams[1] * (within / between if min(within, between) > 0.0 else 1.0)
 
 
 def _told(gram, mine, theta, spaces, others):

@@ -28,8 +28,9 @@ FLICKER = {  # level of each of the exponentials of 10...1000 s, mg or deg/s
 FLOOR = {
     "mpu6050-accel": 0.08, "mpu6050-gyro": 0.002, "adxl345": 0.08, "itg3205": 0.008,
 }
-# Rate random walk of a gyro, deg/s per root of a second: judged from published Allan plots, whose
-# deviation grows again from some minutes on (an accelerometer's does after hours).
+# Rate random walk of a gyro, deg/s per root of a second. No data sheet states it: judged, so that
+# it reaches the FLOOR of the Allan deviation, which it adds K (t / 3)^1/2 to [IEEE Std 952-1997,
+# annex C], after some two minutes. An accelerometer's does so after hours.
 WALK = {"mpu6050-gyro": 3e-4, "itg3205": 1.2e-3}
 SIZES = {"thermal_bias": {}, "thermal_scale": {}, "quadratic": {}, "cubic": {}, "filter_lag": {}}
 STANDS_IN = {
