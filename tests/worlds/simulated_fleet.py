@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from sixflip.poses import faces
+from sixflip_host.experiment.session import FRICTION
 from sixflip_host.fleet import analysis, parameters, summary, summary_file
 from sixflip_host.planning import protocols
 
@@ -78,7 +79,8 @@ def summary_of(part, plan, rng, name, number=0, board=None):
         "halves": (accel[1::2] - accel[::2]) * ACCEL_LSB / 1e3,
         "runs": np.column_stack([codes, starts * RATE, (starts + dwell) * RATE]).astype(np.int64),
         "starts": starts, "thermometer": np.concatenate([clock[:1], celsius(clock)]),
-        "play": np.repeat(np.tanh(rng.normal(0.0, 0.1, (len(t), 1, 3))), 3, axis=1),
+        "friction": np.repeat(np.tanh(rng.normal(0.0, 0.1, (len(t), 1, 3))),
+                              len(FRICTION), axis=1),
         "block_placement": place, "block_code": codes[place],
         "block_first": cut.astype(np.int64),
         "block_end": (cut + width[place] * RATE).astype(np.int64),

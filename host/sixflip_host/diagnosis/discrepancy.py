@@ -15,6 +15,9 @@ from .hypotheses import domain
 
 BESIDE = 0  # the power of a column that belongs to a stranger, see terms.Design
 RELATIVE = 0.5  # of an effect: how far a part's own form may be from the library's
+# Of the functions of one kind, rms: one that shows less of itself has no larger coefficient for
+# that, as a product of two axes where every pose is flat.
+FAINT = 0.1
 # What an effect, or all of a domain, is a function of: the strangers that have that variable.
 VARIABLE = {"thermal_scale": ("thermal_orientation",), "vibration_rectification": ("shaking",),
             "temperature": ("temperature",), "time": ("time",),
@@ -66,24 +69,26 @@ def _meet(form, other, variables):
 
 
 def _of_variable(designs, forms, names, variant):
-    """[(column, axis)] of the designs of these names: of those that compete, and of what is there
-    to stand beside them; of each the variant, of the same lag for instance, or else the last."""
+    """[(column, axis, number of its design)] of the designs of these names: of those that compete,
+    and of what is there to stand beside them; of each the variant, of the same lag for instance,
+    or else the last."""
     known, by_effect, start = {form.effect for form in forms}, {}, 0
-    for design in designs:
+    for number, design in enumerate(designs):
         stands = design.effect in names and (design.beside or design.effect in known)
         if stands and (not variant or by_effect.get(design.effect, ("",))[0] != variant):
             by_effect[design.effect] = design.variant, list(zip(
-                range(start, start + len(design.keys)), design.axes))
+                range(start, start + len(design.keys)), design.axes, [number] * len(design.keys)))
         start += len(design.keys)
     return [pair for _, pairs in by_effect.values() for pair in pairs]
 
 
 def _of_effect(designs, form):
-    """[(column, axis)] of a form's other variants."""
+    """[(column, axis, number of its design)] of a form's other variants."""
     pairs, start = [], 0
-    for design in designs:
+    for number, design in enumerate(designs):
         if design.effect == form.effect and design.variant != form.variant:
-            pairs += zip(range(start, start + len(design.keys)), design.axes)
+            pairs += zip(range(start, start + len(design.keys)), design.axes,
+                         [number] * len(design.keys))
         start += len(design.keys)
     return pairs
 
@@ -100,17 +105,20 @@ def with_discrepancy(model, forms, scored, form):
         designs, forms, variables, form.variant)
     shared, own = scored.shared, form.shared.index
     theta = evidence.coefficients(scored.fits, shared)[0][0]
-    shown = _shown(model.units, scored.fits, np.array([*own, *(c for c, _ in free)], dtype=int))
-    size = np.zeros(3)
+    shown = _shown(model.units, scored.fits, np.array([*own, *(c for c, *_ in free)], dtype=int))
+    size, largest = np.zeros(3), {}
     for column, axis, squares in zip(own, form.axes, shown):
         place = np.flatnonzero(shared.index == column)[0]
         size[axis] = np.hypot(size[axis], theta[place] * np.sqrt(squares))
+    for (_, *kind), squares in zip(free, shown[len(own):]):
+        largest[tuple(kind)] = max(largest.get(tuple(kind), 0.0), squares)
     columns, prior, axes = [], [], []
-    for (column, axis), squares in zip(free, shown[len(own):]):
+    for (column, axis, number), squares in zip(free, shown[len(own):]):
         if size[axis] > 0.0 and squares > 0.0 and column not in own:
             columns.append(column)
             axes.append(axis)
-            prior.append(RELATIVE * size[axis] / np.sqrt(squares))
+            shows = max(squares, FAINT ** 2 * largest[axis, number])
+            prior.append(RELATIVE * size[axis] / np.sqrt(shows))
     if not columns:
         return None
     prior = np.array(prior) / np.sqrt(np.bincount(axes, minlength=3)[axes])

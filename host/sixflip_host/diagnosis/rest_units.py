@@ -10,7 +10,7 @@ import numpy as np
 
 from ..experiment import covariance, linear_model, long_rest, nominal_rows
 from ..experiment.flicker import flicker_kernel
-from . import adequacy, evidence, holdout_gain, rest_forms
+from . import adequacy, between_sessions, evidence, holdout_gain, rest_forms
 
 # Levels tried: of the offset from one rest to the next from what it is where nothing was moved
 # up, about half a decade apart: beyond flicker that is the Allan floor of the parts
@@ -78,12 +78,23 @@ def axis_units(rest, kind, chip, settings):
         own = [replace(d, columns=d.columns * (np.array(d.axes) == axis)) for d in designs]
         group = covariance.alone(np.diag(rest.noise[kind][:, axis] ** 2), lateral, kernel)
         rows = nominal_rows.Rows(rest.values[kind][:, axis], group, np.ones((rest.n, 1)),
-                                 (OFFSETS[kind], FLICKERS[kind]), (0,))
+                                 (OFFSETS[kind], FLICKERS[kind]), (0,),
+                                 common=_switched_on(rest, kind))
         signature = ("rest", axis, tuple(rest.rest.tolist()),
                      tuple((rest.t - rest.t[0]).round().astype(int).tolist()), warming)
         unit = linear_model.unit(rows, own, signature=signature, axis=axis)
         units.append(replace(unit, energy=unit.energy / 3.0))  # the rows are those of one axis
     return units
+
+
+def _switched_on(rest, kind):
+    """(n, sessions) what switching on again changes of a bias, its coefficients of a standard
+    deviation of 1; None of one session."""
+    sessions = np.unique(rest.session)
+    if len(sessions) < 2:
+        return None
+    return between_sessions.ORDINARY_CHANGE["bias"][kind] * (
+        rest.session[:, None] == sessions).astype(float)
 
 
 def held_out(rest, unit, chosen, index, levels):

@@ -14,6 +14,7 @@ from . import localisation, odds
 from .detect import (
     axis_order,
     codes,
+    common_noise,
     dead_band,
     held_values,
     line_across_rests,
@@ -84,7 +85,9 @@ def judge(sessions, settings=ALONE, damages=()):
     jumpy = {f.sensor for f in findings if f.effect in ("torn_reads", "dead_band")}
     sessions = [_without_bands(s, findings) for s in sessions]
     without_spikes, wild = noise_bursts.without_spikes(sessions, leaping)
-    unsteady = [burst for burst in [*noise_bursts.unsteady(without_spikes), *wild]
+    common = [said for said in common_noise.shared(without_spikes)
+              if present(-np.log(max(said[-1], odds.SMALLEST)))]
+    unsteady = [burst for burst in [*noise_bursts.unsteady(without_spikes), *wild, *common]
                 if burst[0] not in noisy]
     unsteady += torn_reads.jumps(sessions, jumpy)
     remarks = [damage.words for damage in damages]
@@ -120,7 +123,7 @@ def judge(sessions, settings=ALONE, damages=()):
     if stuck:  # an axis that keeps its value says nothing of how it rests
         sessions = tuple(s.without_samples(held_values.stuck_rows(s, stuck)) for s in sessions)
     return SamplesJudged(sessions, tuple(findings), tuple(damages), tuple(nameless),
-                         (*remarks, *(words for _, words, _ in unsteady)))
+                         tuple(dict.fromkeys([*remarks, *(words for _, words, _ in unsteady)])))
 
 
 def _uneven(sessions, coarse):

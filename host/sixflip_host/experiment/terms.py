@@ -15,7 +15,7 @@ from sixflip_sim.effects.library import EFFECTS
 
 from . import block_measures
 from .projection import by_axis
-from .session import PLAY_G
+from .session import FRICTION
 from .thermometer import MOVES_C, moved_c
 
 LAGS_S = (0.0, 15.0, 30.0, 60.0, -30.0)  # GAP: a neighbouring thermometer, 10-60 s
@@ -155,8 +155,8 @@ def library(session, up, sensor, reference_c, chip):
     cross = design("cross_quadratic")
     squares = [k for k in cross.keys if k[1] == k[2]]
     products = [k for k in cross.keys if k[1] != k[2]]
-    designs += [plain, *remembered(session, m, plain), design("quadratic"), design("cubic"), cross,
-                design("cross_quadratic", "squares", only=squares),
+    designs += [plain, *remembered(session, m, plain), design("quadratic"), design("cubic"),
+                cross, design("cross_quadratic", "squares", only=squares),
                 design("cross_quadratic", "products", only=products),
                 design("asymmetry"), *_creep(session, up, m, design)]
     if session.shaken_mg:
@@ -189,10 +189,9 @@ def along_axes(session, nominal, chip):
 
 def remembered(session, m, plain):
     """Designs of hysteresis in other forms than a share of the pose before: only from which
-    side the pose was reached, and a play operator along the whole way."""
+    side the pose was reached, and what rubs along the whole way."""
     side = np.tanh(3.0 * (np.stack(m.before, 1) - np.stack(m.f, 1)))
-    forms = [("side", side)] + [("play %g g" % width, behind) for width, behind in zip(
-        PLAY_G, session.play.transpose(1, 0, 2))]
+    forms = [("side", side), *zip(FRICTION, session.friction.transpose(1, 0, 2))]
     designs = []
     for variant, values in forms:
         columns = by_axis([values]).reshape(-1, 3)

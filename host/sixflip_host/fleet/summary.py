@@ -48,14 +48,14 @@ class SummarisedCapture(Capture):
 @dataclass(frozen=True, eq=False)
 class SummarySession(Session):
     """A Session without samples. starts (placements,): s since the capture's begin at
-    which each began; play (n, widths, 3): Session.play."""
+    which each began; friction (n, forms, 3): Session.friction."""
 
     starts: np.ndarray = None
-    play: np.ndarray = None
+    friction: np.ndarray = None
 
     def part(self, placements):
         keep = np.isin(self.placement, list(placements))
-        return replace(super().part(placements), play=self.play[keep])
+        return replace(super().part(placements), friction=self.friction[keep])
 
     def _of_runs(self, runs):
         places = [self.runs.index(run) for run in runs]
@@ -65,8 +65,8 @@ class SummarySession(Session):
         cut = {name: getattr(self, name) for name in OF_BLOCKS}
         cut = {name: value if value is None else value[keep] for name, value in cut.items()}
         cut["placement"] = number[cut["placement"]]
-        return replace(self, runs=tuple(runs), starts=self.starts[places], play=self.play[keep],
-                       **cut)
+        return replace(self, runs=tuple(runs), starts=self.starts[places],
+                       friction=self.friction[keep], **cut)
 
     def remembered(self, up, tau_s):
         return fading(self.starts, up, tau_s)[self.placement]
@@ -77,7 +77,7 @@ class Summary:
     """What is left of one capture.
 
     about     dict of JSON: meta, labelled, found_labelled, remarks, flips, samples, bounds
-    arrays    {name: array}: placement_*, move_*, halves, runs, thermometer, play, block_*
+    arrays    {name: array}: placement_*, move_*, halves, runs, thermometer, friction, block_*
     """
 
     about: dict
@@ -127,7 +127,7 @@ class Summary:
         return SummarySession(
             self.about["name"], self.capture(), float(self.meta["rate_hz"]),
             np.array(self.about["bounds"]), False, self.about["found_labelled"], runs, smooth,
-            starts=a["starts"], play=a["play"], **values)
+            starts=a["starts"], friction=a["friction"], **values)
 
 
 def summarise(name, capture):
@@ -192,7 +192,7 @@ def _blocks(session):
               if getattr(session, name) is not None}
     arrays["runs"] = np.array([(*run,) for run in session.runs], np.int64).reshape(-1, 3)
     arrays["starts"] = np.array([session.t_s[run.first] for run in session.runs], float)
-    arrays["play"] = session.play
+    arrays["friction"] = session.friction
     if session.thermometer is not None:
         arrays["thermometer"] = np.concatenate([session.thermometer.t[:1], session.thermometer.c])
     return arrays

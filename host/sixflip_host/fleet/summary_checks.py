@@ -7,6 +7,7 @@ import numpy as np
 from sixflip.poses.faces import LEANING, MOST_LEANING
 
 from ..capture.capture_header import check_meta
+from ..experiment.session import FRICTION
 from ..value_kinds import (
     LARGEST,
     Either,
@@ -111,7 +112,8 @@ def _blocks(tables):
     runs, n = tables["runs"], len(tables["block_placement"])
     _need(len(runs) <= MOST_POSES and runs.dtype.kind == "i" and _codes(runs[:, 0]), "runs")
     _need(tables["starts"].shape == (len(runs),), "starts")
-    _need(n <= MOST_BLOCKS and tables["play"].shape == (n, 3, 3), "play")
+    _need(n <= MOST_BLOCKS and tables["friction"].shape == (n, len(FRICTION), 3),
+          "friction")
     place = tables["block_placement"]
     _need(place.shape == (n,) and place.dtype.kind == "i" and (np.diff(place) >= 0).all()
           and (not n or 0 <= place[0] and place[-1] < len(runs)), "block_placement")

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from sixflip_host.capture.capture_file import Capture
 from sixflip_host.diagnosis.detect import held_values
 from sixflip_host.diagnosis.detect.detection import present
 
@@ -47,6 +48,36 @@ def test_a_coarse_sensor_that_moves_in_bursts_holds_nothing():
     assert said(counts) == []
     twice, = said(np.repeat(counts[::2], 2, axis=0))
     assert twice["times"] == pytest.approx(2.0, rel=0.05)
+
+
+def frozen(times, noise=4.0):
+    """Capture of a sensor that turns now and then, whose six registers keep their values for half
+    a second so many times; and the rows in which they do."""
+    generator = np.random.default_rng(21)
+    turned = 300.0 * np.sin(np.arange(8000) / 90.0) * (np.arange(8000) % 2000 > 900)
+    counts = np.rint(turned[:, None] + generator.normal(0.0, noise, (8000, 6))).astype(np.int16)
+    rows = np.concatenate([np.arange(first + 1, first + 50) for first in np.sort(
+        generator.choice(150, times, replace=False)) * 50]).astype(int)
+    for row in rows:
+        counts[row] = counts[row - 1]
+    return Capture({"sensor": "other", "rate_hz": 100.0}, 10_000 * np.arange(8000),
+                   counts[:, :3], counts[:, 3:]), rows
+
+
+def test_registers_that_keep_their_values_for_a_while_were_not_read():
+    """From eight rows on they were taken for a rest without noise, and beside the holes in the
+    turns a gyro's asymmetry was named."""
+    capture, rows = frozen(12)
+    ((_, read),), (damage,) = held_values.as_read([("one", capture)])
+    assert len(read) == len(capture) - len(rows) and len(capture) == 8000
+    assert np.array_equal(read.t_us, np.delete(capture.t_us, rows))
+    assert damage.kind == held_values.NOT_READ and damage.value == {"rows": len(rows)}
+
+
+def test_a_log_that_begins_with_rows_that_stand_still_was_read():
+    capture, _ = frozen(1)
+    read, damages = held_values.as_read([("one", capture)])
+    assert len(read[0][1]) == 8000 and not damages
 
 
 def test_an_axis_that_keeps_its_value_while_the_others_change_is_stuck():

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture.capture_file import Capture
-from sixflip_host.diagnosis import rest_gap, rest_units
+from sixflip_host.diagnosis import coefficient_fits, rest_gap, rest_units, scored_sets
 from sixflip_host.diagnosis.diagnosis import Settings
 from sixflip_host.experiment import blocks, long_rest
 
@@ -88,6 +88,25 @@ def test_rests_that_differ_as_switching_on_makes_them_are_no_gap():
     found = accel(*(rest((offset, 0.0, -offset), seed=seed) for seed, offset in enumerate(
         (0.0, 1.2, -0.8))))
     assert not found.causes and not found.nameless
+
+
+def test_a_bias_that_switching_on_changes_needs_no_cause():
+    """Of a robot that stops now and then a tenth of a deg/s between two sessions was as unlikely
+    as between two stops: it went with temperature and a warm-up."""
+    def nats(change_dps):
+        sessions = []
+        for number in range(2):
+            made = rest(seed=number).capture
+            made.gyro += np.int16(np.rint(131.0 * change_dps * number))
+            made.pose[:] = np.where(np.arange(len(T)) % 400 < 300, 1, 0)
+            sessions.append(blocks.session_of(str(number), made))
+        stops = long_rest.in_one_attitude(sessions, ())
+        units = rest_units.axis_units(stops, "gyro", "mpu6050", Settings())
+        levels = rest_units.levels(stops, "gyro", 0.003, False)
+        data = coefficient_fits.data_of(units)
+        return scored_sets.Model(units, data.statistics, levels).scored(()).score
+    assert nats(0.0) - nats(0.1) < 5.0
+    assert nats(0.0) - nats(1.0) > 20.0  # ten times as much is not usual
 
 
 def test_rests_in_another_attitude_are_left_out():

@@ -7,7 +7,7 @@ import pytest
 from sixflip_host.capture import capture_file
 from sixflip_host.capture import registers as counts
 from sixflip_host.diagnosis import answer, diagnosis, samples_judged
-from sixflip_host.diagnosis.detect import noise_bursts, saturation, torn_reads
+from sixflip_host.diagnosis.detect import common_noise, noise_bursts, saturation, torn_reads
 from sixflip_host.diagnosis.detect.detection import present
 from sixflip_host.experiment import block_measures, blocks
 from sixflip_host.present import gap_words
@@ -222,6 +222,43 @@ def test_bursts_of_noise_are_no_vibration():
     assert "vibration" not in [f.effect for f in found.findings]
     assert found.verdict in ("unexplained", "partly explained")
     assert ("accel", "noise") in [(w.sensor, w.domain) for w in found.where]
+
+
+@pytest.mark.parametrize("times, rests, said", [
+    (2.0, 2, ["accel"]), (1.4, 2, []), (4.0, 1, ["accel"])])
+def test_rests_that_are_louder_from_begin_to_end_are_said(times, rests, said):
+    """A face with twice the noise, and one rest with four times as much, were no gap."""
+    two = resting(6.0, n=1000), resting(6.0, seed=6, n=1000)
+    counts = np.concatenate([s.capture.accel for s in two]).astype(float)
+    level = np.repeat(8192.0 * np.vstack([np.eye(3), -np.eye(3)] * 2), 1000, axis=0)
+    for rest in (3, 8)[:rests]:
+        counts[1000 * rest:1000 * rest + 1000] += (times - 1.0) * (counts - level)[
+            1000 * rest:1000 * rest + 1000]
+    whole = blocks.session_of("twelve", capture_file.Capture(
+        dict(two[0].capture.meta), 10_000 * np.arange(12000), np.rint(counts).astype(np.int16),
+        pose=np.repeat(np.arange(1, 13), 1000)))
+    found = noise_bursts.unsteady([whole])
+    assert [sensor for sensor, _, _ in found] == said
+    assert all("in %d of 12 rests" % rests in words for _, words, _ in found)
+
+
+@pytest.mark.parametrize("share, said", [(1.0, ["accel"]), (0.3, [])])
+def test_noise_that_two_axes_have_in_common_is_said(share, said):
+    """As of a supply that both are on: it was no gap."""
+    session = resting(20.0, n=600)
+    capture = session.capture
+    level = np.repeat(8192.0 * np.vstack([np.eye(3), -np.eye(3)]), 600, axis=0)
+    capture.accel[:, 1] += np.rint(share * (capture.accel - level)[:, 0]).astype(np.int16)
+    found = common_noise.shared([session])
+    assert [sensor for sensor, _, p in found if p < 1e-6] == said
+    assert "x axis" in found[0][1] and "y axis" in found[0][1]
+
+
+def test_a_knock_that_all_axes_feel_is_no_noise_in_common():
+    session = resting(10.0, n=600)
+    session.capture.accel[800:830] += np.rint(np.random.default_rng(2).normal(
+        0.0, 2000.0, (30, 1))).astype(np.int16)
+    assert all(p > 0.9 for _, _, p in common_noise.shared([session]))
 
 
 def test_a_table_that_rings_under_a_box_put_down_is_no_burst_of_noise():

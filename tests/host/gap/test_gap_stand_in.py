@@ -74,6 +74,31 @@ def test_what_sticks_and_slips_in_many_places_is_hysteresis():
     assert [cause.names for cause in gap.causes] == [["hysteresis"]]
 
 
+def slipped(readings, length):
+    """(n, 3) what sticks and slips the more the longer the way is, -1 to 1 [Dahl]; what the noise
+    of a rest adds up to is no way."""
+    spring, at, found, n = np.zeros(3), readings[EVERY], [], len(readings)
+    for k in range(0, n, EVERY):
+        step = readings[max(k - EVERY, 0):k + EVERY].mean(axis=0) - at
+        step[np.abs(step) < 0.03] = 0.0
+        at, spring = at + step, spring + step - np.abs(step) * spring / length
+        found.append(spring / length)
+    return np.stack([np.interp(np.arange(n), np.arange(0, n, EVERY), column)
+                     for column in np.transpose(found)], 1)
+
+
+@pytest.mark.parametrize("length, sessions", [(1.0, 2), (2.0, 1)])
+def test_what_slips_more_the_longer_the_way_is_is_hysteresis(length, sessions):
+    """It was hysteresis with a creep beside it, and a creep of some minutes alone."""
+    def added(t, g, generator):
+        return 0.005 * slipped(g, length) * [1.0, 0.0, 0.0]
+    gap = accelerometer(added, sessions, world={"placement_scatter_deg": 0.1})
+    cause, = gap.causes
+    assert "hysteresis" in cause.names and cause.letters == ["x"]
+    assert cause.probabilities["hysteresis"] > 0.4
+    assert not gap.unexplained
+
+
 def shaken(rectified):
     """Readings beside a motor that is on now and then, its strength swelling by a third, and that
     shift by rectified(strength (n,)) mg on x and z."""

@@ -20,6 +20,7 @@ FEWEST = 200  # rows
 STRETCH = 256  # rows
 NEIGHBOURS = 25  # rows, half a second and less, in which a sensor rests or moves
 AT_REST = 8  # rows that repeat on end: no log is read so many times faster than its sensor
+FEWEST_HELD = 3  # times that so many do: once is what a log begins or ends with
 HELD = 0.05  # share of rows that are held: fewer are single rows, not a rate
 # Standard deviation of the spacing of held rows, of its mean: of rows that are lost at random it
 # is 1, and of a sensor that is read faster than it measures half a row at most.
@@ -100,7 +101,7 @@ def _kept(counts, axis):
     """(nats, length of the longest run of repeats) of an axis of counts (n, 3)."""
     column, step = counts[:, axis].astype(np.int64), max(int(steps(counts)[axis]), 1)
     noise = _unforeseen(column / step)
-    chance = max(math.erf(0.5 / max(noise, 1e-9) / math.sqrt(2.0)), BY_CHANCE)
+    chance = _by_chance(noise)
     held = _held(counts, axis)
     before = np.flatnonzero(np.convolve(held, np.ones(AGAIN), "valid") == AGAIN) + AGAIN
     before = before[before < len(held)]
@@ -173,7 +174,7 @@ def _not_read(capture):
     if capture.accel is None or capture.gyro is None or len(capture) < FEWEST:
         return none
     counts = np.hstack([capture.accel, capture.gyro])
-    nats, held, _ = repeats(counts)
+    nats, held = (sum(v) for v in zip(repeats(counts)[:2], _frozen(counts)))
     rows = np.flatnonzero((counts[1:] == counts[:-1]).all(axis=1)) + 1
     spacing = np.diff(rows)
     # As many as are held repeat: where some do by chance, nobody knows which.
@@ -181,6 +182,25 @@ def _not_read(capture):
             spacing.std() < AT_RANDOM * spacing.mean()):
         return none
     return nats, rows
+
+
+def _frozen(counts):
+    """(nats of rows being held over repeating by chance, how many) of counts (n, axes), of those
+    that repeat on end for longer than any log is read faster than its sensor: by what the noise of
+    the axis that has most leaves to chance, as if all others followed it."""
+    lengths = _lengths((counts[1:] == counts[:-1]).all(axis=1))
+    held = int((lengths >= AT_REST).sum())
+    noise = max(_unforeseen(column / step) for column, step in zip(
+        counts.T.astype(np.int64), np.maximum(steps(counts), 1)))
+    times = int((np.diff(np.append(0, lengths >= AT_REST)) > 0).sum())
+    if noise < LEAST_NOISE or times < FEWEST_HELD:
+        return 0.0, 0
+    return -held * math.log(_by_chance(noise)) - math.log(len(counts)), held
+
+
+def _by_chance(noise):
+    """Chance that a code is read once more where the noise is so many counts."""
+    return max(math.erf(0.5 / max(noise, 1e-9) / math.sqrt(2.0)), BY_CHANCE)
 
 
 def _without(capture, rows):
