@@ -79,7 +79,7 @@ def _of_variable(designs, forms, names, variant):
             by_effect[design.effect] = design.variant, list(zip(
                 range(start, start + len(design.keys)), design.axes, [number] * len(design.keys)))
         start += len(design.keys)
-    return [pair for _, pairs in by_effect.values() for pair in pairs]
+    return [column for _, columns in by_effect.values() for column in columns]
 
 
 def _of_effect(designs, form):

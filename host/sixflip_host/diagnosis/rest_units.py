@@ -80,7 +80,7 @@ def axis_units(rest, kind, chip, settings):
         rows = nominal_rows.Rows(rest.values[kind][:, axis], group, np.ones((rest.n, 1)),
                                  (OFFSETS[kind], FLICKERS[kind]), (0,),
                                  common=_switched_on(rest, kind))
-        signature = ("rest", axis, tuple(rest.rest.tolist()),
+        signature = ("rest", axis, tuple(rest.rest.tolist()), tuple(rest.session.tolist()),
                      tuple((rest.t - rest.t[0]).round().astype(int).tolist()), warming)
         unit = linear_model.unit(rows, own, signature=signature, axis=axis)
         units.append(replace(unit, energy=unit.energy / 3.0))  # the rows are those of one axis
@@ -104,16 +104,17 @@ def held_out(rest, unit, chosen, index, levels):
     foretells."""
     y, group, (placement, flicker) = unit.rows.y, unit.rows.groups[0], unit.grid[index]
     offset, wanders = levels.usual(unit)
-    noise = covariance.dense([group], placement, flicker)
+    common = np.zeros((len(y), 0)) if unit.rows.common is None else unit.rows.common
+    noise = covariance.dense([group], placement, flicker) + common @ common.T
     quiet = covariance.dense([group], placement if placement <= offset else 0.0,
-                             min(flicker, adequacy.TIMES_TYPICAL * wanders))
+                             min(flicker, adequacy.TIMES_TYPICAL * wanders)) + common @ common.T
     columns = np.concatenate([f.columns for f in chosen] + [np.zeros(0, dtype=int)]).astype(int)
     prior = np.concatenate([f.prior for f in chosen] + [np.zeros(0)])
     x = unit.raw(columns)
-    # How a box lies is each rest's own; so is a session's bias where it changes by more than is
-    # usual.
+    # How a box lies is each rest's own. So is a session's bias, where it changes by more than is
+    # usual, or where its other rests tell it.
     pieces, total = _pieces(rest.rest), holdout_gain.NOTHING
-    own = rest.session * (placement > offset)
+    own = rest.session * (placement > offset or rest.rest.max() > rest.session.max())
     if offset > unit.grid[0][0] and len(np.unique(pieces)) > len(np.unique(rest.rest)):
         own = rest.rest
     for fold in range(FOLDS):

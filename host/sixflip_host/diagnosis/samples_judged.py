@@ -23,6 +23,8 @@ from .detect import (
     sample_clock,
     saturation,
     spectral_lines,
+    spikes,
+    stuck_axes,
     torn_reads,
     wandering_tone,
     wrong_scale,
@@ -76,7 +78,7 @@ def judge(sessions, settings=ALONE, damages=()):
     if any(d.kind == held_values.NOT_READ for d in damages):
         findings = [f for f in findings if f.effect != "dropped_samples"]
     coarse = {(f.sensor, axis) for f in findings if f.effect in COARSE for axis in f.axes}
-    stuck = held_values.stuck_for_a_while(sessions, coarse)
+    stuck = stuck_axes.stuck_for_a_while(sessions, coarse)
     held, scales, bits = whole
     damages = [*damages, *held, *stuck, *scales]
     leaping = {sensor for sensor, *_ in bits} | {
@@ -84,10 +86,10 @@ def judge(sessions, settings=ALONE, damages=()):
     noisy = leaping | {f.sensor for f in findings if f.effect in NOISY}
     jumpy = {f.sensor for f in findings if f.effect in ("torn_reads", "dead_band")}
     sessions = [_without_bands(s, findings) for s in sessions]
-    without_spikes, wild = noise_bursts.without_spikes(sessions, leaping)
-    common = [said for said in common_noise.shared(without_spikes)
-              if present(-np.log(max(said[-1], odds.SMALLEST)))]
-    unsteady = [burst for burst in [*noise_bursts.unsteady(without_spikes), *wild, *common]
+    without_spikes, wild = spikes.without_spikes(sessions, leaping)
+    shared_noise = [said for said in common_noise.shared(without_spikes)
+                    if present(-np.log(max(said[-1], odds.SMALLEST)))]
+    unsteady = [burst for burst in [*noise_bursts.unsteady(without_spikes), *wild, *shared_noise]
                 if burst[0] not in noisy]
     unsteady += torn_reads.jumps(sessions, jumpy)
     remarks = [damage.words for damage in damages]
@@ -121,7 +123,7 @@ def judge(sessions, settings=ALONE, damages=()):
                 % (axis, SENSOR[sensor], *hz) for sensor, axis, _, hz in tones]
     sessions = tuple(_without_lines(s, findings) for s in without_spikes)
     if stuck:  # an axis that keeps its value says nothing of how it rests
-        sessions = tuple(s.without_samples(held_values.stuck_rows(s, stuck)) for s in sessions)
+        sessions = tuple(s.without_samples(stuck_axes.stuck_rows(s, stuck)) for s in sessions)
     return SamplesJudged(sessions, tuple(findings), tuple(damages), tuple(nameless),
                          tuple(dict.fromkeys([*remarks, *(words for _, words, _ in unsteady)])))
 

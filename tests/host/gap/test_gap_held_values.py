@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture.capture_file import Capture
-from sixflip_host.diagnosis.detect import held_values
+from sixflip_host.diagnosis.detect import held_values, stuck_axes
 from sixflip_host.diagnosis.detect.detection import present
 
 
@@ -56,8 +56,8 @@ def frozen(times, noise=4.0):
     generator = np.random.default_rng(21)
     turned = 300.0 * np.sin(np.arange(8000) / 90.0) * (np.arange(8000) % 2000 > 900)
     counts = np.rint(turned[:, None] + generator.normal(0.0, noise, (8000, 6))).astype(np.int16)
-    rows = np.concatenate([np.arange(first + 1, first + 50) for first in np.sort(
-        generator.choice(150, times, replace=False)) * 50]).astype(int)
+    first = 50 * np.sort(generator.choice(150, times, replace=False))
+    rows = (first[:, None] + np.arange(1, 50)).ravel()
     for row in rows:
         counts[row] = counts[row - 1]
     return Capture({"sensor": "other", "rate_hz": 100.0}, 10_000 * np.arange(8000),
@@ -74,8 +74,20 @@ def test_registers_that_keep_their_values_for_a_while_were_not_read():
     assert damage.kind == held_values.NOT_READ and damage.value == {"rows": len(rows)}
 
 
-def test_a_log_that_begins_with_rows_that_stand_still_was_read():
-    capture, _ = frozen(1)
+def test_what_has_no_noise_at_rest_was_read_there():
+    """Ten rests in which nothing changes, and moves with noise on them."""
+    capture, _ = frozen(0)
+    resting = np.arange(8000) % 800 < 600
+    first = np.maximum.accumulate(np.where(resting & (np.arange(8000) % 800 == 0),
+                                           np.arange(8000), 0))
+    for counts in (capture.accel, capture.gyro):
+        counts[resting] = counts[first[resting]]
+    read, damages = held_values.as_read([("one", capture)])
+    assert len(read[0][1]) == 8000 and not damages
+
+
+def test_what_stands_still_twice_was_read():
+    capture, _ = frozen(2)
     read, damages = held_values.as_read([("one", capture)])
     assert len(read[0][1]) == 8000 and not damages
 
@@ -88,7 +100,7 @@ def test_an_axis_that_keeps_its_value_while_the_others_change_is_stuck():
 
     def said(gyro):
         capture = SimpleNamespace(accel=None, gyro=gyro)
-        return [(d.axes, d.value["rows"]) for d in held_values.stuck_for_a_while(
+        return [(d.axes, d.value["rows"]) for d in stuck_axes.stuck_for_a_while(
             [SimpleNamespace(capture=capture)])]
     assert said(counts) == []
     for first in range(500, 8000, 1000):
@@ -103,11 +115,11 @@ def test_an_axis_that_is_stuck_for_minutes_says_nothing_of_its_rests():
     counts = np.rint(generator.normal(40.0, 3.0, (8000, 3))).astype(np.int16)
     counts[4000:5500, 2] = counts[4000, 2]
     session = SimpleNamespace(capture=SimpleNamespace(accel=None, gyro=counts))
-    damage, = held_values.stuck_for_a_while([session])
+    damage, = stuck_axes.stuck_for_a_while([session])
     assert damage.axes == ("z",)
-    rows = held_values.stuck_rows(session, [damage])
+    rows = stuck_axes.stuck_rows(session, [damage])
     assert rows[4000:5500].mean() > 0.95 and rows[:4000].mean() < 0.02  # three alike by chance
     for first in (1000, 2000, 6000):  # a gate about the bias comes back to the same code
         counts[first:first + 500, 1] = 41
-    damage, = held_values.stuck_for_a_while([session])
+    damage, = stuck_axes.stuck_for_a_while([session])
     assert damage.axes == ("z",)

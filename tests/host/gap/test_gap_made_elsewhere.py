@@ -11,10 +11,10 @@ from sixflip_host.diagnosis.detect import (
     codes,
     dead_band,
     held_values,
-    noise_bursts,
     sample_neighbours,
     shake_detector,
     spectral_lines,
+    spikes,
     torn_reads,
     wandering_tone,
 )
@@ -33,10 +33,10 @@ def swinging(number, noise, generator, counts=8000.0):
 
 def test_tails_of_noise_are_no_spikes():
     generator = np.random.default_rng(3)
-    assert not present(noise_bursts.jump_nats(np.abs(generator.standard_t(6.0, 60000))))
+    assert not present(spikes.jump_nats(np.abs(generator.standard_t(6.0, 60000))))
     sizes = np.abs(generator.standard_normal(60000))
     sizes[::500] += 8.0
-    assert present(noise_bursts.jump_nats(sizes))
+    assert present(spikes.jump_nats(sizes))
 
 
 @pytest.mark.parametrize("band", [0, 40, 400])

@@ -7,7 +7,13 @@ import pytest
 from sixflip_host.capture import capture_file
 from sixflip_host.capture import registers as counts
 from sixflip_host.diagnosis import answer, diagnosis, samples_judged
-from sixflip_host.diagnosis.detect import common_noise, noise_bursts, saturation, torn_reads
+from sixflip_host.diagnosis.detect import (
+    common_noise,
+    noise_bursts,
+    saturation,
+    spikes,
+    torn_reads,
+)
 from sixflip_host.diagnosis.detect.detection import present
 from sixflip_host.experiment import block_measures, blocks
 from sixflip_host.present import gap_words
@@ -242,6 +248,21 @@ def test_rests_that_are_louder_from_begin_to_end_are_said(times, rests, said):
     assert all("in %d of 12 rests" % rests in words for _, words, _ in found)
 
 
+def test_a_rest_between_two_coarse_codes_is_no_louder_one():
+    """Twelve bits on the left of sixteen: in one rest of twelve noise of a fifth of a step is
+    seen."""
+    generator = np.random.default_rng(4)
+    codes = 37.0 * np.arange(12) + 0.5 * (np.arange(12) == 5)
+    level = 16.0 * np.repeat(codes, 1000)[:, None] + np.zeros(3)
+    counts = 16.0 * np.rint((level + 3.2 * generator.normal(size=level.shape)) / 16.0)
+    session = blocks.session_of("coarse", capture_file.Capture(
+        {"sensor": "other", "rate_hz": 100.0, "accel_lsb_per_g": 8192.0},
+        10_000 * np.arange(12000), counts.astype(np.int16),
+        pose=np.repeat(np.arange(1, 13), 1000)))
+    assert (np.diff(session.capture.accel[5000:6000], axis=0) != 0).mean() > 0.4
+    assert noise_bursts.unsteady([session]) == []
+
+
 @pytest.mark.parametrize("share, said", [(1.0, ["accel"]), (0.3, [])])
 def test_noise_that_two_axes_have_in_common_is_said(share, said):
     """As of a supply that both are on: it was no gap."""
@@ -290,10 +311,10 @@ def test_noise_of_two_counts_has_no_spikes(wide):
     gyro = np.rint(-84.3 + wide * generator.standard_normal((60000, 3))).astype(np.int16)
     session = SimpleNamespace(capture=SimpleNamespace(gyro=gyro), runs=[
         (1, first, first + 500) for first in range(0, len(gyro), 500)])
-    found = noise_bursts.spikes(session, "gyro")
-    assert found.looked > 59000 and found.number < noise_bursts.LEAST_SPIKES
+    found = spikes.spikes(session, "gyro")
+    assert found.looked > 59000 and found.number < spikes.LEAST_SPIKES
     gyro[100::200, 1] += 30
-    assert noise_bursts.spikes(session, "gyro").number > 200
+    assert spikes.spikes(session, "gyro").number > 200
 
 
 def test_samples_with_swapped_bytes_move_no_rest():

@@ -2,7 +2,8 @@
 import numpy as np
 import pytest
 
-from sixflip_host.diagnosis import diagnosis, rest_model
+from sixflip_host.capture.capture_file import Capture
+from sixflip_host.diagnosis import diagnosis, discrepancy, rest_model, scored_sets
 from sixflip_host.experiment import attitude_fit, blocks
 from sixflip_host.simulation import scenario, simulated_session
 
@@ -74,6 +75,23 @@ def test_what_sticks_and_slips_in_many_places_is_hysteresis():
     assert [cause.names for cause in gap.causes] == [["hysteresis"]]
 
 
+def test_a_form_of_its_own_has_no_more_of_what_the_poses_hardly_show():
+    """On flat poses products of two axes show nothing: each had as much of the gyro's sensitivity
+    to gravity as its squares had, and a stranger without them was likelier than the name."""
+    plan = scenario.from_dict({
+        "sensor": "mpu6050", "scene": "paper", "seed": 5, "world": {"tilt_deg": 0.5},
+        "effects": [{"effect": "g_sensitivity", "sensor": "gyro", "xx": 0.1, "yy": 0.1,
+                     "zz": 0.1}]})
+    session = blocks.session_of("flat", simulated_session.session(plan, 0))
+    gap = rest_model.RestModel("gyro", "mpu6050", diagnosis.Settings(jobs=1)).fit(
+        [session], [attitude_fit.fit(session)])
+    model = scored_sets.Model(gap.units, gap.data.statistics, gap.noise)
+    form, = (f for f in gap.forms if f.effect == "g_sensitivity" and f.axis is None)
+    wider = discrepancy.with_discrepancy(model, gap.forms, model.scored((form,)), form)
+    beside = wider.shared.prior[len(form.keys):]
+    assert len(beside) == 45 and beside.max() < 30.0 * beside.min()
+
+
 def slipped(readings, length):
     """(n, 3) what sticks and slips the more the longer the way is, -1 to 1 [Dahl]; what the noise
     of a rest adds up to is no way."""
@@ -97,6 +115,18 @@ def test_what_slips_more_the_longer_the_way_is_is_hysteresis(length, sessions):
     assert "hysteresis" in cause.names and cause.letters == ["x"]
     assert cause.probabilities["hysteresis"] > 0.4
     assert not gap.unexplained
+
+
+def test_friction_keeps_within_its_bounds_however_fast_the_box_is_turned():
+    """Poses that follow each other from one sample to the next, as where the moves were left
+    out."""
+    up = np.repeat(np.vstack([np.eye(3), -np.eye(3)] * 2), 200, axis=0)
+    session = blocks.session_of("cut", Capture(
+        {"sensor": "mpu6050", "rate_hz": 10.0, "accel_lsb_per_g": 16384.0},
+        100_000 * np.arange(2400), np.rint(16384.0 * up).astype(np.int16),
+        pose=np.repeat(np.arange(1, 13), 200)))
+    assert np.abs(session.friction).max() <= 1.0
+    assert np.abs(session.friction).max(axis=(0, 2)).min() > 0.8
 
 
 def shaken(rectified):

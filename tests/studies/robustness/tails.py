@@ -4,7 +4,7 @@
 
 Rests of the recordings (SIXFLIP_DATA), pieces with a knock left out: each sample less the median
 of the two before and the two after. What the diagnosis takes for tails of noise, not for spikes,
-is t of detect/noise_bursts.TAILS.
+is t of detect/spikes.TAILS.
 """
 import numpy as np
 from scipy import stats

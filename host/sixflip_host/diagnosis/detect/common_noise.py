@@ -10,25 +10,26 @@ import numpy as np
 from scipy import special
 
 from ...capture.registers import SENSORS
+from .noise_bursts import WINDOW_S
 from .ringing import SETTLES_S
 
 # Correlation from which on it is worth a word: half of either's noise. Of the recordings one chip
 # has -0.37 between two axes (imu_tk_xsens_multiposition), all others less than 0.05.
 SHARED = 0.5
-FEWEST, FEWEST_RESTS = 64, 3  # samples of a rest; rests
+FEWEST = 24  # half seconds
 
 
 def shared(sessions):
     """[(sensor, sentence, p)] of the two axes of all Sessions whose noise has most in common, once
-    for each of their sensors; the correlation is the median rest's, so that a knock is none."""
+    for each of their sensors; the correlation is that of the median half second, so that a knock
+    or a hand that takes the box away is none."""
     names = [(sensor, axis) for sensor in SENSORS for axis in "xyz"
              if all(getattr(s.capture, sensor) is not None for s in sessions)]
-    found = [_of_rest(s, names, *run[1:]) for s in sessions for run in s.runs
-             if run.end - run.first - int(SETTLES_S * s.rate) >= FEWEST]
-    if len(found) < FEWEST_RESTS:
+    found = [_by_window(s, names, *run[1:]) for s in sessions for run in s.runs]
+    correlations = np.concatenate([correlation for correlation, _ in found]) if found else ()
+    if len(correlations) < FEWEST:
         return []
-    median = np.median([correlation for correlation, _ in found], axis=0)
-    number = sum(samples for _, samples in found)
+    median, number = np.median(correlations, axis=0), sum(samples for _, samples in found)
     pairs = list(itertools.combinations(range(len(names)), 2))
     first, second = max(pairs, key=lambda pair: abs(median[pair]))
     common = min(abs(float(median[first, second])), 1.0 - 1e-9)
@@ -42,12 +43,13 @@ def shared(sessions):
     return [(sensor, said, p) for sensor in dict.fromkeys((names[first][0], names[second][0]))]
 
 
-def _of_rest(session, names, first, end):
-    """((k, k) correlation of what the axes of a rest change by from sample to sample, 0 of those
-    that never change; how many samples)."""
-    begin = first + int(SETTLES_S * session.rate)
+def _by_window(session, names, first, end):
+    """((w, k, k) correlations of what the axes of a rest change by from sample to sample in its
+    half seconds, 0 of those that never change; how many samples)."""
+    begin, m = first + int(SETTLES_S * session.rate), max(8, int(WINDOW_S * session.rate))
     steps = np.diff(np.stack([getattr(session.capture, sensor)[begin:end, "xyz".index(axis)]
                               for sensor, axis in names], 1).astype(float), axis=0)
-    size = np.sqrt((steps ** 2).mean(axis=0))
+    steps = steps[:len(steps) // m * m].reshape(-1, m, len(names))
+    size = np.sqrt((steps ** 2).mean(axis=1, keepdims=True))
     steps = steps / np.where(size > 0.0, size, 1.0)
-    return steps.T @ steps / len(steps), len(steps)
+    return steps.transpose(0, 2, 1) @ steps / m, len(steps) * m

@@ -5,8 +5,8 @@ repeats with a chance of its own, all three do with the product of the three. Th
 seen in the neighbouring rows in which another axis changed, for a sensor at rest repeats more
 often than one that moves: the product of means over both is less than the mean of products. Held
 values repeat all three at once. Single rows that were read again are looked for where the sensor
-moves on before and after them. Where both sensors repeat in the same rows, now and then, a sample
-was not read: there is none. One axis that keeps its value while the others change is stuck.
+moves on before and after them. Where both sensors repeat in the same rows, now and then or for a
+while, samples were not read: there are none.
 """
 import copy
 import math
@@ -15,8 +15,8 @@ import numpy as np
 
 from ...capture.registers import SENSORS, steps
 from .detection import Damage, present
+from .stuck_axes import FEWEST, LEAST_NOISE, by_chance, lengths, unforeseen
 
-FEWEST = 200  # rows
 STRETCH = 256  # rows
 NEIGHBOURS = 25  # rows, half a second and less, in which a sensor rests or moves
 AT_REST = 8  # rows that repeat on end: no log is read so many times faster than its sensor
@@ -25,15 +25,6 @@ HELD = 0.05  # share of rows that are held: fewer are single rows, not a rate
 # Standard deviation of the spacing of held rows, of its mean: of rows that are lost at random it
 # is 1, and of a sensor that is read faster than it measures half a row at most.
 AT_RANDOM = 0.5
-AGAIN = 3  # repeats on end
-# Rows of a window; share of the windows that are the quietest, in which a sensor rests; counts of
-# noise from which on a code is read less than three times in four.
-WINDOW, QUIETEST, LEAST_NOISE = 64, 0.1, 0.5
-# Of a third repeat being followed by another at least: noise that comes and goes from row to row,
-# in the quiet of which half of them are (the rests of imucal_ferraris).
-BY_CHANCE = 0.6
-ORDERS = (1, 2, 3, 4)  # of differences
-NEAR_END = 0.97  # of the largest reading: beyond it a soft limit keeps a reading as well
 MOVES = 8.0  # times the noise, from a row to the next: six deviations of a difference at rest
 NOT_READ = "not read"  # kind of the Damage of samples that are missing though rows are not
 TIMES = {2: "twice", 3: "three times", 4: "four times"}
@@ -66,89 +57,6 @@ def findings(sessions):
             "repeats", sensor, (), "timing", "the %s gives %s: it is read faster than it measures,"
             " or rows were filled in" % (words, said), nats, {"times": round(times, 3)}))
     return damages
-
-
-def stuck_for_a_while(sessions, coarse=()):
-    """[Damage] of single axes that keep a value while others of their sensor change; coarse:
-    (sensor, axis letter) of those whose codes are few.
-
-    Whatever it measures, noise of s counts lets no code be read more often than a normal density
-    of that width has room for: a value that was read AGAIN times on end is read once more with
-    that chance.
-    """
-    damages = []
-    for sensor, words in SENSORS.items():
-        columns = [getattr(s.capture, sensor) for s in sessions]
-        if any(c is None or len(c) < FEWEST for c in columns):
-            continue
-        for axis in range(3):
-            if (sensor, "xyz"[axis]) in coarse:
-                continue
-            nats, longest = 0.0, 0
-            for counts in columns:
-                more, rows = _kept(counts, axis)
-                nats, longest = nats + more, max(longest, rows)
-            if present(nats):
-                letter = "xyz"[axis]
-                said = ("the %s axis of the %s keeps its value for up to %d rows while the others "
-                        "change") % (letter, words, longest + 1)
-                damages.append(Damage("repeats", sensor, (letter,), "timing", said, nats,
-                                      {"rows": longest + 1}))
-    return damages
-
-
-def _kept(counts, axis):
-    """(nats, length of the longest run of repeats) of an axis of counts (n, 3)."""
-    column, step = counts[:, axis].astype(np.int64), max(int(steps(counts)[axis]), 1)
-    noise = _unforeseen(column / step)
-    chance = _by_chance(noise)
-    held = _held(counts, axis)
-    before = np.flatnonzero(np.convolve(held, np.ones(AGAIN), "valid") == AGAIN) + AGAIN
-    before = before[before < len(held)]
-    again, number = int(held[before].sum()), len(before)
-    if noise < LEAST_NOISE or again <= chance * number:
-        return 0.0, 0
-    share = min(again / number, 1.0 - 1.0 / (number + 1.0))
-    nats = again * math.log(share / chance) + (number - again) * math.log(
-        (1.0 - share) / (1.0 - chance)) - 0.5 * math.log(number)
-    return nats, int(_lengths(held).max())
-
-
-def _held(counts, axis):
-    """(n - 1,) which of the rows of counts (n, 3) after the first have an axis as the row before
-    and not all others. What a dead band or a rail holds is theirs, and so is a code that an axis
-    comes to rest at again and again, as one does that is gated about its bias; where all axes
-    repeat no row was read."""
-    column, same = counts[:, axis].astype(np.int64), counts[1:] == counts[:-1]
-    first = np.flatnonzero(np.append(True, ~same[:, axis]))
-    long = column[first[np.diff(np.append(first, len(column))) >= WINDOW]]
-    gates, times = np.unique(long, return_counts=True)
-    return same[:, axis] & ~same.all(axis=1) & (column[1:] != 0) & (
-        np.abs(column[1:]) < NEAR_END * np.abs(column).max()) & ~np.isin(
-            column[1:], gates[times > 1])
-
-
-def stuck_rows(session, damages):
-    """(n,) rows of a Session in which an axis that is stuck by one of damages keeps its value."""
-    return np.any([_lengths(np.append(False, _held(
-        getattr(session.capture, damage.sensor), "xyz".index(letter)))) >= AGAIN
-        for damage in damages for letter in damage.axes], axis=0)
-
-
-def _unforeseen(x):
-    """Counts: standard deviation of what the samples before do not foretell of a column (n,) where
-    it is the quietest. White noise has the same in differences of every order, over the root of
-    the sum of their weights' squares; what a filter leaves of it has less, and rounding adds its
-    own."""
-    variances = []
-    for order in ORDERS:
-        left = np.diff(x, n=order)
-        windows = left[:len(left) // WINDOW * WINDOW].reshape(-1, WINDOW)
-        power = (windows ** 2).mean(axis=1)
-        power = power[power > 0.0]  # what never changes is stuck there, or has no noise anywhere
-        variances.append(float(np.quantile(power, QUIETEST)) / math.comb(2 * order, order)
-                         if len(power) else 0.0)
-    return math.sqrt(max(min(variances) - 1.0 / 12.0, 0.0))
 
 
 def as_read(captures):
@@ -187,20 +95,19 @@ def _not_read(capture):
 def _frozen(counts):
     """(nats of rows being held over repeating by chance, how many) of counts (n, axes), of those
     that repeat on end for longer than any log is read faster than its sensor: by what the noise of
-    the axis that has most leaves to chance, as if all others followed it."""
-    lengths = _lengths((counts[1:] == counts[:-1]).all(axis=1))
-    held = int((lengths >= AT_REST).sum())
-    noise = max(_unforeseen(column / step) for column, step in zip(
-        counts.T.astype(np.int64), np.maximum(steps(counts), 1)))
-    times = int((np.diff(np.append(0, lengths >= AT_REST)) > 0).sum())
-    if noise < LEAST_NOISE or times < FEWEST_HELD:
+    the axis that has most leaves to chance, as if all others followed it. What has no noise at
+    rest keeps its values there. Rows that are not held pay nothing: few runs may be by chance, and
+    that they are as many as repeat is for whoever asks."""
+    frozen = counts[1:].any(axis=1) & (
+        lengths((counts[1:] == counts[:-1]).all(axis=1)) >= AT_REST)
+    if (np.diff(np.append(0, frozen)) > 0).sum() < FEWEST_HELD:
         return 0.0, 0
-    return -held * math.log(_by_chance(noise)) - math.log(len(counts)), held
-
-
-def _by_chance(noise):
-    """Chance that a code is read once more where the noise is so many counts."""
-    return max(math.erf(0.5 / max(noise, 1e-9) / math.sqrt(2.0)), BY_CHANCE)
+    noise = max(unforeseen(column / step, still=True) for column, step in zip(
+        counts.T.astype(np.int64), np.maximum(steps(counts), 1)))
+    if noise < LEAST_NOISE:
+        return 0.0, 0
+    held = int(frozen.sum())
+    return -held * math.log(by_chance(noise)) - math.log(len(counts)), held
 
 
 def _without(capture, rows):
@@ -230,7 +137,7 @@ def repeats(counts):
     same = counts[1:] == counts[:-1]
     # All of them at 0 is what a dead band reads at rest, and what never changes for long is at
     # rest with less noise than a count: neither says that it was not read.
-    same = same[counts[1:].any(axis=1) & (_lengths(same.all(axis=1)) < AT_REST)]
+    same = same[counts[1:].any(axis=1) & (lengths(same.all(axis=1)) < AT_REST)]
     number = len(same) // STRETCH
     if not number:
         return 0.0, 0.0, len(same)
@@ -253,15 +160,6 @@ def _stretches(same):
         (1.0 - share) / (1.0 - chance)) - 0.5 * math.log(n)
     more = share > chance
     return np.where(more, nats, 0.0), np.where(more, n * (share - chance) / (1.0 - chance), 0.0)
-
-
-def _lengths(rows):
-    """(n,) the length of the unbroken run of rows (n,) bool that each is in; 0 outside of them."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], rows, [False]])))
-    lengths = np.zeros(len(rows), dtype=int)
-    for first, end in zip(edges[::2], edges[1::2]):
-        lengths[first:end] = end - first
-    return lengths
 
 
 def _around(rows):
