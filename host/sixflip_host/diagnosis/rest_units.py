@@ -52,9 +52,8 @@ class RestLevels:
 def levels(rest, kind, flicker, known):
     """RestLevels with this flicker, measured or not. A robot that stops again, or a box that is
     put down again, leans another way within what counts as one attitude: across gravity that is
-    an accelerometer's attitude, and says nothing of the sensor. Files of a rest each may be of a
-    thing that stood still all the while."""
-    moved = kind == "accel" and rest.rest.max() > rest.session.max()
+    an accelerometer's attitude, and says nothing of the sensor."""
+    moved = kind == "accel" and _several(rest)
     leaning = 1000.0 * np.sin(np.radians(long_rest.SAME_DEG)) if moved else 0.0
     across = leaning * np.sqrt(np.maximum(1.0 - rest.up ** 2, 0.0))
     offsets = [min(tried for tried in OFFSETS[kind] if tried >= min(lean, OFFSETS[kind][-1]))
@@ -87,11 +86,17 @@ def axis_units(rest, kind, chip, settings):
     return units
 
 
+def _several(rest):
+    """Whether a session has several rests. Files of a rest each may be of a thing that stood still
+    all the while, and was not switched on again."""
+    return rest.rest.max() > rest.session.max()
+
+
 def _switched_on(rest, kind):
     """(n, sessions) what switching on again changes of a bias, its coefficients of a standard
-    deviation of 1; None of one session."""
+    deviation of 1; None of one session, and of files of a rest each."""
     sessions = np.unique(rest.session)
-    if len(sessions) < 2:
+    if len(sessions) < 2 or not _several(rest):
         return None
     return between_sessions.ORDINARY_CHANGE["bias"][kind] * (
         rest.session[:, None] == sessions).astype(float)
@@ -104,17 +109,16 @@ def held_out(rest, unit, chosen, index, levels):
     foretells."""
     y, group, (placement, flicker) = unit.rows.y, unit.rows.groups[0], unit.grid[index]
     offset, wanders = levels.usual(unit)
-    common = np.zeros((len(y), 0)) if unit.rows.common is None else unit.rows.common
-    noise = covariance.dense([group], placement, flicker) + common @ common.T
+    noise = covariance.dense([group], placement, flicker)
     quiet = covariance.dense([group], placement if placement <= offset else 0.0,
-                             min(flicker, adequacy.TIMES_TYPICAL * wanders)) + common @ common.T
+                             min(flicker, adequacy.TIMES_TYPICAL * wanders))
     columns = np.concatenate([f.columns for f in chosen] + [np.zeros(0, dtype=int)]).astype(int)
     prior = np.concatenate([f.prior for f in chosen] + [np.zeros(0)])
     x = unit.raw(columns)
     # How a box lies is each rest's own. So is a session's bias, where it changes by more than is
     # usual, or where its other rests tell it.
     pieces, total = _pieces(rest.rest), holdout_gain.NOTHING
-    own = rest.session * (placement > offset or rest.rest.max() > rest.session.max())
+    own = rest.session * (placement > offset or _several(rest))
     if offset > unit.grid[0][0] and len(np.unique(pieces)) > len(np.unique(rest.rest)):
         own = rest.rest
     for fold in range(FOLDS):
