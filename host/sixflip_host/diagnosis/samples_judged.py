@@ -14,7 +14,6 @@ from . import localisation, odds
 from .detect import (
     axis_order,
     codes,
-    common_noise,
     dead_band,
     held_values,
     line_across_rests,
@@ -87,9 +86,6 @@ def judge(sessions, settings=ALONE, damages=()):
     jumpy = {f.sensor for f in findings if f.effect in ("torn_reads", "dead_band")}
     sessions = [_without_bands(s, findings) for s in sessions]
     without_spikes, wild = spikes.without_spikes(sessions, leaping)
-    # Worth a remark; noise of the usual size may have any shape, and is no gap.
-    shared_noise = [said for said in common_noise.shared(without_spikes)
-                    if present(-np.log(max(said[-1], odds.SMALLEST)))]
     unsteady = [burst for burst in [*noise_bursts.unsteady(without_spikes), *wild]
                 if burst[0] not in noisy]
     unsteady += torn_reads.jumps(sessions, jumpy)
@@ -126,8 +122,8 @@ def judge(sessions, settings=ALONE, damages=()):
     if stuck:  # an axis that keeps its value says nothing of how it rests
         sessions = tuple(s.without_samples(stuck_axes.stuck_rows(s, stuck)) for s in sessions)
     return SamplesJudged(sessions, tuple(findings), tuple(damages), tuple(nameless),
-                         tuple(dict.fromkeys([*remarks, *(
-                             words for _, words, _ in [*unsteady, *shared_noise])])))
+                         (*remarks, *(words for _, words, _ in unsteady),
+                          *noise_bursts.in_common(without_spikes, noisy)))
 
 
 def _uneven(sessions, coarse):

@@ -8,7 +8,6 @@ from sixflip_host.capture import capture_file
 from sixflip_host.capture import registers as counts
 from sixflip_host.diagnosis import answer, diagnosis, samples_judged
 from sixflip_host.diagnosis.detect import (
-    common_noise,
     noise_bursts,
     saturation,
     spikes,
@@ -263,23 +262,31 @@ def test_a_rest_between_two_coarse_codes_is_no_louder_one():
     assert noise_bursts.unsteady([session]) == []
 
 
-@pytest.mark.parametrize("share, said", [(1.0, ["accel"]), (0.3, [])])
+@pytest.mark.parametrize("share, said", [(1.0, 1), (-1.0, 1), (0.3, 0)])
 def test_noise_that_two_axes_have_in_common_is_said(share, said):
-    """As of a supply that both are on: it was no gap."""
+    """As of a supply that both are on."""
     session = resting(20.0, n=600)
-    capture = session.capture
     level = np.repeat(8192.0 * np.vstack([np.eye(3), -np.eye(3)]), 600, axis=0)
-    capture.accel[:, 1] += np.rint(share * (capture.accel - level)[:, 0]).astype(np.int16)
-    found = common_noise.shared([session])
-    assert [sensor for sensor, _, p in found if p < 1e-6] == said
-    assert "x axis" in found[0][1] and "y axis" in found[0][1]
+    session.capture.accel[:, 1] += np.rint(
+        share * (session.capture.accel - level)[:, 0]).astype(np.int16)
+    found = noise_bursts.in_common([session])
+    assert len(found) == said
+    assert all("x axis" in words and "y axis" in words for words in found)
+    assert noise_bursts.in_common([session], ["accel"]) == []
 
 
 def test_a_knock_that_all_axes_feel_is_no_noise_in_common():
     session = resting(10.0, n=600)
     session.capture.accel[800:830] += np.rint(np.random.default_rng(2).normal(
         0.0, 2000.0, (30, 1))).astype(np.int16)
-    assert all(p > 0.9 for _, _, p in common_noise.shared([session]))
+    assert noise_bursts.in_common([session]) == []
+    assert np.abs(noise_bursts.correlations([session])[1] - np.eye(3)).max() < 0.1
+
+
+def test_sessions_without_a_sensor_in_common_have_no_noise_in_common():
+    one, other = resting(10.0, n=600), resting(10.0, n=600)
+    other.capture.gyro, other.capture.accel = other.capture.accel, None
+    assert noise_bursts.in_common([one, other]) == []
 
 
 def test_a_table_that_rings_under_a_box_put_down_is_no_burst_of_noise():

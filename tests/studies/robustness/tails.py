@@ -1,17 +1,22 @@
-"""How heavy the tails of real recorded noise are: the likeliest Student's t of each channel.
+"""How heavy the tails of real recorded noise are: the likeliest Student's t of each channel; how
+much louder one rest is than the others; what two axes have in common.
 
     python -m tests.studies.robustness.tails
 
 Rests of the recordings (SIXFLIP_DATA), pieces with a knock left out: each sample less the median
 of the two before and the two after. What the diagnosis takes for tails of noise, not for spikes,
-is t of detect/spikes.TAILS.
+is t of detect/spikes.TAILS. The second table is what noise_bursts.LOUDER_REST and SHARED stand
+beside: of each recording the rests, times the variance of the median rest that the loudest two
+have, and the largest correlation of two axes.
 """
 import numpy as np
 from scipy import stats
 
-from sixflip_host.capture import recordings
+from sixflip_host.capture import recordings, registers
+from sixflip_host.diagnosis.detect import noise_bursts
+from sixflip_host.experiment import blocks
 
-from . import real_noise
+from . import real_captures, real_noise
 
 FREEDOM = (2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 15.0, 20.0, 30.0, 50.0, 200.0)
 SCALES = np.arange(0.6, 1.41, 0.05)
@@ -32,11 +37,32 @@ def likeliest(z):
     return max(nats, key=nats.get)
 
 
+def of_rests(capture):
+    """(rests of either sensor, the two largest of their variances over that of the median rest,
+    the largest correlation of two axes) of a Capture."""
+    session, every = blocks.session_of("recording", capture), []
+    for sensor in registers.SENSORS:
+        power, place = noise_bursts.windows(session, sensor)
+        steps = registers.steps(getattr(capture, sensor))
+        every += noise_bursts.of_rests(power, place, steps)[1].tolist()
+    _, common, _ = noise_bursts.correlations([session])
+    size = np.abs(common - np.eye(len(common))).max()
+    return len(every), sorted(every)[-2:][::-1], float(size)
+
+
 def main():
     print("%-8s" % "noise of" + "".join("%9s" % name for name in CHANNELS))
     for name, cut in real_noise.pieces(recordings.folder()).items():
         z = np.concatenate([off(piece) for piece in cut])
         print("%-8s" % name + "".join("%9g" % likeliest(column) for column in z.T))
+    place = recordings.folder()
+    print("\n%-10s%8s%10s%10s%14s" % ("rests of", "rests", "loudest", "next", "correlation"))
+    for name, capture in (("xsens", real_captures.xsens(place)),
+                          ("suarez", real_captures.suarez(place)),
+                          ("suarez 90", real_captures.suarez(place, "imu_90_x_rot")),
+                          ("ferraris", real_captures.ferraris(place))):
+        rests, loudest, size = of_rests(capture)
+        print("%-10s%8d%10.2f%10.2f%14.2f" % (name, rests, *loudest, size))
 
 
 if __name__ == "__main__":

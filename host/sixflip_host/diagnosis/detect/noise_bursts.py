@@ -1,9 +1,10 @@
 """Noise that is not the same all the while: seconds or whole rests far louder than the others,
 noise that grows or dies down from rest to rest, goes with the end of an axis that is up or is
-another one in another session.
+another one in another session; and noise that two axes have in common.
 
 No effect of the library does that, and no touch does it often: it is said where, not what.
 """
+import itertools
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,9 +24,11 @@ FEWEST_WINDOWS = 8  # of a session: four seconds at rest
 FEWEST, FEWEST_RESTS = 4, 3  # windows, rests with one: a single event rings in one rest, or in two
 FEWEST_SAMPLES = 64  # of a rest, whose noise is known to a tenth
 GROWN = 1.5  # times as loud at one end of a session, or of an axis, as at the other
-# Times the variance of the median rest that one has from its begin to its end: of 106 rests of the
-# recordings one has 2.7 times, all others less than 1.5 times.
-LOUDER_REST = 2.5
+# Times the variance of the median rest that one has from its begin to its end, and correlation of
+# two axes from which on it is worth a word: half of either's noise. What rests of the recordings
+# have of both prints `python -m tests.studies.robustness.tails`.
+LOUDER_REST, SHARED = 2.5, 0.5
+FEWEST_CORRELATED = 24  # half seconds
 FEWEST_COMPARED = 10  # rests whose noise is compared
 
 
@@ -54,21 +57,76 @@ def windows(session, sensor):
     return np.concatenate(power), np.concatenate(place)
 
 
-def louder_rests(session, power, place, step):
-    """(rests, rests louder than most, times as loud the loudest is, p of the most surely louder
-    one) of a session's windows(), each rest by its median half second."""
-    rests = [number for number in np.unique(place) if (place == number).sum() >= FEWEST]
-    if len(rests) < FEWEST_COMPARED:
-        return len(rests), 0, 1.0, 1.0
+def of_rests(power, place, step):
+    """((r,) numbers of the rests, (r,) times the variance of the median rest that the loudest axis
+    of each has) of a session's windows(), whose counts lie on steps (3,), each rest by its median
+    half second."""
+    rests = np.array([number for number in np.unique(place) if (place == number).sum() >= FEWEST],
+                     dtype=int)
+    if not len(rests):
+        return rests, np.zeros(0)
     level = np.array([np.median(power[place == number], axis=0) for number in rests])
     # Between two codes a reading without noise is as often the one as the other.
     usual = np.maximum(np.median(level, axis=0), 0.5 * step ** 2)
-    ratio = (level / usual).max(axis=1)
+    return rests, (level / usual).max(axis=1)
+
+
+def louder_rests(session, power, place, step):
+    """(rests, rests louder than most, times as loud the loudest is, p of the most surely louder
+    one) of a session's windows(), whose counts lie on steps (3,)."""
+    rests, ratio = of_rests(power, place, step)
+    if len(rests) < FEWEST_COMPARED:
+        return len(rests), 0, 1.0, 1.0
     # Of differences that share samples three are worth one; a median is less well known than a
     # mean.
     freedom = np.bincount(place)[rests] * WINDOW_S * session.rate / 3.0 / (0.5 * math.pi)
     p = 3.0 * len(rests) * special.chdtrc(freedom, freedom * ratio / LOUDER_REST)
     return len(rests), int((ratio > LOUDER_REST).sum()), math.sqrt(ratio.max()), min(p.min(), 1.0)
+
+
+def correlations(sessions, but=()):
+    """([(sensor, axis letter)], (k, k) correlations of their noise in the median half second, how
+    many samples they are of) of all Sessions, but of some sensors: a knock, or a hand that takes
+    the box away, is not in the median."""
+    names = [(sensor, axis) for sensor in registers.SENSORS for axis in "xyz" if sensor not in but
+             and all(getattr(s.capture, sensor) is not None for s in sessions)]
+    found = [_by_window(s, names, *run[1:]) for s in sessions for run in s.runs if names]
+    every = np.concatenate(found) if found else np.zeros((0, 0, 0))
+    if len(every) < FEWEST_CORRELATED:
+        return [], np.zeros((0, 0)), 0
+    return names, np.median(every, axis=0), len(every) * WINDOW_S * min(s.rate for s in sessions)
+
+
+def in_common(sessions, but=()):
+    """[sentence] of the two axes whose noise has most in common, more than SHARED: a supply or a
+    reference that both are on. Of the usual size noise may have any shape, so it is no gap."""
+    names, median, number = correlations(sessions, but)
+    if not names:
+        return []
+    pairs = list(itertools.combinations(range(len(names)), 2))
+    first, second = max(pairs, key=lambda pair: abs(median[pair]))
+    size = min(abs(float(median[first, second])), 1.0 - 1e-9)
+    # Fisher's z, with as many samples' worth as in louder_rests.
+    z = (math.atanh(size) - math.atanh(SHARED)) * math.sqrt(number / 3.0 / (0.5 * math.pi))
+    p = min(1.0, len(pairs) * 2.0 * float(special.ndtr(-z)))
+    if not present(-np.log(max(p, odds.SMALLEST))):
+        return []
+    return ["the noise of the %s axis of the %s and of the %s axis of the %s goes together: a "
+            "correlation of %.2g" % (names[first][1], registers.SENSORS[names[first][0]],
+                                     names[second][1], registers.SENSORS[names[second][0]],
+                                     median[first, second])]
+
+
+def _by_window(session, names, first, end):
+    """(w, k, k) correlations of what the axes of a rest change by from sample to sample in its
+    half seconds, 0 of those that never change."""
+    begin, m = first + int(SETTLES_S * session.rate), max(8, int(WINDOW_S * session.rate))
+    steps = np.diff(np.stack([getattr(session.capture, sensor)[begin:end, "xyz".index(axis)]
+                              for sensor, axis in names], 1).astype(float), axis=0)
+    steps = steps[:len(steps) // m * m].reshape(-1, m, len(names))
+    size = np.sqrt((steps ** 2).mean(axis=1, keepdims=True))
+    steps = steps / np.where(size > 0.0, size, 1.0)
+    return steps.transpose(0, 2, 1) @ steps / m
 
 
 def loudest(sessions, powers, sensor):
