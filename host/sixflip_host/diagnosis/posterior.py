@@ -221,11 +221,14 @@ def _with_discrepancy(model, forms, scored, cost):
 
 
 def _wider(model, forms, scored, cost, form):
-    """The set with a discrepancy beside this member where that is likelier."""
+    """The set with a discrepancy beside this member where that is likelier; beside which variant
+    of its effect is tried, unless the discrepancy is made of the variants themselves."""
+    if form.generic:
+        return scored
     others = tuple(f for f in scored.forms if f != form)
-    for other in forms:
-        if form.generic or (other.effect, other.axis) != (form.effect, form.axis):
-            continue
+    variants = [form] if form.effect in discrepancy.OWN_FORMS else [
+        other for other in forms if (other.effect, other.axis) == (form.effect, form.axis)]
+    for other in variants:
         plain = model.scored((*others, other))
         wider = discrepancy.with_discrepancy(model, forms, plain, other)
         if wider is None:
