@@ -36,7 +36,7 @@ class Levels:
     placement: float
     flicker: float
     bias: float
-    scale: float = 0.3
+    scale: float
     known: bool = False
 
     def usual(self, unit):

@@ -24,7 +24,7 @@ SLOW = 5  # frequencies that a way is in, and its mean
 # ms: a hand trembles at 10 Hz at most, of which this is a radian; buffers and drivers that read in
 # turns are some samples behind, a tenth of a second at most (GAP: a gyro 40 to 80 ms late).
 LINEAR_MS, MOST_LATE_MS = 15.0, 150.0
-NO_LEVELS = Levels(1.0, 1.0, 1.0)  # of noise to choose from: the moves' own spectra are taken
+NO_LEVELS = Levels(1.0, 1.0, 1.0, 1.0)  # of noise to choose from: the moves' own spectra are taken
 
 
 @dataclass(frozen=True, eq=False)

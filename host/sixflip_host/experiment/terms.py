@@ -15,7 +15,7 @@ from sixflip_sim.effects.library import EFFECTS
 
 from . import block_measures
 from .projection import by_axis
-from .session import FRICTION
+from .session import FRICTION, UNMOVED_G
 from .thermometer import MOVES_C, moved_c
 
 LAGS_S = (0.0, 15.0, 30.0, 60.0, -30.0)  # GAP: a neighbouring thermometer, 10-60 s
@@ -189,9 +189,10 @@ def along_axes(session, nominal, chip):
 
 def remembered(session, m, plain):
     """Designs of hysteresis in other forms than a share of the pose before: only from which
-    side the pose was reached, and what rubs along the whole way."""
-    side = np.tanh(3.0 * (np.stack(m.before, 1) - np.stack(m.f, 1)))
-    forms = [("side", side), *zip(FRICTION, session.friction.transpose(1, 0, 2))]
+    side the pose was reached, softly or by its sign, and what rubs along the whole way."""
+    came = np.stack(m.before, 1) - np.stack(m.f, 1)
+    sign = np.sign(came) * (np.abs(came) > UNMOVED_G)
+    forms = [("side", np.tanh(3.0 * came)), ("sign", sign), *zip(FRICTION, session.friction.transpose(1, 0, 2))]
     designs = []
     for variant, values in forms:
         columns = by_axis([values]).reshape(-1, 3)

@@ -22,7 +22,7 @@ from sixflip_host.experiment import covariance, linear_model
 from sixflip_host.experiment.nominal_rows import Rows
 from sixflip_host.experiment.terms import Design
 
-USUAL = Levels(1.0, 0.01, 1.0)
+USUAL = Levels(1.0, 0.01, 1.0, 1.0)
 
 
 def unit(generator, theta=0.0, jump=0.0, n=40):

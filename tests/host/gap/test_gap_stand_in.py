@@ -1,4 +1,6 @@
 """One cause in another form than the library's is that cause, and nothing else."""
+import itertools
+
 import numpy as np
 import pytest
 
@@ -20,12 +22,16 @@ def played(readings, play=0.2):
                      for column in np.transpose(found)], 1)
 
 
+def recommended(world):
+    """A healthy sensor's plan of sessions, for simulated_session."""
+    return scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 77,
+                               "world": dict(world or {}), "effects": []})
+
+
 def accelerometer(added, sessions=2, world=None):
     """SensorGap of the accelerometer of so many sessions of a recommended capture, to whose
     readings added(t (n,) s, g (n, 3), generator) gives (n, 3) g."""
-    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 77,
-                               "world": dict(world or {}), "effects": []})
-    found = []
+    plan, found = recommended(world), []
     for number in range(sessions):
         capture = simulated_session.session(plan, number)
         more = added(capture.t_us * 1e-6, capture.accel / 16384.0, np.random.default_rng(number))
@@ -115,6 +121,26 @@ def test_what_slips_more_the_longer_the_way_is_is_hysteresis(length, sessions):
     assert "hysteresis" in cause.names and cause.letters == ["x"]
     assert cause.probabilities["hysteresis"] > 0.4
     assert not gap.unexplained
+
+
+def test_a_memory_of_the_sign_alone_is_hysteresis():
+    """Of leaning poses it was hysteresis, and something nameless of each rest's own beside it."""
+    number = itertools.count()
+
+    def added(t, g, generator):
+        session = blocks.session_of("", simulated_session.session(plan, next(number)))
+        more, before = np.zeros(len(g)), None
+        for run in session.runs:
+            now = g[run.first:run.end, 2].mean()
+            if before is not None:
+                more[run.first:run.end] = np.sign(before - now) * (abs(before - now) > 0.03)
+            before = now
+        return 0.01 * more[:, None] * [0.0, 0.0, 1.0]
+    world = {"placement_scatter_deg": 0.05}
+    plan = recommended(world)
+    gap = accelerometer(added, world=world)
+    assert [(cause.names, cause.letters) for cause in gap.causes] == [(["hysteresis"], ["z"])]
+    assert not gap.unexplained and gap.causes[0].share > 0.9
 
 
 def test_friction_keeps_within_its_bounds_however_fast_the_box_is_turned():
