@@ -192,7 +192,8 @@ def remembered(session, m, plain):
     side the pose was reached, softly or by its sign, and what rubs along the whole way."""
     came = np.stack(m.before, 1) - np.stack(m.f, 1)
     sign = np.sign(came) * (np.abs(came) > UNMOVED_G)
-    forms = [("side", np.tanh(3.0 * came)), ("sign", sign), *zip(FRICTION, session.friction.transpose(1, 0, 2))]
+    forms = [("side", np.tanh(3.0 * came)), ("sign", sign),
+             *zip(FRICTION, session.friction.transpose(1, 0, 2))]
     designs = []
     for variant, values in forms:
         columns = by_axis([values]).reshape(-1, 3)
