@@ -301,6 +301,25 @@ def test_a_table_that_rings_under_a_box_put_down_is_no_burst_of_noise():
         assert said == (["accel"] if settled else [])
 
 
+@pytest.mark.parametrize("before_s, said", [(0.0, []), (2.0, ["accel"])])
+def test_a_hand_that_takes_the_box_up_is_no_burst_of_noise(before_s, said):
+    """Labels last until the box moves: of the last third of a second, where a hand shook it, were
+    bursts of noise and spikes."""
+    session, generator = resting(1.5, n=600), np.random.default_rng(3)
+    t = np.arange(35) / session.rate
+    for _, _, end in session.runs:
+        shake = 600.0 * np.sin(np.pi * t / 0.35) ** 2 * np.sin(
+            2.0 * np.pi * generator.uniform(6.0, 14.0) * t)
+        last = end - int(before_s * session.rate)
+        session.capture.accel[last - 35:last] += np.rint(shake).astype(np.int16)[:, None]
+    assert [sensor for sensor, _, _ in noise_bursts.unsteady([session])] == said
+    session.capture.accel[:, :] = resting(1.5, n=600).capture.accel
+    for _, _, end in session.runs:
+        last = end - int(before_s * session.rate)
+        session.capture.accel[last - 30:last - 5:5] += 600
+    assert [sensor for sensor, _, _ in spikes.without_spikes([session])[1]] == said
+
+
 @pytest.mark.parametrize("coarse, said", [
     (False, ["the z axis of the accelerometer never changes: it is stuck"]), (True, [])])
 def test_an_axis_that_nobody_turned_in_coarse_steps_is_not_stuck(coarse, said):
@@ -316,7 +335,7 @@ def test_noise_of_two_counts_has_no_spikes(wide):
     """A median of half counts says of every other rest that it is three quarters as wide."""
     generator = np.random.default_rng(4)
     gyro = np.rint(-84.3 + wide * generator.standard_normal((60000, 3))).astype(np.int16)
-    session = SimpleNamespace(capture=SimpleNamespace(gyro=gyro), runs=[
+    session = SimpleNamespace(capture=SimpleNamespace(gyro=gyro), rate=100.0, runs=[
         (1, first, first + 500) for first in range(0, len(gyro), 500)])
     found = spikes.spikes(session, "gyro")
     assert found.looked > 59000 and found.number < spikes.LEAST_SPIKES

@@ -15,7 +15,7 @@ from scipy import special
 from ...capture import registers
 from .. import odds
 from .detection import present
-from .ringing import SETTLES_S
+from .ringing import LIFTS_S, SETTLES_S
 
 WINDOW_S = 0.5  # a touch or a step on the floor rings for less
 LOUD = 9.0  # times the usual variance: three times as loud, which no touch is mistaken for
@@ -44,13 +44,14 @@ def loud(power, place, step):
 
 def windows(session, sensor):
     """((w, 3) counts², (w,) number of the rest) of a session's half seconds at rest, once the box
-    has settled: the mean square of the differences from one sample to the next."""
+    has settled and before a hand takes it up: the mean square of the differences from one sample
+    to the next."""
     counts = getattr(session.capture, sensor)
     m = max(8, int(WINDOW_S * session.rate))
-    settles = int(SETTLES_S * session.rate)
+    settles, lifts = (int(seconds * session.rate) for seconds in (SETTLES_S, LIFTS_S))
     power, place = [np.zeros((0, 3))], [np.zeros(0, int)]
     for number, (_, first, end) in enumerate(session.runs):
-        x = np.diff(counts[first + settles:end].astype(float), axis=0)
+        x = np.diff(counts[first + settles:end - lifts].astype(float), axis=0)
         k = len(x) // m
         power.append((x[:k * m].reshape(k, m, 3) ** 2).mean(axis=1))
         place.append(np.full(k, number))

@@ -12,6 +12,7 @@ from .. import odds
 from .detection import present
 
 SETTLES_S = 1.0  # of a box that was put down, twice as long as a touch rings (noise_bursts.py)
+LIFTS_S = 0.5  # of a box that is taken up: a hand is on it before it moves
 PART_S = 1.5  # of a rest, early and late
 FEWEST = 12  # rests: the scatter of what they say is known to a fifth
 GOES_ON = 0.5  # of a line's early power that is there late in a rest where something runs on

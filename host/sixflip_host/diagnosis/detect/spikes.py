@@ -9,6 +9,7 @@ import numpy as np
 from ...capture import registers
 from .. import odds
 from .detection import present
+from .ringing import LIFTS_S
 from .torn_reads import student
 
 SPIKE = 4.5  # standard deviations of a single sample off its neighbours, which agree
@@ -40,13 +41,15 @@ class Spikes:
         return int(self.wild.any(axis=1).sum())
 
 
-def spikes(session, sensor, agreeing=4):
+def spikes(session, sensor, agreeing=4, but_s=0.0):
     """Spikes of one sensor of a session; agreeing: of the four samples beside one, those that have
-    to agree."""
+    to agree; but_s: so much of the end of each rest is not looked at."""
+    but = int(but_s * session.rate)
     counts, looked, sizes = getattr(session.capture, sensor), 0, [np.zeros(0)]
     wild, between = np.zeros(counts.shape, bool), np.array(counts, dtype=float)
     narrowest = registers.steps(counts)
-    for _, first, end in session.runs:
+    for _, first, last in session.runs:
+        end = last - but
         x = counts[first:end].astype(float)
         if len(x) < 20:
             continue
@@ -88,14 +91,15 @@ def _deviation(off):
 
 def without_spikes(sessions, leaping=()):
     """(sessions, [(sensor, sentence, p)]): where single samples are far off more often than the
-    tails of noise have them, they read as those beside them do. What is wild says nothing of where
+    tails of noise have them, they read as those beside them do. A hand that takes the box up
+    shakes it: what it does is no evidence. What is wild says nothing of where
     a rest lies, and as much as all others of a mean; of a few that is not worth a sentence.
     leaping: sensors whose counts leap anyhow."""
     sentences = []
     for sensor, words in registers.SENSORS.items():
         if sensor in leaping or any(getattr(s.capture, sensor) is None for s in sessions):
             continue
-        each = [spikes(s, sensor) for s in sessions]
+        each = [spikes(s, sensor, but_s=LIFTS_S) for s in sessions]
         number, looked = sum(spiky.number for spiky in each), sum(spiky.looked for spiky in each)
         nats = jump_nats(np.concatenate([spiky.sizes for spiky in each]))
         if not number or not present(nats):
