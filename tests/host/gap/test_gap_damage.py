@@ -5,6 +5,7 @@ import copy
 import numpy as np
 import pytest
 
+from sixflip.poses import faces
 from sixflip_host.capture import registers
 from sixflip_host.diagnosis import samples_judged, turn_model
 from sixflip_host.diagnosis.detect import (
@@ -130,6 +131,28 @@ def test_a_range_that_is_not_the_headers(sound, sensor, key, factor):
     assert found == [("full_scale", sensor, ())]
     size = wrong_scale.findings([session])[0].value["factor"]
     assert size == pytest.approx(factor, rel=0.05)
+
+
+@pytest.mark.parametrize("circles", [1, 2])
+@pytest.mark.parametrize("factor, said", [(1.0, []), (2.0, [("full_scale", "gyro", ())])])
+def test_half_turns_with_whole_circles_more_are_no_wrong_range(sound, circles, factor, said):
+    """A person who turned the box by 540 degrees had a gyro of twice the range."""
+    lsb = sound.meta["gyro_lsb_per_dps"] / 8.0
+    spun = copy.copy(sound)
+    counts = sound.gyro / 8.0
+    session = blocks.session_of("one", sound)
+    for before, after in zip(session.runs, session.runs[1:]):
+        face = faces.face_of_code(before.code)
+        if face != faces.face_of_code(after.code):
+            continue
+        move, axis = slice(before.end, after.first), faces.AXIS[face]
+        way = np.sign(counts[move, axis].sum())
+        counts[move, axis] += way * 360.0 * circles * lsb / (
+            session.t_s[after.first] - session.t_s[before.end])
+    spun.gyro = np.rint(counts).astype(np.int16)
+    spun.meta = dict(sound.meta, gyro_lsb_per_dps=lsb / factor)
+    session = blocks.session_of("one", spun)
+    assert [(d.kind, d.sensor, d.axes) for d in wrong_scale.findings([session])] == said
 
 
 @pytest.mark.parametrize("factor", [0.25, 0.5, 2.0, 4.0])

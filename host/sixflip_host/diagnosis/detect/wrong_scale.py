@@ -25,6 +25,7 @@ WIDEST = 64.0
 # turning is something else, which draws the factor towards 0.
 ALIKE = 0.8
 HAND_DEG = 12.0  # of a half turn by hand, at worst; with care 0.4 (METHOD section 2)
+MOST_HALVES = 5  # half circles of a flip: a box may have been turned once or twice more
 PARTS = 8  # of a recording, whose factors give the error of the whole, to a quarter
 
 
@@ -127,7 +128,8 @@ def _by_gravity(session):
 
 
 def _by_flips(session):
-    """[(factor, relative width)] of half turns about a face's axis that labels tell."""
+    """[(factor, relative width)] of half turns about a face's axis that labels tell; with whole
+    circles more they are an odd number of halves, which no range makes of one."""
     factors, capture = [], session.capture
     if not session.labelled:
         return []
@@ -140,5 +142,16 @@ def _by_flips(session):
                       + rates[after.first:after.end].mean(axis=0))
         middle = slice((before.first + before.end) // 2, (after.first + after.end) // 2)
         turned = np.trapezoid((rates[middle] - bias)[:, faces.AXIS[face]], session.t_s[middle])
-        factors.append((abs(float(turned)) / 180.0, math.hypot(SOUND_GYRO, HAND_DEG / 180.0)))
+        factors.append(_factor(abs(float(turned))))
     return factors
+
+
+def _factor(turned):
+    """(factor, relative width) of a flip in which the gyro turned by so many degrees: by the odd
+    number of half circles that it comes near to, or else of one."""
+    for halves in range(1, MOST_HALVES + 1, 2):
+        factor, width = (turned / (180.0 * halves),
+                         math.hypot(SOUND_GYRO, HAND_DEG / (180.0 * halves)))
+        if abs(factor - 1.0) < 2.0 * width:
+            return factor, width
+    return turned / 180.0, math.hypot(SOUND_GYRO, HAND_DEG / 180.0)
