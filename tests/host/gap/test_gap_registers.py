@@ -320,6 +320,15 @@ def test_a_hand_that_takes_the_box_up_is_no_burst_of_noise(before_s, said):
     assert [sensor for sensor, _, _ in spikes.without_spikes([session])[1]] == said
 
 
+def test_of_a_first_rest_shorter_than_a_hand_takes_nothing_is_looked_at():
+    """Its end less half a second is before the capture, from whose end an index counts then."""
+    counts = np.random.default_rng(1).normal(0.0, 10.0, (2000, 3)).astype(np.int16)
+    session = SimpleNamespace(capture=SimpleNamespace(accel=counts), rate=100.0,
+                              runs=[(1, 0, 30)])
+    assert spikes.spikes(session, "accel", but_s=0.5).looked == 0
+    assert len(noise_bursts.windows(session, "accel")[0]) == 0
+
+
 @pytest.mark.parametrize("coarse, said", [
     (False, ["the z axis of the accelerometer never changes: it is stuck"]), (True, [])])
 def test_an_axis_that_nobody_turned_in_coarse_steps_is_not_stuck(coarse, said):

@@ -51,7 +51,8 @@ def windows(session, sensor):
     settles, lifts = (int(seconds * session.rate) for seconds in (SETTLES_S, LIFTS_S))
     power, place = [np.zeros((0, 3))], [np.zeros(0, int)]
     for number, (_, first, end) in enumerate(session.runs):
-        x = np.diff(counts[first + settles:end - lifts].astype(float), axis=0)
+        settled = first + settles
+        x = np.diff(counts[settled:max(settled, end - lifts)].astype(float), axis=0)
         k = len(x) // m
         power.append((x[:k * m].reshape(k, m, 3) ** 2).mean(axis=1))
         place.append(np.full(k, number))

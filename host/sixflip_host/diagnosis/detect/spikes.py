@@ -49,7 +49,7 @@ def spikes(session, sensor, agreeing=4, but_s=0.0):
     wild, between = np.zeros(counts.shape, bool), np.array(counts, dtype=float)
     narrowest = registers.steps(counts)
     for _, first, last in session.runs:
-        end = last - but
+        end = max(first, last - but)
         x = counts[first:end].astype(float)
         if len(x) < 20:
             continue
@@ -92,9 +92,9 @@ def _deviation(off):
 def without_spikes(sessions, leaping=()):
     """(sessions, [(sensor, sentence, p)]): where single samples are far off more often than the
     tails of noise have them, they read as those beside them do. A hand that takes the box up
-    shakes it: what it does is no evidence. What is wild says nothing of where
-    a rest lies, and as much as all others of a mean; of a few that is not worth a sentence.
-    leaping: sensors whose counts leap anyhow."""
+    shakes it: what it does is no evidence. What is wild says nothing of where a rest lies, and as
+    much as all others of a mean; of a few that is not worth a sentence. leaping: sensors whose
+    counts leap anyhow."""
     sentences = []
     for sensor, words in registers.SENSORS.items():
         if sensor in leaping or any(getattr(s.capture, sensor) is None for s in sessions):
