@@ -96,3 +96,21 @@ def test_samples_lost_in_every_turn_under_a_steady_clock_are_a_gap():
     found = answer.as_dict(diagnosis.diagnose_sessions(sessions, diagnosis.Settings(jobs=1)))
     assert found["verdict"] == "unexplained" and not found["causes"]
     assert ("gyro", "motion") in {(w["sensor"], w["domain"]) for w in found["where"]}
+
+
+@pytest.mark.parametrize("seed", [203, 222])
+def test_a_hand_that_puts_a_healthy_box_down_degrees_off_is_no_gap_in_motion(seed):
+    """Its half turns are degrees off too: alike with what gravity says of a turn they made the
+    gyro's scale a percent wrong, and gravity on the way with it."""
+    def plan(number, part):
+        return scenario.from_dict({
+            "sensor": "mpu6050", "scene": "paper", "seed": seed + 1000 * number,
+            "world": {"placement_scatter_deg": 1.5, "tilt_deg": 0.7, **part}})
+    first = plan(0, {}).worlds[0]
+    part = {key: first[key] for key in ("accel_matrix", "accel_bias_mg", "gyro_matrix",
+                                        "gyro_bias_dps")}
+    sessions = [blocks.session_of(str(k), simulated_session.session(plan(k, part), 0))
+                for k in range(3)]
+    found = diagnosis.diagnose_sessions(sessions, diagnosis.Settings(jobs=1))
+    assert found.motion.fit is not None and found.motion.nameless == ()
+    assert found.verdict == "no gap"
