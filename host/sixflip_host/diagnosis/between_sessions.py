@@ -57,13 +57,18 @@ def biases(kind, rows, nominal, designs):
     return Constants(value, spread, columns, determined)
 
 
-def scales(unit, matrix, levels, one=1.0):
-    """Constants of one session, thousandths: how long a row of what it reads by is, however the
-    sensor lies in its box, of its Unit and the matrix (3, 3) that calibrates it; levels:
-    evidence.Levels; one: what the columns of the scales are in, of thousandths."""
+def likeliest(unit, levels):
+    """(placement, flicker) of a Unit's grid that are likeliest by noise alone; levels:
+    evidence.Levels."""
     fit = evidence.fit(unit, unit.statistics(), NONE, NONE, levels.prior(unit, ()))
-    point = unit.grid[int(fit.index[0])]
-    value, spread, columns, determined = _fitted(unit.rows, unit.rows.scale, unit.designs, point)
+    return unit.grid[int(fit.index[0])]
+
+
+def scales(rows, designs, point, matrix, one=1.0):
+    """Constants of one session, thousandths: how long a row of what it reads by is, however the
+    sensor lies in its box, of its rows at a point of their levels and the matrix (3, 3) that
+    calibrates it; one: what the columns of the scales are in, of thousandths."""
+    value, spread, columns, determined = _fitted(rows, rows.scale, designs, point)
     reads = np.linalg.norm(np.linalg.inv(matrix), axis=1)
     by = reads * one
     return Constants(1000.0 * reads + by * value, by[:, None] * spread * by,

@@ -24,6 +24,7 @@ from . import (
     moves_unit,
     odds,
     scored_sets,
+    turn_model,
 )
 from .detect.detection import Finding
 from .posterior import search_sets
@@ -109,7 +110,8 @@ def motion_gap(sessions, usable, nominal, gyro, settings):
     if gyro is None:
         return None
     others = [s for s in sessions if s not in usable and s.capture.gyro is not None]
-    turned = [unit.turns for unit in gyro.units if not unit.between]
+    turned = [turn_model.settled(unit, unit.grid[point])
+              for unit, point in zip(gyro.units, gyro.adequacy.index) if not unit.between]
     return judged([*usable, *others], nominal, turned, sessions[0].capture.meta["sensor"],
                   settings.without)
 

@@ -235,7 +235,8 @@ class RestModel:
             for u, (_, model) in zip(units, parts)], designs)
         if self.kind == "accel" and all(session.thermometer for session, _ in parts):
             found += between_sessions.unit("scale", self.kind, [
-                between_sessions.scales(u, model.matrix, levels)
+                between_sessions.scales(u.rows, u.designs, between_sessions.likeliest(
+                    u, levels), model.matrix)
                 for u, (_, model) in zip(units, parts)], designs)
         return found
 

@@ -19,10 +19,6 @@ from .session import ReadOnlyArrays
 # Fits that begin with what the one before left: what a scale of 3 % leaves after the first is its
 # square, 0.1 %, and after the second less than a hand's error of a turn.
 ROUNDS = 2
-# What a half turn by hand says of the gyro counts so much of what gravity says of any turn: the
-# one is half a degree off at best (METHOD section 2), of careless hands ten, the other some
-# hundredths. Were they alike, a scale would be a percent off, and what is linear about it wrong.
-BY_HAND = 0.1
 PULL_DPS = 0.1  # deg/s per g, typical (effects/typical.py: g_sensitivity)
 # Of a turn: a hand is not faster; over more than a minute a bias that is off by 0.01 deg/s turns
 # the end by as much as a hand does (METHOD section 2); less than that is no turn to another pose.
@@ -234,10 +230,9 @@ def nuisance(chosen):
 def calibrated(chosen):
     """(what is observed (m,), the turns) with the nominal scale, misalignment and bias taken
     out of the rates of all of them."""
-    weight = np.concatenate([[1.0] * 2 + [BY_HAND] * turn.flip for turn in chosen])
     for _ in range(ROUNDS):
         y = np.concatenate([observed(turn) for turn in chosen])
-        sizes = np.linalg.lstsq(nuisance(chosen) * weight[:, None], y * weight, rcond=1e-9)[0]
+        sizes = np.linalg.lstsq(nuisance(chosen), y, rcond=1e-9)[0]
         matrix = np.eye(3) - sizes[:9].reshape(3, 3)
         chosen = tuple(turn.corrected(matrix, sizes[9:]) for turn in chosen)
     return np.concatenate([observed(turn) for turn in chosen]), chosen

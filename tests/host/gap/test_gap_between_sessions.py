@@ -15,6 +15,7 @@ from sixflip_host.diagnosis import (
     localisation,
     members,
     rest_model,
+    turn_model,
 )
 from sixflip_host.experiment import attitude_fit, blocks, covariance, terms
 from sixflip_host.simulation import scenario, simulated_session
@@ -227,3 +228,19 @@ def test_scales_of_sessions_without_a_thermometer_say_nothing():
         [blocks.session_of(s.name, s.capture) for s in made], diagnosis.Settings())
     assert not found.causes and found.verdict in ("no gap", "cannot tell")
     assert not [u for u in found.gaps["accel"].units if u.between == "scale"]
+
+
+def test_scales_are_known_as_well_as_said_where_half_turns_are_degrees_off():
+    """About turns in which half turns of eight degrees off count as much as gravity does, what is
+    linear was wrong by twice the error stated."""
+    model, off = turn_model.TurnModel("gyro", "mpu6050", diagnosis.Settings()), []
+    for seed in range(1, 6):
+        plan = scenario.from_dict({
+            "sensor": "mpu6050", "scene": "paper", "seed": seed,
+            "world": {"flip_error_deg": 8.0, "placement_scatter_deg": 1.0}})
+        session = blocks.session_of("s", simulated_session.session(plan, 0))
+        found = turn_model.scales(model.fit([session], [attitude_fit.fit(session)]).units[0],
+                                  model.usual())
+        true = 1000.0 * np.linalg.norm(plan.worlds[0]["gyro_matrix"], axis=1)
+        off.append((found.value - true) / np.sqrt(np.diag(found.covariance)))
+    assert np.sqrt(np.mean(np.square(off))) < 1.2
