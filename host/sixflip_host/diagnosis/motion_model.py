@@ -15,6 +15,7 @@ from sixflip_sim.effects.library import EFFECTS
 from ..experiment import inertial_fit
 from ..planning import detectable
 from . import (
+    between_sessions,
     cutoffs,
     effect_estimates,
     holdout_gain,
@@ -110,8 +111,8 @@ def motion_gap(sessions, usable, nominal, gyro, settings):
     if gyro is None:
         return None
     others = [s for s in sessions if s not in usable and s.capture.gyro is not None]
-    turned = [turn_model.settled(unit, unit.grid[point])
-              for unit, point in zip(gyro.units, gyro.adequacy.index) if not unit.between]
+    turned = [turn_model.settled(unit, between_sessions.likeliest(unit, gyro.model.usual()))
+              for unit in gyro.units if not unit.between]
     return judged([*usable, *others], nominal, turned, sessions[0].capture.meta["sensor"],
                   settings.without)
 

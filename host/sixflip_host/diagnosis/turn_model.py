@@ -29,8 +29,9 @@ AT_END = 0.03  # of the largest rate read: as wide as noise and bias leave what 
 LEVELS_DPS = (40.0, 57.0, 80.0, 113.0, 160.0, 226.0)
 JUMPS_AT = (-0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75)  # of a session from -1 to 1
 # Standard deviations of what the rows' first fit leaves of scale and misalignment, of the bias
-# (deg/s), and of the angles between the accelerometer's axes (degrees).
-KNOWN = np.array([0.05] * 9 + [0.1] * 3 + [1.0] * 3)
+# (deg/s: half turns ten degrees off in ten seconds), and of the angles between the
+# accelerometer's axes (degrees: as faces of a box lie).
+KNOWN = np.array([0.05] * 9 + [1.0] * 3 + [1.0] * 3)
 USUAL_DEG = 0.25  # of a move from rest to rest, beside white noise
 
 
@@ -91,7 +92,7 @@ class TurnModel(RestModel):
         return Levels(USUAL_DEG, FLIP_DEG, 1.0, between_sessions.UNUSUAL["scale"]["gyro"])
 
     def between(self, units, parts):
-        if not all(session.thermometer for session, _ in parts):
+        if len(units) < 2 or not all(session.thermometer for session, _ in parts):
             return []
         return between_sessions.unit("scale", "gyro", [scales(u, self.usual()) for u in units],
                                      units[0].designs)
@@ -99,8 +100,9 @@ class TurnModel(RestModel):
 
 def settled(unit, point):
     """The turns of a Unit with scale, misalignment and bias as they are likeliest at a point
-    (level of the turns, of half turns) of its grid: in its rows all count alike, and half a turn
-    by a careless hand is ten degrees off."""
+    (level of the turns, of half turns) of its grid, the angles between the accelerometer's axes
+    beside them. To its rows' first fit those are right angles, and half a turn by a hand counts
+    as much as what gravity says: by a box put down degrees off it is a percent wrong."""
     factor = covariance.Factor(covariance.reduced(unit.rows.groups), point[:1], point[1])
     white = factor.whitened(covariance.turned(unit.rows.groups, np.column_stack(
         [unit.rows.nuisance, unit.rows.y])))[0]
@@ -112,7 +114,7 @@ def settled(unit, point):
 
 
 def scales(unit, levels):
-    """between_sessions.Constants of a Unit, its rows made again about the settled turns: a
+    """between_sessions.Constants of a Unit, what is observed taken about the settled turns: a
     percent off, what is linear is wrong by a thousandth."""
     point = between_sessions.likeliest(unit, levels)
     chosen = settled(unit, point)

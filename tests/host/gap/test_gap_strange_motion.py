@@ -100,8 +100,8 @@ def test_samples_lost_in_every_turn_under_a_steady_clock_are_a_gap():
 
 @pytest.mark.parametrize("seed", [203, 222])
 def test_a_hand_that_puts_a_healthy_box_down_degrees_off_is_no_gap_in_motion(seed):
-    """Its half turns are degrees off too: alike with what gravity says of a turn they made the
-    gyro's scale a percent wrong, and gravity on the way with it."""
+    """The angles between the accelerometer's axes are known no better than its faces lay: taken
+    for right ones they made the gyro's matrix wrong, and gravity on the way with it."""
     def plan(number, part):
         return scenario.from_dict({
             "sensor": "mpu6050", "scene": "paper", "seed": seed + 1000 * number,

@@ -121,7 +121,7 @@ def test_power_cut_leaves_the_old_or_the_new_file(board, link, monkeypatch):
         link.close()
         with MpremoteLink(board.port) as again, contextlib.suppress(SixflipError), \
                 monkeypatch.context() as waits:
-            waits.setattr(raw_repl, "ANSWER_S", 0.5)  # of the board without power, of no other
+            waits.setattr(raw_repl, "ANSWER_S", 0.5)  # of one that loses its power on the way
             again.put("f", new)
         with MpremoteLink(board.port) as again:
             seen.add(again.get("f"))
