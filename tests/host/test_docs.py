@@ -24,6 +24,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGES = sorted((ROOT / "docs").glob("*.md"))
 NEEDS_A_BOARD = {"first-calibration.md"}
 NEEDS_A_TRAY = {"tray.md"}
+PATIENCE = 4.0      # times as long as a person's, of boards that share a core with other tests
 NEEDS_A_RECORD = {"robot-localization.md", "slam-toolbox.md"}
 
 
@@ -37,7 +38,7 @@ def run(line, folder, port=None):
     """Run a line as a shell does; its exit code must be 0."""
     env = dict(os.environ, PATH="%s:%s" % (Path(sys.executable).parent, os.environ["PATH"]),
                SIXFLIP_HISTORY=str(folder / "history.sqlite"), COLUMNS="100",
-               SIXFLIP_PATIENCE="4")
+               SIXFLIP_PATIENCE="%g" % PATIENCE)
     if port:
         env["SIXFLIP_PORT"] = port
     done = subprocess.run(["bash", "-c", line], cwd=folder, env=env, stdin=subprocess.DEVNULL,
@@ -61,7 +62,8 @@ def test_the_commands_of_a_page(page, micropython, tmp_path, monkeypatch):
                 run(line, tmp_path, board.port)
         return
     if page.name in NEEDS_A_TRAY:
-        hand = JigHand({name: WAYS[number] for number, name in enumerate(("one", "two"))})
+        hand = JigHand({name: WAYS[number] for number, name in enumerate(("one", "two"))},
+                       patience=PATIENCE)
         with contextlib.ExitStack() as jig:
             boards = [jig.enter_context(VirtualBoard(
                 dict(SESSION, **hand.first(name)), tmp_path / (name + ".img"),

@@ -12,7 +12,7 @@ import time
 
 import pyte
 
-WAIT_S = 120
+WAIT_S = 400
 HOME = b"\x1b[H"         # every picture of the screen begins with it
 
 

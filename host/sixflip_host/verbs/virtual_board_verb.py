@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import os
 import time
 from pathlib import Path
 
@@ -74,13 +75,15 @@ def more_of_it(given, session):
 def boards_of(args, images, spec):
     """The VirtualBoards of a command line: one that is asked, several in one jig, or one that
     does as it was planned."""
+    from ..board.raw_repl import PATIENCE, patience_of
     from ..virtual.board_hands import AskedHand
     from ..virtual.jig_hand import WAYS, JigHand
     from ..virtual.virtual_board import VirtualBoard
     if len(images) == 1:
         hand = None if spec["order"] else AskedHand()
         return [VirtualBoard(spec, images[0], speed=args.speed, hand=hand)]
-    hand = JigHand({image: WAYS[k % len(WAYS)] for k, image in enumerate(images)})
+    hand = JigHand({image: WAYS[k % len(WAYS)] for k, image in enumerate(images)},
+                   patience=patience_of(os.environ.get(PATIENCE)))
     return [VirtualBoard(dict(spec, seed=args.seed + k, **hand.first(image)), image,
                          speed=args.speed, hand=hand.hand_for(image))
             for k, image in enumerate(images)]

@@ -23,6 +23,8 @@ from .board_hands import Heard
 FIRST = "Z+a"               # how the jig lies in the beginning
 OTHER = {"a": "b", "b": "a"}
 AT_REST = 2                 # windows at rest, at least, before a box is moved as was asked for
+PAUSE_S = 0.25              # a hand is no faster; and a host that is busy has heard every board
+                            # before the next face: what one says of it would be of this one
 UNMOVED = 40                # windows at rest after which a box lay as was asked for already
 
 
@@ -46,13 +48,15 @@ class Box:
     asked     the pose that its operator is asked for: kept to until the box moves, so that it is
               known where to, or rests for so long that it must have lain so already
     still     windows at rest since then
+    wanted    the pose that the jig is to have, since the second wanted_at
     lacks     names of the placements that the board says are missing
     firsts    {face of the jig: half turn "a" or "b" of the board's first placement there}
     """
 
     def __init__(self, mounting):
         self.mounting = mounting
-        self.lies = self.asked = FIRST
+        self.lies = self.asked = self.wanted = FIRST
+        self.wanted_at = 0.0
         self.still, self.lacks, self.firsts = 0, (), {}
 
     def hear(self, event):
@@ -84,9 +88,12 @@ class Box:
         halfway = own + "a" not in self.lacks and own + "b" in self.lacks
         return OTHER[self.firsts.get(face, "a")] if halfway else ""
 
-    def ask(self, pose):
-        """The pose to ask for now, where this one is wanted."""
-        if self.lies == self.asked != pose:
+    def ask(self, pose, now, pause_s):
+        """The pose to ask for at a second now, where this one is wanted: it is so for a while
+        before the box is moved."""
+        if pose != self.wanted:
+            self.wanted, self.wanted_at = pose, now
+        if self.lies == self.asked != pose and now - self.wanted_at >= pause_s:
             self.asked, self.still = pose, 0
         return self.asked
 
@@ -98,13 +105,21 @@ def tells_its_seat(event):
 
 
 class JigHand:
-    """The jig, and its boards by any name. mountings: {name: {its face: the jig's}, see jig}."""
+    """The jig, and its boards by any name.
 
-    def __init__(self, mountings, clock=time.monotonic):
+    mountings  {name: {its face: the jig's}, see jig}
+    patience   of the host that the boards are led by, see SIXFLIP_PATIENCE: a hand that leads on
+               before the host does leaves boards behind
+    pause_s    from when a box is to be laid otherwise until it is, times the patience
+    """
+
+    def __init__(self, mountings, clock=time.monotonic, patience=1.0, pause_s=PAUSE_S):
         self.mountings = mountings
+        self.patience = patience
+        self.pause_s = pause_s * patience
         self.clock = clock
         self.lock = threading.Lock()    # every board is heard in a thread of its own
-        self.tray = tray(dict.fromkeys(mountings))
+        self.tray = tray(dict.fromkeys(mountings), patience)
         self.boxes = {name: Box(mountings[name]) for name in mountings}
         self.lies = FIRST
 
@@ -136,7 +151,8 @@ class JigHand:
                 self.taken_back(name, event.get("face"))
             if event["event"] != "state":
                 return ""
-            return self.own(name, self.boxes[name].ask(self.turned_for(name, self.pose())))
+            box, pose = self.boxes[name], self.turned_for(name, self.pose())
+            return self.own(name, box.ask(pose, self.clock(), self.pause_s))
 
     def seated(self, member):
         """The Member as it sits in the jig, whatever its words made of that: one that was not yet
@@ -152,7 +168,7 @@ class JigHand:
         self.tray = replace(self.tray, members=members)
         self.boxes[name] = Box(self.mountings[name])
         if not any(member.running and member.state.taken for member in members):
-            self.tray = tray(dict.fromkeys(self.mountings))
+            self.tray = tray(dict.fromkeys(self.mountings), self.patience)
             self.lies = FIRST
 
     def stays(self, name, event):

@@ -27,7 +27,7 @@ class Asked(JigHand):
 
 
 def test_a_box_that_was_left_alone_while_its_board_spoke_of_noise_is_moved_all_the_same():
-    hand = Asked({"one": WAYS[1]})
+    hand = Asked({"one": WAYS[1]}, pause_s=0.0)
     one = hand.hand_for("one")
     operator = Operator(first_pose=hand.own("one", "Z+a"))
     operator.rest(1.0)
@@ -63,7 +63,7 @@ class Jig:
 
     def __init__(self):
         self.now = 0.0
-        self.hand = JigHand({"one": WAYS[0], "two": WAYS[1]}, lambda: self.now)
+        self.hand = JigHand({"one": WAYS[0], "two": WAYS[1]}, lambda: self.now, pause_s=0.0)
         self.boards = {name: ScriptedBoard(way) for name, way in self.hand.mountings.items()}
         self.laid = 0
 
@@ -174,16 +174,23 @@ def test_a_first_placement_taken_in_the_half_turn_is_followed_by_one_turned_back
 
 def test_a_pose_asked_for_is_kept_to_until_the_box_is_moved_to_it_or_lay_so_already():
     box = Box(WAYS[0])
-    assert box.ask("Z+b") == "Z+b" and box.ask("X+a") == "Z+b"
+    assert box.ask("Z+b", 0.0, 0.0) == "Z+b" and box.ask("X+a", 1.0, 0.0) == "Z+b"
     for event in (REST, REST, MOVES):
         box.hear(event)
-    assert box.lies == "Z+b" and box.ask("X+a") == "X+a"
+    assert box.lies == "Z+b" and box.ask("X+a", 2.0, 0.0) == "X+a"
     for event in (MOVES, MOVES, REST):      # the rest of the move before
         box.hear(event)
     assert box.lies == "Z+b"
     for _ in range(UNMOVED):
         box.hear(REST)
     assert box.lies == "X+a"
+
+
+def test_a_box_is_moved_once_its_pose_was_wanted_for_a_while():
+    box = Box(WAYS[0])
+    asked = [box.ask(pose, now, 1.0) for now, pose in (
+        (0.0, "X+a"), (0.6, "Z+a"), (0.8, "X+a"), (1.7, "X+a"), (1.8, "X+a"))]
+    assert asked == ["Z+a", "Z+a", "Z+a", "Z+a", "X+a"]
 
 
 def test_the_jig_is_not_turned_under_a_board_that_lacks_its_first_placement():
