@@ -9,9 +9,10 @@ from ..experiment import covariance, linear_model, noise_arrays, nominal_rows, t
 from ..experiment.projection import lateral_basis
 from ..planning.detectable import FLIP_DEG
 from . import between_sessions, stray_turns
-from .detect import axis_order, wrong_scale
+from .detect import axis_order, saturation, wrong_scale
 from .detect.detection import Finding, present
 from .evidence import Levels
+from .hypotheses import TYPICAL
 from .rest_model import RestModel
 
 EFFECTS = ("asymmetry", "quadratic", "cubic")
@@ -23,6 +24,7 @@ WRONG_DEG = 25.0  # of a turn's end: as of a label that gravity contradicts (blo
 OFF_DEG = 6.0  # of a turn's end by a gyro not yet calibrated: a few percent of a half turn
 BANDS_DPS = (1.0, 4.0)  # widths over which a dead band bends the rates beyond it
 TIMES = (1.0, 10.0)  # the usual width of a dead band: no data sheet gives one
+FORETOLD = 1.0  # times what its flanks foretell is what a peak that is cut off has lost
 AT_END = 0.03  # of the largest rate read: as wide as noise and bias leave what is cut off
 # Levels from which on a rate may read as less than it is, half an octave apart: from slow turns by
 # hand to a jerk.
@@ -180,16 +182,16 @@ def banded(chosen, width, times, lsb, chip):
 
 def limited(chosen, chip):
     """Designs of rates that read as less than they are: of what exceeds a level, the library's
-    form, and of what reads as much as anything does, however much that was."""
+    form, and of peaks that are cut off at the largest rate read, of what their flanks foretell."""
     designs = [design("saturation", chosen, chip, "level %g" % level, {"level": level})
                for level in LEVELS_DPS]
     ends = [np.max([(sign * turn.middle).max(axis=0) for turn in chosen], axis=0)
             for sign in (1.0, -1.0)]
 
     def lost(turn):
-        return [sum(-sign * top * (sign * turn.middle > (1.0 - AT_END) * top)
+        return [sum(-sign * saturation.foretold(sign * turn.middle, turn.dt, (1.0 - AT_END) * top)
                     for sign, top in zip((1.0, -1.0), ends))]
-    designs.append(_of_rates("saturation", "at its end", chosen, lost, designs[0].prior[0]))
+    designs.append(_of_rates("saturation", "at its end", chosen, lost, FORETOLD / TYPICAL))
     return [replace(limit, positive=True) for limit in designs]
 
 

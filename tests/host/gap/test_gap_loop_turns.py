@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from sixflip_host.diagnosis import closed_loops, diagnosis, turn_model
+from sixflip_host.diagnosis.detect import saturation
 from sixflip_host.experiment import attitude_fit, blocks
 from sixflip_host.simulation import scenario, simulated_session
 
@@ -64,6 +65,35 @@ def test_rates_that_read_as_less_than_they_are_have_their_name_among_others(read
     turns = judged([], 4, True, read)
     cause, = turns.causes
     assert "saturation" in cause.names and cause.letters == [axis]
+
+
+def test_a_peak_that_is_cut_off_has_lost_what_its_flanks_foretell():
+    """What reads as much as anything does was taken to have lost a share of that, another one in
+    each turn: two sessions did not agree, and half of the gap stayed."""
+    turns = judged([], 4, True, cut_off)
+    form, = turns.posterior.best.forms
+    assert form.variant == "at its end"
+    assert turns.causes[0].theta[0] == pytest.approx(1.0, abs=0.15)
+    assert turns.adequacy.ok
+
+
+@pytest.mark.parametrize("hz, sign", [(100.0, 1.0), (100.0, -1.0), (1000.0, 1.0)])
+def test_a_whole_peak_is_foretold_to_be_what_it_is(hz, sign):
+    t = np.arange(0.0, 3.0, 1.0 / hz)
+    whole = sign * 180.0 * np.sin(np.pi * t / 3.0) ** 2 + np.random.default_rng(1).normal(
+        0.0, 0.05, len(t))
+    limit, dt = 120.0, np.full(len(t), 1.0 / hz)
+
+    def lost(rate, top):
+        other = np.zeros_like(rate)
+        return saturation.foretold(np.column_stack([other, sign * rate, other]), dt,
+                                   np.array([1.0, 0.97 * top, 1.0])).sum(axis=0) / hz
+    assert lost(whole, 180.0) == pytest.approx([0.0, 0.0, 0.0], abs=0.3)
+    cut = np.clip(whole, -limit, limit)
+    true = float(np.abs(whole - cut).sum() / hz)
+    assert true > 40.0
+    assert lost(cut, limit) == pytest.approx([0.0, true, 0.0], rel=0.2)
+    assert lost(cut[t < 1.5], limit)[1] == 0.0      # how it comes back is not known
 
 
 def test_a_share_that_is_lost_beyond_a_level_closes_the_gap_when_simulated_again():
