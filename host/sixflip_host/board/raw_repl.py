@@ -37,8 +37,9 @@ LOST = (serial.SerialException, serial.SerialTimeoutException, OSError, Transpor
 transport_serial.print = lambda *words, **more: None
 
 
-def patience_of(text):
+def patience_asked():
     """The number that SIXFLIP_PATIENCE holds, 1 without; UsageError for anything else."""
+    text = os.environ.get(PATIENCE)
     try:
         value = float(text or 1)
     except ValueError:
@@ -60,7 +61,7 @@ class RawRepl:
 
     def __init__(self, port, patience=None):
         self.port = port
-        self.patience = patience or patience_of(os.environ.get(PATIENCE))
+        self.patience = patience or patience_asked()
         self.identity = serial_ports.identity(port)
         self.transport = None
         self.raw = False

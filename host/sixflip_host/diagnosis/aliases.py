@@ -27,8 +27,8 @@ class Cause:
     cannot be told from the effect in principle; theta (k,), covariance (k, k) over the form's
     columns; letters of the axes that are told and variants, ((probability, Cause), ...) of it in
     each variant of its effect that is as likely: see members.in_full. Of its size, see
-    effect_estimates.sized: value and interval {key: ...} of the effect in its variant, plausible,
-    share of the excess, domain, unit."""
+    effect_estimates.sized: value and interval {key: ...} of the effect in its variant and shape
+    (see hypotheses.Form), plausible, share of the excess, domain, unit."""
 
     effect: str
     chosen: tuple
@@ -47,6 +47,7 @@ class Cause:
     domain: str | None = None
     unit: str | None = None
     variant: str = ""
+    shape: tuple = ()
 
     @property
     def keys(self):

@@ -99,7 +99,7 @@ def _cause(kind, c, reference_c):
                    c.plausible, c.share)
     if len(entry["class"]) > 1:
         entry["value_of"] = c.effect
-    shape = closed_loop.shape(c.effect, c.variant, reference_c)
+    shape = closed_loop.shape(c, reference_c)
     return {**entry, "shape": shape} if shape else entry
 
 

@@ -96,15 +96,15 @@ def specs(gap, theta, reference_c):
             if own not in cls.keys:
                 continue
             spec[own] = float(np.clip(value, -cls.largest[gap.kind], cls.largest[gap.kind]))
-        spec.update(shape(candidate.effect, candidate.variant, reference_c))
+        spec.update(shape(candidate, reference_c))
         effects.append(spec)
     return effects
 
 
-def shape(effect, variant, reference_c):
-    """The parameters that a variant's name stands for."""
-    words = variant.split()
-    parameters = {}
+def shape(form, reference_c):
+    """{parameter: value} of a hypotheses.Form, or of an aliases.Cause in its: those that its
+    variant's name stands for, and those that the session gives."""
+    effect, words, parameters = form.effect, form.variant.split(), dict(form.shape)
     if effect in ("thermal_bias", "thermal_scale"):
         parameters["reference_c"] = round(reference_c, 3)
     if words[:1] == ["tau"]:

@@ -25,8 +25,9 @@ def sized(cause, data, levels, chip, kind, share=None):
     shown = [] if cause.effect == "box_tilt" else list(cause.letters)
     value = {k: float(v) for k, v in theta.items() if not shown or "xyz"[axis_of[k]] in shown}
     interval = _intervals(cause, gram, value, sigma)
+    own = _own(cause, gram)[0]
     return replace(cause, value=value, interval=interval, letters=shown, share=share,
-                   variant=_own(cause, gram)[0].variant,
+                   variant=own.variant, shape=own.shape,
                    plausible=believable(cause.effect, chip, kind, value, sigma),
                    domain=terms.DOMAIN[cause.effect], unit=EFFECTS[cause.effect].units[kind])
 

@@ -25,8 +25,8 @@ FREE = {"drift": ("flicker", "time"), "session": ("switch_on", "session")}
 class Form:
     """One way in which a hypothesis can be: shared Columns; choices, a tuple of Columns of which
     each session takes one for its own (index: all columns that are in them); free, names of
-    levels that may be anything. effect, variant, axis, keys, axes, powers, record, columns and
-    prior are those of the design behind it; discrepancy: columns of the strangers of its own
+    levels that may be anything. effect, variant, axis, keys, axes, powers, record, shape, columns
+    and prior are those of the design behind it; discrepancy: columns of the strangers of its own
     variable are beside those, with the power BESIDE; of_fleet: the prior is a population's;
     instead: the effect in whose place alone it is tried."""
 
@@ -41,6 +41,7 @@ class Form:
     index: tuple = ()
     powers: tuple = ()
     record: bool = False
+    shape: tuple = ()
     discrepancy: bool = False
     of_fleet: bool = False
     instead: str = ""
@@ -111,7 +112,7 @@ def forms_of(units, without=(), drift=True):
                               Columns(index, (1.0 if design.generic else TYPICAL)
                                       * design.prior[mine]),
                               powers=tuple(design.powers[i] for i in mine),
-                              record=design.record))
+                              record=design.record, shape=design.shape))
     for name, (level, _) in FREE.items():
         if drift and name not in without:
             forms.append(Form(name, free=frozenset([level])))
@@ -171,7 +172,8 @@ def on_axes(form, axes):
     return Form(form.effect, form.variant, name, tuple(form.keys[i] for i in keep),
                 tuple(form.axes[i] for i in keep),
                 Columns(form.shared.index[keep], form.shared.prior[keep]),
-                powers=tuple(form.powers[i] for i in keep), discrepancy=form.discrepancy)
+                powers=tuple(form.powers[i] for i in keep), shape=form.shape,
+                discrepancy=form.discrepancy)
 
 
 def _private(design, columns, apart):

@@ -24,8 +24,10 @@ WRONG_DEG = 25.0  # of a turn's end: as of a label that gravity contradicts (blo
 OFF_DEG = 6.0  # of a turn's end by a gyro not yet calibrated: a few percent of a half turn
 BANDS_DPS = (1.0, 4.0)  # widths over which a dead band bends the rates beyond it
 TIMES = (1.0, 10.0)  # the usual width of a dead band: no data sheet gives one
-FORETOLD = 1.0  # times what its flanks foretell is what a peak that is cut off has lost
-AT_END = 0.03  # of the largest rate read: as wide as noise and bias leave what is cut off
+# Times what its flanks foretell is what a peak that is cut off has lost: the usual coefficient,
+# which is TYPICAL of a design's prior.
+FORETOLD = 1.0
+AT_END = 0.97  # of the largest rate read: noise and bias leave what is cut off within that
 # Levels from which on a rate may read as less than it is, half an octave apart: from slow turns by
 # hand to a jerk.
 LEVELS_DPS = (40.0, 57.0, 80.0, 113.0, 160.0, 226.0)
@@ -189,9 +191,12 @@ def limited(chosen, chip):
             for sign in (1.0, -1.0)]
 
     def lost(turn):
-        return [sum(-sign * saturation.foretold(sign * turn.middle, turn.dt, (1.0 - AT_END) * top)
+        return [sum(-sign * saturation.lost_at_peaks(sign * turn.middle, turn.dt, AT_END * top)
                     for sign, top in zip((1.0, -1.0), ends))]
-    designs.append(_of_rates("saturation", "at its end", chosen, lost, FORETOLD / TYPICAL))
+    most = int(sum(turn.dt @ np.abs(lost(turn)[0]) for turn in chosen).argmax())
+    level = max(float(np.abs(turn.rate[:, most]).max()) for turn in chosen)  # as it is read
+    designs.append(replace(_of_rates("saturation", "at its end", chosen, lost, FORETOLD / TYPICAL),
+                           shape=(("level", round(level, 1)),)))
     return [replace(limit, positive=True) for limit in designs]
 
 

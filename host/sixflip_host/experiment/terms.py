@@ -59,7 +59,8 @@ class Design:
     own; powers (k,): 1 for the effect's own columns, 2 and 3 for a square and a cube of them, as
     a bend beside a slope; record: it is there because a record of the board has that form;
     beside: it is no hypothesis, but what others may have as a discrepancy; positive: none of its
-    coefficients is less than nothing, as a width is not.
+    coefficients is less than nothing, as a width is not; shape: ((parameter, value), ...) of the
+    effect that the session gives, and the variant does not name.
     """
 
     effect: str
@@ -73,6 +74,7 @@ class Design:
     record: bool = False
     beside: bool = False
     positive: bool = False
+    shape: tuple = ()
 
     def __post_init__(self):
         for name in ("keys", "axes", "choices"):

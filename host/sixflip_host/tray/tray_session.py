@@ -1,11 +1,10 @@
 """A tray of boards as it happens: their threads feed one queue, what they say makes the Tray."""
 
-import os
 import queue
 import time
 
 from ..board import calibration_request
-from ..board.raw_repl import PATIENCE, patience_of
+from ..board.raw_repl import patience_asked
 from ..board.session_end import Ending
 from ..history import logbook
 from . import leading, tray_events
@@ -25,7 +24,7 @@ class TraySession:
     def __init__(self, ports, request=None, clock=time.monotonic):
         self.ports = list(ports)
         self.clock = clock
-        self.patience = patience_of(os.environ.get(PATIENCE))
+        self.patience = patience_asked()
         self.told = queue.SimpleQueue()
         self.threads = {port: BoardThread(port, request, self.told) for port in self.ports}
         self.witnesses, self.endings = {}, {}

@@ -2,7 +2,6 @@
 
 import contextlib
 import json
-import os
 import time
 from pathlib import Path
 
@@ -75,7 +74,7 @@ def more_of_it(given, session):
 def boards_of(args, images, spec):
     """The VirtualBoards of a command line: one that is asked, several in one jig, or one that
     does as it was planned."""
-    from ..board.raw_repl import PATIENCE, patience_of
+    from ..board.raw_repl import patience_asked
     from ..virtual.board_hands import AskedHand
     from ..virtual.jig_hand import WAYS, JigHand
     from ..virtual.virtual_board import VirtualBoard
@@ -83,7 +82,7 @@ def boards_of(args, images, spec):
         hand = None if spec["order"] else AskedHand()
         return [VirtualBoard(spec, images[0], speed=args.speed, hand=hand)]
     hand = JigHand({image: WAYS[k % len(WAYS)] for k, image in enumerate(images)},
-                   patience=patience_of(os.environ.get(PATIENCE)))
+                   patience=patience_asked())
     return [VirtualBoard(dict(spec, seed=args.seed + k, **hand.first(image)), image,
                          speed=args.speed, hand=hand.hand_for(image))
             for k, image in enumerate(images)]

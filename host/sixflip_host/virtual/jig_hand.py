@@ -23,8 +23,7 @@ from .board_hands import Heard
 FIRST = "Z+a"               # how the jig lies in the beginning
 OTHER = {"a": "b", "b": "a"}
 AT_REST = 2                 # windows at rest, at least, before a box is moved as was asked for
-PAUSE_S = 0.25              # a hand is no faster; and a host that is busy has heard every board
-                            # before the next face: what one says of it would be of this one
+PAUSE_S = 0.25              # a hand is no faster; a host that is busy has heard all boards by then
 UNMOVED = 40                # windows at rest after which a box lay as was asked for already
 
 
@@ -48,7 +47,7 @@ class Box:
     asked     the pose that its operator is asked for: kept to until the box moves, so that it is
               known where to, or rests for so long that it must have lain so already
     still     windows at rest since then
-    wanted    the pose that the jig is to have, since the second wanted_at
+    wanted    the pose that the box is to have, since the second wanted_at
     lacks     names of the placements that the board says are missing
     firsts    {face of the jig: half turn "a" or "b" of the board's first placement there}
     """
@@ -89,8 +88,8 @@ class Box:
         return OTHER[self.firsts.get(face, "a")] if halfway else ""
 
     def ask(self, pose, now, pause_s):
-        """The pose to ask for at a second now, where this one is wanted: it is so for a while
-        before the box is moved."""
+        """The pose to ask for at a second now, where this one is wanted: itself once it has been
+        wanted for pause_s."""
         if pose != self.wanted:
             self.wanted, self.wanted_at = pose, now
         if self.lies == self.asked != pose and now - self.wanted_at >= pause_s:
@@ -108,8 +107,8 @@ class JigHand:
     """The jig, and its boards by any name.
 
     mountings  {name: {its face: the jig's}, see jig}
-    patience   of the host that the boards are led by, see SIXFLIP_PATIENCE: a hand that leads on
-               before the host does leaves boards behind
+    patience   of the host that the boards are led by, see board_link: a hand that leads on before
+               the host does leaves boards behind
     pause_s    from when a box is to be laid otherwise until it is, times the patience
     """
 

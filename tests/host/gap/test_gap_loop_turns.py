@@ -74,26 +74,48 @@ def test_a_peak_that_is_cut_off_has_lost_what_its_flanks_foretell():
     form, = turns.posterior.best.forms
     assert form.variant == "at its end"
     assert turns.causes[0].theta[0] == pytest.approx(1.0, abs=0.15)
+    loop = closed_loops.close_turns(turns, turns.model.conditions.reference_c)
+    assert loop.effects[0]["level"] == pytest.approx(135.0, rel=0.02)   # deg/s
+    assert loop.share > 0.5     # the turns that are made again are those that were cut off
     assert turns.adequacy.ok
 
 
-@pytest.mark.parametrize("hz, sign", [(100.0, 1.0), (100.0, -1.0), (1000.0, 1.0)])
-def test_a_whole_peak_is_foretold_to_be_what_it_is(hz, sign):
-    t = np.arange(0.0, 3.0, 1.0 / hz)
-    whole = sign * 180.0 * np.sin(np.pi * t / 3.0) ** 2 + np.random.default_rng(1).normal(
-        0.0, 0.05, len(t))
-    limit, dt = 120.0, np.full(len(t), 1.0 / hz)
+def peak(hz, seconds=3.0, uneven=0.0):
+    """(rates (n,) deg/s of a turn of 180 at its fastest, dt (n,) s)."""
+    generator = np.random.default_rng(1)
+    dt = (1.0 + uneven * generator.uniform(-1.0, 1.0, int(seconds * hz))) / hz
+    t = np.cumsum(dt) - 0.5 * dt
+    return 180.0 * np.sin(np.pi * t / seconds) ** 2 + generator.normal(0.0, 0.05, len(t)), dt
 
-    def lost(rate, top):
-        other = np.zeros_like(rate)
-        return saturation.foretold(np.column_stack([other, sign * rate, other]), dt,
-                                   np.array([1.0, 0.97 * top, 1.0])).sum(axis=0) / hz
-    assert lost(whole, 180.0) == pytest.approx([0.0, 0.0, 0.0], abs=0.3)
-    cut = np.clip(whole, -limit, limit)
-    true = float(np.abs(whole - cut).sum() / hz)
-    assert true > 40.0
-    assert lost(cut, limit) == pytest.approx([0.0, true, 0.0], rel=0.2)
-    assert lost(cut[t < 1.5], limit)[1] == 0.0      # how it comes back is not known
+
+def lost(rates, dt, top):
+    """Degrees that a peak has lost, of an axis beside two that rest."""
+    other = np.zeros_like(rates)
+    less = saturation.lost_at_peaks(np.column_stack([other, rates, other]), dt,
+                                    np.array([1.0, 0.97 * top, 1.0]))
+    assert not less[:, [0, 2]].any()
+    return float(less[:, 1] @ dt)
+
+
+SAMPLED = [(100.0, 0.0), (100.0, 0.5), (1000.0, 0.0), (10.0, 0.0)]
+
+
+@pytest.mark.parametrize("hz, uneven", SAMPLED)
+def test_a_whole_peak_has_lost_next_to_nothing(hz, uneven):
+    rates, dt = peak(hz, uneven=uneven)
+    assert lost(rates, dt, rates.max()) < 0.01 * (rates @ dt)
+
+
+@pytest.mark.parametrize("hz, uneven", SAMPLED)
+def test_the_flanks_of_a_peak_foretell_what_it_has_lost(hz, uneven):
+    rates, dt = peak(hz, uneven=uneven)
+    cut = np.minimum(rates, 130.0)
+    assert lost(cut, dt, 130.0) == pytest.approx((rates - cut) @ dt, rel=0.2)
+
+
+def test_a_peak_whose_end_is_not_there_has_lost_nothing_that_is_known():
+    rates, dt = peak(100.0)
+    assert lost(np.minimum(rates, 130.0)[:150], dt[:150], 130.0) == 0.0
 
 
 def test_a_share_that_is_lost_beyond_a_level_closes_the_gap_when_simulated_again():

@@ -186,6 +186,13 @@ def test_a_pose_asked_for_is_kept_to_until_the_box_is_moved_to_it_or_lay_so_alre
     assert box.lies == "X+a"
 
 
+def test_a_hand_has_the_patience_of_the_host_in_every_session():
+    hand = JigHand({"one": WAYS[0], "two": WAYS[1]}, patience=8.0, pause_s=0.5)
+    assert hand.tray.patience == 8.0 and hand.pause_s == 4.0
+    hand.restarted("one")
+    assert hand.tray.patience == 8.0
+
+
 def test_a_box_is_moved_once_its_pose_was_wanted_for_a_while():
     box = Box(WAYS[0])
     asked = [box.ask(pose, now, 1.0) for now, pose in (

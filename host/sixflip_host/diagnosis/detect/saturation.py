@@ -13,8 +13,9 @@ from .codes import number_of_runs
 from .detection import BELOW, RANGE, Finding, present
 
 RAIL_CODES = 4  # the last codes of a range: scales that are rounded end a few short of 2^15
-FLANK_S = 0.04  # before a peak and after it: a hand's is several times as long
-FLANK = 4  # samples at least: of fewer, noise makes a slope
+# s of a peak's flanks that are looked at, and samples at least: a hand turns a box half round in
+# half a second or more, and comes up to its rate in a third of that.
+FLANK_S, FLANK = 0.04, 2
 LOOKED_AT = 6  # ends of a sensor's three axes, each of which could be cut off
 # Share of the span of the readings just inside their largest one, in which peaks that are not cut
 # off end as well: less holds too few of them, in more they thin out by themselves.
@@ -77,22 +78,24 @@ def railed(session, sensor="accel"):
     return at_end
 
 
-def foretold(rates, dt, level):
+def lost_at_peaks(rates, dt, level):
     """(n, 3) deg/s by which rates (n, 3), dt (n,) s apart, are less than the flanks of their peaks
-    above a level (3,) foretell: than the cubic that leaves the level and comes back to it as
-    steeply as they do (Hermite's). Next to nothing of a peak that is whole; of one whose flanks
-    are not all there, nothing."""
+    above a level (3,) deg/s foretell: than Hermite's cubic, which leaves the level and comes back
+    to it as steeply as they do. Next to nothing of a round peak that is whole; much of one that is
+    flat because the box turned so; of one whose flanks are not all there, nothing."""
     less = np.zeros_like(rates)
-    width = max(FLANK, round(FLANK_S / float(np.median(dt)))) if len(dt) else FLANK
+    width = max(FLANK, round(FLANK_S / float(np.median(dt))))
+    at = np.cumsum(dt) - 0.5 * dt
     for axis, column in enumerate(rates.T):
         above = ndimage.binary_closing(column > level[axis], np.ones(width))
         for run, in ndimage.find_objects(ndimage.label(above)[0]):
             if run.start < width or run.stop > len(column) - width:
                 continue
             flanks = slice(run.start - width, run.start), slice(run.stop, run.stop + width)
-            up, down = (np.polyfit(np.cumsum(dt[at]), column[at], 1)[0] for at in flanks)
+            up, down = (np.polyfit(at[flank] - at[flank][0], column[flank], 1)[0]
+                        for flank in flanks)
             length = dt[run].sum()
-            way = (np.cumsum(dt[run]) - 0.5 * dt[run]) / length
+            way = (at[run] - at[run][0] + 0.5 * dt[run][0]) / length
             course = level[axis] + length * way * (1.0 - way) * (up * (1.0 - way) - down * way)
             less[run, axis] = np.maximum(course - column[run], 0.0)
     return less

@@ -14,7 +14,7 @@ from sixflip_sim.effects.library import EFFECTS
 
 from ...experiment import noise_arrays, terms
 from .. import closed_loop, odds
-from ..hypotheses import columns_of
+from ..hypotheses import Form, columns_of
 from . import conventions, hypotheses, pairing, parameters
 
 # Standard errors within which the share of an effect in the difference is none, so that both logs
@@ -154,8 +154,8 @@ def _columns(kind, pair, designs):
 
 def _shape(name, cause, diagnosis):
     """{parameter: value}; another name of a class has no variant of its own."""
-    shape = closed_loop.shape(name, cause.variant if name == cause.effect else "",
-                              diagnosis.conditions.reference_c)
+    form = cause if name == cause.effect else Form(name)
+    shape = closed_loop.shape(form, diagnosis.conditions.reference_c)
     if name == "warm_up":
         shape.setdefault("tau_s", EFFECTS["warm_up"].shapes["tau_s"][0])
     return shape
