@@ -40,7 +40,8 @@ SETTLED = "session"  # the level by which one rest differs from the next
 class RestCause:
     """One effect, or one class of effects, on the axes that show it: names (the likeliest
     first), place ({name: probability} of what stands here), score (nats), value and interval by
-    axis, unit, plausible, share of the excess, domain; variant of the first name."""
+    axis, unit, plausible, share of the excess, domain; variant and shape (see
+    hypotheses.Form) of the first name."""
 
     names: tuple
     place: dict
@@ -52,6 +53,7 @@ class RestCause:
     share: object
     domain: str
     variant: str = ""
+    shape: tuple = ()
 
     @property
     def effect(self):
@@ -197,7 +199,7 @@ def _told(cause, data, fits, chip, kind, chosen, posterior):
                          (chosen, fits.index))
     return RestCause(tuple(dict.fromkeys(names)), dict(place), cause.score, cause.value,
                      cause.interval, cause.unit, cause.plausible, share,
-                     terms.DOMAIN[cause.effect], cause.variant)
+                     terms.DOMAIN[cause.effect], cause.variant, cause.shape)
 
 
 def _beaten(cause, strange, posterior):
