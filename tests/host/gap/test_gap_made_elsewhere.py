@@ -354,6 +354,14 @@ def test_noise_nearly_as_wide_as_a_page_has_no_jumps_by_pages():
     assert nats <= 0.0
 
 
+@pytest.mark.filterwarnings("error")
+def test_of_a_log_of_a_few_samples_a_second_no_tone_is_told():
+    """A recording at 2 Hz had numpy's warning about the mean of an empty slice on stderr."""
+    few = np.random.default_rng(3).standard_normal((30, 4))
+    chance, _, lobe = wandering_tone.chances(few, 2.0)
+    assert (chance == 1.0).all() and not lobe.any()
+
+
 def test_noise_a_resonance_and_a_steady_line_are_no_tones_that_wander():
     """By chance one of so few stretches has one less often than wandering_tone.DOUBTED says."""
     generator, n = np.random.default_rng(2), 250

@@ -54,10 +54,12 @@ def chances(x, rate):
     """Of each of the stretches x (R, n): (the probability of its largest bin by noise alone, the
     bin, the power of its lobe beyond noise), (R,) each; ones where the spectra tell nothing."""
     first = max(LOBE + 1, int(spectral_lines.LOWEST_HZ * x.shape[1] / rate) + 1)
-    power = spectral_lines.periodograms(x)
+    power, nothing = spectral_lines.periodograms(x), np.zeros(len(x))
+    if power.shape[1] - first < 2 * FEWEST:
+        return np.ones(len(x)), nothing.astype(int), nothing
     level = np.median(power[:, first:-1], axis=1)
-    if power.shape[1] - first < 2 * FEWEST or not (level > 0.0).all():
-        return np.ones(len(x)), np.zeros(len(x), int), np.zeros(len(x))
+    if not (level > 0.0).all():
+        return np.ones(len(x)), nothing.astype(int), nothing
     alike = power / level[:, None]
     ratio = (alike / (np.median(alike, axis=0) / math.log(2.0)))[:, first:-1]
     place = first + ratio.argmax(axis=1)
