@@ -12,7 +12,7 @@ import time
 
 import pyte
 
-WAIT_S = 400
+WAIT_S = 400            # on a busy machine; what is waited for ends it
 HOME = b"\x1b[H"         # every picture of the screen begins with it
 
 

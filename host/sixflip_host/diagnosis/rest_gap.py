@@ -40,8 +40,8 @@ SETTLED = "session"  # the level by which one rest differs from the next
 class RestCause:
     """One effect, or one class of effects, on the axes that show it: names (the likeliest
     first), place ({name: probability} of what stands here), score (nats), value and interval by
-    axis, unit, plausible, share of the excess, domain; variant and shape (see
-    hypotheses.Form) of the first name."""
+    axis, unit, plausible, share of the excess, domain; variant and shape (see hypotheses.Form)
+    of the first name."""
 
     names: tuple
     place: dict

@@ -13,8 +13,8 @@ from .codes import number_of_runs
 from .detection import BELOW, RANGE, Finding, present
 
 RAIL_CODES = 4  # the last codes of a range: scales that are rounded end a few short of 2^15
-# s of a peak's flanks that are looked at, and samples at least: a hand turns a box half round in
-# half a second or more, and comes up to its rate in a third of that.
+# s of a peak's flanks that are looked at, and samples at least: judged, a hand turns a box half
+# round in half a second or more, and comes up to its rate in a third of that.
 FLANK_S, FLANK = 0.04, 2
 LOOKED_AT = 6  # ends of a sensor's three axes, each of which could be cut off
 # Share of the span of the readings just inside their largest one, in which peaks that are not cut
