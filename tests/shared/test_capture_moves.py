@@ -7,8 +7,9 @@ from array import array
 from synthetic_operator import Operator
 
 from sixflip.capture.blocks import STEPS
-from sixflip.capture.scan import CaptureMoves, Scan
+from sixflip.capture.scan import CaptureMoves, Scan, samples_in
 from sixflip.capture.writer import BlockWriter
+from sixflip.gyro import solver
 from sixflip.poses.placement import turned
 from sixflip.poses.placement_log import add_window, empty_move
 from sixflip.poses.session import Session
@@ -50,7 +51,8 @@ class Kept:
 
     PAUSES = {700: 80000, 701: 4000, 1200: 52000, 1950: 13000, 2100: 12000, 2101: 8000}
 
-    def __init__(self):
+    def __init__(self, aligned=False):
+        self.aligned = aligned  # a block ends where a placement begins
         self.session = Session(16384, 65.5, 32767, 32767, 100)
         self.file = Stream()
         self.writer = BlockWriter(self.file.write, META)
@@ -58,19 +60,29 @@ class Kept:
 
     def feed(self, dt_us, sample):
         dt_us = self.PAUSES.get(self.session.samples, dt_us)
+        was = self.session.state
         event = self.session.feed(dt_us, sample)
         self.writer.add(dt_us, sample)
+        if self.aligned and (was == "capturing") != (self.session.state == "capturing"):
+            self.writer.flush()
         return event
 
-    def moves(self):
+    def moves(self, placements=None, begin=0, end=0):
+        """Those between the placements (None: all), the blocks of samples begin..end left out."""
         self.writer.flush()
         self.file.rewind()
         scan = Scan(self.file)
-        found = CaptureMoves(self.session.placements, scan.blocks.columns, 10000, 32767,
-                             65.5)
+        found = CaptureMoves(placements or self.session.placements, scan.blocks.columns, 10000,
+                             32767, 65.5)
+        at = 0
         for kind, block in scan.each():
             if kind == STEPS:
-                found.block(block)
+                n = samples_in(block)
+                if begin <= at and at + n <= end:
+                    found.skip(n)
+                else:
+                    found.block(block)
+                at += n
         return found.moves()
 
 
@@ -117,6 +129,21 @@ class FromTheFile(unittest.TestCase):
         kept.file.pieces = kept.file.pieces[:len(kept.file.pieces) // 2]
         kept.writer._write = lambda data: None
         self.assertEqual([move.n > 0 for move in kept.moves()], [True, False, False])
+
+
+    def test_of_a_move_that_was_left_out_no_turn_is_known(self):
+        """As where a face is taken again: its blocks, and those of the moves to it and from it,
+        are not copied, and now and then a block ends just where the next placement begins."""
+        for aligned in (True, False):
+            kept = Kept(aligned)
+            kept.hands.six_faces(order=(0, 2, 4))
+            stay = [p for p in kept.session.placements if p.pose not in (5, 6)]
+            moves = kept.moves(stay, stay[1].first + stay[1].n, stay[2].first)
+            self.assertEqual([m.n > 0 for m in moves], [True, True, not aligned, True, True])
+            self.assertEqual([m.path for m in moves], [None] * 5)
+            straight = [[float(i == j) for j in range(4)] for i in range(4)]
+            gyro = solver.solve(stay, moves, 65.5, straight, lsb_per_g=16384)
+            self.assertEqual((gyro.missing, gyro.excess), ([0], None))  # X+ is not there
 
 
 class Pauses(unittest.TestCase):

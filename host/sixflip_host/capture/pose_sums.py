@@ -89,7 +89,9 @@ class _Window:
 
 
 def _path(capture, before, after):
-    """Move.path, by windows as long as the board's."""
+    """Move.path, by windows as long as the board's; None where no sample of it was kept."""
+    if after.first == before.first + before.n:
+        return None
     log = PlacementLog(0, capture.meta["gyro_lsb_per_dps"])
     log.accept(before)
     length = window_length(capture.meta["rate_hz"], POSE_SAMPLES)

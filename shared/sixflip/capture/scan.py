@@ -50,8 +50,9 @@ class CaptureMoves:
         self._last_us = us % US
 
     def skip(self, n):
-        """So many samples are left out: a gap in the move under way."""
+        """So many samples are left out: a gap in the move under way, whose turn is not known."""
         self._at += n
+        self._log.follow(False)
 
     def _sample(self, dt_us):
         to_come = self._to_come

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture import capture_file
+from sixflip_host.capture.capture import Capture
 from sixflip_host.cli import main
 from tests.worlds.hand_session import Sensor, session, six_faces
 
@@ -49,6 +50,20 @@ def test_the_answer_has_the_form_of_the_format(tmp_path, capsys):
         assert flip["used"] and flip["angle_deg"] == pytest.approx(180, abs=2)
         assert "%.2f" % flip["angle_deg"] in words and face in words
     assert gyro["verdict"] == "good" and "turned, deg" in words
+
+
+def test_a_move_of_which_no_sample_was_kept(tmp_path, capsys):
+    """As where a board has taken a face again and a block ends where the next one begins."""
+    _, capture = labelled()
+    first, second = capture.placements()[1:3]
+    assert first.pose != second.pose and second.first > first.first + first.n
+    kept = np.ones(len(capture), bool)
+    kept[first.first + first.n:second.first] = False
+    less = Capture(capture.meta, capture.t_us[kept], capture.accel[kept], capture.gyro[kept],
+                   pose=capture.pose[kept])
+    gyro = solve(tmp_path, capsys, less)[0]["gyro"]
+    assert gyro["verdict"] == "good"
+    assert gyro["flips"] == solve(tmp_path, capsys, capture)[0]["gyro"]["flips"]
 
 
 def test_without_gyro_columns(tmp_path, capsys):
