@@ -26,6 +26,7 @@ IN_PHASE = 0.5          # mean cosine of the phases of gaps that are losses, 0 b
 FEWEST_PHASES = 4
 BLOCKS = 10             # parts whose rates give the interval of the whole
 FEWEST = 2
+ROUNDS = 4              # until the period is settled to a millionth
 # 97.5 % quantiles: of the normal distribution, of Student's with 2 to 9 degrees of freedom
 NORMAL_95, STUDENT_95 = 1.96, (4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262)
 
@@ -71,10 +72,14 @@ def measure(t_us, recorder=(), lost=()):
     known = np.union1d(np.asarray(recorder, int), np.asarray(lost, int))
     period, width = stamp_envelope.first_guess(t_us, known)
     resolution = stamp_envelope.resolution(t_us)
-    for _ in range(3):
-        gaps = stamp_envelope.Gaps(t_us, period, width, resolution, known)
-        pause, missing = _sorted_out(gaps, period, np.asarray(recorder, int),
-                                     np.asarray(lost, int))
+    least = None
+    for _ in range(ROUNDS):
+        gaps = stamp_envelope.Gaps(t_us, period, width, resolution, known, least)
+        pause, missing, anew = _sorted_out(gaps, period, np.asarray(recorder, int),
+                                           np.asarray(lost, int), least is not None)
+        if anew and least is None:  # it may have stood still for less than a sample, too
+            least = stamp_envelope.NOISE * gaps.jitter
+            continue
         running = float(t_us[-1] - t_us[0]) - gaps.lift[pause].sum()
         refined = running / (n - 1 + int(missing.sum()))
         if not refined > 0:
@@ -121,19 +126,20 @@ def header(measured):
             "rate_interval_hz": [round(low, min(digits, 9)), round(high, min(digits, 9))]}
 
 
-def _sorted_out(gaps, period, recorder, lost):
-    """(bool: pauses, int: samples missing) of every gap."""
+def _sorted_out(gaps, period, recorder, lost, anew=False):
+    """(bool: pauses, int: samples missing) of every gap, and whether the clock began anew after
+    each of them, which is known already where `anew`."""
     samples = np.rint(gaps.lift / period).astype(int)
     pause = (gaps.lift > PAUSE_S * 1e6) & (gaps.lift > PAUSE_ROWS * period)
     pause |= np.isin(gaps.places, recorder)
     is_lost = np.isin(gaps.places, lost)
     open_ = ~pause & ~is_lost
     if gaps.jitter < 0.1 * period and open_.sum() >= FEWEST_PHASES:
-        phase = np.cos(2 * np.pi * gaps.lift[open_] / period).mean()
-        if phase < IN_PHASE:        # the clock began anew each time: it stood still as well
-            pause |= open_
+        anew = anew or np.cos(2 * np.pi * gaps.lift[open_] / period).mean() < IN_PHASE
+    if anew:                        # it stood still as well
+        pause |= open_
     pause &= ~is_lost
-    return pause, np.where(pause, 0, samples)
+    return pause, np.where(pause, 0, samples), anew
 
 
 def _interval(t_us, period, gaps, missing, pause):

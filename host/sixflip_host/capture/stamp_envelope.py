@@ -70,12 +70,14 @@ class Gaps:
     late, bursts, latest, jitter    rows, groups, µs, µs
     """
 
-    def __init__(self, t_us, period, width, resolution, known):
+    def __init__(self, t_us, period, width, resolution, known, least=None):
+        """least: µs that a gap lifts them by, None: a sample's."""
         reach = max(REACH, 2 * width)
         places, lifts = [], []
         self.late = self.bursts = 0
         self.latest, squares, number = 0.0, 0.0, 0
         limit = resolution if resolution > COARSE * period else PART * period
+        limit = limit if least is None else max(least, resolution)
         for first in range(0, len(t_us), COUNTED):
             some = t_us[first:first + COUNTED + reach + 1]
             beyond = (some - some[0]) - np.arange(len(some)) * period

@@ -26,20 +26,25 @@ class RestsJudged:
 
 
 def judge(rests, findings, settings, conditions):
-    """RestsJudged of UsableRests; findings: of their samples. All that is the gyro's and the
-    accelerometer's rests go side by side where there are processors for it; the gyro's, which is
-    more, is what need not be handed back."""
+    """RestsJudged of UsableRests; findings: of their samples. The turns and either sensor's rests
+    go side by side where there are processors for it."""
     sessions, nominal = rests.sessions, rests.nominal
     chip = sessions[0].capture.meta["sensor"]
     swapped = turns = motion = None
-    models = [RestModel(kind, chip, settings, conditions) for kind in ("accel", "gyro")]
-    jobs = [lambda: models[0].fit(sessions, nominal)]
+    accel, gyro = (RestModel(kind, chip, settings, conditions) for kind in ("accel", "gyro"))
+    jobs = [lambda: accel.fit(sessions, nominal)]
     if all(s.gyro is not None for s in sessions):
-        jobs.insert(0, lambda: _of_gyro(rests, findings, models[1]))
-    *gyro, accel = side_by_side.results(jobs, settings.processors)
-    gaps = {"accel": accel}
-    if gyro:
-        gaps["gyro"], swapped, turns, motion = gyro[0]
+        swapped = turn_model.swapped(sessions, nominal)
+        # The Earth's rate on the wrong axes looks like gravity in the gyro.
+        upright = sessions if swapped is None else [
+            s.with_gyro_axes(swapped.read) for s in sessions]
+        jobs.append(lambda: gyro.fit(upright, nominal))
+        if swapped is None and _turn(rests, findings):
+            jobs.insert(0, lambda: _of_turns(rests, gyro))  # of two processors the gyro has one
+    found = side_by_side.results(jobs, settings.processors)
+    if len(jobs) == 3:
+        turns, motion = found.pop(0)
+    gaps = dict(zip(("accel", "gyro"), found))
     new_findings, nameless, remarks = [], [], []
     if swapped is not None and swapped.effect not in settings.without:
         new_findings.append(swapped)
@@ -64,24 +69,21 @@ def judge(rests, findings, settings, conditions):
     return RestsJudged(gaps, turns, motion, tuple(new_findings), tuple(nameless), tuple(remarks))
 
 
-def _of_gyro(rests, findings, model):
-    """(SensorGap at rest, Finding of swapped axes or None, SensorGap of its turns or None,
-    MotionGap or None of the moves that it carries gravity through) of the gyro of UsableRests;
-    model: its RestModel."""
-    sessions, nominal = rests.sessions, rests.nominal
-    swapped = turn_model.swapped(sessions, nominal)
-    # The Earth's rate on the wrong axes looks like gravity in the gyro.
-    gap = model.fit(sessions if swapped is None else [
-        s.with_gyro_axes(swapped.read) for s in sessions], nominal)
+def _turn(rests, findings):
+    """True when the gyro of UsableRests tells how they turn from one to the next."""
     bent = any(f.sensor == "gyro" and f.effect in ("dead_band", "saturation") for f in findings)
-    if swapped is not None or bent or not all(
-            turn_model.usable(s, m) for s, m in zip(sessions, nominal)):
-        return gap, swapped, None, None
-    turns = turn_model.TurnModel("gyro", model.chip, model.settings, model.conditions).fit(
-        sessions, nominal)
+    return not bent and all(
+        turn_model.usable(s, m) for s, m in zip(rests.sessions, rests.nominal))
+
+
+def _of_turns(rests, gyro):
+    """(SensorGap of the gyro's turns, MotionGap or None of the moves that it carries gravity
+    through) of UsableRests; gyro: its RestModel."""
+    turns = turn_model.TurnModel("gyro", gyro.chip, gyro.settings, gyro.conditions).fit(
+        rests.sessions, rests.nominal)
     progress.doing("what moves between the rests show")
-    return gap, None, turns, motion_model.motion_gap(
-        rests.everything, sessions, nominal, turns, model.settings)
+    return turns, motion_model.motion_gap(
+        rests.everything, rests.sessions, rests.nominal, turns, gyro.settings)
 
 
 def _astray(turns, sound):

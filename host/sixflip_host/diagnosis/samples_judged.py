@@ -1,7 +1,7 @@
 """The first stage: what registers, clock and spectra say of the samples themselves, with a name
 and without."""
 import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -76,6 +76,8 @@ def judge(sessions, settings=ALONE, damages=()):
     findings = [f for f in sum(found, []) + lines if f.effect not in without]
     if any(d.kind == held_values.NOT_READ for d in damages):
         findings = [f for f in findings if f.effect != "dropped_samples"]
+    uneven = _uneven(sessions, findings, {sensor for sensor, *_ in whole[2]})
+    findings = [f for f in (_full_grids(f, uneven) for f in findings) if f]
     coarse = {(f.sensor, axis) for f in findings if f.effect in COARSE for axis in f.axes}
     stuck = stuck_axes.stuck_for_a_while(sessions, coarse)
     held, scales, bits = whole
@@ -105,8 +107,6 @@ def judge(sessions, settings=ALONE, damages=()):
     nameless += [localisation.Place(sensor, axis, "amplitude", 1.0, odds.chance(codes.bit_nats(
         [getattr(s.capture, sensor)[:, "xyz".index(axis)] for s in sessions])))
         for sensor, axis, _, _ in bits]
-    uneven = _uneven(sessions, leaping | {
-        f.sensor for f in findings if f.effect == "quantisation"})
     nameless += [localisation.Place(sensor, axis, "amplitude", 1.0, odds.chance(nats))
                  for sensor, axis, nats in uneven]
     remarks += ["the %s axis of the %s reads some codes hardly ever and others too often"
@@ -126,19 +126,39 @@ def judge(sessions, settings=ALONE, damages=()):
                           *noise_bursts.in_common(without_spikes, noisy)))
 
 
-def _uneven(sessions, coarse):
-    """[(sensor, axis letter, nats)] whose codes at rest are not as frequent as those around them;
-    coarse: sensors whose codes are known to be missing."""
+def _uneven(sessions, findings, stuck):
+    """[(sensor, axis letter, nats)] whose codes at rest, counted in the steps that were found,
+    are not as frequent as those around them; stuck: sensors with a bit that is, which leaves
+    codes out."""
     uneven = []
-    for sensor in (kind for kind in SENSOR if kind not in coarse):
-        rests = [getattr(s.capture, sensor)[run.first:run.end]
-                 for s in registers.of_counts(sessions, sensor)
-                 if getattr(s.capture, sensor) is not None for run in s.runs]
-        for axis in range(3) if rests else ():
-            nats = codes.uneven_nats([counts[:, axis] for counts in rests])
+    sizes = {(f.effect, f.sensor, axis): f.value[axis] for f in findings
+             if f.effect in ("quantisation", "dead_band") for axis in f.axes}
+    for sensor in (kind for kind in SENSOR if kind not in stuck):
+        read = [s for s in registers.of_counts(sessions, sensor)
+                if getattr(s.capture, sensor) is not None]
+        for k, axis in enumerate("xyz"):
+            step = sizes.get(("quantisation", sensor, axis), 1)
+            band = sizes.get(("dead_band", sensor, axis), 0)
+            rests = []
+            for session in read:
+                column = getattr(session.capture, sensor)[:, k].astype(np.int32)
+                about = codes.resting(column) if band else 0
+                rests += [(column[run.first:run.end] - about) // step for run in session.runs]
+            nats = codes.uneven_nats(rests, 1 + band // step)
             if present(nats):
-                uneven.append((sensor, "xyz"[axis], nats))
+                uneven.append((sensor, axis, nats))
     return uneven
+
+
+def _full_grids(finding, uneven):
+    """The Finding without axes whose codes are `uneven`: steps that are not all there are none,
+    and codes that are missing near 0 as elsewhere are no dead band. None where none is left."""
+    axes = [axis for axis in finding.axes if finding.effect not in ("quantisation", "dead_band")
+            or (finding.sensor, axis) not in {(sensor, a) for sensor, a, _ in uneven}]
+    if axes == list(finding.axes):
+        return finding
+    return replace(finding, axes=axes, value={a: finding.value[a] for a in axes},
+                   interval={a: finding.interval[a] for a in axes}) if axes else None
 
 
 def _without_bands(session, findings):

@@ -190,12 +190,12 @@ def limited(chosen, chip):
     ends = [np.max([(sign * turn.middle).max(axis=0) for turn in chosen], axis=0)
             for sign in (1.0, -1.0)]
 
-    def lost(turn):
-        return [sum(-sign * saturation.lost_at_peaks(sign * turn.middle, turn.dt, AT_END * top)
-                    for sign, top in zip((1.0, -1.0), ends))]
-    most = int(sum(turn.dt @ np.abs(lost(turn)[0]) for turn in chosen).argmax())
+    lost = {turn: sum(-sign * saturation.lost_at_peaks(sign * turn.middle, turn.dt, AT_END * top)
+                      for sign, top in zip((1.0, -1.0), ends)) for turn in chosen}
+    most = int(sum(turn.dt @ np.abs(less) for turn, less in lost.items()).argmax())
     level = max(float(np.abs(turn.rate[:, most]).max()) for turn in chosen)  # as it is read
-    designs.append(replace(_of_rates("saturation", "at its end", chosen, lost, FORETOLD / TYPICAL),
+    designs.append(replace(_of_rates("saturation", "at its end", chosen,
+                                     lambda turn: [lost[turn]], FORETOLD / TYPICAL),
                            shape=(("level", round(level, 1)),)))
     return [replace(limit, positive=True) for limit in designs]
 

@@ -2,13 +2,14 @@
 shrinks once that is added."""
 import json
 import os
+from functools import partial
 
 from .. import diagnosis  # noqa: F401 (it settles numpy's threads before that is loaded)
 
 # isort: split
 from sixflip.record import correction_record
 
-from .. import file_kinds, progress
+from .. import file_kinds, progress, side_by_side
 from ..calibrate import verify_files
 from ..capture import open_recording
 from ..did_you_mean import instead
@@ -86,16 +87,18 @@ def answered(args, without, record):
     """(the answer of --json, Terms for a record or None); report and scenario are written."""
     from ..diagnosis import answer, correction_terms
     from ..diagnosis.diagnose import diagnose
+    from ..diagnosis.settings import Settings
 
     def read(paths, gravity=True, gyro_alone=False):
-        for path in paths:
-            progress.doing("reading %s" % path)
-            yield path, open_recording.read_samples(path, gravity, gyro_alone)
-    captures = list(read(args.captures, gyro_alone=not args.sim and not record))
+        progress.doing("reading %s" % ", ".join(paths))
+        return list(zip(paths, side_by_side.results(
+            [partial(open_recording.read_samples, path, gravity, gyro_alone) for path in paths],
+            Settings(jobs=args.jobs).processors)))
+    captures = read(args.captures, gyro_alone=not args.sim and not record)
     if record:
         of_this_part(captures, record, args)
-    diagnosed = diagnose(captures, list(read(args.sim, gravity=False)),
-                         list(read([args.reference] if args.reference else [])),
+    diagnosed = diagnose(captures, read(args.sim, gravity=False),
+                         read([args.reference] if args.reference else []),
                          args.certified_box, without, args.jobs, fleet_of(args.prior, captures))
     loops = closed(diagnosed, args)
     result = answer.as_dict(diagnosed)

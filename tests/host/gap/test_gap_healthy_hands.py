@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy import signal
 
 from sixflip_host.diagnosis import (
     diagnosis,
@@ -264,6 +265,21 @@ def test_a_dozen_rests_that_settle_each_in_its_own_way_are_no_slow_line(seed):
     capture = short_rests(
         lambda t, start: 600.0 * generator.standard_normal() * np.exp(-t / 2.5), 5.0, 580 * 12)
     assert len(capture.runs) == 12
+    assert line_across_rests.strongest(capture, "accel", 0, 1.0) is None
+
+
+@pytest.mark.parametrize("seed", [0, 152, 343])  # of 400, those that had a line
+def test_what_wanders_by_itself_is_no_slow_line(seed):
+    """The floor that a peak is held against is known by a few dozen powers, no better."""
+    generator, n = np.random.default_rng(seed), 600 * 18
+    course = np.zeros(n)
+    for tau in (1.0, 4.0, 16.0, 64.0, 256.0):
+        stays = np.exp(-0.01 / tau)
+        steps = generator.normal(0.0, 1.0, n) * 19.1 * np.sqrt(1.0 - stays ** 2)
+        steps[0] = generator.normal(0.0, 19.1)
+        course += signal.lfilter([1.0], [1.0, -stays], steps)
+    capture = short_rests(
+        lambda t, start: course[np.rint(100.0 * (start + t)).astype(int)], 6.0, n)
     assert line_across_rests.strongest(capture, "accel", 0, 1.0) is None
 
 

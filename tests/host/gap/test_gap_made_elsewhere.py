@@ -137,6 +137,37 @@ def test_codes_that_are_left_out_are_told_by_those_around():
     assert codes.uneven_nats([changes]) > 1000.0
 
 
+def test_steps_as_wide_as_the_noise_that_differ_are_told():
+    """They are multiples of five counts, some of them beside 0: no step of five, no dead band."""
+    generator = np.random.default_rng(8)
+    edges = np.cumsum(generator.choice([10, 25, 35, 60, 110], 4000))
+    edges -= edges[2000]
+    rests = [edges[np.searchsorted(edges, np.rint(generator.normal(level, 65.0, 600)))]
+             for level in generator.uniform(-300.0, 300.0, 20)]
+    assert codes.uneven_nats([rest // 5 for rest in rests]) > 1000.0
+    still = at_rest(flicker(5, 12000))
+    still.capture.accel[:, 0] = np.concatenate(rests)
+    judged = samples_judged.judge([still])
+    assert judged.findings == ()
+    assert ("accel", "x", "amplitude") in [(p.sensor, p.axis, p.domain) for p in judged.nameless]
+
+
+@pytest.mark.parametrize("step", [1.3, 2.3, 7.6])
+def test_a_file_in_other_steps_than_the_chips_leaves_codes_out_evenly(step):
+    generator = np.random.default_rng(9)
+    rests = [np.rint(np.rint(generator.normal(level, 30.0, 6000)) * step).astype(int)
+             for level in (-40.0, 0.0, 55.0)]
+    assert codes.uneven_nats(rests) == 0.0
+
+
+def test_between_two_rests_codes_are_read_less_often_without_being_left_out():
+    generator = np.random.default_rng(10)
+    for apart in (2.0, 3.0, 4.0, 6.0):
+        rests = [np.rint(generator.normal(level, 20.0, 30000)).astype(int)
+                 for level in (0.0, 20.0 * apart)]
+        assert codes.uneven_nats(rests) == 0.0
+
+
 def test_single_codes_that_are_left_out_are_no_gap():
     """A recording of a sensor sold calibrated has them: a tenth of its samples are elsewhere."""
     x = noisy(40000, np.random.default_rng(7))

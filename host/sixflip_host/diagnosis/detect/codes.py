@@ -7,13 +7,14 @@ from scipy import ndimage, special
 from ...capture.registers import LOW_BITS, RAIL, codes, spacing, steps, zeros_beyond_noise
 
 STEPS_TRIED = 1 << LOW_BITS
-# Codes to either side that say how often one is read: as many as the usual difference of two
-# samples, whose median is a tenth below the peak of normal noise, at most as many as wide steps.
-NOISY, FEWEST_AROUND, MOST_AROUND = 1.0, 8, 16
+# Usual differences of two samples that codes to either side are away at most which say how often
+# one is read: 1.9 standard deviations. Of two rests as far apart as twice that the code halfway is
+# read a third as often as the commonest, and seldom RARE times.
+REACH = 2.0
 EXPECTED = 20.0  # readings of a code: chance leaves RARE of them once in a million
 # Of the usual number: no converter's steps differ so much that has none missing (differential
 # nonlinearity of more than 0.9 of a step, which IEEE Std 1241 calls a missing code).
-RARE, FREQUENT = 0.1, 4.0
+RARE = 0.1
 # Share of the samples that are too many or missing at such codes: a tenth are in a recording of a
 # sensor that is sold calibrated, whose converter or arithmetic leaves single codes out.
 MANY = 0.15
@@ -73,31 +74,42 @@ def _flat_nats(column):
         column == 0) / number
 
 
-def uneven_nats(columns):
-    """Log likelihood ratio (nats) of codes at rest that are read RARE times as often as those
-    around them or less, or FREQUENT times and more, Poisson, where MANY are. What shows them all
-    is noise that is wider than many of them; where it is not, and of 0, which a dead band holds,
-    nothing is said. columns: list of (n,) whole numbers, one a rest."""
+def uneven_nats(columns, held=1):
+    """Log likelihood ratio (nats) of codes at rest that are read RARE times as often as noise of
+    one peak lets them, or less, Poisson: as the rarer of the commonest codes within its reach on
+    either side. Nothing is said where not MANY readings are missing, of codes up to `held`, which
+    a dead band may hold at 0, nor where all that are ever read lie equally far apart, to a count,
+    as in a file that counts in other steps than the chip. columns: list of (n,) whole numbers, one
+    a rest."""
     columns = [c.astype(np.int64) for c in columns if len(c) > 1]
     if not columns:
         return 0.0
-    noise = np.median(np.abs(np.concatenate([np.diff(c) for c in columns])))
-    reach = min(int(NOISY * noise), MOST_AROUND)
+    reach = int(REACH * np.median(np.abs(np.concatenate([np.diff(c) for c in columns]))))
     every = np.concatenate(columns)
     every = every[np.abs(every) < RAIL - 1]
-    if reach < FEWEST_AROUND or not len(every):
+    if not reach or not len(every):
         return 0.0
-    times = np.bincount(every - every.min())
-    usual = ndimage.median_filter(times.astype(float), 2 * reach + 1, mode="constant")
-    asked = usual >= EXPECTED
-    if -every.min() in range(len(times)):
-        asked[max(-every.min() - 1, 0):-every.min() + 2] = False
-    times, usual = times[asked], usual[asked]
-    odd = (times <= RARE * usual) | (times >= FREQUENT * usual)
-    if np.abs(times - usual)[odd].sum() < MANY * times.sum():
+    times = np.bincount(every - every.min()).astype(float)
+    before, after = (ndimage.maximum_filter1d(times, reach, mode="constant", origin=shift)
+                     for shift in ((reach - 1) // 2, -(reach // 2)))
+    usual = np.minimum(np.append(0.0, before[:-1]), np.append(after[1:], 0.0))
+    asked, seldom = usual >= EXPECTED, times <= RARE * usual
+    odd = asked & seldom & (np.abs(np.arange(len(times)) + every.min()) > held)
+    if (usual - times)[odd].sum() < MANY * len(every) or not times[odd].any() and _even(
+            np.flatnonzero(asked & ~seldom), reach):
         return 0.0
-    nats = special.xlogy(times, times / usual) - (times - usual)
-    return float(nats[odd].sum()) - math.log(max(len(times), 1))
+    nats = special.xlogy(times, times / np.maximum(usual, 1.0)) - (times - usual)
+    return float(nats[odd].sum()) - math.log(len(times))
+
+
+def _even(places, reach):
+    """True when codes at places (n,) lie one step apart, but for what whole numbers make of it and
+    for a RARE part of the way; what is farther apart than `reach` belongs to two rests."""
+    apart = np.diff(places)
+    apart = apart[apart <= reach]
+    return not len(apart) or max(
+        apart[(apart == step) | (apart == step + 1)].sum() for step in set(apart.tolist())
+    ) >= (1.0 - RARE) * apart.sum()
 
 
 def resting(column):

@@ -13,7 +13,7 @@ from scipy import ndimage
 from ...capture.registers import unit_of_count
 from ...experiment.block_measures import EDGE_S
 from .. import odds
-from .line_frequency import HALVES, MEDIAN_ERROR, SLOW_CHANCE, SLOW_SHARE, Line
+from .line_frequency import HALVES, SLOW_CHANCE, SLOW_SHARE, Line
 
 FEWEST, SHORTEST_S = 12, 1.0  # rests, and seconds of each (a protocol has twelve poses or more)
 # s from the first rest on that are looked at: a line of 0.7 Hz has 400 periods there, and more
@@ -29,6 +29,8 @@ OVER = 4  # frequencies for each that rests so far apart can tell
 FINER = 8  # of their distance, that a line's is told to
 SEEN_AT = 48  # frequencies: between two of them a rest has a twentieth of a period more
 WIDTH = 41  # frequencies of the floor's running median: ten lobes of a line
+SMALLEST = 1e-300  # of a power: what a float holds
+BESIDE = 121  # and of the mean that a peak is held against: 30, of which the rests tell half
 
 
 def strongest(session, sensor, axis, fastest_hz):
@@ -39,11 +41,12 @@ def strongest(session, sensor, axis, fastest_hz):
     span = t[-1] - t[0]
     slowest = max(LEAST_CYCLES, ALL_CYCLES / len(lengths)) / np.median(lengths)
     x, weight = _left(t, x, rest)
-    ratio, near, looked_at = _highest(t, x, rest, weight, slowest, fastest_hz)
+    ratio, near, looked_at, beside = _highest(t, x, rest, weight, slowest, fastest_hz)
     if not looked_at:
         return None
-    doubt = 1.0 + odds.Z_90 * MEDIAN_ERROR / math.sqrt(WIDTH / OVER)
-    nats = ratio / doubt - math.log(3.0 * looked_at)
+    beside *= sum(lengths) / span / OVER
+    # Of a power over the mean of so many others, all exponential: Fisher's F of 2 and twice them.
+    nats = beside * math.log1p(ratio / beside) - math.log(3.0 * looked_at)
     hz, size = _nearest(t, x, rest, weight, near)
     amplitude = float(np.hypot(*size))
     halves = [_fitted(t[part], x[part], rest[part], weight[part], hz, t[0])
@@ -61,8 +64,8 @@ def strongest(session, sensor, axis, fastest_hz):
 
 
 def _highest(t, x, rest, weight, slowest, fastest):
-    """(power over the floor, Hz, peaks looked at) of the highest peak of x (n,), (0, 0, 0) where
-    there are too few frequencies for a floor.
+    """(power over the floor, Hz, peaks looked at, frequencies that the floor is the mean of) of
+    the highest peak of x (n,), noughts where there are too few frequencies for a floor.
 
     With gaps between the rests a line leaks all over the spectrum, so that what stands highest
     above its surroundings may be a part of it: it is what takes most of the power with it. Noise
@@ -70,14 +73,15 @@ def _highest(t, x, rest, weight, slowest, fastest):
     without the line."""
     hz, power = _spectrum(t, _for_itself(t, weight ** 2 * x, rest), slowest, fastest)
     if len(hz) < 2 * WIDTH:
-        return 0.0, 0.0, 0
+        return 0.0, 0.0, 0, 0
     by = power / _floor(power), power / _passed(t, rest, weight, hz)
     looked = []
     for k in {int(height.argmax()) for height in by}:
         left = x - _wave(t, rest, hz[k]) @ _fitted(t, x, rest, weight, hz[k])
         _, floor = _spectrum(t, _for_itself(t, weight ** 2 * left, rest), slowest, fastest)
-        looked.append((float(power[k] / _floor(floor)[k]), float(hz[k])))
-    return (*max(looked), len(by) * len(hz))
+        beside = ndimage.uniform_filter(floor, min(BESIDE, len(hz)), mode="reflect")
+        looked.append((float(power[k] / max(beside[k], SMALLEST)), float(hz[k])))
+    return (*max(looked), len(by) * len(hz), min(BESIDE, len(hz)))
 
 
 def without(session, sensor, axis, hz, fastest_hz):
@@ -156,7 +160,8 @@ def _for_itself(t, x, rest):
 
 def _floor(power):
     """(k,) mean of the power of noise, where it is a spectrum's."""
-    return np.maximum(ndimage.median_filter(power, WIDTH, mode="reflect") / math.log(2.0), 1e-300)
+    return np.maximum(ndimage.median_filter(power, WIDTH, mode="reflect") / math.log(2.0),
+                      SMALLEST)
 
 
 def _passed(t, rest, weight, hz):
