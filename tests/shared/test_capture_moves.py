@@ -130,7 +130,6 @@ class FromTheFile(unittest.TestCase):
         kept.writer._write = lambda data: None
         self.assertEqual([move.n > 0 for move in kept.moves()], [True, False, False])
 
-
     def test_of_a_move_that_was_left_out_no_turn_is_known(self):
         """As where a face is taken again: its blocks, and those of the moves to it and from it,
         are not copied, and now and then a block ends just where the next placement begins."""

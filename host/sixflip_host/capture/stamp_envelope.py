@@ -71,13 +71,13 @@ class Gaps:
     """
 
     def __init__(self, t_us, period, width, resolution, known, least=None):
-        """least: µs that a gap lifts them by, None: a sample's."""
+        """least: µs that a gap lifts them by, None: as much as a row has to be late."""
         reach = max(REACH, 2 * width)
         places, lifts = [], []
         self.late = self.bursts = 0
         self.latest, squares, number = 0.0, 0.0, 0
         limit = resolution if resolution > COARSE * period else PART * period
-        limit = limit if least is None else max(least, resolution)
+        least = limit if least is None else max(least, resolution)
         for first in range(0, len(t_us), COUNTED):
             some = t_us[first:first + COUNTED + reach + 1]
             beyond = (some - some[0]) - np.arange(len(some)) * period
@@ -87,7 +87,7 @@ class Gaps:
             here = known[(known >= first) & (known < first + len(jumps))] - first
             some = jumps[jumps != 0] if width > 1 else jumps
             spread = 1.4826 * float(np.median(np.abs(some))) if len(some) else 0.0
-            lifted = np.flatnonzero(jumps > max(limit, NOISE * spread))
+            lifted = np.flatnonzero(jumps > max(least, NOISE * spread))
             for place in np.union1d(lifted, here).astype(int).tolist():
                 places.append(first + place)
                 lifts.append(max(float(jumps[place]), 0.0))

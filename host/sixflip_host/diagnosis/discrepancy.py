@@ -31,7 +31,7 @@ VARIABLE = {"thermal_scale": ("thermal_orientation",), "vibration_rectification"
 # Of time everything is a function, and of a temperature's rate the temperature is the integral:
 # what is another form of these effects is made of their own time constants and lags. So is a
 # material's creep, of any course [Prony series], and the memory of what sticks and slips, of plays
-# [Prandtl-Ishlinskii].
+# [Prandtl-Ishlinskii] and of what is forgotten of it in the rest.
 OWN_FORMS = ("warm_up", "thermal_rate", "creep", "hysteresis")
 
 

@@ -141,9 +141,10 @@ def _pruned(model, best, cost):
 
 
 def _unknown(form, other, cost):
-    """Share of what another member gains that a member must gain itself: noise has no form that
-    could be another one, and takes up whatever form a stranger has beyond what is described."""
-    if other.effect == "drift":
+    """Share of what another member gains that a member must gain itself: noise, or what differs
+    from session to session anyhow, has no form that could be another one, and noise takes up
+    whatever form a stranger has beyond what is described."""
+    if other.effect == "drift" or other.free:
         return 0.0
     if form.effect == "drift":
         return 1.0 if other.generic else NOISE_FORM

@@ -30,7 +30,7 @@ def judge(rests, findings, settings, conditions):
     go side by side where there are processors for it."""
     sessions, nominal = rests.sessions, rests.nominal
     chip = sessions[0].capture.meta["sensor"]
-    swapped = turns = motion = None
+    swapped = turns = motion = turned = None
     accel, gyro = (RestModel(kind, chip, settings, conditions) for kind in ("accel", "gyro"))
     jobs = [lambda: accel.fit(sessions, nominal)]
     if all(s.gyro is not None for s in sessions):
@@ -39,10 +39,11 @@ def judge(rests, findings, settings, conditions):
         upright = sessions if swapped is None else [
             s.with_gyro_axes(swapped.read) for s in sessions]
         jobs.append(lambda: gyro.fit(upright, nominal))
-        if swapped is None and _turn(rests, findings):
+        turned = swapped is None and _turn(rests, findings)
+        if turned:
             jobs.insert(0, lambda: _of_turns(rests, gyro))  # of two processors the gyro has one
     found = side_by_side.results(jobs, settings.processors)
-    if len(jobs) == 3:
+    if turned:
         turns, motion = found.pop(0)
     gaps = dict(zip(("accel", "gyro"), found))
     new_findings, nameless, remarks = [], [], []

@@ -82,10 +82,11 @@ def judge(sessions, settings=ALONE, damages=()):
     stuck = stuck_axes.stuck_for_a_while(sessions, coarse)
     held, scales, bits = whole
     damages = [*damages, *held, *stuck, *scales]
-    leaping = {sensor for sensor, *_ in bits} | {
+    leaping = {sensor for sensor, *_ in [*bits, *uneven]} | {
         f.sensor for f in findings if f.effect == "dead_band"}
     noisy = leaping | {f.sensor for f in findings if f.effect in NOISY}
-    jumpy = {f.sensor for f in findings if f.effect in ("torn_reads", "dead_band")}
+    jumpy = {sensor for sensor, *_ in uneven} | {
+        f.sensor for f in findings if f.effect in ("torn_reads", "dead_band")}
     sessions = [_without_bands(s, findings) for s in sessions]
     without_spikes, wild = spikes.without_spikes(sessions, leaping)
     unsteady = [burst for burst in [*noise_bursts.unsteady(without_spikes), *wild]
@@ -109,7 +110,7 @@ def judge(sessions, settings=ALONE, damages=()):
         for sensor, axis, _, _ in bits]
     nameless += [localisation.Place(sensor, axis, "amplitude", 1.0, odds.chance(nats))
                  for sensor, axis, nats in uneven]
-    remarks += ["the %s axis of the %s reads some codes hardly ever and others too often"
+    remarks += ["the %s axis of the %s reads some codes hardly ever, and those around them often"
                 % (axis, SENSOR[sensor]) for sensor, axis, _ in uneven]
     tones = [(sensor, *tone) for sensor in SENSOR for tone in wandering_tone.axes(
         sessions, sensor, [a for f in findings if f.effect == "vibration" and f.sensor == sensor
@@ -127,8 +128,8 @@ def judge(sessions, settings=ALONE, damages=()):
 
 
 def _uneven(sessions, findings, stuck):
-    """[(sensor, axis letter, nats)] whose codes at rest, counted in the steps that were found,
-    are not as frequent as those around them; stuck: sensors with a bit that is, which leaves
+    """[(sensor, axis letter, nats)] that read some codes at rest, counted in the steps that were
+    found, far less often than those around them; stuck: sensors with a bit that is, which leaves
     codes out."""
     uneven = []
     sizes = {(f.effect, f.sensor, axis): f.value[axis] for f in findings
@@ -157,8 +158,9 @@ def _full_grids(finding, uneven):
             or (finding.sensor, axis) not in {(sensor, a) for sensor, a, _ in uneven}]
     if axes == list(finding.axes):
         return finding
-    return replace(finding, axes=axes, value={a: finding.value[a] for a in axes},
-                   interval={a: finding.interval[a] for a in axes}) if axes else None
+    return replace(finding, axes=axes, value={a: finding.value[a] for a in axes}, place=None,
+                   interval={a: finding.interval[a] for a in axes},
+                   score=finding.score * len(axes) / len(finding.axes)) if axes else None
 
 
 def _without_bands(session, findings):

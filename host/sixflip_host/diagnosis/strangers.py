@@ -82,7 +82,8 @@ def shared(session, up, sensor, reference_c):
     designs.append(_smooth("history", history, n, scale))
     for tau in FADES_S:
         fade = np.exp(-session.since / tau)
-        since = [fade] + [(before[:, i] - f[:, i]) * fade for i in range(3)]
+        # of how it lay before, and of how it lies now, as on what gives way
+        since = [fade] + [of[:, i] * fade for of in (before - f, f) for i in range(3)]
         designs.append(_smooth("time_since_move", since, n, scale, "tau %g s" % tau))
     designs.append(_smooth("orientation", harmonics(f, sensor), n, scale))
     if sensor == "accel":

@@ -189,7 +189,6 @@ def limited(chosen, chip):
                for level in LEVELS_DPS]
     ends = [np.max([(sign * turn.middle).max(axis=0) for turn in chosen], axis=0)
             for sign in (1.0, -1.0)]
-
     lost = {turn: sum(-sign * saturation.lost_at_peaks(sign * turn.middle, turn.dt, AT_END * top)
                       for sign, top in zip((1.0, -1.0), ends)) for turn in chosen}
     most = int(sum(turn.dt @ np.abs(less) for turn, less in lost.items()).argmax())

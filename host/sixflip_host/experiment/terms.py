@@ -22,6 +22,7 @@ LAGS_S = (0.0, 15.0, 30.0, 60.0, -30.0)  # GAP: a neighbouring thermometer, 10-6
 WARM_UP_S = (30.0, 60.0, 120.0, 240.0, 480.0)  # GAP: 60-300 s, and an octave to both sides
 CREEP_S = (5.0, 15.0, 30.0, 60.0, 120.0)  # GAP: 60-70 s seen on Z; down to a rest's length
 LEVELS_OFF = 3.0  # times faster than where a rate's effect begins to level off
+FORGOTTEN_S = (5.0, 20.0)  # from part of a short rest to most of a long one
 LONG_MEMORY_S = 30.0  # longer than two rests with the move between them
 SHIFT_MG = 5.0  # typical of what a vibration shifts, as of the library's other effects
 # What a vibration all round shifts by its rms, the strongest 1: as its power, as |f| rectifies it,
@@ -191,7 +192,8 @@ def along_axes(session, nominal, chip):
 
 def remembered(session, m, plain):
     """Designs of hysteresis in other forms than a share of the pose before: only from which
-    side the pose was reached, softly or by its sign, and what rubs along the whole way."""
+    side the pose was reached, softly or by its sign, and what rubs along the whole way. Beside
+    any of them: what is forgotten of it in the course of the rest."""
     came = np.stack(m.before, 1) - np.stack(m.f, 1)
     sign = np.sign(came) * (np.abs(came) > UNMOVED_G)
     forms = [("side", np.tanh(3.0 * came)), ("sign", sign),
@@ -200,6 +202,11 @@ def remembered(session, m, plain):
     for variant, values in forms:
         columns = by_axis([values]).reshape(-1, 3)
         designs.append(Design("hysteresis", variant, plain.keys, plain.axes, columns, plain.prior))
+    before = np.stack(m.before, 1)
+    for tau in FORGOTTEN_S:
+        columns = by_axis([before * np.exp(-session.since / tau)[:, None]]).reshape(-1, 3)
+        designs.append(Design("hysteresis", "forgotten, tau %g s" % tau, plain.keys, plain.axes,
+                              columns, plain.prior, beside=True))
     return designs
 
 

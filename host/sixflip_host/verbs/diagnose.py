@@ -90,10 +90,13 @@ def answered(args, without, record):
     from ..diagnosis.settings import Settings
 
     def read(paths, gravity=True, gyro_alone=False):
-        progress.doing("reading %s" % ", ".join(paths))
+        if paths:
+            progress.doing("reading %s" % ", ".join(paths))
+        # What can be read once only is read here.
+        processors = Settings(jobs=args.jobs).processors if all(map(os.path.isfile, paths)) else 1
         return list(zip(paths, side_by_side.results(
             [partial(open_recording.read_samples, path, gravity, gyro_alone) for path in paths],
-            Settings(jobs=args.jobs).processors)))
+            processors)))
     captures = read(args.captures, gyro_alone=not args.sim and not record)
     if record:
         of_this_part(captures, record, args)

@@ -68,6 +68,14 @@ def test_pauses_of_less_than_a_sample_do_not_bend_the_rate():
     assert (found.losses, found.late) == (0, 0) and found.pauses > 0.9 * (waits > 0).sum()
 
 
+def test_a_stamp_that_scatters_is_not_late_because_the_recorder_paused():
+    generator = np.random.default_rng(4)
+    t = EVEN + np.cumsum(np.arange(ROWS) % 1000 == 500) * 1.43 * PERIOD
+    t += np.cumsum(np.arange(ROWS) % 2000 == 700) * 2.31 * PERIOD
+    found = measured(t + generator.exponential(300.0, ROWS))
+    assert (found.late, found.bursts, found.losses) == (0, 0, 0) and found.pauses >= 9
+
+
 @pytest.mark.parametrize("lost", [
     np.random.default_rng(2).random(ROWS) < 0.05, np.random.default_rng(2).random(ROWS) < 0.2,
     np.isin(np.arange(ROWS) // 20, np.arange(20, 300, 25))])

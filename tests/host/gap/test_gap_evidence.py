@@ -280,6 +280,17 @@ def test_what_is_not_in_the_library_is_rarer_and_a_level_of_noise_is_not():
     assert cost.nats(level) == cost.nats(named) == 5.0
 
 
+def test_what_differs_from_session_to_session_leaves_nothing_to_a_name_within_them():
+    """A hysteresis had to gain half of what an unusual change at switching on did."""
+    cost = cutoffs.Cutoffs(5.0, 0.5)
+    named, nameless = (hypotheses.Form(name, shared=Columns(np.array([0]), np.ones(1)))
+                       for name in ("hysteresis", "orientation"))
+    level = hypotheses.Form("session", free=frozenset(["switch_on"]))
+    assert posterior._unknown(named, level, cost) == 0.0
+    assert posterior._unknown(named, nameless, cost) == 0.5
+    assert posterior._unknown(named, named, cost) == cost.form
+
+
 def lagging(generator, n=40):
     """A unit whose readings follow a course that it has twice, as it is and half a step behind: by
     half as much again would the second have to be larger."""

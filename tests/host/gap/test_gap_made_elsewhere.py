@@ -160,12 +160,24 @@ def test_a_file_in_other_steps_than_the_chips_leaves_codes_out_evenly(step):
     assert codes.uneven_nats(rests) == 0.0
 
 
-def test_between_two_rests_codes_are_read_less_often_without_being_left_out():
+@pytest.mark.parametrize("noise", [0.55, 0.8, 1.6, 3.0, 9.0, 20.0])
+def test_between_two_rests_codes_are_read_less_often_without_being_left_out(noise):
     generator = np.random.default_rng(10)
-    for apart in (2.0, 3.0, 4.0, 6.0):
-        rests = [np.rint(generator.normal(level, 20.0, 30000)).astype(int)
-                 for level in (0.0, 20.0 * apart)]
+    for apart in (2.0, 3.0, 3.8, 4.5, 6.0, 8.0):
+        rests = [np.rint(generator.normal(level, noise, 30000)).astype(int)
+                 for level in (0.0, noise * apart)]
         assert codes.uneven_nats(rests) == 0.0
+
+
+def test_steps_as_wide_as_the_noise_keep_their_name():
+    generator = np.random.default_rng(11)
+    still = at_rest(flicker(5, 12000))
+    still.capture.accel[:, 0] = 8 * np.rint(np.concatenate([
+        generator.normal(level, 4.8, 4000) for level in (40.0, 72.0, 104.0)]) / 8.0)
+    judged = samples_judged.judge([still])
+    assert [(f.effect, f.axes, f.value) for f in judged.findings] == [
+        ("quantisation", ["x"], {"x": 8})]
+    assert "amplitude" not in [place.domain for place in judged.nameless]
 
 
 def test_single_codes_that_are_left_out_are_no_gap():

@@ -143,6 +143,26 @@ def test_a_memory_of_the_sign_alone_is_hysteresis():
     assert not gap.unexplained and gap.causes[0].share > 0.9
 
 
+def test_a_memory_that_is_partly_forgotten_in_each_rest_is_hysteresis():
+    """Where a stranger may follow how the box lies now as well, it took up what is forgotten."""
+    number = itertools.count()
+
+    def added(t, g, generator):
+        session = blocks.session_of("", simulated_session.session(plan, next(number)))
+        more, before = np.zeros(len(g)), 0.0
+        for run in session.runs:
+            stretch = slice(run.first, run.end)
+            since = t[stretch] - t[run.first]
+            more[stretch] = np.tanh(1.3 * before) * (0.7 + 0.3 * np.exp(-since / 8.0))
+            before = g[stretch, 0].mean()
+        return 0.012 * more[:, None] * [1.0, 0.0, 0.0]
+    world = {"placement_scatter_deg": 0.05}
+    plan = recommended(world)
+    gap = accelerometer(added, world=world)
+    assert [cause.letters for cause in gap.causes] == [["x"]]
+    assert set(gap.causes[0].names) <= {"hysteresis", "creep"} and gap.causes[0].share > 0.9
+
+
 def test_friction_keeps_within_its_bounds_however_fast_the_box_is_turned():
     """Poses that follow each other from one sample to the next, as where the moves were left
     out."""

@@ -9,14 +9,14 @@ from ...capture.registers import LOW_BITS, RAIL, codes, spacing, steps, zeros_be
 STEPS_TRIED = 1 << LOW_BITS
 # Usual differences of two samples that codes to either side are away at most which say how often
 # one is read: 1.9 standard deviations. Of two rests as far apart as twice that the code halfway is
-# read a third as often as the commonest, and seldom RARE times.
-REACH = 2.0
+# read a third as often as the commonest. Of less noise whole numbers tell the size too badly.
+REACH, FEWEST_AROUND = 2.0, 8
 EXPECTED = 20.0  # readings of a code: chance leaves RARE of them once in a million
 # Of the usual number: no converter's steps differ so much that has none missing (differential
 # nonlinearity of more than 0.9 of a step, which IEEE Std 1241 calls a missing code).
 RARE = 0.1
-# Share of the samples that are too many or missing at such codes: a tenth are in a recording of a
-# sensor that is sold calibrated, whose converter or arithmetic leaves single codes out.
+# Share of the samples that are missing at such codes: a tenth are in a recording of a sensor that
+# is sold calibrated, whose converter or arithmetic leaves single codes out.
 MANY = 0.15
 # Times as often as any other code, and as a hundredth of all samples: in noise of one count a rest
 # reads its commonest code in four of ten samples, and the next one in a quarter.
@@ -77,17 +77,18 @@ def _flat_nats(column):
 def uneven_nats(columns, held=1):
     """Log likelihood ratio (nats) of codes at rest that are read RARE times as often as noise of
     one peak lets them, or less, Poisson: as the rarer of the commonest codes within its reach on
-    either side. Nothing is said where not MANY readings are missing, of codes up to `held`, which
-    a dead band may hold at 0, nor where all that are ever read lie equally far apart, to a count,
-    as in a file that counts in other steps than the chip. columns: list of (n,) whole numbers, one
-    a rest."""
+    either side. Nothing is said where the noise is narrow or not MANY readings are missing, of
+    codes up to `held` to either side of 0, which a dead band may hold, nor where all that are ever
+    read lie equally far apart, to a count, as in a file that counts in other steps than the chip.
+    columns: list of (n,) whole numbers, one a rest."""
     columns = [c.astype(np.int64) for c in columns if len(c) > 1]
     if not columns:
         return 0.0
-    reach = int(REACH * np.median(np.abs(np.concatenate([np.diff(c) for c in columns]))))
+    noise = np.median(np.abs(np.concatenate([np.diff(c) for c in columns])))
+    reach = int(REACH * noise)
     every = np.concatenate(columns)
     every = every[np.abs(every) < RAIL - 1]
-    if not reach or not len(every):
+    if noise < FEWEST_AROUND or not len(every):
         return 0.0
     times = np.bincount(every - every.min()).astype(float)
     before, after = (ndimage.maximum_filter1d(times, reach, mode="constant", origin=shift)

@@ -30,7 +30,7 @@ FINER = 8  # of their distance, that a line's is told to
 SEEN_AT = 48  # frequencies: between two of them a rest has a twentieth of a period more
 WIDTH = 41  # frequencies of the floor's running median: ten lobes of a line
 SMALLEST = 1e-300  # of a power: what a float holds
-BESIDE = 121  # and of the mean that a peak is held against: 30, of which the rests tell half
+BESIDE = 64  # on either side, of the mean that a peak is held against, but for its own lobe
 
 
 def strongest(session, sensor, axis, fastest_hz):
@@ -79,9 +79,11 @@ def _highest(t, x, rest, weight, slowest, fastest):
     for k in {int(height.argmax()) for height in by}:
         left = x - _wave(t, rest, hz[k]) @ _fitted(t, x, rest, weight, hz[k])
         _, floor = _spectrum(t, _for_itself(t, weight ** 2 * left, rest), slowest, fastest)
-        beside = ndimage.uniform_filter(floor, min(BESIDE, len(hz)), mode="reflect")
-        looked.append((float(power[k] / max(beside[k], SMALLEST)), float(hz[k])))
-    return (*max(looked), len(by) * len(hz), min(BESIDE, len(hz)))
+        beside = np.concatenate([floor[max(k - BESIDE, 0):max(k - OVER, 0)],
+                                 floor[k + OVER + 1:k + BESIDE + 1]])
+        looked.append((float(power[k] / max(beside.mean(), SMALLEST)), float(hz[k]), len(beside)))
+    ratio, near, beside = max(looked)
+    return ratio, near, len(by) * len(hz), beside
 
 
 def without(session, sensor, axis, hz, fastest_hz):
