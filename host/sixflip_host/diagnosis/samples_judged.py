@@ -110,7 +110,7 @@ def judge(sessions, settings=ALONE, damages=()):
         for sensor, axis, _, _ in bits]
     nameless += [localisation.Place(sensor, axis, "amplitude", 1.0, odds.chance(nats))
                  for sensor, axis, nats in uneven]
-    remarks += ["the %s axis of the %s reads some codes hardly ever, and those around them often"
+    remarks += ["the %s axis of the %s reads some codes hardly ever and others too often"
                 % (axis, SENSOR[sensor]) for sensor, axis, _ in uneven]
     tones = [(sensor, *tone) for sensor in SENSOR for tone in wandering_tone.axes(
         sessions, sensor, [a for f in findings if f.effect == "vibration" and f.sensor == sensor
@@ -128,8 +128,8 @@ def judge(sessions, settings=ALONE, damages=()):
 
 
 def _uneven(sessions, findings, stuck):
-    """[(sensor, axis letter, nats)] that read some codes at rest, counted in the steps that were
-    found, far less often than those around them; stuck: sensors with a bit that is, which leaves
+    """[(sensor, axis letter, nats)] whose codes at rest, counted in the steps that were found, are
+    by far not as frequent as those around them; stuck: sensors with a bit that is, which leaves
     codes out."""
     uneven = []
     sizes = {(f.effect, f.sensor, axis): f.value[axis] for f in findings

@@ -7,16 +7,18 @@ from scipy import ndimage, special
 from ...capture.registers import LOW_BITS, RAIL, codes, spacing, steps, zeros_beyond_noise
 
 STEPS_TRIED = 1 << LOW_BITS
-# Usual differences of two samples that codes to either side are away at most which say how often
-# one is read: 1.9 standard deviations. Of two rests as far apart as twice that the code halfway is
-# read a third as often as the commonest. Of less noise whole numbers tell the size too badly.
-REACH, FEWEST_AROUND = 2.0, 8
+# Codes to either side that say how often one is read: as many as the usual difference of two
+# samples, whose median is a tenth below the peak of normal noise, at most as many as wide steps.
+FEWEST_AROUND, MOST_AROUND = 5, 16
+# Where most codes are left out, so many usual differences: 1.9 standard deviations. Of two rests
+# as far apart as twice that the code halfway is read a third as often as the commonest.
+REACH = 2.0
 EXPECTED = 20.0  # readings of a code: chance leaves RARE of them once in a million
 # Of the usual number: no converter's steps differ so much that has none missing (differential
 # nonlinearity of more than 0.9 of a step, which IEEE Std 1241 calls a missing code).
-RARE = 0.1
-# Share of the samples that are missing at such codes: a tenth are in a recording of a sensor that
-# is sold calibrated, whose converter or arithmetic leaves single codes out.
+RARE, FREQUENT = 0.1, 4.0
+# Share of the samples that are too many or missing at such codes: a tenth are in a recording of a
+# sensor that is sold calibrated, whose converter or arithmetic leaves single codes out.
 MANY = 0.15
 # Times as often as any other code, and as a hundredth of all samples: in noise of one count a rest
 # reads its commonest code in four of ten samples, and the next one in a quarter.
@@ -75,32 +77,40 @@ def _flat_nats(column):
 
 
 def uneven_nats(columns, held=1):
-    """Log likelihood ratio (nats) of codes at rest that are read RARE times as often as noise of
-    one peak lets them, or less, Poisson: as the rarer of the commonest codes within its reach on
-    either side. Nothing is said where the noise is narrow or not MANY readings are missing, of
-    codes up to `held` to either side of 0, which a dead band may hold, nor where all that are ever
-    read lie equally far apart, to a count, as in a file that counts in other steps than the chip.
-    columns: list of (n,) whole numbers, one a rest."""
+    """Log likelihood ratio (nats) of codes at rest that are read RARE times as often as those
+    around them or less, or FREQUENT times and more, Poisson, where MANY are. Around codes of which
+    most are left out it is the rarer of the commonest within their reach on either side that
+    says how often noise of one peak would have them read. Nothing is said where the noise is
+    narrow, of codes up to `held` to either side of 0, which a dead band may hold, nor where all
+    that are ever read lie equally far apart, to a count, as in a file that counts in other steps
+    than the chip. columns: list of (n,) whole numbers, one a rest."""
     columns = [c.astype(np.int64) for c in columns if len(c) > 1]
     if not columns:
         return 0.0
     noise = np.median(np.abs(np.concatenate([np.diff(c) for c in columns])))
-    reach = int(REACH * noise)
     every = np.concatenate(columns)
     every = every[np.abs(every) < RAIL - 1]
     if noise < FEWEST_AROUND or not len(every):
         return 0.0
     times = np.bincount(every - every.min()).astype(float)
-    before, after = (ndimage.maximum_filter1d(times, reach, mode="constant", origin=shift)
-                     for shift in ((reach - 1) // 2, -(reach // 2)))
-    usual = np.minimum(np.append(0.0, before[:-1]), np.append(after[1:], 0.0))
-    asked, seldom = usual >= EXPECTED, times <= RARE * usual
-    odd = asked & seldom & (np.abs(np.arange(len(times)) + every.min()) > held)
-    if (usual - times)[odd].sum() < MANY * len(every) or not times[odd].any() and _even(
-            np.flatnonzero(asked & ~seldom), reach):
+    middle = ndimage.median_filter(times, 2 * min(int(noise), MOST_AROUND) + 1, mode="constant")
+    usual = np.where(middle > 0.0, middle, _commonest(times, int(REACH * noise)))
+    asked = (usual >= EXPECTED) & (np.abs(np.arange(len(times)) + every.min()) > held)
+    seldom = times <= RARE * usual
+    odd = asked & (seldom | (middle > 0.0) & (times >= FREQUENT * usual))
+    if np.abs(times - usual)[odd].sum() < MANY * len(every) or not times[odd].any() and _even(
+            np.flatnonzero((usual >= EXPECTED) & ~seldom), int(REACH * noise)):
         return 0.0
     nats = special.xlogy(times, times / np.maximum(usual, 1.0)) - (times - usual)
     return float(nats[odd].sum()) - math.log(len(times))
+
+
+def _commonest(times, reach):
+    """(n,) the rarer of how often the commonest code is read of `reach` before each, and of those
+    after it."""
+    before, after = (ndimage.maximum_filter1d(times, reach, mode="constant", origin=shift)
+                     for shift in ((reach - 1) // 2, -(reach // 2)))
+    return np.minimum(np.append(0.0, before[:-1]), np.append(after[1:], 0.0))
 
 
 def _even(places, reach):
