@@ -154,10 +154,10 @@ def _uneven(sessions, findings, stuck):
 def _full_grids(finding, uneven):
     """The Finding without axes whose codes are `uneven`: steps that are not all there are none,
     and codes that are missing near 0 as elsewhere are no dead band. None where none is left."""
-    axes = [axis for axis in finding.axes if finding.effect not in ("quantisation", "dead_band")
-            or (finding.sensor, axis) not in {(sensor, a) for sensor, a, _ in uneven}]
-    if axes == list(finding.axes):
+    odd = {axis for sensor, axis, _ in uneven if sensor == finding.sensor}
+    if finding.effect not in ("quantisation", "dead_band") or not odd.intersection(finding.axes):
         return finding
+    axes = [axis for axis in finding.axes if axis not in odd]
     return replace(finding, axes=axes, value={a: finding.value[a] for a in axes}, place=None,
                    interval={a: finding.interval[a] for a in axes},
                    score=finding.score * len(axes) / len(finding.axes)) if axes else None

@@ -9,6 +9,7 @@ from ...capture.registers import LOW_BITS, RAIL, codes, spacing, steps, zeros_be
 STEPS_TRIED = 1 << LOW_BITS
 # Codes to either side that say how often one is read: as many as the usual difference of two
 # samples, whose median is a tenth below the peak of normal noise, at most as many as wide steps.
+# Of a smaller difference whole numbers tell by a tenth and worse how wide the noise is.
 FEWEST_AROUND, MOST_AROUND = 5, 16
 # Where most codes are left out, so many usual differences: 1.9 standard deviations. Of two rests
 # as far apart as twice that the code halfway is read a third as often as the commonest.

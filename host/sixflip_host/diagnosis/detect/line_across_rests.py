@@ -44,7 +44,7 @@ def strongest(session, sensor, axis, fastest_hz):
     ratio, near, looked_at, beside = _highest(t, x, rest, weight, slowest, fastest_hz)
     if not looked_at:
         return None
-    beside *= sum(lengths) / span / OVER
+    beside *= sum(lengths) / span / OVER  # of which so many tell anything of their own
     # Of a power over the mean of so many others, all exponential: Fisher's F of 2 and twice them.
     nats = beside * math.log1p(ratio / beside) - math.log(3.0 * looked_at)
     hz, size = _nearest(t, x, rest, weight, near)

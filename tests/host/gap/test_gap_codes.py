@@ -1,0 +1,70 @@
+"""Codes at rest that are read far more or less often than those around them, and what is not."""
+import numpy as np
+import pytest
+
+from sixflip_host.diagnosis import samples_judged
+from sixflip_host.diagnosis.detect import codes
+from tests.worlds.still_session import at_rest, flicker
+
+
+def noisy(number, generator, sd=60.0):
+    return np.rint(generator.normal(900.0, sd, number)).astype(np.int64)
+
+
+def test_codes_that_are_left_out_are_told_by_those_around():
+    x = noisy(40000, np.random.default_rng(6))
+    assert codes.uneven_nats([x]) == 0.0
+    within = x % 32
+    left_out = np.where((within >= 9) & (within <= 15), x - within + 16, x)
+    assert codes.uneven_nats([left_out]) > 1000.0
+    changes = np.concatenate([x[:16000], 24 * np.rint(x[16000:] / 24.0).astype(np.int64)])
+    assert codes.uneven_nats([changes]) > 1000.0
+
+
+def test_steps_as_wide_as_the_noise_that_differ_are_told():
+    """They are multiples of five counts, some of them beside 0: no step of five, no dead band."""
+    generator = np.random.default_rng(8)
+    edges = np.cumsum(generator.choice([10, 25, 35, 60, 110], 4000))
+    edges -= edges[2000]
+    rests = [edges[np.searchsorted(edges, np.rint(generator.normal(level, 65.0, 600)))]
+             for level in generator.uniform(-300.0, 300.0, 20)]
+    assert codes.uneven_nats([rest // 5 for rest in rests]) > 1000.0
+    still = at_rest(flicker(5, 12000))
+    still.capture.accel[:, 0] = np.concatenate(rests)
+    judged = samples_judged.judge([still])
+    assert judged.findings == ()
+    assert ("accel", "x", "amplitude") in [(p.sensor, p.axis, p.domain) for p in judged.nameless]
+
+
+@pytest.mark.parametrize("step", [1.3, 2.3, 7.6])
+def test_a_file_in_other_steps_than_the_chips_leaves_codes_out_evenly(step):
+    generator = np.random.default_rng(9)
+    rests = [np.rint(np.rint(generator.normal(level, 30.0, 6000)) * step).astype(int)
+             for level in (-40.0, 0.0, 55.0)]
+    assert codes.uneven_nats(rests) == 0.0
+
+
+@pytest.mark.parametrize("noise", [0.55, 0.8, 1.6, 3.0, 9.0, 20.0])
+def test_between_two_rests_codes_are_read_less_often_without_being_left_out(noise):
+    generator = np.random.default_rng(10)
+    for apart in (2.0, 3.0, 3.8, 4.5, 6.0, 8.0):
+        rests = [np.rint(generator.normal(level, noise, 30000)).astype(int)
+                 for level in (0.0, noise * apart)]
+        assert codes.uneven_nats(rests) == 0.0
+
+
+def test_steps_as_wide_as_the_noise_keep_their_name():
+    generator = np.random.default_rng(11)
+    still = at_rest(flicker(5, 12000))
+    still.capture.accel[:, 0] = 8 * np.rint(np.concatenate([
+        generator.normal(level, 4.8, 4000) for level in (40.0, 72.0, 104.0)]) / 8.0)
+    judged = samples_judged.judge([still])
+    assert [(f.effect, f.axes, f.value) for f in judged.findings] == [
+        ("quantisation", ["x"], {"x": 8})]
+    assert "amplitude" not in [place.domain for place in judged.nameless]
+
+
+def test_single_codes_that_are_left_out_are_no_gap():
+    """A recording of a sensor sold calibrated has them: a tenth of its samples are elsewhere."""
+    x = noisy(40000, np.random.default_rng(7))
+    assert codes.uneven_nats([np.where(x % 16 == 3, x + 1, x)]) == 0.0
