@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from sixflip.poses import faces
-from sixflip_host.experiment.session import FRICTION
+from sixflip_host.experiment.way_memory import FRICTION, TURNED_S
 from sixflip_host.fleet import analysis, parameters, summary, summary_file
 from sixflip_host.planning import protocols
 
@@ -81,6 +81,7 @@ def summary_of(part, plan, rng, name, number=0, board=None):
         "starts": starts, "thermometer": np.concatenate([clock[:1], celsius(clock)]),
         "friction": np.repeat(np.tanh(rng.normal(0.0, 0.1, (len(t), 1, 3))),
                               len(FRICTION), axis=1),
+        "turned": rng.normal(0.0, 1.0, (len(t), len(TURNED_S), 3)),
         "block_placement": place, "block_code": codes[place],
         "block_first": cut.astype(np.int64),
         "block_end": (cut + width[place] * RATE).astype(np.int64),

@@ -72,6 +72,8 @@ def measure(t_us, recorder=(), lost=()):
     known = np.union1d(np.asarray(recorder, int), np.asarray(lost, int))
     period, width = stamp_envelope.first_guess(t_us, known)
     resolution = stamp_envelope.resolution(t_us)
+    if width == 1 and resolution <= stamp_envelope.COARSE * period:
+        t_us = stamp_envelope.renewed(t_us, period)
     least = None
     for _ in range(ROUNDS):
         gaps = stamp_envelope.Gaps(t_us, period, width, resolution, known, least)

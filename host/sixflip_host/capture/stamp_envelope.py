@@ -1,8 +1,9 @@
 """The even clock under the stamps of a recording: a first guess of its period, and where its
 lower envelope is lifted.
 
-A stamp cannot be earlier than its sample, so the even clock is the lower envelope of the stamps:
-what rises above it and comes back is late, what lifts it for good is a gap.
+A stamp cannot be earlier than its sample, unless it is that of a row before, which the recorder
+did not renew. So the even clock is the lower envelope of the others: what rises above it and comes
+back is late, what lifts it for good is a gap.
 """
 
 import math
@@ -12,6 +13,7 @@ import numpy as np
 ON_GRID, MOSTLY = 0.25, 0.9     # intervals within a quarter of whole periods, and how many are
 SPANS = tuple(2 ** k for k in range(1, 12))     # rows that a burst may have
 PACE_ROWS = 8           # a span that tells the pace
+FORGOTTEN = 8           # rows in a row whose stamps are not renewed, at most
 REACH = 64              # rows in which a recorder that was late catches up
 EVEN = 0.1              # scatter of spans, of their length, that are beyond the bursts
 PART = 0.7              # of a period: less is no sample
@@ -56,6 +58,26 @@ def _pace(gaps, usual):
     middle = float(np.median(spans))
     near = np.abs(spans - middle) <= (0.05 if rows > 1 else 0.5) * middle
     return float(spans[near].mean())
+
+
+def renewed(t_us, period):
+    """(n,) t_us with stamps that are one of a row before, as where a recorder did not renew it,
+    where their rows were: those of FORGOTTEN rows at most between others that came on time. (Of
+    rows that were handed over together the first comes late, and the next at once.) Where that is
+    not the exception the stamps tell something else, and stay."""
+    beyond = (t_us - t_us[0]) - np.arange(len(t_us)) * period
+    raised, steps = beyond.copy(), np.diff(beyond)
+    near = ON_GRID * period
+    on_time = np.append(False, np.abs(steps) < near)  # as much as the row before it
+    for first in (np.flatnonzero(steps < -PART * period) + 1).tolist():
+        if on_time[first - 1]:
+            back = np.flatnonzero(np.abs(
+                beyond[first + 1:first + FORGOTTEN + 1] - raised[first - 1]) < near)
+            if len(back):
+                end = first + 1 + int(back[0])
+                raised[first:end], on_time[first:end + 1] = raised[first - 1], True
+    rare = (raised != beyond).mean() < 1.0 - MOSTLY
+    return t_us + (raised - beyond) if rare else t_us
 
 
 def resolution(t_us):

@@ -3,6 +3,7 @@
 Each has forms (a lag, a time constant, one axis or all) of which the best speaks for it.
 """
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -24,11 +25,12 @@ FREE = {"drift": ("flicker", "time"), "session": ("switch_on", "session")}
 @dataclass(frozen=True, eq=False)
 class Form:
     """One way in which a hypothesis can be: shared Columns; choices, a tuple of Columns of which
-    each session takes one for its own (index: all columns that are in them); free, names of
-    levels that may be anything. effect, variant, axis, keys, axes, powers, record, shape, columns
-    and prior are those of the design behind it; discrepancy: columns of the strangers of its own
-    variable are beside those, with the power BESIDE; of_fleet: the prior is a population's;
-    instead: the effect in whose place alone it is tried."""
+    each session takes one for its own (index: all columns that are in them; one of no column where
+    a session may have nothing of it); free, names of levels that may be anything. effect, variant,
+    axis, keys, axes, powers, record, shape, columns and prior are those of the design behind it;
+    discrepancy: columns of the strangers of its own variable are beside those, with the power
+    BESIDE; of_fleet: the prior is a population's; instead: the effect in whose place alone it is
+    tried; of_whole: the chances of the form that it is a part of, if it is one."""
 
     effect: str
     variant: str = ""
@@ -45,6 +47,7 @@ class Form:
     discrepancy: bool = False
     of_fleet: bool = False
     instead: str = ""
+    of_whole: tuple = ()
 
     @property
     def generic(self):
@@ -57,6 +60,17 @@ class Form:
     @property
     def prior(self):
         return self.shared.prior
+
+    @cached_property
+    def chances(self):
+        """(choices,) nats: the logarithm of the prior of each choice. Those of columns are alike;
+        that a session has nothing of what may be in one only is as likely as that it has."""
+        if self.of_whole:
+            return np.array(self.of_whole)
+        absent = np.array([not len(choice) for choice in self.choices])
+        if not absent.any():
+            return np.full(len(absent), -np.log(len(absent)))
+        return np.log(np.where(absent, 0.5, 0.5 / max((~absent).sum(), 1)))
 
     @property
     def identity(self):
@@ -143,7 +157,7 @@ def _course(design, columns, variant):
     size, axes = strangers.roughness(variant)[term], np.array(design.axes)
     choices = tuple(Columns(columns[mine], width * size[mine] * design.prior[mine])
                     for mine in [axes >= 0, *(axes == axis for axis in range(3))]
-                    for width in WALKS)
+                    for width in WALKS) + (NONE,)
     return Form(design.effect, variant, None, design.keys, design.axes, NONE, choices,
                 index=tuple(columns.tolist()),
                 instead="" if variant == strangers.ASKED_OF_ALL else "drift")
@@ -164,8 +178,9 @@ def on_axes(form, axes):
     if form.choices:
         axis_of = dict(zip(form.index, form.axes))
         choices = tuple(Columns(choice.index[mine], choice.prior[mine]) for choice in form.choices
-                        for mine in [np.array([axis_of[i] in axes for i in choice.index])])
-        return Form(form.effect, form.variant, name, choices=choices)
+                        for mine in [np.array([axis_of[i] in axes for i in choice.index], bool)])
+        return Form(form.effect, form.variant, name, choices=choices,
+                    of_whole=tuple(form.chances.tolist()))
     keep = [i for i, axis in enumerate(form.axes) if axis in axes]
     if not keep:
         return None
@@ -185,5 +200,7 @@ def _private(design, columns, apart):
                     for choice in map(np.array, design.choices)
                     for part in (PARTS[:1] if apart else parts)
                     for mine in [choice[np.isin(axes[choice], part)]] for width in widths)
+    if design.generic:
+        choices += (NONE,)
     return Form(design.effect, design.variant, None, design.keys, design.axes, NONE, choices,
                 index=tuple(columns.tolist()))

@@ -73,8 +73,7 @@ def search_sets(model, forms, cost, most=MOST):
             break
         beam = grown
         reached += grown
-    likely = max((_pruned(model, candidate, cost) for candidate in reached), key=worth)
-    return _judged(model, forms, likely, cost)
+    return _judged(model, forms, _pruned(model, max(reached, key=worth), cost), cost)
 
 
 def judge_likeliest(model, forms, cost, likeliest):
@@ -197,7 +196,8 @@ def _rivals(model, forms, fewer, form, cost):
     come near to the best one. Names compete with their discrepancy there, as they do in the set,
     but not those of time for a stranger's place, of which everything is a function. A stranger
     competes with every name of its variable: with a discrepancy that is near which was not
-    without."""
+    without. Noise, which takes up something of everything, is in its place where the stranger adds
+    nothing to that."""
     rivals, seen = [], set()
     free = _free(forms, fewer, form.effect)
     near = model.best(fewer, free)
@@ -205,12 +205,20 @@ def _rivals(model, forms, fewer, form, cost):
     near += [(name, model.extended(fewer, name)) for name in discrepancy.names_of(free, form)
              if (name.effect, name.axis) not in tried]
     for rival, exchanged in near:
+        if rival.effect == "drift" and form.generic and form.instead != "drift" and _adds(
+                model, exchanged, form, cost):
+            continue
         if (rival.effect, rival.axis) not in seen and not (
                 form.generic and hypotheses.domain(rival.effect) == "time"):
             seen.add((rival.effect, rival.axis))
             exchanged = _wider(model, forms, exchanged, cost, rival)
         rivals.append((rival, exchanged))
     return rivals
+
+
+def _adds(model, scored, form, cost):
+    """Whether a form makes a set likelier."""
+    return _worth(model.extended(scored, form), cost) > _worth(scored, cost)
 
 
 def _with_discrepancy(model, forms, scored, cost):

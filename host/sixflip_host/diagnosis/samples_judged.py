@@ -1,7 +1,7 @@
 """The first stage: what registers, clock and spectra say of the samples themselves, with a name
 and without."""
 import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -10,7 +10,7 @@ from sixflip import RAIL
 
 from .. import side_by_side
 from ..capture import registers
-from . import localisation, odds
+from . import localisation, odd_samples, odds
 from .detect import (
     axis_order,
     codes,
@@ -18,6 +18,7 @@ from .detect import (
     held_values,
     line_across_rests,
     noise_bursts,
+    noise_shape,
     ringing,
     sample_clock,
     saturation,
@@ -76,22 +77,24 @@ def judge(sessions, settings=ALONE, damages=()):
     findings = [f for f in sum(found, []) + lines if f.effect not in without]
     if any(d.kind == held_values.NOT_READ for d in damages):
         findings = [f for f in findings if f.effect != "dropped_samples"]
-    uneven = _uneven(sessions, findings, {sensor for sensor, *_ in whole[2]})
-    findings = [f for f in (_full_grids(f, uneven) for f in findings) if f]
+    findings, uneven = odd_samples.uneven(sessions, findings, {sensor for sensor, *_ in whole[2]})
     coarse = {(f.sensor, axis) for f in findings if f.effect in COARSE for axis in f.axes}
     stuck = stuck_axes.stuck_for_a_while(sessions, coarse)
     held, scales, bits = whole
     damages = [*damages, *held, *stuck, *scales]
     leaping = {sensor for sensor, *_ in [*bits, *uneven]} | {
         f.sensor for f in findings if f.effect == "dead_band"}
-    noisy = leaping | {f.sensor for f in findings if f.effect in NOISY}
     jumpy = {sensor for sensor, *_ in uneven} | {
         f.sensor for f in findings if f.effect in ("torn_reads", "dead_band")}
     sessions = [_without_bands(s, findings) for s in sessions]
     without_spikes, wild = spikes.without_spikes(sessions, leaping)
+    findings, shaped = odd_samples.not_normal(without_spikes, findings, leaping)
+    noisy = leaping | {f.sensor for f in findings if f.effect in NOISY}
     unsteady = [burst for burst in [*noise_bursts.unsteady(without_spikes), *wild]
                 if burst[0] not in noisy]
     unsteady += torn_reads.jumps(sessions, jumpy)
+    unsteady += [(sensor, noise_shape.words(sensor, axis, *measures), odds.chance(nats))
+                 for sensor, axis, nats, *measures in shaped]
     remarks = [damage.words for damage in damages]
     remarks += ["bit %d of the %s axis of the %s always reads %d"
                % (bit, axis, SENSOR[sensor], value) for sensor, axis, bit, value in bits]
@@ -125,42 +128,6 @@ def judge(sessions, settings=ALONE, damages=()):
     return SamplesJudged(sessions, tuple(findings), tuple(damages), tuple(nameless),
                          (*remarks, *(words for _, words, _ in unsteady),
                           *noise_bursts.in_common(without_spikes, noisy)))
-
-
-def _uneven(sessions, findings, stuck):
-    """[(sensor, axis letter, nats)] whose codes at rest, counted in the steps that were found, are
-    by far not as frequent as those around them; stuck: sensors with a bit that is, which leaves
-    codes out."""
-    uneven = []
-    sizes = {(f.effect, f.sensor, axis): f.value[axis] for f in findings
-             if f.effect in ("quantisation", "dead_band") for axis in f.axes}
-    for sensor in (kind for kind in SENSOR if kind not in stuck):
-        read = [s for s in registers.of_counts(sessions, sensor)
-                if getattr(s.capture, sensor) is not None]
-        for k, axis in enumerate("xyz"):
-            step = sizes.get(("quantisation", sensor, axis), 1)
-            band = sizes.get(("dead_band", sensor, axis), 0)
-            rests = []
-            for session in read:
-                column = getattr(session.capture, sensor)[:, k].astype(np.int32)
-                about = codes.resting(column) if band else 0
-                rests += [(column[run.first:run.end] - about) // step for run in session.runs]
-            nats = codes.uneven_nats(rests, 1 + band // step)
-            if present(nats):
-                uneven.append((sensor, axis, nats))
-    return uneven
-
-
-def _full_grids(finding, uneven):
-    """The Finding without axes whose codes are `uneven`: steps that are not all there are none,
-    and codes that are missing near 0 as elsewhere are no dead band. None where none is left."""
-    odd = {axis for sensor, axis, _ in uneven if sensor == finding.sensor}
-    if finding.effect not in ("quantisation", "dead_band") or not odd.intersection(finding.axes):
-        return finding
-    axes = [axis for axis in finding.axes if axis not in odd]
-    return replace(finding, axes=axes, value={a: finding.value[a] for a in axes}, place=None,
-                   interval={a: finding.interval[a] for a in axes},
-                   score=finding.score * len(axes) / len(finding.axes)) if axes else None
 
 
 def _without_bands(session, findings):

@@ -17,7 +17,7 @@ LEAST_GAIN = 1e-6  # nats of a choice made again: rounding has less
 @dataclass(frozen=True)
 class Choice:
     """Which of a form's choices a unit takes: number, and what that is worth by itself, nats: what
-    the rests show within themselves less the logarithm of how many there are to choose from."""
+    the rests show within themselves, and its prior."""
 
     form: object
     number: int
@@ -219,9 +219,9 @@ class Model:
                 self._levels_tried(place, free), elimination).evidence
             for number, likelihood in zip(numbers, likelihoods.tolist()):
                 within = unit.within.get((form.effect, form.variant, number), 0.0)
-                tried.append((likelihood + within, number, within))
+                tried.append((likelihood + within + form.chances[number], number, within))
         _, number, within = max(tried)
-        return Choice(form, number, within - float(np.log(len(form.choices))))
+        return Choice(form, number, within + float(form.chances[number]))
 
 
 def _private(choices):

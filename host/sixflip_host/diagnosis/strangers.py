@@ -2,8 +2,8 @@
 
 Shared ones have the same coefficients in every session: what is smooth in temperature, what
 gravity adds in proportion to it, what is even and odd in orientation, follows the pose before or
-the time since the move, changes sign with the flip, repeats with the time since switching on,
-what is there while the sensor is shaken.
+the time since the move, forgets how far the gyro was turned, changes sign with the flip, repeats
+with the time since switching on, what is there while the sensor is shaken.
 Private ones have coefficients of each session's own: a jump at some time, something periodic, a
 course in time, or of a scale in time. The widths of their priors are tried over a decade: of a
 stranger no size is known.
@@ -15,6 +15,7 @@ from sixflip.poses import faces
 
 from ..experiment import flicker
 from ..experiment.terms import LAGS_S, RECTIFIED, Design, harmonics
+from ..experiment.way_memory import TURNED_S
 
 SCALE = {"accel": 5.0, "gyro": 0.05}  # mg, deg/s: as large as the library's effects are
 HATS = 6  # corners of what is smooth in time and repeats in every session
@@ -80,6 +81,9 @@ def shared(session, up, sensor, reference_c):
     history = [before[:, i] for i in range(3)] + [before[:, i] * before[:, j] for i in range(3)
                                                   for j in range(i)]
     designs.append(_smooth("history", history, n, scale))
+    if sensor == "gyro":
+        for tau, turned in zip(TURNED_S, session.turned.transpose(1, 2, 0)):
+            designs.append(_smooth("time_since_move", turned, n, scale, "turned, tau %g s" % tau))
     for tau in FADES_S:
         fade = np.exp(-session.since / tau)
         # of how it lay before, and of how it lies now, as on what gives way

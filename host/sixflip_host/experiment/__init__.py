@@ -1,6 +1,6 @@
 """A capture as an experiment: what plan, diagnose, refine and verify share.
 
-blocks, session (block_measures, thermometer)
+blocks, session (block_measures, thermometer, way_memory)
                           a capture cut into rests and moves; what is measured of each part
 attitude_fit              which way each placement lay
 turns, inertial_fit       how the gyro turned in a move, and what the accelerometer read in it

@@ -13,16 +13,8 @@ from sixflip.poses import faces
 
 from ..capture import clock
 from ..capture.capture_file import Capture
-from . import block_measures, noise_arrays, thermometer
+from . import block_measures, noise_arrays, thermometer, way_memory
 
-PLAY_G = (0.1, 0.2, 0.4)  # widths of a play operator: octaves below half of what a pose changes by
-SLIP_G = (0.5, 1.0)  # lengths of way over which what sticks begins to slip: half a move and one
-UNMOVED_G = 0.02  # that is no way yet: several times the noise of FRICTION_S of a chip at rest
-FRICTION = (*("play %g g" % width for width in PLAY_G),
-            *("slip %g g" % length for length in SLIP_G))
-# s, step at which hysteresis follows the way: a hand takes a second and more from pose to pose, so
-# the reading changes by about the narrowest width within it, at most.
-FRICTION_S = 0.1
 # Share of bad samples up to which a rest is kept: two of a protocol's rest of 500. What they add
 # to its mean is then at most that share of what is wrong with them.
 MOST_BAD = 0.005
@@ -180,28 +172,29 @@ class Session(ReadOnlyArrays):
 
     @cached_property
     def friction(self):
-        """(n, len(FRICTION), 3): how far what rubs lags behind the specific force of each axis,
-        over the whole way that the box was taken, -1 to 1: a play operator of each width of PLAY_G
-        [Krejci, Hysteresis, Convexity and Dissipation in Hyperbolic Equations (1996), chapter II],
-        and what slips the longer the way is, of each length of SLIP_G [Dahl, Aerospace Corp.
-        TOR-0158(3107-18)-1 (1968)]."""
-        step = max(1, int(FRICTION_S * self.rate))
-        counts = self.capture.accel[:len(self.capture.accel) // step * step]
-        f = counts.reshape(-1, step, 3).mean(axis=1) / self.capture.meta["accel_lsb_per_g"]
-        width, length = np.array(PLAY_G)[:, None], np.array(SLIP_G)[:, None]
-        state, held = np.repeat(f[:1], len(PLAY_G), axis=0), f[:1]
-        slack = np.zeros((len(SLIP_G), 3))
-        behind = np.empty((len(f), len(FRICTION), 3))
-        for k, now in enumerate(f):
-            state = np.minimum(np.maximum(state, now - width), now + width)
-            way = np.where(np.abs(now - held) > UNMOVED_G, now - held, 0.0)
-            held = held + way
-            full = -np.sign(way) * length  # where it has slipped for long
-            slack = full + (slack - full) * np.exp(-np.abs(way) / length)
-            behind[k] = np.concatenate([(state - now) / width, slack / length])
-        friction = behind[np.minimum((self.first + self.end) // 2 // step, len(f) - 1)]
-        friction.setflags(write=False)
-        return friction
+        """(n, len(FRICTION), 3): how far what rubs lags behind the specific force of each axis in
+        the middle of each block."""
+        f, step = way_memory.in_steps(self.capture.accel, self.rate)
+        return self._halfway(way_memory.friction(f / self.capture.meta["accel_lsb_per_g"]), step)
+
+    @cached_property
+    def turned(self):
+        """(n, len(way_memory.TURNED_S), 3): quarter turns about each axis that are not yet
+        forgotten in the middle of each block, as the gyro tells them."""
+        counts, step = way_memory.in_steps(self.capture.gyro, self.rate)
+        rate = counts / self.capture.meta["gyro_lsb_per_dps"]
+        if len(rate):
+            rate -= np.median(rate, axis=0)  # the box rests most of the time
+        ends = self.t_s[step - 1::step][:len(rate)]
+        return self._halfway(way_memory.turned(
+            rate * step / self.rate, np.diff(ends, prepend=ends[:1])), step)
+
+    def _halfway(self, values, step):
+        """(n, ...) of values (steps, ...), one a step of so many samples, in the middle of each
+        block; read-only."""
+        halfway = values[np.minimum((self.first + self.end) // 2 // step, len(values) - 1)]
+        halfway.setflags(write=False)
+        return halfway
 
     def moment(self, up, number=0):
         """moment.Moment of all blocks; up (placements, 3): unit vectors against gravity."""

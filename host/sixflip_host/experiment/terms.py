@@ -15,8 +15,8 @@ from sixflip_sim.effects.library import EFFECTS
 
 from . import block_measures
 from .projection import by_axis
-from .session import FRICTION, UNMOVED_G
 from .thermometer import MOVES_C, moved_c
+from .way_memory import FRICTION, UNMOVED_G
 
 LAGS_S = (0.0, 15.0, 30.0, 60.0, -30.0)  # GAP: a neighbouring thermometer, 10-60 s
 WARM_UP_S = (30.0, 60.0, 120.0, 240.0, 480.0)  # GAP: 60-300 s, and an octave to both sides

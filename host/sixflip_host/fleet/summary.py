@@ -48,14 +48,16 @@ class SummarisedCapture(Capture):
 @dataclass(frozen=True, eq=False)
 class SummarySession(Session):
     """A Session without samples. starts (placements,): s since the capture's begin at
-    which each began; friction (n, forms, 3): Session.friction."""
+    which each began; friction (n, forms, 3) and turned (n, times, 3):
+    Session's, the latter None where there is no gyro."""
 
     starts: np.ndarray = None
     friction: np.ndarray = None
+    turned: np.ndarray = None
 
     def part(self, placements):
         keep = np.isin(self.placement, list(placements))
-        return replace(super().part(placements), friction=self.friction[keep])
+        return replace(super().part(placements), **self._remembering(keep))
 
     def _of_runs(self, runs):
         places = [self.runs.index(run) for run in runs]
@@ -66,7 +68,11 @@ class SummarySession(Session):
         cut = {name: value if value is None else value[keep] for name, value in cut.items()}
         cut["placement"] = number[cut["placement"]]
         return replace(self, runs=tuple(runs), starts=self.starts[places],
-                       friction=self.friction[keep], **cut)
+                       **self._remembering(keep), **cut)
+
+    def _remembering(self, keep):
+        return {name: None if getattr(self, name) is None else getattr(self, name)[keep]
+                for name in ("friction", "turned")}
 
     def remembered(self, up, tau_s):
         return fading(self.starts, up, tau_s)[self.placement]
@@ -77,7 +83,8 @@ class Summary:
     """What is left of one capture.
 
     about     dict of JSON: meta, labelled, found_labelled, remarks, flips, samples, bounds
-    arrays    {name: array}: placement_*, move_*, halves, runs, thermometer, friction, block_*
+    arrays    {name: array}: placement_*, move_*, halves, runs, thermometer, friction, turned,
+              block_*
     """
 
     about: dict
@@ -127,7 +134,7 @@ class Summary:
         return SummarySession(
             self.about["name"], self.capture(), float(self.meta["rate_hz"]),
             np.array(self.about["bounds"]), False, self.about["found_labelled"], runs, smooth,
-            starts=a["starts"], friction=a["friction"], **values)
+            starts=a["starts"], friction=a["friction"], turned=a.get("turned"), **values)
 
 
 def summarise(name, capture):
@@ -193,6 +200,8 @@ def _blocks(session):
     arrays["runs"] = np.array([(*run,) for run in session.runs], np.int64).reshape(-1, 3)
     arrays["starts"] = np.array([session.t_s[run.first] for run in session.runs], float)
     arrays["friction"] = session.friction
+    if session.gyro is not None:
+        arrays["turned"] = session.turned
     if session.thermometer is not None:
         arrays["thermometer"] = np.concatenate([session.thermometer.t[:1], session.thermometer.c])
     return arrays

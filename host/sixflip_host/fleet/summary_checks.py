@@ -7,7 +7,7 @@ import numpy as np
 from sixflip.poses.faces import LEANING, MOST_LEANING
 
 from ..capture.capture_header import check_meta
-from ..experiment.session import FRICTION
+from ..experiment.way_memory import FRICTION, TURNED_S
 from ..value_kinds import (
     LARGEST,
     Either,
@@ -114,6 +114,8 @@ def _blocks(tables):
     _need(tables["starts"].shape == (len(runs),), "starts")
     _need(n <= MOST_BLOCKS and tables["friction"].shape == (n, len(FRICTION), 3),
           "friction")
+    _need(("turned" in tables) == ("block_gyro" in tables), "turned")
+    _need("turned" not in tables or tables["turned"].shape == (n, len(TURNED_S), 3), "turned")
     place = tables["block_placement"]
     _need(place.shape == (n,) and place.dtype.kind == "i" and (np.diff(place) >= 0).all()
           and (not n or 0 <= place[0] and place[-1] < len(runs)), "block_placement")

@@ -21,7 +21,7 @@ from ..diagnosis import cutoffs
 from ..errors import BadFile
 from . import summary, summary_checks
 
-FORMAT = 4
+FORMAT = 5
 SUFFIX = ".summary.npz"
 PIECE = 1 << 20
 ARRAYS = {  # columns of each table

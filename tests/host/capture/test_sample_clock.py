@@ -49,6 +49,39 @@ def test_pauses_are_no_losses():
     assert found.pause_s == pytest.approx(4.7037, abs=0.01)
 
 
+@pytest.mark.parametrize("rows", [1, 2, 5])
+def test_stamps_that_were_not_renewed_are_no_losses(rows):
+    """Rows that have the stamp of one before were each a loss, and the rate was off by as many."""
+    t, generator = EVEN.copy(), np.random.default_rng(2)
+    for first in generator.choice(np.arange(10, ROWS - 10, 10), 60, replace=False):
+        t[first:first + rows] = EVEN[first - 1]
+    found = measured(t)
+    near(found)
+    assert (found.losses, found.late, found.pauses) == (0, 0, 0)
+    queued = EVEN.copy()  # the one after such a stamp is that of the row that had none
+    queued[1000:1002] = EVEN[999:1001]
+    assert (measured(queued).losses, measured(queued).late) == (0, 0)
+
+
+@pytest.mark.parametrize("rows", [2, 4, 8])
+@pytest.mark.parametrize("first", [0, 1, 3])
+def test_rows_that_are_handed_over_together_are_late_wherever_a_recording_begins(rows, first):
+    t = (np.arange(first, first + ROWS) // rows + 1) * rows * PERIOD
+    t = t + np.random.default_rng(4).uniform(0.0, 500.0, ROWS // rows + 2)[
+        np.arange(first, first + ROWS) // rows]
+    found = measured(t)
+    assert found.late > 0.4 * ROWS and found.losses <= rows
+
+
+def test_a_loss_beside_stamps_that_were_not_renewed_is_one():
+    t = EVEN.copy()
+    t[2000:] += 3 * PERIOD
+    t[3000] = t[2999]
+    found = measured(t)
+    near(found)
+    assert (found.losses, found.loss_gaps) == (3, 1)
+
+
 def test_short_pauses_after_which_the_clock_begins_anew_are_no_losses():
     t, generator = EVEN.copy(), np.random.default_rng(1)
     for row in range(200, ROWS, 200):

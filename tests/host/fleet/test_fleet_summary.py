@@ -50,6 +50,7 @@ def test_a_part_and_fewer_poses_are_those_of_the_capture(captured):
         for name in OF_BLOCKS:
             assert np.array_equal(getattr(mine, name), getattr(kept, name)), name
         assert np.array_equal(mine.friction, kept.friction)
+        assert np.array_equal(mine.turned, kept.turned)
         up = np.eye(3)[np.zeros(len(mine.runs), int)]
         assert np.array_equal(mine.remembered(up, 60.0), kept.remembered(up, 60.0))
 

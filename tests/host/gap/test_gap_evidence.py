@@ -324,3 +324,32 @@ def test_a_size_is_as_uncertain_as_the_lag_that_nothing_tells():
                                  theta["x"] + odds.Z_90 * sigma["x"]))
     assert mixed[0] < sizes[""] and mixed[1] > sizes["lag 15 s"]
     assert own[1] - own[0] < 0.7 * (mixed[1] - mixed[0])
+
+
+class Scores:
+    """A model of which the score of each set is known."""
+
+    def __init__(self, scores):
+        self.scores = {frozenset(names.split()): score for names, score in scores.items()}
+
+    def scored(self, forms):
+        return scored_sets.Scored(tuple(forms), self.scores[frozenset(f.effect for f in forms)],
+                                  (), ())
+
+    def extended(self, base, form):
+        return self.scored((*base.forms, form))
+
+    def best(self, base, forms):
+        return sorted(((form, self.extended(base, form)) for form in forms),
+                      key=lambda pair: -pair[1].score)
+
+
+@pytest.mark.parametrize("beside, likeliest", [(5.0, "drift"), (21.0, "jump")])
+def test_noise_stands_for_a_stranger_only_where_that_adds_nothing(beside, likeliest):
+    """What wanders takes up most of a jump, too. Where the jump added 21 nats to it, it was the
+    drift alone that was said."""
+    model = Scores({"": 0.0, "drift": 57.0, "jump": 44.0, "drift jump": 57.0 + beside})
+    forms = [hypotheses.Form("drift"), hypotheses.Form("jump")]
+    found = posterior.search_sets(model, forms, cutoffs.Cutoffs(8.7, 0.15))
+    assert [form.effect for form in found.best.forms] == [likeliest]
+    assert found.alternatives(likeliest) == [likeliest]

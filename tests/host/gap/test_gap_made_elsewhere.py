@@ -38,6 +38,17 @@ def test_tails_of_noise_are_no_spikes():
     assert present(spikes.jump_nats(sizes))
 
 
+def test_samples_far_off_that_come_in_pairs_are_spikes():
+    """Of a buffer's two oldest rows: each had one beside it that did not agree, and what they did
+    to the means was the rectification of a vibration."""
+    still = at_rest(flicker(5, 12000))
+    for first in range(40, 12000, 128):
+        still.capture.accel[first:first + 2, 2] = -200
+    (right,), found = spikes.without_spikes([still])
+    assert [sensor for sensor, *_ in found] == ["accel"]
+    assert np.abs(right.accel[:, 2] - 1000.0).max() < 2.0  # mg
+
+
 @pytest.mark.parametrize("band", [0, 40, 400])
 def test_a_band_that_what_is_beyond_it_begins_at_0_of(band):
     """No code is missing, so it was no dead band but a cubic."""

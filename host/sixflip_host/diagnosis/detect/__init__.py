@@ -5,7 +5,8 @@ codes, torn_reads (sample_neighbours), saturation, dead_band, axis_order, sample
                                    registers and timing
 byte_faults (course_likelihood), held_values (stuck_axes), wrong_scale
                                    damage: bytes, rows that repeat, full scales
-spectral_lines (line_frequency, line_across_rests), noise_bursts, spikes, ringing,
-shake_detector                     lines of a spectrum, noise that changes or is shared, single
-                                   samples far off, what rings out after a move, hands and vehicles
+spectral_lines (line_frequency, line_across_rests), noise_bursts, noise_shape, spikes, ringing,
+shake_detector                     lines of a spectrum, noise that changes, is shared or is not
+                                   normal, single samples far off, what rings out after a move,
+                                   hands and vehicles
 """

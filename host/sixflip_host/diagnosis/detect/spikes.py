@@ -1,5 +1,6 @@
-"""Spikes: single samples at rest that are far off those before and after them, more often than the
-tails of noise have them. No effect of the library does that: it is said where, not what.
+"""Spikes: samples at rest, single or in pairs, that are far off those before and after them, more
+often than the tails of noise have them. No effect of the library does that: it is said where, not
+what.
 """
 import copy
 from dataclasses import dataclass
@@ -12,8 +13,9 @@ from .detection import present
 from .ringing import LIFTS_S
 from .torn_reads import student
 
-SPIKE = 4.5  # standard deviations of a single sample off its neighbours, which agree
-AGREE = 4.0  # standard deviations that the four neighbours may differ by
+SPIKE = 4.5  # standard deviations of a sample off its neighbours, which agree
+AGREE = 4.0  # standard deviations that the four neighbours, but one in a pair, may differ by
+PAIRED = 3  # of the four, where the one beside it may be wild as well
 LEAST_SPIKES = 10  # knocks on a table come singly
 # How heavy the tails of noise are, Student's t: rests of the recordings have 6 and more
 # (`python -m tests.studies.robustness.tails`). Jumps: so many times the noise wide.
@@ -26,7 +28,7 @@ PASSES = 6  # of three side by side the one between is seen when the others are 
 
 @dataclass(frozen=True, eq=False)
 class Spikes:
-    """Single samples far off the two before and the two after in a session's rests: wild (N, 3),
+    """Samples far off the two before and the two after in a session's rests: wild (N, 3),
     which they are; middle (N, 3) counts, what those beside them read; looked: samples looked at;
     sizes (n,): how far off all of those are whose neighbours agree, in standard deviations.
     Counts within a few steps of their neighbours never are wild."""
@@ -99,7 +101,7 @@ def without_spikes(sessions, leaping=()):
     for sensor, words in registers.SENSORS.items():
         if sensor in leaping or any(getattr(s.capture, sensor) is None for s in sessions):
             continue
-        each = [spikes(s, sensor, but_s=LIFTS_S) for s in sessions]
+        each = [spikes(s, sensor, PAIRED, LIFTS_S) for s in sessions]
         number, looked = sum(spiky.number for spiky in each), sum(spiky.looked for spiky in each)
         nats = jump_nats(np.concatenate([spiky.sizes for spiky in each]))
         if not number or not present(nats):
@@ -116,7 +118,7 @@ def without_spikes(sessions, leaping=()):
 def _put_right(session, sensor):
     """The session without spikes, those included that others stand beside."""
     for _ in range(PASSES):
-        spiky = spikes(session, sensor, 3)
+        spiky = spikes(session, sensor, PAIRED)
         if not spiky.number:
             break
         session = _without(session, sensor, spiky)

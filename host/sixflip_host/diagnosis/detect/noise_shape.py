@@ -1,0 +1,96 @@
+"""Noise at rest that is not normal: pulses that come again, a skew, far heavier tails than a
+sensor's noise has. No effect of the library does that: it is said where, not what.
+
+Of each piece of a rest, less a slow course: how large the mean square is beside what the middle
+half of the samples says, and their skewness. Both are those of the median piece, so that knocks on
+a table are nothing. The readings are spread over the step that they were rounded to.
+"""
+import math
+
+import numpy as np
+from numpy.polynomial import legendre
+from scipy import stats
+
+from ...capture import registers
+from .detection import present
+from .ringing import LIFTS_S, SETTLES_S
+
+PIECE_S, LEAST_S = 8.0, 2.0  # of a rest: a slow pulse is in each
+SAMPLES = 40  # of a piece, at least: of ten, normal noise has 1.14 times what its middle half says
+COURSE = 3  # degree of what is taken off a piece, which settles or fades
+# Of a step: narrower noise is mostly of one code, and of one of its neighbours. The error of
+# rounding is noise itself from there on [Widrow & Kollar, Quantization Noise (2008)].
+DITHERED = 0.5
+FEWEST = 8  # pieces
+QUARTILES = float(np.ptp(stats.norm.ppf([0.25, 0.75])))  # apart, of a standard deviation of 1
+# Variances over the normal one of the same middle half, and skewness, that noise may have: in the
+# recordings up to 1.17 and 0.10 (`python -m tests.studies.robustness.tails`), by Laplace's
+# distribution 1.9, by the exponential one 2.
+HEAVY, SKEW = 1.4, 0.5
+MORE = 2.0  # times what is known: what shakes an axis in turns is beyond its middle half, too
+TESTS = 24  # of 6 axes, both ways of a skew and of the size
+
+
+def shapes(session, sensor):
+    """((p, 3) mean squares over those that the middle half says, (p, 3) skewness, (p, 3) counts²
+    beyond what the middle half says) of the pieces of the rests of a sensor."""
+    counts, found = getattr(session.capture, sensor), []
+    spread = np.random.default_rng(20261127)
+    step = np.array([max(1, int(np.gcd.reduce(np.diff(registers.codes(column)))))
+                     for column in counts.T])
+    for run in session.runs:
+        first = run.first + int(SETTLES_S * session.rate)
+        rest = counts[first:max(first, run.end - int(LIFTS_S * session.rate))].astype(float)
+        if len(rest) < max(LEAST_S * session.rate, SAMPLES):
+            continue
+        number = max(1, round(len(rest) / max(PIECE_S * session.rate, SAMPLES)))
+        for x in np.array_split(rest, number):
+            x = _without_course(x)
+            narrow = (x ** 2).mean(axis=0) < (DITHERED ** 2 + 1.0 / 12.0) * step ** 2
+            x = _without_course(x + (spread.random(x.shape) - 0.5) * step)
+            square = (x ** 2).mean(axis=0)
+            middle = (np.subtract(*np.quantile(x, [0.75, 0.25], axis=0)) / QUARTILES) ** 2
+            shape = np.array([square / middle, (x ** 3).mean(axis=0) / square ** 1.5,
+                              square - middle])
+            found.append(np.where(narrow, [[1.0], [0.0], [0.0]], shape))
+    return np.array(found).reshape(-1, 3, 3).transpose(1, 0, 2)
+
+
+def odd(sessions, sensor, powers):
+    """[(axis letter, nats, times the variance, skewness)] of the axes of a sensor whose noise is
+    not normal, of all Sessions together. powers: {axis letter: counts²} of what an axis is known
+    to be shaken by, which has a shape of its own: only what is more than that is told then."""
+    if any(getattr(s.capture, sensor) is None for s in sessions):
+        return []
+    times, skew, beyond = np.concatenate([shapes(s, sensor) for s in sessions], axis=1)
+    found = []
+    for axis, letter in enumerate("xyz"):
+        known = MORE * powers.get(letter, 0.0)
+        if len(times) < FEWEST or known and np.median(beyond[:, axis]) < known:
+            continue
+        ratio = _nats(np.log(times[:, axis]), math.log(HEAVY))
+        leaning = max(_nats(sign * skew[:, axis], SKEW) for sign in (1.0, -1.0))
+        nats = max(ratio, leaning) - math.log(TESTS)
+        if present(nats):
+            found.append((letter, nats, float(np.median(times[:, axis])),
+                          float(np.median(skew[:, axis]))))
+    return found
+
+
+def words(sensor, axis, times, skew):
+    return ("the noise of the %s axis of the %s is not normal: its square is %.2g times what its "
+            "middle half says, its skewness is %.1f" % (axis, registers.SENSORS[sensor], times,
+                                                        skew))
+
+
+def _without_course(x):
+    """x (n, 3) less a polynomial of degree COURSE."""
+    course = legendre.legvander(np.linspace(-1.0, 1.0, len(x)), COURSE)
+    return x - course @ np.linalg.lstsq(course, x, rcond=None)[0]
+
+
+def _nats(values, most):
+    """Nats of the median of values (n,) being above `most`, as normal as their scatter is."""
+    middle = float(np.median(values))
+    scatter = math.sqrt(0.5 * math.pi * float(np.var(values, ddof=1)) / len(values))
+    return 0.5 * ((middle - most) / max(scatter, 1e-9)) ** 2 if middle > most else 0.0

@@ -1,0 +1,72 @@
+"""What remembers the way that a box was taken: what rubs, and what forgets a turn in its time.
+
+What rubs lags behind the specific force of its axis, in two ways that friction has: a play
+operator [Krejci, Hysteresis, Convexity and Dissipation in Hyperbolic Equations (1996), chapter
+II], and what slips the longer the way is [Dahl, Aerospace Corp. TOR-0158(3107-18)-1 (1968)]. Each
+value depends on the one before, for as many as a session has tenths of a second: plain numbers are
+faster here than arrays.
+"""
+import math
+
+import numpy as np
+
+PLAY_G = (0.1, 0.2, 0.4)  # widths of a play operator: octaves below half of what a pose changes by
+SLIP_G = (0.5, 1.0)  # lengths of way over which what sticks begins to slip: half a move and one
+UNMOVED_G = 0.02  # that is no way yet: several times the noise of STEP_S of a chip at rest
+FRICTION = (*("play %g g" % width for width in PLAY_G),
+            *("slip %g g" % length for length in SLIP_G))
+TURNED_S = (5.0, 20.0, 80.0)  # time constants in which a turn is forgotten
+# s, step at which a memory follows the way: a hand takes a second and more from pose to pose, so
+# the reading changes by about the narrowest width within it, at most.
+STEP_S = 0.1
+
+
+def in_steps(values, rate_hz):
+    """((n, 3) means of values (samples, 3) over each step, samples in a step)."""
+    step = max(1, int(STEP_S * rate_hz))
+    return values[:len(values) // step * step].reshape(-1, step, 3).mean(axis=1), step
+
+
+def friction(f):
+    """(n, len(FRICTION), 3) lags behind f (n, 3) g, -1 to 1."""
+    return np.array([[*(_play(axis, width) for width in PLAY_G),
+                      *(_slip(axis, length) for length in SLIP_G)]
+                     for axis in f.T.tolist()]).transpose(2, 1, 0)
+
+
+def turned(turn, seconds):
+    """(n, len(TURNED_S), 3) quarter turns about each axis that are not forgotten: turn (n, 3)
+    degrees in each step; seconds (n,) since the end of the step before it."""
+    return np.array([[_kept((axis / 90.0).tolist(), np.exp(-seconds / tau).tolist())
+                      for tau in TURNED_S] for axis in turn.T]).transpose(2, 1, 0)
+
+
+def _kept(added, fades):
+    """[what is left of all that was added, numbers, of which a share stays from each to the
+    next]."""
+    now, kept = 0.0, []
+    for more, fade in zip(added, fades):
+        now = now * fade + more
+        kept.append(now)
+    return kept
+
+
+def _play(f, width):
+    """[lag of the play operator of a width], f a list of numbers."""
+    state, lags = f[0] if f else 0.0, []
+    for now in f:
+        state = min(max(state, now - width), now + width)
+        lags.append((state - now) / width)
+    return lags
+
+
+def _slip(f, length):
+    """[lag of what slips after a length of way], f a list of numbers."""
+    held, slack, lags = f[0] if f else 0.0, 0.0, []
+    for now in f:
+        way = now - held
+        if abs(way) > UNMOVED_G:
+            held, full = now, -math.copysign(length, way)  # full: where it has slipped for long
+            slack = full + (slack - full) * math.exp(-abs(way) / length)
+        lags.append(slack / length)
+    return lags
