@@ -195,7 +195,8 @@ def test_what_was_looked_for_costs_what_was_looked_through(captures):
     designs = {d.effect: d for d in gap.units[0].designs if d.choices and d.generic}
     start = np.cumsum([0] + [len(d.keys) for d in gap.units[0].designs])
     first = {d.effect: begin for begin, d in zip(start, gap.units[0].designs)}
-    lengths = {"periodic": {6, 2}, "jump": {3, 1}}  # of a choice on all axes, and on one
+    # of a choice on all axes, on one, and of none
+    lengths = {"periodic": {6, 2, 0}, "jump": {3, 1, 0}}
     forms = [form for form in gap.options if form.effect in lengths]
     assert {form.effect for form in forms} == set(lengths)
     for form in forms:
@@ -203,7 +204,8 @@ def test_what_was_looked_for_costs_what_was_looked_through(captures):
         last = first[form.effect] + designs[form.effect].choices[fixed][0]
         cost = [gap.units[0].within.get((form.effect, "", k), 0.0)
                 for k in range(len(form.choices))]
-        assert [c < 0.0 for c in cost] == [choice.index[0] >= last for choice in form.choices]
+        assert [c < 0.0 for c in cost] == [
+            len(choice) > 0 and choice.index[0] >= last for choice in form.choices]
         assert {len(choice) for choice in form.choices} == lengths[form.effect]
 
 
