@@ -120,13 +120,19 @@ class Model:
         """Scored of a base with one more Form (both None: of no form), looked at with few levels
         of noise; what is private in the base stays as it is."""
         forms = () if base is None else (*base.forms, form)
-        shared, free, chosen = _distinct(forms), _free(forms), []
+        shared, free = _distinct(forms), _free(forms)
+        likeliest, there = [], []
         for place, unit in enumerate(self.units):
             choices = () if base is None else base.chosen[place]
+            added = ((), ())
             if form is not None and form.choices and not unit.between:
-                choices = (*choices, self._choice(place, shared, choices, form, free))
-            chosen.append(choices)
-        return self._fitted(forms, shared, free, tuple(chosen))
+                added = [(one,) for one in self._choice(place, shared, choices, form, free)]
+            likeliest.append((*choices, *added[0]))
+            there.append((*choices, *added[1]))
+        # A session by itself has no need of what the others say it has.
+        return max((self._fitted(forms, shared, free, chosen)
+                    for chosen in dict.fromkeys([tuple(likeliest), tuple(there)])),
+                   key=lambda scored: scored.score)
 
     def _fitted(self, forms, shared, free, chosen):
         """Scored of forms with these choices, looked at with few levels of noise."""
@@ -161,7 +167,7 @@ class Model:
         others = tuple(choice for choice in choices if choice.form != form)
         if len(others) == len(choices):
             return choices
-        best = self._choice(place, scored.shared, others, form, _free(scored.forms))
+        best, _ = self._choice(place, scored.shared, others, form, _free(scored.forms))
         return tuple(best if choice.form == form else choice for choice in choices)
 
     def _closer(self, rough):
@@ -205,7 +211,8 @@ class Model:
         return self._eliminations[key]
 
     def _choice(self, place, shared, beside, form, free):
-        """The likeliest Choice of a form in one unit, beside a tuple of Choice of the others."""
+        """(the likeliest Choice of a form in one unit, beside a tuple of Choice of the others; the
+        likeliest of those that are something)."""
         unit, tried = self.units[place], []
         elimination = self._elimination(place, _private(beside))
         for numbers in forms_at_once.by_size(form.choices).values():
@@ -220,8 +227,10 @@ class Model:
             for number, likelihood in zip(numbers, likelihoods.tolist()):
                 within = unit.within.get((form.effect, form.variant, number), 0.0)
                 tried.append((likelihood + within + form.chances[number], number, within))
-        _, number, within = max(tried)
-        return Choice(form, number, within + float(form.chances[number]))
+        return tuple(Choice(form, number, within + float(form.chances[number]))
+                     for _, number, within in (max(tried), max(
+                         (one for one in tried if len(form.choices[one[1]])),
+                         default=max(tried))))
 
 
 def _private(choices):
