@@ -49,6 +49,15 @@ def test_samples_far_off_that_come_in_pairs_are_spikes():
     assert np.abs(right.accel[:, 2] - 1000.0).max() < 2.0  # mg
 
 
+def test_touches_that_ring_are_no_spikes():
+    """Each rings for a tenth of a second, ten deviations high: one sample of each was a spike."""
+    still, t = at_rest(flicker(5, 12000)), np.arange(12) / 100.0
+    for first in range(900, 12000, 950):
+        still.capture.accel[first:first + 12, 2] += np.rint(
+            460.0 * np.exp(-t / 0.03) * np.sin(2.0 * np.pi * 17.0 * t)).astype(np.int16)
+    assert spikes.without_spikes([still])[1] == []
+
+
 @pytest.mark.parametrize("band", [0, 40, 400])
 def test_a_band_that_what_is_beyond_it_begins_at_0_of(band):
     """No code is missing, so it was no dead band but a cubic."""

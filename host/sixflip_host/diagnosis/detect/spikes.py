@@ -42,6 +42,12 @@ class Spikes:
     def number(self):
         return int(self.wild.any(axis=1).sum())
 
+    @property
+    def pairs(self):
+        """Number of those that another one follows at once."""
+        wild = self.wild.any(axis=1)
+        return int((wild[1:] & wild[:-1]).sum())
+
 
 def spikes(session, sensor, agreeing=4, but_s=0.0):
     """Spikes of one sensor of a session; agreeing: of the four samples beside one, those that have
@@ -94,14 +100,18 @@ def _deviation(off):
 def without_spikes(sessions, leaping=()):
     """(sessions, [(sensor, sentence, p)]): where single samples are far off more often than the
     tails of noise have them, they read as those beside them do. A hand that takes the box up
-    shakes it: what it does is no evidence. What is wild says nothing of where a rest lies, and as
-    much as all others of a mean; of a few that is not worth a sentence. leaping: sensors whose
-    counts leap anyhow."""
+    shakes it: what it does is no evidence. A touch rings, so of samples beside which one does not
+    agree it is pairs that count. What is wild says nothing of where a rest lies, and as much as
+    all others of a mean; of a few that is not worth a sentence. leaping: sensors whose counts leap
+    anyhow."""
     sentences = []
     for sensor, words in registers.SENSORS.items():
         if sensor in leaping or any(getattr(s.capture, sensor) is None for s in sessions):
             continue
-        each = [spikes(s, sensor, PAIRED, LIFTS_S) for s in sessions]
+        each = [spikes(s, sensor, but_s=LIFTS_S) for s in sessions]
+        paired = [spikes(s, sensor, PAIRED, LIFTS_S) for s in sessions]
+        if sum(spiky.pairs for spiky in paired) >= LEAST_SPIKES:
+            each = paired
         number, looked = sum(spiky.number for spiky in each), sum(spiky.looked for spiky in each)
         nats = jump_nats(np.concatenate([spiky.sizes for spiky in each]))
         if not number or not present(nats):
