@@ -24,7 +24,7 @@ DITHERED = 0.5
 FEWEST = 8  # pieces
 QUARTILES = float(np.ptp(stats.norm.ppf([0.25, 0.75])))  # apart, of a standard deviation of 1
 # Variances over the normal one of the same middle half, and skewness, that noise may have: in the
-# recordings up to 1.17 and 0.10 (`python -m tests.studies.robustness.tails`), by Laplace's
+# recordings up to 1.17 and 0.07 (`python -m tests.studies.robustness.tails`), by Laplace's
 # distribution 1.9, by the exponential one 2.
 HEAVY, SKEW = 1.4, 0.5
 MORE = 2.0  # times what is known: what shakes an axis in turns is beyond its middle half, too
@@ -47,7 +47,7 @@ def shapes(session, sensor):
         for x in np.array_split(rest, number):
             x = _without_course(x)
             narrow = (x ** 2).mean(axis=0) < (DITHERED ** 2 + 1.0 / 12.0) * step ** 2
-            x = _without_course(x + (spread.random(x.shape) - 0.5) * step)
+            x = x + (spread.random(x.shape) - 0.5) * step
             square = (x ** 2).mean(axis=0)
             middle = (np.subtract(*np.quantile(x, [0.75, 0.25], axis=0)) / QUARTILES) ** 2
             shape = np.array([square / middle, (x ** 3).mean(axis=0) / square ** 1.5,
@@ -78,6 +78,7 @@ def odd(sessions, sensor, powers):
 
 
 def words(sensor, axis, times, skew):
+    """A sentence on one of odd(), for people."""
     return ("the noise of the %s axis of the %s is not normal: its square is %.2g times what its "
             "middle half says, its skewness is %.1f" % (axis, registers.SENSORS[sensor], times,
                                                         skew))
