@@ -41,7 +41,7 @@ class Console:
             # Not a terminal: only what keeps a pose from being taken, once each.
             kind = str(event["reason"])
             if kind != self.shown and kind not in ("moving", "noisy"):
-                print("  " + line, file=self.stream, flush=True)
+                self.last("  " + line)
             self.shown = kind
 
     def echo(self, typed):
@@ -54,9 +54,9 @@ class Console:
         """The live line, cut to the width of the terminal: a wrapped one cannot be rewritten."""
         line = self.state + ("   > " + self.typed if self.typed else "")
         line = line[:max(20, shutil.get_terminal_size().columns - 1)]
-        self.stream.write("\r" + line.ljust(len(self.shown)))
+        width, self.shown = len(self.shown), line  # before it is: a Ctrl-C clears what it cut off
+        self.stream.write("\r" + line.ljust(width))
         self.stream.flush()
-        self.shown = line
 
     def say(self, line):
         """A lasting line of the host's own."""
@@ -70,7 +70,10 @@ class Console:
         if self.live and len(line) > columns:
             line = textwrap.fill(line, max(20, columns), subsequent_indent="  ",
                                  break_long_words=False, break_on_hyphens=False)
-        print(line, file=self.stream, flush=True)
+        # In one piece, unlike print: a Ctrl-C between text and newline would glue what is said of
+        # it to half a line.
+        self.stream.write(line + "\n")
+        self.stream.flush()
 
     def clear(self):
         if self.live and self.shown:

@@ -112,3 +112,31 @@ def test_console_makes_terminal_codes_visible():
     out = io.StringIO()
     console.Console(out).show({"event": "error", "what": "\x1b[2J", "expected": "peace"})
     assert "\x1b" not in out.getvalue()
+
+
+def test_ctrl_c_leaves_no_half_line():
+    """Wherever Ctrl-C comes between two writes, what is said of it begins a line of its own."""
+    class Screen(io.StringIO):
+        left = 0
+
+        def isatty(self):
+            return True
+
+        def write(self, text):
+            if self.left == 0:
+                raise KeyboardInterrupt
+            self.left -= 1
+            return super().write(text)
+
+    for writes in range(12):
+        screen = Screen()
+        screen.left = writes
+        shown = console.Console(screen)
+        with pytest.raises(KeyboardInterrupt):
+            while True:
+                shown.say("Z+b taken")
+                shown.show({"event": "state", "state": "moving", "reason": "", "missing": ["Z+a"]})
+        screen.left = -1
+        shown.clear()
+        said = screen.getvalue()
+        assert not said or said[-1] in "\r\n", (writes, said)
