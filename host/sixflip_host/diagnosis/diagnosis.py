@@ -115,7 +115,8 @@ class Diagnosis:
         """Probabilities that something without a name is there."""
         gaps = [*self.judged, *self.rest.values()]
         probabilities = [p for g in self.judged for p in verdict.of_gap(g)]
-        probabilities += [verdict.not_closed(g.shrinkage) for g in gaps]
+        probabilities += [verdict.not_closed(g.shrinkage and g.shrinkage.interval) for g in gaps]
+        probabilities += [verdict.not_closed(f.share_interval) for f in self.findings]
         probabilities += [p for gap in self.rest.values() for p in gap.nameless]
         probabilities += [1.0 - place.p for place in self.nameless]
         # A size that no part has is a name for something else.

@@ -46,11 +46,10 @@ def any_of(probabilities):
     return max(probabilities, default=0.0)
 
 
-def not_closed(shrinkage):
+def not_closed(interval):
     """Probability that a tenth of the gap and more stays where what was named is taken off: that
     of the upper end of the share's interval, where that lies below (GAP's targets: at least 0.90
-    of the explainable gap is closed)."""
-    interval = shrinkage.interval if shrinkage else None
+    of the explainable gap is closed). interval: (low, high) of the share, or None."""
     return UPPER_END if interval and interval[1] < CLOSED else 0.0
 
 

@@ -18,7 +18,6 @@ from sixflip_host.diagnosis.detect import (
     wandering_tone,
 )
 from sixflip_host.diagnosis.detect.detection import Finding, present
-from sixflip_host.diagnosis.holdout_gain import Shrinkage
 from sixflip_host.experiment import blocks
 from tests.worlds.still_session import at_rest, flicker
 
@@ -123,7 +122,7 @@ def test_a_gap_that_hardly_closes_is_not_explained():
     """A tenth of what the readings showed went with what was named, and all was explained."""
     named = [verdict.Claim(0.99, True)]
     for interval, said in (((0.1, 0.25), "partly explained"), ((0.7, 1.0), "explained")):
-        left = verdict.not_closed(Shrinkage(4.0, 3.7, 1.0, 0.2, interval))
+        left = verdict.not_closed(interval)
         assert verdict.decide(named, [left], True) == said
 
 

@@ -75,8 +75,10 @@ def refined(line, sessions, sensor):
     """The Line with its frequency by the longest unbroken stretch of each file; not steady where
     none of them keeps the phase."""
     seen = [(s.name, *sine) for s in sessions for sine in [_over_whole(line, s, sensor)] if sine]
-    if not seen or not line.narrow:
-        return replace(line, low=line.hz - line.bin_hz, high=line.hz + line.bin_hz)
+    if not seen or not line.narrow:  # what wanders has the power of all its bump, no lobe's alone
+        amplitude = math.sqrt(4.0 * line.power * line.bin_hz / sessions[0].rate)
+        return replace(line, low=line.hz - line.bin_hz, high=line.hz + line.bin_hz,
+                       amplitude=max(line.amplitude, amplitude))
     best = max(seen, key=lambda file: file[1])
     return replace(line, steady=True, hz=best[2], low=best[2] - best[3], high=best[2] + best[3],
                    files=tuple((name, hz, hz - half, hz + half) for name, _, hz, half in seen))

@@ -24,7 +24,7 @@ SPREAD_SHARE = 0.02
 
 def saturation(sessions, sensor, columns):
     """Samples on a rail, or many that share the largest value and few near it."""
-    value, words, limits, score, ends = {}, {}, {}, 0.0, []
+    value, words, limits, score, number = {}, {}, {}, 0.0, 0
     for i in range(3):
         for session, counts in zip(sessions, columns):
             x = counts[:, i].astype(np.int64)
@@ -41,7 +41,7 @@ def saturation(sessions, sensor, columns):
                 said = _below(session, sensor, "xyz"[i], level[0].max())
             if present(nats):
                 value["xyz"[i]] = max(value.get("xyz"[i], 0), size)
-                ends.append(peaks(*level))
+                number += peaks(*level)[0]
                 score += nats
                 words.setdefault("xyz"[i], said)
                 limits.setdefault("xyz"[i], RANGE if on_rail.any() else BELOW)
@@ -50,8 +50,7 @@ def saturation(sessions, sensor, columns):
     return [Finding("saturation", sensor, sorted(value), value, "counts", score, "amplitude",
                     "; ".join(words[axis] for axis in sorted(words)),
                     {k: (v, v) for k, v in value.items()},
-                    share=float(np.sum(ends, axis=0)[0] / np.sum(ends)), number=int(np.sum(ends)),
-                    limits=limits)]
+                    share=1.0, number=number, limits=limits)]  # a peak that ends inside is sound
 
 
 def _below(session, sensor, axis, level):

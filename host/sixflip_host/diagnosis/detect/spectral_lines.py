@@ -35,7 +35,7 @@ MEDIAN_SHARE = 0.25  # of the band: wider than any line, narrower than a filter'
 LEAST_STEPS, DITHERED = 0.5, 0.5
 # Bins to each side; a line has that share of the power in them in its own lobe. A hand that
 # steadies the box, or a motor under load, has a wider bump.
-BESIDE, NARROW = 10, 0.6
+LOBE, BESIDE, NARROW = 2, 10, 0.6
 SWEPT, FALLS = 2, 0.5  # the lowest bins hold the straight line taken off; of a line's power
 LINE_BINS = 3  # to each side, of a line whose frequency lies between two bins
 # Of slow noise: bins of its corner beyond the first, levels there over the largest power of all.
@@ -209,12 +209,15 @@ def strongest(sessions, sensor, axis):
         return None
     if resting and n < BRIEF_S * rate and ringing.fades_within(stretches, axis, (first + k) / n):
         return None
-    near = slice(max(0, k - 2), k + 3)
     whole = plain[first:-1]
     below = np.median(whole[max(0, k - width // 2):k + width // 2 + 1]) / median_of_mean
-    excess = float((whole[near] - below).sum())
     usual = ndimage.median_filter(whole, size=width, mode="reflect") / median_of_mean
-    beyond = max(excess, float((whole - usual).sum()))
+    lobe, beside = (slice(max(0, k - w), k + w + 1) for w in (LOBE, BESIDE))
+    narrow = (band - floor)[lobe].sum() > NARROW * (band - floor)[beside].sum()
+    # What wanders or comes and goes has all of the bump: a lobe is a part of it.
+    excess = float((whole - below)[lobe if narrow else beside].sum())
+    bump = max(excess, float((whole - usual)[beside].sum()))
+    beyond = max(bump, float((whole - usual).sum()))
     # A sine of amplitude a: sum over the lobe of |X|^2 = a^2 n sum(w^2) / 4.
     amplitude = math.sqrt(max(4.0 * excess / n, 0.0))
     spread = np.mean([s[:, axis].std() for s in stretches])
@@ -228,9 +231,8 @@ def strongest(sessions, sensor, axis):
         return None
     error = 1.0 / math.sqrt(max(2.0 * number * ratio[k], 1.0))
     hz = line_frequency.peak(mean, first + k) * rate / n
-    lobe, beside = (float((band - floor)[max(0, k - w):k + w + 1].sum()) for w in (2, BESIDE))
-    return Line(axis, hz, rate / n, nats, amplitude, error, narrow=lobe > NARROW * beside,
-                power=excess, excess=beyond)
+    return Line(axis, hz, rate / n, nats, amplitude, error, narrow=bool(narrow), power=bump,
+                excess=beyond)
 
 
 def slow_noise(band, even, at, number):

@@ -143,7 +143,19 @@ def competed(samples):
     torn = torn_by(side)
     tried = math.log(len(chances) * len(SHARES))
     return (score - max(nameless) - tried, densities.held(torn, own),
-            densities.jumping(torn, own))
+            _otherwise(densities, torn, own))
+
+
+def _otherwise(densities, torn, share):
+    """How many samples jump otherwise beside a share that is torn, by Densities of all of them,
+    where the samples around agree: where a hand moves the box it makes some as loud."""
+    calm = densities.samples.subset(densities.samples.calm.astype(bool))
+    others = [anywhere, *(louder(times, densities.freedom) for times in KNOCKED)]
+    knocked = Densities(calm, densities.freedom).best(*((jump, len(calm)) for jump in others))[1]
+    likeliest = max(range(len(others)), key=lambda k: knocked[k][0])
+    gain, often = knocked[likeliest]
+    return Densities(calm, densities.freedom, often, others[likeliest]).jumping(
+        torn, share) if present(gain) else 0.0
 
 
 def _chances(samples):
