@@ -193,7 +193,7 @@ def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), d
         findings = [f for f in findings if f.domain != "motion"]
         nameless = [place for place in nameless if place.domain != "motion"]
     remarks += ["the %s: %s" % (registers.SENSORS[f.sensor], f.words)
-                for f in findings if f.effect == "vibration"]
+                for f in findings if f.effect in ("vibration", "axis_swap")]
     return Diagnosis(rests.everything, settings, conditions, tuple(clocks), tuple(findings), gaps,
                      rest, turns, motion, tuple(nameless), bool(stuck), remarks,
                      tuple(comparisons), samples.damages, noise)

@@ -1,5 +1,8 @@
 """The third stage: what the rests, the turns between them and the moves say of both sensors."""
+import math
 from dataclasses import dataclass
+
+import numpy as np
 
 from .. import progress, side_by_side
 from ..capture.registers import SENSORS
@@ -54,9 +57,9 @@ def judge(rests, findings, settings, conditions):
         astray = _astray(turns, sound)
         nameless += [place for place, _ in astray]
         remarks += [words for _, words in astray]
-    # What the rests do not explain would be carried into the moves.
     carried = [*gaps.values(), *([turns] if turns else [])]
-    if motion and not any(gap.unexplained for gap in carried):
+    if motion and not any(gap.unexplained and not (
+            gap is gaps.get("gyro") and _harmless(gap.shrinkage, motion)) for gap in carried):
         new_findings += motion.findings
         remarks += motion.remarks
         if not turns.posterior.best.forms:  # a gyro that bends carries gravity wrongly, too
@@ -68,6 +71,15 @@ def judge(rests, findings, settings, conditions):
         said = [squareness.remark() for squareness in gaps["accel"].crooked if squareness]
         remarks += dict.fromkeys(sentence for sentence in said if sentence)
     return RestsJudged(gaps, turns, motion, tuple(new_findings), tuple(nameless), tuple(remarks))
+
+
+def _harmless(shrinkage, motion):
+    """Whether what is left of the gyro's rests turns the box by less in a move than its attitude
+    at rest is known to; more would be carried into the moves."""
+    if not (shrinkage and motion.seen):
+        return False
+    left = math.sqrt(max(shrinkage.after ** 2 - shrinkage.floor ** 2, 0.0))
+    return left * float(np.median([m.seconds for m in motion.fit.moves])) < turn_model.ATTITUDE_DEG
 
 
 def _turn(rests, findings):

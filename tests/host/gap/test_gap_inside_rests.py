@@ -66,6 +66,44 @@ def test_a_tone_that_wanders_is_a_gap_in_frequency(captures):
     assert any("a tone that wanders" in remark for remark in found["remarks"])
 
 
+def test_one_of_many_tones_is_not_all_of_them(captures):
+    """As a converter's idle tones, which leap: the strongest was a vibration that explained all,
+    with a third of the power."""
+    def idle(t, counts, generator):
+        hz = np.array([7.0, 32.0, 13.0, 21.0, 44.0])[(t / 5.7).astype(int) % 5]
+        counts[:, 1:] += 5e-3 * 16384 * np.sin(2.0 * np.pi * np.cumsum(hz) * 0.01)[:, None]
+    found = diagnosed(captures, idle)
+    assert found["verdict"] in ("partly explained", "unexplained")
+    assert found["where"][0]["domain"] == "frequency"
+    assert all(cause["share_interval_90"][1] < 0.9 for cause in found["causes"])
+
+
+def test_what_comes_and_goes_at_a_frequency_that_wanders_is_one_vibration(captures):
+    """A fan: its bump is wider than the lobe of a line, and was three quarters of itself."""
+    def fan(t, counts, generator):
+        hz = 23.0 + np.convolve(generator.standard_normal(len(t)), np.full(300, 0.02), "same")
+        loud = 1.0 + 0.5 * np.sin(2.0 * np.pi * 0.3 * t)
+        counts[:, 2] += 9e-3 * 16384 * loud * np.sin(2.0 * np.pi * np.cumsum(hz) * 0.01)
+    found = diagnosed(captures, fan)
+    cause, = found["causes"]
+    assert found["verdict"] == "explained" and cause["class"] == ["vibration"]
+    assert cause["axes"] == ["z"] and cause["share"] > 0.9
+    assert cause["value"]["z"] == pytest.approx(9.0 * np.sqrt(1.0 + 0.5 ** 2 / 2.0), rel=0.1)
+
+
+def test_axes_that_are_swapped_in_one_session_alone_are_named(captures):
+    """Its labels contradicted gravity, and nothing was named."""
+    sessions = iter((False, True))
+
+    def swap(t, counts, generator):
+        if next(sessions):
+            counts[:, :2] = counts[:, 1::-1].copy()
+    found = diagnosed(captures, swap)
+    cause, = found["causes"]
+    assert cause["effect"] == "axis_swap" and cause["value"] == {"x": 2, "y": 1}
+    assert any("in 1 alone" in remark for remark in found["remarks"])
+
+
 def test_spikes_in_one_percent_of_the_samples_are_a_gap(captures):
     def spikes(t, counts, generator):
         hit = generator.random(len(t)) < 0.01

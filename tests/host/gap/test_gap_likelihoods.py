@@ -52,6 +52,18 @@ def test_torn_reads_are_the_likelier_the_more_there_are():
     assert scores[3] > 3.0 * scores[2]
 
 
+def test_of_torn_reads_alone_hardly_a_sample_jumps_otherwise():
+    """What a hand makes as loud in moves counted, and four fifths of pure tears were something
+    else."""
+    generator = np.random.default_rng(3)
+    turns = 14000.0 * np.sin(np.linspace(0.0, 60.0, 60000)) ** 5
+    trembling = 30.0 * generator.standard_t(3.0, 60000) * (np.abs(np.gradient(turns)) > 1.0)
+    sound = np.rint(turns + trembling + 12.0 * generator.standard_normal(60000)).astype(np.int64)
+    nats, number, others = torn_reads.competed(
+        sample_neighbours.tabled(torn(sound, 4e-2, generator), False))
+    assert present(nats) and others < 0.1 * number
+
+
 def test_torn_reads_are_the_same_however_many_samples_are_looked_at_at_once(monkeypatch):
     generator = np.random.default_rng(2)
     sound = np.rint(16380.0 + 50.0 * generator.standard_normal(3000)).astype(np.int64)

@@ -1,5 +1,6 @@
 """Axes of the accelerometer that are swapped or inverted against the labels of the faces."""
 import math
+from dataclasses import replace
 from itertools import permutations, product
 
 import numpy as np
@@ -17,7 +18,20 @@ SIGNED = [np.diag(signs) @ np.eye(3)[list(order)] for order in permutations(rang
 
 
 def swapped(sessions):
-    """[Finding] where the accelerometer's axes are not as the labels of the faces say, else []."""
+    """[Finding] where the accelerometer's axes are not as the labels of the faces say, in all
+    sessions or in one of them, else []."""
+    everywhere = _swapped(sessions)
+    if everywhere or len(sessions) == 1:
+        return everywhere
+    found = [(session.name, finding) for session in sessions for finding in _swapped([session])]
+    if not found:
+        return []
+    clearest = max((finding for _, finding in found), key=lambda finding: finding.score)
+    return [replace(clearest, words="%s in %s alone" % (
+        clearest.words, ", ".join(name for name, _ in found)))]
+
+
+def _swapped(sessions):
     means, axes = [], []
     for session in sessions:
         if not session.labelled or session.capture.accel is None:

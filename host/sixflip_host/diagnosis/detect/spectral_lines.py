@@ -214,8 +214,8 @@ def strongest(sessions, sensor, axis):
     usual = ndimage.median_filter(whole, size=width, mode="reflect") / median_of_mean
     lobe, beside = (slice(max(0, k - w), k + w + 1) for w in (LOBE, BESIDE))
     narrow = (band - floor)[lobe].sum() > NARROW * (band - floor)[beside].sum()
+    excess = float((whole - below)[lobe].sum())
     # What wanders or comes and goes has all of the bump: a lobe is a part of it.
-    excess = float((whole - below)[lobe if narrow else beside].sum())
     bump = max(excess, float((whole - usual)[beside].sum()))
     beyond = max(bump, float((whole - usual).sum()))
     # A sine of amplitude a: sum over the lobe of |X|^2 = a^2 n sum(w^2) / 4.

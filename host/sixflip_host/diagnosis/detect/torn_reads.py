@@ -150,12 +150,12 @@ def _otherwise(densities, torn, share):
     """How many samples jump otherwise beside a share that is torn, by Densities of all of them,
     where the samples around agree: where a hand moves the box it makes some as loud."""
     calm = densities.samples.subset(densities.samples.calm.astype(bool))
+    beside = Densities(calm, densities.freedom, share, torn)
     others = [anywhere, *(louder(times, densities.freedom) for times in KNOCKED)]
-    knocked = Densities(calm, densities.freedom).best(*((jump, len(calm)) for jump in others))[1]
-    likeliest = max(range(len(others)), key=lambda k: knocked[k][0])
-    gain, often = knocked[likeliest]
-    return Densities(calm, densities.freedom, often, others[likeliest]).jumping(
-        torn, share) if present(gain) else 0.0
+    gains = beside.best(*((jump, len(calm)) for jump in others))[1]
+    likeliest = max(range(len(others)), key=lambda k: gains[k][0])
+    gain, often = gains[likeliest]
+    return beside.held(others[likeliest], often) if present(gain) else 0.0
 
 
 def _chances(samples):
@@ -187,14 +187,11 @@ class Densities:
         (n,) when all do."""
         for first in range(0, len(self.samples), AT_A_TIME):
             part = self.samples.subset(slice(first, first + AT_A_TIME))
-            yield (part, self._sound(part) + self._otherwise(part),
-                   student(part.moved, self.freedom) / part.sigma)
-
-    def _sound(self, part):
-        return student(part.off, self.freedom) / part.sigma
-
-    def _otherwise(self, part):
-        return self.share * self.other(part, None) if self.share else 0.0
+            paged_by = student(part.moved, self.freedom) / part.sigma
+            density = student(part.off, self.freedom) / part.sigma
+            if self.share:
+                density = density + self.share * self.other(part, paged_by)
+            yield part, density, paged_by
 
     def best(self, *jumps):
         """(log likelihood when none jumps by pages, [(gain in nats, share)] of the likeliest share
@@ -220,12 +217,6 @@ class Densities:
         """Expected number of samples that jump."""
         return float(sum(_held(density, share * jump(part, paged_by))
                          for part, density, paged_by in self._parts()))
-
-    def jumping(self, jump, share):
-        """Expected number of samples that jump otherwise beside a share that jumps so."""
-        return float(sum(_held(self._sound(part) + share * jump(part, paged_by),
-                               np.broadcast_to(self._otherwise(part), len(part)))
-                         for part, _, paged_by in self._parts()))
 
 
 def anywhere(part, paged_by):
