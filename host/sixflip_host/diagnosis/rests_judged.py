@@ -59,7 +59,7 @@ def judge(rests, findings, settings, conditions):
         remarks += [words for _, words in astray]
     carried = [*gaps.values(), *([turns] if turns else [])]
     if motion and not any(gap.unexplained and not (
-            gap is gaps.get("gyro") and _harmless(gap.shrinkage, motion)) for gap in carried):
+            gap is gaps.get("gyro") and harmless(gap.shrinkage, motion)) for gap in carried):
         new_findings += motion.findings
         remarks += motion.remarks
         if not turns.posterior.best.forms:  # a gyro that bends carries gravity wrongly, too
@@ -73,7 +73,7 @@ def judge(rests, findings, settings, conditions):
     return RestsJudged(gaps, turns, motion, tuple(new_findings), tuple(nameless), tuple(remarks))
 
 
-def _harmless(shrinkage, motion):
+def harmless(shrinkage, motion):
     """Whether what is left of the gyro's rests turns the box by less in a move than its attitude
     at rest is known to; more would be carried into the moves."""
     if not (shrinkage and motion.seen):

@@ -53,15 +53,15 @@ def test_torn_reads_are_the_likelier_the_more_there_are():
 
 
 def test_of_torn_reads_alone_hardly_a_sample_jumps_otherwise():
-    """What a hand makes as loud in moves counted, and four fifths of pure tears were something
-    else."""
+    """What a hand makes as loud in moves counted, and of pure tears a third was something else."""
     generator = np.random.default_rng(3)
     turns = 14000.0 * np.sin(np.linspace(0.0, 60.0, 60000)) ** 5
-    trembling = 30.0 * generator.standard_t(3.0, 60000) * (np.abs(np.gradient(turns)) > 1.0)
+    trembling = 30.0 * np.clip(generator.standard_t(1.2, 60000), -200.0, 200.0) * (
+        np.abs(np.gradient(turns)) > 1.0)
     sound = np.rint(turns + trembling + 12.0 * generator.standard_normal(60000)).astype(np.int64)
     nats, number, others = torn_reads.competed(
-        sample_neighbours.tabled(torn(sound, 4e-2, generator), False))
-    assert present(nats) and others < 0.1 * number
+        sample_neighbours.tabled(torn(sound, 2e-2, generator), False))
+    assert present(nats) and others < 0.2 * number
 
 
 def test_torn_reads_are_the_same_however_many_samples_are_looked_at_at_once(monkeypatch):

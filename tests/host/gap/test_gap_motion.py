@@ -1,5 +1,6 @@
 """What shows in motion only: a sensor off the point it is turned about, one behind the other."""
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,7 +9,8 @@ from scipy.signal import savgol_filter
 from sixflip_host import cli
 from sixflip_host.capture import capture_file, rests
 from sixflip_host.capture.capture_file import Capture
-from sixflip_host.diagnosis import closed_loops, motion_model, moves_fit
+from sixflip_host.diagnosis import closed_loops, motion_model, moves_fit, rests_judged
+from sixflip_host.diagnosis.holdout_gain import Shrinkage
 from sixflip_host.experiment import attitude_fit, blocks, turns
 from sixflip_host.simulation import scenario, simulated_session
 
@@ -100,6 +102,15 @@ def test_the_one_that_is_behind_is_named_with_the_delay_between_them(sensor, chi
     loop = closed_loops.close_moves(found)
     assert loop.effects[0]["sensor"] == sensor
     assert loop.share > 0.8
+
+
+def test_a_gyro_that_wanders_a_little_hides_no_arm():
+    """Of a warm-up of two time constants a hundredth of deg/s was left: the arm was not told."""
+    moves = SimpleNamespace(seen=True, fit=SimpleNamespace(moves=[SimpleNamespace(seconds=3.0)]))
+    for left, harmless in ((0.0047, True), (0.05, False)):
+        shrinkage = Shrinkage(0.015, left, 0.0034, 0.9, (0.8, 1.0))
+        assert rests_judged.harmless(shrinkage, moves) is harmless
+    assert not rests_judged.harmless(None, moves)
 
 
 def test_nothing_is_found_where_nothing_is(plain):
