@@ -54,9 +54,11 @@ class Console:
         """The live line, cut to the width of the terminal: a wrapped one cannot be rewritten."""
         line = self.state + ("   > " + self.typed if self.typed else "")
         line = line[:max(20, shutil.get_terminal_size().columns - 1)]
-        width, self.shown = len(self.shown), line  # before it is: a Ctrl-C clears what it cut off
+        width = len(self.shown)
+        self.shown = max(self.shown, line, key=len)  # what a Ctrl-C in the middle has to clear
         self.stream.write("\r" + line.ljust(width))
         self.stream.flush()
+        self.shown = line
 
     def say(self, line):
         """A lasting line of the host's own."""

@@ -70,11 +70,12 @@ class Diagnosis:
         where logs of one motion show in both what each by itself would be taken for."""
         if self.verdict == "no gap":
             return []
-        named = [localisation.Place(f.sensor, axis, f.domain, 1.0, odds.chance(f.score))
+        named = [localisation.Place(f.sensor, axis, f.domain, 1.0 if f.share is None else f.share,
+                                    odds.chance(f.score))
                  for f in self.findings for axis in (f.axes or [None])]
         places = [p for gap in self.judged for p in localisation.places(gap)]
         places += [p for gap in self.rest.values() for p in gap.places]
-        return named + sorted([*places, *self.nameless], key=localisation.order)
+        return named + sorted([*places, *self._left, *self.nameless], key=localisation.order)
 
     @cached_property
     def verdict(self):
@@ -116,13 +117,21 @@ class Diagnosis:
         gaps = [*self.judged, *self.rest.values()]
         probabilities = [p for g in self.judged for p in verdict.of_gap(g)]
         probabilities += [verdict.not_closed(g.shrinkage and g.shrinkage.interval) for g in gaps]
-        probabilities += [verdict.not_closed(f.share_interval) for f in self.findings]
         probabilities += [p for gap in self.rest.values() for p in gap.nameless]
-        probabilities += [1.0 - place.p for place in self.nameless]
+        probabilities += [1.0 - place.p for place in [*self.nameless, *self._left]]
         # A size that no part has is a name for something else.
         probabilities += [f.named for f in self.findings if not f.plausible]
         return probabilities + [c.place.get(c.effect, 0.0) for _, c in self.causes
                                 if not c.plausible]
+
+    @cached_property
+    def _left(self):
+        """[Place] of what departs in the samples beside what a Finding accounts for; in motion it
+        is the moves' own."""
+        left = [(f, verdict.not_closed(f.share_interval)) for f in self.findings
+                if f.domain != "motion"]
+        return [localisation.Place(f.sensor, None, f.domain, 1.0 - f.share, 1.0 - probability)
+                for f, probability in left if probability]
 
     def sees(self):
         """True when the capture would have shown most of what it is asked about."""

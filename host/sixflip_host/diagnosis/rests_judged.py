@@ -59,7 +59,7 @@ def judge(rests, findings, settings, conditions):
         remarks += [words for _, words in astray]
     carried = [*gaps.values(), *([turns] if turns else [])]
     if motion and not any(gap.unexplained and not (
-            gap is gaps.get("gyro") and harmless(gap.shrinkage, motion)) for gap in carried):
+            gap is gaps.get("gyro") and harmless(gap, motion)) for gap in carried):
         new_findings += motion.findings
         remarks += motion.remarks
         if not turns.posterior.best.forms:  # a gyro that bends carries gravity wrongly, too
@@ -73,12 +73,14 @@ def judge(rests, findings, settings, conditions):
     return RestsJudged(gaps, turns, motion, tuple(new_findings), tuple(nameless), tuple(remarks))
 
 
-def harmless(shrinkage, motion):
+def harmless(gap, motion):
     """Whether what is left of the gyro's rests turns the box by less in a move than its attitude
-    at rest is known to; more would be carried into the moves."""
-    if not (shrinkage and motion.seen):
+    at rest is known to; more would be carried into the moves. Where noise wanders, or the gap is
+    too small to say how far it closes, that is not known."""
+    held = gap.shrinkage
+    if gap.wanders or not (held and held.interval and motion.seen):
         return False
-    left = math.sqrt(max(shrinkage.after ** 2 - shrinkage.floor ** 2, 0.0))
+    left = math.sqrt(max(held.after ** 2 - held.floor ** 2, 0.0))
     return left * float(np.median([m.seconds for m in motion.fit.moves])) < turn_model.ATTITUDE_DEG
 
 

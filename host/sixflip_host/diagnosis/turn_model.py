@@ -258,7 +258,7 @@ def swapped(sessions, nominal):
     read = matrix.T  # what register i carries: true = matrix · read
     value = axis_order.sources(read)
     return Finding("axis_swap", "gyro", sorted(value), value, "axis", score, "orientation",
-                   "the gyro's axes are swapped or inverted against the accelerometer's",
+                   "axes are swapped or inverted against the accelerometer's",
                    {k: (v, v) for k, v in value.items()},
                    share=axis_order.explained(plain, off), number=len(plain),
                    read=read)

@@ -35,8 +35,10 @@ def select(sessions, findings, stuck, scaled=False):
     if any(s.capture.accel is None for s in sessions):
         return UsableRests(tuple(sessions))
     contradicted = {s: s.contradicted() for s in usable}
-    swapped = any(f.effect == "axis_swap" for f in findings)
-    bad = [pair for pairs in contradicted.values() for pair in pairs]
+    orders = [f for f in findings if f.effect == "axis_swap"]
+    swapped = any(not f.files for f in orders)
+    told = {name for f in orders for name in f.files}  # with a name: what gravity contradicts
+    bad = [pair for s, pairs in contradicted.items() for pair in pairs if s.name not in told]
     remarks = []
     if bad and not swapped:
         remarks.append("labels that gravity contradicts: " + ", ".join(
@@ -44,7 +46,7 @@ def select(sessions, findings, stuck, scaled=False):
     if swapped or scaled or stuck or not usable:
         return UsableRests(tuple(sessions), remarks=tuple(remarks))
     changed = {s: s.without_poses([name for name, _ in pairs])
-               for s, pairs in contradicted.items()} if bad else {}
+               for s, pairs in contradicted.items() if pairs}
     everything = [changed.get(s, s) for s in sessions]
     usable = _enough([changed.get(s, s) for s in usable])
     if not usable:

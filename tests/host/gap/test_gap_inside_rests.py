@@ -73,9 +73,11 @@ def test_one_of_many_tones_is_not_all_of_them(captures):
         hz = np.array([7.0, 32.0, 13.0, 21.0, 44.0])[(t / 5.7).astype(int) % 5]
         counts[:, 1:] += 5e-3 * 16384 * np.sin(2.0 * np.pi * np.cumsum(hz) * 0.01)[:, None]
     found = diagnosed(captures, idle)
-    assert found["verdict"] in ("partly explained", "unexplained")
-    assert found["where"][0]["domain"] == "frequency"
-    assert all(cause["share_interval_90"][1] < 0.9 for cause in found["causes"])
+    cause, = found["causes"]
+    assert found["verdict"] == "partly explained" and cause["class"] == ["vibration"]
+    assert cause["share"] < 0.5 and any("elsewhere" in remark for remark in found["remarks"])
+    left, = [w for w in found["where"] if w["axis"] is None and w["domain"] == "frequency"]
+    assert left["share"] == pytest.approx(1.0 - cause["share"], abs=1e-3)
 
 
 def test_what_comes_and_goes_at_a_frequency_that_wanders_is_one_vibration(captures):
@@ -91,17 +93,61 @@ def test_what_comes_and_goes_at_a_frequency_that_wanders_is_one_vibration(captur
     assert cause["value"]["z"] == pytest.approx(9.0 * np.sqrt(1.0 + 0.5 ** 2 / 2.0), rel=0.1)
 
 
+@pytest.mark.parametrize("mg, hz", [(0.85, 17.3), (6.0, 31.3)])
+def test_a_line_over_noise_that_is_no_gap_is_all_there_is(captures, mg, hz):
+    """By the power of all of the spectrum a weak line, and one over noise that falls with the
+    frequency, were a part of something else."""
+    def line(t, counts, generator):
+        counts[:, 0] += mg * 16.384 * np.sin(2.0 * np.pi * hz * t)
+        if mg > 1.0:
+            slow = generator.standard_normal(len(t))
+            for i in range(1, len(t)):
+                slow[i] = 0.9 * slow[i - 1] + 0.43 * slow[i]
+            counts[:, 0] += 2.0 * 16.384 * slow
+    found = diagnosed(captures, line)
+    cause, = found["causes"]
+    assert found["verdict"] == "explained" and cause["effect"] == "vibration"
+    assert cause["share"] > 0.9
+
+
+def test_multiples_of_a_line_are_its_own(captures):
+    def motor(t, counts, generator):
+        for times, mg in ((1, 8.0), (2, 4.0), (4, 3.0)):
+            counts[:, 1] += mg * 16.384 * np.sin(2.0 * np.pi * times * 18.7 * t)
+    found = diagnosed(captures, motor)
+    cause, = found["causes"]
+    assert found["verdict"] == "explained" and cause["share"] > 0.9
+
+
 def test_axes_that_are_swapped_in_one_session_alone_are_named(captures):
     """Its labels contradicted gravity, and nothing was named."""
-    sessions = iter((False, True))
+    second = iter((False, True))
 
     def swap(t, counts, generator):
-        if next(sessions):
+        counts[:, 2] += 0.03 * 16384 * np.exp(-t / 200.0)
+        if next(second):
             counts[:, :2] = counts[:, 1::-1].copy()
     found = diagnosed(captures, swap)
-    cause, = found["causes"]
-    assert cause["effect"] == "axis_swap" and cause["value"] == {"x": 2, "y": 1}
+    named = {cause["effect"] or tuple(cause["class"]): cause for cause in found["causes"]}
+    swapped = named.pop("axis_swap")
+    assert swapped["value"] == {"x": 2, "y": 1}
     assert any("in 1 alone" in remark for remark in found["remarks"])
+    other, = named.values()  # the rests of both are judged beside it
+    assert "warm_up" in other["class"] and other["axes"] == ["z"]
+
+
+def test_each_order_of_axes_is_told_of_its_own_sessions(captures):
+    first = iter((True, False))
+
+    def swap(t, counts, generator):
+        if next(first):
+            counts[:, 2] *= -1.0
+        else:
+            counts[:, :2] = counts[:, 1::-1].copy()
+    found = diagnosed(captures, swap)
+    orders = [cause["value"] for cause in found["causes"] if cause["effect"] == "axis_swap"]
+    assert sorted(orders, key=len) == [{"z": -3}, {"x": 2, "y": 1}]
+    assert any("in 0 alone" in remark for remark in found["remarks"])
 
 
 def test_spikes_in_one_percent_of_the_samples_are_a_gap(captures):

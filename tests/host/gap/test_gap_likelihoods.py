@@ -59,19 +59,23 @@ def test_of_torn_reads_alone_hardly_a_sample_jumps_otherwise():
     trembling = 30.0 * np.clip(generator.standard_t(1.2, 60000), -200.0, 200.0) * (
         np.abs(np.gradient(turns)) > 1.0)
     sound = np.rint(turns + trembling + 12.0 * generator.standard_normal(60000)).astype(np.int64)
-    nats, number, others = torn_reads.competed(
+    nats, _, tears = torn_reads.competed(
         sample_neighbours.tabled(torn(sound, 2e-2, generator), False))
-    assert present(nats) and others < 0.2 * number
+    assert present(nats) and tears.share()["share"] > 0.85
+    other = np.where(generator.random(60000) < 2e-3, 2000, 0)  # what jumps as nothing torn does
+    tears = torn_reads.competed(
+        sample_neighbours.tabled(torn(sound + other, 2e-2, generator), False))[2]
+    assert 0.2 < tears.share()["share"] < 0.8
 
 
 def test_torn_reads_are_the_same_however_many_samples_are_looked_at_at_once(monkeypatch):
     generator = np.random.default_rng(2)
     sound = np.rint(16380.0 + 50.0 * generator.standard_normal(3000)).astype(np.int64)
     column = torn(sound, 2e-2, generator)
-    whole = torn_reads.competed(sample_neighbours.tabled(column, False))
+    whole = torn_reads.competed(sample_neighbours.tabled(column, False))[:2]
     for module in (torn_reads, sample_neighbours):
         monkeypatch.setattr(module, "AT_A_TIME", 77)
-    assert torn_reads.competed(sample_neighbours.tabled(column, False)) == pytest.approx(
+    assert torn_reads.competed(sample_neighbours.tabled(column, False))[:2] == pytest.approx(
         whole, rel=1e-9)
 
 

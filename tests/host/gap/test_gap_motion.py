@@ -108,9 +108,12 @@ def test_a_gyro_that_wanders_a_little_hides_no_arm():
     """Of a warm-up of two time constants a hundredth of deg/s was left: the arm was not told."""
     moves = SimpleNamespace(seen=True, fit=SimpleNamespace(moves=[SimpleNamespace(seconds=3.0)]))
     for left, harmless in ((0.0047, True), (0.05, False)):
-        shrinkage = Shrinkage(0.015, left, 0.0034, 0.9, (0.8, 1.0))
-        assert rests_judged.harmless(shrinkage, moves) is harmless
-    assert not rests_judged.harmless(None, moves)
+        gap = SimpleNamespace(wanders=False,
+                              shrinkage=Shrinkage(0.015, left, 0.0034, 0.9, (0.8, 1.0)))
+        assert rests_judged.harmless(gap, moves) is harmless
+    for wanders, shrinkage in ((True, gap.shrinkage), (False, None)):
+        assert not rests_judged.harmless(SimpleNamespace(wanders=wanders, shrinkage=shrinkage),
+                                         moves)
 
 
 def test_nothing_is_found_where_nothing_is(plain):

@@ -18,17 +18,19 @@ SIGNED = [np.diag(signs) @ np.eye(3)[list(order)] for order in permutations(rang
 
 
 def swapped(sessions):
-    """[Finding] where the accelerometer's axes are not as the labels of the faces say, in all
-    sessions or in one of them, else []."""
+    """[Finding] where the accelerometer's axes are not as the labels of the faces say: in all
+    sessions, or one for each order that some of them have, else []."""
     everywhere = _swapped(sessions)
     if everywhere or len(sessions) == 1:
         return everywhere
-    found = [(session.name, finding) for session in sessions for finding in _swapped([session])]
-    if not found:
-        return []
-    clearest = max((finding for _, finding in found), key=lambda finding: finding.score)
-    return [replace(clearest, words="%s in %s alone" % (
-        clearest.words, ", ".join(name for name, _ in found)))]
+    orders = {}
+    for session in sessions:
+        for finding in _swapped([session]):
+            orders.setdefault(tuple(sorted(finding.value.items())), []).append(session)
+    return [replace(finding, files=names, words="%s in %s alone" % (
+        finding.words, ", ".join(names)))
+        for own in orders.values() for names in [tuple(session.name for session in own)]
+        for finding in _swapped(own)]
 
 
 def _swapped(sessions):

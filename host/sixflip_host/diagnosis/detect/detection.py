@@ -23,7 +23,8 @@ class Finding:
     power) that it accounts for, 0 to 1, or None where that is not known; number: of those, which
     tell how well the share is known; place: {name: probability} of what stands here, "" nothing,
     by the score where it is not given; hz: {axis: frequency of a steady line};
-    lines: the line_frequency.Line of each axis; read (3, 3): what is true as swapped axes read
+    lines: the line_frequency.Line of each axis; files: names of the sessions that alone have it,
+    () for all; read (3, 3): what is true as swapped axes read
     it; limits: {axis: RANGE or BELOW} of what is cut off."""
 
     effect: str
@@ -42,6 +43,7 @@ class Finding:
     place: dict | None = None
     hz: dict = field(default_factory=dict)
     lines: tuple = ()
+    files: tuple = ()
     read: object = None
     limits: dict = field(default_factory=dict)
 

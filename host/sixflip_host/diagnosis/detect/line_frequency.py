@@ -38,10 +38,12 @@ LOBE = 0.8  # of the power around a peak in a lobe that has 0.999 of a sine's: t
 @dataclass(frozen=True)
 class Line:
     """axis; hz, known to `bin_hz` in the spectrum; nats; amplitude in mg or deg/s with its
-    relative error; narrow: it is as narrow as a sine in short stretches; power of the line and
-    excess of the spectrum over its floor, in one unit; steady: it goes on in phase; low, high:
-    90 % interval of the frequency; files: ((name, hz, low, high), ...) of those that show it by
-    themselves."""
+    relative error; narrow: it is as narrow as a sine in short stretches; power of the bump that
+    it is the top of and excess, that with all else that stands out of the floor, in one unit;
+    bump, bump_error: amplitude of that, as of a sine that wanders or comes and goes, and its
+    relative error; left_hz: where most of the excess beside it is, 0 without any; steady: it goes
+    on in phase; low, high: 90 % interval of the frequency; files: ((name, hz, low, high), ...) of
+    those that show it by themselves."""
 
     axis: int
     hz: float
@@ -52,6 +54,9 @@ class Line:
     narrow: bool = True
     power: float = 1.0
     excess: float = 1.0
+    bump: float = 0.0
+    bump_error: float = 0.0
+    left_hz: float = 0.0
     steady: bool = False
     low: float = 0.0
     high: float = 0.0
@@ -72,13 +77,13 @@ def peak(power, k):
 
 
 def refined(line, sessions, sensor):
-    """The Line with its frequency by the longest unbroken stretch of each file; not steady where
-    none of them keeps the phase."""
+    """The Line with its frequency by the longest unbroken stretch of each file; where none of them
+    keeps the phase it is not steady, and its amplitude is that of all its bump."""
     seen = [(s.name, *sine) for s in sessions for sine in [_over_whole(line, s, sensor)] if sine]
     if not seen or not line.narrow:  # what wanders has the power of all its bump, no lobe's alone
-        amplitude = math.sqrt(4.0 * line.power * line.bin_hz / sessions[0].rate)
         return replace(line, low=line.hz - line.bin_hz, high=line.hz + line.bin_hz,
-                       amplitude=max(line.amplitude, amplitude))
+                       amplitude=line.bump or line.amplitude,
+                       error=line.bump_error or line.error)
     best = max(seen, key=lambda file: file[1])
     return replace(line, steady=True, hz=best[2], low=best[2] - best[3], high=best[2] + best[3],
                    files=tuple((name, hz, hz - half, hz + half) for name, _, hz, half in seen))

@@ -59,12 +59,14 @@ def rate(sessions, clocks):
     if common < own - APART or not present(common - sound):
         return []
     percent = 100.0 * float(np.mean(errors))
+    # An oscillator is another one by so much from session to session: that is no other cause.
+    left = np.maximum(np.abs(errors - np.mean(errors)) - 2.0 * WANDERS * OSCILLATOR, 0.0)
     half = 100.0 * max(float(np.ptp(errors)) / 2, 2.0 * max(widths), 1e-6)
     return [Finding("sample_rate", "device", [], {"rate": round(percent, 4)}, "%",
                     common - sound, "timing", "the samples come at %.2f Hz, not %g" % (
                         sessions[0].rate * (1 + percent / 100.0), sessions[0].rate),
                     {"rate": (percent - half, percent + half)},
-                    share=explained(errors, errors - np.mean(errors)), number=len(errors))]
+                    share=explained(errors, left), number=len(errors))]
 
 
 def _log_normal(errors, covariance):

@@ -11,7 +11,7 @@ import numpy as np
 from scipy import ndimage, special
 
 from ...capture.registers import steps, unit_of_count
-from .. import odds
+from .. import odds, verdict
 from . import line_across_rests, line_frequency, ringing
 from .detection import Finding
 from .line_frequency import Line
@@ -36,6 +36,7 @@ LEAST_STEPS, DITHERED = 0.5, 0.5
 # Bins to each side; a line has that share of the power in them in its own lobe. A hand that
 # steadies the box, or a motor under load, has a wider bump.
 LOBE, BESIDE, NARROW = 2, 10, 0.6
+MULTIPLES = 5  # of a frequency: what a motor's imbalance, blades and bearings shake at
 SWEPT, FALLS = 2, 0.5  # the lowest bins hold the straight line taken off; of a line's power
 LINE_BINS = 3  # to each side, of a line whose frequency lies between two bins
 # Of slow noise: bins of its corner beyond the first, levels there over the largest power of all.
@@ -107,12 +108,16 @@ def told(lines, sensor, rate):
             strong.hz, rate - strong.hz, rate + strong.hz)
     else:
         words = "it is shaken at about %.3g Hz, at no steady frequency" % top.hz
+    share = float(np.average([line.power / line.excess for line in lines],
+                             weights=[line.amplitude ** 2 for line in lines]))
+    if share < verdict.CLOSED:
+        other = max(lines, key=lambda line: line.excess - line.power)
+        words += "; %.0f %% of what stands out of the noise does so elsewhere, most at %.3g Hz" % (
+            100.0 * (1.0 - share), other.left_hz)
     return Finding("vibration", sensor, sorted(value), value,
                    "mg" if sensor == "accel" else "deg/s", top.nats, "frequency", words, interval,
                    hz={line.letter: line.hz for line in steady}, lines=lines,
-                   share=float(np.average([line.power / line.excess for line in lines],
-                                          weights=[line.amplitude ** 2 for line in lines])),
-                   number=max(1, int(0.5 / top.error ** 2)))
+                   share=share, number=max(1, int(0.5 / top.error ** 2)))
 
 
 def rests(sessions, sensor):
@@ -213,11 +218,7 @@ def strongest(sessions, sensor, axis):
     below = np.median(whole[max(0, k - width // 2):k + width // 2 + 1]) / median_of_mean
     usual = ndimage.median_filter(whole, size=width, mode="reflect") / median_of_mean
     lobe, beside = (slice(max(0, k - w), k + w + 1) for w in (LOBE, BESIDE))
-    narrow = (band - floor)[lobe].sum() > NARROW * (band - floor)[beside].sum()
     excess = float((whole - below)[lobe].sum())
-    # What wanders or comes and goes has all of the bump: a lobe is a part of it.
-    bump = max(excess, float((whole - usual)[beside].sum()))
-    beyond = max(bump, float((whole - usual).sum()))
     # A sine of amplitude a: sum over the lobe of |X|^2 = a^2 n sum(w^2) / 4.
     amplitude = math.sqrt(max(4.0 * excess / n, 0.0))
     spread = np.mean([s[:, axis].std() for s in stretches])
@@ -226,13 +227,56 @@ def strongest(sessions, sensor, axis):
     if amplitude < LEAST_SHARE * spread or (
             noise < DITHERED * counted and amplitude < LEAST_STEPS * counted):
         return None
-    if resting and amplitude < STRONG_SHARE * spread and scatter(
-            stretches, axis, first + k) > STEADY:
+    scattered = scatter(stretches, axis, first + k)
+    if resting and amplitude < STRONG_SHARE * spread and scattered > STEADY:
         return None
     error = 1.0 / math.sqrt(max(2.0 * number * ratio[k], 1.0))
     hz = line_frequency.peak(mean, first + k) * rate / n
-    return Line(axis, hz, rate / n, nats, amplitude, error, narrow=bool(narrow), power=bump,
-                excess=beyond)
+    bump = bump_around(k, band / floor, number)
+    power = max(excess, float((whole - usual)[bump].sum()))
+    others = standing_out(band / np.maximum(floor, 1e-12), number, doubt)
+    others &= ~bump & ~multiples_of(first + k, n, first, len(band))
+    if not resting:  # what it does itself is no more of the sensor there
+        others &= (first + np.arange(len(band))) * rate / n > MOTION_HZ
+    left = np.where(others, np.maximum(whole - usual, 0.0), 0.0)
+    return Line(axis, hz, rate / n, nats, amplitude, error,
+                narrow=bool((band - floor)[lobe].sum() > NARROW * (band - floor)[beside].sum()),
+                power=power, excess=power + float(left.sum()),
+                bump=math.sqrt(4.0 * power / n),
+                bump_error=max(error, 0.5 * scattered / math.sqrt(number)),
+                left_hz=(first + int(left.argmax())) * rate / n if left.any() else 0.0)
+
+
+def bump_around(k, ratio, number):
+    """(m,) bool: bins around the k-th that stand above the floor as a mean of three of them seldom
+    does by chance, without a gap; of a line the lobe, of what wanders or comes and goes more.
+    ratio (m,): mean of `number` spectra over their floor."""
+    over = ndimage.uniform_filter1d(ratio, 3, mode="nearest") > 1.0 + 2.0 / math.sqrt(3 * number)
+    over[max(0, k - LOBE):k + LOBE + 1] = True
+    labels = ndimage.label(over)[0]
+    return labels == labels[k]
+
+
+def standing_out(ratio, number, doubt):
+    """(m,) bool: bins that are lines themselves, by the chance that `strongest` asks of one."""
+    far = np.zeros(len(ratio), bool)
+    for j in np.flatnonzero(ratio > 1.0 + 2.0 / math.sqrt(number)):
+        far[j] = log_beyond(ratio[j] * number / doubt, number) + math.log(
+            3.0 * len(ratio)) < math.log(CHANCE)
+    return far
+
+
+def multiples_of(k, n, first, size):
+    """(size,) bool, from bin `first` on: the lobes of multiples of the frequency of bin k of n
+    samples, folded at half the rate: what is shaken is seldom a pure sine."""
+    known = np.zeros(size, bool)
+    for times in range(2, MULTIPLES + 1):
+        folded = abs((times * k + n / 2.0) % n - n / 2.0)
+        # k is known to half a bin.
+        at = int(round(folded)) - first
+        wide = LOBE + (times + 1) // 2
+        known[max(0, at - wide):max(0, at + wide + 1)] = True
+    return known
 
 
 def slow_noise(band, even, at, number):

@@ -48,7 +48,7 @@ def finding(sessions, sensor, banded=()):
     if not len(samples) or not present(_at_most(samples, [
             (torn_by(side), among) for side, among in _chances(samples).items()])):
         return []
-    nats, number, others = competed(samples)
+    nats, number, torn = competed(samples)
     if present(nats):
         unlike = [_samples(sessions, sensor, banded, width) for width in NO_PAGES]
         most = max((competed(other)[0] for other in unlike if len(other)), default=0.0)
@@ -62,9 +62,7 @@ def finding(sessions, sensor, banded=()):
     half = 1.645 * percent / np.sqrt(max(number, 1.0))
     return [Finding("torn_reads", sensor, [], {"chance": round(percent, 3)}, "%", nats, "noise",
                     "about %.0f samples mix the bytes of two readings" % number,
-                    {"chance": (max(percent - half, 0.0), percent + half)},
-                    share=float(number / max(number + others, 1e-9)),
-                    number=max(1, round(number + others)))]
+                    {"chance": (max(percent - half, 0.0), percent + half)}, **torn.share())]
 
 
 def _samples(sessions, sensor, banded, width):
@@ -122,40 +120,25 @@ def paged(samples):
 
 
 def competed(samples):
-    """(nats over what has no name, samples torn, samples that jump otherwise) of Samples, torn
-    with the page, or with the low byte, of the sample before or of the one after. Shares of
-    jumps and tails of the noise are the likeliest of those tried, in each hypothesis by itself;
-    what was tried for the name's sake is paid."""
+    """(nats over what has no name, samples torn, the likeliest Torn) of Samples, torn with the
+    page, or with the low byte, of the sample before or of the one after. Shares of jumps and tails
+    of the noise are the likeliest of those tried, in each hypothesis by itself; what was tried for
+    the name's sake is paid."""
     chances, number, named, nameless = _chances(samples), len(samples), [], []
     for freedom in FREEDOM:
         densities = Densities(samples, freedom)
-        others = [anywhere, *(louder(times, freedom) for times in KNOCKED)]
-        alone, knocked = densities.best(*((jump, number) for jump in others))
+        alone, knocked, otherwise = densities.otherwise()
         nameless += [alone, *(alone + other for other, _ in knocked)]
-        likeliest = max(range(len(others)), key=lambda k: knocked[k][0])
-        beside = Densities(samples, freedom, knocked[likeliest][1], others[likeliest])
+        beside = Densities(samples, freedom, *otherwise)
         for noise in (densities, beside):  # without others, and beside the likeliest share of them
             alone, ((by_pages, _), *torn) = noise.best(
                 (led_back, number), *((torn_by(side), among) for side, among in chances.items()))
             nameless.append(alone + by_pages)
             named += [(alone + gain, noise, side, own) for side, (gain, own) in zip(chances, torn)]
     score, densities, side, own = max(named, key=lambda tear: tear[0])
-    torn = torn_by(side)
+    torn = Torn(densities, torn_by(side), own)
     tried = math.log(len(chances) * len(SHARES))
-    return (score - max(nameless) - tried, densities.held(torn, own),
-            _otherwise(densities, torn, own))
-
-
-def _otherwise(densities, torn, share):
-    """How many samples jump otherwise beside a share that is torn, by Densities of all of them,
-    where the samples around agree: where a hand moves the box it makes some as loud."""
-    calm = densities.samples.subset(densities.samples.calm.astype(bool))
-    beside = Densities(calm, densities.freedom, share, torn)
-    others = [anywhere, *(louder(times, densities.freedom) for times in KNOCKED)]
-    gains = beside.best(*((jump, len(calm)) for jump in others))[1]
-    likeliest = max(range(len(others)), key=lambda k: gains[k][0])
-    gain, often = gains[likeliest]
-    return beside.held(others[likeliest], often) if present(gain) else 0.0
+    return score - max(nameless) - tried, torn.number, torn
 
 
 def _chances(samples):
@@ -169,6 +152,36 @@ def _at_most(samples, jumps):
     """Nats that Samples gain at most by jumps, as Densities.best takes them, whatever competes."""
     return max(gain for freedom in FREEDOM
                for gain, _ in Densities(samples, freedom).best(*jumps)[1])
+
+
+@dataclass(frozen=True, eq=False)
+class Torn:
+    """That a share of samples is torn, jumping as a function of a part of them says, with the
+    Densities that they have else."""
+
+    densities: object
+    jump: object
+    often: float
+
+    @property
+    def number(self):
+        """How many of all samples are expected to be torn."""
+        return self.densities.held(self.jump, self.often)
+
+    def share(self):
+        """{share, number} of a Finding: of the samples that jump, where those around agree,
+        those that are torn (noise with tails is near, and no jump); where a hand moves the box
+        it makes some as loud, which is no departure. None where too few samples are calm."""
+        calm = self.densities.samples.subset(self.densities.samples.calm.astype(bool))
+        if len(calm) < FEWEST:
+            return {"share": None}
+        beside = Densities(calm, self.densities.freedom, self.often, self.jump)
+        (gain, often), = beside.best((anywhere, len(calm)))[1]
+        if not present(gain):
+            return {"share": 1.0, "number": max(1, round(self.number))}
+        others = beside.held(anywhere, often)
+        torn = Densities(calm, self.densities.freedom).held(self.jump, self.often)
+        return {"share": torn / (torn + others), "number": max(1, round(torn + others))}
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,6 +225,14 @@ class Densities:
                 gain += [np.log1p(share * ratio).sum() for share in SHARES]
         places = [int(gain.argmax()) for gain in gains]
         return alone, [(float(gain[k]), SHARES[k]) for gain, k in zip(gains, places)]
+
+    def otherwise(self):
+        """(log likelihood as it is, [(gain, share)] of those that jump anywhere or are knocked,
+        (share, jump) of the likeliest of them)"""
+        others = [anywhere, *(louder(times, self.freedom) for times in KNOCKED)]
+        alone, gains = self.best(*((jump, len(self.samples)) for jump in others))
+        likeliest = max(range(len(others)), key=lambda k: gains[k][0])
+        return alone, gains, (gains[likeliest][1], others[likeliest])
 
     def held(self, jump, share):
         """Expected number of samples that jump."""
