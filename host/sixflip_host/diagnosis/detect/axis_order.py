@@ -27,13 +27,18 @@ def swapped(sessions):
     for session in sessions:
         for finding in _swapped([session]):
             orders.setdefault(tuple(sorted(finding.value.items())), []).append(session)
-    return [replace(finding, files=names, words="%s in %s alone" % (
-        finding.words, ", ".join(names)))
-        for own in orders.values() for names in [tuple(session.name for session in own)]
-        for finding in _swapped(own)]
+    return [_of_files(finding, own) for own in orders.values() for finding in _swapped(own)]
+
+
+def _of_files(finding, sessions):
+    """The Finding of sessions that alone have it."""
+    names = tuple(session.name for session in sessions)
+    return replace(finding, files=names,
+                   words="%s in %s alone" % (finding.words, ", ".join(names)))
 
 
 def _swapped(sessions):
+    """[Finding] of an order that all of these sessions have, else []."""
     means, axes = [], []
     for session in sessions:
         if not session.labelled or session.capture.accel is None:

@@ -24,8 +24,8 @@ class Finding:
     tell how well the share is known; place: {name: probability} of what stands here, "" nothing,
     by the score where it is not given; hz: {axis: frequency of a steady line};
     lines: the line_frequency.Line of each axis; files: names of the sessions that alone have it,
-    () for all; read (3, 3): what is true as swapped axes read
-    it; limits: {axis: RANGE or BELOW} of what is cut off."""
+    () for all; read (3, 3): what is true as swapped axes read it; limits: {axis: RANGE or BELOW}
+    of what is cut off."""
 
     effect: str
     sensor: str

@@ -232,9 +232,10 @@ def strongest(sessions, sensor, axis):
         return None
     error = 1.0 / math.sqrt(max(2.0 * number * ratio[k], 1.0))
     hz = line_frequency.peak(mean, first + k) * rate / n
-    bump = bump_around(k, band / floor, number)
+    heights = band / np.maximum(floor, 1e-12)
+    bump = bump_around(k, heights, number)
     power = max(excess, float((whole - usual)[bump].sum()))
-    others = standing_out(band / np.maximum(floor, 1e-12), number, doubt)
+    others = standing_out(heights, number, doubt)
     others &= ~bump & ~multiples_of(first + k, n, first, len(band))
     if not resting:  # what it does itself is no more of the sensor there
         others &= (first + np.arange(len(band))) * rate / n > MOTION_HZ

@@ -19,7 +19,6 @@ RARE = 0.001  # that noise has such a tone in one stretch; how many have one is 
 DOUBTED, FEWEST = 0.02, 24
 OFTEN = 0.25  # share of the stretches that has one: less is a visit, no state of the sensor
 WANDERS = 3.0  # bins, quartile to quartile: the lobe of a steady line is four bins wide
-LOBE = 2
 
 
 def axes(sessions, sensor, known=()):
@@ -53,7 +52,7 @@ def _tone(x, rate):
 def chances(x, rate):
     """Of each of the stretches x (R, n): (the probability of its largest bin by noise alone, the
     bin, the power of its lobe beyond noise), (R,) each; ones where the spectra tell nothing."""
-    first = max(LOBE + 1, int(spectral_lines.LOWEST_HZ * x.shape[1] / rate) + 1)
+    first = max(spectral_lines.LOBE + 1, int(spectral_lines.LOWEST_HZ * x.shape[1] / rate) + 1)
     power, nothing = spectral_lines.periodograms(x), np.zeros(len(x))
     if power.shape[1] - first < 2 * FEWEST:
         return np.ones(len(x)), nothing.astype(int), nothing
@@ -64,5 +63,6 @@ def chances(x, rate):
     ratio = (alike / (np.median(alike, axis=0) / math.log(2.0)))[:, first:-1]
     place = first + ratio.argmax(axis=1)
     chance = -np.expm1(ratio.shape[1] * np.log1p(-np.exp(-ratio.max(axis=1))))
-    lobe = np.array([spectrum[k - LOBE:k + LOBE + 1].sum() for spectrum, k in zip(power, place)])
-    return chance, place, lobe - (2 * LOBE + 1) * level / math.log(2.0)
+    wide = spectral_lines.LOBE
+    lobe = np.array([spectrum[k - wide:k + wide + 1].sum() for spectrum, k in zip(power, place)])
+    return chance, place, lobe - (2 * wide + 1) * level / math.log(2.0)
