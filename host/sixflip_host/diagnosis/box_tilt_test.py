@@ -51,7 +51,9 @@ def search(gap):
     data, (without, best) = _scored(gap, off)
     forms = hypotheses.forms_of(units, gap.settings.without)
     boxes = [f for f in forms if f.effect == "box_tilt"]
-    cost = cutoffs.for_protocol(off, boxes, gap.noise).member
+    # No cause has the very form of the library, and what that leaves leans the faces as well.
+    cost = cutoffs.for_protocol(off, boxes, gap.noise).member + gap.cost.form * max(
+        gap.posterior.gains.values(), default=0.0)
     gain = best.score - without.score
     if gain <= cost:
         return [], data

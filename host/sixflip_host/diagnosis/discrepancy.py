@@ -13,11 +13,11 @@ from . import evidence
 from .elimination import Columns
 from .hypotheses import domain
 
-BESIDE = 0  # the power of a column that belongs to a stranger, see terms.Design
+BESIDE = 0  # the power of a column that is not the effect's own, see terms.Design
 RELATIVE = 0.5  # of an effect: how far a part's own form may be from the library's
 # Of the functions of one kind, rms: one that shows less of itself has no larger coefficient for
 # that, as a product of two axes where every pose is flat.
-FAINT = 0.1
+FAINT = 0.7
 # What an effect, or all of a domain, is a function of: the strangers that have that variable.
 VARIABLE = {"thermal_scale": ("thermal_orientation",), "vibration_rectification": ("shaking",),
             "temperature": ("temperature",), "time": ("time",),

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..capture import registers
 from .detect import codes, noise_shape, spectral_lines
-from .detect.detection import present
+from .detect.detection import BELOW, present
 
 OWN_SHAPE = {"torn_reads", "dead_band", "saturation"}  # what makes samples anything but normal
 
@@ -68,14 +68,22 @@ def _not_normal(sessions, findings, leaping):
 
 def _full_grids(finding, uneven):
     """The Finding without axes whose codes are `uneven`: steps that are not all there are none,
-    and codes that are missing near 0 as elsewhere are no dead band. None where none is left."""
+    codes that are missing near 0 as elsewhere are no dead band, and where a sensor leaves codes
+    out many peaks end at one below its rail, and many low bytes are that of the sample before.
+    None where none is left."""
     odd = _axes_of(finding, uneven)
-    if finding.effect not in ("quantisation", "dead_band") or not odd:
+    if any(sensor == finding.sensor for sensor, *_ in uneven):
+        if finding.effect == "torn_reads":
+            return None
+        if finding.effect == "saturation":
+            odd = {axis for axis, limit in finding.limits.items() if limit == BELOW}
+    if finding.effect not in ("quantisation", "dead_band", "saturation") or not odd:
         return finding
     axes = [axis for axis in finding.axes if axis not in odd]
-    return replace(finding, axes=axes, value={a: finding.value[a] for a in axes}, place=None,
-                   interval={a: finding.interval[a] for a in axes},
-                   score=finding.score * len(axes) / len(finding.axes)) if axes else None
+    return replace(finding, axes=axes, place=None, **{
+        name: {a: size for a, size in getattr(finding, name).items() if a in axes}
+        for name in ("value", "interval", "limits")},
+        score=finding.score * len(axes) / len(finding.axes)) if axes else None
 
 
 def _lines_alone(finding, shaped, rate):

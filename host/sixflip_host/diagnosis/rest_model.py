@@ -63,10 +63,12 @@ class RestModel:
         fitted = adequacy.goodness_of_fit(
             units, data.statistics, best, noise, self.conditions.shaken.get(self.kind, ()),
             self.kind == "accel")
-        if "drift" in best.names and fitted.ok:
-            p = wandering.in_leaps(self.kind, [session for session, _ in parts])
-            if p < adequacy.DOUBTFUL_P:
-                fitted = replace(fitted, ok=False, odd="leaps", p=p)
+        if "drift" in best.names and not fitted.odd:
+            ways = {"leaps": wandering.in_leaps(self.kind, [session for session, _ in parts]),
+                    "across gravity alone": wandering.across_gravity(self.kind, parts)}
+            odd = min(ways, key=ways.get)
+            if ways[odd] < adequacy.DOUBTFUL_P:
+                fitted = replace(fitted, ok=False, odd=odd, p=min(ways[odd], fitted.p))
         nameless = [f for f in best.forms if f.generic]
         doubted = any(posterior.stranger_share(c.effect) > DOUBT for c in causes)
         crooked = [box_tilt_test.squareness(*part) for part in parts

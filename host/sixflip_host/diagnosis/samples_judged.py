@@ -71,7 +71,7 @@ def judge(sessions, settings=ALONE, damages=()):
     """SamplesJudged of all sessions; settings: settings.Settings; damages: those that were put
     right before."""
     without = settings.without
-    *found, whole, (rings, lines) = side_by_side.results(
+    *found, whole, (rings, tones, lines) = side_by_side.results(
         [partial(say, sessions) for say in (*FOUND_BY, _of_whole_axes, _of_spectra)],
         settings.processors)
     findings = [f for f in sum(found, []) + lines if f.effect not in without]
@@ -115,9 +115,8 @@ def judge(sessions, settings=ALONE, damages=()):
                  for sensor, axis, nats in uneven]
     remarks += ["the %s axis of the %s reads some codes hardly ever and others too often"
                 % (axis, SENSOR[sensor]) for sensor, axis, _ in uneven]
-    tones = [(sensor, *tone) for sensor in SENSOR for tone in wandering_tone.axes(
-        sessions, sensor, [a for f in findings if f.effect == "vibration" and f.sensor == sensor
-                           for a in f.axes])]
+    shaken = {(f.sensor, a) for f in findings if f.effect == "vibration" for a in f.axes}
+    tones = [tone for tone in tones if tone[:2] not in shaken]
     nameless += [localisation.Place(sensor, axis, "frequency", 1.0, odds.chance(nats))
                  for sensor, axis, nats, _ in tones]
     remarks += ["the %s axis of the %s has a tone that wanders between %.2g and %.2g Hz"
@@ -157,10 +156,12 @@ def _without_lines(session, findings):
 
 
 def _of_spectra(sessions):
-    """(what rings after it was put down, Findings of lines beside that)."""
+    """(what rings after it was put down, tones that wander, Findings of lines beside that)."""
     rings = ringing.ringing_axes(sessions)
-    return rings, spectral_lines.findings(sessions, [
-        (sensor, axis) for sensor, axis, _, _ in rings])
+    tones = [(sensor, *tone) for sensor in SENSOR for tone in wandering_tone.axes(
+        sessions, sensor)]
+    return rings, tones, spectral_lines.findings(
+        sessions, *([found[:2] for found in of] for of in (rings, tones)))
 
 
 def _of_whole_axes(sessions):

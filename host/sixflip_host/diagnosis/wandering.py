@@ -17,6 +17,7 @@ from .elimination import NONE
 # s of the short means whose steps are looked at; steps that their tails are known from; steps that
 # may be knocks.
 STEP_S, FEWEST_STEPS, KNOCKS = (0.5, 1.0, 2.0, 4.0, 8.0), 60, 3
+ON_FACE = 0.95  # of gravity along an axis: a box on a face, 18 degrees off at most
 
 
 @dataclass(frozen=True)
@@ -184,6 +185,25 @@ def jumps(rests, rate):
         step = step[np.argsort(np.abs(step))[:-KNOCKS]]
         best = min(best, len(STEP_S) * adequacy.tails(step))
     return best
+
+
+def across_gravity(kind, parts):
+    """Probability of the accelerometer, as parts, [(Session, NominalSensor)], have it, wandering
+    within its rests across gravity by so much more than along it: what leans under the box, or
+    a hand that holds it, is felt there alone."""
+    if kind != "accel":
+        return 1.0
+    along, across = [], []
+    for session, nominal in parts:
+        same = np.flatnonzero(np.diff(session.placement) == 0)
+        over = np.sqrt(1.0 / session.seconds[same] + 1.0 / session.seconds[same + 1])[:, None]
+        changed = np.diff(session.accel, axis=0)[same] / (over * session.noise_accel)
+        share = np.abs(nominal.up[session.placement[same]])
+        along.append(changed[share > ON_FACE])
+        across.append(changed[share < np.sqrt(1.0 - ON_FACE ** 2)])
+    along, across = map(np.concatenate, (along, across))
+    enough = min(len(along), len(across)) >= adequacy.FEWEST
+    return adequacy.louder(across, along) if enough else 1.0
 
 
 def in_leaps(kind, sessions):

@@ -19,6 +19,10 @@ ACROSS = 30e-3
 # Cross-axis sensitivity and scale where nothing else says, and offset, g [MPU-6000 PS rev 3.4,
 # table 6.2: 2 %, 3 %, 80 mg]; SHAPE is let go to LEEWAY times that, the offset to six times.
 SHAPE, LEEWAY, OFFSET = 0.02, 5.0, 0.5
+# Without labels nothing but |f| = 1 and that prior says which way a box lay; in the six faces they
+# leave a sensor free to turn by half a right angle for an effect of a hundredth. How well |f| = 1
+# holds is then what the placements themselves show, to SETTLED of it.
+ROUNDS, SETTLED = 12, 0.1
 
 
 def face_axes(face):
@@ -55,15 +59,30 @@ def fit(session, added=0.0):
     on_face = np.abs(axes).sum(axis=1) > 0
     start = np.concatenate([np.eye(3).ravel(), np.zeros(3)])
 
-    def residual(p):
+    def residual(p, holds):
         f = mean @ p[:9].reshape(3, 3).T + p[9:]
-        along = (np.linalg.norm(f, axis=1) - 1.0) / ALONG
+        along = (np.linalg.norm(f, axis=1) - 1.0) / holds
         across = (f - axes)[on_face]
         across -= axes[on_face] * (across * axes[on_face]).sum(axis=1)[:, None]
         prior = np.concatenate([(p[:9] - start[:9]) / SHAPE / LEEWAY, p[9:] / OFFSET])
         return np.concatenate([along, across.ravel() / ACROSS, prior])
 
-    parameters = least_squares(residual, start, x_scale=0.01, method="trf", max_nfev=60).x
+    holds, parameters = ALONG if on_face.any() else ACROSS, start
+    for _ in range(1 if on_face.any() else ROUNDS):
+        found = least_squares(residual, parameters, x_scale=0.01, method="trf", max_nfev=60,
+                              args=(holds,))
+        before, parameters = holds, found.x
+        holds = max(ALONG, holds * _scatter(found, number))
+        if abs(holds - before) < SETTLED * before:
+            break
     matrix, offset = parameters[:9].reshape(3, 3), parameters[9:]
     f = mean @ matrix.T + offset
     return NominalSensor(matrix, offset, f / np.linalg.norm(f, axis=1)[:, None])
+
+
+def _scatter(found, number):
+    """Standard deviation of the first `number` residuals of a solution of least squares, by what
+    is left of them beside the parameters that they tell."""
+    rows = found.jac[:number]
+    told = float(np.sum(rows * np.linalg.solve(found.jac.T @ found.jac, rows.T).T))
+    return np.sqrt((found.fun[:number] ** 2).sum() / max(number - told, 1.0))

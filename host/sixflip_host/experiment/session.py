@@ -51,7 +51,7 @@ class Session(ReadOnlyArrays):
     noise_accel, noise_gyro of a mean over one second, mg and deg/s; rounding_accel,
     rounding_gyro of the mean of a rest, by steps of the counts; None without a gyro.
     thermal, fastest (degC/s), vibration (n,) mg rms, shaken_mg: what sessions that are judged
-    together agreed to look for, see terms.
+    together agreed to look for, see terms; number, of: which it is of how many of them.
     """
 
     name: str
@@ -83,6 +83,8 @@ class Session(ReadOnlyArrays):
     fastest: float = 0.0
     vibration: np.ndarray | None = None
     shaken_mg: float = 0.0
+    number: int = 0
+    of: int = 1
 
     @property
     def n(self):

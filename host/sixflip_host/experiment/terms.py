@@ -20,6 +20,7 @@ from .way_memory import FRICTION, UNMOVED_G
 
 LAGS_S = (0.0, 15.0, 30.0, 60.0, -30.0)  # GAP: a neighbouring thermometer, 10-60 s
 WARM_UP_S = (30.0, 60.0, 120.0, 240.0, 480.0)  # GAP: 60-300 s, and an octave to both sides
+STARTED_S = (60.0, 240.0)  # a short one and a long one: how warm each session started
 CREEP_S = (5.0, 15.0, 30.0, 60.0, 120.0)  # GAP: 60-70 s seen on Z; down to a rest's length
 LEVELS_OFF = 3.0  # times faster than where a rate's effect begins to level off
 FORGOTTEN_S = (5.0, 20.0)  # from part of a short rest to most of a long one
@@ -58,7 +59,8 @@ class Design:
     keys (k,): the effect's own; axes (k,): 0..2, the axis whose coefficient it is; prior (k,): a
     size ten times the typical one; choices: tuples of columns of which a session has one for its
     own; powers (k,): 1 for the effect's own columns, 2 and 3 for a square and a cube of them, as
-    a bend beside a slope; record: it is there because a record of the board has that form;
+    a bend beside a slope, 0 for what a session has beside it; record: it is there because a record
+    of the board has that form;
     beside: it is no hypothesis, but what others may have as a discrepancy; positive: none of its
     coefficients is less than nothing, as a width is not; shape: ((parameter, value), ...) of the
     effect that the session gives, and the variant does not name.
@@ -138,7 +140,8 @@ def agreed(sessions):
     strongest = max(float(vibration.max()) for vibration in vibrations)
     shaken_mg = strongest if strongest > LEAST_VIBRATION_MG else 0.0
     return [replace(session, thermal=thermal, fastest=fastest, vibration=vibration,
-                    shaken_mg=shaken_mg) for session, vibration in zip(sessions, vibrations)]
+                    shaken_mg=shaken_mg, number=number, of=len(sessions))
+            for number, (session, vibration) in enumerate(zip(sessions, vibrations))]
 
 
 def library(session, up, sensor, reference_c, chip):
@@ -151,7 +154,8 @@ def library(session, up, sensor, reference_c, chip):
         return of_terms(name, sensor, moment, n, variant, chip=chip, **options)
 
     designs = _thermal(session, m, design, sensor, reference_c) if session.thermal else []
-    designs += [design("warm_up", "tau %g s" % tau, shape={"tau_s": tau}) for tau in WARM_UP_S]
+    warm_up = {tau: design("warm_up", "tau %g s" % tau, shape={"tau_s": tau}) for tau in WARM_UP_S}
+    designs += [*warm_up.values(), *(_of_each_start(session, warm_up[tau]) for tau in STARTED_S)]
     plain = design("hysteresis")
     if sensor == "gyro":
         return [*designs, plain, design("g_sensitivity")]
@@ -207,7 +211,29 @@ def remembered(session, m, plain):
         columns = by_axis([before * np.exp(-session.since / tau)[:, None]]).reshape(-1, 3)
         designs.append(Design("hysteresis", "forgotten, tau %g s" % tau, plain.keys, plain.axes,
                               columns, plain.prior, beside=True))
-    return designs
+    return [*designs, _unseen_at_first(session, plain)]
+
+
+def _unseen_at_first(session, plain):
+    """Design of hysteresis, what the first pose of each session has of it being anything: nobody
+    saw the box come there."""
+    first = np.repeat(session.placement[:, None] == 0, 3, axis=1).astype(float)
+    columns = by_axis([first * (number == session.number) for number in range(session.of)])
+    return replace(plain, variant="from before", keys=plain.keys * (1 + session.of),
+                   axes=plain.axes * (1 + session.of),
+                   columns=np.hstack([plain.columns, columns.reshape(-1, 3 * session.of)]),
+                   prior=np.tile(plain.prior, 1 + session.of),
+                   powers=(1,) * len(plain.keys) + (0,) * len(plain.keys) * session.of)
+
+
+def _of_each_start(session, warm_up):
+    """Design of what a session warms up by more or less than the others: it started warmer or
+    colder. By itself it is no hypothesis."""
+    columns = [warm_up.columns * (number == session.number) for number in range(session.of)]
+    return replace(warm_up, variant=warm_up.variant + ", of each start",
+                   keys=warm_up.keys * session.of, axes=warm_up.axes * session.of,
+                   columns=np.hstack(columns), prior=np.tile(warm_up.prior, session.of),
+                   powers=warm_up.powers * session.of, beside=True)
 
 
 def _creep(session, up, m, design):

@@ -134,3 +134,51 @@ def test_a_pair_of_which_one_is_in_the_registers(captures):
     assert {c["effect"] for c in found if c["effect"]} >= {"quantisation"}
     assert any("thermal_bias" in c["class"] for c in found) and len(found) == 2
     assert all(0.9 < c["share"] <= 1.0 for c in found)
+
+
+def test_what_a_part_remembers_from_before_its_first_pose_may_be_anything(captures):
+    """Nobody saw the box come to its first pose: a reading that remembered nothing there was a
+    step in time and something of history."""
+    each = iter(captures)
+
+    def remembered(t, warm, g):
+        session = blocks.session_of("s", next(each))
+        before, added = np.zeros(3), np.zeros((len(t), 3))
+        ends = [run.first for run in session.runs[1:]] + [len(t)]
+        for run, end in zip(session.runs, ends):
+            added[run.first:end] = [10.0, -14.0, 18.0] * np.tanh(1.6 * before)
+            before = g[run.first:run.end].mean(axis=0)
+        return added
+    cause, = causes(captures, remembered)
+    assert "hysteresis" in cause["class"] and set(cause["class"]) <= {"hysteresis", "creep"}
+    assert cause["axes"] == ["x", "y", "z"] and cause["share"] > 0.98
+    assert cause["value"]["y"] == pytest.approx(-14.0 * np.tanh(1.6), rel=0.15)
+
+
+def test_a_session_that_started_warmer_warms_up_by_less(captures):
+    """Of two time constants, and by another amount in each session, it was a course in time."""
+    times = iter((1.0, 0.7))
+
+    def warms(t, warm, g):
+        return on_z(40.0 * next(times) * (0.65 * np.exp(-t / 55.0) + 0.35 * np.exp(-t / 190.0)))
+    cause, = causes(captures, warms)
+    assert cause["class"] == ["warm_up"] and cause["axes"] == ["z"] and cause["share"] > 0.98
+    assert cause["value"]["z"] == pytest.approx(34.0, rel=0.25)
+
+
+def test_a_matrix_that_levels_off_is_still_g_sensitivity():
+    """Its products of two axes, which few poses show, were expected to be ten times as large as
+    the squares; a stranger of orientation stood beside it, and four other names in its class."""
+    matrix = 0.01 * np.array([[27.0, -9.0, 4.0], [9.0, 18.0, -31.0], [-18.0, 41.0, 13.0]])
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 34})
+    sessions = []
+    for k in range(2):
+        capture = simulated_session.session(plan, k)
+        dps = np.tanh(1.1 * capture.accel / LSB_G) @ matrix.T
+        capture.gyro = np.rint(capture.gyro + dps * capture.meta["gyro_lsb_per_dps"]).astype(
+            np.int16)
+        sessions.append(blocks.session_of(str(k), capture))
+    found = diagnosis.diagnose_sessions(sessions, diagnosis.Settings(jobs=1))
+    assert found.gaps["gyro"].strangers == []
+    cause, = (cause for cause in answer.as_dict(found)["causes"] if cause["sensor"] == "gyro")
+    assert cause["class"] == ["g_sensitivity"] and cause["share"] > 0.99

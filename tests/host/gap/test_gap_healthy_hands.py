@@ -199,14 +199,19 @@ def test_the_earth_turns_round_with_a_box_that_is_turned_on_a_face():
     assert np.abs(size).max() < 1.2
 
 
-def short_rests(added, seconds=1.7, n=4000):
-    """Session of rests of less than two seconds; added: counts of (t in the rest, its start)."""
+def short_rests(added, seconds=1.7, n=4000, longer_s=()):
+    """Session of rests of less than two seconds; added: counts of (t in the rest, its start);
+    longer_s: seconds of further rests at the end, to which nothing is added."""
     generator = np.random.default_rng(3)
     accel = [0.0, 0.0, 16384.0] + 46.0 * generator.standard_normal((n, 3))
     pose, each = np.zeros(n, np.int16), int(100 * seconds)
-    for number, start in enumerate(range(0, n - each, each + 80)):
+    last = n - int(100 * sum(longer_s)) - 80 * len(longer_s)
+    for number, start in enumerate(range(0, last - each, each + 80)):
         pose[start:start + each] = 1 + number % 12
         accel[start:start + each] += added(np.arange(each) / 100.0, start / 100.0)[:, None]
+    for number, longer in enumerate(longer_s):
+        start, last = last + 80, last + 80 + int(100 * longer)
+        pose[start:last] = 1 + number
     still = at_rest(flicker(5, n)).capture
     still.accel, still.pose = np.rint(accel).astype(np.int16), pose
     return blocks.session_of("s", still)
@@ -219,6 +224,16 @@ def test_a_line_shows_in_rests_of_less_than_two_seconds():
     assert found.effect == "vibration" and found.sensor == "accel"
     assert found.value["x"] == pytest.approx(11.0, rel=0.05)
     assert found.hz["x"] == pytest.approx(31.0, abs=0.2)
+
+
+def test_a_line_shows_in_the_rests_of_a_protocol_beside_a_few_long_ones():
+    """15 mg while the box was handled were "no gap" beside two long rests without them."""
+    found, = spectral_lines.findings([short_rests(
+        lambda t, start: 250.0 * np.sin(2.0 * np.pi * 31.0 * (start + t)),
+        seconds=4.0, n=17600, longer_s=(30.0, 30.0))])
+    assert found.effect == "vibration" and found.sensor == "accel"
+    assert [line.letter for line in found.lines] == ["x", "y", "z"]
+    assert [line.hz for line in found.lines] == pytest.approx([31.0] * 3, abs=0.2)
 
 
 @pytest.mark.parametrize("hz,tau", [(4.0, 0.3), (7.0, 0.15), (11.0, 0.4)])

@@ -123,3 +123,27 @@ def test_an_axis_that_is_stuck_for_minutes_says_nothing_of_its_rests():
         counts[first:first + 500, 1] = 41
     damage, = stuck_axes.stuck_for_a_while([session])
     assert damage.axes == ("z",)
+
+
+def test_blocks_that_come_again_later_are_said():
+    """A quarter of the samples were old ones, and no gap."""
+    generator = np.random.default_rng(5)
+    counts = np.rint(np.cumsum(generator.normal(0.0, 2.0, (8000, 3)), axis=0)
+                     + generator.normal(0.0, 6.0, (8000, 3))).astype(np.int16)
+
+    def said(accel):
+        capture = SimpleNamespace(accel=accel, gyro=None)
+        return [d.value for d in held_values.findings([SimpleNamespace(capture=capture)])]
+    assert said(counts) == []
+    stale = counts.reshape(-1, 40, 3).copy()
+    stale[:, 30:] = stale[:, :10]
+    assert said(stale.reshape(-1, 3)) == [{"rows": 1999, "later": 30}]
+
+
+@pytest.mark.parametrize("noise", [0.2, 0.4, 0.8, 1.5])
+def test_coarse_or_periodic_readings_come_again_at_every_distance(noise):
+    generator = np.random.default_rng(6)
+    for wave in (0.0, 3.0):
+        x = wave * np.sin(2.0 * np.pi * np.arange(20000) / 25.0)[:, None] + [0.1, 0.4, 64.2]
+        counts = np.rint(x + noise * generator.standard_normal((20000, 3))).astype(np.int16)
+        assert not present(max(held_values.again_later([counts]))[0])

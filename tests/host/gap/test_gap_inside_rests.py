@@ -73,11 +73,9 @@ def test_one_of_many_tones_is_not_all_of_them(captures):
         hz = np.array([7.0, 32.0, 13.0, 21.0, 44.0])[(t / 5.7).astype(int) % 5]
         counts[:, 1:] += 5e-3 * 16384 * np.sin(2.0 * np.pi * np.cumsum(hz) * 0.01)[:, None]
     found = diagnosed(captures, idle)
-    cause, = found["causes"]
-    assert found["verdict"] == "partly explained" and cause["class"] == ["vibration"]
-    assert cause["share"] < 0.5 and any("elsewhere" in remark for remark in found["remarks"])
-    left, = [w for w in found["where"] if w["axis"] is None and w["domain"] == "frequency"]
-    assert left["share"] == pytest.approx(1.0 - cause["share"], abs=1e-3)
+    assert found["verdict"] == "unexplained" and found["causes"] == []
+    assert {w["axis"] for w in found["where"] if w["domain"] == "frequency"} >= {"y", "z"}
+    assert any("a tone that wanders" in remark for remark in found["remarks"])
 
 
 def test_what_comes_and_goes_at_a_frequency_that_wanders_is_one_vibration(captures):

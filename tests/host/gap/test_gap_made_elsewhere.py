@@ -204,6 +204,20 @@ def test_an_axis_that_is_quieter_at_rest_than_its_sensor_lets_it_has_a_dead_band
     assert samples_judged._dead_band("gyro", [np.rint(rates).astype(np.int16)], [still]) == []
 
 
+@pytest.mark.parametrize("noise, said", [(3.0, ["x", "y", "z"]), (0.05, [])])
+def test_a_gyro_that_is_gated_on_all_axes_has_a_dead_band(noise, said):
+    """All three read 0 in every rest, so that none had noise to judge the others by. What has none
+    in motion either is only coarse."""
+    generator = np.random.default_rng(8)
+    still = np.arange(20000) % 1000 < 800
+    turn = 400.0 * np.sin(2.0 * np.pi * np.arange(20000) / 200.0) * ~still
+    rates = turn[:, None] * [1.0, -0.7, 0.8] + generator.normal(0.0, noise, (20000, 3))
+    gated = np.rint(rates - np.where(np.abs(rates) > 30.0, 900.0 / rates, rates)).astype(np.int16)
+    assert not gated[still].any()
+    found = samples_judged._dead_band("gyro", [gated], [still])
+    assert [axis for f in found for axis in f.axes] == said
+
+
 def shaken(hz, moving):
     """Session of a log that rests for a while, and is then shaken at hz or moved by a hand."""
     generator = np.random.default_rng(9)

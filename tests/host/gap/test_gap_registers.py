@@ -142,6 +142,15 @@ def test_a_bit_of_256_is_seen_where_the_numbers_are_the_chips_own():
     assert torn_reads.jumps([decimals]) == []
 
 
+def test_a_strong_vibration_now_and_then_is_no_bit_that_is_read_wrongly():
+    """Two thousand samples of 140 mg at 43 Hz "were off by 256 counts"."""
+    session = resting(40.0, n=4000)
+    t = np.arange(24000) / 100.0
+    shakes = 1147.0 * np.sin(2.0 * np.pi * np.cumsum(43.0 + 0.3 * np.sin(t / 7.0)) / 100.0)
+    session.capture.accel[:, 2] += np.rint(shakes * (t % 40.0 < 20.0)).astype(np.int16)
+    assert torn_reads.jumps([session]) == []
+
+
 @pytest.mark.parametrize("noise", [0.0, 0.15, 0.3, 1.0])
 def test_what_rounding_leaves_of_a_mean(noise):
     """Against rounding tried: levels spread over a step, many samples each."""
@@ -273,6 +282,32 @@ def test_noise_that_two_axes_have_in_common_is_said(share, said):
     assert len(found) == said
     assert all("x axis" in words and "y axis" in words for words in found)
     assert noise_bursts.in_common([session], ["accel"]) == []
+
+
+def test_a_session_between_two_coarse_codes_is_no_louder_one():
+    """Steps of 64 counts: in one session the noise was a hundred times what it was in another."""
+    two = []
+    for number, level in enumerate((0.1, 0.5)):
+        generator = np.random.default_rng(number)
+        counts = 64.0 * (level + np.repeat(np.arange(12), 1000)[:, None] + np.zeros(3))
+        counts = 64.0 * np.rint((counts + 8.0 * generator.normal(size=counts.shape)) / 64.0)
+        two.append(blocks.session_of(str(number), capture_file.Capture(
+            {"sensor": "other", "rate_hz": 100.0, "accel_lsb_per_g": 8192.0},
+            10_000 * np.arange(12000), counts.astype(np.int16),
+            pose=np.repeat(np.arange(1, 13), 1000))))
+    assert noise_bursts.unsteady(two) == []
+
+
+def test_a_converter_with_fewer_codes_further_out_cuts_nothing_off():
+    """Steps that grow with what is read: the largest code of most peaks was a level cut off."""
+    two = captures()
+    for capture in two:
+        size = np.log1p(255.0 * np.abs(capture.accel / 32768.0)) / np.log(256.0)
+        back = 32768.0 * np.expm1(np.rint(255.0 * size) / 255.0 * np.log(256.0)) / 255.0
+        capture.accel = np.rint(np.sign(capture.accel) * back).astype(np.int16)
+    found = diagnosed(two)
+    assert found.findings == () or "saturation" not in [f.effect for f in found.findings]
+    assert found.verdict == "unexplained"
 
 
 def test_a_knock_that_all_axes_feel_is_no_noise_in_common():

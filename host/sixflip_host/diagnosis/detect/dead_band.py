@@ -1,6 +1,7 @@
 """A dead band without a code that is missing, by two things that it does.
 
-At rest an axis within it reads 0 with no noise, or with less than its sensor's others let it have.
+At rest an axis within it reads 0 with no noise, or with less than its sensor's others let it have;
+where all of them do, with less than they have in motion.
 What passes through it, where readings begin at 0 at its edges, stays at 0 for as long as the band
 takes: each time a column goes through 0 its rate before and after says how far it has come, and
 the readings say how far it seems to have come. What is missing is twice the band. Only what moves
@@ -14,6 +15,7 @@ from scipy import special
 from ...capture.registers import LEAST_NOISE, QUIET, WINDOW, steps
 from ..odds import Z_90
 from .codes import number_of_runs
+from .stuck_axes import unforeseen
 
 FASTER = 3.0  # than the noise, from a sample to the next: its sign is that of the motion
 LONGEST = 8  # samples at 0 while something passes; more is a pause
@@ -65,8 +67,11 @@ def nats_of_rests(columns, at_rest):
         middle = OF_SIZES * np.median(np.abs(change), axis=0)
         noise = np.where(middle > 0.0, np.minimum(middle, change.std(axis=0)),
                          change.std(axis=0)) / np.sqrt(2.0)
+        # Where all three rest at 0, what they have beyond it while the box is moved.
+        moved = 0.0 if noise.any() else float(np.median([
+            unforeseen(column[~resting & (column != 0)]) for column in counts.T]))
         for axis in range(3):
-            usual = float(np.median(np.delete(noise, axis)))
+            usual = max(float(np.median(np.delete(noise, axis))), moved)
             zero = x[:, axis] == 0
             # What never leaves 0 is stuck, and what leaves it to one side has its end there.
             moves = counts[:, axis].min() < 0 < counts[:, axis].max() and counts[

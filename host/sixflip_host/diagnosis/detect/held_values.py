@@ -26,6 +26,11 @@ HELD = 0.05  # share of rows that are held: fewer are single rows, not a rate
 # is 1, and of a sensor that is read faster than it measures half a row at most.
 AT_RANDOM = 0.5
 MOVES = 8.0  # times the noise, from a row to the next: six deviations of a difference at rest
+# Rows that come again on end; rows later, at most: as many as a chip's FIFO and two drivers'
+# buffers hold; distances to either side that what is slow or periodic has as well; rows of a
+# session that are looked at.
+ON_END, FARTHEST, NEAR, LONGEST = 3, 300, 2, 100_000
+ROW = np.array([1, 1 << 17, 1 << 34])  # of three numbers of 16 bits, which makes one of them
 NOT_READ = "not read"  # kind of the Damage of samples that are missing though rows are not
 TIMES = {2: "twice", 3: "three times", 4: "four times"}
 
@@ -43,6 +48,7 @@ def findings(sessions):
         if share < HELD:
             nats, held = (sum(v) for v in zip(*(read_again(c) for c in columns)))
         if not present(nats):
+            damages += _blocks_again(sensor, columns)
             continue
         if share < HELD:
             said = "about %.0f rows of the %s are the row before once more: read again" % (
@@ -57,6 +63,42 @@ def findings(sessions):
             "repeats", sensor, (), "timing", "the %s gives %s: it is read faster than it measures,"
             " or rows were filled in" % (words, said), nats, {"times": round(times, 3)}))
     return damages
+
+
+def _blocks_again(sensor, columns):
+    """[Damage] of whole blocks of rows that come again later: a FIFO that is read twice, or a
+    buffer that is sent before it is filled."""
+    nats, lag, rows = max(again_later(columns))
+    if not present(nats):
+        return []
+    said = "%d rows of the %s, %d on end and more, are those of %d rows before once more" % (
+        rows, SENSORS[sensor], ON_END, lag)
+    return [Damage("repeats", sensor, (), "timing", said, nats, {"rows": rows, "later": lag})]
+
+
+def again_later(columns):
+    """[(nats of rows coming again over chance, rows later, how many)] of each distance of rows, of
+    all columns (n, 3). What repeats by chance does so at every distance alike, or nearly; of what
+    is periodic as often as its noise reads one code twice."""
+    found, periodic = np.zeros(FARTHEST + 1, int), 1.0
+    for counts in columns:
+        twice = [by_chance(unforeseen(column / step, still=True)) for column, step in zip(
+            counts.T.astype(np.int64), np.maximum(steps(counts), 1))]
+        periodic += len(counts[:LONGEST]) * math.prod(twice) ** ON_END
+        row = counts[:LONGEST].astype(np.int64) @ ROW
+        fresh = np.append(False, row[1:] != row[:-1])
+        for lag in range(2, min(FARTHEST + 1, len(row))):
+            same = (row[lag:] == row[:-lag]) & fresh[lag:] & fresh[:-lag]
+            if same.sum() >= ON_END:
+                found[lag] += np.count_nonzero(lengths(same) >= ON_END)
+    near = np.array([found[lag - NEAR:lag + NEAR + 1] for lag in range(2 + NEAR, FARTHEST - NEAR)])
+    near[:, NEAR] = 0
+    expected = np.maximum(max(float(np.median(found)), periodic), near.max(axis=1))
+    there = found[2 + NEAR:FARTHEST - NEAR]
+    # Of rows that come again on end the first says that the others will: Poisson, of blocks.
+    nats = (there * np.log(np.maximum(there / expected, 1.0))
+            - np.maximum(there - expected, 0.0)) / ON_END - math.log(len(there))
+    return [(float(n), lag, int(k)) for n, lag, k in zip(nats, range(2 + NEAR, FARTHEST), there)]
 
 
 def as_read(captures):

@@ -19,7 +19,8 @@ from .ringing import LIFTS_S, SETTLES_S
 
 WINDOW_S = 0.5  # a touch or a step on the floor rings for less
 LOUD = 9.0  # times the usual variance: three times as loud, which no touch is mistaken for
-ROUNDING = 1.0 / 6.0  # counts²: of differences of readings that nothing but rounding moves
+ROUNDING = 1.0 / 6.0  # steps²: of differences of readings that nothing but rounding moves
+BETWEEN_CODES = 0.5  # steps²: of a reading without noise that is as often the one as the other
 FEWEST_WINDOWS = 8  # of a session: four seconds at rest
 FEWEST, FEWEST_RESTS = 4, 3  # windows, rests with one: a single event rings in one rest, or in two
 FEWEST_SAMPLES = 64  # of a rest, whose noise is known to a tenth
@@ -68,8 +69,7 @@ def of_rests(power, place, step):
     if not len(rests):
         return rests, np.zeros(0)
     level = np.array([np.median(power[place == number], axis=0) for number in rests])
-    # Between two codes a reading without noise is as often the one as the other.
-    usual = np.maximum(np.median(level, axis=0), 0.5 * step ** 2)
+    usual = np.maximum(np.median(level, axis=0), BETWEEN_CODES * step ** 2)
     return rests, (level / usual).max(axis=1)
 
 
@@ -131,16 +131,17 @@ def _by_window(session, names, first, end):
     return steps.transpose(0, 2, 1) @ steps / m
 
 
-def loudest(sessions, powers, sensor):
+def loudest(sessions, every, sensor):
     """(times as loud, p, name of the loudest session, of the quietest) of the axis whose noise
-    differs most between sessions, that of the same time, in the median half second; powers: those
-    of the sessions' windows()."""
+    differs most between sessions, that of the same time, in the median half second; every: the
+    sessions' windows() with the steps (3,) that their counts lie on."""
     levels = []
-    for session, power in zip(sessions, powers):
+    for session, (power, _, step) in zip(sessions, every):
         if len(power) < FEWEST_WINDOWS:
             return 1.0, 1.0, "", ""
         unit = registers.unit_of_count(session.capture.meta, sensor)
-        levels.append(np.maximum(np.median(power, axis=0), ROUNDING) * unit ** 2 / session.rate)
+        level = np.maximum(np.median(power, axis=0), BETWEEN_CODES * step ** 2)
+        levels.append(level * unit ** 2 / session.rate)
     levels = np.array(levels)
     axis = int((levels.max(axis=0) / levels.min(axis=0)).argmax())
     high, low = levels[:, axis].argmax(), levels[:, axis].argmin()
@@ -174,6 +175,7 @@ def following(session, sensor):
     Biometrika 30 (1938) 81; Theil-Sen]. What shakes the surroundings is felt along the vertical,
     whichever end of an axis is up."""
     counts, best = getattr(session.capture, sensor), Following()
+    step = registers.steps(counts)
     rests = [(first, end) for _, first, end in session.runs if end - first >= FEWEST_SAMPLES]
     if len(rests) < FEWEST_COMPARED:
         return best
@@ -184,7 +186,7 @@ def following(session, sensor):
     for axis in range(3):
         power = np.array([(np.diff(counts[first:end, axis].astype(float)) ** 2).mean()
                           for first, end in rests])
-        level = 0.5 * np.log(np.maximum(power, ROUNDING))
+        level = 0.5 * np.log(np.maximum(power, BETWEEN_CODES * step[axis] ** 2))
         for name, value in variables.items():
             if not np.ptp(value):
                 continue
@@ -237,7 +239,7 @@ def unsteady(sessions):
             sentences.append((sensor, "the noise of the %s in %d of %d rests is up to %.2g times "
                               "what it is in the others" % (words, louder, number, times), p))
             continue
-        times, p, high, low = loudest(sessions, [power for power, *_ in every], sensor)
+        times, p, high, low = loudest(sessions, every, sensor)
         if present(-np.log(max(p, odds.SMALLEST))):
             sentences.append((
                 sensor, "the noise of the %s in %s is %.2g times what it is in %s"

@@ -16,8 +16,9 @@ from . import line_across_rests, line_frequency, ringing
 from .detection import Finding
 from .line_frequency import Line
 
-# Of a stretch: a rest of the paper's protocol, a short one, one on the way.
-LENGTHS_S, MOVING_S = (5.0, 2.0, 1.0), 2.0
+# Of a stretch, without the edges: a rest of the paper's protocol (5 s), shorter ones (4 s, 2 s),
+# a short one, one on the way.
+LENGTHS_S, MOVING_S = (4.5, 3.5, 1.8, 1.0), 2.0
 LOWEST_HZ, LOWEST_MOVING_HZ = 0.7, 2.0  # a hand or a vehicle moves more slowly than that
 # What has no steady frequency is a motion's own up to here, where nothing rests: a hand trembles
 # at 4 to 12 Hz [Elble & Koller, Tremor (1990)], steps and swings are slower.
@@ -29,6 +30,10 @@ LEAST_CYCLES = 1.4  # of a line in a stretch: what settles in a rest has less
 BRIEF_S = 1.5  # a shorter stretch is all of its rest, and begins where the box was just put down
 CHANCE = 0.001  # six axes together: well below what registers and spectra share, see odds.py
 FEWEST = 4  # stretches
+# Of what the shortest stretches hold of the rests, that longer ones must hold: a few long rests
+# say nothing of what is there while the box is handled.
+HELD = 0.5
+EDGE_S = 0.1  # of either end of a rest, which may be the move's yet
 MEDIAN_SHARE = 0.25  # of the band: wider than any line, narrower than a filter's colour
 # Of the counts: rounding makes lines as large as that, unless the noise is half a step or more,
 # which makes its error noise as well [Widrow & Kollar, Quantization Noise (2008)].
@@ -47,11 +52,13 @@ LEAST_SHARE = 0.25  # of the standard deviation of the noise: smaller is no matt
 # there scatters as much as its mean (noise through a resonance is exponential). Something that
 # runs is steadier. Only what is steady, or strong, is named.
 STEADY, STRONG_SHARE = 0.6, 0.4
+MOST = 0.5  # of what stands out of the noise: of two explanations that which takes more
 
 
-def findings(sessions, rings=()):
+def findings(sessions, rings=(), tones=()):
     """list of Finding: at most one vibration a sensor; rings: (sensor, axis letter) that are
-    louder after each move, whose line has to go on over the rests."""
+    louder after each move, whose line has to go on over the rests; tones: (sensor, axis letter)
+    that have a tone whose frequency wanders: what stands still for a part of it is no line."""
     vibrations = []
     for sensor in ("accel", "gyro"):
         if any(getattr(s.capture, sensor) is None for s in sessions):
@@ -59,6 +66,8 @@ def findings(sessions, rings=()):
         lines = [line for line in (line_of_axis(sessions, sensor, i) for i in range(3)) if line]
         lines = [line for line in lines if not ((sensor, line.letter) in rings and ringing.fades(
             sessions, sensor, line.axis, line.hz))]
+        lines = [line for line in lines if line.steady or (sensor, line.letter) not in tones
+                 or line.power > MOST * line.excess]
         if lines:
             vibrations.append(told(lines, sensor, sessions[0].rate))
     return vibrations
@@ -125,10 +134,14 @@ def rests(sessions, sensor):
     whole capture where there is no rest."""
     if not any(session.runs for session in sessions):
         return _stretches(sessions, sensor, int(MOVING_S * sessions[0].rate), whole=True)
-    for seconds in LENGTHS_S:
-        stretches = _stretches(sessions, sensor, int(seconds * sessions[0].rate))
-        if len(stretches) >= FEWEST:
-            return stretches
+    rate = sessions[0].rate
+    numbers = {int(seconds * rate): sum(len(range(*_starts(s, run, int(seconds * rate))))
+                                        for s in sessions for run in s.runs)
+               for seconds in LENGTHS_S}
+    most = max(length * number for length, number in numbers.items())
+    for length, number in numbers.items():
+        if number >= FEWEST and length * number >= HELD * most:
+            return _stretches(sessions, sensor, length)
     return []
 
 
@@ -137,11 +150,17 @@ def _stretches(sessions, sensor, length, whole=False):
     for session in sessions:
         scale = unit_of_count(session.capture.meta, sensor)
         counts = getattr(session.capture, sensor)
-        for _, first, end in [(0, 0, len(counts))] if whole else session.runs:
-            first, end = first + int(0.1 * session.rate), end - int(0.1 * session.rate)
-            for start in range(first, end - length + 1, length):
+        for run in [(0, 0, len(counts))] if whole else session.runs:
+            for start in range(*_starts(session, run, length)):
                 stretches.append(counts[start:start + length] * scale)
     return stretches
+
+
+def _starts(session, run, length):
+    """(start, stop, step) of a range: where stretches of `length` samples of a rest begin."""
+    _, first, end = run
+    edge = int(EDGE_S * session.rate)
+    return first + edge, end - edge - length + 1, length
 
 
 def spectrum(stretches, axis):

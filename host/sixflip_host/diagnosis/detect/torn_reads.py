@@ -51,9 +51,7 @@ def finding(sessions, sensor, banded=()):
     nats, number, torn = competed(samples)
     if present(nats):
         unlike = [_samples(sessions, sensor, banded, width) for width in NO_PAGES]
-        most = max((competed(other)[0] for other in unlike if len(other)), default=0.0)
-        # In standard deviations, of which nats are half the square.
-        nats = 0.5 * max(math.sqrt(2.0 * nats) - math.sqrt(2.0 * max(most, 0.0)), 0.0) ** 2
+        nats = _beyond(nats, [competed(other)[0] for other in unlike if len(other)])
     if not present(nats):
         return []
     # Of the samples looked at: whose page changed, and whose change the tear hid.
@@ -63,6 +61,13 @@ def finding(sessions, sensor, banded=()):
     return [Finding("torn_reads", sensor, [], {"chance": round(percent, 3)}, "%", nats, "noise",
                     "about %.0f samples mix the bytes of two readings" % number,
                     {"chance": (max(percent - half, 0.0), percent + half)}, **torn.share())]
+
+
+def _beyond(nats, of_no_page):
+    """What nats of pages are beyond the most that widths which are no page have, in standard
+    deviations, of which nats are half the square."""
+    most = max([*of_no_page, 0.0])
+    return 0.5 * max(math.sqrt(2.0 * max(nats, 0.0)) - math.sqrt(2.0 * most), 0.0) ** 2
 
 
 def _samples(sessions, sensor, banded, width):
@@ -91,9 +96,12 @@ def jumps(sessions, without=()):
         # A hand trembles as far as a page is wide: only rests are quiet enough.
         rests = [np.concatenate([counts[run.first:run.end] for run in s.runs])
                  for s, counts in zip(counted, columns) if s.runs]
-        tables = [tabled(counts[:, axis].astype(np.int64), False)
-                  for counts in rests if len(counts) >= FEWEST for axis in range(3)]
-        nats, number = paged(together(tables))
+        by_width = (together([tabled(counts[:, axis].astype(np.int64), False, width=width)
+                              for counts in rests if len(counts) >= FEWEST for axis in range(3)])
+                    for width in (PAGE, *NO_PAGES))
+        nats, number = paged(next(by_width))
+        if present(nats):
+            nats = _beyond(nats, [paged(other)[0] for other in by_width])
         if present(nats):
             sentences.append((
                 sensor, "about %.0f samples of the %s are off by 256 counts: a bit that is read "

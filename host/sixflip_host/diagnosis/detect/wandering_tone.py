@@ -21,9 +21,8 @@ OFTEN = 0.25  # share of the stretches that has one: less is a visit, no state o
 WANDERS = 3.0  # bins, quartile to quartile: the lobe of a steady line is four bins wide
 
 
-def axes(sessions, sensor, known=()):
-    """[(axis letter, nats, (lowest, highest) Hz)] of a sensor at rest; known: axes that are shaken
-    at a frequency that is known."""
+def axes(sessions, sensor):
+    """[(axis letter, nats, (lowest, highest) Hz)] of a sensor at rest."""
     if any(getattr(s.capture, sensor) is None for s in sessions) or not any(
             s.runs for s in sessions):
         return []
@@ -31,7 +30,7 @@ def axes(sessions, sensor, known=()):
     if len(stretches) < FEWEST:
         return []
     tones = [("xyz"[axis], *_tone(np.array([s[:, axis] for s in stretches]), sessions[0].rate))
-             for axis in range(3) if "xyz"[axis] not in known]
+             for axis in range(3)]
     return [tone for tone in tones if tone[1] > 0.0]
 
 
