@@ -155,16 +155,18 @@ def spread(alone, of_z, both, of_d):
 
 
 def fieller(gap, closed, variance_gap, variance_closed, both):
-    """(share, (low, high)); (share or None, None) where the interval is unbounded. both: the
-    covariance."""
+    """(share, (low, high)); (None, None) where the interval is unbounded; a share of 0 where what
+    is foretold lies further off than nothing does. both: the covariance."""
     z2 = odds.Z_90 ** 2
     a = gap * gap - z2 * variance_gap
     b = -2.0 * (gap * closed - z2 * both)
     c = closed * closed - z2 * variance_closed
     root = b * b - 4.0 * a * c
-    if a <= 0.0 or root < 0.0 or closed <= 0.0:  # nothing closed: too little to learn it from
+    if a <= 0.0 or root < 0.0:
         return None, None
     low, high = (-b - math.sqrt(root)) / (2 * a), (-b + math.sqrt(root)) / (2 * a)
+    if closed <= 0.0:  # too little to learn it from, or surely nothing
+        return (None, None) if high > 0.0 else (0.0, (0.0, 0.0))
     return min(closed / gap, 1.0), (min(low, 1.0), min(high, 1.0))
 
 

@@ -90,8 +90,10 @@ def judge(sessions, settings=ALONE, damages=()):
     without_spikes, wild = spikes.without_spikes(sessions, leaping)
     findings, shaped = odd_samples.not_normal(without_spikes, findings, leaping)
     noisy = leaping | {f.sensor for f in findings if f.effect in NOISY}
-    unsteady = [burst for burst in [*noise_bursts.unsteady(without_spikes), *wild]
-                if burst[0] not in noisy]
+    unsteady = [burst for burst in noise_bursts.unsteady(without_spikes) if burst[0] not in noisy]
+    # A rail cuts off what moves: it makes no single sample of a rest stand out.
+    unsteady += [spike for spike in wild if spike[0] not in leaping | {
+        f.sensor for f in findings if f.effect in NOISY and f.effect != "saturation"}]
     unsteady += torn_reads.jumps(sessions, jumpy)
     unsteady += [(sensor, noise_shape.words(sensor, axis, *measures), odds.chance(nats))
                  for sensor, axis, nats, *measures in shaped]

@@ -147,14 +147,22 @@ class SensorGap:
         if drift and a_part(self.posterior.places["drift"]["drift"], ["drift"], drift.share):
             drift = None
             forms += [form for form in self.posterior.best.forms if form.effect == "drift"]
-        if not forms:
+        return self._nameless(model, forms, drift=drift, causes=[
+            c for c in self.causes if c not in parts]) if forms else self
+
+    def refuted(self, model):
+        """The gap without its causes where what the other sessions say of them lies further off
+        from a session held out than nothing does: they are none of the sensor's."""
+        if self.shrinkage.share != 0.0:
             return self
-        return replace(self, causes=[c for c in self.causes if c not in parts], drift=drift,
-                       chosen=[form for form in self.chosen if form not in forms],
+        return self._nameless(model, self.chosen, causes=[])
+
+    def _nameless(self, model, forms, **others):
+        return replace(self, chosen=[form for form in self.chosen if form not in forms],
                        strangers=[*self.strangers, *forms], unexplained=True,
                        strange_axes={**self.strange_axes, **{
                            f.effect: members.axes_of(model, self.posterior, f)
-                           for f in forms}})
+                           for f in forms}}, **others)
 
     def with_effect(self, name):
         """The same with an effect among the chosen ones, whether it passes the threshold or
