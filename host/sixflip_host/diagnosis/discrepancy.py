@@ -16,8 +16,9 @@ from .hypotheses import domain
 BESIDE = 0  # the power of a column that is not the effect's own, see terms.Design
 RELATIVE = 0.5  # of an effect: how far a part's own form may be from the library's
 # Of the functions of one kind, rms: one that shows less of itself has no larger coefficient for
-# that, as a product of two axes where every pose is flat.
-FAINT = 0.7
+# that, as a product of two axes where every pose is flat. Those of gravity's direction are as
+# large as one another in a box that may lie anyhow, those of a temperature as it happens to move.
+FAINT, FAINT_POSES, OF_POSES = 0.1, 0.7, ("orientation", "bend")
 # What an effect, or all of a domain, is a function of: the strangers that have that variable.
 VARIABLE = {"thermal_scale": ("thermal_orientation",), "vibration_rectification": ("shaking",),
             "temperature": ("temperature",), "time": ("time",),
@@ -26,7 +27,6 @@ VARIABLE = {"thermal_scale": ("thermal_orientation",), "vibration_rectification"
             # of the gyro in its turns a bend's own variable is the rate
             "orientation": ("orientation", "bend", "amplitude"), "motion": ("motion",),
             "amplitude": ("amplitude",)}
-
 
 # Of time everything is a function, and of a temperature's rate the temperature is the integral:
 # what is another form of these effects is made of their own time constants and lags. So is a
@@ -47,9 +47,10 @@ def alike(form, other):
 
 def may_be_left_by(form, other):
     """Whether a named effect may be what the form of another one leaves: it is a function of that
-    one's variable, or of time, of which every temperature is a function."""
+    one's variable, or one of both is of time, of which every temperature is a function."""
     variables = set(_variable(other.effect))
-    return _meet(form, other, variables | ({"time"} if "temperature" in variables else set()))
+    return _meet(form, other, variables | (
+        {"time", "temperature"} if variables & {"time", "temperature"} else set()))
 
 
 def names_of(forms, stranger):
@@ -117,7 +118,8 @@ def with_discrepancy(model, forms, scored, form):
         if size[axis] > 0.0 and squares > 0.0 and column not in own:
             columns.append(column)
             axes.append(axis)
-            shows = max(squares, FAINT ** 2 * largest[axis, number])
+            faint = FAINT_POSES if designs[number].effect in OF_POSES else FAINT
+            shows = max(squares, faint ** 2 * largest[axis, number])
             prior.append(RELATIVE * size[axis] / np.sqrt(shows))
     if not columns:
         return None

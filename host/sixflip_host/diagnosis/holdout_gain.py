@@ -17,7 +17,7 @@ In motion a session is held out at a time by what the others say of the sizes, o
 where no session shows them alone.
 """
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from . import adequacy, between_sessions, coefficient_fits, excess, hypotheses, 
 DRAWN = 400  # of noise: their variance is known to 7 %, an interval's length to 4 %
 DRAWN_FLOOR = 100  # where its mean alone is asked for: a floor of 100 contrasts to half a percent
 UNTOLD = 0.1  # of an effect's power: a variance of its size of a tenth of its square
+FAR = 6.63  # times their mean, that squares are in one of a hundred at most, of one size or more
 RESAMPLED = 400  # of which 20 lie beyond either end of a 90 % interval
 
 
@@ -98,7 +99,23 @@ def shrinkage(data, chosen, index, usual, wanders=False):
         noise = own.draw(point, generator, drawn)
         beside = beside + _sums(own, point, _foretold(own, others, shared), noise)
     # Each session against the others: one more contrast than there are apart from each other.
-    return total.shrinkage(bool(chosen), beside.times((sessions - 1.0) / sessions))
+    whole = total.shrinkage(bool(chosen), beside.times((sessions - 1.0) / sessions))
+    if whole.share == 0.0 and total.after - total.floor < FAR * _untold(
+            data.units, fits, metrics, shared):
+        whole = replace(whole, share=None, interval=None)  # the others hardly tell the sizes
+    return whole
+
+
+def _untold(units, fits, metrics, shared):
+    """Expectation of the weighted squares of what the sizes that the others tell are off by."""
+    total = 0.0
+    for held, (unit, metric) in enumerate(zip(units, metrics)):
+        if not unit.between:
+            others = fits[:held] + fits[held + 1:] or fits
+            covariance = coefficient_fits.coefficients(others, shared)[1][0]
+            products = unit.products(unit.columns[:, shared.index], metric)
+            total += float((products * covariance).sum())
+    return total
 
 
 def _foretold(unit, others, shared):

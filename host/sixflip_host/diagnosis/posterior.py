@@ -105,10 +105,11 @@ def _worth(scored, cost):
 
 def _refined(model, forms, best, cost):
     """The best set with members exchanged, one at a time, as long as that gains; without those
-    that the others have made superfluous."""
-    changed = True
+    that the others have made superfluous: of all that were come by, the best."""
+    changed, reached = True, []
     while changed and best.forms:
         best, changed = _pruned(model, best, cost), False
+        reached.append(best)
         for form in best.forms:
             fewer = model.scored(tuple(f for f in best.forms if f is not form))
             better = max((rival for _, rival in _rivals(model, forms, fewer, form, cost)),
@@ -116,7 +117,7 @@ def _refined(model, forms, best, cost):
             if _worth(better, cost) > _worth(best, cost) + 1e-3:
                 best, changed = _with_discrepancy(model, forms, better, cost), True
                 break
-    return best
+    return max([best, *reached], key=lambda s: _worth(s, cost))
 
 
 def _pruned(model, best, cost):

@@ -76,7 +76,8 @@ def shared(session, up, sensor, reference_c):
             designs.append(_smooth("temperature", [t, t ** 2, t ** 3], n, scale,
                                    "lag %g s" % lag if lag else ""))
         t = (session.temperature - reference_c) / 5.0
-        designs.append(_smooth("thermal_orientation", [t * f[:, i] for i in range(3)], n, scale))
+        designs.append(_smooth("thermal_orientation", [
+            power * f[:, i] for power in (t, t ** 2) for i in range(3)], n, scale))
     before = np.stack(m.before, 1)
     history = [before[:, i] for i in range(3)] + [before[:, i] * before[:, j] for i in range(3)
                                                   for j in range(i)]

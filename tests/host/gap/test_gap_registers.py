@@ -310,6 +310,19 @@ def test_a_converter_with_fewer_codes_further_out_cuts_nothing_off():
     assert found.verdict == "unexplained"
 
 
+def test_spikes_that_reach_the_rail_are_spikes():
+    """Every third of them is cut off there, and that was "explained: saturation"."""
+    two, generator = captures(seed=73), np.random.default_rng(3)
+    for capture in two:
+        rows = np.flatnonzero(generator.random(len(capture.accel)) < 0.008)
+        jumped = capture.accel[rows].astype(float) + generator.normal(0.0, 25000.0, (len(rows), 3))
+        capture.accel[rows] = np.clip(jumped, -32768, 32767).astype(np.int16)
+    found = diagnosed(two)
+    assert "saturation" in [f.effect for f in found.findings]
+    assert found.verdict == "partly explained"
+    assert ("accel", "noise") in [(w.sensor, w.domain) for w in found.where]
+
+
 def test_a_knock_that_all_axes_feel_is_no_noise_in_common():
     session = resting(10.0, n=600)
     session.capture.accel[800:830] += np.rint(np.random.default_rng(2).normal(

@@ -24,6 +24,9 @@ def test_fieller_covers_the_true_share_and_owns_up_to_too_small_a_gap():
     assert number > 550
     assert 0.84 <= covered / number <= 0.97
     assert holdout_gain.fieller(3.0, 2.0, 412.0, 4.0, 6.0) == (None, None)
+    # What is foretold lies further off than nothing: surely, or as far as one can tell.
+    assert holdout_gain.fieller(30.0, -20.0, 4.0, 9.0, 0.0) == (0.0, (0.0, 0.0))
+    assert holdout_gain.fieller(30.0, -3.0, 4.0, 9.0, 0.0) == (None, None)
 
 
 def test_false_discoveries_are_held_down():

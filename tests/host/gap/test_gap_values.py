@@ -12,6 +12,7 @@ from sixflip_host.diagnosis import (
     diagnosis,
     holdout_gain,
     rest_model,
+    scored_sets,
     turn_model,
 )
 from sixflip_host.experiment import attitude_fit, blocks, terms, turns
@@ -158,6 +159,18 @@ def test_adding_an_effect_changes_nothing_that_was_found(found):
     closed_loops.close_all(found, ["creep"])
     assert json.dumps(answer.as_dict(found)) == before
     assert isinstance(more.shrinkage, holdout_gain.Shrinkage)
+
+
+def test_a_cause_that_takes_what_is_held_out_further_off_has_no_name(found):
+    """A lump of dust was "cubic" beside figures that grew by a quarter with it."""
+    gap = found.gaps["accel"]
+    model = scored_sets.Model(gap.units, gap.data.statistics, gap.noise)
+    assert gap.refuted(model) is gap and [c.effect for c in gap.causes] == ["thermal_bias"]
+    further = holdout_gain.Shrinkage(1.0, 1.25, 0.3, 0.0, (0.0, 0.0))
+    held = dataclasses.replace(gap, shrinkage=further).refuted(model)
+    assert held.causes == [] and held.chosen == [] and held.unexplained
+    assert [f.effect for f in held.strangers] == ["thermal_bias"]
+    assert held.strange_axes["thermal_bias"]
 
 
 def test_an_interval_of_a_drift_is_that_of_its_likelihood():
