@@ -53,7 +53,7 @@ def search(gap):
     boxes = [f for f in forms if f.effect == "box_tilt"]
     # No cause has the very form of the library, and what that leaves leans the faces as well.
     cost = cutoffs.for_protocol(off, boxes, gap.noise).member + gap.cost.form * max(
-        gap.posterior.gains.values(), default=0.0)
+        (cause.score for cause in gap.causes), default=0.0)
     gain = best.score - without.score
     if gain <= cost:
         return [], data

@@ -20,7 +20,8 @@ RELATIVE = 0.5  # of an effect: how far a part's own form may be from the librar
 # large as one another in a box that may lie anyhow, those of a temperature as it happens to move.
 FAINT, FAINT_POSES, OF_POSES = 0.1, 0.7, ("orientation", "bend")
 # What an effect, or all of a domain, is a function of: the strangers that have that variable.
-VARIABLE = {"thermal_scale": ("thermal_orientation",), "vibration_rectification": ("shaking",),
+VARIABLE = {"thermal_scale": ("thermal_orientation", "thermal_bend"),
+            "vibration_rectification": ("shaking",),
             "temperature": ("temperature",), "time": ("time",),
             "history": ("history", "time_since_move"),
             "time_since_move": ("history", "time_since_move"),
@@ -84,10 +85,12 @@ def _of_variable(designs, forms, names, variant):
 
 
 def _of_effect(designs, form):
-    """[(column, axis, number of its design)] of a form's other variants."""
+    """[(column, axis, number of its design)] of a form's other variants, those that are one of
+    them again with more beside it left out."""
     pairs, start = [], 0
     for number, design in enumerate(designs):
-        if design.effect == form.effect and design.variant != form.variant:
+        if design.effect == form.effect and design.variant != form.variant \
+                and BESIDE not in design.powers:
             pairs += zip(range(start, start + len(design.keys)), design.axes,
                          [number] * len(design.keys))
         start += len(design.keys)
@@ -108,22 +111,26 @@ def with_discrepancy(model, forms, scored, form):
     theta = evidence.coefficients(scored.fits, shared)[0][0]
     shown = _shown(model.units, scored.fits, np.array([*own, *(c for c, *_ in free)], dtype=int))
     size, largest = np.zeros(3), {}
-    for column, axis, squares in zip(own, form.axes, shown):
+    for column, axis, power, squares in zip(own, form.axes, form.powers, shown):
+        if power == BESIDE:
+            continue
         place = np.flatnonzero(shared.index == column)[0]
         size[axis] = np.hypot(size[axis], theta[place] * np.sqrt(squares))
     for (_, *kind), squares in zip(free, shown[len(own):]):
         largest[tuple(kind)] = max(largest.get(tuple(kind), 0.0), squares)
-    columns, prior, axes = [], [], []
+    columns, prior, axes, weights = [], [], [], []
     for (column, axis, number), squares in zip(free, shown[len(own):]):
         if size[axis] > 0.0 and squares > 0.0 and column not in own:
             columns.append(column)
             axes.append(axis)
+            # Of columns that each session has one of its own of, one is there at a time.
+            weights.append(len(set(designs[number].keys)) / len(designs[number].keys))
             faint = FAINT_POSES if designs[number].effect in OF_POSES else FAINT
             shows = max(squares, faint ** 2 * largest[axis, number])
             prior.append(RELATIVE * size[axis] / np.sqrt(shows))
     if not columns:
         return None
-    prior = np.array(prior) / np.sqrt(np.bincount(axes, minlength=3)[axes])
+    prior = np.array(prior) / np.sqrt(np.bincount(axes, weights, 3)[axes])
     return replace(form, keys=form.keys + tuple("xyz"[a] for a in axes),
                    axes=form.axes + tuple(axes), powers=form.powers + (BESIDE,) * len(axes),
                    shared=form.shared + Columns(np.array(columns), prior), discrepancy=True)

@@ -32,13 +32,16 @@ RESAMPLED = 400  # of which 20 lie beyond either end of a 90 % interval
 
 @dataclass(frozen=True)
 class Shrinkage:
-    """before, after, floor (weighted RMS a contrast, mg or deg/s); share, interval (or None)."""
+    """before, after, floor (weighted RMS a contrast, mg or deg/s); share, interval (or None);
+    further: what was held out lies surely further off from what the others foretell than from
+    nothing, by more than they may be off in the sizes."""
 
     before: float
     after: float
     floor: float
     share: float | None
     interval: tuple | None
+    further: bool = False
 
 
 @dataclass(frozen=True)
@@ -74,7 +77,10 @@ class Sums:
         gap, every = self.before - self.floor, self
         if beside is not None and beside.weight > 0.0:
             gap, every = max(gap, 0.0) + beside.before - beside.floor, self + beside
-        return Shrinkage(*rms, *fieller(gap, every.before - every.after, *every.spread))
+        closed = every.before - every.after
+        ends = _ends(gap, closed, *every.spread)
+        return Shrinkage(*rms, *fieller(gap, closed, *every.spread),
+                         closed < 0.0 and ends is not None and ends[1] <= 0.0)
 
 
 NOTHING = Sums(0.0, 0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
@@ -100,10 +106,8 @@ def shrinkage(data, chosen, index, usual, wanders=False):
         beside = beside + _sums(own, point, _foretold(own, others, shared), noise)
     # Each session against the others: one more contrast than there are apart from each other.
     whole = total.shrinkage(bool(chosen), beside.times((sessions - 1.0) / sessions))
-    if whole.share == 0.0 and total.after - total.floor < FAR * _untold(
-            data.units, fits, metrics, shared):
-        whole = replace(whole, share=None, interval=None)  # the others hardly tell the sizes
-    return whole
+    return replace(whole, further=whole.further and total.after - total.floor > FAR * _untold(
+        data.units, fits, metrics, shared))
 
 
 def _untold(units, fits, metrics, shared):
@@ -172,19 +176,24 @@ def spread(alone, of_z, both, of_d):
 
 
 def fieller(gap, closed, variance_gap, variance_closed, both):
-    """(share, (low, high)); (None, None) where the interval is unbounded; a share of 0 where what
-    is foretold lies further off than nothing does. both: the covariance."""
+    """(share, (low, high)); (None, None) where the interval is unbounded, or nothing is closed,
+    which is too little to learn it from. both: the covariance."""
+    ends = _ends(gap, closed, variance_gap, variance_closed, both)
+    if ends is None or closed <= 0.0:
+        return None, None
+    return min(closed / gap, 1.0), (min(ends[0], 1.0), min(ends[1], 1.0))
+
+
+def _ends(gap, closed, variance_gap, variance_closed, both):
+    """(low, high) of the share, or None where it is unbounded."""
     z2 = odds.Z_90 ** 2
     a = gap * gap - z2 * variance_gap
     b = -2.0 * (gap * closed - z2 * both)
     c = closed * closed - z2 * variance_closed
     root = b * b - 4.0 * a * c
     if a <= 0.0 or root < 0.0:
-        return None, None
-    low, high = (-b - math.sqrt(root)) / (2 * a), (-b + math.sqrt(root)) / (2 * a)
-    if closed <= 0.0:  # too little to learn it from, or surely nothing
-        return (None, None) if high > 0.0 else (0.0, (0.0, 0.0))
-    return min(closed / gap, 1.0), (min(low, 1.0), min(high, 1.0))
+        return None
+    return (-b - math.sqrt(root)) / (2 * a), (-b + math.sqrt(root)) / (2 * a)
 
 
 @dataclass(frozen=True, eq=False)

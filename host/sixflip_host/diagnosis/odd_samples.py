@@ -83,7 +83,8 @@ def _full_grids(finding, uneven):
     return replace(finding, axes=axes, place=None, **{
         name: {a: size for a, size in getattr(finding, name).items() if a in axes}
         for name in ("value", "interval", "limits")},
-        score=finding.score * len(axes) / len(finding.axes)) if axes else None
+        **{name: getattr(finding, name) * len(axes) / len(finding.axes)
+           for name in ("score", "number")}) if axes else None
 
 
 def _lines_alone(finding, shaped, rate):

@@ -82,9 +82,9 @@ class RestModel:
                             posterior, fitted, chosen),
             not fitted.ok or bool(nameless) or doubted, crooked)
         gap = replace(gap, causes=gap.sized(causes, data)).without_parts(model)
-        gap = self.shrunk(self._tilted(gap))
+        gap = self.shrunk(gap)
         held = gap.refuted(model)
-        return gap if held is gap else self.shrunk(held)
+        return self._tilted(gap if held is gap else self.shrunk(held))
 
     def _searched(self, parts, likeliest=None):
         """(units, data, options, noise, forms, cost, model, Posterior): the likeliest sets of

@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 
 from sixflip import RAIL
+from sixflip_sim.effects import typical
 
 from .. import side_by_side
 from ..capture import registers
@@ -34,6 +35,7 @@ from .settings import Conditions, Settings
 
 COARSE = ("quantisation", "dead_band", "saturation", "torn_reads")
 # What makes some seconds louder, and some samples leap.
+QUIETEST = 4.0  # times less noise than its data sheet says that a part has: by a narrow filter
 NOISY = ("vibration", "torn_reads", "saturation", "dead_band")
 SLOW_HZ = 1.0  # of a line that the means of rests have something of
 SCALES = ("full_scale", "gravity")  # damages that every reading of a sensor has
@@ -178,7 +180,10 @@ def _of_registers(sensor, sessions):
     columns = [getattr(s.capture, sensor) for s in sessions]
     if any(c is None for c in columns):
         return []
-    band = _dead_band(sensor, columns, [s.at_rest for s in sessions])
+    meta, rate = sessions[0].capture.meta, min(s.rate for s in sessions)
+    noise = typical.noise_at(typical.chip_of(meta["sensor"], sensor), rate)
+    band = _dead_band(sensor, columns, [s.at_rest for s in sessions], min(
+        noise) / QUIETEST / registers.unit_of_count(meta, sensor))
     return (_per_axis("quantisation", sensor, [registers.steps(c) for c in columns],
                       [codes.step_nats(c) for c in columns], "counts come in steps",
                       [codes.distinct(c) for c in columns])
@@ -211,9 +216,10 @@ def _per_axis(effect, sensor, sizes, nats, words, numbers):
                     {k: (v, v) for k, v in value.items()}, share=1.0, number=number)]
 
 
-def _dead_band(sensor, columns, at_rest):
+def _dead_band(sensor, columns, at_rest, noise=0.0):
     """[Finding] of readings near 0 that are 0, by the codes that are missing or too frequent; on
-    other axes by how the readings pass through 0, and by how quiet they are at rest there."""
+    other axes by how the readings pass through 0, and by how quiet they are at rest there; noise:
+    counts that any such part has at least."""
     words = "counts near 0 read 0"
     about = [[codes.resting(column) for column in c.T] for c in columns]
     if np.any(about):  # a bias was taken off before, and put back on
@@ -225,7 +231,7 @@ def _dead_band(sensor, columns, at_rest):
                          [codes.band_nats(c) for c in columns], words,
                          [codes.zeros(c) for c in columns])
     known = {axis for f in findings for axis in f.axes}
-    nats, least = dead_band.nats_of_rests(columns, at_rest)
+    nats, least = dead_band.nats_of_rests(columns, at_rest, noise)
     value, interval, score, number = {}, {}, 0.0, 0
     for k, axis in enumerate("xyz"):
         if axis in known:

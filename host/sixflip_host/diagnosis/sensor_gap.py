@@ -153,7 +153,7 @@ class SensorGap:
     def refuted(self, model):
         """The gap without its causes where what the other sessions say of them lies further off
         from a session held out than nothing does: they are none of the sensor's."""
-        if self.shrinkage.share != 0.0:
+        if not self.shrinkage.further:
             return self
         return self._nameless(model, self.chosen, causes=[])
 

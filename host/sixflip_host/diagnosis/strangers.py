@@ -14,6 +14,7 @@ from numpy.polynomial import legendre
 from sixflip.poses import faces
 
 from ..experiment import flicker
+from ..experiment.projection import by_axis
 from ..experiment.terms import LAGS_S, RECTIFIED, Design, harmonics
 from ..experiment.way_memory import TURNED_S
 
@@ -46,6 +47,7 @@ ASKED_OF_ALL = "smooth"
 # Of the others: their own.
 DOMAIN = {"jump": "time", "periodic": "frequency", "own_time": "time",
           "time_orientation": "time", "thermal_orientation": "temperature",
+          "thermal_bend": "temperature",
           "bend": "orientation", "shaking": "amplitude"}
 
 
@@ -76,8 +78,10 @@ def shared(session, up, sensor, reference_c):
             designs.append(_smooth("temperature", [t, t ** 2, t ** 3], n, scale,
                                    "lag %g s" % lag if lag else ""))
         t = (session.temperature - reference_c) / 5.0
-        designs.append(_smooth("thermal_orientation", [
-            power * f[:, i] for power in (t, t ** 2) for i in range(3)], n, scale))
+        designs.append(_smooth("thermal_orientation", [t * f[:, i] for i in range(3)], n, scale))
+        columns = by_axis([t[:, None] ** 2 * f]).reshape(-1, 3)
+        designs.append(Design("thermal_bend", "", "xyz", (0, 1, 2), columns, np.full(3, scale),
+                              beside=True))
     before = np.stack(m.before, 1)
     history = [before[:, i] for i in range(3)] + [before[:, i] * before[:, j] for i in range(3)
                                                   for j in range(i)]

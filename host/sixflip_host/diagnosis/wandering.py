@@ -17,7 +17,9 @@ from .elimination import NONE
 # s of the short means whose steps are looked at; steps that their tails are known from; steps that
 # may be knocks.
 STEP_S, FEWEST_STEPS, KNOCKS = (0.5, 1.0, 2.0, 4.0, 8.0), 60, 3
-ON_FACE = 0.95  # of gravity along an axis: a box on a face, 18 degrees off at most
+# Of gravity along an axis: a box on a face, 18 degrees off at most; differences within the rests
+# that it is upright in, of an axis.
+ON_FACE, FEWEST_OF_AXIS = 0.95, 6
 
 
 @dataclass(frozen=True)
@@ -190,17 +192,22 @@ def jumps(rests, rate):
 def across_gravity(kind, parts):
     """Probability of the accelerometer, as parts, [(Session, NominalSensor)], have it, wandering
     within its rests across gravity by so much more than along it: what leans under the box, or
-    a hand that holds it, is felt there alone."""
+    a hand that holds it, is felt there alone. Each axis is held against itself."""
     if kind != "accel":
         return 1.0
-    along, across = [], []
+    changed, share = [], []
     for session, nominal in parts:
         same = np.flatnonzero(np.diff(session.placement) == 0)
         over = np.sqrt(1.0 / session.seconds[same] + 1.0 / session.seconds[same + 1])[:, None]
-        changed = np.diff(session.accel, axis=0)[same] / (over * session.noise_accel)
-        share = np.abs(nominal.up[session.placement[same]])
-        along.append(changed[share > ON_FACE])
-        across.append(changed[share < np.sqrt(1.0 - ON_FACE ** 2)])
+        changed.append(np.diff(session.accel, axis=0)[same] / over)
+        share.append(np.abs(nominal.up[session.placement[same]]))
+    along, across = [np.zeros(0)], [np.zeros(0)]
+    for x, up in zip(np.concatenate(changed).T, np.concatenate(share).T):
+        upright, level = x[up > ON_FACE], x[up < np.sqrt(1.0 - ON_FACE ** 2)]
+        if len(upright) >= FEWEST_OF_AXIS and upright.any():
+            size = np.sqrt((upright ** 2).mean())
+            along.append(upright / size)
+            across.append(level / size)
     along, across = map(np.concatenate, (along, across))
     enough = min(len(along), len(across)) >= adequacy.FEWEST
     return adequacy.louder(across, along) if enough else 1.0

@@ -21,6 +21,9 @@ from .way_memory import FRICTION, UNMOVED_G
 LAGS_S = (0.0, 15.0, 30.0, 60.0, -30.0)  # GAP: a neighbouring thermometer, 10-60 s
 WARM_UP_S = (30.0, 60.0, 120.0, 240.0, 480.0)  # GAP: 60-300 s, and an octave to both sides
 STARTED_S = (60.0, 240.0)  # a short one and a long one: how warm each session started
+# Sessions that have columns of their own: of more each is a small part of all, and the columns of
+# all together would grow with the square of their number.
+MOST_OWN = 8
 CREEP_S = (5.0, 15.0, 30.0, 60.0, 120.0)  # GAP: 60-70 s seen on Z; down to a rest's length
 LEVELS_OFF = 3.0  # times faster than where a rate's effect begins to level off
 FORGOTTEN_S = (5.0, 20.0)  # from part of a short rest to most of a long one
@@ -155,7 +158,9 @@ def library(session, up, sensor, reference_c, chip):
 
     designs = _thermal(session, m, design, sensor, reference_c) if session.thermal else []
     warm_up = {tau: design("warm_up", "tau %g s" % tau, shape={"tau_s": tau}) for tau in WARM_UP_S}
-    designs += [*warm_up.values(), *(_of_each_start(session, warm_up[tau]) for tau in STARTED_S)]
+    designs += warm_up.values()
+    if 1 < session.of <= MOST_OWN:
+        designs += [_of_each_start(session, warm_up[tau]) for tau in STARTED_S]
     plain = design("hysteresis")
     if sensor == "gyro":
         return [*designs, plain, design("g_sensitivity")]
@@ -211,7 +216,7 @@ def remembered(session, m, plain):
         columns = by_axis([before * np.exp(-session.since / tau)[:, None]]).reshape(-1, 3)
         designs.append(Design("hysteresis", "forgotten, tau %g s" % tau, plain.keys, plain.axes,
                               columns, plain.prior, beside=True))
-    return [*designs, _unseen_at_first(session, plain)]
+    return [*designs, *([_unseen_at_first(session, plain)] if session.of <= MOST_OWN else [])]
 
 
 def _unseen_at_first(session, plain):

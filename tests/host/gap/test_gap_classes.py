@@ -78,13 +78,15 @@ def late(t, warm):
 
 
 # Beside it in the class: what has the same variable, and the box that spans all even functions.
-BESIDE = {"thermal_bias": (), "thermal_rate": (), "cubic": (),
+BESIDE = {"thermal_bias": (), "thermal_rate": (), "thermal_scale": (), "cubic": (),
           "quadratic": ("asymmetry", "cross_quadratic", "cubic", "box_tilt")}
 FORMS = {"levels off": ("thermal_bias", lambda t, warm, g: on_z(8.0 * np.tanh(0.15 * warm))),
          "rate levels off": ("thermal_rate", lambda t, warm, g: on_z(
              6.0 * np.tanh(200.0 * np.gradient(late(t, warm), t)))),
          "levels off late": ("thermal_bias", lambda t, warm, g: on_z(
              12.0 * np.tanh(0.3 * (late(t, warm) - 4.0)))),
+         "scale bends late": ("thermal_scale", lambda t, warm, g: on_z(
+             g[:, 2] * (1.0 * late(t, warm) + 0.05 * late(t, warm) ** 2))),
          "seventh power": ("cubic", lambda t, warm, g: on_z(20.0 * g[:, 2] ** 7)),
          "square": ("quadratic", lambda t, warm, g: on_z(10.0 * g[:, 2] ** 2)),
          "fourth power": ("quadratic", lambda t, warm, g: on_z(10.0 * g[:, 2] ** 4)),

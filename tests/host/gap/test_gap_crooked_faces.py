@@ -54,5 +54,5 @@ def test_a_crooked_box_is_no_part_of_what_a_larger_cause_leaves():
     gap = diagnosed({"X+y": 0.4, "X-y": 0.4}).gaps["accel"]
     alone = replace(gap, causes=[])
     assert [cause.effect for cause in box_tilt_test.search(alone)[0]] == ["box_tilt"]
-    beside = replace(alone, posterior=replace(gap.posterior, gains={"creep": 1e6}))
-    assert box_tilt_test.search(beside)[0] == []
+    large, = (replace(cause, effect="creep", score=1e6) for cause in gap.causes)
+    assert box_tilt_test.search(replace(gap, causes=[large]))[0] == []

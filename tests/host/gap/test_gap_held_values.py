@@ -140,10 +140,19 @@ def test_blocks_that_come_again_later_are_said():
     assert said(stale.reshape(-1, 3)) == [{"rows": 1999, "later": 30}]
 
 
-@pytest.mark.parametrize("noise", [0.2, 0.4, 0.8, 1.5])
-def test_coarse_or_periodic_readings_come_again_at_every_distance(noise):
+@pytest.mark.parametrize("noise", [0.0, 0.2, 0.4, 0.8, 1.5])
+@pytest.mark.parametrize("wave, period", [(0.0, 1.0), (3.0, 25.0), (500.0, 20.0), (2000.0, 20.0)])
+def test_coarse_or_periodic_readings_come_again_at_every_distance(noise, wave, period):
     generator = np.random.default_rng(6)
-    for wave in (0.0, 3.0):
-        x = wave * np.sin(2.0 * np.pi * np.arange(20000) / 25.0)[:, None] + [0.1, 0.4, 64.2]
-        counts = np.rint(x + noise * generator.standard_normal((20000, 3))).astype(np.int16)
-        assert not present(max(held_values.again_later([counts]))[0])
+    x = wave * np.sin(2.0 * np.pi * np.arange(20000) / period)[:, None] + [0.1, 0.4, 64.2]
+    counts = np.rint(x + noise * generator.standard_normal((20000, 3))).astype(np.int16)
+    assert not present(held_values.again_later([counts])[0])
+
+
+@pytest.mark.parametrize("lag", [3, 4, 150, 300])
+def test_blocks_of_any_length_that_a_fifo_has_are_seen(lag):
+    counts = np.random.default_rng(7).normal(0.0, 20.0, (12000, 3)).astype(np.int16)
+    blocks = counts[:12000 // (3 * lag) * 3 * lag].reshape(-1, 3 * lag, 3)
+    blocks[:, lag:2 * lag] = blocks[:, :lag]
+    nats, later, _ = held_values.again_later([blocks.reshape(-1, 3)])
+    assert present(nats) and later == lag

@@ -2,6 +2,7 @@
 import warnings
 
 import numpy as np
+import pytest
 
 from sixflip_host.diagnosis import adequacy, holdout_gain, localisation
 from sixflip_host.experiment import thermometer
@@ -24,9 +25,14 @@ def test_fieller_covers_the_true_share_and_owns_up_to_too_small_a_gap():
     assert number > 550
     assert 0.84 <= covered / number <= 0.97
     assert holdout_gain.fieller(3.0, 2.0, 412.0, 4.0, 6.0) == (None, None)
-    # What is foretold lies further off than nothing: surely, or as far as one can tell.
-    assert holdout_gain.fieller(30.0, -20.0, 4.0, 9.0, 0.0) == (0.0, (0.0, 0.0))
-    assert holdout_gain.fieller(30.0, -3.0, 4.0, 9.0, 0.0) == (None, None)
+
+
+@pytest.mark.parametrize("closed, further", [(-20.0, True), (-3.0, False), (20.0, False)])
+def test_what_lies_surely_further_off_than_nothing_is_known(closed, further):
+    sums = holdout_gain.Sums(40.0, 40.0 - closed, 10.0, 10.0, (4.0, 9.0, 0.0))
+    found = sums.shrinkage(True)
+    assert found.further is further and (found.share is None) is (closed < 0.0)
+    assert not sums.shrinkage(False).further
 
 
 def test_false_discoveries_are_held_down():

@@ -166,7 +166,7 @@ def test_a_cause_that_takes_what_is_held_out_further_off_has_no_name(found):
     gap = found.gaps["accel"]
     model = scored_sets.Model(gap.units, gap.data.statistics, gap.noise)
     assert gap.refuted(model) is gap and [c.effect for c in gap.causes] == ["thermal_bias"]
-    further = holdout_gain.Shrinkage(1.0, 1.25, 0.3, 0.0, (0.0, 0.0))
+    further = holdout_gain.Shrinkage(1.0, 1.25, 0.3, None, None, True)
     held = dataclasses.replace(gap, shrinkage=further).refuted(model)
     assert held.causes == [] and held.chosen == [] and held.unexplained
     assert [f.effect for f in held.strangers] == ["thermal_bias"]

@@ -1,7 +1,7 @@
 """A dead band without a code that is missing, by two things that it does.
 
 At rest an axis within it reads 0 with no noise, or with less than its sensor's others let it have;
-where all of them do, with less than they have in motion.
+where all of them do, with less than any such part has.
 What passes through it, where readings begin at 0 at its edges, stays at 0 for as long as the band
 takes: each time a column goes through 0 its rate before and after says how far it has come, and
 the readings say how far it seems to have come. What is missing is twice the band. Only what moves
@@ -15,7 +15,6 @@ from scipy import special
 from ...capture.registers import LEAST_NOISE, QUIET, WINDOW, steps
 from ..odds import Z_90
 from .codes import number_of_runs
-from .stuck_axes import unforeseen
 
 FASTER = 3.0  # than the noise, from a sample to the next: its sign is that of the motion
 LONGEST = 8  # samples at 0 while something passes; more is a pause
@@ -27,6 +26,7 @@ FEWEST = 20  # passages, whose median is known to a fifth of their scatter
 # Standard deviation of a median over that of a mean, and of a normal one over the median of its
 # sizes [Kendall & Stuart, The Advanced Theory of Statistics 1, section 10.10].
 OF_MEDIAN, OF_SIZES = 1.2533, 1.4826
+SILENT = 0.05  # counts of noise: one sample in four hundred is another code
 QUIETER = 2.0  # times that an axis' noise is below the others' at most: Z of a MEMS gyro, 1.5
 
 
@@ -52,10 +52,11 @@ class Band:
 NOTHING = Band(0.0, 1.0, 0)
 
 
-def nats_of_rests(columns, at_rest):
+def nats_of_rests(columns, at_rest, least=0.0):
     """((3,) nats of an axis' reading 0 at rest more often than the noise of its sensor's others
     lets it; (3,) counts, half the width that this takes at least). columns: list of (n, 3) counts;
-    at_rest: list of (n,) bool."""
+    at_rest: list of (n,) bool; least: counts of noise that any such part has, where all three
+    axes have none."""
     nats, widths = np.zeros(3), np.full(3, np.inf)
     for counts, resting in zip(columns, at_rest):
         x, step = counts[resting].astype(np.int64), np.maximum(steps(counts), 1)
@@ -67,11 +68,10 @@ def nats_of_rests(columns, at_rest):
         middle = OF_SIZES * np.median(np.abs(change), axis=0)
         noise = np.where(middle > 0.0, np.minimum(middle, change.std(axis=0)),
                          change.std(axis=0)) / np.sqrt(2.0)
-        # Where all three rest at 0, what they have beyond it while the box is moved.
-        moved = 0.0 if noise.any() else float(np.median([
-            unforeseen(column[~resting & (column != 0)]) for column in counts.T]))
         for axis in range(3):
-            usual = max(float(np.median(np.delete(noise, axis))), moved)
+            usual = float(np.median(np.delete(noise, axis)))
+            if max(noise) < SILENT:
+                usual = max(usual, least)
             zero = x[:, axis] == 0
             # What never leaves 0 is stuck, and what leaves it to one side has its end there.
             moves = counts[:, axis].min() < 0 < counts[:, axis].max() and counts[

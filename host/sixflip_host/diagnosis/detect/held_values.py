@@ -68,7 +68,7 @@ def findings(sessions):
 def _blocks_again(sensor, columns):
     """[Damage] of whole blocks of rows that come again later: a FIFO that is read twice, or a
     buffer that is sent before it is filled."""
-    nats, lag, rows = max(again_later(columns))
+    nats, lag, rows = again_later(columns)
     if not present(nats):
         return []
     said = "%d rows of the %s, %d on end and more, are those of %d rows before once more" % (
@@ -77,28 +77,42 @@ def _blocks_again(sensor, columns):
 
 
 def again_later(columns):
-    """[(nats of rows coming again over chance, rows later, how many)] of each distance of rows, of
-    all columns (n, 3). What repeats by chance does so at every distance alike, or nearly; of what
-    is periodic as often as its noise reads one code twice."""
-    found, periodic = np.zeros(FARTHEST + 1, int), 1.0
+    """(nats of rows coming again over chance, rows later, how many) of the distance of rows that
+    says most, of all columns (n, 3). What repeats by chance does so at every distance alike, or
+    nearly; what is periodic does at twice its period, and as often as its noise reads one code
+    twice."""
+    found, periodic = np.zeros(FARTHEST + NEAR + 1, int), 1.0
     for counts in columns:
         twice = [by_chance(unforeseen(column / step, still=True)) for column, step in zip(
             counts.T.astype(np.int64), np.maximum(steps(counts), 1))]
         periodic += len(counts[:LONGEST]) * math.prod(twice) ** ON_END
-        row = counts[:LONGEST].astype(np.int64) @ ROW
-        fresh = np.append(False, row[1:] != row[:-1])
-        for lag in range(2, min(FARTHEST + 1, len(row))):
-            same = (row[lag:] == row[:-lag]) & fresh[lag:] & fresh[:-lag]
-            if same.sum() >= ON_END:
-                found[lag] += np.count_nonzero(lengths(same) >= ON_END)
-    near = np.array([found[lag - NEAR:lag + NEAR + 1] for lag in range(2 + NEAR, FARTHEST - NEAR)])
+        found[2:] += [_again(counts, lag) for lag in range(2, len(found))]
+    near = np.array([found[lag - NEAR:lag + NEAR + 1] for lag in range(NEAR, FARTHEST + 1)])
     near[:, NEAR] = 0
     expected = np.maximum(max(float(np.median(found)), periodic), near.max(axis=1))
-    there = found[2 + NEAR:FARTHEST - NEAR]
-    # Of rows that come again on end the first says that the others will: Poisson, of blocks.
-    nats = (there * np.log(np.maximum(there / expected, 1.0))
-            - np.maximum(there - expected, 0.0)) / ON_END - math.log(len(there))
-    return [(float(n), lag, int(k)) for n, lag, k in zip(nats, range(2 + NEAR, FARTHEST), there)]
+    nats = _of_blocks(found[NEAR:FARTHEST + 1], expected)
+    lag = NEAR + int(nats.argmax())
+    twice = sum(_again(counts, 2 * lag) for counts in columns)
+    return float(_of_blocks(found[lag], max(expected[lag - NEAR], twice))), lag, int(found[lag])
+
+
+def _again(counts, lag):
+    """How many rows of counts (n, 3) come again so many rows later, ON_END of them and more."""
+    row = counts[:LONGEST].astype(np.int64) @ ROW
+    if len(row) <= lag:
+        return 0
+    fresh = np.append(False, row[1:] != row[:-1])
+    same = (row[lag:] == row[:-lag]) & fresh[lag:] & fresh[:-lag]
+    if same.sum() < ON_END:
+        return 0
+    return np.count_nonzero(lengths(same) >= ON_END)
+
+
+def _of_blocks(rows, expected):
+    """Nats of rows coming again over those expected: of rows on end the first says that the others
+    will, so of blocks, Poisson; what was tried is paid."""
+    more = np.maximum(rows / expected, 1.0)
+    return (rows * np.log(more) - np.maximum(rows - expected, 0.0)) / ON_END - math.log(FARTHEST)
 
 
 def as_read(captures):

@@ -29,7 +29,7 @@ STRIDES_HZ, MULTIPLE = 5.0, 0.005
 LEAST_CYCLES = 1.4  # of a line in a stretch: what settles in a rest has less
 BRIEF_S = 1.5  # a shorter stretch is all of its rest, and begins where the box was just put down
 CHANCE = 0.001  # six axes together: well below what registers and spectra share, see odds.py
-FEWEST = 4  # stretches
+FEWEST, SHORTEST = 4, 8  # stretches, samples of one: a log of one row a second has no lines
 # Of what the shortest stretches hold of the rests, that longer ones must hold: a few long rests
 # say nothing of what is there while the box is handled.
 HELD = 0.5
@@ -135,10 +135,11 @@ def rests(sessions, sensor):
     if not any(session.runs for session in sessions):
         return _stretches(sessions, sensor, int(MOVING_S * sessions[0].rate), whole=True)
     rate = sessions[0].rate
-    numbers = {int(seconds * rate): sum(len(range(*_starts(s, run, int(seconds * rate))))
-                                        for s in sessions for run in s.runs)
-               for seconds in LENGTHS_S}
-    most = max(length * number for length, number in numbers.items())
+    lengths = [int(seconds * rate) for seconds in LENGTHS_S if seconds * rate >= SHORTEST]
+    numbers = {length: sum(len(range(*_starts(session, run, length)))
+                           for session in sessions for run in session.runs)
+               for length in lengths}
+    most = max((length * number for length, number in numbers.items()), default=0)
     for length, number in numbers.items():
         if number >= FEWEST and length * number >= HELD * most:
             return _stretches(sessions, sensor, length)
