@@ -81,27 +81,26 @@ def again_later(columns):
     says most, of all columns (n, 3). What repeats by chance does so at every distance alike, or
     nearly; what is periodic does at twice its period, and as often as its noise reads one code
     twice."""
-    found, periodic = np.zeros(FARTHEST + NEAR + 1, int), 1.0
+    found, periodic, rows = np.zeros(FARTHEST + NEAR + 1, int), 1.0, []
     for counts in columns:
         twice = [by_chance(unforeseen(column / step, still=True)) for column, step in zip(
             counts.T.astype(np.int64), np.maximum(steps(counts), 1))]
         periodic += len(counts[:LONGEST]) * math.prod(twice) ** ON_END
-        found[2:] += [_again(counts, lag) for lag in range(2, len(found))]
+        row = counts[:LONGEST].astype(np.int64) @ ROW
+        rows.append((row, np.append(False, row[1:] != row[:-1])))
+        found[2:] += [_again(*rows[-1], lag) for lag in range(2, len(found))]
     near = np.array([found[lag - NEAR:lag + NEAR + 1] for lag in range(NEAR, FARTHEST + 1)])
     near[:, NEAR] = 0
     expected = np.maximum(max(float(np.median(found)), periodic), near.max(axis=1))
     nats = _of_blocks(found[NEAR:FARTHEST + 1], expected)
     lag = NEAR + int(nats.argmax())
-    twice = sum(_again(counts, 2 * lag) for counts in columns)
+    twice = sum(_again(*each, 2 * lag) for each in rows)
     return float(_of_blocks(found[lag], max(expected[lag - NEAR], twice))), lag, int(found[lag])
 
 
-def _again(counts, lag):
-    """How many rows of counts (n, 3) come again so many rows later, ON_END of them and more."""
-    row = counts[:LONGEST].astype(np.int64) @ ROW
-    if len(row) <= lag:
-        return 0
-    fresh = np.append(False, row[1:] != row[:-1])
+def _again(row, fresh, lag):
+    """How many rows, a number each (n,), come again so many rows later, ON_END of them and more;
+    fresh (n,): those that are not the one before."""
     same = (row[lag:] == row[:-lag]) & fresh[lag:] & fresh[:-lag]
     if same.sum() < ON_END:
         return 0
