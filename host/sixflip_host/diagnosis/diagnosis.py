@@ -162,6 +162,8 @@ def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), d
     if rests.nominal:
         judged = rests_judged.judge(rests, findings, settings, conditions)
         gaps, turns, motion = judged.gaps, judged.turns, judged.motion
+        if turns and any(cause.effect == "dead_band" for cause in turns.causes):
+            findings = [f for f in findings if not rests_judged.unsized(f)]
         findings += judged.findings
         nameless += judged.nameless
         remarks += judged.remarks

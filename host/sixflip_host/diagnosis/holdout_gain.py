@@ -86,9 +86,11 @@ class Sums:
 NOTHING = Sums(0.0, 0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
 
 
-def shrinkage(data, chosen, index, usual, wanders=False):
+def shrinkage(data, chosen, index, usual, wanders=False, private=None):
     """Shrinkage of all sessions, each held out in turn; index: into each unit's grid, the
-    likeliest levels of noise; usual: evidence.Levels; wanders: that it is more is named."""
+    likeliest levels of noise; usual: evidence.Levels; wanders: that it is more is named; private:
+    Columns that each unit may have of its own beside the chosen ones, those without a name; None:
+    it is not asked whether what was held out lies further off."""
     shared = hypotheses.columns_of(chosen)
     fits = coefficient_fits.fits(data, shared)
     largest = usual.flicker * (math.inf if wanders else adequacy.TIMES_TYPICAL)
@@ -106,20 +108,28 @@ def shrinkage(data, chosen, index, usual, wanders=False):
         beside = beside + _sums(own, point, _foretold(own, others, shared), noise)
     # Each session against the others: one more contrast than there are apart from each other.
     whole = total.shrinkage(bool(chosen), beside.times((sessions - 1.0) / sessions))
-    return replace(whole, further=whole.further and total.after - total.floor > FAR * _untold(
-        data.units, fits, metrics, shared))
+    return replace(whole, further=whole.further and private is not None and _nothing_closed(
+        data.units, fits, metrics, shared, private, total.after - total.floor))
 
 
-def _untold(units, fits, metrics, shared):
-    """Expectation of the weighted squares of what the sizes that the others tell are off by."""
-    total = 0.0
-    for held, (unit, metric) in enumerate(zip(units, metrics)):
-        if not unit.between:
-            others = fits[:held] + fits[held + 1:] or fits
-            covariance = coefficient_fits.coefficients(others, shared)[1][0]
-            products = unit.products(unit.columns[:, shared.index], metric)
-            total += float((products * covariance).sum())
-    return total
+def _nothing_closed(units, fits, metrics, shared, private, left):
+    """Whether what the others foretell closes nothing beside what each session has of its own
+    either, and more is left by it (weighted squares) than the others may be off in the sizes."""
+    closed = untold = 0.0
+    for held, (unit, metric, own) in enumerate(zip(units, metrics, private)):
+        if unit.between:
+            continue
+        others = fits[:held] + fits[held + 1:] or fits
+        (theta,), (covariance,) = coefficient_fits.coefficients(others, shared)
+        columns, k = unit.columns[:, np.concatenate([shared.index, own.index])], len(shared)
+        products = unit.products(np.column_stack([columns, unit.z]), metric)
+        untold += float((products[:k, :k] * covariance).sum())
+        named = np.append(np.arange(k), len(products) - 1)
+        taken = products[k:-1][:, named]
+        beside = products[np.ix_(named, named)] - taken.T @ np.linalg.solve(
+            products[k:-1, k:-1] + np.diag(own.prior ** -2.0), taken)
+        closed += float(2.0 * theta @ beside[:-1, -1] - theta @ beside[:-1, :-1] @ theta)
+    return closed < 0.0 and left > FAR * untold
 
 
 def _foretold(unit, others, shared):

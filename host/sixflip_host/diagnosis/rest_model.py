@@ -165,6 +165,8 @@ class RestModel:
         they can be had."""
         progress.doing("how far the gap shrinks on what is held out")
         data, index = gap.data, gap.adequacy.index
+        strange = hypotheses.columns_of(gap.strangers)
+        private = [own + strange for own in gap.posterior.best.private]
         if gap.same_session and gap.chosen:
             certified = self.settings.certified
             parts = halves(self.kind, *gap.parts[0], certified)
@@ -172,9 +174,9 @@ class RestModel:
                 wanted = hypotheses.columns_of(gap.chosen).index
                 data = coefficient_fits.data_of([self.unit(*part, certified, wanted)
                                               for part in parts])
-                index = gap.halved_levels(data)
+                index, private = gap.halved_levels(data), None
         return replace(gap, shrinkage=holdout_gain.shrinkage(
-            data, gap.chosen, index, gap.noise, gap.wanders))
+            data, gap.chosen, index, gap.noise, gap.wanders, private))
 
     def usual(self):
         """evidence.Levels of this sensor."""

@@ -13,6 +13,7 @@ from .rest_model import RestModel
 # Of the ends of turns, that is no matter of the gyro: 17 mg of an accelerometer that bends more
 # than any does (typical.SIZES), without showing it in a few poses.
 SCATTERED_DEG = 1.0
+WIDE = 10.0  # times its lower end, that an interval reaches to which has no upper one
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,9 +85,17 @@ def harmless(gap, motion):
     return left * float(np.median([m.seconds for m in motion.fit.moves])) < turn_model.ATTITUDE_DEG
 
 
+def unsized(finding):
+    """Whether a Finding is of a dead band of which the rests say no more than how wide it is at
+    least: the turns may tell its width."""
+    return finding.effect == "dead_band" and finding.sensor == "gyro" and all(
+        high > WIDE * low for low, high in finding.interval.values())
+
+
 def _turn(rests, findings):
     """True when the gyro of UsableRests tells how they turn from one to the next."""
-    bent = any(f.sensor == "gyro" and f.effect in ("dead_band", "saturation") for f in findings)
+    bent = any(f.sensor == "gyro" and f.effect in ("dead_band", "saturation") and not unsized(f)
+               for f in findings)
     return not bent and all(
         turn_model.usable(s, m) for s, m in zip(rests.sessions, rests.nominal))
 
