@@ -1,4 +1,5 @@
-"""Sessions of one rest, the noise of whose gyro falls with the frequency."""
+"""Sessions at rest: one rest, the noise of whose gyro falls with the frequency; six, of a face
+each, of an accelerometer alone."""
 import numpy as np
 
 from sixflip_host.capture.capture_file import Capture
@@ -22,3 +23,13 @@ def at_rest(gyro):
     return blocks.session_of("s", Capture(
         meta, 10_000 * np.arange(n), np.rint(accel).astype(np.int16),
         np.rint(gyro).astype(np.int16), pose=np.ones(n, np.int16)))
+
+
+def resting(noise, seed=5, n=200, **meta):
+    """A session of six rests of n samples with noise of so many counts."""
+    rng = np.random.default_rng(seed)
+    accel = np.round(np.repeat(8192.0 * np.vstack([np.eye(3), -np.eye(3)]), n, axis=0)
+                     + noise * rng.normal(size=(6 * n, 3))).astype(np.int16)
+    head = {"sensor": "other", "rate_hz": 100.0, "accel_lsb_per_g": 8192.0, **meta}
+    return blocks.session_of("resting", Capture(
+        head, 10_000 * np.arange(6 * n), accel, pose=np.repeat(np.arange(1, 7), n)))

@@ -19,7 +19,7 @@ def test_an_effect_turns_no_sensor_whose_poses_nobody_labelled(off_mg, deg):
     assert off.max() < deg
 
 
-def test_a_sound_sensor_that_leans_has_its_misalignment_to_a_tenth_of_a_milliradian():
+def test_a_sound_sensor_in_many_poses_keeps_its_lengths_to_a_fifth_of_a_thousandth():
     """Where the placements tell it |f| = 1 decides as before, labels or not."""
     true = np.eye(3) + 0.01 * np.array([[1.0, 0.6, -0.4], [0.0, -1.2, 0.8], [0.0, 0.0, 0.5]])
     up = np.random.default_rng(3).standard_normal((40, 3))

@@ -1,10 +1,12 @@
 """The statistics of the gap on small made-up problems whose answer is known."""
 import warnings
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from sixflip_host.diagnosis import adequacy, holdout_gain, localisation
+from sixflip_host.diagnosis import adequacy, coefficient_fits, holdout_gain, localisation
+from sixflip_host.diagnosis.elimination import Columns
 from sixflip_host.experiment import thermometer
 
 
@@ -33,6 +35,29 @@ def test_what_lies_surely_further_off_than_nothing_is_known(closed, further):
     found = sums.shrinkage(True)
     assert found.further is further and (found.share is None) is (closed < 0.0)
     assert not sums.shrinkage(False).further
+
+
+@pytest.mark.parametrize("named, nothing", [(1.0, False), (-1.0, True)])
+def test_what_a_session_has_of_its_own_is_no_witness_against_a_name(named, nothing):
+    """A course in time that one session has, the other way of what a name foretells there, took
+    what was held out further off; so does a name that is wrong, beside the course as well."""
+    t = np.linspace(-1.0, 1.0, 40)
+    columns = np.stack([t + 0.3 * t ** 3, t], 1)
+    course = Columns(np.array([1]), np.array([30.0]))
+
+    def unit(size, own):
+        z = columns @ np.array([size, own])
+        return SimpleNamespace(between="", columns=columns, z=z,
+                               products=lambda x, metric: 1e4 * x.T @ x)
+    units = [unit(1.0, 0.0), unit(named, -4.0)]
+    shared = Columns(np.array([0]), np.array([10.0]))
+    gram = 1e4 * (columns[:, 0] @ columns[:, 0])
+    fits = [coefficient_fits.Fit(np.zeros(1, int), np.zeros((1, 1)), np.full((1, 1), gram * size),
+                                 np.full((1, 1, 1), gram)) for size in (1.0, named)]
+    assert columns[:, 0] @ units[1].z < 0.0  # it closes nothing, were the course not there
+    assert holdout_gain._nothing_closed(
+        units, fits, [0, 0], shared, [course, course], 1e6) is nothing
+    assert not holdout_gain._nothing_closed(units, fits, [0, 0], shared, [course, course], 1e-3)
 
 
 def test_false_discoveries_are_held_down():
