@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from sixflip_host.diagnosis import answer, diagnosis, discrepancy
+from sixflip_host.diagnosis import answer, diagnosis, discrepancy, scored_sets
 from sixflip_host.experiment import blocks, linear_model
 from sixflip_host.simulation import scenario, simulated_session
 
@@ -169,8 +169,9 @@ def test_a_session_that_started_warmer_warms_up_by_less(captures):
 
 
 def test_a_matrix_that_levels_off_is_still_g_sensitivity():
-    """Its products of two axes, which few poses show, were expected to be ten times as large as
-    the squares; a stranger of orientation stood beside it, and four other names in its class."""
+    """Of another generator's board a stranger of orientation stood beside it, and four other names
+    were in its class: products of two axes, which few poses show, were expected to be ten times as
+    large as the squares."""
     matrix = 0.01 * np.array([[27.0, -9.0, 4.0], [9.0, 18.0, -31.0], [-18.0, 41.0, 13.0]])
     plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 34})
     sessions = []
@@ -184,3 +185,26 @@ def test_a_matrix_that_levels_off_is_still_g_sensitivity():
     assert found.gaps["gyro"].strangers == []
     cause, = (cause for cause in answer.as_dict(found)["causes"] if cause["sensor"] == "gyro")
     assert cause["class"] == ["g_sensitivity"] and cause["share"] > 0.99
+    gap = found.gaps["gyro"]
+    model = scored_sets.Model(gap.units, gap.data.statistics, gap.noise)
+    plain = next(f for f in gap.forms if f.effect == "g_sensitivity" and f.axis is None)
+    wider = discrepancy.with_discrepancy(model, gap.forms, model.scored((plain,)), plain)
+    beside = np.array(wider.powers) == discrepancy.BESIDE
+    for axis in range(3):
+        sizes = wider.prior[beside & (np.array(wider.axes) == axis)]
+        assert len(sizes) > 10 and sizes.max() < 1.5 * sizes.min()
+
+
+def test_a_scale_that_bends_with_temperature_has_no_hysteresis_beside_it():
+    """Of three axes, with a square half as large as the slope; its discrepancy had no square."""
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "thermal", "seed": 4,
+                               "world": {"placement_scatter_deg": 0.05, "tilt_deg": 1.0}})
+    found = [simulated_session.session(plan, k) for k in range(len(plan.worlds))]
+    for capture in found:
+        capture.gyro = None
+
+    def bends(t, warm, g):
+        warm = late(t, warm)[:, None]
+        return g * [0.6, 0.8, -0.5] * (warm + 0.06 * warm ** 2)
+    cause, = causes(found, bends)
+    assert cause["class"] == ["thermal_scale"] and cause["axes"] == ["x", "y", "z"]

@@ -136,8 +136,10 @@ def test_a_strong_vibration_now_and_then_is_no_bit_that_is_read_wrongly():
     """Two thousand samples of 140 mg at 43 Hz "were off by 256 counts"."""
     session = resting(40.0, n=4000)
     t = np.arange(24000) / 100.0
-    shakes = 1147.0 * np.sin(2.0 * np.pi * np.cumsum(43.0 + 0.3 * np.sin(t / 7.0)) / 100.0)
-    session.capture.accel[:, 2] += np.rint(shakes * (t % 40.0 < 20.0)).astype(np.int16)
+    phase = 2.0 * np.pi * np.cumsum(43.0 + 0.15 * np.sin(t / 6.0)) / 100.0
+    on = np.convolve(t % 40.0 < 20.0, np.full(100, 0.01), "same") * (1.0 + 0.25 * np.sin(t / 2.0))
+    session.capture.accel[:, 2] += np.rint(655.0 * on * (
+        np.sin(phase) + 0.3 * np.sin(2.0 * phase + 0.7))).astype(np.int16)
     assert torn_reads.jumps([session]) == []
 
 
@@ -249,6 +251,7 @@ def test_spikes_that_reach_the_rail_are_spikes():
         capture.accel[rows] = np.clip(jumped, -32768, 32767).astype(np.int16)
     found = diagnosed(two)
     assert "saturation" in [f.effect for f in found.findings]
+    assert any(remark.endswith("before and after them: spikes") for remark in found.remarks)
     assert found.verdict == "partly explained"
     assert ("accel", "noise") in [(w.sensor, w.domain) for w in found.where]
 
