@@ -18,9 +18,10 @@ RELATIVE = 0.5  # of an effect: how far a part's own form may be from the librar
 # Of the functions of one kind, rms: one that shows less of itself has no larger coefficient for
 # that, as a product of two axes where every pose is flat. Those of gravity's direction are as
 # large as one another in a box that may lie anyhow, those of a temperature as it happens to move.
-FAINT, FAINT_POSES, OF_POSES = 0.1, 0.7, ("orientation", "bend")
+FAINT, FAINT_POSES, OF_POSES = 0.1, 0.7, ("orientation", "bend", "product_bend")
 # What an effect, or all of a domain, is a function of: the strangers that have that variable.
 VARIABLE = {"thermal_scale": ("thermal_orientation", "thermal_bend"),
+            "cross_quadratic": ("orientation", "bend", "product_bend"),
             "vibration_rectification": ("shaking",),
             "temperature": ("temperature",), "time": ("time",),
             "history": ("history", "time_since_move"),
@@ -48,10 +49,14 @@ def alike(form, other):
 
 def may_be_left_by(form, other):
     """Whether a named effect may be what the form of another one leaves: it is a function of that
-    one's variable, or one of both is of time, of which every temperature is a function."""
+    one's variable, or one of both is of time, of which every temperature is a function. What
+    remembers the pose before does so as a function of this one as well."""
     variables = set(_variable(other.effect))
-    return _meet(form, other, variables | (
-        {"time", "temperature"} if variables & {"time", "temperature"} else set()))
+    if variables & {"time", "temperature"}:
+        variables |= {"time", "temperature"}
+    if "history" in variables:
+        variables |= set(VARIABLE["orientation"])
+    return _meet(form, other, variables)
 
 
 def names_of(forms, stranger):

@@ -10,13 +10,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import discrepancy, evidence, hypotheses, odds
+from . import discrepancy, hypotheses, odds, pruning
 from .odds import HOLDS, PRESENT
 from .scored_sets import Scored
 
 MOST, BEAM = 4, 3  # members of a set (GAP stage 3); sets that the search goes on with
 FORM_COST = 1.0  # nats
-NOISE_FORM = 0.2  # of a name's gain, that its true form may leave to noise that wanders
 # Of what a set must gain to be gone on with, what a discrepancy adds at most: it is half of what
 # the form itself is, so that where that gains nothing there is nothing for it to be a part of.
 MOST_OF_A_FORM = 0.75
@@ -73,7 +72,7 @@ def search_sets(model, forms, cost, most=MOST):
             break
         beam = grown
         reached += grown
-    return _judged(model, forms, _pruned(model, max(reached, key=worth), cost), cost)
+    return _judged(model, forms, pruning.pruned(model, max(reached, key=worth), cost), cost)
 
 
 def judge_likeliest(model, forms, cost, likeliest):
@@ -108,7 +107,7 @@ def _refined(model, forms, best, cost):
     that the others have made superfluous: of all that were come by, the best."""
     changed, reached = True, []
     while changed and best.forms:
-        best, changed = _pruned(model, best, cost), False
+        best, changed = pruning.pruned(model, best, cost), False
         reached.append(best)
         for form in best.forms:
             fewer = model.scored(tuple(f for f in best.forms if f is not form))
@@ -117,67 +116,24 @@ def _refined(model, forms, best, cost):
             if _worth(better, cost) > _worth(best, cost) + 1e-3:
                 best, changed = _with_discrepancy(model, forms, better, cost), True
                 break
+        if not changed:
+            better = _absorbed(model, forms, best, cost)
+            changed = _worth(better, cost) > _worth(best, cost) + 1e-3
+            best = better if changed else best
     return max([best, *reached], key=lambda s: _worth(s, cost))
 
 
-def _pruned(model, best, cost):
-    """The set without members that cost more than they gain. No part has the very form of the
-    library, and what has no name has no known form at all: beside the others a member has to
-    gain more than a share of what they gain."""
-    while best.forms:
-        gains = _gains(model, best)
-        alone = {f: max(gains[f], _alone(model, f)) for f in best.forms}
-        energy = {f: max(gains[f], nats) for f, nats in _energies(best).items()}
-        needed = {form: cost.nats(form) + PRESENT + max(
-            [_unknown(form, f, cost) * (
-                alone if f.generic or form.effect == "drift"
-                else energy if discrepancy.may_be_left_by(form, f) else gains)[f]
-             for f in best.forms if f is not form], default=0.0) for form in best.forms}
-        weakest = min(best.forms, key=lambda f: gains[f] - needed[f])
-        if gains[weakest] >= needed[weakest]:
-            break
-        best = model.scored(tuple(f for f in best.forms if f is not weakest))
-    return best
-
-
-def _unknown(form, other, cost):
-    """Share of what another member gains that a member must gain itself: noise, or what differs
-    from session to session anyhow, has no form that could be another one, and noise takes up
-    whatever form a stranger has beyond what is described."""
-    if other.effect == "drift" or other.free:
-        return 0.0
-    if form.effect == "drift":
-        return 1.0 if other.generic else NOISE_FORM
-    return cost.beside if other.generic else cost.form
-
-
-def _alone(model, form):
-    """Nats that a form gains by itself."""
-    return model.scored((form,)).score - model.scored(()).score
-
-
-def _gains(model, best):
-    """{Form: nats lost without it}."""
-    return {form: best.score - model.scored(tuple(f for f in best.forms if f is not form)).score
-            for form in best.forms}
-
-
-def _energies(best):
-    """{Form: nats lost without it at the levels of noise found, by its coefficients and their
-    covariance [Wald, Trans. AMS 54 (1943) 426]}. Without it more noise would be taken for usual,
-    so what it gains grows as a logarithm of its size only, and what its form leaves with the
-    square."""
-    shared = best.shared
-    if not len(shared):
-        return dict.fromkeys(best.forms, 0.0)
-    theta, covariance = (v[0] for v in evidence.coefficients(best.fits, shared))
-    energies = {}
-    for form in best.forms:
-        mine = np.flatnonzero(np.isin(shared.index, form.columns))
-        block = covariance[np.ix_(mine, mine)]
-        energies[form] = 0.5 * float(theta[mine] @ np.linalg.solve(block, theta[mine])) \
-            if len(mine) else 0.0
-    return energies
+def _absorbed(model, forms, best, cost):
+    """The likeliest set of this one and those in which a name does by another variant, with a
+    discrepancy, what a stranger does beside it."""
+    sets = [best]
+    for stranger in (f for f in best.forms if f.generic):
+        for name in (f for f in best.forms if not f.generic and len(f.shared)):
+            others = model.scored(tuple(f for f in best.forms if f not in (stranger, name)))
+            variants = [f for f in forms if (f.effect, f.axis) == (name.effect, name.axis)]
+            sets += [_wider(model, forms, exchanged, cost, variant)
+                     for variant, exchanged in model.best(others, variants)]
+    return max(sets, key=lambda s: _worth(s, cost))
 
 
 def _place(model, forms, best, form, cost):

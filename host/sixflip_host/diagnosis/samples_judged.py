@@ -66,7 +66,8 @@ class SamplesJudged:
         def axes(effect):
             return {f.sensor: ["xyz".index(a) for a in f.axes] for f in self.findings
                     if f.effect == effect}
-        return Conditions(reference_c, coarse, axes("vibration"), axes("dead_band"))
+        return Conditions(reference_c, coarse, axes("vibration"), axes("dead_band"),
+                          any("later" in damage.value for damage in self.damages))
 
 
 def judge(sessions, settings=ALONE, damages=()):

@@ -16,12 +16,17 @@ LEAST_GAIN = 1e-6  # nats of a choice made again: rounding has less
 
 @dataclass(frozen=True)
 class Choice:
-    """Which of a form's choices a unit takes: number, and what that is worth by itself, nats: what
-    the rests show within themselves, and its prior."""
+    """Which of a form's choices a unit takes: number; within: nats, what the rests show of it
+    within themselves."""
 
     form: object
     number: int
-    nats: float
+    within: float
+
+    @property
+    def nats(self):
+        """What the choice is worth by itself."""
+        return self.within + float(self.form.chances[self.number])
 
     @property
     def columns(self):
@@ -227,7 +232,7 @@ class Model:
             for number, likelihood in zip(numbers, likelihoods.tolist()):
                 within = unit.within.get((form.effect, form.variant, number), 0.0)
                 tried.append((likelihood + within + form.chances[number], number, within))
-        return tuple(Choice(form, number, within + float(form.chances[number]))
+        return tuple(Choice(form, number, within)
                      for _, number, within in (max(tried), max(
                          (one for one in tried if len(form.choices[one[1]])),
                          default=max(tried))))

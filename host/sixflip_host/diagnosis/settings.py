@@ -27,9 +27,11 @@ class Settings:
 class Conditions:
     """reference_c: temperature that slopes are taken about; coarse: registers move what the
     accelerometer reads near zero; shaken, banded: {sensor: axes (0..2) that a line of the spectrum
-    is on, that have a dead band}."""
+    is on, that have a dead band}; stale: rows of a sensor come again later, so that in motion it
+    reads what was before."""
 
     reference_c: float = 25.0
     coarse: bool = False
     shaken: dict = field(default_factory=dict)
     banded: dict = field(default_factory=dict)
+    stale: bool = False

@@ -8,6 +8,8 @@ Private ones have coefficients of each session's own: a jump at some time, somet
 course in time, or of a scale in time. The widths of their priors are tried over a decade: of a
 stranger no size is known.
 """
+from dataclasses import replace
+
 import numpy as np
 from numpy.polynomial import legendre
 
@@ -26,6 +28,7 @@ FADES_S = (5.0, 20.0, 80.0)  # of what follows a move
 # once, and of what takes longer fewer times are different.
 JUMPS = {0.0: 24, 20.0: 12, 60.0: 6}
 DEGREES = 6  # of a bend: a box in few poses shows no finer one
+PRODUCT_DEGREES = (2, 3, 5)  # of a product's; of five degrees the fourth tells least from these
 # From 16 s, faster than which rests with moves between them do not follow, to the whole session:
 # in a quarter of an hour each is 1.3 times the one before, and a wave between two of them keeps
 # step with one for two of its periods; the strongest of all between them are tried as well. Faster
@@ -48,7 +51,7 @@ ASKED_OF_ALL = "smooth"
 DOMAIN = {"jump": "time", "periodic": "frequency", "own_time": "time",
           "time_orientation": "time", "thermal_orientation": "temperature",
           "thermal_bend": "temperature",
-          "bend": "orientation", "shaking": "amplitude"}
+          "bend": "orientation", "product_bend": "orientation", "shaking": "amplitude"}
 
 
 def domain(effect):
@@ -96,7 +99,7 @@ def shared(session, up, sensor, reference_c):
         designs.append(_smooth("time_since_move", since, n, scale, "tau %g s" % tau))
     designs.append(_smooth("orientation", harmonics(f, sensor), n, scale))
     if sensor == "accel":
-        designs.append(bend(f, scale))
+        designs += [bend(f, scale), product_bend(f, scale)]
     if session.shaken_mg:
         designs.append(_shaking(session.vibration / session.shaken_mg, scale))
     return [*designs, _flip(session, scale)]
@@ -276,6 +279,15 @@ def bend(f, scale):
     keys = ["%s%d" % (axis, number) for number in range(len(felt)) for axis in "xyz"]
     return Design("bend", "", keys, [0, 1, 2] * len(felt), columns, np.full(len(keys), scale),
                   beside=True)
+
+
+def product_bend(f, scale):
+    """Design of what a product of two axes becomes where it is none but a function of one: of
+    each product of f (n, 3) g, 1 at most, on each axis. By itself it is no hypothesis."""
+    products = [2.0 * f[:, i] * f[:, j] for i in range(3) for j in range(i)]
+    return replace(_smooth("product_bend", [legendre.Legendre.basis(degree)(u) for u in products
+                                            for degree in PRODUCT_DEGREES], len(f), scale),
+                   beside=True)
 
 
 def hats(x, number):

@@ -73,6 +73,7 @@ class TurnModel(RestModel):
             designs += [banded(chosen, width, times, lsb, self.chip) for width in BANDS_DPS
                         for times in TIMES]
         designs += [nameless(chosen, name, functions) for name, functions in STRANGERS.items()]
+        designs.append(_of_rates("motion", "with gravity", chosen, _with_gravity, 10.0))
         designs += _in_time(chosen)
         if part.thermal:
             reference = self.conditions.reference_c
@@ -140,6 +141,12 @@ def _of_motion(turn):
     size = np.linalg.norm(w, axis=1)[:, None] / 100.0
     product = np.stack([w[:, 1] * w[:, 2], w[:, 2] * w[:, 0], w[:, 0] * w[:, 1]], 1) / 1e4
     return [change / 100.0, np.broadcast_to(size, w.shape), size * w / 100.0, product]
+
+
+def _with_gravity(turn):
+    """Of every rate in proportion to what gravity is along its axis."""
+    felt = np.einsum("nji,j->ni", turn.attitude, turn.before)
+    return [felt * turn.middle / 100.0]
 
 
 def _of_temperature(turn, reference_c):

@@ -16,7 +16,7 @@ from sixflip_sim.effects.library import EFFECTS
 from . import block_measures
 from .projection import by_axis
 from .thermometer import MOVES_C, moved_c
-from .way_memory import FRICTION, UNMOVED_G
+from .way_memory import FRICTION, UNMOVED_G, levelling
 
 LAGS_S = (0.0, 15.0, 30.0, 60.0, -30.0)  # GAP: a neighbouring thermometer, 10-60 s
 WARM_UP_S = (30.0, 60.0, 120.0, 240.0, 480.0)  # GAP: 60-300 s, and an octave to both sides
@@ -206,7 +206,8 @@ def remembered(session, m, plain):
     came = np.stack(m.before, 1) - np.stack(m.f, 1)
     sign = np.sign(came) * (np.abs(came) > UNMOVED_G)
     forms = [("side", np.tanh(3.0 * came)), ("sign", sign),
-             *zip(FRICTION, session.friction.transpose(1, 0, 2))]
+             *zip(FRICTION, session.friction.transpose(1, 0, 2)),
+             *levelling(np.stack(m.f, 1), session.friction).items()]
     designs = []
     for variant, values in forms:
         columns = by_axis([values]).reshape(-1, 3)

@@ -13,6 +13,7 @@ import numpy as np
 PLAY_G = (0.1, 0.2, 0.4)  # widths of a play operator: octaves below half of what a pose changes by
 SLIP_G = (0.5, 1.0)  # lengths of way over which what sticks begins to slip: half a move and one
 UNMOVED_G = 0.02  # that is no way yet: several times the noise of STEP_S of a chip at rest
+LEVELS_G = 0.5  # of what levels off: at 1 g, the most that a box at rest feels, it has done so
 FRICTION = (*("play %g g" % width for width in PLAY_G),
             *("slip %g g" % length for length in SLIP_G))
 TURNED_S = (5.0, 20.0, 80.0)  # time constants in which a turn is forgotten
@@ -25,6 +26,14 @@ def in_steps(values, rate_hz):
     """((n, 3) means of values (samples, 3) over each step, samples in a step)."""
     step = max(1, int(STEP_S * rate_hz))
     return values[:len(values) // step * step].reshape(-1, step, 3).mean(axis=1), step
+
+
+def levelling(f, friction):
+    """{variant: (n, 3)} what follows a play and levels off, -1 to 1: a play operator under an
+    envelope of its own [Al Janaideh, Rakheja & Su, Smart Mater. Struct. 18 (2009) 045001]. f
+    (n, 3) g; friction (n, len(FRICTION), 3): the lags there."""
+    return {"play %g g, levelling off" % width: np.tanh((f + width * friction[:, k]) / LEVELS_G)
+            for k, width in enumerate(PLAY_G)}
 
 
 def friction(f):

@@ -1,4 +1,6 @@
 """The score of sets of hypotheses on small made-up problems whose answer is known."""
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import integrate, linalg, stats
@@ -14,6 +16,7 @@ from sixflip_host.diagnosis import (
     moves_unit,
     odds,
     posterior,
+    pruning,
     scored_sets,
 )
 from sixflip_host.diagnosis.elimination import NONE, Columns
@@ -286,9 +289,9 @@ def test_what_differs_from_session_to_session_leaves_nothing_to_a_name_within_th
     named, nameless = (hypotheses.Form(name, shared=Columns(np.array([0]), np.ones(1)))
                        for name in ("hysteresis", "orientation"))
     level = hypotheses.Form("session", free=frozenset(["switch_on"]))
-    assert posterior._unknown(named, level, cost) == 0.0
-    assert posterior._unknown(named, nameless, cost) == 0.5
-    assert posterior._unknown(named, named, cost) == cost.form
+    assert pruning._unknown(named, level, cost) == 0.0
+    assert pruning._unknown(named, nameless, cost) == 0.5
+    assert pruning._unknown(named, named, cost) == cost.form
 
 
 def lagging(generator, n=40):
@@ -353,3 +356,29 @@ def test_noise_stands_for_a_stranger_only_where_that_adds_nothing(beside, likeli
     found = posterior.search_sets(model, forms, cutoffs.Cutoffs(8.7, 0.15))
     assert [form.effect for form in found.best.forms] == [likeliest]
     assert found.alternatives(likeliest) == [likeliest]
+
+
+def test_a_name_may_do_by_another_variant_what_a_stranger_does_beside_it(monkeypatch):
+    """A warm-up of many time constants was the shortest of them and something nameless in time:
+    the longest with a discrepancy, likelier than both, was never tried."""
+    class OfVariants(Scores):
+        def scored(self, forms):
+            names = frozenset(f.effect if f.generic else f.variant for f in forms)
+            return scored_sets.Scored(tuple(forms), self.scores[names], (), ())
+
+    def wider(model, forms, scored, cost, form):
+        return model.scored([replace(f, variant="wide") if f.variant == "slow" else f
+                             for f in scored.forms])
+    monkeypatch.setattr(posterior, "_wider", wider)
+    one = Columns(np.array([0]), np.ones(1))
+    quick, slow = (hypotheses.Form("warm_up", variant, shared=one) for variant in (
+        "quick", "slow"))
+    model = OfVariants({"": 0.0, "quick": 60.0, "slow": 50.0, "time": 40.0, "quick time": 110.0,
+                        "slow time": 70.0, "wide": 105.0})
+    cost = cutoffs.Cutoffs(8.0, 0.15)
+    both = model.scored((quick, hypotheses.Form("time", shared=one)))
+    for score, likeliest in ((105.0, "wide"), (90.0, "quick")):
+        model.scores[frozenset(["wide"])] = score
+        found = posterior._absorbed(model, (quick, slow), both, cost)
+        assert found.forms[0].variant == likeliest
+        assert (found is both) == (likeliest == "quick")

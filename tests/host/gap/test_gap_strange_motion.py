@@ -114,3 +114,28 @@ def test_a_hand_that_puts_a_healthy_box_down_degrees_off_is_no_gap_in_motion(see
     found = diagnosis.diagnose_sessions(sessions, diagnosis.Settings(jobs=1))
     assert found.motion.fit is not None and found.motion.nameless == ()
     assert found.verdict == "no gap"
+
+
+def test_rows_of_an_old_buffer_are_no_delay(captures):
+    """Ten of 97 rows of the accelerometer are those of a second before: in motion it was a
+    `filter_lag` beside that."""
+    def old(t, accel, gyro):
+        fresh = accel.copy()
+        for first in range(200, len(accel) - 10, 97):
+            accel[first:first + 10] = fresh[first - 100:first - 90]
+        return accel, gyro
+    found = diagnosed(captures, old)
+    assert found["verdict"] == "unexplained" and not found["causes"]
+    assert [d["value"]["later"] for d in found["damage"]] == [100]
+
+
+def test_what_bends_an_accelerometer_bends_a_hand_s_acceleration_with_it(captures):
+    """Beside `cubic` something nameless followed the rate: a hand's acceleration on its way, which
+    is read by another scale than gravity is."""
+    def bent(t, accel, gyro):
+        felt = accel / LSB_G
+        return accel + LSB_G * np.array([0.0, 0.022, -0.015]) * np.sign(felt) * np.abs(
+            felt) ** 2.6, gyro
+    found = diagnosed(captures, bent)
+    assert [(c["sensor"], c["effect"]) for c in found["causes"]] == [("accel", "cubic")]
+    assert found["verdict"] == "explained"
