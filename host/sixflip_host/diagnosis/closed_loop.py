@@ -20,6 +20,7 @@ from sixflip_sim.sensor_model import SensorModel, Triad
 from ..capture.capture_file import Capture
 from ..experiment import attitude_fit, blocks, nominal_rows
 from ..experiment.session_rows import body_to_table
+from ..experiment.terms import FROM_BEFORE
 from ..simulation import replica
 from . import effect_estimates
 
@@ -77,21 +78,23 @@ def cooling(session):
 
 def specs(gap, theta, reference_c):
     """[{effect, sensor, key: size, parameter: value}] of the chosen candidates; theta (k,). The
-    simulator has the library's form alone: what a discrepancy adds beside it goes to the nearest
-    sizes of that."""
+    simulator has the library's form alone: what a discrepancy adds beside it, and what remembers
+    otherwise, goes to the nearest sizes of that."""
     effects, start = [], 0
     for candidate in gap.chosen:
-        mine = theta[start:start + len(candidate.keys)]
-        start += len(candidate.keys)
-        if candidate.discrepancy:
-            own = np.flatnonzero(candidate.powers)
-            gram = sum(u.gram.at(i, candidate.columns)
-                       for u, i in zip(gap.data.units, gap.levels()))
+        keys, powers = candidate.keys, candidate.powers
+        mine = theta[start:start + len(keys)]
+        start += len(keys)
+        if candidate.effect == "hysteresis" and candidate.variant not in ("", FROM_BEFORE):
+            keys, columns = _in_the_library(gap, candidate)
+            powers, mine = (1,) * len(keys), _nearest(gap, candidate, columns, mine)
+        elif candidate.discrepancy:
+            own = np.flatnonzero(powers)
             mine = mine.copy()
-            mine[own] = effect_estimates.nearest(gram, own, np.arange(len(mine))) @ mine
+            mine[own] = _nearest(gap, candidate, candidate.columns[own], mine)
         cls = EFFECTS[candidate.effect]
         spec = {"effect": candidate.effect, "sensor": gap.kind}
-        for key, power, value in zip(candidate.keys, candidate.powers, mine):
+        for key, power, value in zip(keys, powers, mine):
             own = key if power == 1 else "%s%d" % (key, power)  # a square beside a slope: x2
             if own not in cls.keys:
                 continue
@@ -99,6 +102,25 @@ def specs(gap, theta, reference_c):
         spec.update(shape(candidate, reference_c))
         effects.append(spec)
     return effects
+
+
+def _in_the_library(gap, candidate):
+    """(keys, columns) of the library's own form of a candidate's effect, on its axes."""
+    designs = gap.units[0].designs
+    starts = np.cumsum([0, *(len(design.keys) for design in designs)])
+    start, design = next((start, design) for start, design in zip(starts, designs)
+                         if design.effect == candidate.effect and not design.variant)
+    mine = [k for k, axis in enumerate(design.axes) if axis in candidate.axes]
+    return [design.keys[k] for k in mine], start + np.array(mine)
+
+
+def _nearest(gap, candidate, columns, theta):
+    """(p,) sizes of the columns (p,) that come nearest to a candidate with coefficients theta."""
+    every = np.concatenate([columns, candidate.columns])
+    gram = sum(u.gram.at(i, every) for u, i in zip(gap.data.units, gap.levels()))
+    mapped = effect_estimates.nearest(gram, np.arange(len(columns)),
+                                      np.arange(len(columns), len(every)))
+    return mapped @ theta
 
 
 def shape(form, reference_c):

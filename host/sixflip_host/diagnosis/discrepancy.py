@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..experiment.way_memory import LEVELLING
 from . import evidence
 from .elimination import Columns
 from .hypotheses import domain
@@ -49,12 +50,12 @@ def alike(form, other):
 
 def may_be_left_by(form, other):
     """Whether a named effect may be what the form of another one leaves: it is a function of that
-    one's variable, or one of both is of time, of which every temperature is a function. What
-    remembers the pose before does so as a function of this one as well."""
+    one's variable, or one of both is of time, of which every temperature is a function. What a
+    hysteresis of no form of the library leaves is a function of the pose as well."""
     variables = set(_variable(other.effect))
     if variables & {"time", "temperature"}:
         variables |= {"time", "temperature"}
-    if "history" in variables:
+    if other.effect == "hysteresis" and (other.discrepancy or LEVELLING in other.variant):
         variables |= set(VARIABLE["orientation"])
     return _meet(form, other, variables)
 
@@ -91,11 +92,13 @@ def _of_variable(designs, forms, names, variant):
 
 def _of_effect(designs, form):
     """[(column, axis, number of its design)] of a form's other variants, those that are one of
-    them again with more beside it left out."""
+    them again with more beside it left out, and of what levels off beside what does not: that is
+    for the most part no memory, but a bend."""
     pairs, start = [], 0
     for number, design in enumerate(designs):
         if design.effect == form.effect and design.variant != form.variant \
-                and BESIDE not in design.powers:
+                and BESIDE not in design.powers and (
+                    LEVELLING in form.variant or LEVELLING not in design.variant):
             pairs += zip(range(start, start + len(design.keys)), design.axes,
                          [number] * len(design.keys))
         start += len(design.keys)
@@ -110,6 +113,10 @@ def with_discrepancy(model, forms, scored, form):
     if form.generic or not len(form.shared) or form.discrepancy:
         return None
     designs, variables = model.units[0].designs, _variable(form.effect)
+    if form.axis is None:
+        # Products on three axes take off each other what the poses are free to be, so that each
+        # may be large, and what bends them anything.
+        variables = tuple(name for name in variables if name != "product_bend")
     free = _of_effect(designs, form) if form.effect in OWN_FORMS else _of_variable(
         designs, forms, variables, form.variant)
     shared, own = scored.shared, form.shared.index

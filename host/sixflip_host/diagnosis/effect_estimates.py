@@ -29,7 +29,15 @@ def sized(cause, data, levels, chip, kind, share=None):
     return replace(cause, value=value, interval=interval, letters=shown, share=share,
                    variant=own.variant, shape=own.shape,
                    plausible=believable(cause.effect, chip, kind, value, sigma),
-                   domain=terms.DOMAIN[cause.effect], unit=EFFECTS[cause.effect].units[kind])
+                   domain=terms.DOMAIN[cause.effect], unit=_unit(own, kind))
+
+
+def _unit(form, kind):
+    """Unit of a Form's sizes: of a memory that goes with no pose, but levels off or slips, what it
+    is at most."""
+    unit = EFFECTS[form.effect].units[kind]
+    remembers = form.effect == "hysteresis" and form.variant not in ("", terms.FROM_BEFORE)
+    return unit.removesuffix("/g") if remembers else unit
 
 
 def _intervals(cause, gram, value, sigma):

@@ -85,6 +85,18 @@ class MotionGap:
                              scores=dict(self.scores, **{name: score}),
                              posterior=replace(self.posterior, places=places)))
 
+    def beside_a_bend(self):
+        """The same where the accelerometer bends: a hand's acceleration is read by another scale
+        than gravity then, which is no stranger of the rate."""
+        if not self.seen:
+            return self
+        strange = [form for form in self.posterior.best.forms if form.generic]
+        scale = [told for form, told in zip(strange, _strange(self.posterior))
+                 if form.variant == "scale"]
+        return replace(
+            self, nameless=tuple(p for p in self.nameless if p not in [told[0] for told in scale]),
+            remarks=tuple(w for w in self.remarks if w not in [told[1] for told in scale]))
+
     def least(self, name):
         """Smallest size that would show, cm or ms."""
         variance = np.sort(np.diag(self.covariance)[moves_fit.EFFECTS[name]])

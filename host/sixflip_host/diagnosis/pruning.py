@@ -9,7 +9,6 @@ from . import discrepancy, evidence, hypotheses
 from .odds import PRESENT
 
 NOISE_FORM = 0.2  # of a name's gain, that its true form may leave to noise that wanders
-GO_ON = ("time", "temperature", "time_since_move")  # domains of what goes on within the rests
 
 
 def pruned(model, best, cost):
@@ -35,8 +34,9 @@ def pruned(model, best, cost):
 
 def _seen_within(best, form, other, cost):
     """Whether a walk beside a name is there by what it does within the rests alone, where a name
-    that is a function of the pose leaves nothing of its form."""
-    if form.effect != "drift" or other.generic or hypotheses.domain(other.effect) in GO_ON:
+    that is a function of the pose alone leaves nothing of its form."""
+    if form.effect != "drift" or other.generic \
+            or hypotheses.domain(other.effect) != "orientation":
         return False
     return sum(choice.within for choices in best.chosen for choice in choices
                if choice.form == form) >= cost.nats(form) + PRESENT

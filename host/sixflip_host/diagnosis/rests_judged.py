@@ -59,14 +59,15 @@ def judge(rests, findings, settings, conditions):
         nameless += [place for place, _ in astray]
         remarks += [words for _, words in astray]
     carried = [*gaps.values(), *([turns] if turns else [])]
-    if motion and not conditions.stale and not any(gap.unexplained and not (
+    if conditions.stale:
+        motion = None
+    elif motion and any(cause.domain == "orientation" for cause in gaps["accel"].causes):
+        motion = motion.beside_a_bend()
+    if motion and not any(gap.unexplained and not (
             gap is gaps.get("gyro") and harmless(gap, motion)) for gap in carried):
         new_findings += motion.findings
         remarks += motion.remarks
-        # A gyro that bends carries gravity wrongly, too, and an accelerometer that does reads what
-        # a hand adds to gravity by another scale than gravity.
-        bent = any(cause.domain == "orientation" for cause in gaps["accel"].causes)
-        if not (turns.posterior.best.forms or bent):
+        if not turns.posterior.best.forms:  # a gyro that bends carries gravity wrongly, too
             nameless += motion.nameless
     remarks += ["on which axes the %s has %s these captures do not tell" % (
         SENSORS[gap.kind], " or ".join(cause.names)) for gap in carried for cause in gap.causes

@@ -23,6 +23,7 @@ WARM_UP_S = (30.0, 60.0, 120.0, 240.0, 480.0)  # GAP: 60-300 s, and an octave to
 STARTED_S = (60.0, 240.0)  # a short one and a long one: how warm each session started
 # Sessions that have columns of their own: of more each is a small part of all, and the columns of
 # all together would grow with the square of their number.
+FROM_BEFORE = "from before"  # variant of a hysteresis whose first pose has anything of it
 MOST_OWN = 8
 CREEP_S = (5.0, 15.0, 30.0, 60.0, 120.0)  # GAP: 60-70 s seen on Z; down to a rest's length
 LEVELS_OFF = 3.0  # times faster than where a rate's effect begins to level off
@@ -225,7 +226,7 @@ def _unseen_at_first(session, plain):
     saw the box come there."""
     first = np.repeat(session.placement[:, None] == 0, 3, axis=1).astype(float)
     columns = by_axis([first * (number == session.number) for number in range(session.of)])
-    return replace(plain, variant="from before", keys=plain.keys * (1 + session.of),
+    return replace(plain, variant=FROM_BEFORE, keys=plain.keys * (1 + session.of),
                    axes=plain.axes * (1 + session.of),
                    columns=np.hstack([plain.columns, columns.reshape(-1, 3 * session.of)]),
                    prior=np.tile(plain.prior, 1 + session.of),

@@ -1,6 +1,6 @@
 """What remembers the way that a box was taken: what rubs, and what forgets a turn in its time.
 
-What rubs lags behind the specific force of its axis, in two ways that friction has: a play
+What rubs lags behind the specific force of its axis, in ways that friction has: a play
 operator [Krejci, Hysteresis, Convexity and Dissipation in Hyperbolic Equations (1996), chapter
 II], and what slips the longer the way is [Dahl, Aerospace Corp. TOR-0158(3107-18)-1 (1968)]. Each
 value depends on the one before, for as many as a session has tenths of a second: plain numbers are
@@ -13,7 +13,8 @@ import numpy as np
 PLAY_G = (0.1, 0.2, 0.4)  # widths of a play operator: octaves below half of what a pose changes by
 SLIP_G = (0.5, 1.0)  # lengths of way over which what sticks begins to slip: half a move and one
 UNMOVED_G = 0.02  # that is no way yet: several times the noise of STEP_S of a chip at rest
-LEVELS_G = 0.5  # of what levels off: at 1 g, the most that a box at rest feels, it has done so
+# g, of what levels off: at 1 g, the most that a box at rest feels, it has nearly done so.
+LEVELLING, LEVELS_G = "levelling off", 0.5
 FRICTION = (*("play %g g" % width for width in PLAY_G),
             *("slip %g g" % length for length in SLIP_G))
 TURNED_S = (5.0, 20.0, 80.0)  # time constants in which a turn is forgotten
@@ -32,7 +33,7 @@ def levelling(f, friction):
     """{variant: (n, 3)} what follows a play and levels off, -1 to 1: a play operator under an
     envelope of its own [Al Janaideh, Rakheja & Su, Smart Mater. Struct. 18 (2009) 045001]. f
     (n, 3) g; friction (n, len(FRICTION), 3): the lags there."""
-    return {"play %g g, levelling off" % width: np.tanh((f + width * friction[:, k]) / LEVELS_G)
+    return {"play %g g, %s" % (width, LEVELLING): np.tanh((f + width * friction[:, k]) / LEVELS_G)
             for k, width in enumerate(PLAY_G)}
 
 

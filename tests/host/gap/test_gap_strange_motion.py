@@ -139,3 +139,15 @@ def test_what_bends_an_accelerometer_bends_a_hand_s_acceleration_with_it(capture
     found = diagnosed(captures, bent)
     assert [(c["sensor"], c["effect"]) for c in found["causes"]] == [("accel", "cubic")]
     assert found["verdict"] == "explained"
+
+
+def test_what_follows_the_rate_has_no_name_beside_a_bend_either(captures):
+    """That a bend reads a hand's acceleration by another scale is no reason for it."""
+    def follows(t, accel, gyro):
+        felt, speed = accel / LSB_G, np.linalg.norm(gyro / LSB_DPS, axis=1)
+        accel += LSB_G * 0.003 * felt ** 2 * [0.0, 1.0, 0.0]
+        accel[:, 0] += 0.3e-3 * LSB_G * speed
+        return accel, gyro
+    found = diagnosed(captures, follows)
+    assert found["verdict"] in ("partly explained", "unexplained")
+    assert ("accel", "motion") in {(w["sensor"], w["domain"]) for w in found["where"]}
