@@ -33,11 +33,9 @@ def sized(cause, data, levels, chip, kind, share=None):
 
 
 def _unit(form, kind):
-    """Unit of a Form's sizes: of a memory that goes with no pose, but levels off or slips, what it
-    is at most."""
+    """Unit of a Form's sizes."""
     unit = EFFECTS[form.effect].units[kind]
-    remembers = form.effect == "hysteresis" and form.variant not in ("", terms.FROM_BEFORE)
-    return unit.removesuffix("/g") if remembers else unit
+    return unit.removesuffix("/g") if terms.remembers_otherwise(form) else unit
 
 
 def _intervals(cause, gram, value, sigma):

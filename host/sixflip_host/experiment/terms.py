@@ -23,8 +23,8 @@ WARM_UP_S = (30.0, 60.0, 120.0, 240.0, 480.0)  # GAP: 60-300 s, and an octave to
 STARTED_S = (60.0, 240.0)  # a short one and a long one: how warm each session started
 # Sessions that have columns of their own: of more each is a small part of all, and the columns of
 # all together would grow with the square of their number.
-FROM_BEFORE = "from before"  # variant of a hysteresis whose first pose has anything of it
 MOST_OWN = 8
+FROM_BEFORE = "from before"  # variant of a hysteresis whose first pose has anything of it
 CREEP_S = (5.0, 15.0, 30.0, 60.0, 120.0)  # GAP: 60-70 s seen on Z; down to a rest's length
 LEVELS_OFF = 3.0  # times faster than where a rate's effect begins to level off
 FORGOTTEN_S = (5.0, 20.0)  # from part of a short rest to most of a long one
@@ -219,6 +219,12 @@ def remembered(session, m, plain):
         designs.append(Design("hysteresis", "forgotten, tau %g s" % tau, plain.keys, plain.axes,
                               columns, plain.prior, beside=True))
     return [*designs, *([_unseen_at_first(session, plain)] if session.of <= MOST_OWN else [])]
+
+
+def remembers_otherwise(form):
+    """Whether a form of hysteresis (hypotheses.Form) is none of the library's, a share of the pose
+    before: its sizes are what it is at most, in mg or deg/s."""
+    return form.effect == "hysteresis" and form.variant not in ("", FROM_BEFORE)
 
 
 def _unseen_at_first(session, plain):

@@ -382,3 +382,16 @@ def test_a_name_may_do_by_another_variant_what_a_stranger_does_beside_it(monkeyp
         found = posterior._absorbed(model, (quick, slow), both, cost)
         assert found.forms[0].variant == likeliest
         assert (found is both) == (likeliest == "quick")
+
+
+@pytest.mark.parametrize("effect, other, within, seen", [
+    ("drift", "g_sensitivity", (10.0, 10.0), True), ("drift", "g_sensitivity", (2.0, 2.0), False),
+    ("drift", "warm_up", (10.0, 10.0), False), ("drift", "hysteresis", (10.0, 10.0), False),
+    ("drift", "orientation", (10.0, 10.0), False), ("jump", "quadratic", (10.0, 10.0), False)])
+def test_only_a_walk_is_seen_within_the_rests_and_beside_what_the_pose_alone_does(
+        effect, other, within, seen):
+    form = hypotheses.Form(effect)
+    best = scored_sets.Scored((form,), 0.0, (), tuple(
+        (scored_sets.Choice(form, 0, nats),) for nats in within))
+    cost = cutoffs.Cutoffs(8.0, 0.15)
+    assert pruning._seen_within(best, form, hypotheses.Form(other), cost) == seen
