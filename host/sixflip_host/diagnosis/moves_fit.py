@@ -115,10 +115,13 @@ def fit(moves, chip):
         gram, inner = _each_about_its_own(*plain, apart)
         total = np.tensordot(weights, gram, axes=1), weights @ inner
         prior = _settled(*total, wide, len(shared), len(sessions))
-        theta, _ = solved(*total, prior)
+        theta, covariance = solved(*total, prior)
         weights, excess = _weighted(gram, inner, theta)
-        squares = [_expected(m, m.y - m.table @ theta[_own(m, sessions)], *about)
-                   for m, *about in zip(moves, *_centres(*plain, theta, apart))]
+        squares = []
+        for move, *about in zip(moves, *_centres(*plain, theta, apart)):
+            own = _own(move, sessions)
+            squares.append(_expected(move, move.y - move.table @ theta[own], *about)
+                           + _spread(move.table, covariance[np.ix_(own, own)]))
     weights = weights / excess
     gram *= weights[:, None, None]
     inner *= weights[:, None]
@@ -185,7 +188,14 @@ def _expected(move, left, centre, covariance):
     """(n, 3) mg²: squares that are expected of what is left of a move about its own centre, which
     is known to a covariance only [Dempster, Laird & Rubin, J. R. Stat. Soc. B 39 (1977) 1]."""
     columns = move.table[:, :, CENTRE]
-    return (left - columns @ centre) ** 2 + ((columns @ covariance) * columns).sum(axis=2)
+    return (left - columns @ centre) ** 2 + _spread(columns, covariance)
+
+
+def _spread(columns, covariance):
+    """(n, 3): variance of what columns (n, 3, k) add, their sizes known to a covariance only. A
+    few moves are fitted better by their habits than the next ones will be, and a hand that seems
+    to hold still would make any of them evidence."""
+    return ((columns @ covariance) * columns).sum(axis=2)
 
 
 def _settled(gram, inner, wide, shared, sessions):

@@ -16,19 +16,22 @@ def pruned(model, best, cost):
     (cutoffs.Cutoffs) more than they gain: beside the others a member has to gain more than a share
     of what they gain, nats."""
     while best.forms:
-        gains = _gains(model, best)
+        without = {form: model.scored(tuple(f for f in best.forms if f is not form))
+                   for form in best.forms}
+        gains = {form: best.score - fewer.score for form, fewer in without.items()}
         alone = {f: max(gains[f], _alone(model, f)) for f in best.forms}
-        energy = {f: max(gains[f], nats) for f, nats in _energies(best).items()}
         needed = {form: cost.nats(form) + PRESENT + max(
             [_unknown(form, f, cost) * (
-                alone if f.generic or form.effect == "drift"
-                else energy if discrepancy.may_be_left_by(form, f) else gains)[f]
+                alone[f] if f.generic or form.effect == "drift"
+                else max(gains[f], energies[f]) if discrepancy.may_be_left_by(form, f)
+                else gains[f])
              for f in best.forms if f is not form and not _seen_within(best, form, f, cost)],
-            default=0.0) for form in best.forms}
+            default=0.0)
+            for form, energies in ((form, _energies(fewer)) for form, fewer in without.items())}
         weakest = min(best.forms, key=lambda f: gains[f] - needed[f])
         if gains[weakest] >= needed[weakest]:
             break
-        best = model.scored(tuple(f for f in best.forms if f is not weakest))
+        best = without[weakest]
     return best
 
 
@@ -58,17 +61,12 @@ def _alone(model, form):
     return model.scored((form,)).score - model.scored(()).score
 
 
-def _gains(model, best):
-    """{Form: nats lost without it}."""
-    return {form: best.score - model.scored(tuple(f for f in best.forms if f is not form)).score
-            for form in best.forms}
-
-
 def _energies(best):
     """{Form: nats lost without it at the levels of noise found, by its coefficients and their
     covariance [Wald, Trans. AMS 54 (1943) 426]}. Without it more noise would be taken for usual,
     so what it gains grows as a logarithm of its size only, and what its form leaves with the
-    square."""
+    square. It is that of the set without what it may have left: of two that are nearly alike
+    each does most of what the other does, and neither would look large beside the other."""
     shared = best.shared
     if not len(shared):
         return dict.fromkeys(best.forms, 0.0)

@@ -44,7 +44,10 @@ HABITS = 10
 # A hand turns a box smoothly: at 13 % of the time it is 2 % of the way [Flash and Hogan, J.
 # Neuroscience 5 (1985) 1688, equation 9: the way of least jerk].
 TURNED, BY_THEN = 0.02, 0.13
-BENDS = 42  # columns of what bends with the attitude, or remembers the one before
+BENDS = 54  # columns of what bends with the attitude, or remembers the one before
+# Of an axis by itself, which a move takes through all that it may feel: degrees beyond the
+# harmonics', and how wide the knee between up and down may be, in g.
+OWN_DEGREES, KNEE_G = (4, 5, 6), 0.1
 # Standard deviations: of a hand's way, of a centre of turning in a box as large as a hand, and of
 # what has no name (strangers.SCALE: as large as the library's effects are).
 PRIOR_METRES, PRIOR_CM, PRIOR_MG = 0.1, 10.0, 5.0
@@ -98,8 +101,9 @@ def move(turn, capture, nominal, course, session, by_hand, white, lag_ms=0.0):
     own = seen.spectrum(effects)
     edge = own[:, :, :3] @ frame.T * (not flat)
     # What bends with the attitude, and remembers the one before.
-    static = seen.held(projection.by_axis([*terms.harmonics(felt, "accel"), np.abs(felt),
-                                           felt[0] - felt]))
+    static = seen.held(projection.by_axis([
+        *terms.harmonics(felt, "accel"), np.abs(felt), np.hypot(felt, KNEE_G),
+        *(felt ** degree for degree in OWN_DEGREES), felt[0] - felt]))
     bias = projection.by_axis(course[:, turn.first:turn.last])
     strange = seen.spectrum(_of_motion(felt, rate, np.stack(m.w_rate, 1)))
     habits = seen.frequencies(_habits(turn, seen.share, flat))

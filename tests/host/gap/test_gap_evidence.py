@@ -395,3 +395,27 @@ def test_only_a_walk_is_seen_within_the_rests_and_beside_what_the_pose_alone_doe
         (scored_sets.Choice(form, 0, nats),) for nats in within))
     cost = cutoffs.Cutoffs(8.0, 0.15)
     assert pruning._seen_within(best, form, hypotheses.Form(other), cost) == seen
+
+
+@pytest.mark.parametrize("alike, kept", [(0.95, 1), (0.0, 2)])
+def test_of_two_that_are_nearly_alike_one_stands_for_what_lies_between_them(alike, kept):
+    """A bend of another form was `asymmetry` and `cross_quadratic` at once: each does what the
+    other does, so that neither looked large beside the other. Unlike ones stand both."""
+    n, generator = 60, np.random.default_rng(5)
+    u = np.linspace(-1.0, 1.0, n)
+    first, other = np.sqrt(2.0) * np.sin(np.pi * u), np.sqrt(2.0) * np.cos(np.pi * u)
+    second = alike * first + np.sqrt(1.0 - alike ** 2) * other
+    columns = np.zeros((2, n, 3))
+    columns[0, :, 2], columns[1, :, 2] = first, second
+    designs = [Design(effect, "", ["z"], [2], column.reshape(-1, 1), np.array([10.0]))
+               for effect, column in zip(("quadratic", "asymmetry"), columns)]
+    groups = covariance.alone(np.eye(3 * n), np.zeros((3 * n, 0)), np.eye(3 * n))
+    units = [linear_model.unit(Rows(
+        (2.0 * columns.sum(axis=0) + generator.standard_normal((n, 3))).reshape(-1), groups,
+        np.kron(np.ones((n, 1)), np.eye(3)), ((0.0,), (0.01, 1.0))), designs) for _ in range(2)]
+    model, forms = model_of(units), hypotheses.forms_of(units, drift=False)
+    both = model.scored(tuple(forms))
+    cost = cutoffs.Cutoffs(6.0, 0.06)
+    gains = [both.score - model.scored((form,)).score for form in forms]
+    assert min(gains) > cost.member + odds.PRESENT
+    assert len(pruning.pruned(model, both, cost).forms) == kept
