@@ -118,10 +118,12 @@ def fit(moves, chip):
         theta, covariance = solved(*total, prior)
         weights, excess = _weighted(gram, inner, theta)
         squares = []
-        for move, *about in zip(moves, *_centres(*plain, theta, apart)):
+        for move, across, centre, within in zip(moves, plain[0], *_centres(*plain, theta, apart)):
             own = _own(move, sessions)
-            squares.append(_expected(move, move.y - move.table @ theta[own], *about)
-                           + _spread(move.table, covariance[np.ix_(own, own)]))
+            # What the sizes are off by, a move's own centre makes good in part.
+            columns = move.table - move.table[:, :, CENTRE] @ (within @ across[CENTRE][:, own])
+            squares.append(_expected(move, move.y - move.table @ theta[own], centre, within)
+                           + _spread(columns, covariance[np.ix_(own, own)]))
     weights = weights / excess
     gram *= weights[:, None, None]
     inner *= weights[:, None]

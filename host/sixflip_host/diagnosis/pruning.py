@@ -14,7 +14,8 @@ NOISE_FORM = 0.2  # of a name's gain, that its true form may leave to noise that
 def pruned(model, best, cost):
     """The set (scored_sets.Scored of a scored_sets.Model) without members that cost
     (cutoffs.Cutoffs) more than they gain: beside the others a member has to gain more than a share
-    of what they gain, nats."""
+    of what they gain, nats, in the set without it: of two that are nearly alike each does most of
+    what the other does, and neither would look large beside the other."""
     while best.forms:
         without = {form: model.scored(tuple(f for f in best.forms if f is not form))
                    for form in best.forms}
@@ -61,18 +62,17 @@ def _alone(model, form):
     return model.scored((form,)).score - model.scored(()).score
 
 
-def _energies(best):
+def _energies(scored):
     """{Form: nats lost without it at the levels of noise found, by its coefficients and their
     covariance [Wald, Trans. AMS 54 (1943) 426]}. Without it more noise would be taken for usual,
     so what it gains grows as a logarithm of its size only, and what its form leaves with the
-    square. It is that of the set without what it may have left: of two that are nearly alike
-    each does most of what the other does, and neither would look large beside the other."""
-    shared = best.shared
+    square."""
+    shared = scored.shared
     if not len(shared):
-        return dict.fromkeys(best.forms, 0.0)
-    theta, covariance = (v[0] for v in evidence.coefficients(best.fits, shared))
+        return dict.fromkeys(scored.forms, 0.0)
+    theta, covariance = (v[0] for v in evidence.coefficients(scored.fits, shared))
     energies = {}
-    for form in best.forms:
+    for form in scored.forms:
         mine = np.flatnonzero(np.isin(shared.index, form.columns))
         block = covariance[np.ix_(mine, mine)]
         energies[form] = 0.5 * float(theta[mine] @ np.linalg.solve(block, theta[mine])) \
