@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import atomic_write, progress
-from . import evidence, mimicry
+from .. import atomic_write
+from . import evidence, forms_at_once, mimicry
 from .elimination import NONE
 from .mimicry import Mimicry
 from .odds import CHANCE, RARER
@@ -27,7 +27,7 @@ TIMES_USUAL = 1.6  # of the usual levels, that a null has at most
 SMALLEST_SCALE = 1e-6  # nats: all nulls gain the same
 MARGIN_NATS = 1.0  # noise is not quite what it is simulated as
 LEAST_NATS = 4.0  # GAP: 95 % of the prototype's nulls in one search with the noise known exactly
-FORMAT = 58  # of the cache: another one where what is kept, or how it is made, has changed
+FORMAT = 59  # of the cache: another one where what is kept, or how it is made, has changed
 
 
 @dataclass(frozen=True)
@@ -144,30 +144,29 @@ def _by_chance(units, forms, levels, points):
             for u, z, level, own in zip(units, drawn, prior, (
                 u.around(k, REACH) for u, k in zip(units, points)))]
     statistics = [u.statistics(z, own) for u, z, own in zip(units, drawn, near)]
-    base = [evidence.fit(u, s, NONE, NONE, p, own)
-            for u, s, p, own in zip(units, statistics, prior, near)]
-    nothing = evidence.score(base, NONE)
-    return np.array([_gain(form, units, statistics, prior, near, levels, base) - nothing
-                     for form in progress.steps(forms, "what chance alone shows")])
+    gains = np.zeros((len(forms), RUNS))
+    for free in {form.free for form in forms}:
+        mine = [k for k, form in enumerate(forms) if form.free == free and not form.choices]
+        gains[mine] = forms_at_once.scores(
+            units, statistics, [forms[k].shared for k in mine],
+            [levels.prior(u, free) for u in units], near, "what chance alone shows",
+            units[0].apart, evidence.positive(units))
+    own = [k for k, form in enumerate(forms) if form.choices]
+    for unit, sums, level, points in zip(units, statistics, prior, near) if own else ():
+        gains[own] += _of_choices(unit, sums, [forms[k] for k in own], level, points)
+    return gains - forms_at_once.scores(units, statistics, [NONE], prior, near)
 
 
-def _gain(form, units, statistics, prior, near, levels, base):
-    """(RUNS,) score of a set of this form alone."""
-    if form.free:
-        prior = [levels.prior(u, form.free) for u in units]
-    if not form.choices:
-        fits = [evidence.fit(u, s, form.shared, NONE, p, own)
-                for u, s, p, own in zip(units, statistics, prior, near)]
-        return evidence.score(fits, form.shared, units[0].apart, evidence.positive(units))
-    total = 0.0
-    for unit, sums, level, own, plain in zip(units, statistics, prior, near, base):
-        if unit.between:
-            total = total + plain.evidence
-            continue
-        total = total + np.max([
-            evidence.fit(unit, sums, NONE, choice, level, own).evidence + chance
-            for choice, chance in zip(form.choices, form.chances)], axis=0)
-    return total
+def _of_choices(unit, statistics, forms, level, points):
+    """(F, RUNS) evidence of a unit with the likeliest choice of each of these Forms; what lies
+    between the sessions has none."""
+    if unit.between:
+        return forms_at_once.evidences(unit, statistics, [NONE], level, points)
+    choices = [choice for form in forms for choice in form.choices]
+    found = forms_at_once.evidences(unit, statistics, choices, level, points) + np.concatenate(
+        [form.chances for form in forms])[:, None]
+    last = np.cumsum([len(form.choices) for form in forms])
+    return np.array([each.max(axis=0) for each in np.split(found, last[:-1])])
 
 
 def _tail(gains):

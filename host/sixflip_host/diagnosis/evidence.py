@@ -119,6 +119,14 @@ def known(gram, inner, quadratic):
         else:
             corners = np.diagonal(factor, axis1=1, axis2=2)
             return corners[:, k:] ** 2 - 1.0, np.log(corners[:, :k]).sum(axis=1)
+    else:
+        try:
+            whitening = np.linalg.inv(np.linalg.cholesky(gram))
+        except np.linalg.LinAlgError:
+            pass
+        else:
+            return (quadratic - ((whitening @ inner) ** 2).sum(axis=1),
+                    -np.log(np.diagonal(whitening, axis1=1, axis2=2)).sum(axis=1))
     solved = np.linalg.solve(gram, inner)
     return quadratic - (inner * solved).sum(axis=1), 0.5 * np.linalg.slogdet(gram)[1]
 
@@ -139,17 +147,14 @@ def _times(matrices, vectors):
     return (matrices @ vectors[:, :, None])[:, :, 0]
 
 
-def predictive(fit, theta, covariance):
-    """(R,) log density of a unit's contrasts, coefficients known to theta and covariance."""
-    k = theta.shape[1]
-    if not k:
-        return -0.5 * fit.quadratic - fit.logdet + fit.level
-    left = fit.inner - _times(fit.gram, theta)
-    squares = fit.quadratic - (theta * (fit.inner + left)).sum(axis=1)
-    widened = np.eye(k) + covariance @ fit.gram
-    gain = np.linalg.solve(widened, _times(covariance, left)[:, :, None])[..., 0]
-    return (-0.5 * (squares - (left * gain).sum(axis=1)) - fit.logdet + fit.level
-            - 0.5 * np.linalg.slogdet(widened)[1])
+def _together(fits, shared):
+    """(R,) log density of the contrasts of several units, the shared coefficients integrated out
+    with their prior: what the chain rule makes of one after the other."""
+    gram = sum(f.gram for f in fits) + diagonal(shared.prior ** -2.0)
+    left, half = known(gram, sum(f.inner for f in fits)[:, :, None],
+                       sum(f.quadratic for f in fits)[:, None])
+    return (sum(f.level - f.logdet for f in fits) - 0.5 * left[:, 0] - half
+            - np.log(shared.prior).sum(axis=-1))
 
 
 def positive(units):
@@ -163,17 +168,15 @@ def score(fits, shared, apart=False, bounded=None):
     in common, nothing is learned from one for the other; bounded (K,): which of all columns'
     coefficients are positive, with half of the prior, twice as dense."""
     bounded = None if bounded is None or not bounded[shared.index].any() else bounded[shared.index]
-    number, k = len(fits[0].quadratic), shared.index.shape[-1]
-    if not k:
-        return sum(predictive(f, np.zeros((number, 0)), np.zeros((number, 0, 0))) for f in fits)
+    if not shared.index.shape[-1]:
+        return _together(fits, shared)
     if apart or len(fits) == 1:
-        wide = np.broadcast_to(diagonal(shared.prior ** 2), (number, k, k))
-        return sum(predictive(f, np.zeros((number, k)), wide)
+        return sum(_together([f], shared)
                    + (0.0 if bounded is None else _half(*coefficients([f], shared), bounded))
                    for f in fits)
-    total = np.zeros(number)
-    for held, fit_held in enumerate(fits):
-        total += predictive(fit_held, *coefficients(fits[:held] + fits[held + 1:], shared))
+    # Of each one held out: what it adds to the others.
+    total = len(fits) * _together(fits, shared) - sum(
+        _together(fits[:held] + fits[held + 1:], shared) for held in range(len(fits)))
     theta, covariance = coefficients(fits, shared)
     sigma = np.sqrt(np.einsum("rii->ri", covariance))
     beyond = np.maximum(np.abs(theta) - 2.0 * sigma, 0.0) / shared.prior

@@ -1,13 +1,18 @@
-"""Fits of many forms at once, each with as many columns, where the one data set of a search is
-looked at with few levels of noise: a call of a function takes more time than a form does.
+"""Fits of many forms at once, each with as many columns: a call of a function takes more time than
+a form does. The one data set of a search is looked at with few levels of noise, and beside what a
+set has already; the many that are simulated have their forms alone.
 
 The same numbers as evidence.fit for each of them; a Fit here has the forms where that has data
-sets.
+sets, or the data sets of the first form, then those of the next.
 """
 import numpy as np
 
+from .. import progress
 from . import evidence
+from .elimination import Columns
 from .evidence import Fit
+
+HELD = 2 ** 22  # numbers in an array of what is fitted together: 32 MB
 
 
 def fit(unit, statistics, index, prior, level, points, elimination=None, common=None):
@@ -58,6 +63,59 @@ def fit(unit, statistics, index, prior, level, points, elimination=None, common=
         whole[:, :number, number:] = whole[:, number:, :number].transpose(0, 2, 1)
     return Fit(points[best], quadratic[best, 0], inner[best[:, None], index, 0], whole,
                logdet[best], level[points][best], likelihood[best, every])
+
+
+def scores(units, statistics, columns, levels, points, what="", apart=False, bounded=None):
+    """(F, R) evidence.score of each of these Columns (a list) in R data sets; levels: of each unit
+    the log prior of its grid; points: of each unit those that are looked at."""
+    scored = np.empty((len(columns), len(statistics[0][0][0])))
+    for places, index, prior in _parts(columns, scored.shape[1] * max(map(len, points)), what):
+        fits = [_fit_each(unit, sums, index, prior, level, own)
+                for unit, sums, level, own in zip(units, statistics, levels, points)]
+        of_each = Columns(*(np.repeat(own, scored.shape[1], axis=0) for own in (index, prior)))
+        scored[places] = evidence.score(fits, of_each, apart, bounded).reshape(len(places), -1)
+    return scored
+
+
+def evidences(unit, statistics, columns, level, points):
+    """(F, R) evidence of one unit with each of these Columns (a list), integrated out."""
+    found = np.empty((len(columns), statistics[0].shape[1]))
+    for places, index, prior in _parts(columns, found.shape[1] * len(points)):
+        fit = _fit_each(unit, statistics, index, prior, level, points)
+        found[places] = fit.evidence.reshape(len(places), -1)
+    return found
+
+
+def _parts(columns, each, what=""):
+    """(places of some of these Columns (a list) that are as many, index (F, k), prior (F, k)), no
+    more at a time than fit in HELD; each: numbers that a column takes."""
+    parts = []
+    for size, places in by_size(columns).items():
+        most = max(1, HELD // (each * max(size, 1)))
+        parts += [places[k:k + most] for k in range(0, len(places), most)]
+    for places in progress.steps(parts, what) if what else parts:
+        index, prior = (np.stack([getattr(columns[place], name) for place in places])
+                        for name in ("index", "prior"))
+        yield places, index, prior
+
+
+def _fit_each(unit, statistics, index, prior, level, points):
+    """Fit of F forms in each of R data sets, of F * R. index, prior, level, points: as of fit."""
+    quadratic, inner = statistics[0][points], statistics[1][points[:, None, None], index]
+    gram = _products(unit, points, index, None)
+    grams, size = len(points) * len(index), index.shape[1]
+    left, half = evidence.known(
+        (gram + evidence.diagonal(prior ** -2.0)).reshape(grams, size, size),
+        inner.reshape(grams, size, quadratic.shape[1]), np.repeat(quadratic, len(index), axis=0))
+    likelihood = -0.5 * left.reshape(len(points), *inner.shape[1::2]) - (
+        half.reshape(-1, len(index)) + np.log(prior).sum(axis=1)
+        + (unit.logdet - level)[points, None])[..., None]
+    best = likelihood.argmax(axis=0)
+    forms, sets = np.indices(best.shape)
+    best, forms, sets = best.ravel(), forms.ravel(), sets.ravel()
+    return Fit(points[best], quadratic[best, sets], inner[best, forms, :, sets],
+               gram[best, forms], unit.logdet[points][best], level[points][best],
+               likelihood[best, forms, sets])
 
 
 def _common(index, prior):

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import progress
-from . import evidence
+from . import forms_at_once
 from .elimination import NONE, Columns
 
 STRANGERS = 3  # simulated for each nameless hypothesis
@@ -51,7 +51,8 @@ def _share_of(simulated_ones, least):
 
 def simulated(units, forms, levels, points):
     """Mimicry of strangers of another form, at one point of each unit's grid."""
-    nameless = [f for f in forms if f.generic and f.axis is None and len(f.shared)]
+    nameless = [f for f in forms if f.generic and f.axis is None and len(f.shared)
+                and not f.instead]
     named = [f for f in forms if not f.generic and f.axis is None and len(f.shared)]
     if not nameless or not named:
         return Mimicry()
@@ -61,22 +62,20 @@ def simulated(units, forms, levels, points):
     prior = [levels.prior(u, ()) for u in units]
     near = [likely(u, sums, level, u.coarse) for u, sums, level in zip(units, every, prior)]
 
-    def scored(shared, statistics=every):
-        fits = [evidence.fit(u, sums, shared, NONE, level, own)
-                for u, sums, level, own in zip(units, statistics, prior, near)]
-        return evidence.score(fits, shared)
-    nothing = scored(NONE)
-    gains = np.array([scored(f.shared) for f in nameless]) - nothing
+    def scores(columns, statistics=every):
+        return forms_at_once.scores(units, statistics, columns, prior, near)
+    nothing = scores([NONE])[0]
+    gains = scores([f.shared for f in nameless]) - nothing
     best, shares = gains.argmax(axis=0), []
-    names = np.max([scored(f.shared) for f in named], axis=0) - nothing
+    names = scores([f.shared for f in named]).max(axis=0) - nothing
     likeness = names / np.maximum(gains.max(axis=0), FAINT_NATS)
     strange = names < gains.max(axis=0)  # what a name explains better is no stranger
     for place in progress.steps(np.unique(best[strange]), "what strangers leave to names"):
         which = np.flatnonzero((best == place) & strange)
         alone = gains[place, which]
         mine = [(quadratic[:, which], inner[:, :, which]) for quadratic, inner in every]
-        beside = np.max([scored(_together(nameless[place].shared, f.shared), mine)
-                         for f in named], axis=0) - nothing[which] - alone
+        both = [_together(nameless[place].shared, f.shared) for f in named]
+        beside = scores(both, mine).max(axis=0) - nothing[which] - alone
         shares += (np.maximum(beside, 0.0) / np.maximum(alone, FAINT_NATS)).tolist()
     return Mimicry(*(tuple(np.round(np.sort(values), 3).tolist())
                      for values in (likeness, shares)))

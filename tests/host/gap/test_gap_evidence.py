@@ -1,5 +1,4 @@
 """The score of sets of hypotheses on small made-up problems whose answer is known."""
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,13 +9,13 @@ from sixflip_host.diagnosis import (
     cutoffs,
     effect_estimates,
     evidence,
+    forms_at_once,
     hypotheses,
     members,
     mimicry,
     moves_unit,
     odds,
     posterior,
-    pruning,
     scored_sets,
 )
 from sixflip_host.diagnosis.elimination import NONE, Columns
@@ -85,6 +84,28 @@ def test_the_score_is_the_log_density_of_the_session_held_out():
             z, theta[0, 0] * s, noise + spread[0, 0, 0] * np.outer(s, s))
         expected += 0.5 * units[held].freedom * np.log(2.0 * np.pi)
     assert evidence.score(fits, shared)[0] == pytest.approx(expected, abs=1e-6)
+
+
+def test_many_forms_at_once_score_as_one_after_the_other(drawn=7):
+    """Of one column and of two, with priors of their own, in several data sets; and what is
+    private of each session."""
+    generator = np.random.default_rng(8)
+    units = [unit(generator, 0.4, 3.0) for _ in range(3)]
+    data = [u.statistics(generator.standard_normal((len(u.z), drawn)) + u.z[:, None])
+            for u in units]
+    level, every = [USUAL.prior(u, ()) for u in units], [np.arange(len(u.grid)) for u in units]
+    columns = [NONE, Columns(np.array([0]), np.array([0.3])), Columns(np.array([1]), np.ones(1)),
+               Columns(np.array([1, 0]), np.array([2.0, 5.0]))]
+    for apart in (False, True):
+        expected = [evidence.score([evidence.fit(u, s, own, NONE, p)
+                                    for u, s, p in zip(units, data, level)], own, apart)
+                    for own in columns]
+        found = forms_at_once.scores(units, data, columns, level, every, apart=apart)
+        np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-7)
+    expected = [evidence.fit(units[0], data[0], NONE, own, level[0]).evidence for own in columns]
+    found = forms_at_once.evidences(units[0], data[0], columns, level[0], every[0])
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-7)
+    assert np.ptp(found, axis=1).min() > 1.0
 
 
 def test_a_size_beyond_what_parts_have_is_unlikely_however_well_it_fits():
@@ -283,17 +304,6 @@ def test_what_is_not_in_the_library_is_rarer_and_a_level_of_noise_is_not():
     assert cost.nats(level) == cost.nats(named) == 5.0
 
 
-def test_what_differs_from_session_to_session_leaves_nothing_to_a_name_within_them():
-    """A hysteresis had to gain half of what an unusual change at switching on did."""
-    cost = cutoffs.Cutoffs(5.0, 0.5)
-    named, nameless = (hypotheses.Form(name, shared=Columns(np.array([0]), np.ones(1)))
-                       for name in ("hysteresis", "orientation"))
-    level = hypotheses.Form("session", free=frozenset(["switch_on"]))
-    assert pruning._unknown(named, level, cost) == 0.0
-    assert pruning._unknown(named, nameless, cost) == 0.5
-    assert pruning._unknown(named, named, cost) == cost.form
-
-
 def lagging(generator, n=40):
     """A unit whose readings follow a course that it has twice, as it is and half a step behind: by
     half as much again would the second have to be larger."""
@@ -327,95 +337,3 @@ def test_a_size_is_as_uncertain_as_the_lag_that_nothing_tells():
                                  theta["x"] + odds.Z_90 * sigma["x"]))
     assert mixed[0] < sizes[""] and mixed[1] > sizes["lag 15 s"]
     assert own[1] - own[0] < 0.7 * (mixed[1] - mixed[0])
-
-
-class Scores:
-    """A model of which the score of each set is known."""
-
-    def __init__(self, scores):
-        self.scores = {frozenset(names.split()): score for names, score in scores.items()}
-
-    def scored(self, forms):
-        return scored_sets.Scored(tuple(forms), self.scores[frozenset(f.effect for f in forms)],
-                                  (), ())
-
-    def extended(self, base, form):
-        return self.scored((*base.forms, form))
-
-    def best(self, base, forms):
-        return sorted(((form, self.extended(base, form)) for form in forms),
-                      key=lambda pair: -pair[1].score)
-
-
-@pytest.mark.parametrize("beside, likeliest", [(5.0, "drift"), (21.0, "jump")])
-def test_noise_stands_for_a_stranger_only_where_that_adds_nothing(beside, likeliest):
-    """What wanders takes up most of a jump, too. Where the jump added 21 nats to it, it was the
-    drift alone that was said."""
-    model = Scores({"": 0.0, "drift": 57.0, "jump": 44.0, "drift jump": 57.0 + beside})
-    forms = [hypotheses.Form("drift"), hypotheses.Form("jump")]
-    found = posterior.search_sets(model, forms, cutoffs.Cutoffs(8.7, 0.15))
-    assert [form.effect for form in found.best.forms] == [likeliest]
-    assert found.alternatives(likeliest) == [likeliest]
-
-
-def test_a_name_may_do_by_another_variant_what_a_stranger_does_beside_it(monkeypatch):
-    """A warm-up of many time constants was the shortest of them and something nameless in time:
-    the longest with a discrepancy, likelier than both, was never tried."""
-    class OfVariants(Scores):
-        def scored(self, forms):
-            names = frozenset(f.effect if f.generic else f.variant for f in forms)
-            return scored_sets.Scored(tuple(forms), self.scores[names], (), ())
-
-    def wider(model, forms, scored, cost, form):
-        return model.scored([replace(f, variant="wide") if f.variant == "slow" else f
-                             for f in scored.forms])
-    monkeypatch.setattr(posterior, "_wider", wider)
-    one = Columns(np.array([0]), np.ones(1))
-    quick, slow = (hypotheses.Form("warm_up", variant, shared=one) for variant in (
-        "quick", "slow"))
-    model = OfVariants({"": 0.0, "quick": 60.0, "slow": 50.0, "time": 40.0, "quick time": 110.0,
-                        "slow time": 70.0, "wide": 105.0})
-    cost = cutoffs.Cutoffs(8.0, 0.15)
-    both = model.scored((quick, hypotheses.Form("time", shared=one)))
-    for score, likeliest in ((105.0, "wide"), (90.0, "quick")):
-        model.scores[frozenset(["wide"])] = score
-        found = posterior._absorbed(model, (quick, slow), both, cost)
-        assert found.forms[0].variant == likeliest
-        assert (found is both) == (likeliest == "quick")
-
-
-@pytest.mark.parametrize("effect, other, within, seen", [
-    ("drift", "g_sensitivity", (10.0, 10.0), True), ("drift", "g_sensitivity", (2.0, 2.0), False),
-    ("drift", "warm_up", (10.0, 10.0), False), ("drift", "hysteresis", (10.0, 10.0), False),
-    ("drift", "orientation", (10.0, 10.0), False), ("jump", "quadratic", (10.0, 10.0), False)])
-def test_only_a_walk_is_seen_within_the_rests_and_beside_what_the_pose_alone_does(
-        effect, other, within, seen):
-    form = hypotheses.Form(effect)
-    best = scored_sets.Scored((form,), 0.0, (), tuple(
-        (scored_sets.Choice(form, 0, nats),) for nats in within))
-    cost = cutoffs.Cutoffs(8.0, 0.15)
-    assert pruning._seen_within(best, form, hypotheses.Form(other), cost) == seen
-
-
-@pytest.mark.parametrize("alike, kept", [(0.95, 1), (0.0, 2)])
-def test_of_two_that_are_nearly_alike_one_stands_for_what_lies_between_them(alike, kept):
-    """A bend of another form was `asymmetry` and `cross_quadratic` at once: each does what the
-    other does, so that neither looked large beside the other. Unlike ones stand both."""
-    n, generator = 60, np.random.default_rng(5)
-    u = np.linspace(-1.0, 1.0, n)
-    first, other = np.sqrt(2.0) * np.sin(np.pi * u), np.sqrt(2.0) * np.cos(np.pi * u)
-    second = alike * first + np.sqrt(1.0 - alike ** 2) * other
-    columns = np.zeros((2, n, 3))
-    columns[0, :, 2], columns[1, :, 2] = first, second
-    designs = [Design(effect, "", ["z"], [2], column.reshape(-1, 1), np.array([10.0]))
-               for effect, column in zip(("quadratic", "asymmetry"), columns)]
-    groups = covariance.alone(np.eye(3 * n), np.zeros((3 * n, 0)), np.eye(3 * n))
-    units = [linear_model.unit(Rows(
-        (2.0 * columns.sum(axis=0) + generator.standard_normal((n, 3))).reshape(-1), groups,
-        np.kron(np.ones((n, 1)), np.eye(3)), ((0.0,), (0.01, 1.0))), designs) for _ in range(2)]
-    model, forms = model_of(units), hypotheses.forms_of(units, drift=False)
-    both = model.scored(tuple(forms))
-    cost = cutoffs.Cutoffs(6.0, 0.06)
-    gains = [both.score - model.scored((form,)).score for form in forms]
-    assert min(gains) > cost.member + odds.PRESENT
-    assert len(pruning.pruned(model, both, cost).forms) == kept

@@ -46,8 +46,11 @@ def test_a_wrong_name_counts_only_when_it_stands_alone_and_explains():
     assert kind("no gap") == ("quiet", [])
 
 
-def test_an_effect_without_a_name_gets_no_other_name():
-    row = left_out.asked(("g_sensitivity", "gyro", 3.0, 9700))
+@pytest.mark.parametrize("job", [
+    ("g_sensitivity", "gyro", 3.0, 9700),
+    ("cubic", "accel", 1.0, 10000)])  # a memory that levels off bends as it does, and was named
+def test_an_effect_without_a_name_gets_no_other_name(job):
+    row = left_out.asked(job)
     assert row[4] == "open", row
 
 
