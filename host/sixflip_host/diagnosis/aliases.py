@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..experiment.terms import is_stranger
+from ..experiment.way_memory import LEVELLING
 from . import discrepancy, evidence, odds
 
 SAME, SIGMAS = 0.9, 3.0  # GAP stage 4: alias index and distinguishability of one class
@@ -153,7 +154,9 @@ def _aliases(form, theta, known, forms, beside, grams, each):
         others = [f.columns for f in beside if f.effect not in (name, form.effect)]
         others = np.concatenate([*others, np.zeros(0, dtype=int)]).astype(int)
         free = others[~np.isin(others, mine)]
-        rivals = [f for f in forms if f.effect == name and f.axis is None and not f.record]
+        # What a memory that levels off reproduces of a bend is its own bend, and no memory.
+        rivals = [f for f in forms if f.effect == name and f.axis is None and not f.record
+                  and LEVELLING not in f.variant]
         spaces = [f.columns for f in rivals]
         left = reproduced(even, mine, theta, spaces, free)
         if left is None:

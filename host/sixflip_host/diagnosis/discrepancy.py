@@ -12,7 +12,7 @@ import numpy as np
 from ..experiment.way_memory import LEVELLING
 from . import evidence
 from .elimination import Columns
-from .hypotheses import domain
+from .hypotheses import Form, domain
 
 BESIDE = 0  # the power of a column that is not the effect's own, see terms.Design
 RELATIVE = 0.5  # of an effect: how far a part's own form may be from the library's
@@ -146,6 +146,27 @@ def with_discrepancy(model, forms, scored, form):
     return replace(form, keys=form.keys + tuple("xyz"[a] for a in axes),
                    axes=form.axes + tuple(axes), powers=form.powers + (BESIDE,) * len(axes),
                    shared=form.shared + Columns(np.array(columns), prior), discrepancy=True)
+
+
+def alone(model, form):
+    """The stranger that a name may be no more than: all that its discrepancy is made of, or the
+    bend of an axis where it is a memory that levels off, as wide as strangers are. None where
+    there is none: other forms of the effect have its name."""
+    levels = LEVELLING in form.variant
+    if not levels and (not form.discrepancy or form.effect in OWN_FORMS):
+        return None
+    found, column = [], 0
+    for design in model.units[0].designs:
+        for key, axis, width in zip(design.keys, design.axes, design.prior):
+            if (design.effect == "bend" and axis in form.axes) if levels else (
+                    design.generic and column in form.columns):
+                found.append((design.effect, key, axis, column, width))
+            column += 1
+    if not found:
+        return None
+    effects, keys, axes, index, prior = zip(*found)
+    return Form(effects[0], "alone", form.axis, keys, axes,
+                Columns(np.array(index), np.array(prior)), powers=(1,) * len(keys))
 
 
 def _shown(units, fits, columns):

@@ -106,8 +106,7 @@ def forms_of(units, without=(), drift=True):
     for design in units[0].designs:
         columns = np.arange(start, start + len(design.keys))
         start += len(design.keys)
-        instead = strangers.ASKED_OF.get(design.effect, "")
-        if design.effect in without or design.beside and not instead:
+        if design.effect in without or design.beside:
             continue
         if design.variant == strangers.COURSE:
             forms += [_course(design, columns, variant)
@@ -131,7 +130,7 @@ def forms_of(units, without=(), drift=True):
                               Columns(index, (1.0 if design.generic else TYPICAL)
                                       * design.prior[mine]),
                               powers=tuple(design.powers[i] for i in mine),
-                              record=design.record, shape=design.shape, instead=instead))
+                              record=design.record, shape=design.shape))
     for name, (level, _) in FREE.items():
         if drift and name not in without:
             forms.append(Form(name, free=frozenset([level])))

@@ -22,7 +22,7 @@ def _told_axes(model, forms, posterior, cause):
     x and the products of x with y and z on those, which cannot be told apart, have none."""
     form = cause.chosen[0]
     others = _without(model, posterior, form)
-    told = _needed_axes(model, forms, posterior, others, [form])
+    told = _needed_axes(model, forms, posterior, others, [form]) & set(form.axes)
     for name in cause.members:
         theirs = _needed_axes(model, forms, posterior, others, [
             f for f in forms if f.effect == name and f.axes and not f.choices])

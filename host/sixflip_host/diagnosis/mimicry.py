@@ -51,8 +51,7 @@ def _share_of(simulated_ones, least):
 
 def simulated(units, forms, levels, points):
     """Mimicry of strangers of another form, at one point of each unit's grid."""
-    nameless = [f for f in forms if f.generic and f.axis is None and len(f.shared)
-                and not f.instead]
+    nameless = [f for f in forms if f.generic and f.axis is None and len(f.shared)]
     named = [f for f in forms if not f.generic and f.axis is None and len(f.shared)]
     if not nameless or not named:
         return Mimicry()

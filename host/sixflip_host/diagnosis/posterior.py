@@ -156,6 +156,9 @@ def _rivals(model, forms, fewer, form, cost):
     without. Noise, which takes up something of everything, is in its place where the stranger adds
     nothing to that."""
     rivals, seen = [], set()
+    stranger = discrepancy.alone(model, form)
+    if stranger is not None and stranger.effect not in fewer.names:
+        rivals.append((stranger, model.extended(fewer, stranger)))
     free = _free(forms, fewer, form.effect)
     near = model.best(fewer, free)
     tried = {(rival.effect, rival.axis) for rival, _ in near}

@@ -47,9 +47,6 @@ COURSES = {"own_time": tuple(ROUGHNESS), "time_orientation": ("in steps",)}  # t
 # than the library's as well. So they are only asked whether a drift is one: whether it moves with
 # the poses alone, or with gravity.
 ASKED_OF_ALL = "smooth"
-# So are bends of an axis, of a memory alone: one that levels off bends as well, and is none where
-# bending is all that it does.
-ASKED_OF = {"bend": "hysteresis"}
 # Of the others: their own.
 DOMAIN = {"jump": "time", "periodic": "frequency", "own_time": "time",
           "time_orientation": "time", "thermal_orientation": "temperature",
@@ -275,7 +272,7 @@ def _smooth(name, functions, n, scale, variant="", choices=()):
 
 def bend(f, scale):
     """Design of what any bend of an axis is made of: functions of what that axis feels, f (n, 3)
-    g, beyond the straight line. By itself it is asked of a memory only (ASKED_OF)."""
+    g, beyond the straight line. By itself it is no hypothesis: another form of one."""
     felt = [legendre.Legendre.basis(degree)(f) for degree in range(2, DEGREES + 1)]
     felt.append(np.abs(f))
     columns = np.einsum("dni,ij->nidj", np.stack(felt), np.eye(3)).reshape(f.size, -1)

@@ -130,3 +130,16 @@ def test_a_bend_beside_what_remembers_keeps_its_name(memory, name, axis):
     names = {cause.effect: cause for _, cause in result.causes}
     assert set(names) == {name, "cubic"}
     assert names["cubic"].value["xyz"[axis]] > 1.5
+
+
+def turned(force):
+    """As iron in the lid is drawn by a field across gravity: by the way that the box is turned."""
+    across = np.sqrt(np.clip(1.0 - force[:, 0] ** 2, 0.0, None))
+    return np.eye(3)[0] * (9.0 * across * np.cos(2.5 * np.arctan2(
+        force[:, 2], force[:, 1])))[:, None]
+
+
+def test_what_another_form_of_a_name_does_by_itself_is_nameless():
+    """It was `cross_quadratic`, next to nothing of a product beside all that a form of it may
+    have, which no stranger had to compete with."""
+    assert said(found(Bent(5, turned), 18, 6.0)) == ("unexplained", [])

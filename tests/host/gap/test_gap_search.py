@@ -7,12 +7,12 @@ import pytest
 
 from sixflip_host.diagnosis import (
     cutoffs,
+    discrepancy,
     hypotheses,
     odds,
     posterior,
     pruning,
     scored_sets,
-    strangers,
 )
 from sixflip_host.diagnosis.elimination import Columns
 from sixflip_host.diagnosis.evidence import Levels
@@ -56,13 +56,16 @@ def test_noise_stands_for_a_stranger_only_where_that_adds_nothing(beside, likeli
     ({"hysteresis": 83.0, "cubic": 85.0, "bend": 88.0}, "cubic"),
     ({"hysteresis": 87.0, "bend": 83.0}, "hysteresis"),
     ({"hysteresis": 83.0, "bend": 88.0}, "bend")])
-def test_what_only_bends_is_no_memory(scores, likeliest):
+def test_a_name_is_held_against_what_it_may_be_no_more_than(monkeypatch, scores, likeliest):
     """A memory that levels off bends, too: where nothing else has a name for a bend it stood for
-    one. In the place of a name for bends the nameless one is not asked for."""
+    one. What bends is asked in the place of such a memory alone."""
+    monkeypatch.setattr(discrepancy, "alone", lambda model, form: hypotheses.Form(
+        "bend") if form.effect == "hysteresis" else None)
     model = Scores({"": 0.0, **scores})
-    forms = [hypotheses.Form(name, instead=strangers.ASKED_OF.get(name, "")) for name in scores]
+    forms = [hypotheses.Form(name) for name in scores if name != "bend"]
     found = posterior.search_sets(model, forms, cutoffs.Cutoffs(8.7, 0.15), most=1)
     assert [form.effect for form in found.best.forms] == [likeliest]
+    assert found.alternatives(likeliest)[0] == likeliest
 
 
 def test_a_name_may_do_by_another_variant_what_a_stranger_does_beside_it(monkeypatch):
