@@ -10,6 +10,8 @@ import numpy as np
 
 from ..experiment import gram
 
+ROUNDING = 1e-14  # of a metric's largest eigenvalue: some tens of units in the last place
+
 
 @dataclass(frozen=True)
 class Columns:
@@ -40,6 +42,27 @@ class Reduced:
     logdet: np.ndarray
 
 
+@dataclass(frozen=True)
+class Whitening:
+    """matrix (G, k, k), W M W' = 1 of a metric M; half_logdet (G,), half of log |M|."""
+
+    matrix: np.ndarray
+    half_logdet: np.ndarray
+
+
+def whitening(metric):
+    """Whitening of metrics (G, k, k), positive but for rounding."""
+    try:
+        factor = np.linalg.cholesky(metric)
+    except np.linalg.LinAlgError:
+        values, vectors = np.linalg.eigh(metric)
+        values = np.maximum(values, ROUNDING * values[:, -1:])
+        return Whitening((vectors / np.sqrt(values)[:, None]).transpose(0, 2, 1),
+                         0.5 * np.log(values).sum(axis=1))
+    return Whitening(np.linalg.inv(factor),
+                     np.log(np.diagonal(factor, axis1=1, axis2=2)).sum(axis=1))
+
+
 class Elimination:
     """What integrating private columns out of a unit takes, for all of its columns at once: made
     once for each point of the grid that is asked for, then any shared columns are an indexing.
@@ -48,7 +71,7 @@ class Elimination:
     def __init__(self, unit, statistics, private):
         self.unit, self.statistics, self.private = unit, statistics, private
         points, size = unit.logdet.shape[0], len(unit.silent)
-        self.solved = np.empty((points, len(private), size))
+        self.white = np.empty((points, len(private), size))
         self.inner, self.quadratic = np.empty((points, size, 1)), np.empty((points, 1))
         self.logdet, self._done = np.empty(points), np.zeros(points, bool)
 
@@ -59,13 +82,12 @@ class Elimination:
         self._done[points] = True
         index, quadratic, projections = self.private.index, *self.statistics
         cross = self.unit.gram.rows(points, index)
-        block = cross[:, :, index] + np.diag(self.private.prior ** -2.0)
-        self.solved[points] = np.linalg.solve(block, cross)
-        own = projections[points]
-        inner = np.linalg.solve(block, own[:, index])
-        self.quadratic[points] = quadratic[points] - (own[:, index] * inner).sum(axis=1)
-        self.inner[points] = own - cross.transpose(0, 2, 1) @ inner
-        self.logdet[points] = (self.unit.logdet[points] + 0.5 * np.linalg.slogdet(block)[1]
+        metric = whitening(cross[:, :, index] + np.diag(self.private.prior ** -2.0))
+        white, own = metric.matrix @ cross, metric.matrix @ projections[points[:, None], index]
+        self.white[points] = white
+        self.quadratic[points] = quadratic[points] - (own ** 2).sum(axis=1)
+        self.inner[points] = projections[points] - white.transpose(0, 2, 1) @ own
+        self.logdet[points] = (self.unit.logdet[points] + metric.half_logdet
                                + np.log(self.private.prior).sum())
 
     def at(self, points):
@@ -80,19 +102,15 @@ class Elimination:
         own, place = np.unique(index, return_inverse=True)
         if len(own) ** 2 < index.size * k:  # most columns are in most of them
             return gram.gathered(self.block(points, own, own), place.reshape(index.shape))
-        cross = self.unit.gram.blocks(points, index.ravel(), self.private.index)
-        solved = self.solved[points[:, None, None], np.arange(len(self.private))[:, None],
-                             index.ravel()]
-        own = solved.reshape(len(points), len(self.private), forms, k).transpose(0, 2, 1, 3)
-        return cross.reshape(len(points), forms, k, len(self.private)) @ own
+        white = self.white[points][:, :, index].transpose(0, 2, 3, 1)
+        return white @ white.transpose(0, 1, 3, 2)
 
     def block(self, points, rows, columns):
         """(P, r, c): what the private columns take off the products of columns rows (r,) with
         columns (c,)."""
         self._fill(points)
-        cross = self.unit.gram.blocks(points, rows, self.private.index)
-        return cross @ self.solved[points[:, None, None],
-                                   np.arange(len(self.private))[:, None], columns]
+        white = self.white[points]
+        return white[:, :, rows].transpose(0, 2, 1) @ white[:, :, columns]
 
     def reduced(self, columns, points):
         """Reduced of these shared columns at these points of the grid."""
@@ -105,7 +123,7 @@ class Elimination:
 
 def reduced(unit, statistics, shared, private, points):
     """Reduced of one unit without anything made before, for R data sets."""
-    k, p = len(shared), len(private)
+    p = len(private)
     both = (private + shared).index
     # What is looked at everywhere once, few columns of it, is not kept.
     gram = unit.gram.at_all_points(both) if len(points) == len(unit.grid) \
@@ -113,11 +131,9 @@ def reduced(unit, statistics, shared, private, points):
     inner = statistics[1][points[:, None], both]
     if not p:
         return Reduced(gram, inner, statistics[0][points], unit.logdet[points])
-    block = gram[:, :p, :p] + np.diag(private.prior ** -2.0)
-    solved = np.linalg.solve(block, np.concatenate([gram[:, :p, p:], inner[:, :p]], 2))
-    cross = gram[:, p:, :p]
-    return Reduced(gram[:, p:, p:] - cross @ solved[:, :, :k],
-                   inner[:, p:] - cross @ solved[:, :, k:],
-                   statistics[0][points] - (inner[:, :p] * solved[:, :, k:]).sum(axis=1),
-                   unit.logdet[points] + 0.5 * np.linalg.slogdet(block)[1]
-                   + np.log(private.prior).sum())
+    metric = whitening(gram[:, :p, :p] + np.diag(private.prior ** -2.0))
+    white, own = metric.matrix @ gram[:, :p, p:], metric.matrix @ inner[:, :p]
+    across = white.transpose(0, 2, 1)
+    return Reduced(gram[:, p:, p:] - across @ white, inner[:, p:] - across @ own,
+                   statistics[0][points] - (own ** 2).sum(axis=1),
+                   unit.logdet[points] + metric.half_logdet + np.log(private.prior).sum())

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import special
 
-from .elimination import reduced
+from .elimination import reduced, whitening
 
 # A standard deviation of each level's logarithm. Placement may be anything: a box that is put
 # down in any heading on a tilted table scatters by degrees.
@@ -119,16 +119,8 @@ def known(gram, inner, quadratic):
         else:
             corners = np.diagonal(factor, axis1=1, axis2=2)
             return corners[:, k:] ** 2 - 1.0, np.log(corners[:, :k]).sum(axis=1)
-    else:
-        try:
-            whitening = np.linalg.inv(np.linalg.cholesky(gram))
-        except np.linalg.LinAlgError:
-            pass
-        else:
-            return (quadratic - ((whitening @ inner) ** 2).sum(axis=1),
-                    -np.log(np.diagonal(whitening, axis1=1, axis2=2)).sum(axis=1))
-    solved = np.linalg.solve(gram, inner)
-    return quadratic - (inner * solved).sum(axis=1), 0.5 * np.linalg.slogdet(gram)[1]
+    metric = whitening(gram)
+    return quadratic - ((metric.matrix @ inner) ** 2).sum(axis=1), metric.half_logdet
 
 
 def coefficients(fits, shared):
