@@ -187,6 +187,7 @@ def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), d
             findings += [f for f in shake_detector.findings(sessions)
                          if f.effect not in settings.without]
     compared_in_motion = any(comparison.motion_judged for comparison in comparisons)
+    lacking = {"filter_lag"} if any(comparison.lacks_delay for comparison in comparisons) else ()
     if simulator:
         remarks += simulator.remarks
         remarks += ["the simulator has %s (%s), the real sensor does not" % (f.effect, f.sensor)
@@ -195,13 +196,14 @@ def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), d
         remarks += ["the real sensor has %s (%s); the simulator's log does not show whether it "
                     "has it, too" % (f.effect, f.sensor)
                     for f in findings if not (compared_in_motion or simulator.shows(f))]
-        findings = [f for f in findings if simulator.shows(f) and simulator.new(f)]
+        findings = [f for f in findings if f.effect in lacking
+                    or simulator.shows(f) and simulator.new(f)]
     if comparisons:
         # Where readings are cut off is a range, which the parameters of both logs compare.
         findings = [f for f in findings if f.effect != "saturation"]
     if compared_in_motion:
         # The two logs were compared in motion: what the hand or both do is no gap.
-        findings = [f for f in findings if f.domain != "motion"]
+        findings = [f for f in findings if f.domain != "motion" or f.effect in lacking]
         nameless = [place for place in nameless if place.domain != "motion"]
     remarks += ["the %s: %s" % (registers.SENSORS[f.sensor], f.words)
                 for f in findings if f.effect in ("vibration", "axis_swap")]

@@ -286,3 +286,26 @@ def test_a_delay_of_the_real_gyro_is_no_delay_of_the_simulator(tmp_path, capsys)
     has = diagnosed(capsys, capture(tmp_path / "real2.csv", t, force, rate),
                     capture(tmp_path / "sim2.csv", t, force, late, seed=5))
     assert names(has) == ["gyro_delay"]
+
+
+@pytest.mark.parametrize("late_s, verdict", [(0.045, "explained"), (0.0, "no gap")])
+def test_a_delay_that_a_simulator_of_another_motion_lacks_is_named(tmp_path, capsys, late_s,
+                                                                   verdict):
+    """Two motions were compared in how late their gyros are, and what the real one has more was
+    left to the diagnosis, which took it for compared."""
+    t, force, rate = turning(1, 160.0)
+    late = np.stack([np.interp(t - late_s, t, w) for w in rate.T], 1)
+    answer = diagnosed(capsys, capture(tmp_path / "real.csv", t, force, late),
+                       capture(tmp_path / "sim.csv", *turning(2, 80.0), seed=5))
+    assert names(answer) == [] and answer["verdict"] == verdict
+    assert [cause["effect"] for cause in answer["causes"]] == ["filter_lag"] * (late_s > 0.0)
+
+
+def test_a_stamp_that_repeats_is_no_traceback(tmp_path, capsys):
+    """A serial line that hands over two rows at once."""
+    t, force, rate = turning(1)
+    stamped = t.copy()
+    stamped[700::97] = stamped[699::97][:len(stamped[700::97])]
+    answer = diagnosed(capsys, capture(tmp_path / "real.csv", stamped, force, rate),
+                       capture(tmp_path / "sim.csv", t, force, rate, seed=5))
+    assert names(answer) == [] and answer["causes"] == []

@@ -36,7 +36,8 @@ class Comparison:
     wrong with the simulator's hides them; reference_c: mean temperature of the real log or None;
     effects (tuple of effects_beside.Beside): those found, as far as two logs of one motion show
     their size; wanders: sensors of which what is left of one motion goes on for seconds: it is no
-    shaking, which each log has of its own."""
+    shaking, which each log has of its own; lacks_delay: of two motions, the real one shows a delay
+    between its sensors that the simulator's does not."""
 
     log: str
     against: str
@@ -54,6 +55,7 @@ class Comparison:
     reference_c: float
     effects: tuple = ()
     wanders: frozenset = frozenset()
+    lacks_delay: bool = False
 
     @property
     def differs(self):
@@ -103,7 +105,7 @@ def compare_traces(real, sim, aligned):
     live, constant = constant_channels(real, sim)
     findings += constant
     own_real = own_calibration.fitted(real_free)
-    fits, late, late_sigma, judged = {}, None, None, False
+    fits, late, late_sigma, judged, lacks_delay = {}, None, None, False, False
     row_s = 1.0 / min(real.rate_hz, sim.rate_hz)
     motion = None
     if aligned.same and own_real is not None:
@@ -125,7 +127,7 @@ def compare_traces(real, sim, aligned):
     elif constant:
         unseen.append("other conventions of %s: a channel of it says nothing" % sim.name)
     else:
-        more, unseen, judged = different_motion(real_free, sim_free, own_real, row_s)
+        more, unseen, judged, lacks_delay = different_motion(real_free, sim_free, own_real, row_s)
         findings += more
     if real.rate is not None and sim.rate is None:
         unseen = [*unseen, "the gyro: there is none in %s" % sim.name]
@@ -148,7 +150,7 @@ def compare_traces(real, sim, aligned):
                       (*said_of(real, sim, aligned), *why_not), tuple(unseen),
                       judged or convention_findings.only_in_motion(findings),
                       None if real.celsius is None else float(real.celsius.mean()),
-                      wanders=remaining_gap.wandering(fits, left))
+                      wanders=remaining_gap.wandering(fits, left), lacks_delay=lacks_delay)
 
 
 def _late_itself(sim, late):
@@ -187,19 +189,20 @@ def numbers_of(real, sim, mended, own, fits, findings):
 
 
 def different_motion(real, sim, own_real, row_s):
-    """(Conventions, sentences on what cannot be seen, whether what shows in motion was compared)
-    of logs of two motions."""
+    """(Conventions, sentences on what cannot be seen, whether what shows in motion was compared,
+    whether the simulator lacks a delay) of logs of two motions."""
     if sim.rate is None or real.rate is None:
-        return [], ["conventions of %s: they need a gyro in both logs" % sim.name], False
+        return [], ["conventions of %s: they need a gyro in both logs" % sim.name], False, False
     findings, unseen = own_consistency.conventions_of(real, sim)
     if findings or own_real is None or not sim.rests:
-        return findings, unseen, False
+        return findings, unseen, False, False
     moved = own_motion.fitted(real, own_real), own_motion.fitted(
         sim, own_calibration.fitted(sim))
     if None in moved:
         return findings, unseen + ["delay of %s: fewer than %d moves between rests" % (
-            sim.name, own_motion.FEWEST_MOVES)], False
-    return own_motion.compared(*moved, row_s), unseen, True
+            sim.name, own_motion.FEWEST_MOVES)], False, False
+    findings, lacks_delay = own_motion.compared(*moved, row_s)
+    return findings, unseen, True, lacks_delay
 
 
 def said_of(real, sim, aligned):

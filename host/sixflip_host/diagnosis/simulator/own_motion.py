@@ -8,7 +8,7 @@ import numpy as np
 
 from . import alignment as align_by
 from . import conventions, evidence_of_logs, hypotheses, traces
-from .pairing import GRID_HZ, increasing
+from .pairing import GRID_HZ
 
 ARM_M = 0.3  # prior of a lever arm in a log: of the sensor, and of the point it is turned about
 BAND_HZ = align_by.BAND_HZ
@@ -37,7 +37,7 @@ def fitted(trace, sensor):
 
     def onto(values):
         flat = align_by.smooth(values.reshape(len(values), -1), trace.rate_hz, BAND_HZ)
-        return np.stack([np.interp(t, *increasing(trace.t, flat[:, i]))
+        return np.stack([np.interp(t, *traces.increasing(trace.t, flat[:, i]))
                          for i in range(flat.shape[1])], 1)
 
     up, rate, rate_dot, force = (onto(x) for x in (motion.up, motion.rate, motion.rate_dot,
@@ -86,15 +86,16 @@ def moves_of(trace, t):
 
 
 def compared(real, sim, row_s):
-    """[Convention] of a simulator one of whose sensors is late where the real one's is not, by two
-    OwnMotions. One that lacks a delay of the real sensor has it to learn, not to lose; and where a
-    sensor seems to sit follows from what else a hand or a robot does, which is not the same in
-    another motion."""
+    """([Convention] of a simulator one of whose sensors is late where the real one's is not,
+    whether it lacks a delay of the real one: that it has to learn, not lose), by two OwnMotions.
+    Where a sensor seems to sit follows from what else a hand or a robot does, which is not the
+    same in another motion."""
     late = real.delay_s - sim.delay_s
     sigma = float(np.hypot(real.delay_sigma_s, sim.delay_sigma_s))
-    if abs(late) <= APART * sigma or abs(late) < row_s or not late_itself(sim, late):
-        return []
-    return [conventions.late_one(late, sigma)]
+    if abs(late) <= APART * sigma or abs(late) < row_s:
+        return [], False
+    itself = late_itself(sim, late)
+    return [conventions.late_one(late, sigma)] * itself, not itself
 
 
 def late_itself(sim, late):

@@ -11,7 +11,7 @@ from scipy.interpolate import CubicSpline
 from scipy.signal import coherence
 
 from . import alignment as align_by
-from .traces import Motion
+from .traces import Motion, increasing
 
 GRID_HZ = 50.0  # eight points in a period of the widest band
 EDGE_S = 0.4  # left out at both ends, where the low-pass (alignment.smooth) has one side only
@@ -93,12 +93,6 @@ def one_motion(real, sim, alignment, motion, live):
         left = y - design @ np.linalg.lstsq(design, y, rcond=None)[0]
         shares.append(1.0 - (left ** 2).sum() / max((y ** 2).sum(), 1e-30))
     return bool(max(shares) >= ONE_MOTION)
-
-
-def increasing(t, values):
-    """(t, values) without rows whose time does not grow."""
-    keep = np.concatenate([[True], np.diff(np.maximum.accumulate(t)) > 0])
-    return t[keep], values[keep]
 
 
 def coherent_band(measured, signals):

@@ -179,8 +179,21 @@ def motion(trace):
     up = turn[:, 2, :]
     moved = trace.force - trace.g * up
     speed = _speed(trace, turn, moved)
-    rate_dot = np.gradient(rate, trace.t, axis=0) if n > 2 else np.zeros_like(rate)
-    return Motion(turn, up, rate, rate_dot, moved, speed)
+    return Motion(turn, up, rate, _slope(trace.t, rate), moved, speed)
+
+
+def increasing(t, values):
+    """(t, values) without rows whose time does not grow."""
+    keep = np.concatenate([[True], np.diff(np.maximum.accumulate(t)) > 0])
+    return t[keep], values[keep]
+
+
+def _slope(t, values):
+    """(n, 3) change of values (n, 3) with time; where a stamp repeats, as around it."""
+    at, own = increasing(t, values)
+    if len(at) < 3:
+        return np.zeros_like(values)
+    return np.stack([np.interp(t, at, slope) for slope in np.gradient(own, at, axis=0).T], 1)
 
 
 def _share_turned(steps):
