@@ -112,11 +112,7 @@ def with_discrepancy(model, forms, scored, form):
     left: a name for whatever is a function of the same variable."""
     if form.generic or not len(form.shared) or form.discrepancy:
         return None
-    designs, variables = model.units[0].designs, _variable(form.effect)
-    if form.axis is None:
-        # Products on three axes take off each other what the poses are free to be, so that each
-        # may be large, and what bends them anything.
-        variables = tuple(name for name in variables if name != "product_bend")
+    designs, variables = model.units[0].designs, _variables(form)
     free = _of_effect(designs, form) if form.effect in OWN_FORMS else _of_variable(
         designs, forms, variables, form.variant)
     shared, own = scored.shared, form.shared.index
@@ -148,25 +144,43 @@ def with_discrepancy(model, forms, scored, form):
                    shared=form.shared + Columns(np.array(columns), prior), discrepancy=True)
 
 
-def alone(model, form):
-    """The stranger that a name may be no more than: all that its discrepancy is made of, or the
-    bend of an axis where it is a memory that levels off, as wide as strangers are. None where
-    there is none: other forms of the effect have its name."""
-    levels = LEVELLING in form.variant
-    if not levels and (not form.discrepancy or form.effect in OWN_FORMS):
+def alone(model, forms, form):
+    """The stranger that a name may be no more than, as wide as strangers are: the bend of an axis
+    in the place of a memory that levels off; in that of a product with a discrepancy, all that
+    this is made of. None in any other's: whatever bends an axis has the names of bends, and what a
+    memory levels off as is a cubic in any form, where that competes."""
+    if LEVELLING in form.variant:
+        names = ("bend",)
+    elif form.discrepancy and form.effect == "cross_quadratic":
+        names = _variables(form)
+    else:
         return None
     found, column = [], 0
     for design in model.units[0].designs:
         for key, axis, width in zip(design.keys, design.axes, design.prior):
-            if (design.effect == "bend" and axis in form.axes) if levels else (
-                    design.generic and column in form.columns):
-                found.append((design.effect, key, axis, column, width))
+            if design.effect in names and axis in form.axes:
+                found.append((key, axis, column, width))
             column += 1
     if not found:
         return None
-    effects, keys, axes, index, prior = zip(*found)
-    return Form(effects[0], "alone", form.axis, keys, axes,
-                Columns(np.array(index), np.array(prior)), powers=(1,) * len(keys))
+    keys, axes, index, prior = zip(*found)
+    stranger = Form(names[0], "instead of " + form.effect, form.axis, keys, axes,
+                    Columns(np.array(index), np.array(prior)), powers=(1,) * len(keys))
+    for name in forms:
+        if names == ("bend",) and (name.effect, name.variant, name.axis) == (
+                "cubic", "", form.axis):
+            return replace(name, variant="in any form", keys=name.keys + keys,
+                           axes=name.axes + axes, shared=name.shared + stranger.shared,
+                           powers=name.powers + (BESIDE,) * len(keys), discrepancy=True)
+    return stranger
+
+
+def _variables(form):
+    """Names of the strangers that a form's discrepancy is made of. Products on three axes take off
+    each other what the poses are free to be, so that each may be large, and what bends them
+    anything."""
+    return tuple(name for name in _variable(form.effect)
+                 if form.axis is not None or name != "product_bend")
 
 
 def _shown(units, fits, columns):

@@ -10,7 +10,8 @@ import numpy as np
 
 from ..experiment import gram
 
-ROUNDING = 1e-14  # of a metric's largest eigenvalue: some tens of units in the last place
+# Least eigenvalue of a metric of columns of size 1: some tens of units in the last place.
+ROUNDING = 1e-14
 
 
 @dataclass(frozen=True)
@@ -55,10 +56,11 @@ def whitening(metric):
     try:
         factor = np.linalg.cholesky(metric)
     except np.linalg.LinAlgError:
-        values, vectors = np.linalg.eigh(metric)
-        values = np.maximum(values, ROUNDING * values[:, -1:])
-        return Whitening((vectors / np.sqrt(values)[:, None]).transpose(0, 2, 1),
-                         0.5 * np.log(values).sum(axis=1))
+        size = np.sqrt(np.diagonal(metric, axis1=1, axis2=2))
+        values, vectors = np.linalg.eigh(metric / size[:, None] / size[:, :, None])
+        values = np.maximum(values, ROUNDING)
+        return Whitening((vectors / np.sqrt(values)[:, None]).transpose(0, 2, 1) / size[:, None],
+                         (0.5 * np.log(values) + np.log(size)).sum(axis=1))
     return Whitening(np.linalg.inv(factor),
                      np.log(np.diagonal(factor, axis1=1, axis2=2)).sum(axis=1))
 

@@ -67,7 +67,8 @@ def fit(unit, statistics, index, prior, level, points, elimination=None, common=
 
 def scores(units, statistics, columns, levels, points, what="", apart=False, bounded=None):
     """(F, R) evidence.score of each of these Columns (a list) in R data sets; levels: of each unit
-    the log prior of its grid; points: of each unit those that are looked at."""
+    the log prior of its grid; points: of each unit those that are looked at; what: words for the
+    progress; apart, bounded: as of evidence.score."""
     scored = np.empty((len(columns), len(statistics[0][0][0])))
     for places, index, prior in _parts(columns, scored.shape[1] * max(map(len, points)), what):
         fits = [_fit_each(unit, sums, index, prior, level, own)

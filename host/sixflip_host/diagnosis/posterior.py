@@ -156,9 +156,9 @@ def _rivals(model, forms, fewer, form, cost):
     without. Noise, which takes up something of everything, is in its place where the stranger adds
     nothing to that."""
     rivals, seen = [], set()
-    stranger = discrepancy.alone(model, form)
-    if stranger is not None and stranger.effect not in fewer.names:
-        rivals.append((stranger, model.extended(fewer, stranger)))
+    alone = discrepancy.alone(model, forms, form)
+    if alone is not None and alone.effect not in fewer.names:
+        rivals.append((alone, model.extended(fewer, alone)))
     free = _free(forms, fewer, form.effect)
     near = model.best(fewer, free)
     tried = {(rival.effect, rival.axis) for rival, _ in near}

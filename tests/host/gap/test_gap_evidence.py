@@ -8,6 +8,7 @@ from sixflip_host.diagnosis import (
     aliases,
     cutoffs,
     effect_estimates,
+    elimination,
     evidence,
     forms_at_once,
     hypotheses,
@@ -189,6 +190,18 @@ def test_what_coefficients_explain_is_the_same_by_one_factor_and_by_two():
     twice, same = evidence.known(gram, np.repeat(inner, 2, 2), np.repeat(quadratic, 2, 1))
     assert twice[:, :1] == pytest.approx(left, rel=1e-12)
     assert same == pytest.approx(logdet, rel=1e-12)
+
+
+def test_a_metric_that_rounding_leaves_singular_is_whitened_as_well():
+    """Beside one that is none the others stay as they are, whatever their columns are in size."""
+    good, columns = np.diag([1e10, 1e2, 1e-8]), np.array([[1.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    singular = columns.T @ columns - 1e-17 * np.eye(3)
+    with pytest.raises(np.linalg.LinAlgError):
+        np.linalg.cholesky(singular)
+    found = elimination.whitening(np.array([good, singular]))
+    assert found.half_logdet[0] == pytest.approx(0.5 * np.log(1e4), abs=1e-9)
+    np.testing.assert_allclose(found.matrix[0] @ good @ found.matrix[0].T, np.eye(3), atol=1e-9)
+    assert np.isfinite(found.matrix).all() and found.half_logdet[1] < -10.0
 
 
 def moves(generator, lag, varying=0.0):

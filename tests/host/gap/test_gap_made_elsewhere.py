@@ -166,21 +166,6 @@ def test_an_axis_beside_one_that_leaps_has_no_dead_band():
     assert not present(nats.max())
 
 
-@pytest.mark.parametrize("noise, band", [(6.0, True), (6.0, False), (1.2, False)])
-def test_a_soft_band_on_all_axes_leaves_less_noise_than_any_part_has(noise, band):
-    """A gyro that reads w (1 - exp(-(w / 1.8)^2)): a count now and then, on all axes. A narrow
-    filter leaves two thirds of what any part has at least."""
-    generator = np.random.default_rng(9)
-    rate = generator.normal(0.0, noise, (8000, 3)) + 2000.0 * np.sin(np.arange(8000) / 60.0)[
-        :, None] * (np.arange(8000) % 1000 > 800)[:, None]
-    if band:
-        rate = rate * (1.0 - np.exp(-(rate / 118.0) ** 2))
-    counts = np.rint(rate + 0.3 * generator.standard_normal((8000, 3)) * band).astype(np.int16)
-    still = [np.arange(8000) % 1000 <= 800]
-    found = samples_judged._dead_band("gyro", [counts], still, 1.8)
-    assert [finding.axes for finding in found] == [["x", "y", "z"]] * band
-
-
 def test_slow_noise_in_a_few_rests_is_no_line():
     """Of a random walk held back within a second four rests made "vibration" of 1.3 Hz."""
     generator = np.random.default_rng(6)

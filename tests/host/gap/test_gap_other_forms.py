@@ -143,3 +143,15 @@ def test_what_another_form_of_a_name_does_by_itself_is_nameless():
     """It was `cross_quadratic`, next to nothing of a product beside all that a form of it may
     have, which no stranger had to compete with."""
     assert said(found(Bent(5, turned), 18, 6.0)) == ("unexplained", [])
+
+
+@pytest.mark.parametrize("bend, names", [
+    (lambda y: 5.0 * (1.0 - np.exp(-3.0 * y ** 2)), {"asymmetry", "cross_quadratic", "quadratic"}),
+    (lambda y: 4.0 * np.tanh(2.2 * y ** 3), {"cubic"}),
+    (lambda y: 8.0 * np.tanh(2.2 * y ** 3), {"cubic"})], ids=["even", "odd", "large"])
+def test_whatever_bends_an_axis_has_a_name(bend, names):
+    """Held against what their forms do by themselves they were nameless; the large one was a
+    hysteresis for a while, which only bends, and that had no name."""
+    result = found(Bent(6, lambda force: np.eye(3)[0] * bend(force)), 18, 4.0)
+    cause, = (cause for _, cause in result.causes)
+    assert result.verdict == "explained" and set(cause.names) <= names

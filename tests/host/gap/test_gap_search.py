@@ -59,7 +59,7 @@ def test_noise_stands_for_a_stranger_only_where_that_adds_nothing(beside, likeli
 def test_a_name_is_held_against_what_it_may_be_no_more_than(monkeypatch, scores, likeliest):
     """A memory that levels off bends, too: where nothing else has a name for a bend it stood for
     one. What bends is asked in the place of such a memory alone."""
-    monkeypatch.setattr(discrepancy, "alone", lambda model, form: hypotheses.Form(
+    monkeypatch.setattr(discrepancy, "alone", lambda model, forms, form: hypotheses.Form(
         "bend") if form.effect == "hysteresis" else None)
     model = Scores({"": 0.0, **scores})
     forms = [hypotheses.Form(name) for name in scores if name != "bend"]

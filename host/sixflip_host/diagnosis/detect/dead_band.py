@@ -56,7 +56,7 @@ def nats_of_rests(columns, at_rest, least=0.0):
     """((3,) nats of an axis' reading 0 at rest more often than the noise of its sensor's others
     lets it; (3,) counts, half the width that this takes at least). columns: list of (n, 3) counts;
     at_rest: list of (n,) bool; least: counts of noise that any such part has, where all three
-    axes have less."""
+    axes have none."""
     nats, widths = np.zeros(3), np.full(3, np.inf)
     for counts, resting in zip(columns, at_rest):
         x, step = counts[resting].astype(np.int64), np.maximum(steps(counts), 1)
@@ -70,7 +70,7 @@ def nats_of_rests(columns, at_rest, least=0.0):
                          change.std(axis=0)) / np.sqrt(2.0)
         for axis in range(3):
             usual = float(np.median(np.delete(noise, axis)))
-            if max(noise) < max(SILENT, least / QUIETER):
+            if max(noise) < SILENT:
                 usual = max(usual, least)
             zero = x[:, axis] == 0
             # What never leaves 0 is stuck, and what leaves it to one side has its end there.
