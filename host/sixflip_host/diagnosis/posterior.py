@@ -154,7 +154,7 @@ def _rivals(model, forms, fewer, form, cost):
     but not those of time for a stranger's place, of which everything is a function. A stranger
     competes with every name of its variable: with a discrepancy that is near which was not
     without. Noise, which takes up something of everything, is in its place where the stranger adds
-    nothing to that. So is what the member may be no more than (discrepancy.alone)."""
+    nothing to that. What a member may be no more than competes as well (discrepancy.alone)."""
     rivals, seen = [], set()
     alone = discrepancy.alone(model, forms, form)
     if alone is not None and alone.effect not in fewer.names:

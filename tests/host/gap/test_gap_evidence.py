@@ -87,9 +87,11 @@ def test_the_score_is_the_log_density_of_the_session_held_out():
     assert evidence.score(fits, shared)[0] == pytest.approx(expected, abs=1e-6)
 
 
-def test_many_forms_at_once_score_as_one_after_the_other(drawn=7):
+@pytest.mark.parametrize("held", [forms_at_once.HELD, 1])  # all at once, and one at a time
+def test_many_forms_at_once_score_as_one_after_the_other(monkeypatch, held, drawn=7):
     """Of one column and of two, with priors of their own, in several data sets; and what is
     private of each session."""
+    monkeypatch.setattr(forms_at_once, "HELD", held)
     generator = np.random.default_rng(8)
     units = [unit(generator, 0.4, 3.0) for _ in range(3)]
     data = [u.statistics(generator.standard_normal((len(u.z), drawn)) + u.z[:, None])
@@ -97,11 +99,11 @@ def test_many_forms_at_once_score_as_one_after_the_other(drawn=7):
     level, every = [USUAL.prior(u, ()) for u in units], [np.arange(len(u.grid)) for u in units]
     columns = [NONE, Columns(np.array([0]), np.array([0.3])), Columns(np.array([1]), np.ones(1)),
                Columns(np.array([1, 0]), np.array([2.0, 5.0]))]
-    for apart in (False, True):
-        expected = [evidence.score([evidence.fit(u, s, own, NONE, p)
-                                    for u, s, p in zip(units, data, level)], own, apart)
-                    for own in columns]
-        found = forms_at_once.scores(units, data, columns, level, every, apart=apart)
+    bounded = np.arange(5) == 1
+    for apart, positive in ((False, None), (True, None), (False, bounded), (True, bounded)):
+        expected = [evidence.score([evidence.fit(u, s, own, NONE, p) for u, s, p in zip(
+            units, data, level)], own, apart, positive) for own in columns]
+        found = forms_at_once.scores(units, data, columns, level, every, "", apart, positive)
         np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-7)
     expected = [evidence.fit(units[0], data[0], NONE, own, level[0]).evidence for own in columns]
     found = forms_at_once.evidences(units[0], data[0], columns, level[0], every[0])
@@ -350,3 +352,12 @@ def test_a_size_is_as_uncertain_as_the_lag_that_nothing_tells():
                                  theta["x"] + odds.Z_90 * sigma["x"]))
     assert mixed[0] < sizes[""] and mixed[1] > sizes["lag 15 s"]
     assert own[1] - own[0] < 0.7 * (mixed[1] - mixed[0])
+
+
+@pytest.mark.parametrize("needed, told", [({0}, set()), ({0, 2}, {2}), ({2}, {2})])
+def test_no_axis_is_told_that_the_form_found_is_not_on(monkeypatch, needed, told):
+    """A product on x was said to be on z, without a size there: of all three axes z needed it."""
+    monkeypatch.setattr(members, "_needed_axes", lambda *found: needed)
+    monkeypatch.setattr(members, "_without", lambda *found: None)
+    cause = aliases.Cause("quadratic", (hypotheses.Form("quadratic", axis=2, axes=(2,)),), 9.0, {})
+    assert members._told_axes(None, (), None, cause) == told

@@ -155,3 +155,10 @@ def test_whatever_bends_an_axis_has_a_name(bend, names):
     result = found(Bent(6, lambda force: np.eye(3)[0] * bend(force)), 18, 4.0)
     cause, = (cause for _, cause in result.causes)
     assert result.verdict == "explained" and set(cause.names) <= names
+
+
+def test_a_bend_is_no_alias_of_a_memory_that_bends_as_well():
+    """It was a class of cubic and hysteresis, for what a memory that levels off has of a bend."""
+    def bent(force):
+        return np.eye(3)[2] * 4.0 * np.tanh(1.2 * force ** 3)
+    assert said(found(Bent(5, bent), 18, 6.0)) == ("explained", [("accel", "cubic")])
