@@ -14,6 +14,7 @@ import numpy as np
 from sixflip.poses.faces import FACES, nearest_face
 from sixflip.poses.noise_floor import WINDOWS, NoiseFloor
 from sixflip.poses.pose_label import CROOKED_DEG
+from sixflip.poses.still_window import window_length
 
 from . import still_windows
 
@@ -91,6 +92,7 @@ class LongestRest:
 # a bend, which is as still as a rest but for that, and takes a while to come to it: what reads
 # otherwise from one moment to the next (the windows around that are not still) has not moved.
 TURNS_DPS, AT_ONCE_S = 5.0, 1.5
+LOUDER_ONLY = 5.0  # standard errors of a window's mean, in which nothing moved
 MOSTLY = 0.5  # of a recording at rest: a shorter one is a pause of something that moves
 
 
@@ -106,6 +108,40 @@ def labelled(pose, shortest=1, without=()):
     return [Run(int(pose[start]), start, end) for start, end in zip(starts, ends)
             if end > start and pose[start] and end - start >= shortest
             and pose[start] not in without]
+
+
+def joined(capture, runs):
+    """The Runs, made one where nothing moved between two of them: all that is read there has the
+    mean of the rests on either side, to within what white noise as loud as it is there leaves. So
+    it is only louder than a rest is taken to be. Without a gyro a turn about the
+    vertical would look like that."""
+    whole = []
+    for run in runs:
+        if whole and _louder_only(capture, whole[-1], run):
+            run = Run(run.code, whole.pop().first, run.end)
+        whole.append(run)
+    return whole
+
+
+def _louder_only(capture, before, after):
+    """Whether nothing moves between two Runs, by every window of the sensors' length."""
+    if capture.accel is None or capture.gyro is None:
+        return False
+    counts = np.hstack([s[before.first:after.end].astype(float)
+                        for s in (capture.accel, capture.gyro)])
+    first, end = before.end - before.first, after.first - before.first
+    length = window_length(capture.meta["rate_hz"], still_windows.POSE_SAMPLES)
+    near = np.vstack([counts[max(0, first - length):first], counts[end:end + length]])
+    starts = range(first, max(first + 1, end - length + 1), length)
+    for start in [*starts, max(first, end - length)]:
+        window = counts[start:min(start + length, end)]
+        if len(window) < 2:
+            continue
+        power = sum((np.diff(x, axis=0) ** 2).mean(axis=0) / 2.0 / len(x) for x in (window, near))
+        if (np.abs(window.mean(axis=0) - near.mean(axis=0)) > LOUDER_ONLY * np.sqrt(power) + 0.5
+                ).any():
+            return False
+    return True
 
 
 def find(capture, stillness=POSES):

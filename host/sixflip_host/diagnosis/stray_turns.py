@@ -14,7 +14,7 @@ from scipy import special
 from ..experiment import turns
 from .moves_fit import FREEDOM
 
-LEVELS_DEG = tuple(0.03 * 1.35 ** k for k in range(18))  # of turns that are alike
+LEVELS_DEG = tuple(0.03 * 1.35 ** k for k in range(23))  # of turns that are alike
 FAR_DEG, FAR_TIMES = (5.0, 15.0, 45.0), 5.0  # a tenth of a second that is lost, and more
 SHARES = (0.01, 0.03, 0.1, 0.3)  # tried, of turns that are far off
 TAILS = (FREEDOM, 1e6)  # degrees of freedom of turns that are alike; so many are normal

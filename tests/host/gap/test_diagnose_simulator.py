@@ -288,6 +288,19 @@ def test_a_delay_of_the_real_gyro_is_no_delay_of_the_simulator(tmp_path, capsys)
     assert names(has) == ["gyro_delay"]
 
 
+@pytest.mark.parametrize("mg, differs", [(0.25, False), (3.0, True)])
+def test_a_bias_differs_by_more_than_it_flickers(tmp_path, capsys, mg, differs):
+    """In minutes of one motion a quarter of a milligravity is certain, and at the next power-up
+    another one."""
+    t, force, rate = turning(1, 300.0)
+    answer = diagnosed(capsys, capture(tmp_path / "real.csv", t, force + [0, 1e-3 * mg * G, 0],
+                                       rate, noise=0.3),
+                       capture(tmp_path / "sim.csv", t, force, rate, noise=0.3, seed=5))
+    bias = answer["simulator"]["parameters"]["accel"]["bias"]["y"]
+    assert bias["differs"] == differs and bias["difference"] == pytest.approx(mg, abs=0.1)
+    assert answer["verdict"] == ("explained" if differs else "no gap")
+
+
 @pytest.mark.parametrize("late_s, verdict", [(0.045, "explained"), (0.0, "no gap")])
 def test_a_delay_that_a_simulator_of_another_motion_lacks_is_named(tmp_path, capsys, late_s,
                                                                    verdict):

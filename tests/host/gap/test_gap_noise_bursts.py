@@ -7,6 +7,7 @@ import pytest
 from sixflip_host.capture import capture_file
 from sixflip_host.diagnosis.detect import noise_bursts, spikes
 from sixflip_host.experiment import blocks
+from sixflip_host.simulation import scenario, simulated_session
 from tests.worlds.still_session import resting
 
 
@@ -41,6 +42,23 @@ def test_a_rest_between_two_coarse_codes_is_no_louder_one():
         pose=np.repeat(np.arange(1, 13), 1000)))
     assert (np.diff(session.capture.accel[5000:6000], axis=0) != 0).mean() > 0.4
     assert noise_bursts.unsteady([session]) == []
+
+
+def test_bursts_are_seen_where_nobody_has_labelled_the_rests():
+    """Too loud to be still, they were taken for moves: no gap at four times the noise."""
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 8})
+    found = []
+    for times in (1.0, 4.0):
+        capture = simulated_session.session(plan, 0)
+        generator, t = np.random.default_rng(2), capture.t_us * 1e-6
+        loud = np.sqrt(times ** 2 - 1.0) * (t % 11.0 < 1.5)[:, None]
+        for name, noise in (("accel", 40.0), ("gyro", 3.0)):
+            counts = getattr(capture, name)
+            added = noise * loud * generator.standard_normal(counts.shape)
+            setattr(capture, name, (counts + np.rint(added)).astype(np.int16))
+        capture.pose = None
+        found.append({s for s, _, _ in noise_bursts.unsteady([blocks.session_of("s", capture)])})
+    assert found[0] == set() and "accel" in found[1]
 
 
 @pytest.mark.parametrize("share, said", [(1.0, 1), (-1.0, 1), (0.3, 0)])

@@ -116,6 +116,29 @@ def test_a_hand_that_puts_a_healthy_box_down_degrees_off_is_no_gap_in_motion(see
     assert found.verdict == "no gap"
 
 
+def test_turns_that_each_end_far_off_have_no_name():
+    """Runs of rows lost in moves, numbered as if there were none: with no level of noise as large
+    as what the turns were off by, what chance made of it was a saturation."""
+    def plan(seed, part):
+        return scenario.from_dict({"sensor": "mpu6050", "scene": "paper", "seed": seed,
+                                   "world": part})
+    first = plan(2, {}).worlds[0]
+    part = {key: first[key] for key in ("accel_matrix", "accel_bias_mg", "gyro_matrix",
+                                        "gyro_bias_dps")}
+    whole, lossy = (simulated_session.session(plan(*of), 0) for of in ((2, {}), (102, part)))
+    generator, keep = np.random.default_rng(1), np.ones(len(lossy), bool)
+    moving = np.flatnonzero(np.abs(lossy.gyro).max(axis=1) > 10.0 * LSB_DPS)
+    for start in generator.choice(moving, 25):
+        keep[start:start + generator.integers(8, 40)] = False
+    lossy = Capture(lossy.meta, lossy.t_us[:keep.sum()], lossy.accel[keep], lossy.gyro[keep],
+                    lossy.temp[keep], pose=lossy.pose[keep])
+    found = diagnosis.diagnose_sessions(
+        [blocks.session_of(str(k), c) for k, c in enumerate((whole, lossy))],
+        diagnosis.Settings(jobs=1))
+    assert found.verdict == "unexplained" and not found.causes
+    assert any("samples may be lost" in said for said in found.remarks)
+
+
 def test_rows_of_an_old_buffer_are_no_delay(captures):
     """Ten of 97 rows of the accelerometer are those of a second before: in motion it was a
     `filter_lag` beside that."""

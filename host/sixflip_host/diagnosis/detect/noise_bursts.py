@@ -13,6 +13,7 @@ import numpy as np
 from scipy import special
 
 from ...capture import registers
+from ...capture.rests import joined
 from .. import odds
 from .detection import present
 from .ringing import LIFTS_S, SETTLES_S
@@ -44,14 +45,14 @@ def loud(power, place, step):
 
 
 def windows(session, sensor):
-    """((w, 3) counts², (w,) number of the rest) of a session's half seconds at rest, once the box
-    has settled and before a hand takes it up: the mean square of the differences from one sample
-    to the next."""
+    """((w, 3) counts², (w,) number of the rest) of a session's half seconds at rest, and of those
+    too loud to be taken for it, once the box has settled and before a hand takes it up: the mean
+    square of the differences from one sample to the next."""
     counts = getattr(session.capture, sensor)
     m = max(8, int(WINDOW_S * session.rate))
     settles, lifts = (int(seconds * session.rate) for seconds in (SETTLES_S, LIFTS_S))
     power, place = [np.zeros((0, 3))], [np.zeros(0, int)]
-    for number, (_, first, end) in enumerate(session.runs):
+    for number, (_, first, end) in enumerate(joined(session.capture, session.runs)):
         settled = first + settles
         x = np.diff(counts[settled:max(settled, end - lifts)].astype(float), axis=0)
         k = len(x) // m

@@ -24,8 +24,7 @@ OSCILLATOR = 0.02  # and of a sensor's own oscillator [ITG-3205 PS rev 1.0, tabl
 # temperature, which differs by some 9 degC between a warming and a cooling session.
 WANDERS = 0.15
 APART = 3.0  # nats by which sessions may differ and still have one clock, GAP stage 4
-HICCUP = 1e-5  # chance of an interval that a sound recorder leaves too long: at 100 Hz, 17 minutes
-LONGEST = 50.0  # periods: gaps without a name may have any length up to that, half a second
+STANDS = 0.1  # of the gaps of a recorder that loses samples, at most, in which it stood still
 LATE = 0.02  # periods, at least: how exactly a stamp tells the time of a sample, 0.2 ms at 100 Hz
 
 
@@ -81,7 +80,7 @@ def drops(clocks):
     clocks = [timing for timing in clocks if timing is not None and timing.rows >= FEWEST]
     lost = sum(timing.losses - timing.losses_known for timing in clocks)
     score = sum(gap_nats(np.array(timing.loss_periods),
-                         max(timing.jitter_ms * timing.rate_hz / 1e3, LATE), timing.rows)
+                         max(timing.jitter_ms * timing.rate_hz / 1e3, LATE))
                 for timing in clocks)
     if not lost or not present(score):
         return []
@@ -96,19 +95,14 @@ def drops(clocks):
                     share=explained(late, late - np.rint(late)), number=len(late))]
 
 
-def gap_nats(late, sigma, rows):
-    """Log likelihood ratio of gaps, late (n,) periods, in so many rows, if they are lost samples:
-    a whole number each, known to sigma, at a rate of their own; against pauses of any length at
-    the rate of a recorder's hiccups."""
-    number = len(late)
-    if not number:
-        return 0.0
+def gap_nats(late, sigma):
+    """Log likelihood ratio of gaps, late (n,) periods, if they are lost samples, a whole number
+    each, known to sigma; against a recorder that stands still, as often and as long, at any
+    phase: a loop that does something else now and then."""
     off = late - np.maximum(np.rint(late), 1.0)
-    exact = float((-0.5 * (off / sigma) ** 2).sum()) - number * math.log(
-        sigma * math.sqrt(2.0 * math.pi)) + number * math.log(LONGEST)
-    length = number * math.log(0.5) - float((np.maximum(np.rint(late), 1.0) - 1.0).sum()) * 0.1
-    own = number * math.log(number / (rows * HICCUP)) - (number - rows * HICCUP)
-    return exact + length + own
+    nearest = math.erf(0.5 / (sigma * math.sqrt(2.0)))  # to which whole number it is
+    lost = np.exp(-0.5 * (off / sigma) ** 2) / (sigma * math.sqrt(2.0 * math.pi) * nearest)
+    return float(np.log(STANDS + (1.0 - STANDS) * lost).sum())
 
 
 def remarks(sessions, clocks):

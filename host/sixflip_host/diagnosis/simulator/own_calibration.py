@@ -23,7 +23,7 @@ NORM = 0.005  # m/s2: how well |force| repeats between rests, 0.5 mg with flicke
 class OwnSensor:
     """true force = accel (force - bias), accel (3, 3) symmetric (its turn cannot be seen); true
     rate = gyro (rate - bias at rest); sigmas of accel (3, 3), bias (3,), gyro (3, 3); gyro_bias
-    (3,) rad/s with its sigma."""
+    (3,) rad/s with its sigma; flicker: that of its Trace."""
 
     accel: np.ndarray
     bias: np.ndarray
@@ -33,6 +33,7 @@ class OwnSensor:
     gyro_sigma: np.ndarray
     gyro_bias: np.ndarray
     gyro_bias_sigma: np.ndarray
+    flicker: dict
 
     def applied(self, trace):
         """The Trace as this sensor's true force and rate."""
@@ -61,7 +62,7 @@ def fitted(trace):
     spread = biases.std(axis=0, ddof=1) / np.sqrt(len(biases)) if len(biases) > 2 else \
         np.full(3, 0.001)
     return OwnSensor(accel, bias, gyro, accel_sigma, bias_sigma, gyro_sigma, biases.mean(axis=0),
-                     np.maximum(spread, trace.quantum[1] / np.sqrt(12.0)))
+                     np.maximum(spread, trace.quantum[1] / np.sqrt(12.0)), trace.flicker)
 
 
 SYMMETRIC = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]

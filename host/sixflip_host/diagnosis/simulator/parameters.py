@@ -107,7 +107,9 @@ def shapes(real, sim, fits, usable):
             (a, sa), (b, sb) = [(v[0][i] * scale, v[1][i] * scale) for v in values]
             if kind == "gyro":
                 pair = (None, None)  # at rest it is read directly
-            numbers.append(compared("bias", kind, axis, unit, a, sa, b, sb, *pair))
+            # By less than it flickers a bias differs from itself.
+            numbers.append(compared("bias", kind, axis, unit, a, sa, b, sb, *pair,
+                                    least=real.flicker[kind]))
         if fit is None and not usable.get("accel"):
             continue  # by its own moves a gyro is known by where the accelerometer finds gravity
         for i in range(3):

@@ -14,6 +14,7 @@ from ...capture import rests as rest_finder
 from ...capture import rests_by_variance
 from ...capture.attitude import carried, levelled, rotation_between, rotations
 from ...experiment.block_measures import EDGE_S
+from .. import adequacy
 from . import single_log
 
 SHORTEST_REST_S = 0.5  # of a robot that stops between two moves
@@ -31,7 +32,8 @@ class Trace:
     """One log. t (n,) s from its first row; force (n, 3) m/s2; rate (n, 3) rad/s or None;
     celsius (n,) or None; rate_hz by count over time; rests ((first, end), ...) in samples;
     faces: the axis of each rest that a label says is up, (3,) or None; quantum: m/s2 and rad/s
-    of one count; railed (n,): a channel stands at the end of what it can say."""
+    of one count; flicker: {sensor: mg or deg/s} that such a chip's bias is another by from one
+    minute to the next; railed (n,): a channel stands at the end of what it can say."""
 
     name: str
     t: np.ndarray
@@ -43,6 +45,7 @@ class Trace:
     rests: tuple
     faces: tuple
     quantum: tuple
+    flicker: dict
     railed: np.ndarray
 
     @property
@@ -76,9 +79,10 @@ def trace_from_capture(name, capture):
     railed = _railed(capture.accel)
     if capture.gyro is not None:
         railed = railed | _railed(capture.gyro)
+    flicker = {kind: adequacy.usual(meta["sensor"], kind) for kind in ("accel", "gyro")}
     return Trace(name, t, capture.accel * quantum[0],
                  None if capture.gyro is None else capture.gyro * quantum[1], celsius,
-                 float(rate_hz), capture.g, rests, ups, quantum, railed)
+                 float(rate_hz), capture.g, rests, ups, quantum, flicker, railed)
 
 
 def _rests(capture, rate_hz):
