@@ -51,6 +51,17 @@ def test_rests_cut_off_at_a_rail_tell_of_the_rail_only():
     assert "is cut off below its range" in gap_words.sentence(said)
 
 
+def test_a_rail_is_no_quiet_second_that_others_are_shaken_beside():
+    """Of the paper's twelve poses too few were left to judge, and of the rest of the recording
+    what was on the rail was the quiet: a vibration beside the saturation."""
+    plan = scenario.from_dict({"sensor": "gy85", "scene": "paper", "seed": 71})
+    capture = simulated_session.session(plan, 0)
+    capture.accel = np.clip(capture.accel, -250, 250).astype(np.int16)  # 0.98 g
+    found = diagnosed([capture])
+    assert not found.gaps and "accel" in found.rest
+    assert [(f.effect, f.sensor) for f in found.findings] == [("saturation", "accel")]
+
+
 def test_a_rail_of_the_chip_is_its_range():
     two = captures()
     for capture in two:

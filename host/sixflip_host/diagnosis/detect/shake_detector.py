@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import line_frequency, spectral_lines
+from . import line_frequency, saturation, spectral_lines
 from .detection import Finding
 
 WINDOW_S = 1.0  # a shaken second stands beside quiet ones; at 100 Hz it knows its level to 7 %
@@ -56,7 +56,7 @@ def _longest_move(session):
 
 def shaken(sessions):
     """list of Finding: from what changes from one sample to the next (third differences: no motion
-    of a hand or a vehicle is so fast)."""
+    of a hand or a vehicle is so fast), where nothing is cut off: a rail is quiet by itself."""
     levels = []
     if any(session.capture.accel is None for session in sessions):
         return []
@@ -66,9 +66,10 @@ def shaken(sessions):
             "accel_lsb_per_g"])
         fast = np.diff(x, n=3, axis=0) / np.sqrt(20.0)  # the gain of white noise
         k = len(fast) // m
-        if k < FEWEST_WINDOWS:
+        whole = ~saturation.railed(session)[:k * m].reshape(k, m).any(axis=1)
+        if whole.sum() < FEWEST_WINDOWS:
             return []
-        levels.append(np.sqrt((fast[:k * m].reshape(k, m, 3) ** 2).mean(axis=1)))
+        levels.append(np.sqrt((fast[:k * m].reshape(k, m, 3)[whole] ** 2).mean(axis=1)))
     level = np.concatenate(levels)
     quiet = np.quantile(level, QUIET, axis=0)
     usual = np.median(level, axis=0)
