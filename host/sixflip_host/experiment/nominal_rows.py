@@ -19,8 +19,8 @@ from .projection import lateral_basis
 
 # Levels that are tried of what a hand scatters a placement by, mg in each direction across
 # gravity: closest about 0.05 degrees (0.87 mg), from a jig's hundredth of a degree to a careless
-# two degrees.
-PLACEMENT_MG = (0.1, 0.45, 0.8, 1.4, 3.0, 8.0, 40.0)
+# two degrees, and the seven of a board without a box.
+PLACEMENT_MG = (0.1, 0.45, 0.8, 1.4, 3.0, 8.0, 40.0, 120.0)
 # Levels of flicker tried: factors of 1.4 apart where parts are (typical.FLICKER), two and more
 # beyond; twice as much as the nearest is seen as no noise in a session of the recommended plan.
 FLICKER_MG = (0.005, 0.01, 0.02, 0.033, 0.05, 0.075, 0.11, 0.15, 0.22, 0.4, 0.8, 1.6, 4.0)

@@ -73,6 +73,16 @@ def test_a_hand_that_turns_by_half_a_circle_carelessly_is_no_gap_of_the_gyro(off
     assert gap.units[0].grid[gap.adequacy.index[0]][1] >= 0.5 * off_deg
 
 
+def test_a_board_without_a_box_that_lies_anyhow_is_no_gap():
+    """Five degrees off its faces, with no level of placement as large: unexplained."""
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 2,
+                               "world": {"placement_scatter_deg": 5.0, "tilt_deg": 1.0}})
+    found = diagnosis.diagnose_sessions([
+        blocks.session_of(str(k), simulated_session.session(plan, k)) for k in range(2)],
+        diagnosis.Settings(jobs=1))
+    assert found.verdict == "no gap" and found.gaps["accel"].adequacy.ok
+
+
 def test_what_is_left_of_turns_and_nowhere_more_than_elsewhere_is_said_in_motion(monkeypatch):
     """With levels of a hand that end below this one's, no test of a domain finds where."""
     monkeypatch.setattr(turn_model, "FLIPS_DEG", (0.2, 0.4, 0.8, 1.6, 3.2))
