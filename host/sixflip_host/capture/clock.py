@@ -22,7 +22,8 @@ from . import capture_binary, stamp_envelope
 from .board_extras import EXTRAS
 
 PAUSE_S, PAUSE_ROWS = 1.0, 10   # a gap that is longer than both is a pause whatever its phase
-IN_PHASE = 0.5          # mean cosine of the phases of gaps that are losses, 0 by chance
+# Of the mean cosine that the phases of losses have as the stamps scatter; by chance it is 0.
+IN_PHASE = 0.5
 FEWEST_PHASES = 4
 BLOCKS = 10             # parts whose rates give the interval of the whole
 FEWEST = 2
@@ -136,8 +137,10 @@ def _sorted_out(gaps, period, recorder, lost, anew=False):
     pause |= np.isin(gaps.places, recorder)
     is_lost = np.isin(gaps.places, lost)
     open_ = ~pause & ~is_lost
-    if gaps.jitter < 0.1 * period and open_.sum() >= FEWEST_PHASES:
-        anew = anew or np.cos(2 * np.pi * gaps.lift[open_] / period).mean() < IN_PHASE
+    turn = 2 * np.pi / period
+    coherent = math.exp(-0.5 * (turn * gaps.jitter) ** 2)  # the mean cosine of losses
+    if open_.sum() * coherent ** 2 >= FEWEST_PHASES:
+        anew = anew or np.cos(turn * gaps.lift[open_]).mean() < IN_PHASE * coherent
     if anew:                        # it stood still as well
         pause |= open_
     pause &= ~is_lost

@@ -91,6 +91,18 @@ def test_short_pauses_after_which_the_clock_begins_anew_are_no_losses():
     assert (found.pauses, found.losses) == (29, 0)
 
 
+@pytest.mark.parametrize("whole", [False, True])
+def test_a_loop_that_sleeps_pauses_and_one_that_misses_rows_loses_them(whole):
+    """Its stamps scatter by a tenth of a period about an even clock, more than was taken to tell
+    a phase by: each of its pauses was counted as rows that are lost."""
+    generator = np.random.default_rng(3)
+    periods = 0.96 + 0.04 * generator.gamma(3.0, 1.0, ROWS) / 3.0
+    stands = generator.choice(ROWS, 30, replace=False)
+    periods[stands] += generator.integers(1, 4, 30) if whole else generator.uniform(0.6, 3.4, 30)
+    found = measured(PERIOD * np.cumsum(periods))
+    assert (found.losses > 40) == whole and (found.pauses > 20) != whole
+
+
 def test_pauses_of_less_than_a_sample_do_not_bend_the_rate():
     """A recorder that waits for its next look after every delay; with its small ones
     left out the rate was a thousandth too low and more."""
