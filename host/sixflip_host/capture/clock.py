@@ -22,9 +22,12 @@ from . import capture_binary, stamp_envelope
 from .board_extras import EXTRAS
 
 PAUSE_S, PAUSE_ROWS = 1.0, 10   # a gap that is longer than both is a pause whatever its phase
-# Of the mean cosine that the phases of losses have as the stamps scatter; by chance it is 0.
-IN_PHASE = 0.5
 FEWEST_PHASES = 4
+STANDS = 0.1  # of the gaps of a recorder that loses samples, at most, in which it stood still
+LATE = 0.001  # periods, at least: how exactly a stamp tells the time of a sample, 10 us at 100 Hz
+# Times as exactly, tried: stamps have other tails than normal ones. By up to three of them a gap
+# is shorter: it begins with a row as late as any, while the clock goes by the earliest ones.
+WIDER, SHORTER = (1.0, 4.0, 16.0), (0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0)
 BLOCKS = 10             # parts whose rates give the interval of the whole
 FEWEST = 2
 ROUNDS = 4              # until the period is settled to a millionth
@@ -137,14 +140,28 @@ def _sorted_out(gaps, period, recorder, lost, anew=False):
     pause |= np.isin(gaps.places, recorder)
     is_lost = np.isin(gaps.places, lost)
     open_ = ~pause & ~is_lost
-    turn = 2 * np.pi / period
-    coherent = math.exp(-0.5 * (turn * gaps.jitter) ** 2)  # the mean cosine of losses
-    if open_.sum() * coherent ** 2 >= FEWEST_PHASES:
-        anew = anew or np.cos(turn * gaps.lift[open_]).mean() < IN_PHASE * coherent
+    if open_.sum() >= FEWEST_PHASES:
+        anew = anew or loss_nats(gaps.lift[open_] / period, gaps.jitter / period) < 0.0
     if anew:                        # it stood still as well
         pause |= open_
     pause &= ~is_lost
     return pause, np.where(pause, 0, samples), anew
+
+
+def loss_nats(late, jitter):
+    """Log likelihood ratio of gaps, late (n,) periods beyond one, if they are lost samples: a
+    whole number each, as exactly as stamps tell that scatter by jitter periods; against a recorder
+    that stands still, as often and as long, at any phase: a loop that does something else now and
+    then."""
+    nats = []
+    for width in np.multiply(max(jitter, LATE), WIDER):
+        nearest = math.erf(0.5 / (width * math.sqrt(2.0)))  # to which whole number it is
+        for shorter in np.multiply(width, SHORTER):
+            whole = late + shorter
+            off = (whole - np.maximum(np.rint(whole), 1.0)) / width
+            lost = np.exp(-0.5 * off ** 2) / (width * math.sqrt(2.0 * math.pi) * nearest)
+            nats.append(float(np.log(STANDS + (1.0 - STANDS) * lost).sum()))
+    return float(np.logaddexp.reduce(nats)) - math.log(len(nats))
 
 
 def _interval(t_us, period, gaps, missing, pause):

@@ -92,7 +92,10 @@ class LongestRest:
 # a bend, which is as still as a rest but for that, and takes a while to come to it: what reads
 # otherwise from one moment to the next (the windows around that are not still) has not moved.
 TURNS_DPS, AT_ONCE_S = 5.0, 1.5
-LOUDER_ONLY = 5.0  # standard errors of a window's mean, in which nothing moved
+# Standard errors of a window's mean, in which nothing moved; its variance by that of white noise
+# with the same steps from sample to sample, of which a tremor of 12 Hz has four times as much at
+# 100 Hz; counts of a mean, and of a variance, that rounding makes.
+LOUDER_ONLY, WHITE, ROUNDING = 5.0, 2.0, 0.5
 MOSTLY = 0.5  # of a recording at rest: a shorter one is a pause of something that moves
 
 
@@ -111,35 +114,34 @@ def labelled(pose, shortest=1, without=()):
 
 
 def joined(capture, runs):
-    """The Runs, made one where nothing moved between two of them: all that is read there has the
-    mean of the rests on either side, to within what white noise as loud as it is there leaves. So
-    it is only louder than a rest is taken to be. Without a gyro a turn about the
-    vertical would look like that."""
-    whole = []
+    """The Runs that nobody labelled, made one where nothing moved between two of them: all that is
+    read there is white noise about the mean of what is read at its two ends. So it is only louder
+    than a rest is taken to be. Without a gyro a turn about the vertical would look like that."""
+    whole, last = [], None
     for run in runs:
-        if whole and _louder_only(capture, whole[-1], run):
-            run = Run(run.code, whole.pop().first, run.end)
+        if whole and _louder_only(capture, last, run):
+            last, run = run, Run(run.code, whole.pop().first, run.end)
+        else:
+            last = run
         whole.append(run)
     return whole
 
 
 def _louder_only(capture, before, after):
-    """Whether nothing moves between two Runs, by every window of the sensors' length."""
-    if capture.accel is None or capture.gyro is None:
-        return False
-    counts = np.hstack([s[before.first:after.end].astype(float)
-                        for s in (capture.accel, capture.gyro)])
-    first, end = before.end - before.first, after.first - before.first
+    """Whether nothing moves between two Runs, by every window as long as the board's."""
     length = window_length(capture.meta["rate_hz"], still_windows.POSE_SAMPLES)
-    near = np.vstack([counts[max(0, first - length):first], counts[end:end + length]])
-    starts = range(first, max(first + 1, end - length + 1), length)
-    for start in [*starts, max(first, end - length)]:
-        window = counts[start:min(start + length, end)]
-        if len(window) < 2:
-            continue
-        power = sum((np.diff(x, axis=0) ** 2).mean(axis=0) / 2.0 / len(x) for x in (window, near))
-        if (np.abs(window.mean(axis=0) - near.mean(axis=0)) > LOUDER_ONLY * np.sqrt(power) + 0.5
-                ).any():
+    if capture.accel is None or capture.gyro is None or after.first - before.end < length:
+        return False
+    first, end = max(before.first, before.end - length), min(after.end, after.first + length)
+    counts = np.hstack([s[first:end].astype(float) for s in (capture.accel, capture.gyro)])
+    before, after = before.end - first, after.first - first
+    near = np.vstack([counts[:before], counts[after:]])
+    for start in [*range(before, after - length + 1, length), after - length]:
+        window = counts[start:start + length]
+        white, quiet = ((np.diff(x, axis=0) ** 2).mean(axis=0) / 2.0 for x in (window, near))
+        error = np.sqrt(white / length + quiet / len(near))
+        moved = np.abs(window.mean(axis=0) - near.mean(axis=0)) > LOUDER_ONLY * error + ROUNDING
+        if (moved | (window.var(axis=0) > WHITE * white + ROUNDING)).any():
             return False
     return True
 

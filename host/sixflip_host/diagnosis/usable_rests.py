@@ -9,10 +9,6 @@ from ..experiment import attitude_fit, thermometer
 from .detect import saturation
 
 FEWEST_PLACEMENTS = 6  # an axis' bias and scale, and one more to tell an effect by
-# By how much gravity changes along each axis between rests that nobody labelled: a box that is
-# turned over shows 1 g or 2, a robot on a slope of 30 degrees 0.13 g along its own vertical, which
-# tells no scale from a bias, and what its body does at rest not from what its sensors do.
-TURNED_MG = 500.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +67,7 @@ def select(sessions, findings, stuck, scaled=False):
 
 def _enough(sessions):
     return [s for s in sessions if s.placements() >= FEWEST_PLACEMENTS and (
-        s.labelled or s.accel is None or np.ptp(s.accel, axis=0).min() >= TURNED_MG)]
+        s.labelled or s.accel is None or s.turned_over)]
 
 
 def temperature_remarks(sessions):

@@ -21,6 +21,10 @@ MOST_BAD = 0.005
 # Intervals taken together; stamps by which their scatter is known to a tenth; share of an interval
 # that no turn shows: at 180 deg/s fifty of 10 ms are off by an eighth of a degree at most.
 STEPS, FEWEST_STAMPS, EVEN = 16, 1600, 0.01
+# By how much gravity changes along each axis between rests that nobody labelled: a box that is
+# turned over shows 1 g or 2, a robot on a slope of 30 degrees 0.13 g along its own vertical, which
+# tells no scale from a bias, and what its body does at rest not from what its sensors do.
+TURNED_MG = 500.0
 FAR_OFF_DEG = 25.0  # a label that gravity contradicts: a table does not lean by half of that
 USUAL_C = 25.0  # temperature where no thermometer tells it: of the effects' own reference
 OF_BLOCKS = ("placement", "code", "first", "end", "face", "t", "since", "seconds", "accel", "gyro",
@@ -111,6 +115,13 @@ class Session(ReadOnlyArrays):
         """The same session without the placements with these labels."""
         codes = {faces.pose_code(label) for label in labels}
         return self._of_runs([run for run in self.runs if run.code not in codes])
+
+    @property
+    def turned_over(self):
+        """Whether gravity is felt along every axis, now more and now less, as a box turned over
+        feels it and a robot does not."""
+        return self.accel is not None and len(self.accel) > 0 and bool(
+            np.ptp(self.accel, axis=0).min() >= TURNED_MG)
 
     @cached_property
     def at_rest(self):

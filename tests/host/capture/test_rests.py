@@ -41,19 +41,22 @@ def boards(capture, length, rails):
     return out
 
 
-@pytest.mark.parametrize("turned_dps, gyro, number", [(0.0, True, 1), (1.0, True, 2),
-                                                      (0.0, False, 2)])
-def test_two_rests_are_one_where_it_is_only_louder_between_them(turned_dps, gyro, number):
+@pytest.mark.parametrize("turned_dps, tremor, gyro, number", [
+    (0.0, 0.0, True, 1), (1.0, 0.0, True, 2), (0.0, 300.0, True, 2), (0.0, 0.0, False, 2)])
+def test_two_rests_are_one_where_it_is_only_louder_between_them(turned_dps, tremor, gyro, number):
     rng = np.random.default_rng(6)
     loud = np.where(np.arange(900) // 300 == 1, 5.0, 1.0)[:, None]
     accel = [0.0, 0.0, 16384.0] + 40.0 * loud * rng.normal(size=(900, 3))
     rates = 12.0 * loud * rng.normal(size=(900, 3))
     rates[400:450] += 131.0 * turned_dps
+    accel[300:600] += tremor * np.sin(2.0 * np.pi * 0.09 * np.arange(300))[:, None]
     capture = Capture(dict(META), 10000 * np.arange(900), np.rint(accel).astype(np.int16),
                       np.rint(rates).astype(np.int16) if gyro else None)
     runs = [rests.Run(1, 0, 300), rests.Run(1, 600, 900)]
     joined = rests.joined(capture, runs)
     assert len(joined) == number and (joined[0].first, joined[-1].end) == (0, 900)
+    side_by_side = [rests.Run(1, 0, 300), rests.Run(2, 300, 900)]
+    assert rests.joined(capture, side_by_side) == side_by_side
 
 
 @pytest.mark.parametrize("gyro", [True, False])

@@ -103,6 +103,25 @@ def test_a_loop_that_sleeps_pauses_and_one_that_misses_rows_loses_them(whole):
     assert (found.losses > 40) == whole and (found.pauses > 20) != whole
 
 
+@pytest.mark.parametrize("lost, said", [(0, False), (10, True)])
+def test_a_few_rows_that_are_lost_show_in_stamps_that_scatter(lost, said):
+    """A gap begins with a row as late as any, and the clock goes by the earliest ones: it is less
+    than a whole number by as much as the stamps scatter."""
+    generator = np.random.default_rng(4)
+    keep = np.ones(30000, bool)
+    keep[generator.choice(29000, lost, replace=False) + 500] = False
+    t = PERIOD * (np.arange(30000) + 0.05 * generator.normal(size=30000))[keep]
+    found = measured(t)
+    assert found.losses == lost and bool(sample_clock.drops([found])) == said
+
+
+@pytest.mark.parametrize("hz", [700.0, 952.0, 1000.0, 1200.0])
+def test_whole_milliseconds_of_a_fast_clock_are_no_losses(hz):
+    """Their usual interval is the step of the stamps, and each of the others was a lost row."""
+    found = clock.measure(np.floor(np.arange(30000) * 1e3 / hz).astype(np.int64) * 1000)
+    assert found.losses == 0 and found.rate_hz == pytest.approx(hz, rel=1e-4)
+
+
 def test_pauses_of_less_than_a_sample_do_not_bend_the_rate():
     """A recorder that waits for its next look after every delay; with its small ones
     left out the rate was a thousandth too low and more."""

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from sixflip_host.capture import clock
 from sixflip_host.diagnosis import aliases, odds, samples_judged, verdict
 from sixflip_host.diagnosis.detect import (
     axis_order,
     codes,
-    sample_clock,
     sample_neighbours,
     spectral_lines,
     torn_reads,
@@ -127,7 +127,7 @@ def test_a_clock_is_the_likelier_off_the_more_it_is_and_sessions_must_agree():
 
 
 def test_gaps_that_are_no_whole_number_of_samples_are_less_likely_lost_samples():
-    whole, half = (sample_clock.gap_nats(np.full(4, late), 0.03) for late in (3.0, 3.4))
+    whole, half = (clock.loss_nats(np.full(6, late), 0.03) for late in (3.0, 3.4))
     assert present(whole) and not present(half)
 
 

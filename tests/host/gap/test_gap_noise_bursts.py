@@ -4,7 +4,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from sixflip_host.capture import capture_file
+from sixflip_host.capture import capture_file, rests
 from sixflip_host.diagnosis.detect import noise_bursts, spikes
 from sixflip_host.experiment import blocks
 from sixflip_host.simulation import scenario, simulated_session
@@ -59,6 +59,32 @@ def test_bursts_are_seen_where_nobody_has_labelled_the_rests():
         capture.pose = None
         found.append({s for s, _, _ in noise_bursts.unsteady([blocks.session_of("s", capture)])})
     assert found[0] == set() and "accel" in found[1]
+
+
+def test_what_a_label_leaves_out_is_no_rest():
+    """Whoever labelled it left out the seconds in which a hand was on the box."""
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 8})
+    capture = simulated_session.session(plan, 0)
+    generator = np.random.default_rng(2)
+    for run in rests.labelled(capture.pose)[::3]:
+        touched = slice(run.first + 200, run.first + 300)
+        capture.pose[touched] = 0
+        for name, counts in (("accel", 600.0), ("gyro", 200.0)):
+            getattr(capture, name)[touched] += np.rint(
+                counts * generator.standard_normal((100, 3))).astype(np.int16)
+    assert noise_bursts.unsteady([blocks.session_of("s", capture)]) == []
+
+
+def test_a_vehicle_that_shakes_on_a_straight_way_is_not_at_rest_there():
+    generator, t = np.random.default_rng(5), np.arange(30000) * 0.01
+    driving = (t % 14.0 > 6.0)[:, None]
+    accel = [0.0, 0.0, 16384.0] + generator.standard_normal((30000, 3)) * (40.0 + 1300.0 * driving)
+    gyro = generator.standard_normal((30000, 3)) * (3.0 + 130.0 * driving)
+    session = blocks.session_of("drive", capture_file.Capture(
+        {"sensor": "mpu6050", "rate_hz": 100.0, "accel_lsb_per_g": 16384.0,
+         "gyro_lsb_per_dps": 65.5}, 10_000 * np.arange(30000),
+        np.rint(accel).astype(np.int16), np.rint(gyro).astype(np.int16)))
+    assert len(session.runs) > 10 and noise_bursts.unsteady([session]) == []
 
 
 @pytest.mark.parametrize("share, said", [(1.0, 1), (-1.0, 1), (0.3, 0)])
@@ -137,6 +163,6 @@ def test_of_a_first_rest_shorter_than_a_hand_takes_nothing_is_looked_at():
     """Its end less half a second is before the capture, from whose end an index counts then."""
     counts = np.random.default_rng(1).normal(0.0, 10.0, (2000, 3)).astype(np.int16)
     session = SimpleNamespace(capture=SimpleNamespace(accel=counts), rate=100.0,
-                              runs=[(1, 0, 30)])
+                              labelled=True, runs=[(1, 0, 30)])
     assert spikes.spikes(session, "accel", but_s=0.5).looked == 0
     assert len(noise_bursts.windows(session, "accel")[0]) == 0

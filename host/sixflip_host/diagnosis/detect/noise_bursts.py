@@ -45,14 +45,18 @@ def loud(power, place, step):
 
 
 def windows(session, sensor):
-    """((w, 3) counts², (w,) number of the rest) of a session's half seconds at rest, and of those
-    too loud to be taken for it, once the box has settled and before a hand takes it up: the mean
-    square of the differences from one sample to the next."""
+    """((w, 3) counts², (w,) number of the rest) of a session's half seconds at rest, once the box
+    has settled and before a hand takes it up: the mean square of the differences from one sample
+    to the next. Where nobody labelled the poses of a box that was turned over, those are at rest
+    as well in which it is only louder; a vehicle may move without a turn."""
     counts = getattr(session.capture, sensor)
     m = max(8, int(WINDOW_S * session.rate))
     settles, lifts = (int(seconds * session.rate) for seconds in (SETTLES_S, LIFTS_S))
     power, place = [np.zeros((0, 3))], [np.zeros(0, int)]
-    for number, (_, first, end) in enumerate(joined(session.capture, session.runs)):
+    runs = session.runs
+    if not session.labelled and session.turned_over:
+        runs = joined(session.capture, runs)
+    for number, (_, first, end) in enumerate(runs):
         settled = first + settles
         x = np.diff(counts[settled:max(settled, end - lifts)].astype(float), axis=0)
         k = len(x) // m

@@ -24,8 +24,6 @@ OSCILLATOR = 0.02  # and of a sensor's own oscillator [ITG-3205 PS rev 1.0, tabl
 # temperature, which differs by some 9 degC between a warming and a cooling session.
 WANDERS = 0.15
 APART = 3.0  # nats by which sessions may differ and still have one clock, GAP stage 4
-STANDS = 0.1  # of the gaps of a recorder that loses samples, at most, in which it stood still
-LATE = 0.02  # periods, at least: how exactly a stamp tells the time of a sample, 0.2 ms at 100 Hz
 
 
 def clocks(sessions):
@@ -79,9 +77,8 @@ def drops(clocks):
     samples, which gaps without a name need not be."""
     clocks = [timing for timing in clocks if timing is not None and timing.rows >= FEWEST]
     lost = sum(timing.losses - timing.losses_known for timing in clocks)
-    score = sum(gap_nats(np.array(timing.loss_periods),
-                         max(timing.jitter_ms * timing.rate_hz / 1e3, LATE))
-                for timing in clocks)
+    score = sum(clock.loss_nats(np.array(timing.loss_periods),
+                                timing.jitter_ms * timing.rate_hz / 1e3) for timing in clocks)
     if not lost or not present(score):
         return []
     expected = sum(timing.expected for timing in clocks)
@@ -93,16 +90,6 @@ def drops(clocks):
                         lost, expected, max(timing.longest_loss_ms for timing in clocks)),
                     {"chance": (max(0.0, chance - half), chance + half)},
                     share=explained(late, late - np.rint(late)), number=len(late))]
-
-
-def gap_nats(late, sigma):
-    """Log likelihood ratio of gaps, late (n,) periods, if they are lost samples, a whole number
-    each, known to sigma; against a recorder that stands still, as often and as long, at any
-    phase: a loop that does something else now and then."""
-    off = late - np.maximum(np.rint(late), 1.0)
-    nearest = math.erf(0.5 / (sigma * math.sqrt(2.0)))  # to which whole number it is
-    lost = np.exp(-0.5 * (off / sigma) ** 2) / (sigma * math.sqrt(2.0 * math.pi) * nearest)
-    return float(np.log(STANDS + (1.0 - STANDS) * lost).sum())
 
 
 def remarks(sessions, clocks):

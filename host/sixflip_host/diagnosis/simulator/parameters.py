@@ -36,7 +36,8 @@ class Parameter:
     """name; sensor accel, gyro or device; axis "x", "xy" (row, column) or ""; unit; real and
     simulated: values with intervals (low, high) at 90 %, None where a log cannot say; difference
     real less simulated with its interval; differs; set_to: the simulator's value to set; how: what
-    to do in words, of a number that simulators have no field for."""
+    to do in words, of a number that simulators have no field for; least: standard deviation of
+    what it differs from itself by."""
 
     name: str
     sensor: str
@@ -51,6 +52,7 @@ class Parameter:
     differs: bool
     set_to: float
     how: str = ""
+    least: float = 0.0
 
 
 def compared(name, sensor, axis, unit, real, real_sigma, sim, sim_sigma, difference=None,
@@ -66,7 +68,8 @@ def compared(name, sensor, axis, unit, real, real_sigma, sim, sim_sigma, differe
     return Parameter(name, sensor, axis, unit, _number(real), _span(real, real_sigma),
                      _number(sim), _span(sim, sim_sigma), float(difference),
                      _span(difference, sigma), differs,
-                     to_set(sim, sim_sigma, difference) if differs and sim is not None else None)
+                     to_set(sim, sim_sigma, difference) if differs and sim is not None else None,
+                     least=least)
 
 
 def to_set(sim, sim_sigma, difference):
@@ -184,6 +187,9 @@ def _closing(pair, kind, enough):
 
 def _alone(parameter, difference, sigma):
     """The Parameter with the difference that it has where others are equal."""
+    sigma = float(np.hypot(sigma, parameter.least))
+    if abs(difference) <= DIFFERS * parameter.least:
+        return parameter
     value, span = parameter.simulated, parameter.simulated_interval
     own = np.inf if span is None else (span[1] - span[0]) / 2.0 / odds.Z_90
     return replace(parameter, difference=float(difference),
