@@ -26,8 +26,8 @@ COUNTED = 1 << 16       # rows at a time
 def first_guess(t_us, known):
     """(period in µs, rows that a burst has at most)."""
     even, step = float(t_us[-1] - t_us[0]) / (len(t_us) - 1), resolution(t_us)
-    beyond = (t_us - t_us[0]) - np.arange(len(t_us)) * even
-    if PART * even < step < COARSE * even and np.ptp(beyond) < 2.0 * step:
+    if PART * even < step < COARSE * even and np.ptp(
+            (t_us - t_us[0]) - np.arange(len(t_us)) * even) < 2.0 * step:
         return even, 1  # stamps cut off to about a period: the usual interval is their step
     gaps = np.diff(t_us[:COUNTED + 1]).astype(float)
     gaps = np.delete(gaps, known[known < len(gaps)])

@@ -9,7 +9,7 @@ import sixflip_host
 from sixflip_host import cli
 from sixflip_host.capture import capture_file
 from sixflip_host.diagnosis.diagnose import diagnose
-from sixflip_host.diagnosis.simulator import comparison
+from sixflip_host.diagnosis.simulator import comparison, parameters
 
 G = 9.80665
 
@@ -299,6 +299,14 @@ def test_a_bias_differs_by_more_than_it_flickers(tmp_path, capsys, mg, differs):
     bias = answer["simulator"]["parameters"]["accel"]["bias"]["y"]
     assert bias["differs"] == differs and bias["difference"] == pytest.approx(mg, abs=0.1)
     assert answer["verdict"] == ("explained" if differs else "no gap")
+
+
+def test_biases_that_differ_together_differ_by_more_than_they_flicker():
+    """None does by itself; of those that close the gap one has to be more than itself again."""
+    bias = parameters.compared("bias", "gyro", "z", "°/s", 0.1, 0.02, 0.1, 0.02, least=0.003)
+    less, more = (parameters.alone(bias, difference, 1e-4) for difference in (0.01, 0.02))
+    assert less == bias and not less.differs
+    assert more.differs and more.set_to == pytest.approx(0.12)
 
 
 @pytest.mark.parametrize("late_s, verdict", [(0.045, "explained"), (0.0, "no gap")])

@@ -77,9 +77,11 @@ def test_what_a_label_leaves_out_is_no_rest():
 
 def test_a_vehicle_that_shakes_on_a_straight_way_is_not_at_rest_there():
     generator, t = np.random.default_rng(5), np.arange(30000) * 0.01
-    driving = (t % 14.0 > 6.0)[:, None]
+    part = t % 24.0  # it rests, drives, rests and turns
+    driving = ((part > 6.0) & (part < 12.0))[:, None]
     accel = [0.0, 0.0, 16384.0] + generator.standard_normal((30000, 3)) * (40.0 + 1300.0 * driving)
     gyro = generator.standard_normal((30000, 3)) * (3.0 + 130.0 * driving)
+    gyro[part > 20.0, 2] += 30.0 * 65.5
     session = blocks.session_of("drive", capture_file.Capture(
         {"sensor": "mpu6050", "rate_hz": 100.0, "accel_lsb_per_g": 16384.0,
          "gyro_lsb_per_dps": 65.5}, 10_000 * np.arange(30000),

@@ -36,8 +36,8 @@ class Parameter:
     """name; sensor accel, gyro or device; axis "x", "xy" (row, column) or ""; unit; real and
     simulated: values with intervals (low, high) at 90 %, None where a log cannot say; difference
     real less simulated with its interval; differs; set_to: the simulator's value to set; how: what
-    to do in words, of a number that simulators have no field for; least: standard deviation of
-    what it differs from itself by."""
+    to do in words, of a number that simulators have no field for; least: as of
+    compared()."""
 
     name: str
     sensor: str
@@ -58,8 +58,9 @@ class Parameter:
 def compared(name, sensor, axis, unit, real, real_sigma, sim, sim_sigma, difference=None,
              sigma=None, least=0.0, apart=None):
     """Parameter from values and standard errors; difference: where it is known better than by
-    the two values; least: what no log of whole counts can tell from 0; apart: standard errors
-    between the two, where that is not the difference over its own."""
+    the two values; least: what no log of whole counts can tell from 0, or what such a number
+    differs from itself by; apart: standard errors between the two, where that is not the
+    difference over its own."""
     if difference is None:
         difference = real - sim
         sigma = float(np.hypot(real_sigma, sim_sigma))
@@ -140,7 +141,7 @@ def together(numbers, fits, gaps):
                 p.differs for p in numbers if p.sensor == kind):
             continue
         found = _closing(sensor_fit.pair, kind, enough)
-        numbers = [_alone(p, *found[p.name, p.axis]) if p.sensor == kind and (
+        numbers = [alone(p, *found[p.name, p.axis]) if p.sensor == kind and (
             p.name, p.axis) in found else p for p in numbers]
     return numbers
 
@@ -185,7 +186,7 @@ def _closing(pair, kind, enough):
     return found
 
 
-def _alone(parameter, difference, sigma):
+def alone(parameter, difference, sigma):
     """The Parameter with the difference that it has where others are equal."""
     sigma = float(np.hypot(sigma, parameter.least))
     if abs(difference) <= DIFFERS * parameter.least:

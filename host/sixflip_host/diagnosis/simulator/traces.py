@@ -32,8 +32,9 @@ class Trace:
     """One log. t (n,) s from its first row; force (n, 3) m/s2; rate (n, 3) rad/s or None;
     celsius (n,) or None; rate_hz by count over time; rests ((first, end), ...) in samples;
     faces: the axis of each rest that a label says is up, (3,) or None; quantum: m/s2 and rad/s
-    of one count; flicker: {sensor: mg or deg/s} that such a chip's bias is another by from one
-    minute to the next; railed (n,): a channel stands at the end of what it can say."""
+    of one count; flicker: {sensor: mg or deg/s}, the level of such a chip (adequacy.usual), by
+    which its bias is another one the next time; railed (n,): a channel stands at the end of what
+    it can say."""
 
     name: str
     t: np.ndarray
