@@ -61,8 +61,19 @@ def whitening(metric):
         values = np.maximum(values, ROUNDING)
         return Whitening((vectors / np.sqrt(values)[:, None]).transpose(0, 2, 1) / size[:, None],
                          (0.5 * np.log(values) + np.log(size)).sum(axis=1))
-    return Whitening(np.linalg.inv(factor),
-                     np.log(np.diagonal(factor, axis1=1, axis2=2)).sum(axis=1))
+    return Whitening(_inverse(factor), np.log(np.diagonal(factor, axis1=1, axis2=2)).sum(axis=1))
+
+
+def _inverse(lower):
+    """(G, k, k) inverses of lower triangular matrices, row by row for all of them at once: many
+    small ones, which a library takes one by one and as if they were full."""
+    inverse = np.zeros_like(lower)
+    scale = 1.0 / np.diagonal(lower, axis1=1, axis2=2)
+    for row in range(lower.shape[1]):
+        inverse[:, row, row] = scale[:, row]
+        inverse[:, row, :row] = -scale[:, row, None] * (
+            lower[:, row, None, :row] @ inverse[:, :row, :row])[:, 0]
+    return inverse
 
 
 class Elimination:

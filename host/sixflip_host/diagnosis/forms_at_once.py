@@ -1,9 +1,9 @@
 """Fits of many forms at once, each with as many columns: a call of a function takes more time than
 a form does. The one data set of a search is looked at with few levels of noise, and beside what a
-set has already; the many that are simulated have their forms alone.
+set has already; the many that are simulated have their forms alone, or beside one stranger.
 
 The same numbers as evidence.fit for each of them; a Fit here has the forms where that has data
-sets, or the data sets of the first form, then those of the next.
+sets, and of several data sets those of the first form, then those of the next.
 """
 import numpy as np
 
@@ -15,22 +15,31 @@ from .evidence import Fit
 HELD = 2 ** 22  # numbers in an array of what is fitted together: 32 MB
 
 
-def fit(unit, statistics, index, prior, level, points, elimination=None, common=None):
-    """Fit of F forms in one unit: index, prior (F, k) of their columns; level (G,) log prior of
-    its grid; points of the grid (P,); elimination: the Elimination of columns that are private,
-    for all forms the same.
+def fit(unit, statistics, index, prior, level, points, elimination=None):
+    """Fit of F forms in one unit, in each of R data sets, of F * R: index, prior (F, k) of their
+    columns; level (G,) log prior of its grid; points of the grid (P,); elimination: the
+    Elimination of columns that are private, for all forms the same.
 
     Columns that all of them begin with, those of the set that the forms are tried beside, are
     factored once, and each form's own across them (a Schur complement: Bjorck, Numerical Methods
-    for Least Squares Problems (1996), section 2.2.3). common: how many those are, if known.
+    for Least Squares Problems (1996), section 2.2.3).
     """
-    forms, number = index.shape[0], _common(index, prior) if common is None else common
-    quadratic, inner, logdet = (values[points] for values in (
-        (statistics[0], statistics[1], unit.logdet) if elimination is None
-        else elimination.at(points)))
-    own = index[:, number:]
+    try:
+        return _fit(unit, statistics, index, prior, level, points, elimination,
+                    _common(index, prior))
+    except np.linalg.LinAlgError:  # by rounding, where priors are wide
+        return _fit(unit, statistics, index, prior, level, points, elimination, 0)
+
+
+def _fit(unit, statistics, index, prior, level, points, elimination, number):
+    """fit() with so many columns that all forms begin with."""
+    quadratic, inner, logdet = (*statistics, unit.logdet) if elimination is None \
+        else elimination.at(points)
+    quadratic, logdet = quadratic[points], logdet[points]
+    own, sets, forms = index[:, number:], quadratic.shape[1], len(index)
     gram = _products(unit, points, own, elimination)
-    left, explained, half = quadratic, inner[:, own, 0], np.zeros(len(points))
+    left, half = quadratic, np.zeros(len(points))
+    explained = inner[points[:, None, None], own]
     schur = gram + evidence.diagonal(prior[:, number:] ** -2.0)
     if number:
         rows = index[0, :number]
@@ -38,31 +47,33 @@ def fit(unit, statistics, index, prior, level, points, elimination=None, common=
         place = place.reshape(own.shape)
         base, beside = (_blocks(unit, points, rows, those, elimination)
                         for those in (rows, columns))
-        try:
-            factor = np.linalg.cholesky(base + np.diag(prior[0, :number] ** -2.0))
-        except np.linalg.LinAlgError:  # by rounding, where priors are wide
-            return fit(unit, statistics, index, prior, level, points, elimination, 0)
-        white = np.linalg.solve(factor, np.concatenate([inner[:, rows], beside], axis=2))
-        left = quadratic - (white[:, :, :1] ** 2).sum(axis=1)
+        factor = np.linalg.cholesky(base + np.diag(prior[0, :number] ** -2.0))
+        white = np.linalg.solve(factor, np.concatenate(
+            [inner[points[:, None], rows], beside], axis=2))
+        left = quadratic - (white[:, :, :sets] ** 2).sum(axis=1)
         half = np.log(np.diagonal(factor, axis1=1, axis2=2)).sum(axis=1)
-        across = white.transpose(0, 2, 1)[:, 1 + place]
+        across = white.transpose(0, 2, 1)[:, sets + place]
         schur = schur - across @ across.transpose(0, 1, 3, 2)
-        explained = explained - (across @ white[:, None, :, :1])[..., 0]
+        explained = explained - across @ white[:, None, :, :sets]
     grams, size = len(points) * forms, own.shape[1]
     left, own_half = evidence.known(
-        schur.reshape(grams, size, size), explained.reshape(grams, size, 1),
+        schur.reshape(grams, size, size), explained.reshape(grams, size, sets),
         np.repeat(left, forms, axis=0))
-    likelihood = (-0.5 * left[:, 0] - own_half).reshape(-1, forms) - half[:, None] \
-        - np.log(prior).sum(axis=1) - (logdet - level[points])[:, None]
-    best, every = likelihood.argmax(axis=0), np.arange(forms)
-    whole = np.empty((forms, index.shape[1], index.shape[1]))
+    likelihood = -0.5 * left.reshape(-1, forms, sets) - (
+        own_half.reshape(-1, forms) + half[:, None] + np.log(prior).sum(axis=1)
+        + (logdet - level[points])[:, None])[..., None]
+    best = likelihood.argmax(axis=0)
+    every, data = (each.ravel() for each in np.indices(best.shape))
+    best = best.ravel()
+    whole = np.empty((len(best), index.shape[1], index.shape[1]))
     whole[:, number:, number:] = gram[best, every]
     if number:
         whole[:, :number, :number] = base[best]
-        whole[:, number:, :number] = beside.transpose(0, 2, 1)[best[:, None], place]
+        whole[:, number:, :number] = beside.transpose(0, 2, 1)[best[:, None], place[every]]
         whole[:, :number, number:] = whole[:, number:, :number].transpose(0, 2, 1)
-    return Fit(points[best], quadratic[best, 0], inner[best[:, None], index, 0], whole,
-               logdet[best], level[points][best], likelihood[best, every])
+    return Fit(points[best], quadratic[best, data],
+               inner[points[best][:, None], index[every], data[:, None]], whole,
+               logdet[best], level[points][best], likelihood[best, every, data])
 
 
 def scores(units, statistics, columns, levels, points, what="", apart=False, bounded=None):
@@ -71,7 +82,7 @@ def scores(units, statistics, columns, levels, points, what="", apart=False, bou
     progress; apart, bounded: as of evidence.score."""
     scored = np.empty((len(columns), len(statistics[0][0][0])))
     for places, index, prior in _parts(columns, scored.shape[1] * max(map(len, points)), what):
-        fits = [_fit_each(unit, sums, index, prior, level, own)
+        fits = [fit(unit, sums, index, prior, level, own)
                 for unit, sums, level, own in zip(units, statistics, levels, points)]
         of_each = Columns(*(np.repeat(own, scored.shape[1], axis=0) for own in (index, prior)))
         scored[places] = evidence.score(fits, of_each, apart, bounded).reshape(len(places), -1)
@@ -82,8 +93,8 @@ def evidences(unit, statistics, columns, level, points):
     """(F, R) evidence of one unit with each of these Columns (a list), integrated out."""
     found = np.empty((len(columns), statistics[0].shape[1]))
     for places, index, prior in _parts(columns, found.shape[1] * len(points)):
-        fit = _fit_each(unit, statistics, index, prior, level, points)
-        found[places] = fit.evidence.reshape(len(places), -1)
+        evidence_of_each = fit(unit, statistics, index, prior, level, points).evidence
+        found[places] = evidence_of_each.reshape(len(places), -1)
     return found
 
 
@@ -98,25 +109,6 @@ def _parts(columns, each, what=""):
         index, prior = (np.stack([getattr(columns[place], name) for place in places])
                         for name in ("index", "prior"))
         yield places, index, prior
-
-
-def _fit_each(unit, statistics, index, prior, level, points):
-    """Fit of F forms in each of R data sets, of F * R. index, prior, level, points: as of fit."""
-    quadratic, inner = statistics[0][points], statistics[1][points[:, None, None], index]
-    gram = _products(unit, points, index, None)
-    grams, size = len(points) * len(index), index.shape[1]
-    left, half = evidence.known(
-        (gram + evidence.diagonal(prior ** -2.0)).reshape(grams, size, size),
-        inner.reshape(grams, size, quadratic.shape[1]), np.repeat(quadratic, len(index), axis=0))
-    likelihood = -0.5 * left.reshape(len(points), *inner.shape[1::2]) - (
-        half.reshape(-1, len(index)) + np.log(prior).sum(axis=1)
-        + (unit.logdet - level)[points, None])[..., None]
-    best = likelihood.argmax(axis=0)
-    forms, sets = np.indices(best.shape)
-    best, forms, sets = best.ravel(), forms.ravel(), sets.ravel()
-    return Fit(points[best], quadratic[best, sets], inner[best, forms, :, sets],
-               gram[best, forms], unit.logdet[points][best], level[points][best],
-               likelihood[best, forms, sets])
 
 
 def _common(index, prior):

@@ -59,9 +59,10 @@ def simulated(units, forms, levels, points):
     data = _strange(units, nameless, points, generator)
     every = [u.statistics(z, u.coarse) for u, z in zip(units, data)]
     prior = [levels.prior(u, ()) for u in units]
-    near = [likely(u, sums, level, u.coarse) for u, sums, level in zip(units, every, prior)]
 
     def scores(columns, statistics=every):
+        near = [likely(u, sums, level, u.coarse)
+                for u, sums, level in zip(units, statistics, prior)]
         return forms_at_once.scores(units, statistics, columns, prior, near)
     nothing = scores([NONE])[0]
     gains = scores([f.shared for f in nameless]) - nothing

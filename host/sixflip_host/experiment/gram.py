@@ -52,7 +52,12 @@ def gathered(values, index, points=None):
 
 class Whitened(Products):
     """Products of K whitened columns of r contrasts each, of which whoever inherits from this
-    makes those that are asked for."""
+    makes those that are asked for. Those of a hypothesis' own columns with one another are kept: a
+    search asks for them again beside every set."""
+
+    def __init__(self, values):
+        super().__init__(values)
+        self._own = {}
 
     def blocks(self, points, rows, columns):
         if not len(rows) or not len(columns):
@@ -67,6 +72,17 @@ class Whitened(Products):
                          for point, white in zip(points, own)])
 
     def each(self, points, index):
+        size = index.shape[1]
+        kept = self._own.setdefault(size, _Kept(len(self.grid), size))
+        places = kept.places(index)
+        new = ~kept.done[points[:, None], places]
+        if new.any():
+            own, asked = np.flatnonzero(new.any(axis=0)), points[new.any(axis=1)]
+            kept.values[asked[:, None], places[own]] = self._each(asked, index[own])
+            kept.done[asked[:, None], places[own]] = True
+        return kept.values[points[:, None], places]
+
+    def _each(self, points, index):
         if not index.size:
             return np.zeros((len(points), *index.shape, index.shape[1]))
         own, place = np.unique(index, return_inverse=True)
@@ -86,6 +102,25 @@ class Whitened(Products):
     def _every(self, kept):
         """(r, K) of what is kept for (r, l) columns."""
         return kept
+
+
+class _Kept:
+    """(G, N, k, k) products of N sets of k columns each, and at which points they are done."""
+
+    def __init__(self, points, size):
+        self.values, self.done = np.empty((points, 0, size, size)), np.zeros((points, 0), bool)
+        self._places = {}
+
+    def places(self, index):
+        """(F,) which of the N the sets of columns index (F, k) are; a place for those that are
+        new."""
+        found = [self._places.setdefault(row.tobytes(), len(self._places)) for row in index]
+        more = len(self._places) - self.done.shape[1]
+        if more:
+            self.values, self.done = (
+                np.concatenate([kept, np.zeros((len(kept), more, *kept.shape[2:]), kept.dtype)],
+                               axis=1) for kept in (self.values, self.done))
+        return np.array(found, int)
 
 
 def dense_products(groups, grid, space, common, columns):

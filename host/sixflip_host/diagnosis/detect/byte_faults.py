@@ -212,11 +212,21 @@ def column_fault(counts):
         if back is not _low_or and course_likelihood.coarse(x) < least:
             continue
         lost = _low_lost(y) if back is _low_or else None
-        nats = course_likelihood.log_likelihoods(x, seen, lost)
-        if best is None or nats.sum() > best[3].sum():
-            best = kind, words, back, nats, moved, _told(x, y)[seen[2:]]
+        likelihood = course_likelihood.log_likelihoods(x, seen, lost).sum()
+        if best is None or likelihood > best[3]:
+            best = kind, words, back, likelihood, moved, _gains(x, y, seen, lost)
     if best is None:
         return None
-    gain = np.where(best[5], best[3] - course_likelihood.log_likelihoods(y, seen), 0.0)
-    score = course_likelihood.score(gain, best[4]) - math.log(len(RULES))
+    score = course_likelihood.score(best[5], best[4]) - math.log(len(RULES))
     return (*best[:3], score) if present(score) else None
+
+
+def _gains(x, y, seen, lost):
+    """Nats of each of the samples seen that it tells for a rule which takes y to x: none where it
+    goes on alike in both, and of the others by the foresight that suits them best in each."""
+    told = _told(x, y)
+    asked = seen & np.append([False, False], told)
+    gains = np.zeros(len(told))
+    gains[asked[2:]] = course_likelihood.log_likelihoods(x, asked, lost) \
+        - course_likelihood.log_likelihoods(y, asked)
+    return gains[seen[2:]]

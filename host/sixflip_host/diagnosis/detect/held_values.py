@@ -19,7 +19,7 @@ from .stuck_axes import FEWEST, LEAST_NOISE, by_chance, lengths, unforeseen
 
 STRETCH = 256  # rows
 NEIGHBOURS = 25  # rows, half a second and less, in which a sensor rests or moves
-AT_REST = 8  # rows that repeat on end: no log is read so many times faster than its sensor
+AT_REST = 8  # times as long as a value usually stays: there its noise is less than a count
 FEWEST_HELD = 3  # times that so many do: once is what a log begins or ends with
 HELD = 0.05  # share of rows that are held: fewer are single rows, not a rate
 # Standard deviation of the spacing of held rows, of its mean: of rows that are lost at random it
@@ -32,7 +32,6 @@ MOVES = 8.0  # times the noise, from a row to the next: six deviations of a diff
 ON_END, FARTHEST, NEAR, LONGEST = 3, 300, 2, 100_000
 ROW = np.array([1, 1 << 17, 1 << 34])  # of three numbers of 16 bits, which makes one of them
 NOT_READ = "not read"  # kind of the Damage of samples that are missing though rows are not
-TIMES = {2: "twice", 3: "three times", 4: "four times"}
 
 
 def findings(sessions):
@@ -57,8 +56,8 @@ def findings(sessions):
                                   {"rows": round(held)}))
             continue
         times = 1.0 / (1.0 - min(share, 0.999))
-        whole = TIMES.get(round(times)) if abs(times - round(times)) < 0.1 else None
-        said = "each value %s" % whole if whole else "each value %.2f times on the mean" % times
+        said = "each value %d times" % round(times) if abs(times - round(times)) < 0.1 \
+            else "each value %.2f times on the mean" % times
         damages.append(Damage(
             "repeats", sensor, (), "timing", "the %s gives %s: it is read faster than it measures,"
             " or rows were filled in" % (words, said), nats, {"times": round(times, 3)}))
@@ -153,8 +152,7 @@ def _frozen(counts):
     the axis that has most leaves to chance, as if all others followed it. What has no noise at
     rest keeps its values there. Rows that are not held pay nothing: few runs may be by chance, and
     that they are as many as repeat is for whoever asks."""
-    frozen = counts[1:].any(axis=1) & (
-        lengths((counts[1:] == counts[:-1]).all(axis=1)) >= AT_REST)
+    frozen = counts[1:].any(axis=1) & _resting(counts)
     if (np.diff(np.append(0, frozen)) > 0).sum() < FEWEST_HELD:
         return 0.0, 0
     noise = max(unforeseen(column / step, still=True) for column, step in zip(
@@ -163,6 +161,14 @@ def _frozen(counts):
         return 0.0, 0
     held = int(frozen.sum())
     return -held * math.log(by_chance(noise)) - math.log(len(counts)), held
+
+
+def _resting(counts):
+    """(n - 1,) rows of counts (n, axes) that repeat on end for longer than any log is read faster
+    than its sensor, which holds each value about as long."""
+    same = (counts[1:] == counts[:-1]).all(axis=1)
+    stays = np.diff(np.flatnonzero(np.concatenate([[True], ~same, [True]])))
+    return lengths(same) >= AT_REST * np.median(stays)
 
 
 def _without(capture, rows):
@@ -192,7 +198,7 @@ def repeats(counts):
     same = counts[1:] == counts[:-1]
     # All of them at 0 is what a dead band reads at rest, and what never changes for long is at
     # rest with less noise than a count: neither says that it was not read.
-    same = same[counts[1:].any(axis=1) & (lengths(same.all(axis=1)) < AT_REST)]
+    same = same[counts[1:].any(axis=1) & ~_resting(counts)]
     number = len(same) // STRETCH
     if not number:
         return 0.0, 0.0, len(same)

@@ -24,6 +24,7 @@ SHORT_BINS = 1.5  # bins of a short stretch within which the line lies: Hann's l
 # periods in it, and up to FASTEST_HZ there are more bins than the floor's median is wide.
 SLOW_S = 40.0
 SLOWEST, FASTEST_HZ = 8.0, 1.0  # periods in the rest, and what short stretches see
+SLOWEST_HZ = 0.05  # GAP: what comes and goes more slowly goes with time, and is no vibration
 SLOW_RATE = 4.0  # Hz of the means that slow lines are looked for in: four times FASTEST_HZ
 SLOW_CHANCE = 1e-6  # of a peak: the floor below it is a guess, noise that is slow has no flat one
 SLOW_SHARE = 0.5  # of the standard deviation, as an amplitude: an eighth of the variance
@@ -152,7 +153,8 @@ def _sine_nearest(line, x, rate):
 
 
 def slow(sessions, sensor, axis):
-    """The strongest Line between SLOWEST periods of a long rest and FASTEST_HZ, or None."""
+    """The strongest Line of at least SLOWEST periods in a long rest and SLOWEST_HZ, up to
+    FASTEST_HZ, or None."""
     lines = [_slow(s, sensor, axis) for s in sessions if s.runs]
     lines = [line for line in lines if line]
     if not lines:
@@ -172,7 +174,8 @@ def _slow(session, sensor, axis):
     x = x - np.polynomial.polynomial.polyval(u, np.polynomial.polynomial.polyfit(u, x, 3))
     window = np.hanning(n)
     power = np.abs(np.fft.rfft(x * window)) ** 2 / (window ** 2).sum()
-    first, end = int(SLOWEST), min(int(FASTEST_HZ * n / rate), len(power) - 2)
+    first = math.ceil(max(SLOWEST, SLOWEST_HZ * n / rate))
+    end = min(int(FASTEST_HZ * n / rate), len(power) - 2)
     if end - first < SLOW_WIDTH:
         return None
     band = power[first:end]

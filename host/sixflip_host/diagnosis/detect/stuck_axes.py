@@ -112,6 +112,5 @@ def lengths(rows):
     """(n,) the length of the unbroken run of rows (n,) bool that each is in; 0 outside of them."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], rows, [False]])))
     lengths = np.zeros(len(rows), dtype=int)
-    for first, end in zip(edges[::2], edges[1::2]):
-        lengths[first:end] = end - first
+    lengths[rows] = np.repeat(edges[1::2] - edges[::2], edges[1::2] - edges[::2])
     return lengths
