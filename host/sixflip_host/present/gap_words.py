@@ -55,7 +55,9 @@ def _of_effects(answer):
     first = " ".join(_clause(c) for c in causes[:2])
     closed = _closed(answer)
     if verdict == "cannot tell":
-        return first + " This capture cannot tell which. " + closed
+        unknown = "which" if any(len(c["class"]) > 1 for c in causes) \
+            else "how much of the gap that is"
+        return "%s This capture cannot tell %s. %s" % (first, unknown, closed)
     if verdict == "partly explained":
         return first + " " + closed + " Something else is left that the library does not explain."
     return (first + " " + closed).strip()

@@ -103,6 +103,30 @@ def test_a_wiped_high_byte_is_the_one_of_the_level_around(noise, level, right):
     assert (found[2](read) == column).mean() > right
 
 
+def trembling(seed):
+    """(n,) counts of a gyro's axis that lies still at 75 counts and is now and then turned by a
+    hand which trembles at some hertz, 100 rows a second."""
+    generator, parts = np.random.default_rng(seed), []
+    for _ in range(8):
+        t = np.arange(375) / 100.0
+        hand = generator.uniform(-2.0, 2.0) + sum(
+            size * np.sin(2.0 * np.pi * hz * t + phase) for size, hz, phase in generator.uniform(
+                [0.2, 5.0, 0.0], [1.0, 7.0, 6.0], (2, 3)))
+        parts += [np.zeros(2500), 2500.0 * np.sin(np.pi * t / t[-1]) * hand]
+    course = np.concatenate(parts)
+    return np.rint(75.0 + course + generator.normal(0.0, 1.5, len(course))).astype(np.int64)
+
+
+@pytest.mark.parametrize("seed", [2, 6, 8])
+def test_a_hand_that_trembles_puts_no_byte_together_wrongly(seed):
+    """What a rule changes is judged by what foretells that best: counts taken back on the way
+    were held against a foresight that suits the rests, and one such column in three had a fault."""
+    column = trembling(seed)
+    assert byte_faults.column_fault(column) is None
+    read = RULES["low byte signed and added"][2](column)
+    assert byte_faults.column_fault(read)[0] == "sign_extension"
+
+
 def test_rests_whose_moves_were_cut_out_have_no_fault():
     """From one face to the opposite one in a sample is a step of 2 g: 2^15 counts."""
     faces = np.repeat([1, -1, 0, 0, 1, -1, 1, 0, -1], 100)

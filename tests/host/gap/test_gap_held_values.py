@@ -50,6 +50,21 @@ def test_a_coarse_sensor_that_moves_in_bursts_holds_nothing():
     assert twice["times"] == pytest.approx(2.0, rel=0.05)
 
 
+@pytest.mark.parametrize("times", [3, 10, 25])
+def test_readings_that_are_given_many_times_are_held(times):
+    """A firmware that averages so many and sends the mean for each of them: ten times was longer
+    than any log is read faster than its sensor, and taken for rest."""
+    generator = np.random.default_rng(5)
+    turned = 900.0 * np.sin(np.arange(9000) / 300.0) * (np.arange(9000) % 3000 > 2000)
+    counts = np.rint(turned[:, None] + generator.normal(0.0, 5.0, (9000, 3))).astype(np.int16)
+    held = np.repeat(counts[::times], times, axis=0)[:9000]
+    capture = SimpleNamespace(accel=held, gyro=counts)
+    found, = held_values.findings([SimpleNamespace(capture=capture)])
+    assert (found.kind, found.sensor) == ("repeats", "accel")
+    assert found.value["times"] == pytest.approx(times, rel=0.02)
+    assert "gives each value %d times" % times in found.words
+
+
 def frozen(times, noise=4.0):
     """Capture of a sensor that turns now and then, whose six registers keep their values for half
     a second so many times; and the rows in which they do."""

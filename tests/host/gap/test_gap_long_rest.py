@@ -6,6 +6,7 @@ import pytest
 
 from sixflip_host.capture.capture_file import Capture
 from sixflip_host.diagnosis import coefficient_fits, rest_gap, rest_units, scored_sets
+from sixflip_host.diagnosis.detect import spectral_lines
 from sixflip_host.diagnosis.diagnosis import Settings
 from sixflip_host.experiment import blocks, long_rest
 
@@ -50,6 +51,17 @@ def test_a_bent_drift_with_temperature_keeps_its_name():
     assert [c.effect for c in found.causes] == ["thermal_bias"]
     assert found.causes[0].letters == ["y"]
     assert found.by_axis["y"].after < 1.5 * found.by_axis["y"].floor
+
+
+def test_what_comes_and_goes_more_slowly_than_anything_shakes_goes_with_time():
+    """A motor that draws for a while every half minute was a vibration of 0.03 Hz."""
+    slow, fast = (rest((0.0, 4.0 * (np.sin(2.0 * np.pi * T / period) > 0.3), 0.0))
+                  for period in (31.0, 12.5))
+    assert [found.effect for found in spectral_lines.findings([fast])] == ["vibration"]
+    assert spectral_lines.findings([slow]) == []
+    gap = accel(slow)
+    assert max(gap.nameless) > 0.9 and gap.causes == ()
+    assert {(place.axis, place.domain) for place in gap.places} == {("y", "time")}
 
 
 def test_a_decay_is_a_warm_up_and_no_temperature():
