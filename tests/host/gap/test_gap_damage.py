@@ -120,7 +120,7 @@ def trembling(seed):
 @pytest.mark.parametrize("seed", [2, 6, 8])
 def test_a_hand_that_trembles_puts_no_byte_together_wrongly(seed):
     """What a rule changes is judged by what foretells that best: counts taken back on the way
-    were held against a foresight that suits the rests, and one such column in three had a fault."""
+    were held against a foresight that suits the rests; one such column in three had a fault."""
     column = trembling(seed)
     assert byte_faults.column_fault(column) is None
     read = RULES["low byte signed and added"][2](column)
