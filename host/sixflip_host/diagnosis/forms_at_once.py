@@ -12,6 +12,7 @@ from . import evidence
 from .elimination import Columns
 from .evidence import Fit
 
+MOST_TAKEN = 1.0 - 1e-9  # of a column by those before it: of the rest seven digits are right
 HELD = 2 ** 22  # numbers in an array of what is fitted together: 32 MB
 
 
@@ -24,11 +25,13 @@ def fit(unit, statistics, index, prior, level, points, elimination=None):
     factored once, and each form's own across them (a Schur complement: Bjorck, Numerical Methods
     for Least Squares Problems (1996), section 2.2.3).
     """
-    try:
-        return _fit(unit, statistics, index, prior, level, points, elimination,
-                    _common(index, prior))
-    except np.linalg.LinAlgError:  # by rounding, where priors are wide
-        return _fit(unit, statistics, index, prior, level, points, elimination, 0)
+    number = _common(index, prior)
+    if number:
+        try:
+            return _fit(unit, statistics, index, prior, level, points, elimination, number)
+        except np.linalg.LinAlgError:
+            pass  # nothing is left of a column but rounding
+    return _fit(unit, statistics, index, prior, level, points, elimination, 0)
 
 
 def _fit(unit, statistics, index, prior, level, points, elimination, number):
@@ -53,7 +56,10 @@ def _fit(unit, statistics, index, prior, level, points, elimination, number):
         left = quadratic - (white[:, :, :sets] ** 2).sum(axis=1)
         half = np.log(np.diagonal(factor, axis1=1, axis2=2)).sum(axis=1)
         across = white.transpose(0, 2, 1)[:, sets + place]
-        schur = schur - across @ across.transpose(0, 1, 3, 2)
+        taken = across @ across.transpose(0, 1, 3, 2)
+        if (_diagonal(taken) > MOST_TAKEN * _diagonal(schur)).any():
+            raise np.linalg.LinAlgError("a column that is one of those before")
+        schur = schur - taken
         explained = explained - across @ white[:, None, :, :sets]
     grams, size = len(points) * forms, own.shape[1]
     left, own_half = evidence.known(
@@ -115,6 +121,10 @@ def _common(index, prior):
     """How many columns all forms begin with, and have more than."""
     same = (index == index[0]).all(axis=0) & (prior == prior[0]).all(axis=0)
     return int(np.logical_and.accumulate(same).sum()) if not same.all() else 0
+
+
+def _diagonal(matrices):
+    return np.diagonal(matrices, axis1=-2, axis2=-1)
 
 
 def _products(unit, points, index, elimination):

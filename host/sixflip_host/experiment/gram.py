@@ -105,7 +105,8 @@ class Whitened(Products):
 
 
 class _Kept:
-    """(G, N, k, k) products of N sets of k columns each, and at which points they are done."""
+    """(G, N, k, k) products of sets of k columns each, with room for N of them, and at which
+    points they are done."""
 
     def __init__(self, points, size):
         self.values, self.done = np.empty((points, 0, size, size)), np.zeros((points, 0), bool)
@@ -115,8 +116,9 @@ class _Kept:
         """(F,) which of the N the sets of columns index (F, k) are; a place for those that are
         new."""
         found = [self._places.setdefault(row.tobytes(), len(self._places)) for row in index]
-        more = len(self._places) - self.done.shape[1]
-        if more:
+        room = self.done.shape[1]
+        if len(self._places) > room:
+            more = max(len(self._places), 2 * room) - room
             self.values, self.done = (
                 np.concatenate([kept, np.zeros((len(kept), more, *kept.shape[2:]), kept.dtype)],
                                axis=1) for kept in (self.values, self.done))

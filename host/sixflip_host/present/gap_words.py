@@ -55,9 +55,9 @@ def _of_effects(answer):
     first = " ".join(_clause(c) for c in causes[:2])
     closed = _closed(answer)
     if verdict == "cannot tell":
-        unknown = "which" if any(len(c["class"]) > 1 for c in causes) \
-            else "how much of the gap that is"
-        return "%s This capture cannot tell %s. %s" % (first, unknown, closed)
+        unknown = "which" if any(len(c["class"]) > 1 for c in causes[:2]) else \
+            "whether that is so" if closed else "how much of the gap goes with that"
+        return ("%s This capture cannot tell %s. %s" % (first, unknown, closed)).strip()
     if verdict == "partly explained":
         return first + " " + closed + " Something else is left that the library does not explain."
     return (first + " " + closed).strip()

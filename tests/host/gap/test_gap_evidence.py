@@ -1,5 +1,7 @@
 """The score of sets of hypotheses on small made-up problems whose answer is known."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy import integrate, linalg, stats
@@ -21,7 +23,7 @@ from sixflip_host.diagnosis import (
 )
 from sixflip_host.diagnosis.elimination import NONE, Columns
 from sixflip_host.diagnosis.evidence import Levels
-from sixflip_host.experiment import covariance, linear_model
+from sixflip_host.experiment import covariance, gram, linear_model
 from sixflip_host.experiment.nominal_rows import Rows
 from sixflip_host.experiment.terms import Design
 
@@ -109,6 +111,26 @@ def test_many_forms_at_once_score_as_one_after_the_other(monkeypatch, held, draw
     found = forms_at_once.evidences(units[0], data[0], columns, level[0], every[0])
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-7)
     assert np.ptp(found, axis=1).min() > 1.0
+
+
+@pytest.mark.parametrize("prior", [1.0, 1e3])
+def test_a_column_that_is_one_of_those_before_says_no_more(prior):
+    """Beside a twin that all forms begin with nothing but rounding was left of it. Both together
+    are one column whose coefficient is wider by the root of two."""
+    generator = np.random.default_rng(4)
+    s, z = 1e4 * generator.standard_normal((60, 4)), generator.standard_normal((60, 3))
+    s[:, 1] = s[:, 0]
+    sums = (z ** 2).sum(axis=0)[None], (s.T @ z)[None]
+    made = SimpleNamespace(gram=gram.Products((s.T @ s)[None]), logdet=np.zeros(1))
+
+    def evidences(columns, width):
+        index = np.array(columns)
+        return forms_at_once.fit(made, sums, index, np.full(index.shape, width), np.zeros(1),
+                                 np.arange(1)).evidence.reshape(len(columns), 3)
+    both = evidences([[0, 1], [0, 2], [0, 3]], prior)
+    np.testing.assert_allclose(both[0], evidences([[0]], np.sqrt(2.0) * prior)[0], atol=0.3)
+    np.testing.assert_allclose(both[1:], np.concatenate([
+        evidences([[0, 2]], prior), evidences([[0, 3]], prior)]), atol=1e-6)
 
 
 def test_a_size_beyond_what_parts_have_is_unlikely_however_well_it_fits():

@@ -53,10 +53,13 @@ def test_a_bent_drift_with_temperature_keeps_its_name():
     assert found.by_axis["y"].after < 1.5 * found.by_axis["y"].floor
 
 
-def test_what_comes_and_goes_more_slowly_than_anything_shakes_goes_with_time():
-    """A motor that draws for a while every half minute was a vibration of 0.03 Hz."""
-    slow, fast = (rest((0.0, 4.0 * (np.sin(2.0 * np.pi * T / period) > 0.3), 0.0))
-                  for period in (31.0, 12.5))
+@pytest.mark.parametrize("share", [0.15, 0.2, 0.3, 0.4])
+def test_what_comes_and_goes_more_slowly_than_anything_shakes_goes_with_time(share):
+    """A motor that draws for a part of every half minute was a vibration of 0.03 Hz; or of 0.06,
+    where it draws for a short one."""
+    def drawing(period):
+        return rest((0.0, 4.0 * (T % period < share * period), 0.0))
+    fast, slow = drawing(12.5), drawing(31.0)
     assert [found.effect for found in spectral_lines.findings([fast])] == ["vibration"]
     assert spectral_lines.findings([slow]) == []
     gap = accel(slow)

@@ -6,6 +6,7 @@ import pytest
 from scipy import signal
 
 from sixflip_host.capture import registers
+from sixflip_host.capture.capture_file import Capture
 from sixflip_host.diagnosis import samples_judged, verdict, wandering
 from sixflip_host.diagnosis.detect import (
     dead_band,
@@ -14,6 +15,7 @@ from sixflip_host.diagnosis.detect import (
     shake_detector,
     spectral_lines,
     spikes,
+    strides,
     torn_reads,
     wandering_tone,
 )
@@ -243,8 +245,41 @@ def test_what_goes_on_legs_has_strides_and_no_vibration():
     """A trot's strides, and its knocks at a multiple of them, were a vibration of 25 mg."""
     assert shake_detector.steady([shaken(4.3, moving=False)]) == []
     lines = [SimpleNamespace(hz=hz) for hz in (4.3, 12.9, 18.1)]
-    assert [line.hz for line in spectral_lines.without_strides(lines)] == [18.1]
-    assert spectral_lines.without_strides(lines[1:]) == lines[1:]
+    assert [line.hz for line in strides.without(lines, [])] == [18.1]
+    assert strides.without(lines[1:], []) == lines[1:]
+
+
+@pytest.mark.parametrize("motor", [0.0, 24.2])
+def test_what_is_loudest_at_the_fifth_of_its_strides_walks(motor):
+    """Only lines of 2 Hz and more were looked for, so that strides of 1.9 Hz had no name for their
+    multiples: a walk was a vibration of 10 Hz. What a motor does beside it keeps its own."""
+    walk = shaken(0.0, moving=True)
+    t = np.arange(9000) / 100.0
+    course = sum(size * np.sin(2.0 * np.pi * times * 1.9 * t) for times, size in (
+        (1, 150.0), (2, 200.0), (5, 500.0)))
+    walk.capture.accel[3000:, 1] += np.rint(course)[3000:].astype(np.int16)
+    if motor:
+        walk.capture.accel[3000:, 0] += np.rint(
+            300.0 * np.sin(2.0 * np.pi * motor * t))[3000:].astype(np.int16)
+    found = shake_detector.steady([walk])
+    assert [one.axes for one in found] == ([["x"]] if motor else [])
+
+
+@pytest.mark.parametrize("hz, named", [(0.0, False), (21.0, True)])
+def test_a_hand_that_trembles_is_no_vibration_however_slow_the_rows_are(hz, named):
+    """At 50 rows a second a tremor of 9 Hz is nearly as fast as what changes from row to row."""
+    generator, t = np.random.default_rng(3), np.arange(6000) / 50.0
+    held = np.arange(6000) % 1000 > 250
+    tremor = 500.0 * np.sin(2.0 * np.pi * 9.0 * t + np.cumsum(generator.normal(0.0, 0.05, 6000)))
+    wave = 300.0 * np.sin(2.0 * np.pi * hz * t)
+    accel = held * (tremor + wave) + generator.normal(0.0, 20.0, 6000)
+    capture = Capture({"sensor": "mpu6050", "rate_hz": 50.0, "accel_lsb_per_g": 16384},
+                      20_000 * np.arange(6000),
+                      np.rint(accel[:, None] + [0.0, 0.0, 16384.0]).astype(np.int16))
+    found = shake_detector.shaken([blocks.session_of("held", capture)])
+    assert len(found) == named
+    if named:
+        assert found[0].value["x"] == pytest.approx(300.0 / 16.384, rel=0.1)
 
 
 def test_a_motion_without_a_rest_has_no_line_that_is_not_steady():

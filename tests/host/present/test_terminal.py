@@ -51,6 +51,21 @@ def test_the_gap_at_80_columns_has_every_cell_whole(monkeypatch):
     assert all(part in " ".join(" ".join(shown).split()) for part in ROW)
 
 
+def test_what_a_capture_cannot_tell_is_said_of_what_it_names():
+    """One name of a dead band was said with "cannot tell which"."""
+    named = {"sensor": "gyro", "axes": ["x"], "effect": "dead_band", "class": ["dead_band"],
+             "plausible": True, "share": 0.9, "unit": "counts", "value": {"x": 40.0}}
+    either = {**named, "effect": None, "class": ["cubic", "hysteresis"]}
+    closed = {"gyro": {"unit": "deg/s", "explained_share": 0.6}}
+
+    def said(*causes, gap=None):
+        return gap_words.sentence({**GAP, "verdict": "cannot tell", "causes": list(causes),
+                                   "gap": gap or {}})
+    assert said(named).endswith("This capture cannot tell how much of the gap goes with that.")
+    assert "cannot tell which" in said(named, either)
+    assert "cannot tell whether that is so. Adding" in said(named, gap=closed)
+
+
 def test_a_pipe_is_a_hundred_wide_and_cuts_nothing(monkeypatch, capsys):
     monkeypatch.delenv("COLUMNS", raising=False)
     gap_words.show(GAP)

@@ -26,6 +26,7 @@ FEWEST_CHANGED = 8  # steps that a rule must change: a recording whose moves wer
 HOPELESS = 0.05
 LONGEST = 200_000  # samples that are looked at: half an hour at 100 Hz
 WIDTHS = range(8, 16)  # bits of a reading whose sign may be lost: a byte, to all but one of 16
+BESIDE = 500  # samples around one that a rule changes, of which what is usual there is told
 AROUND = (3, 9, 33)  # samples around one whose level tells its lost high byte: fast, slow, still
 
 
@@ -222,11 +223,12 @@ def column_fault(counts):
 
 
 def _gains(x, y, seen, lost):
-    """Nats of each of the samples seen that it tells for a rule which takes y to x: none where it
-    goes on alike in both, and of the others by the foresight that suits them best in each."""
-    told = _told(x, y)
-    asked = seen & np.append([False, False], told)
-    gains = np.zeros(len(told))
-    gains[asked[2:]] = course_likelihood.log_likelihoods(x, asked, lost) \
-        - course_likelihood.log_likelihoods(y, asked)
-    return gains[seen[2:]]
+    """Nats of each of the samples seen for a rule which takes y to x: none of those that go on
+    alike in both, and of the others by the foresight that suits them and those around them best
+    in each. What suits the moves says nothing of the rests, nor the other way round."""
+    told = np.append([False, False], _told(x, y))
+    asked = seen & ndimage.maximum_filter1d(told, BESIDE)
+    gains = np.zeros(len(x))
+    gains[np.flatnonzero(asked[2:]) + 2] = course_likelihood.log_likelihoods(
+        x, asked, lost) - course_likelihood.log_likelihoods(y, asked)
+    return np.where(told, gains, 0.0)[2:][seen[2:]]

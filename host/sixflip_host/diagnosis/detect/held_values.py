@@ -19,7 +19,7 @@ from .stuck_axes import FEWEST, LEAST_NOISE, by_chance, lengths, unforeseen
 
 STRETCH = 256  # rows
 NEIGHBOURS = 25  # rows, half a second and less, in which a sensor rests or moves
-AT_REST = 8  # times as long as a value usually stays: there its noise is less than a count
+AT_REST = 8  # rows that repeat on end, of a value each: no noise moves it, or it was not read
 FEWEST_HELD = 3  # times that so many do: once is what a log begins or ends with
 HELD = 0.05  # share of rows that are held: fewer are single rows, not a rate
 # Standard deviation of the spacing of held rows, of its mean: of rows that are lost at random it
@@ -31,6 +31,8 @@ MOVES = 8.0  # times the noise, from a row to the next: six deviations of a diff
 # session that are looked at.
 ON_END, FARTHEST, NEAR, LONGEST = 3, 300, 2, 100_000
 ROW = np.array([1, 1 << 17, 1 << 34])  # of three numbers of 16 bits, which makes one of them
+TIMES = {2: "twice", 3: "three times", 4: "four times"}
+REGULAR = 0.1  # share of the usual stay that half of all stays differ from it by, of what is held
 NOT_READ = "not read"  # kind of the Damage of samples that are missing though rows are not
 
 
@@ -56,8 +58,8 @@ def findings(sessions):
                                   {"rows": round(held)}))
             continue
         times = 1.0 / (1.0 - min(share, 0.999))
-        said = "each value %d times" % round(times) if abs(times - round(times)) < 0.1 \
-            else "each value %.2f times on the mean" % times
+        whole = TIMES.get(round(times)) if abs(times - round(times)) < 0.1 else None
+        said = "each value %s" % whole if whole else "each value %.3g times on the mean" % times
         damages.append(Damage(
             "repeats", sensor, (), "timing", "the %s gives %s: it is read faster than it measures,"
             " or rows were filled in" % (words, said), nats, {"times": round(times, 3)}))
@@ -164,11 +166,14 @@ def _frozen(counts):
 
 
 def _resting(counts):
-    """(n - 1,) rows of counts (n, axes) that repeat on end for longer than any log is read faster
-    than its sensor, which holds each value about as long."""
+    """(n - 1,) rows of counts (n, axes) that repeat on end for longer than a log is read faster
+    than its sensor: AT_REST rows, or so many times as all values stay where they all stay alike
+    and many of them are in a stretch, as no sensor that moves on does."""
     same = (counts[1:] == counts[:-1]).all(axis=1)
     stays = np.diff(np.flatnonzero(np.concatenate([[True], ~same, [True]])))
-    return lengths(same) >= AT_REST * np.median(stays)
+    usual = np.median(stays)
+    held = usual <= STRETCH / AT_REST and np.median(np.abs(stays - usual)) <= REGULAR * usual
+    return lengths(same) >= AT_REST * (usual if held else 1.0)
 
 
 def _without(capture, rows):

@@ -25,6 +25,7 @@ SHORT_BINS = 1.5  # bins of a short stretch within which the line lies: Hann's l
 SLOW_S = 40.0
 SLOWEST, FASTEST_HZ = 8.0, 1.0  # periods in the rest, and what short stretches see
 SLOWEST_HZ = 0.05  # GAP: what comes and goes more slowly goes with time, and is no vibration
+MULTIPLES = 3  # of that, which may be larger than it
 SLOW_RATE = 4.0  # Hz of the means that slow lines are looked for in: four times FASTEST_HZ
 SLOW_CHANCE = 1e-6  # of a peak: the floor below it is a guess, noise that is slow has no flat one
 SLOW_SHARE = 0.5  # of the standard deviation, as an amplitude: an eighth of the variance
@@ -153,8 +154,8 @@ def _sine_nearest(line, x, rate):
 
 
 def slow(sessions, sensor, axis):
-    """The strongest Line of at least SLOWEST periods in a long rest and SLOWEST_HZ, up to
-    FASTEST_HZ, or None."""
+    """The strongest Line between SLOWEST periods of a long rest and FASTEST_HZ, or None: also
+    where that is slower than SLOWEST_HZ, or a multiple of what is."""
     lines = [_slow(s, sensor, axis) for s in sessions if s.runs]
     lines = [line for line in lines if line]
     if not lines:
@@ -174,8 +175,7 @@ def _slow(session, sensor, axis):
     x = x - np.polynomial.polynomial.polyval(u, np.polynomial.polynomial.polyfit(u, x, 3))
     window = np.hanning(n)
     power = np.abs(np.fft.rfft(x * window)) ** 2 / (window ** 2).sum()
-    first = math.ceil(max(SLOWEST, SLOWEST_HZ * n / rate))
-    end = min(int(FASTEST_HZ * n / rate), len(power) - 2)
+    first, end = int(SLOWEST), min(int(FASTEST_HZ * n / rate), len(power) - 2)
     if end - first < SLOW_WIDTH:
         return None
     band = power[first:end]
@@ -193,7 +193,8 @@ def _slow(session, sensor, axis):
     nats = float(ratio[k]) / doubt - math.log(3.0 * len(band))
     lobe, around = (band[max(0, k - w):k + w + 1].sum() for w in (2, 8))
     amplitude = math.sqrt(4.0 * lobe / n)
-    if nats < -math.log(SLOW_CHANCE) or lobe < LOBE * around or amplitude < SLOW_SHARE * x.std():
+    if nats < -math.log(SLOW_CHANCE) or lobe < LOBE * around or amplitude < SLOW_SHARE * x.std() \
+            or _of_something_slower(ratio / doubt, first, k, SLOWEST_HZ * n / rate):
         return None
     line = Line(axis, peak(power, first + k) * rate / n, rate / n, min(nats, 999.0), amplitude,
                 1.0 / math.sqrt(2.0 * ratio[k]), power=float(lobe),
@@ -202,6 +203,14 @@ def _slow(session, sensor, axis):
         amplitude ** 2 * float(n) ** 3))
     low, high = line.hz - odds.Z_90 * sigma, line.hz + odds.Z_90 * sigma
     return replace(line, low=low, high=high, files=((session.name, line.hz, low, high),))
+
+
+def _of_something_slower(ratio, first, k, least):
+    """Whether the k-th of the bins from `first` on, or that of which it is a multiple, is a line
+    below bin `least`; ratio (m,): their power over the floor."""
+    parts = [round((first + k) / times) - first for times in range(1, MULTIPLES + 1)]
+    return any(0 <= part < least - first and ratio[max(part - 1, 0):part + 2].max()
+               > -math.log(SLOW_CHANCE) for part in parts)
 
 
 def _in_both_halves(x, cycles, amplitude):

@@ -5,10 +5,15 @@ import copy
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import signal
 
-from . import line_frequency, saturation, spectral_lines
+from . import line_frequency, saturation, spectral_lines, strides
 from .detection import Finding
 
+# A filter that lets a thousandth of the power through of what hands, legs and wheels do
+# (spectral_lines.MOTION_HZ), and half or more of what is a tenth faster. Where the rate shows
+# little beyond that, nothing is looked for.
+STOPPED_DB, ORDER, FASTER = 30.0, 8, 4.0 / 3.0
 WINDOW_S = 1.0  # a shaken second stands beside quiet ones; at 100 Hz it knows its level to 7 %
 QUIET = 0.02  # share of the windows that counts as quiet
 SHAKEN = 3.0  # times the quiet level, root mean square, in at least half of the windows
@@ -38,7 +43,7 @@ def steady(sessions):
         return []
     lines = [line_frequency.refined(line, moves, "accel") for line in (
         spectral_lines.strongest(moves, "accel", axis) for axis in range(3)) if line]
-    lines = spectral_lines.without_strides([line for line in lines if line.steady])
+    lines = strides.without([line for line in lines if line.steady], moves)
     return [spectral_lines.told(lines, "accel", moves[0].rate)] if lines else []
 
 
@@ -55,16 +60,19 @@ def _longest_move(session):
 
 
 def shaken(sessions):
-    """list of Finding: from what changes from one sample to the next (third differences: no motion
-    of a hand or a vehicle is so fast), where nothing is cut off: a rail is quiet by itself."""
+    """list of Finding: from what is faster than any motion of a hand, legs or a vehicle, where
+    nothing is cut off: a rail is quiet by itself."""
     levels = []
-    if any(session.capture.accel is None for session in sessions):
+    if any(session.capture.accel is None or session.rate < 2.0 * FASTER * spectral_lines.MOTION_HZ
+           for session in sessions):
         return []
     for session in sessions:
         m = max(8, int(WINDOW_S * session.rate))
         x = session.capture.accel.astype(float) * (1000.0 / session.capture.meta[
             "accel_lsb_per_g"])
-        fast = np.diff(x, n=3, axis=0) / np.sqrt(20.0)  # the gain of white noise
+        fast = signal.sosfiltfilt(signal.cheby2(
+            ORDER, STOPPED_DB, spectral_lines.MOTION_HZ, "highpass", fs=session.rate,
+            output="sos"), x, axis=0)
         k = len(fast) // m
         whole = ~saturation.railed(session)[:k * m].reshape(k, m).any(axis=1)
         if whole.sum() < FEWEST_WINDOWS:

@@ -12,7 +12,7 @@ from scipy import ndimage, special
 
 from ...capture.registers import steps, unit_of_count
 from .. import odds, verdict
-from . import line_across_rests, line_frequency, ringing
+from . import line_across_rests, line_frequency, ringing, strides
 from .detection import Finding
 from .line_frequency import Line
 
@@ -23,9 +23,6 @@ LOWEST_HZ, LOWEST_MOVING_HZ = 0.7, 2.0  # a hand or a vehicle moves more slowly 
 # What has no steady frequency is a motion's own up to here, where nothing rests: a hand trembles
 # at 4 to 12 Hz [Elble & Koller, Tremor (1990)], steps and swings are slower.
 MOTION_HZ = 15.0
-# What runs on legs goes steadily at the frequency of its strides, and its steps and knocks at
-# multiples of it.
-STRIDES_HZ, MULTIPLE = 5.0, 0.005
 LEAST_CYCLES = 1.4  # of a line in a stretch: what settles in a rest has less
 BRIEF_S = 1.5  # a shorter stretch is all of its rest, and begins where the box was just put down
 CHANCE = 0.001  # six axes together: well below what registers and spectra share, see odds.py
@@ -82,7 +79,7 @@ def line_of_axis(sessions, sensor, axis):
     resting = any(s.runs for s in sessions)
     lines = [line for line in lines if line and (
         resting or line.steady or line.hz > MOTION_HZ)]
-    lines = lines if resting else without_strides(lines)
+    lines = lines if resting else strides.without(lines, sessions)
     if lines:
         return max(lines, key=lambda line: line.nats)
     slow = line_frequency.slow(sessions, sensor, axis)
@@ -93,15 +90,6 @@ def line_of_axis(sessions, sensor, axis):
         if stretches else LOWEST_MOVING_HZ
     across = [line_across_rests.strongest(s, sensor, axis, fastest) for s in sessions if s.runs]
     return max((line for line in across if line), key=lambda line: line.nats, default=None)
-
-
-def without_strides(lines):
-    """Those of the lines of what moves that are no strides, nor multiples of one."""
-    def multiple(hz, stride):
-        times = hz / stride
-        return round(times) >= 1 and abs(times - round(times)) < MULTIPLE * times
-    strides = [line.hz for line in lines if line.hz < STRIDES_HZ]
-    return [line for line in lines if not any(multiple(line.hz, hz) for hz in strides)]
 
 
 def told(lines, sensor, rate):
