@@ -214,12 +214,13 @@ def column_fault(counts):
             continue
         lost = _low_lost(y) if back is _low_or else None
         likelihood = course_likelihood.log_likelihoods(x, seen, lost).sum()
-        if best is None or likelihood > best[3]:
-            best = kind, words, back, likelihood, moved, _gains(x, y, seen, lost)
+        if best is None or likelihood > best[0]:
+            best = likelihood, (kind, words, back), moved, (x, y, seen, lost)
     if best is None:
         return None
-    score = course_likelihood.score(best[5], best[4]) - math.log(len(RULES))
-    return (*best[:3], score) if present(score) else None
+    _, fault, moved, columns = best
+    score = course_likelihood.score(_gains(*columns), moved) - math.log(len(RULES))
+    return (*fault, score) if present(score) else None
 
 
 def _gains(x, y, seen, lost):
