@@ -11,8 +11,8 @@ from . import line_frequency, saturation, spectral_lines, strides
 from .detection import Finding
 
 # A filter that lets a thousandth of the power through of what hands, legs and wheels do
-# (spectral_lines.MOTION_HZ), and half or more of what is a tenth faster. Where the rate shows
-# little beyond that, nothing is looked for.
+# (spectral_lines.MOTION_HZ), and half or more of what is a tenth faster. A rate must show what is
+# a third faster than that.
 STOPPED_DB, ORDER, FASTER = 30.0, 8, 4.0 / 3.0
 WINDOW_S = 1.0  # a shaken second stands beside quiet ones; at 100 Hz it knows its level to 7 %
 QUIET = 0.02  # share of the windows that counts as quiet
@@ -63,16 +63,13 @@ def shaken(sessions):
     """list of Finding: from what is faster than any motion of a hand, legs or a vehicle, where
     nothing is cut off: a rail is quiet by itself."""
     levels = []
-    if any(session.capture.accel is None or session.rate < 2.0 * FASTER * spectral_lines.MOTION_HZ
-           for session in sessions):
+    if any(session.capture.accel is None for session in sessions):
         return []
     for session in sessions:
         m = max(8, int(WINDOW_S * session.rate))
         x = session.capture.accel.astype(float) * (1000.0 / session.capture.meta[
             "accel_lsb_per_g"])
-        fast = signal.sosfiltfilt(signal.cheby2(
-            ORDER, STOPPED_DB, spectral_lines.MOTION_HZ, "highpass", fs=session.rate,
-            output="sos"), x, axis=0)
+        fast = _fast(x, session.rate)
         k = len(fast) // m
         whole = ~saturation.railed(session)[:k * m].reshape(k, m).any(axis=1)
         if whole.sum() < FEWEST_WINDOWS:
@@ -100,6 +97,15 @@ def shaken(sessions):
     return [Finding("vibration", "accel", sorted(value), value, "mg", score, "frequency",
                     "it is shaken most of the time", interval,
                     share=float(np.sum(above, axis=0)[0] / np.sum(above, axis=0)[1]))]
+
+
+def _fast(x, rate):
+    """(k, 3) what of readings (n, 3) no motion is; of so few rows a second that vibration folds
+    into them, what changes from one to the next (third differences, as wide as white noise)."""
+    if rate < 2.0 * FASTER * spectral_lines.MOTION_HZ:
+        return np.diff(x, n=3, axis=0) / np.sqrt(20.0)
+    return signal.sosfiltfilt(signal.cheby2(
+        ORDER, STOPPED_DB, spectral_lines.MOTION_HZ, "highpass", fs=rate, output="sos"), x, axis=0)
 
 
 def _amplitude(level, quiet):
