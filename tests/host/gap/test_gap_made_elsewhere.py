@@ -6,16 +6,13 @@ import pytest
 from scipy import signal
 
 from sixflip_host.capture import registers
-from sixflip_host.capture.capture_file import Capture
 from sixflip_host.diagnosis import samples_judged, verdict, wandering
 from sixflip_host.diagnosis.detect import (
     dead_band,
     held_values,
     sample_neighbours,
-    shake_detector,
     spectral_lines,
     spikes,
-    strides,
     torn_reads,
     wandering_tone,
 )
@@ -218,77 +215,6 @@ def test_a_gyro_that_is_gated_on_all_axes_has_a_dead_band(known, said):
     assert not gated[still].any()
     found = samples_judged._dead_band("gyro", [gated], [still], known)
     assert [axis for f in found for axis in f.axes] == said
-
-
-def shaken(hz, moving):
-    """Session of a log that rests for a while, and is then shaken at hz or moved by a hand."""
-    generator = np.random.default_rng(9)
-    still = at_rest(flicker(5, 9000)).capture
-    t = np.arange(9000) / 100.0
-    wave = 400.0 * np.sin(2.0 * np.pi * hz * t) if hz else 0.0
-    sway = 900.0 * np.sin(np.cumsum(0.3 + 0.5 * generator.standard_normal(9000)))
-    still.accel = still.accel.copy()
-    still.accel[3000:, 2] += np.rint((wave + (sway if moving else 0.0)) * np.ones(9000))[
-        3000:].astype(np.int16)
-    still.pose = np.where(t < 30.0, 1, 0).astype(np.int16)
-    return blocks.session_of("s", still)
-
-
-def test_what_runs_beside_a_log_shows_outside_of_its_rests():
-    """A pump that ran half of the time cut the rests, and was "no gap"."""
-    found, = shake_detector.steady([shaken(24.2, moving=False)])
-    assert found.axes == ["z"] and found.hz["z"] == pytest.approx(24.2, abs=0.01)
-    assert shake_detector.steady([shaken(0.0, moving=True)]) == []
-
-
-def test_what_goes_on_legs_has_strides_and_no_vibration():
-    """A trot's strides, and its knocks at a multiple of them, were a vibration of 25 mg."""
-    assert shake_detector.steady([shaken(4.3, moving=False)]) == []
-    lines = [SimpleNamespace(hz=hz) for hz in (4.3, 12.9, 18.1)]
-    assert [line.hz for line in strides.without(lines, [])] == [18.1]
-    assert strides.without(lines[1:], []) == lines[1:]
-
-
-@pytest.mark.parametrize("motor", [0.0, 24.2])
-def test_what_is_loudest_at_the_fifth_of_its_strides_walks(motor):
-    """Only lines of 2 Hz and more were looked for, so that strides of 1.9 Hz had no name for their
-    multiples: a walk was a vibration of 10 Hz. What a motor does beside it keeps its own."""
-    walk = shaken(0.0, moving=True)
-    t = np.arange(9000) / 100.0
-    course = sum(size * np.sin(2.0 * np.pi * times * 1.9 * t) for times, size in (
-        (1, 150.0), (2, 200.0), (5, 500.0)))
-    walk.capture.accel[3000:, 1] += np.rint(course)[3000:].astype(np.int16)
-    if motor:
-        walk.capture.accel[3000:, 0] += np.rint(
-            300.0 * np.sin(2.0 * np.pi * motor * t))[3000:].astype(np.int16)
-    found = shake_detector.steady([walk])
-    assert [one.axes for one in found] == ([["x"]] if motor else [])
-
-
-@pytest.mark.parametrize("hz, named", [(0.0, False), (21.0, True)])
-def test_a_hand_that_trembles_is_no_vibration_however_slow_the_rows_are(hz, named):
-    """At 50 rows a second a tremor of 9 Hz is nearly as fast as what changes from row to row."""
-    generator, t = np.random.default_rng(3), np.arange(6000) / 50.0
-    held = np.arange(6000) % 1000 > 250
-    tremor = 500.0 * np.sin(2.0 * np.pi * 9.0 * t + np.cumsum(generator.normal(0.0, 0.05, 6000)))
-    wave = 300.0 * np.sin(2.0 * np.pi * hz * t)
-    accel = held * (tremor + wave) + generator.normal(0.0, 20.0, 6000)
-    capture = Capture({"sensor": "mpu6050", "rate_hz": 50.0, "accel_lsb_per_g": 16384},
-                      20_000 * np.arange(6000),
-                      np.rint(accel[:, None] + [0.0, 0.0, 16384.0]).astype(np.int16))
-    found = shake_detector.shaken([blocks.session_of("held", capture)])
-    assert len(found) == named
-    if named:
-        assert found[0].value["x"] == pytest.approx(300.0 / 16.384, rel=0.1)
-
-
-def test_a_motion_without_a_rest_has_no_line_that_is_not_steady():
-    moving = shaken(0.0, moving=True)
-    moving.capture.pose[:] = 0
-    moving.capture.accel = np.roll(moving.capture.accel, -3000, axis=0)[:6000]
-    whole = shake_detector.Moving("s", moving.capture, 100.0)
-    assert spectral_lines.strongest([whole], "accel", 2).hz < spectral_lines.MOTION_HZ
-    assert spectral_lines.line_of_axis([whole], "accel", 2) is None
 
 
 def test_what_rests_near_0_and_swings_through_it_has_no_band():

@@ -166,9 +166,9 @@ def _frozen(counts):
 
 
 def _resting(counts):
-    """(n - 1,) rows of counts (n, axes) that repeat on end for longer than a log is read faster
-    than its sensor: AT_REST rows, or so many times as all values stay where they all stay alike
-    and many of them are in a stretch, as no sensor that moves on does."""
+    """(n - 1,) rows of counts (n, axes) that repeat on end for too long to be of a log that is
+    read faster than its sensor: AT_REST rows; or, where values stay equally long and a stretch
+    has many of them, which is how held ones look, so many times as long as they stay."""
     same = (counts[1:] == counts[:-1]).all(axis=1)
     stays = np.diff(np.flatnonzero(np.concatenate([[True], ~same, [True]])))
     usual = np.median(stays)

@@ -154,8 +154,8 @@ def _sine_nearest(line, x, rate):
 
 
 def slow(sessions, sensor, axis):
-    """The strongest Line between SLOWEST periods of a long rest and FASTEST_HZ, or None: also
-    where that is slower than SLOWEST_HZ, or a multiple of what is."""
+    """The strongest Line between SLOWEST periods of a long rest and FASTEST_HZ. None where nothing
+    stands out, or what does is slower than SLOWEST_HZ or a multiple of what is."""
     lines = [_slow(s, sensor, axis) for s in sessions if s.runs]
     lines = [line for line in lines if line]
     if not lines:

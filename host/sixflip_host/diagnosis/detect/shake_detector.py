@@ -11,9 +11,9 @@ from . import line_frequency, saturation, spectral_lines, strides
 from .detection import Finding
 
 # A filter that lets a thousandth of the power through of what hands, legs and wheels do
-# (spectral_lines.MOTION_HZ), and half or more of what is a tenth faster. A rate must show what is
-# a third faster than that.
-STOPPED_DB, ORDER, FASTER = 30.0, 8, 4.0 / 3.0
+# (spectral_lines.MOTION_HZ), and half or more of what is a tenth faster. Where a log has too few
+# rows to show that it lets the last quarter of what it shows through: vibration folds into it.
+STOPPED_DB, ORDER, HIGHEST = 30.0, 8, 0.75
 WINDOW_S = 1.0  # a shaken second stands beside quiet ones; at 100 Hz it knows its level to 7 %
 QUIET = 0.02  # share of the windows that counts as quiet
 SHAKEN = 3.0  # times the quiet level, root mean square, in at least half of the windows
@@ -69,8 +69,10 @@ def shaken(sessions):
         m = max(8, int(WINDOW_S * session.rate))
         x = session.capture.accel.astype(float) * (1000.0 / session.capture.meta[
             "accel_lsb_per_g"])
+        k = len(x) // m
+        if k < FEWEST_WINDOWS:
+            return []
         fast = _fast(x, session.rate)
-        k = len(fast) // m
         whole = ~saturation.railed(session)[:k * m].reshape(k, m).any(axis=1)
         if whole.sum() < FEWEST_WINDOWS:
             return []
@@ -100,12 +102,10 @@ def shaken(sessions):
 
 
 def _fast(x, rate):
-    """(k, 3) what of readings (n, 3) no motion is; of so few rows a second that vibration folds
-    into them, what changes from one to the next (third differences, as wide as white noise)."""
-    if rate < 2.0 * FASTER * spectral_lines.MOTION_HZ:
-        return np.diff(x, n=3, axis=0) / np.sqrt(20.0)
+    """(n, 3) what of readings (n, 3) is faster than motion."""
+    edge = min(spectral_lines.MOTION_HZ, HIGHEST * rate / 2.0)
     return signal.sosfiltfilt(signal.cheby2(
-        ORDER, STOPPED_DB, spectral_lines.MOTION_HZ, "highpass", fs=rate, output="sos"), x, axis=0)
+        ORDER, STOPPED_DB, edge, "highpass", fs=rate, output="sos"), x, axis=0)
 
 
 def _amplitude(level, quiet):

@@ -3,8 +3,8 @@ lines that no sensor is shaken at.
 """
 import numpy as np
 
-# What runs on legs goes at a frequency of its strides in between, and is shaken at multiples of it
-# (a horse's or a man's foot falls are seen to the twelfth), each of them this share off.
+# What runs on legs has strides of a frequency in between, and is shaken at multiples of it: so
+# many are tried, each off by this share at most.
 SLOWEST_HZ, STRIDES_HZ, MULTIPLES, MULTIPLE = 0.7, 5.0, 12, 0.005
 # A stride stands that far out of the power around it, from two thirds of its frequency to one and
 # a half times, but for its own lobe: noise of one axis does so once in a million bins.
