@@ -64,7 +64,7 @@ def test_readings_that_are_given_many_times_are_held(times):
     assert found.value["times"] == pytest.approx(times, rel=0.02)
 
 
-@pytest.mark.parametrize("stands", [(20, 60), (200, 201), (150, 151)])
+@pytest.mark.parametrize("stands", [(10, 40), (20, 60), (200, 201), (150, 151)])
 def test_what_stands_still_between_its_steps_is_read_as_fast_as_it_measures(stands):
     """Eight bits without noise, in a robot that goes from place to place within a row."""
     generator = np.random.default_rng(7)
