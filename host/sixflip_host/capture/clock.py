@@ -21,6 +21,10 @@ import numpy as np
 from . import capture_binary, stamp_envelope
 from .board_extras import EXTRAS
 
+# Of a period, by which a gap lifts the envelope at least where most intervals are whole periods:
+# less than a row has to be late (stamp_envelope.PART), for the last stamp before a gap is a late
+# one as often as an early one.
+LIFTED = 0.6
 PAUSE_S, PAUSE_ROWS = 1.0, 10   # a gap that is longer than both is a pause whatever its phase
 FEWEST_PHASES = 4
 STANDS = 0.1  # of the gaps of a recorder that loses samples, at most, in which it stood still
@@ -74,16 +78,18 @@ def measure(t_us, recorder=(), lost=()):
     if n < FEWEST or t_us[-1] <= t_us[0]:
         return None
     known = np.union1d(np.asarray(recorder, int), np.asarray(lost, int))
-    period, width = stamp_envelope.first_guess(t_us, known)
+    period, width, each = stamp_envelope.first_guess(t_us, known)
     resolution = stamp_envelope.resolution(t_us)
     if width == 1 and resolution <= stamp_envelope.COARSE * period:
         t_us = stamp_envelope.renewed(t_us, period)
-    least = None
+    least = LIFTED * period if each and resolution < LIFTED * period else None
+    anew = False
     for _ in range(ROUNDS):
         gaps = stamp_envelope.Gaps(t_us, period, width, resolution, known, least)
+        was = anew
         pause, missing, anew = _sorted_out(gaps, period, np.asarray(recorder, int),
-                                           np.asarray(lost, int), least is not None)
-        if anew and least is None:  # it may have stood still for less than a sample, too
+                                           np.asarray(lost, int), anew)
+        if anew and not was:  # it may have stood still for less than a sample, too
             least = stamp_envelope.NOISE * gaps.jitter
             continue
         running = float(t_us[-1] - t_us[0]) - gaps.lift[pause].sum()

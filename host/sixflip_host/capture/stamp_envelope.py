@@ -24,11 +24,12 @@ COUNTED = 1 << 16       # rows at a time
 
 
 def first_guess(t_us, known):
-    """(period in µs, rows that a burst has at most)."""
+    """(period in µs, rows that a burst has at most, whether most intervals tell by themselves how
+    many periods they last)."""
     even, step = float(t_us[-1] - t_us[0]) / (len(t_us) - 1), resolution(t_us)
     if PART * even < step < COARSE * even and np.ptp(
             (t_us - t_us[0]) - np.arange(len(t_us)) * even) < 2.0 * step:
-        return even, 1  # stamps cut off to about a period: the usual interval is their step
+        return even, 1, False  # stamps cut off to about a period: the usual interval is their step
     gaps = np.diff(t_us[:COUNTED + 1]).astype(float)
     gaps = np.delete(gaps, known[known < len(gaps)])
     if not len(gaps):
@@ -38,7 +39,12 @@ def first_guess(t_us, known):
         whole = np.rint(gaps / usual)
         near = (whole >= 1) & (np.abs(gaps / usual - whole) < ON_GRID)
         if near.mean() >= MOSTLY and whole.mean() < MOST_WHOLE:
-            return _pace(gaps, whole == 1), 1
+            # Of stamps that scatter the envelope does not show all losses: a period by those that
+            # it does is too long, and hides more.
+            pace = _pace(gaps, whole == 1)
+            whole = np.rint(gaps / pace)
+            near = np.abs(gaps / pace - whole) < ON_GRID
+            return float(gaps[near].sum() / max(whole[near].sum(), 1.0)), 1, True
     times = np.concatenate([[0.0], np.cumsum(gaps)])
     for rows in SPANS:
         if rows * 4 > len(times):
@@ -46,8 +52,8 @@ def first_guess(t_us, known):
         spans = times[rows:] - times[:-rows]
         middle = float(np.median(spans))
         if middle > 0 and 1.4826 * np.median(np.abs(spans - middle)) < EVEN * middle:
-            return middle / rows, rows
-    return float(t_us[-1] - t_us[0]) / (len(t_us) - 1), max(1, len(t_us) // 8)
+            return middle / rows, rows, False
+    return float(t_us[-1] - t_us[0]) / (len(t_us) - 1), max(1, len(t_us) // 8), False
 
 
 def _pace(gaps, usual):
