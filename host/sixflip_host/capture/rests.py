@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from scipy import ndimage
 
 from sixflip.poses.faces import FACES, nearest_face
 from sixflip.poses.noise_floor import WINDOWS, NoiseFloor
@@ -89,9 +90,10 @@ class LongestRest:
 
 # deg/s that a bias moves at most from one rest to the next: 15 degC of an ITG-3205, of which
 # a degree moves it by 0.3. What is further from all rests turns at a steady rate, on a table or in
-# a bend, which is as still as a rest but for that, and takes a while to come to it: what reads
-# otherwise from one moment to the next (the windows around that are not still) has not moved.
-TURNS_DPS, AT_ONCE_S = 5.0, 1.5
+# a bend, which is as still as a rest but for that, and takes a while to come to it. What has
+# jumped is between the two levels for no longer than a low pass of 5 Hz takes, the slowest that
+# these chips have: 0.1 s from a tenth to nine tenths of a step.
+TURNS_DPS, AT_ONCE_S, ACROSS_S, ACROSS, MEDIAN = 5.0, 1.5, 0.15, (0.25, 0.75), 5
 # Standard errors of a window's mean, in which nothing moved; its variance by that of white noise
 # with the same steps from sample to sample, of which a tremor of 12 Hz has four times as much at
 # 100 Hz; counts of a mean, and of a variance, that rounding makes.
@@ -162,7 +164,8 @@ def find(capture, stillness=POSES):
             taken[rest.first:rest.end] = True
         by_hand = _rests(capture, windows, _steadied(capture, windows, stillness),
                          stillness.hand_s, True)
-        rests += [rest for rest in by_hand if not taken[rest.first:rest.end].any()]
+        rests += [rest for rest in by_hand if rest.face not in faces
+                  and not taken[rest.first:rest.end].any()]
     return Found(tuple(_at_one_rate(capture, sorted(rests, key=lambda rest: rest.first))), noise)
 
 
@@ -175,7 +178,7 @@ def _at_one_rate(capture, rests):
                      ) / capture.meta["gyro_lsb_per_dps"]
     near = np.linalg.norm(rates[:, None] - rates, axis=2) <= TURNS_DPS
     for place, (rest, following) in enumerate(zip(rests, rests[1:])):
-        at_once = following.first - rest.end <= AT_ONCE_S * capture.meta["rate_hz"]
+        at_once = _jumps(capture, rest, following, rates[place], rates[place + 1])
         near[place, place + 1] |= at_once
         near[place + 1, place] |= at_once
     while True:  # alike is what a chain of near ones leads to
@@ -185,6 +188,18 @@ def _at_one_rate(capture, rests):
         near = further
     seconds = near @ np.array([rest.end - rest.first for rest in rests])
     return [rest for rest, alike in zip(rests, near[seconds.argmax()]) if alike]
+
+
+def _jumps(capture, rest, following, before, after):
+    """Whether the gyro comes from one level (3,) deg/s to the next without staying between them,
+    as a bias that jumps does and a box that turns does not."""
+    rate = capture.meta["rate_hz"]
+    if following.first - rest.end > AT_ONCE_S * rate:
+        return False
+    between = capture.gyro[rest.end:following.first] / capture.meta["gyro_lsb_per_dps"]
+    step = after - before
+    way = ndimage.median_filter((between - before) @ step / max(float(step @ step), 1e-9), MEDIAN)
+    return np.count_nonzero((way > ACROSS[0]) & (way < ACROSS[1])) <= max(1.0, ACROSS_S * rate)
 
 
 def longest(capture):

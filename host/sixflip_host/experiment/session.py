@@ -21,9 +21,10 @@ MOST_BAD = 0.005
 # Intervals taken together; stamps by which their scatter is known to a tenth; share of an interval
 # that no turn shows: at 180 deg/s fifty of 10 ms are off by an eighth of a degree at most.
 STEPS, FEWEST_STAMPS, EVEN = 16, 1600, 0.01
-# By how much gravity changes along each axis between rests that nobody labelled: a box that is
-# turned over shows 1 g or 2, a robot on a slope of 30 degrees 0.13 g along its own vertical, which
-# tells no scale from a bias, and what its body does at rest not from what its sensors do.
+# By how much gravity changes along two axes or more between rests that nobody labelled, of which
+# two are more than a right angle apart: a box that is turned over shows 1 g or 2. A robot on
+# slopes of 30 degrees does not turn over: it tells no scale from a bias, and what its body does at
+# rest not from what its sensors do.
 TURNED_MG = 500.0
 FAR_OFF_DEG = 25.0  # a label that gravity contradicts: a table does not lean by half of that
 USUAL_C = 25.0  # temperature where no thermometer tells it: of the effects' own reference
@@ -118,10 +119,12 @@ class Session(ReadOnlyArrays):
 
     @property
     def turned_over(self):
-        """Whether gravity is felt along every axis, now more and now less, as a box turned over
-        feels it and a robot does not."""
-        return self.accel is not None and len(self.accel) > 0 and bool(
-            np.ptp(self.accel, axis=0).min() >= TURNED_MG)
+        """Whether gravity is felt along two axes, now more and now less, and to both sides, as a
+        box turned over feels it and a robot does not."""
+        if self.accel is None or not len(self.accel):
+            return False
+        up = self.accel / np.linalg.norm(self.accel, axis=1)[:, None]
+        return bool(np.sort(np.ptp(self.accel, axis=0))[1] >= TURNED_MG and (up @ up.T).min() < 0)
 
     @cached_property
     def at_rest(self):

@@ -130,3 +130,48 @@ def test_what_turns_at_a_steady_rate_is_no_rest():
     jumped = Capture(dict(META), 10000 * np.arange(4500), still.astype(np.int16),
                      np.rint(gyro).astype(np.int16))
     assert sum(rest.end - rest.first for rest in rests.find(jumped).rests) > 4200
+
+
+def test_a_noisy_bias_that_jumps_has_not_moved():
+    rng = np.random.default_rng(3)
+    gyro = rng.normal(0.0, 0.8, (4500, 3))
+    gyro[1800:, 2] += 7.0
+    accel = np.rint(rng.normal([100, -200, 16384], 40, (4500, 3)))
+    jumped = Capture(dict(META), 10000 * np.arange(4500), accel.astype(np.int16),
+                     np.rint(131.0 * gyro).astype(np.int16))
+    assert sum(rest.end - rest.first for rest in rests.find(jumped).rests) > 4200
+
+
+def on_its_way(rates, tilts=()):
+    """Capture of rows at 100 Hz that rest on Z+ and turn at rates (n,) deg/s about z; tilts:
+    (first, end, mg along x) of stretches where a hand, or a vehicle, holds it otherwise."""
+    rng, n = np.random.default_rng(6), len(rates)
+    accel = rng.normal([100, -200, 16384], 40, (n, 3))
+    gyro = rng.normal(0, 12, (n, 3)) + np.outer(131.0 * rates, [0.0, 0.0, 1.0])
+    for first, end, mg in tilts:
+        accel[first:end, 0] += 16.384 * mg
+        accel[first:end] += rng.normal(0, 120, (end - first, 3))
+    return Capture(dict(META), 10000 * np.arange(n), np.rint(accel).astype(np.int16),
+                   np.rint(gyro).astype(np.int16))
+
+
+@pytest.mark.parametrize("seconds, kept", [(0.0, True), (0.1, True), (0.4, False)])
+def test_a_table_that_comes_to_its_rate_within_a_second_turns(seconds, kept):
+    """Between two rests, near both: with its rate taken for a rest's no turn could be told."""
+    ramp = np.linspace(0.0, 1.0, int(100 * seconds) + 2)
+    rates = np.concatenate([np.zeros(800), 60.0 * ramp, np.full(300, 60.0), 60.0 * ramp[::-1],
+                            np.zeros(800)])
+    found = rests.find(on_its_way(rates)).rests
+    assert any(rest.first < len(rates) // 2 < rest.end for rest in found) == kept
+    assert sum(rest.end - rest.first for rest in found) > 1400
+
+
+def test_what_a_vehicle_does_on_its_way_is_no_rest_held_by_hand():
+    """A hand's rests are taken for faces that no other has: a car that brakes steadily was held by
+    hand in its only pose, and all its stops with it."""
+    tilts = [(600, 1000, 190.0), (1600, 2000, -120.0)]
+    found = rests.find(on_its_way(np.zeros(2600), tilts)).rests
+    assert [rest.by_hand for rest in found] == [False] * 3
+    turned = on_its_way(np.zeros(2600), tilts)
+    turned.accel[600:1000] = turned.accel[600:1000, [2, 1, 0]]
+    assert [rest.by_hand for rest in rests.find(turned).rests] == [False, True, False, False]
