@@ -71,6 +71,20 @@ def test_logs_of_different_rates_are_compared_on_one_grid(real, tmp_path, capsys
     assert answer["simulator"]["conventions"] == []
 
 
+def test_what_the_simulator_lacks_of_the_sensor_is_no_convention(tmp_path, capsys):
+    """A gyro with other scales up and down, and a rate that is heard in the accelerometer: the
+    one was a convention without a name, the other a centripetal term that was left out."""
+    t, force, rate = turning(1, seconds=60.0)
+    real = capture(tmp_path / "real.csv", t, force, rate + 0.016 * np.abs(rate))
+    assert diagnosed(capsys, real, capture(tmp_path / "sim.csv", t, force, rate, seed=5))[
+        "simulator"]["conventions"] == []
+    heard = force + rate[:, [2, 0, 1]] * [0.6, -0.4, 0.3]
+    real = capture(tmp_path / "heard.csv", t, heard, rate)
+    found = diagnosed(capsys, real, capture(tmp_path / "sim.csv", t, force, rate, seed=5))[
+        "simulator"]["conventions"]
+    assert [(c["name"], c["sensor"]) for c in found] == [("unknown", "accel")]
+
+
 def test_a_constant_channel_is_named(real, tmp_path, capsys):
     answer = diagnosed(capsys, real, capture(tmp_path / "sim.csv", *turning(1), seed=5,
                                              constant=1))

@@ -23,9 +23,12 @@ TIMES = (0.05, 0.1, 0.2, 0.25, 0.33, 0.5, 2.0, 3.0, 4.0, 5.0, 10.0, 20.0)
 TIMES_SPREAD = 0.1  # relative standard deviation of each
 # What a real part does of itself, at three times the size that datasheets give: MPU-6050 PS rev
 # 3.4, tables 6.1 and 6.2 (35 mg and 20 deg/s over 60 degC, 0.5 % and 0.2 % nonlinearity, 0.1
-# deg/s/g). m/s2 and rad/s for each unit of the column.
-OWN = {"accel": {"celsius": 0.03, "fading": 0.3, "line": 0.15, "pairs": 0.15, "force": 0.0},
-       "gyro": {"celsius": 0.017, "fading": 0.017, "line": 0.017, "pairs": 0.006,
+# deg/s/g). Scales that differ between the two signs: of a gyro 5.9 %, which were seen on parts
+# [GAP.md, "Effects"], of an accelerometer as much as a square. m/s2 and rad/s for each unit of the
+# column.
+OWN = {"accel": {"celsius": 0.03, "fading": 0.3, "line": 0.15, "pairs": 0.15, "signs": 0.15,
+                 "force": 0.0},
+       "gyro": {"celsius": 0.017, "fading": 0.017, "line": 0.017, "pairs": 0.006, "signs": 0.06,
                 "force": 0.006}}
 FADES_S = (30.0, 120.0)  # time constants of what fades: of a minute's log, and of warming up
 DEG = 180.0 / np.pi
@@ -76,8 +79,8 @@ def accelerometer(force, motion, g):
     ]
     tried += [Hypothesis("time_step", force, moved[:, :, None], np.array([k - 1.0]),
                          np.array([TIMES_SPREAD * k]), scaled=True) for k in TIMES]
-    everything = np.concatenate([moved, world, up, transport[:, :, 0], motion.rate_dot,
-                                 pairs(motion.rate)], axis=1)
+    everything = np.concatenate([moved, world, up, transport[:, :, 0], motion.rate,
+                                 motion.rate_dot, pairs(motion.rate)], axis=1)
     return tried + [nameless(force, everything, 2)]
 
 
@@ -110,9 +113,10 @@ def own_effects(kind, t, celsius, force, rate, g):
         columns.append(celsius - celsius.mean())
         sizes.append(size["celsius"])
     f = force / g
-    for column in pairs(f if kind == "accel" else rate).T:
-        columns.append(column - column.mean())
-        sizes.append(size["pairs"])
+    own = f if kind == "accel" else rate
+    for name, bent in (("pairs", pairs(own)), ("signs", np.abs(own))):
+        columns += list((bent - bent.mean(axis=0)).T)
+        sizes += [size[name]] * bent.shape[1]
     if size["force"]:
         columns += list((f - f.mean(axis=0)).T)
         sizes += [size["force"]] * 3
