@@ -33,6 +33,23 @@ def test_a_quiet_sensor_that_rests_and_moves_repeats_rows_by_chance():
     assert present(nats) and rows / every == pytest.approx(0.2, rel=0.2)
 
 
+def test_rests_of_a_few_rows_hold_nothing():
+    """Ten rows a second of an ADXL345, noise of a third of a count: rests of six seconds and moves
+    of three are neighbours, and in the rests all axes repeat."""
+    generator = np.random.default_rng(15)
+    said = []
+    for _ in range(6):
+        levels = np.repeat(generator.uniform(-250.0, 250.0, (25, 3)), 90, axis=0)
+        ramp = np.minimum(np.arange(2250) % 90 / 30.0, 1.0)[:, None]
+        x = np.roll(levels, 90, axis=0) * (1.0 - ramp) + levels * ramp
+        counts = np.rint(x + 0.32 * generator.standard_normal((2250, 3))).astype(np.int16)
+        said.append(held_values.repeats(counts)[0])
+        held = counts[np.maximum.accumulate(np.where(generator.random(2250) < 0.2, 0,
+                                                     np.arange(2250)))]
+        assert present(held_values.repeats(held)[0])
+    assert not any(map(present, said))
+
+
 def test_a_coarse_sensor_that_moves_in_bursts_holds_nothing():
     """Eight bits, noise of an eighth of a count: two rows in five repeat, all axes together."""
     generator = np.random.default_rng(1)

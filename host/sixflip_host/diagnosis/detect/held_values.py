@@ -12,6 +12,7 @@ import copy
 import math
 
 import numpy as np
+from scipy import special
 
 from ...capture.registers import SENSORS, steps
 from .detection import Damage, present
@@ -203,12 +204,24 @@ def repeats(counts):
     same = counts[1:] == counts[:-1]
     # All of them at 0 is what a dead band reads at rest, and what never changes for long is at
     # rest with less noise than a count: neither says that it was not read.
-    same = same[counts[1:].any(axis=1) & ~_resting(counts)]
-    number = len(same) // STRETCH
+    asked = counts[1:].any(axis=1) & ~_resting(counts)
+    number = int(asked.sum()) // STRETCH
     if not number:
         return 0.0, 0.0, len(same)
-    nats, held = _stretches(same[:number * STRETCH].reshape(number, STRETCH, -1))
-    return float(nats.sum()), float(held.sum()), number * STRETCH
+    nats, held = _stretches(same[asked][:number * STRETCH].reshape(number, STRETCH, -1))
+    return min(float(nats.sum()), _in_order(counts, asked)), float(held.sum()), number * STRETCH
+
+
+def _in_order(counts, asked):
+    """Nats of rows being the row before once more oftener than the one before that. Noise has both
+    alike, where a sensor rests for a few rows only as well; held values are none but the first."""
+    rows = [(counts[2:] == counts[k:k - 2]).all(axis=1) for k in (1, 0)]
+    first, second = (int((one & ~other)[asked[1:]].sum())
+                     for one, other in (rows, rows[::-1]))
+    if first <= second:
+        return 0.0
+    return (first + second) * (math.log(2.0) - float(special.entr(
+        np.array([first, second]) / (first + second)).sum()))
 
 
 def _stretches(same):
