@@ -146,7 +146,7 @@ def _likeliest(tried, y):
     tried = [x for x in tried if (x != y).any()]
     if len(tried) < 2:
         return tried[0] if tried else y
-    return max(tried, key=lambda x: course_likelihood.log_likelihoods(x).sum())
+    return max(tried, key=lambda x: course_likelihood.fit(x).log)
 
 
 RULES = [
@@ -213,7 +213,7 @@ def column_fault(counts):
         if back is not _low_or and course_likelihood.coarse(x) < least:
             continue
         lost = _low_lost(y) if back is _low_or else None
-        likelihood = course_likelihood.log_likelihoods(x, seen, lost).sum()
+        likelihood = course_likelihood.fit(x, seen, lost).log
         if best is None or likelihood > best[0]:
             best = likelihood, (kind, words, back), moved, (x, y, seen, lost)
     if best is None:
@@ -225,11 +225,15 @@ def column_fault(counts):
 
 def _gains(x, y, seen, lost):
     """Nats of each of the samples seen for a rule which takes y to x: none of those that go on
-    alike in both, and of the others by the foresight that suits them and those around them best
-    in each. What suits the moves says nothing of the rests, nor the other way round."""
+    alike in both, and of the others by what suits them and those around them best in each. What
+    suits the moves says nothing of the rests, nor the other way round; and what suits x may suit y
+    better, too, where the samples that the rule changes are asked alone."""
     told = np.append([False, False], _told(x, y))
     asked = seen & ndimage.maximum_filter1d(told, BESIDE)
+    counted = told[2:][asked[2:]]
+    after = course_likelihood.fit(x, asked, lost)
+    before = max((course_likelihood.fit(y, asked, as_=as_) for as_ in (None, after)),
+                 key=lambda found: found.each[counted].sum())
     gains = np.zeros(len(x))
-    gains[np.flatnonzero(asked[2:]) + 2] = course_likelihood.log_likelihoods(
-        x, asked, lost) - course_likelihood.log_likelihoods(y, asked)
-    return np.where(told, gains, 0.0)[2:][seen[2:]]
+    gains[np.flatnonzero(asked[2:]) + 2] = np.where(counted, after.each - before.each, 0.0)
+    return gains[2:][seen[2:]]

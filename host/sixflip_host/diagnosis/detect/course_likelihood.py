@@ -5,6 +5,7 @@ the autoregression that fits best; or one level. What remains is Student's t of 
 for a share of leaps that are spread evenly, or as another t far wider.
 """
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -26,15 +27,33 @@ SETTLED, FITTED = 4, 5000  # rounds in which it settles, and about so many sampl
 ROUNDS = 12  # in which a width settles
 
 
-def log_likelihoods(x, seen=None, lost=None):
-    """Log likelihood of each of the counts x (n,), but the first two, under the foresight that
-    suits all of them best. seen (n,): False for samples that are not looked at, which are left
-    out. lost (n,): True for samples of which only the low byte was read; their likelihood is that
-    of every high byte together."""
+@dataclass(frozen=True)
+class Fit:
+    """each (n,): log likelihood of each of the counts but the first two; what suits them best:
+    foresight, its number; freedom and width of Student's t; share of leaps, how many times wider
+    (0: evenly spread)."""
+
+    each: np.ndarray
+    foresight: int
+    freedom: float
+    width: float
+    share: float
+    wider: float
+
+    @property
+    def log(self):
+        return float(self.each.sum())
+
+
+def fit(x, seen=None, lost=None, as_=None):
+    """Fit of counts x (n,) under what suits all of them best, or another Fit as_. seen (n,): False
+    for samples that are not looked at, which are left out. lost (n,): True for samples of which
+    only the low byte was read; their likelihood is that of every high byte together."""
     x = x - np.median(x)
     keep = slice(None) if seen is None else seen[2:]
     lost = np.zeros(len(x) - 2, bool)[keep] if lost is None else lost[2:][keep]
-    return max((_unforeseen(rest[keep], lost) for rest in _remains(x)), key=lambda fit: fit[0])[1]
+    return max((_unforeseen(rest[keep], lost, number, as_) for number, rest in enumerate(
+        _remains(x)) if as_ is None or number == as_.foresight), key=lambda found: found.log)
 
 
 def coarse(x):
@@ -92,8 +111,8 @@ def _settled(now, past, end):
     return end
 
 
-def _unforeseen(rest, lost):
-    """(largest log likelihood of what remains (n,), each sample's)."""
+def _unforeseen(rest, lost, foresight, as_):
+    """The Fit of what remains (n,) under a foresight."""
     known, alone = np.flatnonzero(~lost), np.flatnonzero(lost)
     size, place = _counted(np.abs(rest[known]))
     residue, page = np.unique(np.rint(rest[alone]) % PAGE, return_inverse=True)
@@ -106,20 +125,28 @@ def _unforeseen(rest, lost):
             return student(r / width, freedom) / width
         return np.concatenate([at(size), at(pages).sum(axis=1)])
 
-    evenly = np.concatenate([np.full(len(size), 1.0 / EVENLY),
-                             np.full(len(residue), 2.0 * PAGES / EVENLY)])
+    def leaps(width, wider):
+        return density(5.0, wider * width) if wider else np.concatenate(
+            [np.full(len(size), 1.0 / EVENLY), np.full(len(residue), 2.0 * PAGES / EVENLY)])
+
     median = max(float(np.median(np.abs(rest[known]))) / 0.6745, LEAST_WIDTH)
-    best = -math.inf, None
-    for freedom in FREEDOM:
-        for width in {median, _width(size, number[:len(size)], freedom, median)}:
+    best, mixture = -math.inf, None
+    for freedom in FREEDOM if as_ is None else (as_.freedom,):
+        for width in {median, _width(size, number[:len(size)], freedom, median)
+                      } if as_ is None else (as_.width,):
             sound = density(freedom, width)
-            for other in [evenly, *(density(5.0, times * width) for times in WIDER)]:
-                mixed = np.log(np.outer(1.0 - SHARES, sound) + np.outer(SHARES, other))
+            for wider in (0.0, *WIDER) if as_ is None else (as_.wider,):
+                shares = SHARES if as_ is None else np.array([as_.share])
+                mixed = np.log(np.outer(1.0 - shares, sound)
+                               + np.outer(shares, leaps(width, wider)))
                 sums = mixed @ number
-                best = max(best, (float(sums.max()), mixed[sums.argmax()]), key=lambda mix: mix[0])
+                if sums.max() > best:
+                    k = int(sums.argmax())
+                    best, mixture = float(sums[k]), (mixed[k], freedom, width, shares[k], wider)
+    mixed, *values = mixture
     likelihoods = np.zeros(len(rest))
-    likelihoods[known], likelihoods[alone] = best[1][place], best[1][len(size) + page]
-    return best[0], likelihoods
+    likelihoods[known], likelihoods[alone] = mixed[place], mixed[len(size) + page]
+    return Fit(likelihoods, foresight, *values)
 
 
 def _counted(size):
