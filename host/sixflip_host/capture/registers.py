@@ -5,6 +5,9 @@ import numpy as np
 from sixflip import RAIL
 
 SENSORS = {"accel": "accelerometer", "gyro": "gyro"}  # in words
+RANGES = {"accel": "accel_range_g", "gyro": "gyro_range_dps"}  # of a capture's header
+SCALES = {"accel": "accel_lsb_per_g", "gyro": "gyro_lsb_per_dps"}
+RAIL_CODES = 4  # the last codes of a range: scales that are rounded end a few short of 2^15
 FEWEST_VALUES = 12  # distinct counts before a common divisor means anything
 FEWEST_SAMPLES = 50
 SPACED = 6  # times the smallest value: as far as the values next to each other are looked at
@@ -39,14 +42,29 @@ def steps(counts):
     return np.array(sizes)
 
 
+def rail(capture, sensor):
+    """Largest size of a count of a capture's sensor ("accel", "gyro"): the end of the range that
+    its header states; or, where more samples lie beyond that than at it, the code that most of
+    them end at, as where a scale is rounded; or else that of the register: of an LSM6DS3, whose
+    8.75 mdps a count are 286 deg/s, the range is 250 by name."""
+    top, lsb = capture.meta.get(RANGES[sensor], np.inf), capture.meta[SCALES[sensor]]
+    if top * lsb > RAIL:
+        return RAIL + 1
+    stated, size = int(top * lsb), np.abs(getattr(capture, sensor).astype(np.int32))
+    beyond = size[size > stated + RAIL_CODES]
+    if len(beyond) <= np.count_nonzero(size >= stated - RAIL_CODES) - len(beyond):
+        return stated
+    last = int(beyond.max())
+    return last if (beyond >= last - RAIL_CODES).mean() > 0.5 else RAIL + 1
+
+
 def gyro_railed(capture, first, end):
     """True when a gyro axis reads the end of its range, or of its register, in samples
     first..end-1 of a capture."""
     if capture.gyro is None:
         return False
-    full_scale = capture.meta.get("gyro_range_dps", np.inf) * capture.meta["gyro_lsb_per_dps"]
     peak = np.abs(capture.gyro[first:end].astype(np.int32)).max(initial=0)
-    return bool(peak >= min(RAIL, full_scale) - 1)
+    return bool(peak >= rail(capture, "gyro") - 1)
 
 
 def spacing(size, least):
@@ -59,6 +77,7 @@ def spacing(size, least):
 
 FEWEST_NEAR, LEAST_NOISE = 50, 0.3  # samples beside 0; steps: with less noise 0 may be all
 WINDOW, FEWEST_WINDOWS, QUIET = 32, 8, 0.1  # samples; windows away from 0; share that is at rest
+FEWEST_ZEROS, FEWEST_MISSING = 20, 40  # readings of 0 that are a band; of the codes within it
 CROSSINGS = 4  # of 0 in a window that noise makes: what passes through has one
 
 
@@ -88,6 +107,14 @@ def _crossings(windows):
     return (held[:, 1:] * held[:, :-1] < 0).sum(axis=1)
 
 
+def _holes(column, least, step):
+    """Whether codes are missing beside `least` as well, up to twice as far from 0 on either side:
+    then what left out the one next to 0 is a scale that was rounded."""
+    column = column.astype(np.int64)
+    return any((np.diff(np.unique(side[(side >= least) & (side <= 3 * least)])) > step).any()
+               for side in (column, -column))
+
+
 def _flat(column):
     """Half the width (counts) of a band that reads 0 and that what is beyond it begins at 0
     again, so that no code is missing; 0 where 0 is as frequent as the codes beside it."""
@@ -109,9 +136,11 @@ def dead_band(counts):
             bands.append(0)
             continue
         step = max(1, steps(column[:, None])[0], spacing(small, least))
-        near = int((others < 2 * least).sum())
-        expected = near * (least / step - 1.0) / max(least / step, 1.0)
-        bands.append(least if zeros > 20 and least > 2 * step and expected > 40 else _flat(column))
+        each = (others < 2 * least).sum() * step / (2.0 * least)  # readings of a code beside it
+        missing = 2.0 * (least / step - 1.0)  # codes, for which 0 is read, and for itself
+        banded = missing >= 2.0 and missing * each > FEWEST_MISSING and zeros > max(
+            FEWEST_ZEROS, 2.0 * each) and (missing > 2.0 or not _holes(column, least, step))
+        bands.append(least if banded else _flat(column))
     return np.array(bands)
 
 

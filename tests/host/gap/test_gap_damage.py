@@ -212,6 +212,18 @@ def band_of(values):
     return registers.dead_band(np.repeat(np.rint(values)[:, None], 3, axis=1).astype(int))[0]
 
 
+@pytest.mark.parametrize("counted, band", [
+    (lambda x: np.where(np.abs(x) < 2, 0, x), 2), (lambda x: np.where(np.abs(x) < 3, 0, x), 3),
+    (lambda x: x, 0), (lambda x: np.rint(np.rint(x / 1.6) * 1.6), 0),
+    (lambda x: np.where(np.abs(x) == 1, 2 * x, x), 0)])
+def test_a_dead_band_of_one_code_to_either_side_is_one(counted, band):
+    """An ADXL345 at rest near 0: the codes beside 0 are read as 0, and not only never read."""
+    generator = np.random.default_rng(8)
+    x = np.rint(np.repeat(generator.uniform(-9.0, 9.0, 60), 300)
+                + 1.1 * generator.standard_normal(18000))
+    assert registers.dead_band(counted(x).astype(np.int64)[:, None]).tolist() == [band]
+
+
 def test_a_dead_band_is_wider_than_the_spacing_elsewhere():
     """A rate printed with one decimal and taken as counts of 131 per deg/s: 0, 13, 26, 39 … is
     how it is spaced, and a band of five such steps is one."""

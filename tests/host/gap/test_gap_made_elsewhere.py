@@ -31,9 +31,26 @@ def swinging(number, noise, generator, counts=8000.0):
 def test_tails_of_noise_are_no_spikes():
     generator = np.random.default_rng(3)
     assert not present(spikes.jump_nats(np.abs(generator.standard_t(6.0, 60000))))
+    louder = generator.standard_normal(60000) * np.where(np.arange(60000) % 1000 < 200, 3.0, 1.0)
+    assert not present(spikes.jump_nats(np.abs(louder)))
     sizes = np.abs(generator.standard_normal(60000))
     sizes[::500] += 8.0
     assert present(spikes.jump_nats(sizes))
+
+
+@pytest.mark.parametrize("all_the_time", [True, False])
+def test_jumps_of_a_page_in_noise_of_a_fifth_of_it_are_spikes(all_the_time):
+    """256 counts in one of a hundred samples of an MPU6050, whose noise is 46: heavy tails of
+    noise had as many as far off. What shakes for a second has, too."""
+    still, generator = at_rest(flicker(5, 12000)), np.random.default_rng(6)
+    hit = generator.random((12000, 2)) < 0.012
+    if not all_the_time:
+        hit[:] = False
+        hit[3000:3100:3], hit[7000:7100:3] = True, True
+    still.capture.accel[:, :2] += np.where(hit, 256 * generator.choice([-1, 1], hit.shape),
+                                           0).astype(np.int16)
+    said = [sensor for sensor, *_ in spikes.without_spikes([still])[1]]
+    assert said == (["accel"] if all_the_time else [])
 
 
 def test_samples_far_off_that_come_in_pairs_are_spikes():

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture import registers as counts
+from sixflip_host.capture.capture_file import Capture
 from sixflip_host.diagnosis import answer, diagnosis, samples_judged
 from sixflip_host.diagnosis.detect import (
     noise_bursts,
@@ -49,6 +50,49 @@ def test_rests_cut_off_at_a_rail_tell_of_the_rail_only():
     assert cause["effect"] == "saturation"  # the library's name of any level that cuts off
     assert cause["cut_off_at"] == dict.fromkeys(cause["axes"], "below_range")
     assert "is cut off below its range" in gap_words.sentence(said)
+
+
+@pytest.mark.parametrize("clipped", [False, True])
+def test_readings_that_go_on_beyond_the_stated_range_sit_on_no_rail(clipped):
+    """An LSM6DS3 counts 8.75 mdps, and reaches 286 deg/s in the range that is called 250."""
+    turns = 30900.0 * np.sin(np.arange(3000) / 50.0) * (np.arange(3000) % 1000 > 500)
+    gyro = np.rint(turns[:, None] + np.random.default_rng(2).normal(0.0, 5.0, (3000, 3)))
+    if clipped:
+        gyro = np.clip(gyro, -28571, 28571)
+        gyro[[40, 1900]] = 30000  # read wrongly
+    capture = Capture({"sensor": "other", "rate_hz": 100.0, "gyro_range_dps": 250,
+                       "gyro_lsb_per_dps": 1000.0 / 8.75}, 10_000 * np.arange(3000), None,
+                      gyro.astype(np.int16))
+    assert counts.rail(capture, "gyro") == (28571 if clipped else 32768)
+    assert counts.gyro_railed(capture, 500, 1000) == clipped
+    session = SimpleNamespace(capture=capture, at_rest=np.arange(3000) % 1000 <= 500)
+    assert bool(saturation.saturation([session], "gyro", [capture.gyro])) == clipped
+
+
+def test_readings_that_end_just_beyond_the_stated_range_end_there():
+    """Thirteen bits at 4 mg a count, by name: 4095 of them, where the range of 16 g would be
+    4000."""
+    x = np.clip(np.rint(6000.0 * np.sin(np.arange(3000) / 40.0)), -4096, 4095)
+    capture = Capture({"sensor": "other", "rate_hz": 100.0, "accel_range_g": 16,
+                       "accel_lsb_per_g": 250.0}, 10_000 * np.arange(3000),
+                      np.column_stack([x, x, x]).astype(np.int16))
+    assert counts.rail(capture, "accel") == 4096
+    session = SimpleNamespace(capture=capture, at_rest=np.zeros(3000, bool))
+    found, = saturation.saturation([session], "accel", [capture.accel])
+    assert "sit on the rail" in found.words
+
+
+def test_a_rest_at_the_largest_reading_ends_no_peak():
+    """Noise of a count ends at one code many times, also where a rest is just not one any more."""
+    generator = np.random.default_rng(0)
+    x = np.rint(247.0 + 0.8 * generator.standard_normal(12000)).astype(np.int64)
+    moving = np.zeros(12000, bool)
+    for first in range(0, 12000, 400):
+        x[first:first + 100] -= np.rint(200 * np.sin(np.linspace(0.0, np.pi, 100))).astype(int)
+        moving[first:first + 240] = True
+    assert not present(saturation.cut_off_nats(np.minimum(x, 249), moving))
+    peaks = np.rint(400 * np.sin(np.arange(12000) / 60.0) ** 3).astype(np.int64)
+    assert present(saturation.cut_off_nats(np.minimum(peaks, 249)))
 
 
 def test_a_rail_is_no_quiet_second_that_others_are_shaken_beside():

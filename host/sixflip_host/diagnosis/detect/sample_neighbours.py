@@ -17,6 +17,7 @@ BLURRED = 100.0  # counts: with wider noise a page more or less tells nothing
 # samples whose page is compared, so a page must lie where noise of any tail seldom comes.
 BLURRED_MOVING = PAGE / CALM
 WHITE = 0.1  # correlation with the sample before, up to which a level at rest is known beside it
+BESIDE = 5  # samples: itself and the four by which it is foreseen where the level moves
 NEAR = 2.0  # standard deviations beyond which a sample may be a jump, and counts as so far
 AT_A_TIME = 1 << 16  # samples that are looked at at once: memory, not time
 
@@ -76,7 +77,7 @@ def tabled(column, banded, at_rest=None, again=None, width=PAGE):
     here = 1.4826 * ndimage.median_filter(np.abs(off), 2 * LONG + 1, mode="nearest")
     sigma = np.where(calm, sigma, np.maximum(sigma, here))
     widest = np.where(known & _white(off / sigma, known), BLURRED, BLURRED_MOVING)
-    keep = sigma < widest
+    keep = (sigma < widest) & ~_shadows(off, sigma, calm)
     if banded:
         keep &= (around != 0).all(axis=1)
     if again is not None:
@@ -94,6 +95,15 @@ def tabled(column, banded, at_rest=None, again=None, width=PAGE):
     codes = 1.0 / registers.steps(values[times > 1][:, None])[0]
     return Samples(off / sigma, (off - width * pages) / sigma, sigma, calm[keep], before, after,
                    codes * (stale & ~before), codes * (ahead & ~after))
+
+
+def _shadows(off, sigma, calm):
+    """(n,) whether a sample, foreseen by the four beside it, is off because one of them jumps: by
+    two thirds of the jump next to it, by a sixth behind that, which would be jumps of their own.
+    """
+    far = np.abs(off)
+    largest = ndimage.maximum_filter1d(far, BESIDE)
+    return ~calm & (largest > CALM * sigma) & (far < largest)
 
 
 def _beside(around):

@@ -8,11 +8,11 @@ import math
 import numpy as np
 from scipy import ndimage, special
 
-from ...capture.registers import RAIL, fixed_bits, steps
+from ...capture import registers
+from ...capture.registers import RAIL, RAIL_CODES, fixed_bits, steps
 from .codes import number_of_runs
 from .detection import BELOW, RANGE, Finding, present
 
-RAIL_CODES = 4  # the last codes of a range: scales that are rounded end a few short of 2^15
 # s of a peak's flanks that are looked at, and samples at least: judged, a hand turns a box half
 # round in half a second or more, and comes up to its rate in a third of that.
 FLANK_S, FLANK = 0.04, 2
@@ -61,7 +61,7 @@ def _below(session, sensor, axis, level):
     return ("peaks of the %s axis are cut off at %d counts (%.4g %s), below the rail of %.4g %s: "
             "a range that was set otherwise, a filter's or a simulator's limit" % (
                 axis, abs(level), abs(level) / lsb, unit,
-                (_range_rail(session, sensor) + RAIL_CODES) / lsb, unit))
+                registers.rail(session.capture, sensor) / lsb, unit))
 
 
 def railed(session, sensor="accel"):
@@ -101,13 +101,8 @@ def lost_at_peaks(rates, dt, level):
 
 
 def _range_rail(session, sensor):
-    """Count of the rail of the range the header states (accel_range_g, gyro_range_dps)."""
-    meta = session.capture.meta
-    top, lsb = (("accel_range_g", "accel_lsb_per_g") if sensor == "accel"
-                else ("gyro_range_dps", "gyro_lsb_per_dps"))
-    if top not in meta:
-        return RAIL - 3
-    return min(RAIL - 3, int(meta[top] * meta[lsb]) - RAIL_CODES)
+    """The first of the last counts of a sensor's range, or of its register."""
+    return registers.rail(session.capture, sensor) - RAIL_CODES
 
 
 def cut_off_nats(x, moving=True):
@@ -155,9 +150,11 @@ def _oftener(hits, misses, chance):
 
 
 def peaks(x, at, moving=True):
-    """(peaks that end at the level where `at` is True, those that end just inside of it)."""
-    near, at = (x >= x[at].min() - _spread(x)[1]) & moving, at & moving
-    reached = _reached(near, at)
+    """(peaks that end at the level where `at` is True, those that end just inside of it); of what
+    rests near its largest reading noise makes many that end there, and it is no peak."""
+    near = x >= x[at].min() - _spread(x)[1]
+    near &= ~ndimage.binary_propagation(near & ~moving, mask=near) if moving is not True else True
+    reached = _reached(near, at & near)
     return reached, number_of_runs(near) - reached
 
 

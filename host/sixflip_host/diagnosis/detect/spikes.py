@@ -18,9 +18,13 @@ AGREE = 4.0  # standard deviations that the four neighbours, but one in a pair, 
 PAIRED = 3  # of the four, where the one beside it may be wild as well
 LEAST_SPIKES = 10  # knocks on a table come singly
 # How heavy the tails of noise are, Student's t: rests of the recordings have 6 and more
-# (`python -m tests.studies.robustness.tails`). Jumps: so many times the noise wide.
-TAILS, WIDTHS = (5.0, 8.0, 15.0, 40.0, 200.0), (10.0, 30.0, 100.0, 1000.0)
+# (`python -m tests.studies.robustness.tails`), in steps that leave nothing to jumps of one size.
+TAILS = (5.0, 5.5, 6.0, 6.5, 7.0, 8.0, 9.0, 10.0, 12.0, 15.0, 20.0, 40.0, 200.0)
+# Jumps: so many times the noise wide; or of one size, above which the wide ones do as well.
+WIDTHS, SIZES = (10.0, 30.0, 100.0, 1000.0), (5.0, 6.0, 8.0, 10.0)
 SHARES = tuple(10.0 ** np.arange(-4.0, -0.9, 0.25))  # of samples that jump, tried
+# Times the noise, of samples that are louder for a while, and their share: no jumps.
+LOUDER, LOUD = (2.0, 3.0, 5.0), (0.05, 0.1, 0.2, 0.4)
 SCALES = tuple(np.arange(0.7, 1.31, 0.05))  # of the noise, about what its middle says
 FINE = 50.0  # steps of the inverse hyperbolic sine in which sizes are counted
 PASSES = 6  # of three side by side the one between is seen when the others are gone
@@ -41,6 +45,10 @@ class Spikes:
     @property
     def number(self):
         return int(self.wild.any(axis=1).sum())
+
+    def seconds(self, rate):
+        """Number of seconds that hold one, of samples at so many a second."""
+        return len(np.unique((np.flatnonzero(self.wild.any(axis=1)) // max(rate, 1.0))))
 
     @property
     def pairs(self):
@@ -80,14 +88,21 @@ def jump_nats(sizes):
         return 0.0
     place, number = np.unique(np.rint(np.arcsinh(sizes) * FINE), return_counts=True)
     z, plain, jumping = np.sinh(place / FINE), [], []
-    wide = [np.exp(-0.5 * (z / width) ** 2) / (width * np.sqrt(2.0 * np.pi)) for width in WIDTHS]
+    jumps = [_normal(z / width) / width for width in WIDTHS] + [
+        0.5 * _normal(z - size) for size in SIZES]  # to either side
     for freedom in TAILS:
         for scale in SCALES:
             sound = student(z / scale, freedom) / scale
             plain.append(number @ np.log(sound))
+            plain += [number @ np.log((1.0 - share) * sound + share / times * student(
+                z / (times * scale), freedom) / scale) for times in LOUDER for share in LOUD]
             jumping += [number @ np.log((1.0 - share) * sound + share * jump)
-                        for share in SHARES for jump in wide]
-    return float(max(jumping) - max(plain) - np.log(len(SHARES) * len(WIDTHS)))
+                        for share in SHARES for jump in jumps]
+    return float(max(jumping) - max(plain) - np.log(len(SHARES) * len(jumps)))
+
+
+def _normal(z):
+    return np.exp(-0.5 * z ** 2) / np.sqrt(2.0 * np.pi)
 
 
 def _deviation(off):
@@ -114,6 +129,8 @@ def without_spikes(sessions, leaping=()):
             each = paired
         number, looked = sum(spiky.number for spiky in each), sum(spiky.looked for spiky in each)
         nats = jump_nats(np.concatenate([spiky.sizes for spiky in each]))
+        # What shakes for a while is as far off many times: of these each second tells once.
+        nats *= sum(spiky.seconds(s.rate) for spiky, s in zip(each, sessions)) / max(number, 1)
         if not number or not present(nats):
             continue
         sessions = [_put_right(s, sensor) for s in sessions]
