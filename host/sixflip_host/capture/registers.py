@@ -64,7 +64,9 @@ def gyro_railed(capture, first, end):
     if capture.gyro is None:
         return False
     peak = np.abs(capture.gyro[first:end].astype(np.int32)).max(initial=0)
-    return bool(peak >= rail(capture, "gyro") - 1)
+    stated = capture.meta.get(RANGES["gyro"], np.inf) * capture.meta[SCALES["gyro"]]
+    # Where the range ends all of the capture tells, which few moves have to ask.
+    return bool(peak >= int(min(stated, RAIL + 1)) - 1 and peak >= rail(capture, "gyro") - 1)
 
 
 def spacing(size, least):

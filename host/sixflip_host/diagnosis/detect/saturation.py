@@ -153,7 +153,8 @@ def peaks(x, at, moving=True):
     """(peaks that end at the level where `at` is True, those that end just inside of it); of what
     rests near its largest reading noise makes many that end there, and it is no peak."""
     near = x >= x[at].min() - _spread(x)[1]
-    near &= ~ndimage.binary_propagation(near & ~moving, mask=near) if moving is not True else True
+    if moving is not True:
+        near &= ~ndimage.binary_propagation(near & ~moving, mask=near)
     reached = _reached(near, at & near)
     return reached, number_of_runs(near) - reached
 
