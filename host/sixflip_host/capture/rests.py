@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy import ndimage
 
 from sixflip.poses.faces import FACES, nearest_face
 from sixflip.poses.noise_floor import WINDOWS, NoiseFloor
@@ -197,8 +196,11 @@ def _jumps(capture, rest, following, before, after):
     if following.first - rest.end > AT_ONCE_S * rate:
         return False
     between = capture.gyro[rest.end:following.first] / capture.meta["gyro_lsb_per_dps"]
+    if len(between) < MEDIAN:
+        return True
     step = after - before
-    way = ndimage.median_filter((between - before) @ step / max(float(step @ step), 1e-9), MEDIAN)
+    way = (between - before) @ step / max(float(step @ step), 1e-9)
+    way = np.median(np.lib.stride_tricks.sliding_window_view(way, MEDIAN), axis=1)
     return np.count_nonzero((way > ACROSS[0]) & (way < ACROSS[1])) <= max(1.0, ACROSS_S * rate)
 
 
