@@ -23,7 +23,8 @@ from .board_extras import EXTRAS
 
 # Of a period, by which a gap lifts the envelope at least where most intervals are whole periods:
 # less than a row has to be late (stamp_envelope.PART), for the last stamp before a gap is a late
-# one as often as an early one.
+# one as often as an early one; and a loss that is not seen makes the period longer, which hides
+# more of them.
 LIFTED = 0.6
 PAUSE_S, PAUSE_ROWS = 1.0, 10   # a gap that is longer than both is a pause whatever its phase
 FEWEST_PHASES = 4

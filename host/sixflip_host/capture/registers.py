@@ -47,15 +47,20 @@ def rail(capture, sensor):
     its header states; or, where more samples lie beyond that than at it, the code that most of
     them end at, as where a scale is rounded; or else that of the register: of an LSM6DS3, whose
     8.75 mdps a count are 286 deg/s, the range is 250 by name."""
-    top, lsb = capture.meta.get(RANGES[sensor], np.inf), capture.meta[SCALES[sensor]]
-    if top * lsb > RAIL:
-        return RAIL + 1
-    stated, size = int(top * lsb), np.abs(getattr(capture, sensor).astype(np.int32))
+    stated = _stated(capture.meta, sensor)
+    if stated > RAIL:
+        return stated
+    size = np.abs(getattr(capture, sensor).astype(np.int32))
     beyond = size[size > stated + RAIL_CODES]
     if len(beyond) <= np.count_nonzero(size >= stated - RAIL_CODES) - len(beyond):
         return stated
     last = int(beyond.max())
     return last if (beyond >= last - RAIL_CODES).mean() > 0.5 else RAIL + 1
+
+
+def _stated(meta, sensor):
+    """Count at the end of the range that a header states, or of the register before that."""
+    return int(min(meta.get(RANGES[sensor], np.inf) * meta[SCALES[sensor]], RAIL + 1))
 
 
 def gyro_railed(capture, first, end):
@@ -64,9 +69,8 @@ def gyro_railed(capture, first, end):
     if capture.gyro is None:
         return False
     peak = np.abs(capture.gyro[first:end].astype(np.int32)).max(initial=0)
-    stated = capture.meta.get(RANGES["gyro"], np.inf) * capture.meta[SCALES["gyro"]]
     # Where the range ends all of the capture tells, which few moves have to ask.
-    return bool(peak >= int(min(stated, RAIL + 1)) - 1 and peak >= rail(capture, "gyro") - 1)
+    return bool(peak >= _stated(capture.meta, "gyro") - 1 and peak >= rail(capture, "gyro") - 1)
 
 
 def spacing(size, least):
@@ -110,8 +114,8 @@ def _crossings(windows):
 
 
 def _holes(column, least, step):
-    """Whether codes are missing beside `least` as well, up to twice as far from 0 on either side:
-    then what left out the one next to 0 is a scale that was rounded."""
+    """Whether codes are missing beyond `least` as well, up to three times as far from 0 on either
+    side: then what left out the one next to 0 is a scale that was rounded."""
     column = column.astype(np.int64)
     return any((np.diff(np.unique(side[(side >= least) & (side <= 3 * least)])) > step).any()
                for side in (column, -column))

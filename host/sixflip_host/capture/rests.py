@@ -90,9 +90,9 @@ class LongestRest:
 # deg/s that a bias moves at most from one rest to the next: 15 degC of an ITG-3205, of which
 # a degree moves it by 0.3. What is further from all rests turns at a steady rate, on a table or in
 # a bend, which is as still as a rest but for that, and takes a while to come to it. What has
-# jumped is between the two levels for no longer than a low pass of 5 Hz takes, the slowest that
-# these chips have: 0.1 s from a tenth to nine tenths of a step.
-TURNS_DPS, AT_ONCE_S, ACROSS_S, ACROSS, MEDIAN = 5.0, 1.5, 0.15, (0.25, 0.75), 5
+# jumped is between the two levels for no longer than a low pass of 5 Hz takes, the slowest of an
+# MPU-6050 [register map rev 4.2, register 26]: 0.07 s from a tenth to nine tenths of a step.
+TURNS_DPS, AT_ONCE_S, ACROSS_S, ACROSS = 5.0, 1.5, 0.15, (0.25, 0.75)
 # Standard errors of a window's mean, in which nothing moved; its variance by that of white noise
 # with the same steps from sample to sample, of which a tremor of 12 Hz has four times as much at
 # 100 Hz; counts of a mean, and of a variance, that rounding makes.
@@ -196,11 +196,8 @@ def _jumps(capture, rest, following, before, after):
     if following.first - rest.end > AT_ONCE_S * rate:
         return False
     between = capture.gyro[rest.end:following.first] / capture.meta["gyro_lsb_per_dps"]
-    if len(between) < MEDIAN:
-        return True
     step = after - before
     way = (between - before) @ step / max(float(step @ step), 1e-9)
-    way = np.median(np.lib.stride_tricks.sliding_window_view(way, MEDIAN), axis=1)
     return np.count_nonzero((way > ACROSS[0]) & (way < ACROSS[1])) <= max(1.0, ACROSS_S * rate)
 
 

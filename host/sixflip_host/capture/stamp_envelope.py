@@ -39,12 +39,7 @@ def first_guess(t_us, known):
         whole = np.rint(gaps / usual)
         near = (whole >= 1) & (np.abs(gaps / usual - whole) < ON_GRID)
         if near.mean() >= MOSTLY and whole.mean() < MOST_WHOLE:
-            # Of stamps that scatter the envelope does not show all losses: a period by those that
-            # it does is too long, and hides more.
-            pace = _pace(gaps, whole == 1)
-            whole = np.rint(gaps / pace)
-            near = np.abs(gaps / pace - whole) < ON_GRID
-            return float(gaps[near].sum() / max(whole[near].sum(), 1.0)), 1, True
+            return _pace(gaps, whole == 1), 1, True
     times = np.concatenate([[0.0], np.cumsum(gaps)])
     for rows in SPANS:
         if rows * 4 > len(times):

@@ -123,8 +123,9 @@ class Session(ReadOnlyArrays):
         box turned over feels it and a robot does not."""
         if self.accel is None or not len(self.accel):
             return False
-        up = self.accel / np.linalg.norm(self.accel, axis=1)[:, None]
-        return bool(np.sort(np.ptp(self.accel, axis=0))[1] >= TURNED_MG and (up @ up.T).min() < 0)
+        ends = self.accel[[*self.accel.argmin(axis=0), *self.accel.argmax(axis=0)]]
+        spans = np.sort(ends[3:].max(axis=0) - ends[:3].min(axis=0))
+        return bool(spans[1] >= TURNED_MG and (self.accel @ ends.T).min() < 0.0)
 
     @cached_property
     def at_rest(self):

@@ -127,6 +127,24 @@ def test_a_hand_that_trembles_puts_no_byte_together_wrongly(seed):
     assert byte_faults.column_fault(read)[0] == "sign_extension"
 
 
+@pytest.mark.parametrize("seed", [1, 8, 13])
+def test_a_coarse_gyro_that_waggles_puts_no_byte_together_wrongly(seed):
+    """Steps of 16 counts, fifty rows a second. Of what a rule makes more samples leap, and a share
+    of leaps that suits those was better for the samples that it changes, at the others' cost: it
+    suits the counts as they were read as well."""
+    generator, parts, t = np.random.default_rng(seed), [], np.arange(0.0, 4.0, 0.02)
+    for _ in range(11):
+        hand = np.sin(np.pi * t / 4.0)
+        turn = generator.uniform(-4500.0, 4500.0) * hand ** 2
+        waggle = sum(generator.uniform(240.0, 800.0) * np.sin(
+            2.0 * np.pi * hz * t + generator.uniform(0.0, 6.0))
+            for hz in generator.uniform(4.0, 11.0, 3))
+        parts += [np.zeros(1500), turn + hand * waggle]
+    course = np.concatenate(parts) - 19.0
+    column = 16 * np.rint((course + generator.normal(0.0, 4.0, len(course))) / 16) + 5
+    assert byte_faults.column_fault(column.astype(np.int64)) is None
+
+
 def test_rests_whose_moves_were_cut_out_have_no_fault():
     """From one face to the opposite one in a sample is a step of 2 g: 2^15 counts."""
     faces = np.repeat([1, -1, 0, 0, 1, -1, 1, 0, -1], 100)
@@ -222,6 +240,15 @@ def test_a_dead_band_of_one_code_to_either_side_is_one(counted, band):
     x = np.rint(np.repeat(generator.uniform(-9.0, 9.0, 60), 300)
                 + 1.1 * generator.standard_normal(18000))
     assert registers.dead_band(counted(x).astype(np.int64)[:, None]).tolist() == [band]
+
+
+def test_a_scale_that_was_rounded_has_no_dead_band():
+    """At rest 0 is read far more often than the codes beside it, of which one is left out; so are
+    others that the moves go through."""
+    generator = np.random.default_rng(8)
+    k = np.concatenate([0.5 * generator.standard_normal(9000), 40.0 * np.sin(
+        np.arange(4000) / 300.0) + 0.5 * generator.standard_normal(4000)])
+    assert band_of(1.5 * np.rint(k)) == 0
 
 
 def test_a_dead_band_is_wider_than_the_spacing_elsewhere():

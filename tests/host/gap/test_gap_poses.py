@@ -4,7 +4,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from sixflip_host.experiment import attitude_fit
+from sixflip_host.capture import rests
+from sixflip_host.capture.capture_file import Capture
+from sixflip_host.experiment import attitude_fit, blocks
 from tests.worlds.unlabelled import FACES, unlabelled
 
 
@@ -30,3 +32,16 @@ def test_a_sound_sensor_in_many_poses_keeps_its_lengths_to_a_fifth_of_a_thousand
     matrix = attitude_fit.fit(session).matrix
     # A turn of all poses together is nobody's to tell: the lengths are.
     assert matrix.T @ matrix == pytest.approx(true.T @ true, abs=2e-4)
+
+
+@pytest.mark.parametrize("up, turned", [
+    ([[0, 0, 1], [0, 1, 0], [0, 0, -1], [0, -1, 0]], True),  # about one axis only
+    ([[0, 0, 1], [0, 1, 0], [1, 0, 0], [0, -1, 0]], True), ([[0, 0, 1], [0, 0, -1]], False),
+    ([[0.34, 0, 0.94], [0, 0.34, 0.94], [-0.34, 0, 0.94], [0, -0.34, 0.94]], False)])
+def test_a_box_is_turned_over_and_a_robot_on_a_slope_of_20_degrees_is_not(up, turned):
+    capture = Capture({"sensor": "other", "rate_hz": 100.0, "accel_lsb_per_g": 1000.0},
+                      10_000 * np.arange(100 * len(up)),
+                      np.repeat(1000 * np.array(up), 100, axis=0).astype(np.int16),
+                      pose=np.repeat(np.arange(len(up)) + 13, 100).astype(np.int16))
+    runs = [rests.Run(13 + k, 100 * k, 100 * k + 100) for k in range(len(up))]
+    assert blocks.session_of("s", capture, runs).turned_over == turned

@@ -215,9 +215,8 @@ def repeats(counts):
 def _in_order(counts, asked):
     """Nats of rows being the row before once more oftener than the one before that. Noise has both
     alike, where a sensor rests for a few rows only as well; held values are none but the first."""
-    rows = [(counts[2:] == counts[k:k - 2]).all(axis=1) for k in (1, 0)]
-    first, second = (int((one & ~other)[asked[1:]].sum())
-                     for one, other in (rows, rows[::-1]))
+    last, before = ((counts[2:] == other).all(axis=1) for other in (counts[1:-1], counts[:-2]))
+    first, second = (int((one & asked[1:]).sum()) for one in (last & ~before, before & ~last))
     if first <= second:
         return 0.0
     return (first + second) * (math.log(2.0) - float(special.entr(

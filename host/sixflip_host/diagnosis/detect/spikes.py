@@ -3,6 +3,7 @@ often than the tails of noise have them. No effect of the library does that: it 
 what.
 """
 import copy
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -88,17 +89,23 @@ def jump_nats(sizes):
         return 0.0
     place, number = np.unique(np.rint(np.arcsinh(sizes) * FINE), return_counts=True)
     z, plain, jumping = np.sinh(place / FINE), [], []
-    jumps = [_normal(z / width) / width for width in WIDTHS] + [
-        0.5 * _normal(z - size) for size in SIZES]  # to either side
+    jumps = np.array([_normal(z / width) / width for width in WIDTHS] + [
+        0.5 * _normal(z - size) for size in SIZES])  # to either side
     for freedom in TAILS:
         for scale in SCALES:
             sound = student(z / scale, freedom) / scale
-            plain.append(number @ np.log(sound))
-            plain += [number @ np.log((1.0 - share) * sound + share / times * student(
-                z / (times * scale), freedom) / scale) for times in LOUDER for share in LOUD]
-            jumping += [number @ np.log((1.0 - share) * sound + share * jump)
-                        for share in SHARES for jump in jumps]
-    return float(max(jumping) - max(plain) - np.log(len(SHARES) * len(jumps)))
+            louder = np.array([student(z / (times * scale), freedom) / (times * scale)
+                               for times in LOUDER])
+            plain += [float(number @ np.log(sound)), _mixed(sound, louder, LOUD, number)]
+            jumping.append(_mixed(sound, jumps, SHARES, number))
+    return max(jumping) - max(plain) - math.log(len(SHARES) * len(jumps))
+
+
+def _mixed(sound, others, shares, number):
+    """The largest log likelihood of a share of samples, one of `shares`, having a density of
+    others (k, n) in place of sound (n,), at sizes that number (n,) samples have."""
+    share = np.array(shares)[:, None, None]
+    return float((np.log((1.0 - share) * sound + share * others) @ number).max())
 
 
 def _normal(z):
