@@ -36,6 +36,30 @@ def test_steps_as_wide_as_the_noise_that_differ_are_told():
     assert ("accel", "x", "amplitude") in [(p.sensor, p.axis, p.domain) for p in judged.nameless]
 
 
+def test_low_bits_that_are_left_out_are_told_where_each_code_is_read_a_few_times_only():
+    """Twelve rests of five seconds, in noise of 46 counts: 16 readings of a code, none where the
+    low four bits are 7 to 10."""
+    generator = np.random.default_rng(12)
+    rests = [np.rint(generator.normal(level, 46.0, 500)).astype(np.int64)
+             for level in generator.uniform(-300.0, 300.0, 12)]
+    assert codes.uneven_nats(rests) == 0.0
+    low = [rest % 16 for rest in rests]
+    left_out = [rest - bits + np.where((bits == 7) | (bits == 8), 6, np.where(
+        (bits == 9) | (bits == 10), 11, bits)) for rest, bits in zip(rests, low)]
+    assert codes.uneven_nats(left_out) > 500.0
+
+
+@pytest.mark.parametrize("step", [2.3, 4.0, 5.333, 7.6, 10.0, 13.1, 14.0, 15.9, 20.0, 22.0, 28.0])
+@pytest.mark.parametrize("rows", [500, 6000])
+@pytest.mark.parametrize("levels", [50.0, 300.0])
+def test_other_steps_than_the_chips_are_no_matter_of_low_bits(step, rows, levels):
+    for seed in range(5):
+        generator = np.random.default_rng(seed)
+        rests = [np.rint(np.rint(generator.normal(level, 46.0, rows) / step) * step).astype(int)
+                 for level in generator.uniform(-levels, levels, 12)]
+        assert codes.uneven_nats(rests) == 0.0
+
+
 @pytest.mark.parametrize("step", [1.3, 2.3, 7.6])
 def test_a_file_in_other_steps_than_the_chips_leaves_codes_out_evenly(step):
     generator = np.random.default_rng(9)

@@ -2,7 +2,7 @@
 import math
 
 import numpy as np
-from scipy import ndimage, special
+from scipy import fft, ndimage, special
 
 from ...capture.registers import LOW_BITS, RAIL, codes, spacing, steps, zeros_beyond_noise
 
@@ -14,6 +14,7 @@ FEWEST_AROUND, MOST_AROUND = 5, 16
 # Where most codes are left out, so many usual differences: 1.9 standard deviations. Of two rests
 # as far apart as twice that the code halfway is read a third as often as the commonest.
 REACH = 2.0
+FINER = 4  # values of a spectrum in the width of a line: the highest is off by a fortieth at most
 EXPECTED = 20.0  # readings of a code: chance leaves RARE of them once in a million
 # Of the usual number: no converter's steps differ so much that has none missing (differential
 # nonlinearity of more than 0.9 of a step, which IEEE Std 1241 calls a missing code).
@@ -93,15 +94,55 @@ def uneven_nats(columns, held=1):
     every = every[np.abs(every) < RAIL - 1]
     if noise < FEWEST_AROUND or not len(every):
         return 0.0
+    nats = _of_single_codes(every, noise, held)
+    return nats if nats else _of_low_bits(every, int(noise), held)
+
+
+def _of_single_codes(every, noise, held):
+    """Nats of uneven_nats() by each code of every (n,); noise: the usual difference of two."""
     times = np.bincount(every - every.min()).astype(float)
     middle = ndimage.median_filter(times, 2 * min(int(noise), MOST_AROUND) + 1, mode="constant")
     usual = np.where(middle > 0.0, middle, _commonest(times, int(REACH * noise)))
     asked = (usual >= EXPECTED) & (np.abs(np.arange(len(times)) + every.min()) > held)
     seldom = times <= RARE * usual
     odd = asked & (seldom | (middle > 0.0) & (times >= FREQUENT * usual))
-    if np.abs(times - usual)[odd].sum() < MANY * len(every) or not times[odd].any() and _even(
-            np.flatnonzero((usual >= EXPECTED) & ~seldom), int(REACH * noise)):
+    off = np.abs(times - usual)[odd].sum()
+    known = usual >= EXPECTED
+    unknown = np.cumsum(~known)  # between two rests so little is read that nothing is left out
+    places = np.flatnonzero(known & ~seldom)
+    apart = np.diff(places)[np.diff(unknown[places]) == 0]
+    if off < MANY * len(every) or times[odd].sum() < RARE * off and _even(apart):
         return 0.0
+    return _poisson(times, usual, odd)
+
+
+def _of_low_bits(every, noise, held):
+    """Nats of uneven_nats() by the low bits of every (n,) alone, which noise of as many codes has
+    all alike: each of them is read often where a single code is not yet. Steps that no power of
+    two is a multiple of, as of a file in other counts than the chip's, are no matter of bits: then
+    how often each code is read has a line in its spectrum that is none of the bits', and as
+    high."""
+    apart = np.diff(np.unique(every))
+    every = every[np.abs(every) > held]
+    number = 1 << min(noise.bit_length() - 1, LOW_BITS)
+    times = np.bincount(every & (number - 1), minlength=number).astype(float)
+    usual = np.full(number, len(every) / number)
+    seldom = times <= RARE * usual
+    places = np.flatnonzero(~seldom)
+    if usual[0] < EXPECTED or usual[seldom].sum() < MANY * len(every) or _even(
+            np.diff(places, append=places[0] + number)) or _even(apart[apart <= REACH * noise]):
+        return 0.0
+    codes_read = np.bincount(every - every.min())
+    lines = FINER * (len(codes_read) // number + 1)  # from one multiple of 1 / number to the next
+    spectrum = np.abs(fft.rfft(codes_read, lines * number))
+    spectrum[:lines] = 0.0
+    slowest = int(np.argmax(spectrum >= (1.0 - RARE) * spectrum.max()))
+    slowest += int(np.argmax(spectrum[slowest:slowest + FINER]))
+    return 0.0 if slowest % lines else _poisson(times, usual, seldom)
+
+
+def _poisson(times, usual, odd):
+    """Nats of how often the odd codes are read, over the usual."""
     nats = special.xlogy(times, times / np.maximum(usual, 1.0)) - (times - usual)
     return float(nats[odd].sum()) - math.log(len(times))
 
@@ -114,11 +155,9 @@ def _commonest(times, reach):
     return np.minimum(np.append(0.0, before[:-1]), np.append(after[1:], 0.0))
 
 
-def _even(places, reach):
-    """True when codes at places (n,) lie one step apart, but for what whole numbers make of it and
-    for a RARE part of the way; what is farther apart than `reach` belongs to two rests."""
-    apart = np.diff(places)
-    apart = apart[apart <= reach]
+def _even(apart):
+    """True when codes lie one step apart, but for what whole numbers make of it and for a RARE
+    part of the way; apart (n,): from each to the next, where all between are known."""
     return not len(apart) or max(
         apart[(apart == step) | (apart == step + 1)].sum() for step in set(apart.tolist())
     ) >= (1.0 - RARE) * apart.sum()
