@@ -94,6 +94,17 @@ def test_what_folds_into_a_slow_log_shakes_it():
     assert found.axes == ["x", "y", "z"]
 
 
+@pytest.mark.parametrize("rate", [2.0, 10.0, 20.0])
+def test_noise_of_a_slow_log_shakes_nothing(rate):
+    """A second of ten rows has two independent values beyond the motion: by chance one of fifty
+    seconds is a fifth as loud as most, and a box that lay still was shaken most of the time."""
+    generator = np.random.default_rng(7)
+    accel = generator.normal(0.0, 16.0, (9000, 3)) + [0.0, 0.0, 16384.0]
+    capture = Capture({"sensor": "mpu6050", "rate_hz": rate, "accel_lsb_per_g": 16384},
+                      np.arange(9000) * int(1e6 / rate), np.rint(accel).astype(np.int16))
+    assert shake_detector.shaken([blocks.session_of("still", capture)]) == []
+
+
 @pytest.mark.parametrize("rows", [2, 20, 63])
 def test_of_a_log_of_few_rows_nothing_is_shaken(rows):
     capture = Capture({"sensor": "mpu6050", "rate_hz": 50.0, "accel_lsb_per_g": 16384},

@@ -5,7 +5,7 @@ import copy
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import signal
+from scipy import signal, special
 
 from . import line_frequency, saturation, spectral_lines, strides
 from .detection import Finding
@@ -16,7 +16,9 @@ from .detection import Finding
 STOPPED_DB, ORDER, HIGHEST = 30.0, 8, 0.75
 WINDOW_S = 1.0  # a shaken second stands beside quiet ones; at 100 Hz it knows its level to 7 %
 QUIET = 0.02  # share of the windows that counts as quiet
-SHAKEN = 3.0  # times the quiet level, root mean square, in at least half of the windows
+# Times the quiet level, root mean square, in at least half of the windows; and as many times what
+# chance makes of few values in a window: of two, noise alone is eight times the quiet level.
+SHAKEN, ABOVE_CHANCE = 3.0, 2.0
 FEWEST_WINDOWS = 8  # of which half and one quiet one are compared
 
 
@@ -62,11 +64,13 @@ def _longest_move(session):
 def shaken(sessions):
     """list of Finding: from what is faster than any motion of a hand, legs or a vehicle, where
     nothing is cut off: a rail is quiet by itself."""
-    levels = []
+    levels, fewest = [], np.inf
     if any(session.capture.accel is None for session in sessions):
         return []
     for session in sessions:
         m = max(8, int(WINDOW_S * session.rate))
+        # Of a window's values so many are independent, as of all frequencies so many are faster.
+        fewest = min(fewest, m * (1.0 - _edge(session.rate) / (0.5 * session.rate)))
         x = session.capture.accel.astype(float) * (1000.0 / session.capture.meta[
             "accel_lsb_per_g"])
         k = len(x) // m
@@ -80,10 +84,12 @@ def shaken(sessions):
     level = np.concatenate(levels)
     quiet = np.quantile(level, QUIET, axis=0)
     usual = np.median(level, axis=0)
-    axes = [i for i in range(3) if usual[i] > SHAKEN * max(quiet[i], 1e-9)]
+    chance = float(np.sqrt(special.chdtri(fewest, 0.5) / special.chdtri(fewest, 1.0 - QUIET)))
+    above = max(SHAKEN, ABOVE_CHANCE * chance)
+    axes = [i for i in range(3) if usual[i] > above * max(quiet[i], 1e-9)]
     if not axes:
         return []
-    value, interval, score, above = {}, {}, 0.0, []
+    value, interval, score, power = {}, {}, 0.0, []
     for i in axes:
         ranked = np.sort(level[:, i])
         # Ranks of the 90 % interval of a median [Conover, Practical Nonparametric Statistics].
@@ -94,18 +100,22 @@ def shaken(sessions):
         interval["xyz"[i]] = tuple(float(_amplitude(end, quiet[i])) for end in ends)
         # Half of the windows above a level that QUIET of them are below, if they were alike.
         mean = float((level[:, i] ** 2).mean()) - quiet[i] ** 2
-        above.append((min(usual[i] ** 2 - quiet[i] ** 2, mean), mean))
+        power.append((min(usual[i] ** 2 - quiet[i] ** 2, mean), mean))
         score += 0.5 * len(ranked) * np.log(0.25 / (QUIET * (1.0 - QUIET)))
     return [Finding("vibration", "accel", sorted(value), value, "mg", score, "frequency",
                     "it is shaken most of the time", interval,
-                    share=float(np.sum(above, axis=0)[0] / np.sum(above, axis=0)[1]))]
+                    share=float(np.sum(power, axis=0)[0] / np.sum(power, axis=0)[1]))]
+
+
+def _edge(rate):
+    """Hz from which on what is faster than motion is looked at."""
+    return min(spectral_lines.MOTION_HZ, HIGHEST * rate / 2.0)
 
 
 def _fast(x, rate):
     """(n, 3) what of readings (n, 3) is faster than motion."""
-    edge = min(spectral_lines.MOTION_HZ, HIGHEST * rate / 2.0)
     return signal.sosfiltfilt(signal.cheby2(
-        ORDER, STOPPED_DB, edge, "highpass", fs=rate, output="sos"), x, axis=0)
+        ORDER, STOPPED_DB, _edge(rate), "highpass", fs=rate, output="sos"), x, axis=0)
 
 
 def _amplitude(level, quiet):
