@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import progress
-from ..experiment import attitude_fit, linear_model, nominal_rows, terms
+from ..experiment import attitude_fit, block_measures, linear_model, nominal_rows, terms
 from . import (
     adequacy,
     aliases,
@@ -49,7 +49,7 @@ class RestModel:
     def fit(self, sessions, nominal):
         """SensorGap of sessions with their NominalSensors."""
         progress.doing("effects of the %s" % ("gyro" if self.kind == "gyro" else "accelerometer"))
-        parts = list(zip(terms.agreed(sessions), nominal))
+        parts = list(zip(terms.agreed([self._heard(session) for session in sessions]), nominal))
         searched = self._searched(parts)
         turned = self._turned_back(parts, searched)
         if turned:
@@ -200,6 +200,15 @@ class RestModel:
         return linear_model.unit(self._less_known(rows, designs), designs, wanted,
                                  signature=nominal_rows.signature(part),
                                  within=self._within(part))
+
+    def _heard(self, session):
+        """The session, how much it shakes told by axes without a dead band: within it an axis is
+        silent, and at its edge it leaps."""
+        deaf = self.conditions.banded.get("accel", ())
+        if not deaf or session.accel is None:
+            return session
+        return replace(session, loudness=block_measures.loudness(
+            session.capture, session.first, session.end, np.delete(np.arange(3), deaf)))
 
     def _banded(self, rows, part):
         """The rows where what a dead band takes off on either side of 0, known to some counts

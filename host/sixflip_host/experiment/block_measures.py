@@ -157,9 +157,10 @@ def freedom(first, end, rate):
     return max(2.0 * float(number), 1.0)
 
 
-def loudness(capture, first, end):
-    """(n,) mg rms of what changes from sample to sample in each block, all axes together."""
-    return np.sqrt([np.diff(capture.accel[a:b].astype(float), axis=0).var(axis=0).sum() / 2.0
+def loudness(capture, first, end, axes=slice(None)):
+    """(n,) mg rms of what changes from sample to sample in each block, all axes together; axes:
+    those that are listened to."""
+    return np.sqrt([np.diff(capture.accel[a:b, axes].astype(float), axis=0).var(axis=0).sum() / 2.0
                     for a, b in zip(first, end)]) * unit_of_count(capture.meta, "accel")
 
 

@@ -34,6 +34,16 @@ def diagnosed(two):
     return diagnosis.diagnose_sessions(sessions, diagnosis.Settings())
 
 
+def test_the_edge_of_a_dead_band_shakes_nothing():
+    """Within it an axis is silent and at its edge it leaps: neither is how much the box shakes."""
+    two = captures(seed=3)
+    for capture in two:
+        capture.accel[np.abs(capture.accel[:, 0]) < 492, 0] = 0
+    found = diagnosed(two)
+    assert [(f.effect, f.value) for f in found.findings] == [("dead_band", {"x": 492})]
+    assert found.causes == []
+
+
 def test_rests_cut_off_at_a_rail_tell_of_the_rail_only():
     two = captures()
     for capture in two:
