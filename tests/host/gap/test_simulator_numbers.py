@@ -6,9 +6,14 @@ import pytest
 
 from sixflip_host.diagnosis.simulator import (
     alignment,
+    comparison,
     conventions,
     evidence_of_logs,
+    hypotheses,
     noise_and_registers,
+    own_calibration,
+    own_motion,
+    pairing,
     parameters,
     simulator_answer,
     single_log,
@@ -54,13 +59,22 @@ def test_a_coefficient_is_as_uncertain_as_stretches_of_the_log_disagree_on_it():
 def test_what_has_no_field_to_set_has_words_to_copy():
     """A pole of 20 Hz is half of 63 ms² of smoothness; what does not differ says nothing."""
     tau = 1.0 / (2.0 * np.pi * 20.0)
-    fits = {"gyro": SimpleNamespace(conventions=(), fit=SimpleNamespace(
+    fits = {"gyro": SimpleNamespace(conventions=(), smoothing_earns=0.0, fit=SimpleNamespace(
         smooth_s2=-0.5 * tau ** 2, smooth_sigma_s2=1e-8))}
     said = {p.name: p.how for p in parameters.timing(-0.04, 1e-4, fits, SimpleNamespace(
         same=True, drift=0.0, drift_sigma=1e-5))}
     assert said == {"delay": "output the gyro 40 ms later", "clock": "",
                     "smoothness": "put a low-pass of first order at 20 Hz (time constant 7.96 ms) "
                                   "behind it"}
+
+
+@pytest.mark.parametrize("earned, differs", [(0.0, True), (60.0, True), (99.0, False)])
+def test_what_noise_alone_earns_is_no_smoothness(earned, differs):
+    """A rover's simulator was "smoother than the sensor", whose force was noise beyond 2 Hz."""
+    fits = {"accel": SimpleNamespace(conventions=(), smoothing_earns=earned, fit=SimpleNamespace(
+        smooth_s2=5e-4, smooth_sigma_s2=5e-5))}
+    smoothness, = parameters.timing(None, None, fits, SimpleNamespace(same=False))
+    assert smoothness.differs == differs
 
 
 @pytest.mark.parametrize("drift, differs", [(8e-5, False), (-8e-5, False), (3e-4, True)])
@@ -115,12 +129,47 @@ def test_a_thing_that_turns_about_one_axis_says_nothing_of_the_others():
     generator = np.random.default_rng(4)
     axis = np.array([0.6, -0.3, 0.74])
     turning = np.sin(np.arange(6000) / 40.0)[:, None] * axis
-    noise = single_log.Noise(np.full(3, 2e-3), 0.05, np.full(3, 2e-2))
-    real = turning + 2e-3 * np.sqrt(2.0 * 6.0) * generator.standard_normal(turning.shape)
-    said = conventions.reliable(real, noise, 6.0)
+    sigma = 2e-3 * np.sqrt(2.0 * 6.0)
+    real = turning + sigma * generator.standard_normal(turning.shape)
+    said = conventions.reliable(real, np.full(3, sigma))
     across = np.cross(axis, [0.0, 0.0, 1.0])
     assert (said @ across).std() < 0.2 * (real @ across).std()
     np.testing.assert_allclose((said @ axis).std(), (turning @ axis).std(), rtol=0.01)
+
+
+@pytest.mark.parametrize("unit", [1.0, 57.3])
+@pytest.mark.parametrize("order", [[0, 1, 2], [2, 0, 1]])
+def test_what_shakes_each_log_by_itself_is_no_motion_of_the_other(unit, order):
+    """A floor's rumble, drawn anew: the simulator's z "never changes", as it was not the real
+    one's. In which unit and along which axes the simulator reads is not known by then."""
+    generator = np.random.default_rng(10)
+    moves = generator.normal(0.0, [0.2, 0.2, 0.0], (9000, 3))
+    real, measured = (moves + generator.normal(0.0, 0.01, moves.shape) for _ in range(2))
+    own = conventions.shaken(hypotheses.nameless(real, real[:, :0], 0), unit * measured[:, order])
+    assert own == pytest.approx(0.01, rel=0.1)
+    assert conventions.reliable(real, np.full(3, own))[:, 2].std() < 0.002
+
+
+def test_a_fit_that_is_smoother_takes_noise_away():
+    """A rover that pitches was "at the body's centre": a lever arm of a centimetre, which the gyro
+    says without noise, gave back what too smooth a force had lost."""
+    generator, band, smooth = np.random.default_rng(8), 2.5, 1e-3
+    noise = alignment.smooth(generator.standard_normal((40000, 1)), pairing.GRID_HZ, band)
+    bent = np.gradient(np.gradient(noise, axis=0), axis=0) * pairing.GRID_HZ ** 2
+    less = (noise + smooth * bent).var() / noise.var()
+    assert evidence_of_logs.smoothed(smooth, band) == pytest.approx(less, abs=0.02)
+    assert evidence_of_logs.smoothed(0.0, band) == evidence_of_logs.smoothed(-smooth, band) == 1.0
+
+
+def test_which_of_two_logs_is_late_is_not_said_where_the_simulators_own_says_nothing(monkeypatch):
+    """A real gyro behind a filter of 22 ms, on a pendulum: the simulator was "late"."""
+    asked = SimpleNamespace(rests=(), rate=None)
+    assert not comparison._late_itself(asked, -0.022)
+    for delay_s, itself in ((0.022, True), (0.0, False)):
+        monkeypatch.setattr(own_calibration, "fitted", lambda sim: "a sensor")
+        monkeypatch.setattr(own_motion, "fitted", lambda sim, sensor, d=delay_s:
+                            own_motion.OwnMotion(d, 0.001))
+        assert comparison._late_itself(SimpleNamespace(rests=((0, 9),)), -0.022) is itself
 
 
 def test_a_line_is_no_noise_of_a_log():

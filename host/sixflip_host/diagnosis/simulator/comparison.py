@@ -154,11 +154,12 @@ def compare_traces(real, sim, aligned):
 
 
 def _late_itself(sim, late):
-    """Whether a simulator's log of the real one's motion is late by itself, as far as its own
-    rests and moves say; which of two logs it is that is late, the pair does not tell."""
+    """Whether a simulator's log of the real one's motion is late by itself, as its own rests and
+    moves say. Which of two logs it is that is late the pair does not tell: where nothing else does
+    a real sensor behind a filter is as likely, and the delay is a number to be set."""
     sensor = own_calibration.fitted(sim)
     moved = own_motion.fitted(sim, sensor) if sensor is not None and sim.rests else None
-    return moved is None or own_motion.late_itself(moved, late)
+    return moved is not None and own_motion.late_itself(moved, late)
 
 
 def constant_channels(real, sim):

@@ -19,6 +19,7 @@ DELAY_ROUNDS = 4  # of two rows, to a hundredth of one
 # Share of the noise expected in the difference of two logs below which they share some of it: logs
 # of their own have all of it, a log that was made of the other's samples next to none.
 SHARED = 0.5
+FORETOLD = 0.5  # of what a simulator reads is not, where it does something else than the sensor
 POSSIBLE = 0.02  # probability of a fit from which on its names are some that it may be
 LATE_SIGMA = 4.0  # standard errors from which on a delay is one: by chance in 1 of 16,000 (normal)
 
@@ -42,7 +43,14 @@ class SensorFit:
         """The Fit of the same hypothesis with other noise of each sample, rows (n,)."""
         return evidence_of_logs.fit_one(
             self.hypothesis, self.pair.simulated(self.kind), self.fit.axes, self.fit.unit,
-            pairing.GRID_HZ, self.kind, self.inflation, self.own, self.live, rows)
+            pairing.GRID_HZ, self.kind, self.inflation, self.own, self.live, rows,
+            band_hz=self.pair.band_hz)
+
+    @property
+    def smoothing_earns(self):
+        """Chi squared that a smoother fit earns by the noise alone that it takes away."""
+        weaker = evidence_of_logs.smoothed(self.fit.smooth_s2, self.pair.band_hz)
+        return float(len(self.pair.t) / self.inflation * self.live.sum() * -np.log(weaker))
 
 
 def same_motion(real, sim, alignment, motion, live, fresh_hz):
@@ -65,10 +73,12 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
         if (share < 1.0).any():
             measured = measured + rounding(kind, real, sim, pair)
             pair = replace(pair, **{"sim_force" if kind == "accel" else "sim_rate": measured})
-        values = reliable(values, noise, pair.band_hz, share)
-        return pair, measured, hypotheses.accelerometer(
-            values, pair.motion, real.g) if kind == "accel" else hypotheses.gyro(
-                values, pair.motion, real.g)
+        made = hypotheses.accelerometer if kind == "accel" else hypotheses.gyro
+        if noise is not None:
+            own = shaken(made(values, pair.motion, real.g)[-1], measured[:, live])
+            values = reliable(values, np.maximum(
+                np.sqrt(2.0 * pair.band_hz * share) * noise.density, own))
+        return pair, measured, made(values, pair.motion, real.g)
 
     pair, measured, tried = asked(pairing.paired(real, sim, alignment, motion))
     nameless = tried[-1]
@@ -81,18 +91,19 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
 
     def judged(inflation, rows=None):
         return [f for h in tried for f in evidence_of_logs.fits(
-            h, measured, kind, pairing.GRID_HZ, inflation, own, live, rows)]
+            h, measured, kind, pairing.GRID_HZ, inflation, own, live, rows, pair.band_hz)]
 
     def whole(fit, inflation, rows=None):
         return evidence_of_logs.fit_one(fit.hypothesis, measured, fit.axes, fit.unit,
-                                        pairing.GRID_HZ, kind, inflation, own, live, rows)
+                                        pairing.GRID_HZ, kind, inflation, own, live, rows,
+                                        band_hz=pair.band_hz)
 
     first = whole(max(judged(1.0), key=lambda f: f.log), 1.0)
     rows = local_noise(first.left[:, live])
     inflation = align_by.independent(first.left[:, live] / rows[:, None])
     own = sized(own, lambda sizes: evidence_of_logs.fit_one(
         first.hypothesis, measured, first.axes, first.unit, pairing.GRID_HZ, kind, inflation,
-        (own[0], sizes), live, rows, left=False).log)
+        (own[0], sizes), live, rows, left=False, band_hz=pair.band_hz).log)
     named, fit = posterior(kind, judged(inflation, rows), live)
     fit = whole(fit, inflation, rows)
     return SensorFit(kind, named, fit, inflation, pair, fit.hypothesis, own, live)
@@ -129,18 +140,33 @@ def rounding(kind, real, sim, pair):
     return np.sqrt(power) * np.random.default_rng(20200517).standard_normal((len(pair.t), 3))
 
 
-def reliable(values, noise, band_hz, own=1.0):
+def shaken(nameless, measured):
+    """What shakes both logs, each in its own way, in the unit of the real one: a floor does. It is
+    what the nameless Hypothesis leaves of the simulator's channels measured (n, k), late and
+    smoothed as it may be, of which as much is the real log's own as is foretold; in the quietest
+    one, as which is which is not known yet. Where most of them is not foretold the simulator does
+    something else, and nothing is known of what shakes."""
+    signal = nameless.signal - nameless.signal.mean(axis=0)
+    slope = np.gradient(signal, axis=0)
+    design = np.column_stack([signal, slope, np.gradient(slope, axis=0), nameless.free,
+                              np.ones(len(measured))])
+    left = (measured - design @ np.linalg.lstsq(design, measured, rcond=None)[0]).var(axis=0)
+    seen = np.maximum(measured.var(axis=0), 1e-30)
+    if left.sum() > FORETOLD * seen.sum():
+        return 0.0
+    unit2 = (seen - left).mean() / max((signal ** 2).mean(), 1e-30)
+    own = left / (2.0 - left / seen)  # noise of both where all is foretold, else its own alone
+    return float(np.sqrt(own.min() / unit2))
+
+
+def reliable(values, sigma):
     """values (n, 3) of the real log, drawn to their mean along each direction by the share of the
     variance there that their noise makes up in the band: what is expected of the motion, given the
     reading. What follows from the motion alone is then fitted without being made too small, and a
     direction that reads nothing but noise, as all but one do where a thing turns about one axis,
     says nothing of the simulator's [Fuller, Measurement Error Models (1987), section 2.2; Carroll
-    et al., Measurement Error in Nonlinear Models (2006), chapter 4]. noise: single_log.Noise, None
-    where it is not known; own: the share of it that is not in the simulator's log as well."""
-    if noise is None:
-        return values
-    mean = values.mean(axis=0)
-    sigma = np.maximum(np.sqrt(2.0 * band_hz * own) * noise.density, 1e-15)
+    et al., Measurement Error in Nonlinear Models (2006), chapter 4]. sigma (3,): of the noise."""
+    mean, sigma = values.mean(axis=0), np.maximum(sigma, 1e-15)
     white = (values - mean) / sigma
     power, directions = np.linalg.eigh(white.T @ white / len(white))
     share = np.clip(1.0 - 1.0 / np.maximum(power, 1e-30), 0.0, 1.0)

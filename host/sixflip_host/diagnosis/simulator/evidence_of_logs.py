@@ -49,16 +49,17 @@ class Fit:
 
 
 def fits(hypothesis, measured, kind, grid_hz, inflation=1.0, own=None, live=None,
-         rows=None):
+         rows=None, band_hz=0.0):
     """Fits of a Hypothesis, one for each S that may be: none, and the nearest signed permutation
     and unit, without what they leave; measured (n, 3); own (columns (n, q), sizes (q,)): what
     the real sensor adds of itself to each channel; live (3,): channels that are not constant;
-    rows (n,): the noise of each sample, in units of the average."""
+    rows (n,): the noise of each sample, in units of the average; band_hz: up to which both are
+    seen, 0 where no smoother fit is weighed for it."""
     live = np.ones(3, bool) if live is None else live
     every_fit = []
     for axes, unit in candidates(hypothesis, measured, kind, live):
         every_fit.append(fit_one(hypothesis, measured, axes, unit, grid_hz, kind, inflation, own,
-                                 live, rows, left=False))
+                                 live, rows, left=False, band_hz=band_hz))
     return every_fit
 
 
@@ -87,7 +88,8 @@ def candidates(hypothesis, measured, kind, live):
     return tried
 
 
-def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, rows, left=True):
+def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, rows, left=True,
+            band_hz=0.0):
     """The Fit of a Hypothesis with one S; left: with what it does not predict of every sample."""
     n = len(measured)
     delay, k = 0.0, h.columns.shape[2]
@@ -120,7 +122,8 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
                             rows[some], residuals=last, every=every)
         delay += float(np.clip(result[2][k], -0.05, 0.05))
     log, beta, shared, sigma, rest, beta_sigma = result
-    log += 0.5 * n / inflation * np.minimum(0.0, np.log(gains(h, beta, shared, unit)))[live].sum()
+    weaker = gains(h, beta, shared, unit) * smoothed(shared[k + 1], band_hz)
+    log += 0.5 * n / inflation * np.minimum(0.0, np.log(weaker))[live].sum()
     log -= live.sum() * n / inflation * np.log(unit)
     return Fit(h, h.name, log, beta[:, 3] * unit, axes, unit, shared[:k], sigma[:k], delay,
                float(sigma[k]), float(shared[k + 1]), float(sigma[k + 1]), beta[:, :3],
@@ -139,6 +142,13 @@ def gains(h, beta, shared, unit):
         whole = whole + beta[:, 4:7]
     turned = beta[:, 7:10] if h.copies > 1 else np.zeros((3, 3))
     return np.maximum(unit ** 2 * ((whole ** 2).sum(axis=1) + (turned ** 2).sum(axis=1)), 1e-12)
+
+
+def smoothed(smooth_s2, band_hz):
+    """By how much the power of white noise that is seen up to band_hz (alignment.smooth) is less
+    after smoothing by so much: the mean of (1 - a u^2)^2 by 1 / (1 + u^4)^2 over all u."""
+    a = max(smooth_s2, 0.0) * (2.0 * np.pi * band_hz) ** 2
+    return 1.0 - 2.0 * a / 3.0 + a * a / 3.0
 
 
 def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,

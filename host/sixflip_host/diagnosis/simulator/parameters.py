@@ -219,9 +219,11 @@ def timing(late, late_sigma, fits, alignment):
         fit = sensor_fit.fit
         if any(c.name == "unknown" for c in sensor_fit.conventions):
             continue
+        told = fit.smooth_s2 / np.hypot(fit.smooth_sigma_s2, 1e-6 * LEAST_SMOOTH_MS2)
         numbers.append(with_how(compared(
             "smoothness", kind, "", "ms²", None, np.inf, None, np.inf, -1e6 * fit.smooth_s2,
-            1e6 * fit.smooth_sigma_s2, least=LEAST_SMOOTH_MS2), smoother))
+            1e6 * fit.smooth_sigma_s2, least=LEAST_SMOOTH_MS2,
+            apart=np.sqrt(max(told ** 2 - sensor_fit.smoothing_earns, 0.0))), smoother))
     if alignment.same:
         numbers.append(with_how(compared(
             "clock", "device", "", "%", None, np.inf, None, np.inf, -100.0 * alignment.drift,
