@@ -263,9 +263,11 @@ def swapped(sessions, nominal):
     if not present(score):
         return None
     read = matrix.T  # what register i carries: true = matrix · read
-    value = axis_order.sources(read)
-    return Finding("axis_swap", "gyro", sorted(value), value, "axis", score, "orientation",
-                   "axes are swapped or inverted against the accelerometer's",
+    sensor, order = axis_order.whose(read, any(s.labelled for s in sessions))
+    value = axis_order.sources(order)
+    return Finding("axis_swap", sensor, sorted(value), value, "axis", score, "orientation",
+                   "axes are swapped or inverted against the %s's" % (
+                       "gyro" if sensor == "accel" else "accelerometer"),
                    {k: (v, v) for k, v in value.items()},
                    share=axis_order.explained(plain, off), number=len(plain),
                    read=read)

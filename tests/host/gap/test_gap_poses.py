@@ -6,7 +6,9 @@ import pytest
 
 from sixflip_host.capture import rests
 from sixflip_host.capture.capture_file import Capture
+from sixflip_host.diagnosis import turn_model
 from sixflip_host.experiment import attitude_fit, blocks
+from sixflip_host.simulation import scenario, simulated_session
 from tests.worlds.unlabelled import FACES, unlabelled
 
 
@@ -45,3 +47,18 @@ def test_a_box_is_turned_over_and_a_robot_on_a_slope_of_20_degrees_is_not(up, tu
                       pose=np.repeat(np.arange(len(up)) + 13, 100).astype(np.int16))
     runs = [rests.Run(13 + k, 100 * k, 100 * k + 100) for k in range(len(up))]
     assert blocks.session_of("s", capture, runs).turned_over == turned
+
+
+@pytest.mark.parametrize("order, sensor, value", [
+    ([[0, 1, 0], [1, 0, 0], [0, 0, 1]], "accel", {"x": 2, "y": 1}),
+    ([[-1, 0, 0], [0, 1, 0], [0, 0, 1]], "accel", {"x": -1}),
+    ([[0, -1, 0], [1, 0, 0], [0, 0, 1]], "gyro", {"x": 2, "y": -1})])
+def test_without_labels_the_fewest_axes_to_be_put_right_are_the_wrong_ones(order, sensor, value):
+    """Two axes of the accelerometer that were swapped were three of the gyro's."""
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 5})
+    capture = simulated_session.session(plan, 0)
+    capture.pose = None
+    capture.accel = capture.accel @ np.array(order, capture.accel.dtype).T
+    session = blocks.session_of("swapped", capture)
+    found = turn_model.swapped([session], [attitude_fit.fit(session)])
+    assert (found.sensor, found.value) == (sensor, value)

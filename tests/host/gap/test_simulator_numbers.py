@@ -7,7 +7,6 @@ import pytest
 from sixflip_host.diagnosis.simulator import (
     alignment,
     comparison,
-    conventions,
     evidence_of_logs,
     hypotheses,
     noise_and_registers,
@@ -131,7 +130,7 @@ def test_a_thing_that_turns_about_one_axis_says_nothing_of_the_others():
     turning = np.sin(np.arange(6000) / 40.0)[:, None] * axis
     sigma = 2e-3 * np.sqrt(2.0 * 6.0)
     real = turning + sigma * generator.standard_normal(turning.shape)
-    said = conventions.reliable(real, np.full(3, sigma))
+    said = pairing.reliable(real, np.full(3, sigma))
     across = np.cross(axis, [0.0, 0.0, 1.0])
     assert (said @ across).std() < 0.2 * (real @ across).std()
     np.testing.assert_allclose((said @ axis).std(), (turning @ axis).std(), rtol=0.01)
@@ -145,9 +144,9 @@ def test_what_shakes_each_log_by_itself_is_no_motion_of_the_other(unit, order):
     generator = np.random.default_rng(10)
     moves = generator.normal(0.0, [0.2, 0.2, 0.0], (9000, 3))
     real, measured = (moves + generator.normal(0.0, 0.01, moves.shape) for _ in range(2))
-    own = conventions.shaken(hypotheses.nameless(real, real[:, :0], 0), unit * measured[:, order])
+    own = pairing.shaken(hypotheses.nameless(real, real[:, :0], 0), unit * measured[:, order])
     assert own == pytest.approx(0.01, rel=0.1)
-    assert conventions.reliable(real, np.full(3, own))[:, 2].std() < 0.002
+    assert pairing.reliable(real, np.full(3, own))[:, 2].std() < 0.002
 
 
 def test_a_fit_that_is_smoother_takes_noise_away():

@@ -1,4 +1,5 @@
-"""Axes of the accelerometer that are swapped or inverted against the labels of the faces."""
+"""Axes of the accelerometer that are swapped or inverted against the labels of the faces, and
+whose they are where there is no label."""
 import math
 from dataclasses import replace
 from itertools import permutations, product
@@ -100,3 +101,14 @@ def sources(order):
         if signed != i + 1:
             swapped_axes["xyz"[i]] = signed
     return swapped_axes
+
+
+def whose(read, labelled):
+    """(sensor, (3, 3) what it reads of what is true) of a gyro that reads `read` (3, 3) of what
+    the accelerometer tells. Without labels an accelerometer with its axes in another order is the
+    same, mirrored or not, as what turns has no mirror image of its own: the one with the fewest
+    axes to be put right is the likelier."""
+    orders = [("gyro", read)]
+    if not labelled and np.linalg.det(read) > 0.0:
+        orders += [("accel", sign * read.T) for sign in (1.0, -1.0)]
+    return min(orders, key=lambda one: len(sources(one[1])))

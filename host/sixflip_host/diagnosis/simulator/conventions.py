@@ -19,7 +19,6 @@ DELAY_ROUNDS = 4  # of two rows, to a hundredth of one
 # Share of the noise expected in the difference of two logs below which they share some of it: logs
 # of their own have all of it, a log that was made of the other's samples next to none.
 SHARED = 0.5
-FORETOLD = 0.5  # of what a simulator reads is not, where it does something else than the sensor
 POSSIBLE = 0.02  # probability of a fit from which on its names are some that it may be
 LATE_SIGMA = 4.0  # standard errors from which on a delay is one: by chance in 1 of 16,000 (normal)
 
@@ -75,8 +74,8 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
             pair = replace(pair, **{"sim_force" if kind == "accel" else "sim_rate": measured})
         made = hypotheses.accelerometer if kind == "accel" else hypotheses.gyro
         if noise is not None:
-            own = shaken(made(values, pair.motion, real.g)[-1], measured[:, live])
-            values = reliable(values, np.maximum(
+            own = pairing.shaken(made(values, pair.motion, real.g)[-1], measured[:, live])
+            values = pairing.reliable(values, np.maximum(
                 np.sqrt(2.0 * pair.band_hz * share) * noise.density, own))
         return pair, measured, made(values, pair.motion, real.g)
 
@@ -138,39 +137,6 @@ def rounding(kind, real, sim, pair):
     power = sum((log.quantum[kind == "gyro"] or 0.0) ** 2 / 12.0 * min(
         1.0, 2.0 * pair.band_hz / log.rate_hz) for log in (real, sim))
     return np.sqrt(power) * np.random.default_rng(20200517).standard_normal((len(pair.t), 3))
-
-
-def shaken(nameless, measured):
-    """What shakes both logs, each in its own way, in the unit of the real one: a floor does. It is
-    what the nameless Hypothesis leaves of the simulator's channels measured (n, k), late and
-    smoothed as it may be, of which as much is the real log's own as is foretold; in the quietest
-    one, as which is which is not known yet. Where most of them is not foretold the simulator does
-    something else, and nothing is known of what shakes."""
-    signal = nameless.signal - nameless.signal.mean(axis=0)
-    slope = np.gradient(signal, axis=0)
-    design = np.column_stack([signal, slope, np.gradient(slope, axis=0), nameless.free,
-                              np.ones(len(measured))])
-    left = (measured - design @ np.linalg.lstsq(design, measured, rcond=None)[0]).var(axis=0)
-    seen = np.maximum(measured.var(axis=0), 1e-30)
-    if left.sum() > FORETOLD * seen.sum():
-        return 0.0
-    unit2 = (seen - left).mean() / max((signal ** 2).mean(), 1e-30)
-    own = left / (2.0 - left / seen)  # noise of both where all is foretold, else its own alone
-    return float(np.sqrt(own.min() / unit2))
-
-
-def reliable(values, sigma):
-    """values (n, 3) of the real log, drawn to their mean along each direction by the share of the
-    variance there that their noise makes up in the band: what is expected of the motion, given the
-    reading. What follows from the motion alone is then fitted without being made too small, and a
-    direction that reads nothing but noise, as all but one do where a thing turns about one axis,
-    says nothing of the simulator's [Fuller, Measurement Error Models (1987), section 2.2; Carroll
-    et al., Measurement Error in Nonlinear Models (2006), chapter 4]. sigma (3,): of the noise."""
-    mean, sigma = values.mean(axis=0), np.maximum(sigma, 1e-15)
-    white = (values - mean) / sigma
-    power, directions = np.linalg.eigh(white.T @ white / len(white))
-    share = np.clip(1.0 - 1.0 / np.maximum(power, 1e-30), 0.0, 1.0)
-    return mean + (white @ (directions * share)) @ directions.T * sigma
 
 
 def sized(own, log):

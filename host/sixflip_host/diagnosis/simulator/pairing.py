@@ -2,7 +2,7 @@
 
 Contacts, wheels and a hand's tremor are not repeated by a simulator, and what only one log has is
 noise in the other's prediction. The band ends where the simulator's output is no longer coherent
-with anything that the real log says.
+with anything that the real log says; in it reliable() tells the motion from the real log's noise.
 """
 from dataclasses import dataclass
 
@@ -21,6 +21,7 @@ SEGMENT_S = 6.0  # of which the coherence is a mean: four periods of the narrowe
 # Share of the variance that follows from the other log in one motion: two runs of one schedule
 # agree in when they turn, and not about which axes.
 ONE_MOTION = 0.8
+FORETOLD = 0.5  # of what a simulator reads is not, where it does something else than the sensor
 
 
 @dataclass(frozen=True)
@@ -116,3 +117,35 @@ def coherent_band(measured, signals):
             return band
     return BANDS[-1]
 
+
+def shaken(nameless, measured):
+    """What shakes both logs, each in its own way, in the unit of the real one: a floor does. It is
+    what the nameless Hypothesis leaves of the simulator's channels measured (n, k), late and
+    smoothed as it may be, of which as much is the real log's own as is foretold; in the quietest
+    one, as which is which is not known yet. Where most of them is not foretold the simulator does
+    something else, and nothing is known of what shakes."""
+    signal = nameless.signal - nameless.signal.mean(axis=0)
+    slope = np.gradient(signal, axis=0)
+    design = np.column_stack([signal, slope, np.gradient(slope, axis=0), nameless.free,
+                              np.ones(len(measured))])
+    left = (measured - design @ np.linalg.lstsq(design, measured, rcond=None)[0]).var(axis=0)
+    seen = np.maximum(measured.var(axis=0), 1e-30)
+    if left.sum() > FORETOLD * seen.sum():
+        return 0.0
+    unit2 = (seen - left).mean() / max((signal ** 2).mean(), 1e-30)
+    own = left / (2.0 - left / seen)  # noise of both where all is foretold, else its own alone
+    return float(np.sqrt(own.min() / unit2))
+
+
+def reliable(values, sigma):
+    """values (n, 3) of the real log, drawn to their mean along each direction by the share of the
+    variance there that their noise makes up in the band: what is expected of the motion, given the
+    reading. What follows from the motion alone is then fitted without being made too small, and a
+    direction that reads nothing but noise, as all but one do where a thing turns about one axis,
+    says nothing of the simulator's [Fuller, Measurement Error Models (1987), section 2.2; Carroll
+    et al., Measurement Error in Nonlinear Models (2006), chapter 4]. sigma (3,): of the noise."""
+    mean, sigma = values.mean(axis=0), np.maximum(sigma, 1e-15)
+    white = (values - mean) / sigma
+    power, directions = np.linalg.eigh(white.T @ white / len(white))
+    share = np.clip(1.0 - 1.0 / np.maximum(power, 1e-30), 0.0, 1.0)
+    return mean + (white @ (directions * share)) @ directions.T * sigma
