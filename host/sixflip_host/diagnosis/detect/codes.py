@@ -15,6 +15,7 @@ FEWEST_AROUND, MOST_AROUND = 5, 16
 # as far apart as twice that the code halfway is read a third as often as the commonest.
 REACH = 2.0
 FINER = 4  # values of a spectrum in the width of a line: the highest is off by a fortieth at most
+FLANK = 8  # of the way from one line of the bits to the next, the flank of one at most
 EXPECTED = 20.0  # readings of a code: chance leaves RARE of them once in a million
 # Of the usual number: no converter's steps differ so much that has none missing (differential
 # nonlinearity of more than 0.9 of a step, which IEEE Std 1241 calls a missing code).
@@ -137,7 +138,8 @@ def _of_low_bits(every, noise, held):
     spectrum = np.abs(fft.rfft(codes_read, lines * number))
     spectrum[:lines] = 0.0
     slowest = int(np.argmax(spectrum >= (1.0 - RARE) * spectrum.max()))
-    slowest += int(np.argmax(spectrum[slowest:slowest + FINER]))
+    # A rest of a few hundred codes makes each line wider than all codes that are read would.
+    slowest += int(np.argmax(spectrum[slowest:slowest + lines // FLANK]))
     return 0.0 if slowest % lines else _poisson(times, usual, seldom)
 
 
