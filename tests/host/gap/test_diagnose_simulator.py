@@ -4,6 +4,7 @@ import struct
 
 import numpy as np
 import pytest
+from scipy import signal
 
 import sixflip_host
 from sixflip_host import cli
@@ -226,6 +227,40 @@ def test_a_channel_that_hears_nothing_but_noise_has_no_scale_and_no_axes(tmp_pat
     """On a floor four of six channels do: two logs of one robot have nothing there to share."""
     real, sim = (capture_file.read(capture(tmp_path / str(seed), *driving(1), seed=seed))
                  for seed in (0, 5))
+    found = comparison.compare([("real", real)], "sim", sim)
+    assert found.alignment.same
+    assert not found.conventions and not found.differs
+
+
+def rumbling(seed, floor):
+    """(t, force, rate) of a rover that drives, turns and sways by less than a degree; the floor
+    (a seed) shakes it on its way, faster than it moves."""
+    rng, own = np.random.default_rng(seed), np.random.default_rng(floor)
+    t = np.arange(0.0, 200.0, 0.01)
+    way = np.clip(np.minimum(t % 40.0 - 8.0, 38.0 - t % 40.0) / 1.5, 0.0, 1.0)
+    way = (way ** 2 * (3.0 - 2.0 * way))[:, None]
+
+    def shaking(low, high, generator):
+        band = signal.butter(2, [low, high], "bandpass", fs=100.0, output="sos")
+        x = signal.sosfiltfilt(band, generator.standard_normal((len(t), 3)), axis=0)
+        return way * x / x.std(axis=0)
+
+    roll, pitch = np.radians(0.4) * shaking(0.2, 2.0, rng)[:, :2].T
+    speed = way[:, 0] * (0.35 + 0.2 * np.sin(0.5 * t + rng.uniform(0.0, 6.0)))
+    yaw = way[:, 0] * np.radians(40.0) * np.sin(0.31 * t + rng.uniform(0.0, 6.0))
+    rate = np.stack([np.gradient(roll, t) - yaw * pitch, np.gradient(pitch, t) + yaw * roll,
+                     yaw], 1)
+    force = G * np.stack([-pitch, roll, np.ones_like(t)], 1)
+    force[:, :2] += np.stack([np.gradient(speed, t), speed * yaw], 1)
+    return (t, force + 0.25 * shaking(5.0, 40.0, own),
+            rate + np.radians(0.3) * shaking(5.0, 40.0, own))
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_floor_that_shakes_each_log_in_its_own_way_is_no_convention(tmp_path, seed):
+    """The simulator's was "at the body's centre", "smoother than the sensor"."""
+    real, sim = (capture_file.read(capture(tmp_path / str(floor), *rumbling(seed, floor),
+                                           noise=0.5, seed=floor)) for floor in (11, 12))
     found = comparison.compare([("real", real)], "sim", sim)
     assert found.alignment.same
     assert not found.conventions and not found.differs

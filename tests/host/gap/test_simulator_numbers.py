@@ -144,7 +144,9 @@ def test_what_shakes_each_log_by_itself_is_no_motion_of_the_other(unit, order):
     generator = np.random.default_rng(10)
     moves = generator.normal(0.0, [0.2, 0.2, 0.0], (9000, 3))
     real, measured = (moves + generator.normal(0.0, 0.01, moves.shape) for _ in range(2))
-    own = pairing.shaken(hypotheses.nameless(real, real[:, :0], 0), unit * measured[:, order])
+    read = unit * measured[:, order]
+    left = pairing.not_foretold(hypotheses.nameless(real, real[:, :0], 0), read)
+    own = pairing.shaken(left, read, real)
     assert own == pytest.approx(0.01, rel=0.1)
     assert pairing.reliable(real, np.full(3, own))[:, 2].std() < 0.002
 
@@ -152,12 +154,13 @@ def test_what_shakes_each_log_by_itself_is_no_motion_of_the_other(unit, order):
 def test_a_fit_that_is_smoother_takes_noise_away():
     """A rover that pitches was "at the body's centre": a lever arm of a centimetre, which the gyro
     says without noise, gave back what too smooth a force had lost."""
-    generator, band, smooth = np.random.default_rng(8), 2.5, 1e-3
-    noise = alignment.smooth(generator.standard_normal((40000, 1)), pairing.GRID_HZ, band)
+    generator, smooth = np.random.default_rng(8), 1e-3
+    noise = alignment.smooth(generator.standard_normal((40000, 3)), pairing.GRID_HZ, 2.5)
     bent = np.gradient(np.gradient(noise, axis=0), axis=0) * pairing.GRID_HZ ** 2
+    bends = evidence_of_logs.bends(noise, pairing.GRID_HZ)
     less = (noise + smooth * bent).var() / noise.var()
-    assert evidence_of_logs.smoothed(smooth, band) == pytest.approx(less, abs=0.02)
-    assert evidence_of_logs.smoothed(0.0, band) == evidence_of_logs.smoothed(-smooth, band) == 1.0
+    assert less < 0.9 and evidence_of_logs.smoothed(smooth, bends) == pytest.approx(less, rel=1e-3)
+    assert evidence_of_logs.smoothed(-smooth, bends) == 1.0
 
 
 def test_which_of_two_logs_is_late_is_not_said_where_the_simulators_own_says_nothing(monkeypatch):

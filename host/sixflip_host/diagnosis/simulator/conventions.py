@@ -27,7 +27,7 @@ LATE_SIGMA = 4.0  # standard errors from which on a delay is one: by chance in 1
 class SensorFit:
     """One sensor of the simulator as the best hypothesis has it: conventions, fit
     (evidence_of_logs.Fit), inflation, the Pair it was made on, the Hypothesis, the real sensor's
-    own effects and the channels that change."""
+    own effects, the channels that change and how fast the noise is (evidence_of_logs.bends)."""
 
     kind: str
     conventions: tuple
@@ -37,18 +37,19 @@ class SensorFit:
     hypothesis: object
     own: tuple
     live: np.ndarray
+    noise_bends: tuple
 
     def refitted(self, rows):
         """The Fit of the same hypothesis with other noise of each sample, rows (n,)."""
         return evidence_of_logs.fit_one(
             self.hypothesis, self.pair.simulated(self.kind), self.fit.axes, self.fit.unit,
             pairing.GRID_HZ, self.kind, self.inflation, self.own, self.live, rows,
-            band_hz=self.pair.band_hz)
+            noise_bends=self.noise_bends)
 
     @property
     def smoothing_earns(self):
         """Chi squared that a smoother fit earns by the noise alone that it takes away."""
-        weaker = evidence_of_logs.smoothed(self.fit.smooth_s2, self.pair.band_hz)
+        weaker = evidence_of_logs.smoothed(self.fit.smooth_s2, self.noise_bends)
         return float(len(self.pair.t) / self.inflation * self.live.sum() * -np.log(weaker))
 
 
@@ -73,39 +74,43 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
             measured = measured + rounding(kind, real, sim, pair)
             pair = replace(pair, **{"sim_force" if kind == "accel" else "sim_rate": measured})
         made = hypotheses.accelerometer if kind == "accel" else hypotheses.gyro
+        heard = measured[:, live]
+        left = pairing.not_foretold(made(values, pair.motion, real.g)[-1], heard)
         if noise is not None:
-            own = pairing.shaken(made(values, pair.motion, real.g)[-1], measured[:, live])
             values = pairing.reliable(values, np.maximum(
-                np.sqrt(2.0 * pair.band_hz * share) * noise.density, own))
-        return pair, measured, made(values, pair.motion, real.g)
+                np.sqrt(2.0 * pair.band_hz * share) * noise.density,
+                pairing.shaken(left, heard, values)))
+        return pair, measured, made(values, pair.motion, real.g), evidence_of_logs.bends(
+            left, pairing.GRID_HZ)
 
-    pair, measured, tried = asked(pairing.paired(real, sim, alignment, motion))
+    pair, measured, tried, noise_bends = asked(pairing.paired(real, sim, alignment, motion))
     nameless = tried[-1]
     band = min(fresh_hz / HELD_BAND, pairing.coherent_band(
         measured, np.concatenate([nameless.signal, nameless.free], 1)))
     if band < pair.band_hz:
-        pair, measured, tried = asked(pairing.paired(real, sim, alignment, motion, band))
+        pair, measured, tried, noise_bends = asked(
+            pairing.paired(real, sim, alignment, motion, band))
 
     own = hypotheses.own_effects(kind, pair.t, pair.celsius, pair.force, pair.motion.rate, real.g)
 
     def judged(inflation, rows=None):
         return [f for h in tried for f in evidence_of_logs.fits(
-            h, measured, kind, pairing.GRID_HZ, inflation, own, live, rows, pair.band_hz)]
+            h, measured, kind, pairing.GRID_HZ, inflation, own, live, rows, noise_bends)]
 
     def whole(fit, inflation, rows=None):
         return evidence_of_logs.fit_one(fit.hypothesis, measured, fit.axes, fit.unit,
                                         pairing.GRID_HZ, kind, inflation, own, live, rows,
-                                        band_hz=pair.band_hz)
+                                        noise_bends=noise_bends)
 
     first = whole(max(judged(1.0), key=lambda f: f.log), 1.0)
     rows = local_noise(first.left[:, live])
     inflation = align_by.independent(first.left[:, live] / rows[:, None])
     own = sized(own, lambda sizes: evidence_of_logs.fit_one(
         first.hypothesis, measured, first.axes, first.unit, pairing.GRID_HZ, kind, inflation,
-        (own[0], sizes), live, rows, left=False, band_hz=pair.band_hz).log)
+        (own[0], sizes), live, rows, left=False, noise_bends=noise_bends).log)
     named, fit = posterior(kind, judged(inflation, rows), live)
     fit = whole(fit, inflation, rows)
-    return SensorFit(kind, named, fit, inflation, pair, fit.hypothesis, own, live)
+    return SensorFit(kind, named, fit, inflation, pair, fit.hypothesis, own, live, noise_bends)
 
 
 def own_noise(values, measured, noise, theirs, band_hz):

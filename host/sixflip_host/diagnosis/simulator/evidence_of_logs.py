@@ -49,17 +49,17 @@ class Fit:
 
 
 def fits(hypothesis, measured, kind, grid_hz, inflation=1.0, own=None, live=None,
-         rows=None, band_hz=0.0):
+         rows=None, noise_bends=(0.0, 0.0)):
     """Fits of a Hypothesis, one for each S that may be: none, and the nearest signed permutation
     and unit, without what they leave; measured (n, 3); own (columns (n, q), sizes (q,)): what
     the real sensor adds of itself to each channel; live (3,): channels that are not constant;
-    rows (n,): the noise of each sample, in units of the average; band_hz: up to which both are
-    seen, 0 where no smoother fit is weighed for it."""
+    rows (n,): the noise of each sample, in units of the average; noise_bends: bends() of the
+    noise, none where no smoother fit is weighed for what it takes away."""
     live = np.ones(3, bool) if live is None else live
     every_fit = []
     for axes, unit in candidates(hypothesis, measured, kind, live):
         every_fit.append(fit_one(hypothesis, measured, axes, unit, grid_hz, kind, inflation, own,
-                                 live, rows, left=False, band_hz=band_hz))
+                                 live, rows, left=False, noise_bends=noise_bends))
     return every_fit
 
 
@@ -89,7 +89,7 @@ def candidates(hypothesis, measured, kind, live):
 
 
 def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, rows, left=True,
-            band_hz=0.0):
+            noise_bends=(0.0, 0.0)):
     """The Fit of a Hypothesis with one S; left: with what it does not predict of every sample."""
     n = len(measured)
     delay, k = 0.0, h.columns.shape[2]
@@ -122,8 +122,10 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
                             rows[some], residuals=last, every=every)
         delay += float(np.clip(result[2][k], -0.05, 0.05))
     log, beta, shared, sigma, rest, beta_sigma = result
-    weaker = gains(h, beta, shared, unit) * smoothed(shared[k + 1], band_hz)
-    log += 0.5 * n / inflation * np.minimum(0.0, np.log(weaker))[live].sum()
+    # Of a channel that reads a part of the signal only, the smoothing is that of the part.
+    part = np.maximum(1.0 + np.diag(beta[:, :3]) + (shared[0] if h.scaled else 0.0), DEAD)
+    for weaker in (gains(h, beta, shared, unit), smoothed(shared[k + 1] / part, noise_bends)):
+        log += 0.5 * n / inflation * np.minimum(0.0, np.log(weaker))[live].sum()
     log -= live.sum() * n / inflation * np.log(unit)
     return Fit(h, h.name, log, beta[:, 3] * unit, axes, unit, shared[:k], sigma[:k], delay,
                float(sigma[k]), float(shared[k + 1]), float(sigma[k + 1]), beta[:, :3],
@@ -144,11 +146,18 @@ def gains(h, beta, shared, unit):
     return np.maximum(unit ** 2 * ((whole ** 2).sum(axis=1) + (turned ** 2).sum(axis=1)), 1e-12)
 
 
-def smoothed(smooth_s2, band_hz):
-    """By how much the power of white noise that is seen up to band_hz (alignment.smooth) is less
-    after smoothing by so much: the mean of (1 - a u^2)^2 by 1 / (1 + u^4)^2 over all u."""
-    a = max(smooth_s2, 0.0) * (2.0 * np.pi * band_hz) ** 2
-    return 1.0 - 2.0 * a / 3.0 + a * a / 3.0
+def bends(noise, grid_hz):
+    """(mean product of noise (n, k) and its second derivative, mean square of that), each over the
+    mean square of the noise, 1/s2 and 1/s4: how fast it is."""
+    second = np.gradient(np.gradient(noise, axis=0), axis=0) * grid_hz ** 2
+    power = max(float((noise ** 2).mean()), 1e-30)
+    return float((noise * second).mean()) / power, float((second ** 2).mean()) / power
+
+
+def smoothed(smooth_s2, noise_bends):
+    """The power of a noise with such bends() after smoothing by so much (s2), over that before."""
+    s = np.maximum(smooth_s2, 0.0)
+    return np.maximum(1.0 + 2.0 * s * noise_bends[0] + s * s * noise_bends[1], 1e-12)
 
 
 def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,

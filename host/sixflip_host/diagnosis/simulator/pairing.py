@@ -118,21 +118,25 @@ def coherent_band(measured, signals):
     return BANDS[-1]
 
 
-def shaken(nameless, measured):
-    """What shakes both logs, each in its own way, in the unit of the real one: a floor does. It is
-    what the nameless Hypothesis leaves of the simulator's channels measured (n, k), late and
-    smoothed as it may be, of which as much is the real log's own as is foretold; in the quietest
-    one, as which is which is not known yet. Where most of them is not foretold the simulator does
-    something else, and nothing is known of what shakes."""
-    signal = nameless.signal - nameless.signal.mean(axis=0)
-    slope = np.gradient(signal, axis=0)
-    design = np.column_stack([signal, slope, np.gradient(slope, axis=0), nameless.free,
+def not_foretold(nameless, measured):
+    """(n, k) what the nameless Hypothesis leaves of the simulator's channels measured (n, k), late
+    and smoothed as it may be: the noise of both logs, and what shakes each in its own way."""
+    slope = np.gradient(nameless.signal, axis=0)
+    design = np.column_stack([nameless.signal, slope, np.gradient(slope, axis=0), nameless.free,
                               np.ones(len(measured))])
-    left = (measured - design @ np.linalg.lstsq(design, measured, rcond=None)[0]).var(axis=0)
-    seen = np.maximum(measured.var(axis=0), 1e-30)
+    return measured - design @ np.linalg.lstsq(design, measured, rcond=None)[0]
+
+
+def shaken(left, measured, signal):
+    """What shakes both logs, each in its own way, in the unit of the real one: a floor does. It is
+    of what is left (n, k) of the simulator's channels measured (n, k) as much as is foretold of
+    them by the real log's signal (n, 3); in the quietest one, as which is which is not known yet.
+    Where most of them is not foretold the simulator does something else, and nothing is known of
+    what shakes."""
+    left, seen = left.var(axis=0), np.maximum(measured.var(axis=0), 1e-30)
     if left.sum() > FORETOLD * seen.sum():
         return 0.0
-    unit2 = (seen - left).mean() / max((signal ** 2).mean(), 1e-30)
+    unit2 = (seen - left).mean() / max(signal.var(axis=0).mean(), 1e-30)
     own = left / (2.0 - left / seen)  # noise of both where all is foretold, else its own alone
     return float(np.sqrt(own.min() / unit2))
 
