@@ -17,6 +17,9 @@ from .detection import BELOW, RANGE, Finding, present
 # round in half a second or more, and comes up to its rate in a third of that.
 FLANK_S, FLANK = 0.04, 2
 LOOKED_AT = 6  # ends of a sensor's three axes, each of which could be cut off
+# Chance that a log comes to its largest reading again and again and stays there: a motor does at
+# its steady rate, a robot in its pose, a hand does not.
+STEADY = 0.01
 # Share of the span of the readings just inside their largest one, in which peaks that are not cut
 # off end as well: less holds too few of them, in more they thin out by themselves.
 SPREAD_SHARE = 0.02
@@ -35,7 +38,7 @@ def saturation(sessions, sensor, columns):
                 said = "%d samples of the %s axis sit on the rail" % (on_rail.sum(), "xyz"[i])
                 size = int(np.abs(x).max())
             else:
-                nats, level = max(((cut_off_nats(y, ~session.at_rest), (y, y == y.max()))
+                nats, level = max(((cut_off_nats(y), (y, y == y.max()))
                                    for y in (x, -x)), key=lambda pair: pair[0])
                 size = int(np.abs(level[0].max()))
                 said = _below(session, sensor, "xyz"[i], level[0].max())
@@ -68,11 +71,11 @@ def railed(session, sensor="accel"):
     """(n,) True where a sample sits on a rail or on a level that peaks are cut off at."""
     counts = getattr(session.capture, sensor)
     rail = _range_rail(session, sensor)
-    at_end, moving = np.zeros(len(counts), bool), ~session.at_rest
+    at_end = np.zeros(len(counts), bool)
     for column in counts.T.astype(np.int64):
         at_end |= np.abs(column) >= rail
         for sign in (1, -1):
-            if present(cut_off_nats(sign * column, moving)):
+            if present(cut_off_nats(sign * column)):
                 at_end |= sign * column == (sign * column).max()
     return at_end
 
@@ -105,22 +108,35 @@ def _range_rail(session, sensor):
     return registers.rail(session.capture, sensor) - RAIL_CODES
 
 
-def cut_off_nats(x, moving=True):
-    """level_nats of the largest value of x; the one sample that is the largest anyhow is no
-    evidence, and the largest values that were looked at are taken off. What lies in the same pose
-    again reads the same again, so only peaks `moving` (n,) may end where they like."""
+def cut_off_nats(x):
+    """level_nats of the largest value of x, against peaks that end anywhere or at one steady
+    reading again and again; the one sample that is the largest anyhow is no evidence, and the
+    largest values that were looked at are taken off."""
     at = x == x.max()
-    return 0.0 if at.all() else level_nats(x, at, 1, 1, moving) - math.log(LOOKED_AT)
+    if at.all():
+        return 0.0
+    nats = level_nats(x, at, 1, 1) - math.log(LOOKED_AT)
+    return -float(np.logaddexp(-nats, math.log(STEADY) - _piled_up_nats(x)))
 
 
-def level_nats(x, at, width, free=0, moving=True):
+def _piled_up_nats(x):
+    """Log likelihood ratio (nats) of more samples at the largest code than at the one below it, as
+    where what would be larger reads it, against fewer, as in the noise of one steady rate; the
+    one sample that is the largest anyhow is no evidence. Either share has all values alike."""
+    step = _spread(x)[0]
+    most, below = int((x == x.max()).sum()) - 1, int((x == x.max() - step).sum())
+    more, fewer = (np.log(max(float(part(most + 1.0, below + 1.0, 0.5)), 1e-300))
+                   for part in (special.betaincc, special.betainc))
+    return float(more - fewer)
+
+
+def level_nats(x, at, width, free=0):
     """Log likelihood ratio (nats) of readings x being held at their largest `width` codes, where
     `at` is True, against readings whose peaks end anywhere in the last part of their span. That
     the next sample stays at the level counts for as much as it does so more often than noise and
-    the other readings let it. free: peaks that end there anyhow; moving (n,): which samples have
-    peaks that are counted."""
+    the other readings let it. free: peaks that end there anyhow."""
     step, spread = _spread(x)
-    reached, inside = peaks(x, at, moving)
+    reached, inside = peaks(x, at)
     runs = max(reached - free, 0)
     # A rail is known beforehand: what jumps there alone could have jumped anywhere.
     known = not free and not inside
@@ -149,12 +165,9 @@ def _oftener(hits, misses, chance):
                - hits * math.log(chance) - misses * math.log1p(-chance))
 
 
-def peaks(x, at, moving=True):
-    """(peaks that end at the level where `at` is True, those that end just inside of it); of what
-    rests near its largest reading noise makes many that end there, and it is no peak."""
+def peaks(x, at):
+    """(peaks that end at the level where `at` is True, those that end just inside of it)."""
     near = x >= x[at].min() - _spread(x)[1]
-    if moving is not True:
-        near &= ~ndimage.binary_propagation(near & ~moving, mask=near)
     reached = _reached(near, at & near)
     return reached, number_of_runs(near) - reached
 
