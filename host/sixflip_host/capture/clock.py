@@ -43,7 +43,8 @@ NORMAL_95, STUDENT_95 = 1.96, (4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 
 @dataclass(frozen=True)
 class SampleClock:
     """rows; rate_hz and interval_hz (95 %); losses and loss_gaps (samples, places), losses_known
-    those of them that a link is known to have lost, loss_periods how long each other gap is;
+    those of them that a link is known to have lost, loss_periods how long each other gap is,
+    lost_after ((row, samples), ...) the last row before each and what it lacks;
     pauses, pause_s and longest_pause_s; late, bursts and longest_late_ms (rows, groups of them);
     jitter_ms; resolution_ms of the stamps; expected: rows and losses together."""
 
@@ -63,6 +64,7 @@ class SampleClock:
     longest_late_ms: float
     jitter_ms: float
     resolution_ms: float
+    lost_after: tuple = ()
 
     @property
     def expected(self):
@@ -109,7 +111,8 @@ def measure(t_us, recorder=(), lost=()):
         tuple((gaps.lift[(missing > 0) & ~is_known] / period).tolist()),
         int(pause.sum()), float(gaps.lift[pause].sum()) / 1e6,
         float(gaps.lift[pause].max(initial=0)) / 1e6,
-        gaps.late, gaps.bursts, gaps.latest / 1e3, gaps.jitter / 1e3, resolution / 1e3)
+        gaps.late, gaps.bursts, gaps.latest / 1e3, gaps.jitter / 1e3, resolution / 1e3,
+        tuple(zip(gaps.places[missing > 0].tolist(), missing[missing > 0].tolist())))
 
 
 def sample_clock(capture):

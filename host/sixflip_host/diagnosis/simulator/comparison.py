@@ -68,19 +68,27 @@ class Comparison:
 
     @property
     def shaken(self):
-        """Sensors of which far more is left than noise, and nothing that goes on for seconds: it
-        may be shaking that each log has of its own, and may be the sensor's."""
-        return [kind for kind, (before, after, noise) in self.gap.items()
-                if kind not in self.wanders and min(before, after) > FAR_ABOVE * noise > 0.0]
+        """Sensors of which far more is left than noise, and than a tenth of the gap, and nothing
+        that goes on for seconds: it may be shaking that each log has of its own, and may be the
+        sensor's."""
+        return [kind for kind, gap in self.gap.items()
+                if kind not in self.wanders and _open(gap, FAR_ABOVE)]
 
     @property
     def left(self):
         """Sensors of which more is left than noise, and than a tenth of the gap of two logs of
         one motion, and wanders. Where a range differs the readings at its end are left."""
         cut = {p.sensor for p in self.parameters if p.name == "range" and p.differs}
-        return [kind for kind, (before, after, noise) in self.gap.items()
-                if kind in self.wanders - cut and min(before, after) > ABOVE * noise > 0.0
-                and before ** 2 - after ** 2 < verdict.CLOSED * (before ** 2 - noise ** 2)]
+        return [kind for kind, gap in self.gap.items()
+                if kind in self.wanders - cut and _open(gap, ABOVE)]
+
+
+def _open(gap, times):
+    """Whether of a gap (before, after, noise alone) so many times the noise is left, and a tenth
+    of what is above it."""
+    before, after, noise = gap
+    return min(before, after) > times * noise > 0.0 and (
+        before ** 2 - after ** 2 < verdict.CLOSED * (before ** 2 - noise ** 2))
 
 
 def compare(real_logs, name, capture):

@@ -9,6 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import alignment
+from .pairing import GRID_HZ
+
 # Prior standard deviations. Scale and misalignment: MPU-6050 PS rev 3.4, tables 6.1 and 6.2 (3 %
 # scale, 2 % cross-axis) and ITG-3205 PS (6 % scale). Zero level: 80 mg and 20 deg/s, the same.
 SHAPE = 0.04
@@ -31,6 +34,9 @@ OWN = {"accel": {"celsius": 0.03, "fading": 0.3, "line": 0.15, "pairs": 0.15, "s
        "gyro": {"celsius": 0.017, "fading": 0.017, "line": 0.017, "pairs": 0.006, "signs": 0.06,
                 "force": 0.006}}
 FADES_S = (30.0, 120.0)  # time constants of what fades: of a minute's log, and of warming up
+# Slower than that a gyro's tilt between two rests is its own: a cross axis of 1 % of a robot that
+# turns to one side, or a tenth of a deg/s of bias, make a degree in ten seconds.
+WANDERS_HZ = 0.05
 DEG = 180.0 / np.pi
 
 
@@ -67,10 +73,15 @@ def accelerometer(force, motion, g):
     arm = np.zeros(3), np.full(3, LEVER_M)
     transport = -np.cross(motion.rate, motion.speed)[:, :, None]
     world = np.einsum("nij,nj->ni", motion.turn, force)
+    # What a gyro says of the tilt wanders between rests; of a thing that stays level its fast part
+    # and the mean say more.
+    level = up.mean(axis=0) + up - alignment.smooth(up, GRID_HZ, WANDERS_HZ)
     tried = [
         Hypothesis("healthy", force, *none(n)),
         Hypothesis("no_gravity", moved, *none(n)),
+        Hypothesis("no_gravity", force - level, *none(n)),
         Hypothesis("gravity_sign", moved - up, *none(n)),
+        Hypothesis("gravity_sign", force - 2.0 * level, *none(n)),
         Hypothesis("gravity_after_rotation", moved, *none(n), bias_sd=g),
         Hypothesis("world_frame_forces", world, *none(n), heading=True),
         Hypothesis("no_centripetal_term", force, transport, np.ones(1), np.full(1, 0.1)),

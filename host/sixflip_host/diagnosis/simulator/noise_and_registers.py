@@ -148,7 +148,7 @@ def _powers(trace, values, top):
     second = int(trace.rate_hz)
     whole = len(values) // second * second
     gap = np.diff(trace.t, append=trace.t[-1:]) * trace.rate_hz > GAP
-    moves = ~(still | gap)[:whole].reshape(-1, second).any(axis=1)
+    moves = ~(still | gap | trace.put_in)[:whole].reshape(-1, second).any(axis=1)
     each = fast[:whole].reshape(-1, second, 3).mean(axis=1)[moves]
     if len(each) < FEWEST_S or still.sum() < FEWEST_S * second // 2:
         return None

@@ -48,7 +48,8 @@ class Pair:
 
 
 def paired(real, sim, alignment, motion, band_hz=BANDS[0]):
-    """Pair of two Traces and the real one's Motion; samples on a rail are left out."""
+    """Pair of two Traces and the real one's Motion; samples on a rail, and lost ones, are left
+    out."""
     t = np.arange(0.0, sim.seconds, 1.0 / GRID_HZ)
     there = alignment.of_simulator(t)
     inside = (there > EDGE_S) & (there < real.seconds - EDGE_S) & (t > EDGE_S) & (
@@ -64,8 +65,9 @@ def paired(real, sim, alignment, motion, band_hz=BANDS[0]):
     sim_rate = np.zeros_like(sim.force) if sim.rate is None else sim.rate
     fields = {name: onto(real, getattr(motion, name), there)
               for name in ("turn", "up", "rate", "rate_dot", "moved", "speed")}
-    bad = (np.interp(there, real.t, real.railed.astype(float)) > 0) | (
-        np.interp(t, sim.t, sim.railed.astype(float)) > 0)
+    bad = np.zeros(len(t), bool)
+    for log, at in ((real, there), (sim, t)):
+        bad |= np.interp(at, log.t, (log.railed | log.put_in).astype(float)) > 0
     wide = max(1, int(0.5 * GRID_HZ / band_hz))
     bad = np.convolve(bad, np.ones(2 * wide + 1), "same") > 0
     if bad.mean() > 0.5:

@@ -97,9 +97,10 @@ def verdict(effects, comparisons, named_effects=False):
     left = effects in ("unexplained", "partly explained")
     if unexplained or left:
         return "partly explained" if explains or effects == "partly explained" else "unexplained"
+    shaken = any(x.shaken for x in comparisons)
     if explains:
-        return "explained"
-    if undecided or any(x.shaken for x in comparisons):
+        return "partly explained" if shaken else "explained"
+    if undecided or shaken:
         return "cannot tell"
     if effects == "cannot tell" and not named_effects and all(
             x.alignment.same and x.motion_judged for x in comparisons):

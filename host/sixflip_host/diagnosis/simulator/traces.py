@@ -7,12 +7,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from sixflip.poses import faces
 
+from ...capture import clock, rests_by_variance
 from ...capture import rests as rest_finder
-from ...capture import rests_by_variance
 from ...capture.attitude import carried, levelled, rotation_between, rotations
+from ...capture.capture import Capture
 from ...experiment.block_measures import EDGE_S
 from .. import adequacy
 from . import single_log
@@ -34,7 +36,7 @@ class Trace:
     faces: the axis of each rest that a label says is up, (3,) or None; quantum: m/s2 and rad/s
     of one count; flicker: {sensor: mg or deg/s}, the level of such a chip (adequacy.usual), by
     which its bias is another one the next time; railed (n,): a channel stands at the end of what
-    it can say."""
+    it can say; put_in (n,): rows that were lost."""
 
     name: str
     t: np.ndarray
@@ -48,6 +50,7 @@ class Trace:
     quantum: tuple
     flicker: dict
     railed: np.ndarray
+    put_in: np.ndarray
 
     @property
     def seconds(self):
@@ -67,6 +70,7 @@ class Trace:
 def trace_from_capture(name, capture):
     """The Trace of a Capture; a chip without a gyro has no rate."""
     meta = capture.meta
+    capture, put_in = even_rows(capture)
     t = (capture.t_us - capture.t_us[0]) * 1e-6
     if len(t) > 1 and t[-1] <= 0.0:
         t = np.arange(len(t)) / float(meta["rate_hz"])
@@ -83,7 +87,34 @@ def trace_from_capture(name, capture):
     flicker = {kind: adequacy.usual(meta["sensor"], kind) for kind in ("accel", "gyro")}
     return Trace(name, t, capture.accel * quantum[0],
                  None if capture.gyro is None else capture.gyro * quantum[1], celsius,
-                 float(rate_hz), capture.g, rests, ups, quantum, flicker, railed)
+                 float(rate_hz), capture.g, rests, ups, quantum, flicker, railed, put_in)
+
+
+def even_rows(capture):
+    """(Capture with the rows that were lost put in, by its clock, on a cubic through the others;
+    (n,) True of these): what is smoothed and turned from row to row needs even ones, and has to
+    know which of them nobody read. A straight line would cut the peaks off."""
+    n = len(capture)
+    measured = clock.sample_clock(capture)
+    if measured is None or not measured.lost_after:
+        return capture, np.zeros(n, bool)
+    missing = np.zeros(n, int)
+    for row, samples in measured.lost_after:
+        missing[row + 1] = samples
+    at = np.arange(n) + np.cumsum(missing)
+    every = np.arange(at[-1] + 1)
+
+    def between(counts):
+        if counts is None:
+            return None
+        course = np.rint(CubicSpline(at, counts, axis=0)(every))
+        return np.clip(course, counts.min(axis=0), counts.max(axis=0)).astype(counts.dtype)
+
+    pose = capture.pose if capture.pose is None else capture.pose[
+        np.searchsorted(at, every, "right") - 1]
+    even = Capture(capture.meta, np.interp(every, at, capture.t_us).astype(np.int64),
+                   between(capture.accel), between(capture.gyro), between(capture.temp), pose=pose)
+    return even, ~np.isin(every, at)
 
 
 def _rests(capture, rate_hz):
