@@ -1,5 +1,7 @@
 """Columns of counts: what one stands for, steps, a band that reads nothing, bits and columns that
 stick."""
+import math
+
 import numpy as np
 
 from sixflip import RAIL
@@ -156,9 +158,20 @@ def of_counts(sessions, sensor):
     return [s for s in sessions if s.capture.meta.get(sensor + "_values") != "float"]
 
 
+def bit_nats(x, bit):
+    """Log likelihood ratio (nats) of a bit of a column (n,) that never changes being stuck, over
+    the codes read being such as all have it alike. Of two codes next to each other in order, so
+    far apart, wherever they lie, the bit is another one as often as its edges lie between them:
+    the codes of one rest lie close together and tell little. Which bit it is, is paid."""
+    period = 2 << bit
+    apart = np.diff(codes(x)) % period
+    changes = np.minimum(apart, period - apart) / (1 << bit)
+    return float(-np.log1p(-changes).sum()) - math.log(LOW_BITS)
+
+
 def fixed_bits(x):
     """[(bit, value)] of single low bits of a column (n,) of int64 that never change while those
-    around them do."""
+    around them do, where that is likelier of a bit that is stuck."""
     if len(x) < FEWEST_SAMPLES:
         return []
     ever, always = np.bitwise_or.reduce(x), np.bitwise_and.reduce(x)
@@ -166,13 +179,14 @@ def fixed_bits(x):
     for bit in range(LOW_BITS):
         weight = 1 << bit
         fixed = not ever & weight or bool(always & weight)
-        if fixed and step < 2 * weight and np.ptp(x) > MOVED * weight * 2:
+        if fixed and step < 2 * weight and np.ptp(x) > MOVED * weight * 2 \
+                and bit_nats(x, bit) > 0.0:
             bits.append((bit, int(bool(always & weight))))
     return bits
 
 
 def stuck_bits(sessions):
-    """[(sensor, axis, bit, value)] of single low bits that never change while those around
+    """[(sensor, axis, bit, value, nats)] of single low bits that never change while those around
     them do (bits stuck from the lowest on are steps, see quantisation)."""
     bits = []
     for sensor in ("accel", "gyro"):
@@ -182,7 +196,8 @@ def stuck_bits(sessions):
         for i in range(3 if counted else 0):
             x = np.concatenate([getattr(s.capture, sensor)[:, i] for s in counted]).astype(
                 np.int64)
-            bits += [(sensor, "xyz"[i], bit, value) for bit, value in fixed_bits(x)]
+            bits += [(sensor, "xyz"[i], bit, value, bit_nats(x, bit))
+                     for bit, value in fixed_bits(x)]
     return bits
 
 

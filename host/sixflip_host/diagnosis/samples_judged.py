@@ -102,7 +102,7 @@ def judge(sessions, settings=ALONE, damages=()):
                  for sensor, axis, nats, *measures in shaped]
     remarks = [damage.words for damage in damages]
     remarks += ["bit %d of the %s axis of the %s always reads %d"
-               % (bit, axis, SENSOR[sensor], value) for sensor, axis, bit, value in bits]
+               % (bit, axis, SENSOR[sensor], value) for sensor, axis, bit, value, _ in bits]
     remarks += [words for _, _, words, _ in rings]
     # Spikes that are pages are one gap, by whichever of both they are told more surely.
     noise = {sensor: min(p for other, _, p in unsteady if other == sensor)
@@ -113,11 +113,8 @@ def judge(sessions, settings=ALONE, damages=()):
     nameless += [localisation.Place(damage.sensor, axis, damage.domain, 1.0,
                                     odds.chance(damage.score))
                  for damage in damages for axis in damage.axes or (None,)]
-    nameless += [localisation.Place(sensor, axis, "amplitude", 1.0, odds.chance(codes.bit_nats(
-        [getattr(s.capture, sensor)[:, "xyz".index(axis)] for s in sessions])))
-        for sensor, axis, _, _ in bits]
     nameless += [localisation.Place(sensor, axis, "amplitude", 1.0, odds.chance(nats))
-                 for sensor, axis, nats in uneven]
+                 for sensor, axis, nats in [*((*bit[:2], bit[-1]) for bit in bits), *uneven]]
     remarks += ["the %s axis of the %s reads some codes hardly ever and others too often"
                 % (axis, SENSOR[sensor]) for sensor, axis, _ in uneven]
     shaken = {(f.sensor, a) for f in findings if f.effect == "vibration" for a in f.axes}
@@ -172,7 +169,7 @@ def _of_spectra(sessions):
 def _of_whole_axes(sessions):
     """(Damages of values that are held, of scales, axes with a bit that is stuck)."""
     return (held_values.findings(sessions), wrong_scale.findings(sessions),
-            registers.stuck_bits(sessions))
+            [bit for bit in registers.stuck_bits(sessions) if present(bit[-1])])
 
 
 def _of_registers(sensor, sessions):

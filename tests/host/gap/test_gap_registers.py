@@ -281,10 +281,37 @@ def test_a_bit_that_sticks_is_said_and_what_it_does_has_no_other_name(sensor, bi
         capture.accel[:, 1] &= ~(1 << bit)
         capture.accel[:, 1] |= value << bit
     found = diagnosed(two)
-    assert counts.stuck_bits(found.sessions) == [("accel", "y", bit, value)]
+    assert [told[:4] for told in counts.stuck_bits(found.sessions)] == [("accel", "y", bit, value)]
     assert found.verdict == "unexplained"
     assert answer.as_dict(found)["causes"] == []
     assert ("accel", "y", "amplitude") in [(w.sensor, w.axis, w.domain) for w in found.where]
+
+
+def rests(levels, noise, seed=5):
+    """A column of a rest of 400 samples at each level."""
+    generator = np.random.default_rng(seed)
+    return np.rint(np.repeat(levels, 400) + noise * generator.standard_normal(
+        400 * len(levels))).astype(np.int64)
+
+
+def test_two_rests_far_apart_that_are_narrower_than_a_bit_do_not_stick():
+    """A turntable's vertical axis lay at 263 to 275 counts, then at 2 to 16: no bit of 32."""
+    turntable = rests([269.0, 8.0, 9.0], 1.4)
+    assert np.bitwise_or.reduce(turntable) & 32 == 0 and np.ptp(turntable) > 256
+    assert counts.fixed_bits(turntable) == []
+    session = resting(1.4)
+    for axis in range(3):
+        session.capture.accel[:, axis] = turntable
+    assert counts.stuck_bits([session]) == []
+
+
+@pytest.mark.parametrize("bit", [2, 3, 4, 5])
+def test_a_bit_sticks_where_the_codes_end_at_its_edges(bit):
+    swept = rests(np.linspace(-280.0, 280.0, 60), 3.0)
+    assert counts.fixed_bits(swept) == []
+    stuck_at_0 = swept & ~(1 << bit)
+    assert counts.fixed_bits(stuck_at_0) == [(bit, 0)]
+    assert present(counts.bit_nats(stuck_at_0, bit))
 
 
 def test_bursts_of_noise_are_no_vibration():

@@ -175,12 +175,6 @@ def resting(column):
     return int(values[k]) if held else 0
 
 
-def bit_nats(columns):
-    """Nats of a bit that never changes while the codes around it do: each code that appears in
-    the columns would have it either way."""
-    return len(codes(np.concatenate(columns))) * math.log(2.0)
-
-
 def number_of_runs(mask):
     """Number of unbroken runs of True."""
     return int(mask[0]) + int((mask[1:] & ~mask[:-1]).sum())

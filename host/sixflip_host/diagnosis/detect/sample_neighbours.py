@@ -54,11 +54,12 @@ def together(tables):
                      for f in fields(Samples)))
 
 
-def tabled(column, banded, at_rest=None, again=None, width=PAGE):
+def tabled(column, banded, at_rest=None, again=None, width=PAGE, beside=0):
     """Samples of a column (n,) of whole numbers that are not at its ends, or None where noise
     hides a page; banded: a reading of 0 says nothing; at_rest (n,): which of them are in a rest,
     None: all; again (n,): which are rows read again: where the box turns, their page is that of
-    the row before; width: counts of a page."""
+    the row before; width: counts of a page; beside: how far from the edges of bytes those of pages
+    are: not 0, low bytes are not looked at, for what they say is the same wherever pages end."""
     around = np.lib.stride_tricks.sliding_window_view(column, 7)
     noise = 1.4826 / np.sqrt(2.0) * float(np.median(np.abs(np.diff(column))))
     span, middle = _beside(around)
@@ -84,7 +85,7 @@ def tabled(column, banded, at_rest=None, again=None, width=PAGE):
         keep &= calm | ~np.lib.stride_tricks.sliding_window_view(again, 7).any(axis=1)
     if keep.sum() < FEWEST:
         return None
-    off, sigma, page = off[keep], sigma[keep], column // width
+    off, sigma, page = off[keep], sigma[keep], (column + beside) // width
     pages = np.rint(off / width)
     pages = np.where(pages == 0.0, np.where(off < 0.0, -1.0, 1.0), pages)
     (before, after), (stale, ahead) = (
@@ -92,7 +93,7 @@ def tabled(column, banded, at_rest=None, again=None, width=PAGE):
         for byte in (page, column % width))
     values, times = np.unique(column, return_counts=True)
     # What was read once may lie anywhere: a jump, a rail.
-    codes = 1.0 / registers.steps(values[times > 1][:, None])[0]
+    codes = 0.0 if beside else 1.0 / registers.steps(values[times > 1][:, None])[0]
     return Samples(off / sigma, (off - width * pages) / sigma, sigma, calm[keep], before, after,
                    codes * (stale & ~before), codes * (ahead & ~after))
 

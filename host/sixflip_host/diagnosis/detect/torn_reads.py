@@ -5,7 +5,9 @@ noise of the axis allows. Torn, it has the page (high byte) of the sample before
 would lie so near with a page more or less; or it has a page of its own and the low byte of the
 sample before, or after. What has no name jumps by any amount, or by whole
 pages whatever the pages around. Torn reads are found where a share of the samples being torn
-makes all samples likelier than the same jumps do without a name.
+makes all samples likelier than the same jumps do without a name. What moves has peaks and kinks
+that look torn as often wherever pages end, and of other widths, too: only what is beyond those is
+of bytes.
 """
 import math
 from dataclasses import dataclass
@@ -33,6 +35,8 @@ KNOCKED = (5.0, 15.0, 50.0)  # and of those that knocks, gaits and chattering co
 # Counts that no byte is wide: what speaks for pages of these too is the motion of legs, wheels or
 # a knock, not the bytes. As far from a page as two samples differ where a page is looked at.
 NO_PAGES = (150, 163, 181, 300, 337, 367)
+# Counts beside a page's edge, where no byte ends: what motion makes look torn looks so there, too.
+NO_EDGES = (PAGE // 4, PAGE // 2, 3 * PAGE // 4)
 # Standard deviations that a page is wide at least, where the pages around say nothing: of normal
 # noise one sample in 16,000 is so far off, and a heavier tail competes.
 BEYOND = 4.0
@@ -50,7 +54,8 @@ def finding(sessions, sensor, banded=()):
         return []
     nats, number, torn = competed(samples)
     if present(nats):
-        unlike = [_samples(sessions, sensor, banded, width) for width in NO_PAGES]
+        unlike = [*(_samples(sessions, sensor, banded, width) for width in NO_PAGES),
+                  *(_samples(sessions, sensor, banded, PAGE, beside) for beside in NO_EDGES)]
         nats = _beyond(nats, [competed(other)[0] for other in unlike if len(other)])
     if not present(nats):
         return []
@@ -64,17 +69,18 @@ def finding(sessions, sensor, banded=()):
 
 
 def _beyond(nats, of_no_page):
-    """What nats of pages are beyond the most that widths which are no page have, in standard
-    deviations, of which nats are half the square."""
+    """What nats of pages are beyond the most that widths and edges which are none of a page have,
+    in standard deviations, of which nats are half the square."""
     most = max([*of_no_page, 0.0])
     return 0.5 * max(math.sqrt(2.0 * max(nats, 0.0)) - math.sqrt(2.0 * most), 0.0) ** 2
 
 
-def _samples(sessions, sensor, banded, width):
-    """Samples of all sessions and axes against pages so many counts wide."""
+def _samples(sessions, sensor, banded, width, beside=0):
+    """Samples of all sessions and axes against pages so many counts wide, which end so many counts
+    beside those of bytes."""
     return together([
         tabled(counts[:, axis].astype(np.int64), axis in banded, s.at_rest,
-               _again(counts), width)
+               _again(counts), width, beside)
         for s in registers.of_counts(sessions, sensor)
         for counts in [getattr(s.capture, sensor)] if len(counts) >= FEWEST
         for axis in range(3)])
