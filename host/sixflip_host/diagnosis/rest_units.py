@@ -10,7 +10,7 @@ import numpy as np
 
 from ..experiment import covariance, linear_model, long_rest, nominal_rows
 from ..experiment.flicker import flicker_kernel
-from . import adequacy, between_sessions, evidence, holdout_gain, rest_forms
+from . import adequacy, between_sessions, evidence, holdout_gain, rest_forms, sway
 
 # Levels tried: of the offset from one rest to the next from what it is where nothing was moved
 # up, about half a decade apart: beyond flicker that is the Allan floor of the parts
@@ -73,10 +73,16 @@ def axis_units(rest, kind, chip, settings):
     warming = 0 if rest.temperature is None else int(round(
         float(rest.temperature[-1] - rest.temperature[0]) / 3.0))
     units = []
+    values, fixed = rest.values[kind], np.zeros((3, rest.n, rest.n))
+    swaying = sway.of_rest(rest, adequacy.usual(chip, "accel"), FLICKERS[kind]) \
+        if kind == "gyro" else None
+    if swaying:
+        values, fixed = values - swaying.rate, swaying.covariance
     for axis in range(3):
         own = [replace(d, columns=d.columns * (np.array(d.axes) == axis)) for d in designs]
-        group = covariance.alone(np.diag(rest.noise[kind][:, axis] ** 2), lateral, kernel)
-        rows = nominal_rows.Rows(rest.values[kind][:, axis], group, np.ones((rest.n, 1)),
+        group = covariance.alone(np.diag(rest.noise[kind][:, axis] ** 2) + fixed[axis], lateral,
+                                 kernel)
+        rows = nominal_rows.Rows(values[:, axis], group, np.ones((rest.n, 1)),
                                  (OFFSETS[kind], FLICKERS[kind]), (0,),
                                  common=_switched_on(rest, kind))
         signature = ("rest", axis, tuple(rest.rest.tolist()), tuple(rest.session.tolist()),

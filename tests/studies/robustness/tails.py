@@ -45,7 +45,7 @@ def of_rests(capture):
     the largest correlation of two axes) of a Capture."""
     session, every = blocks.session_of("recording", capture), []
     for sensor in registers.SENSORS:
-        power, place = noise_bursts.windows(session, sensor)
+        power, place, _ = noise_bursts.windows(session, sensor)
         steps = registers.steps(getattr(capture, sensor))
         every += noise_bursts.of_rests(power, place, steps)[1].tolist()
     _, common, _ = noise_bursts.correlations([session])

@@ -15,6 +15,7 @@ from scipy import special
 from ...capture import registers
 from ...capture.rests import joined
 from .. import odds
+from . import louder_alone, noise_level
 from .detection import present
 from .ringing import LIFTS_S, SETTLES_S
 
@@ -44,15 +45,21 @@ def loud(power, place, step):
     return int(high.sum()), len(np.unique(place[high])), len(high)
 
 
+def window(session):
+    """Samples of half a second."""
+    return max(8, int(WINDOW_S * session.rate))
+
+
 def windows(session, sensor):
-    """((w, 3) counts², (w,) number of the rest) of a session's half seconds at rest, once the box
-    has settled and before a hand takes it up: the mean square of the differences from one sample
-    to the next. Where nobody labelled the poses of a box that was turned over, those are at rest
-    as well in which it is only louder; a vehicle may move without a turn."""
+    """((w, 3) counts², (w,) number of the rest, (w,) first sample) of a session's half seconds at
+    rest, once the box has settled and before a hand takes it up: the mean square of the
+    differences from one sample to the next. Where nobody labelled the poses of a box that was
+    turned over, those are at rest as well in which it is only louder; a vehicle may move without
+    a turn. Where one sensor alone is louder, nothing moves."""
     counts = getattr(session.capture, sensor)
-    m = max(8, int(WINDOW_S * session.rate))
+    m = window(session)
     settles, lifts = (int(seconds * session.rate) for seconds in (SETTLES_S, LIFTS_S))
-    power, place = [np.zeros((0, 3))], [np.zeros(0, int)]
+    power, place, begins = [np.zeros((0, 3))], [np.zeros(0, int)], [np.zeros(0, int)]
     runs = session.runs
     if not session.labelled and session.turned_over:
         runs = joined(session.capture, runs)
@@ -62,7 +69,11 @@ def windows(session, sensor):
         k = len(x) // m
         power.append((x[:k * m].reshape(k, m, 3) ** 2).mean(axis=1))
         place.append(np.full(k, number))
-    return np.concatenate(power), np.concatenate(place)
+        begins.append(settled + m * np.arange(k))
+    alone = louder_alone.windows(session, runs, sensor, m + 1)
+    x = np.diff(counts[alone[:, :1] + np.arange(m + 1)].astype(float), axis=1)
+    return (np.concatenate([*power, (x ** 2).mean(axis=1)]),
+            np.concatenate([*place, alone[:, 1]]), np.concatenate([*begins, alone[:, 0]]))
 
 
 def of_rests(power, place, step):
@@ -220,8 +231,11 @@ def unsteady(sessions):
     for sensor, words in registers.SENSORS.items():
         if any(getattr(s.capture, sensor) is None for s in sessions):
             continue
-        every = [(*windows(session, sensor), registers.steps(getattr(session.capture, sensor)))
-                 for session in sessions]
+        begins, every = [], []
+        for session in sessions:
+            power, place, first = windows(session, sensor)
+            begins.append(first)
+            every.append((power, place, registers.steps(getattr(session.capture, sensor))))
         sums = np.sum([loud(*one) for one in every], axis=0)
         if sums[0] >= FEWEST and sums[1] >= FEWEST_RESTS:
             m = max(8, int(WINDOW_S * sessions[0].rate))
@@ -243,6 +257,14 @@ def unsteady(sessions):
         if present(-np.log(max(p, odds.SMALLEST))):
             sentences.append((sensor, "the noise of the %s in %d of %d rests is up to %.2g times "
                               "what it is in the others" % (words, louder, number, times), p))
+            continue
+        times, p = min((noise_level.changes(one[0], first, window(s)) for s, one, first in zip(
+            sessions, every, begins)), key=lambda found: found[1])
+        p = min(1.0, p * len(sessions))
+        if times > GROWN and present(-np.log(max(p, odds.SMALLEST))):
+            sentences.append((
+                sensor, "the noise of the %s comes and goes at rest: for a quarter of the time it "
+                "is %.2g times what it is for another" % (words, times), p))
             continue
         times, p, high, low = loudest(sessions, every, sensor)
         if present(-np.log(max(p, odds.SMALLEST))):
