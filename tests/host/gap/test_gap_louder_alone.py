@@ -58,12 +58,30 @@ def test_noise_whose_level_comes_and_goes_is_said():
     assert said == "gyro" and "comes and goes" in words and p < 1e-6
 
 
+@pytest.mark.parametrize("but", [["gyro"], []])
+def test_what_shakes_a_floor_for_a_while_is_no_sensor_s_noise(but):
+    """The accelerometer may hear it alone; what both hear is around them."""
+    level = np.exp(0.4 * np.sin(2.0 * np.pi * T / 20.0))
+    assert noise_bursts.unsteady([lying(level, but=but)]) == []
+
+
+def test_noise_below_a_code_that_slides_from_one_to_the_next_does_not_come_and_go():
+    """A quiet gyro of 16.4 counts a deg/s was "unexplained"."""
+    for seed in range(4):
+        rng = np.random.default_rng(seed)
+        session = lying()
+        walk = np.cumsum(0.005 * rng.normal(size=(len(T), 3)), axis=0)
+        session.capture.gyro[:] = np.rint(walk + 0.2 * rng.normal(size=walk.shape))
+        assert noise_bursts.unsteady([session]) == [], seed
+
+
 def test_a_filter_s_noise_has_no_level_that_changes():
-    """White noise, and noise of 5 Hz, whose half seconds differ by much more."""
+    """White noise, and that of a slow filter, whose half seconds differ by much more."""
     rng, found = np.random.default_rng(2), []
     for wide in (1, 20):
         x = rng.normal(size=(len(T), 3)).cumsum(axis=0)
         x = np.diff(x[wide:] - x[:-wide], axis=0)[:len(T) // 50 * 50 - 50]
         power = (x.reshape(-1, 50, 3) ** 2).mean(axis=1)
-        found.append(noise_level.changes(power, 50 * np.arange(len(power)), 50)[1])
+        first, least = 50 * np.arange(len(power)), np.full(3, 0.5)
+        found.append(noise_level.changes(power, first, 50, least)[1])
     assert min(found) > 1e-3

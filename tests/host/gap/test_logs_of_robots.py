@@ -83,20 +83,34 @@ def test_rows_that_are_lost_make_no_convention_and_no_number(seed):
         assert after < 2.0 * noise
 
 
-def test_rows_that_are_lost_are_put_in_and_known():
+def test_rows_that_are_lost_are_put_in_where_it_moves_and_known():
     t, force, rate = trotting(30.0)
-    keep, labelled = without_some(len(t), 3), read(t, force, rate, 3)
-    labelled.pose = np.where(t < 10.0, 1, 0).astype(np.int16)
-    lacking = Capture(labelled.meta, labelled.t_us[keep], labelled.accel[keep],
-                      labelled.gyro[keep], pose=labelled.pose[keep])
-    even, put_in = traces.even_rows(lacking)
-    assert np.array_equal(~put_in, keep) and np.array_equal(even.pose, labelled.pose)
-    assert np.array_equal(even.t_us, labelled.t_us)
-    assert np.array_equal(even.accel[keep], lacking.accel)
-    off = (even.gyro[put_in].astype(float) - labelled.gyro[put_in]).std()
-    assert off < 0.1 * labelled.gyro.std()
-    same, none = traces.even_rows(labelled)
-    assert same is labelled and not none.any()
+    keep, whole = without_some(len(t), 3), read(t, force, rate, 3)
+    keep[1000:1040] = False  # more than a curve can be drawn through
+    true = traces.trace_from_capture("true", whole)
+    lacking = traces.trace_from_capture("lacking", read(t, force, rate, 3, keep))
+    assert lacking.rate_hz == pytest.approx(RATE_HZ, rel=1e-4) and not true.put_in.any()
+    row = np.rint(lacking.t * RATE_HZ).astype(int)
+    assert not lacking.put_in[keep[row] & (np.abs(row - 1020) > 25)].any()
+    assert lacking.put_in[~keep[row]].all() and lacking.put_in[np.isin(row, (999, 1040))].all()
+    assert np.array_equal(lacking.rate[keep[row]], true.rate[row[keep[row]]])
+    off = (lacking.rate - true.rate[row])[lacking.put_in]
+    assert off.std() < 0.1 * true.rate.std() and len(off) > 50
+    assert len(lacking.rests) == len(true.rests)
+    for first, end in lacking.rests:
+        assert not lacking.put_in[first:end].any()
+
+
+@pytest.mark.parametrize("longest", [25, 50])
+def test_a_gap_that_no_curve_is_drawn_through_is_no_range(longest):
+    t, force, rate = trotting(60.0)
+    rng, keep = np.random.default_rng(longest), np.ones(len(t), bool)
+    for first in rng.integers(700, len(t) - 700, 12):
+        keep[first:first + longest] = False
+    found = comparison.compare([("real", read(t, force, rate, 6, keep))], "sim",
+                               read(t, force, rate, 56))
+    assert found.alignment.same and not found.conventions
+    assert not [p for p in found.differs if p.name in ("range", "step", "shaking")]
 
 
 @pytest.mark.parametrize("slower", [0.018, -0.018])

@@ -224,6 +224,23 @@ def _slope(x, y):
     return float(np.median((y[second] - y[first])[apart] / across[apart]))
 
 
+def comes_and_goes(sessions):
+    """(times as loud, p) of the gyro's noise that comes and goes at rest, where that of the
+    accelerometer does not: what shakes a box shakes both. A floor that shakes may move the
+    accelerometer alone, so that nothing follows from its noise."""
+    found = {}
+    for sensor in registers.SENSORS:
+        every = []
+        for session in sessions:
+            power, _, first = windows(session, sensor)
+            least = BETWEEN_CODES * registers.steps(getattr(session.capture, sensor)) ** 2
+            every.append(noise_level.changes(power, first, window(session), least))
+        times, p = min(every, key=lambda one: one[1])
+        found[sensor] = times, min(1.0, p * len(sessions))
+    both = present(-np.log(max(found["accel"][1], odds.SMALLEST)))
+    return (1.0, 1.0) if both else found["gyro"]
+
+
 def unsteady(sessions):
     """[(sensor, sentence, p)] of noise that comes in bursts, or changes from rest to rest or from
     session to session."""
@@ -231,14 +248,11 @@ def unsteady(sessions):
     for sensor, words in registers.SENSORS.items():
         if any(getattr(s.capture, sensor) is None for s in sessions):
             continue
-        begins, every = [], []
-        for session in sessions:
-            power, place, first = windows(session, sensor)
-            begins.append(first)
-            every.append((power, place, registers.steps(getattr(session.capture, sensor))))
+        every = [(*windows(session, sensor)[:2], registers.steps(getattr(session.capture, sensor)))
+                 for session in sessions]
         sums = np.sum([loud(*one) for one in every], axis=0)
         if sums[0] >= FEWEST and sums[1] >= FEWEST_RESTS:
-            m = max(8, int(WINDOW_S * sessions[0].rate))
+            m = window(sessions[0])
             chance = 3.0 * special.chdtrc(m / 2.0, LOUD * m / 2.0)  # differences share samples
             sentences.append((
                 sensor, "the %s is far louder in %d of %d half seconds at rest: noise that comes "
@@ -258,9 +272,7 @@ def unsteady(sessions):
             sentences.append((sensor, "the noise of the %s in %d of %d rests is up to %.2g times "
                               "what it is in the others" % (words, louder, number, times), p))
             continue
-        times, p = min((noise_level.changes(one[0], first, window(s)) for s, one, first in zip(
-            sessions, every, begins)), key=lambda found: found[1])
-        p = min(1.0, p * len(sessions))
+        times, p = comes_and_goes(sessions) if sensor == "gyro" else (1.0, 1.0)
         if times > GROWN and present(-np.log(max(p, odds.SMALLEST))):
             sentences.append((
                 sensor, "the noise of the %s comes and goes at rest: for a quarter of the time it "

@@ -1,9 +1,10 @@
 """Noise whose level changes from second to second of one rest, as under a sound that comes and
 goes, or in bursts too frequent to stand out of the others.
 
-Steady noise of any spectrum has half seconds that are louder and softer by chance, each by itself.
-Where the level changes, a loud one is beside a loud one: the correlation of the ranks of
-neighbours is what chance does not make [Wald & Wolfowitz, Ann. Math. Stat. 14 (1943) 378].
+Steady noise has half seconds that are louder and softer by chance, each by itself (two lines that
+beat have not, and are found before). Where the level changes, a loud one is beside a loud one: the
+correlation of the ranks of neighbours is what chance does not make [Wald & Wolfowitz, Ann. Math.
+Stat. 14 (1943) 378].
 """
 import math
 
@@ -15,10 +16,10 @@ from scipy import special, stats
 LONGEST_GAP, FEWEST = 4.0, 20
 
 
-def changes(power, first, length):
+def changes(power, first, length, least):
     """(times as loud in the louder quarter as in the softer one, p of that by steady noise) of the
-    axis that says most; power (w, 3) counts² of windows of `length` samples from `first` (w,)
-    on."""
+    axis that says most; power (w, 3) counts² of windows of `length` samples from `first` (w,) on,
+    of which less than least (3,) counts² tells how near the mean is to the edge of a code."""
     order = np.argsort(first)
     power, first = power[order], first[order]
     chains = np.split(np.arange(len(first)),
@@ -28,7 +29,7 @@ def changes(power, first, length):
         return 1.0, 1.0
     found = []
     for axis in range(3):
-        level = [np.log(np.maximum(power[chain, axis], 1e-9)) for chain in chains]
+        level = [np.log(np.maximum(power[chain, axis], least[axis])) for chain in chains]
         level = [x - np.median(x) for x in level]
         every = np.concatenate(level)
         score = stats.norm.ppf((stats.rankdata(every) - 0.5) / len(every))

@@ -120,14 +120,25 @@ def cut_off_nats(x):
 
 
 def _piled_up_nats(x):
-    """Log likelihood ratio (nats) of more samples at the largest code than at the one below it, as
-    where what would be larger reads it, against fewer, as in the noise of one steady rate; the
-    one sample that is the largest anyhow is no evidence. Either share has all values alike."""
+    """Log likelihood ratio (nats) of the largest code being read oftener than those below it that
+    noise makes of one reading, as where what would be larger reads it, against more rarely, as in
+    the noise of one steady reading; the one sample that is the largest anyhow is no evidence.
+    Either share has all values alike."""
+    at = x == x.max()
     step = _spread(x)[0]
-    most, below = int((x == x.max()).sum()) - 1, int((x == x.max() - step).sum())
-    more, fewer = (np.log(max(float(part(most + 1.0, below + 1.0, 0.5)), 1e-300))
-                   for part in (special.betaincc, special.betainc))
-    return float(more - fewer)
+    below = max(1, round(_noise(x, at, step)))
+    hits = int(at.sum()) - 1
+    misses = int((x >= x.max() - below * step).sum()) - hits - 1
+    even = 1.0 / (below + 1.0)
+    more, fewer = (math.log(max(float(part(hits + 1.0, misses + 1.0, even)), 1e-300) / share)
+                   for part, share in ((special.betaincc, 1.0 - even), (special.betainc, even)))
+    return more - fewer
+
+
+def _noise(x, at, step):
+    """Standard deviation of a sample in steps, by the bends of the samples that are not `at`."""
+    bends = np.abs(np.diff(x[~at], n=2)) if (~at).sum() > 3 else np.zeros(1)
+    return 1.4826 / math.sqrt(6.0) * float(np.median(bends)) / step
 
 
 def level_nats(x, at, width, free=0):
@@ -147,9 +158,7 @@ def level_nats(x, at, width, free=0):
 def _held_nats(x, at, step):
     """Nats of the next sample's staying at the level where `at` is True."""
     among, stays = at[:-1], at[1:] & at[:-1]
-    bends = np.abs(np.diff(x[~at], n=2)) if (~at).sum() > 3 else np.zeros(1)
-    sigma = 1.4826 / math.sqrt(6.0) * float(np.median(bends)) / step  # of a sample, in steps
-    by_noise = 1.0 / max(math.sqrt(2.0 * math.pi) * sigma, 1.0)
+    by_noise = 1.0 / max(math.sqrt(2.0 * math.pi) * _noise(x, at, step), 1.0)
     others = ~among
     repeats = (int((x[1:] == x[:-1])[others].sum()) + 1.0) / (int(others.sum()) + 2.0)
     return _oftener(int(stays.sum()), int(among.sum() - stays.sum()), max(by_noise, repeats))

@@ -20,6 +20,7 @@ AS_FAST = 0.98
 # is off by more. By half a step of 0.1 % a log of a minute is 30 ms off at its end, a fifth of a
 # period of the band.
 DRIFTS = np.linspace(-0.03, 0.03, 61)
+THINNED = 4  # of so many steps one will do for that: four a period of the band
 FADED = 2.0  # periods of the band's end in which what lies beyond the ends has faded to 1e-4
 LEAST_S = 8.0  # of a log: its turn rate has a hundred independent values in BAND_HZ
 
@@ -54,7 +55,8 @@ def align(real, sim):
         return none
     best = coarse(a, b, 0.0) + (0.0,)
     if best[0] < AS_FAST:
-        best = max((coarse(a, b, drift) + (drift,) for drift in DRIFTS), key=lambda x: x[0])
+        few = [tuple(x[::THINNED] for x in pair) for pair in (a, b)]
+        best = max((coarse(*few, drift) + (drift,) for drift in DRIFTS), key=lambda x: x[0])
     return refined(a, b, *best[1:])
 
 
@@ -93,7 +95,8 @@ def smooth(x, rate_hz, band_hz=BAND_HZ):
 
 def coarse(a, b, drift):
     """(correlation, offset in s) of the best whole step."""
-    t = np.arange(0.0, b[0][-1] * (1.0 + drift), 1.0 / GRID_HZ)
+    step = a[0][1] - a[0][0]
+    t = np.arange(0.0, b[0][-1] * (1.0 + drift), step)
     y = np.interp(t / (1.0 + drift), *b)
     x = a[1] - a[1].mean()
     y = y - y.mean()
@@ -111,7 +114,7 @@ def coarse(a, b, drift):
     value = np.where(enough, values / np.sqrt(np.maximum(power, 1e-12 * power.max() + 1e-300)),
                      -1.0)
     best = int(value.argmax())
-    return float(value[best]), lags[best] / GRID_HZ
+    return float(value[best]), lags[best] * step
 
 
 def refined(a, b, offset, drift):

@@ -148,7 +148,9 @@ def _powers(trace, values, top):
     second = int(trace.rate_hz)
     whole = len(values) // second * second
     gap = np.diff(trace.t, append=trace.t[-1:]) * trace.rate_hz > GAP
-    moves = ~(still | gap | trace.put_in)[:whole].reshape(-1, second).any(axis=1)
+    # A filter rings for some of its periods beside what nobody read.
+    unread = np.convolve(gap | trace.put_in, np.ones(second // 2 * 2 + 1), "same") > 0.5
+    moves = ~(still | unread)[:whole].reshape(-1, second).any(axis=1)
     each = fast[:whole].reshape(-1, second, 3).mean(axis=1)[moves]
     if len(each) < FEWEST_S or still.sum() < FEWEST_S * second // 2:
         return None
@@ -164,6 +166,7 @@ def registers(real, sim):
         a, b = (getattr(x, name) for x in (real, sim))
         if a is None or b is None:
             continue
+        a, b = a[~real.put_in], b[~sim.put_in]
         scale = MG if kind == "accel" else DEG
         unit = "mg" if kind == "accel" else "°/s"
         for i, axis in enumerate("xyz"):

@@ -3,7 +3,7 @@
 Simulator and sensor are compared as two such logs. Gravity and the motion come from the gyro,
 levelled at every rest by the accelerometer, so that nothing but the log itself is needed.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -14,7 +14,6 @@ from sixflip.poses import faces
 from ...capture import clock, rests_by_variance
 from ...capture import rests as rest_finder
 from ...capture.attitude import carried, levelled, rotation_between, rotations
-from ...capture.capture import Capture
 from ...experiment.block_measures import EDGE_S
 from .. import adequacy
 from . import single_log
@@ -25,6 +24,7 @@ WINDOW_S = 0.3  # over which a log is still: shorter than such a stop with its e
 # than any robot's, and more than a gyro's bias changes by within a log (20 deg/s over 60 degC).
 LOUDER, SLOW_DPS = 2.5, 1.5
 COUNT_VARIANCE = 0.25  # counts: a channel that toggles between two of them
+PUT_IN_S = 0.15  # of lost rows in one place: a period of the band that is compared
 DPS = np.pi / 180.0
 UP = np.array([0.0, 0.0, 1.0])  # of the world
 
@@ -36,7 +36,7 @@ class Trace:
     faces: the axis of each rest that a label says is up, (3,) or None; quantum: m/s2 and rad/s
     of one count; flicker: {sensor: mg or deg/s}, the level of such a chip (adequacy.usual), by
     which its bias is another one the next time; railed (n,): a channel stands at the end of what
-    it can say; put_in (n,): rows that were lost."""
+    it can say; put_in (n,): nobody read it, or what is beside it."""
 
     name: str
     t: np.ndarray
@@ -70,7 +70,6 @@ class Trace:
 def trace_from_capture(name, capture):
     """The Trace of a Capture; a chip without a gyro has no rate."""
     meta = capture.meta
-    capture, put_in = even_rows(capture)
     t = (capture.t_us - capture.t_us[0]) * 1e-6
     if len(t) > 1 and t[-1] <= 0.0:
         t = np.arange(len(t)) / float(meta["rate_hz"])
@@ -85,36 +84,46 @@ def trace_from_capture(name, capture):
     if capture.gyro is not None:
         railed = railed | _railed(capture.gyro)
     flicker = {kind: adequacy.usual(meta["sensor"], kind) for kind in ("accel", "gyro")}
-    return Trace(name, t, capture.accel * quantum[0],
-                 None if capture.gyro is None else capture.gyro * quantum[1], celsius,
-                 float(rate_hz), capture.g, rests, ups, quantum, flicker, railed, put_in)
+    trace = Trace(name, t, capture.accel * quantum[0],
+                  None if capture.gyro is None else capture.gyro * quantum[1], celsius,
+                  float(rate_hz), capture.g, rests, ups, quantum, flicker, railed,
+                  np.zeros(len(t), bool))
+    return even_rows(trace, clock.sample_clock(capture))
 
 
-def even_rows(capture):
-    """(Capture with the rows that were lost put in, by its clock, on a cubic through the others;
-    (n,) True of these): what is smoothed and turned from row to row needs even ones, and has to
-    know which of them nobody read. A straight line would cut the peaks off."""
-    n = len(capture)
-    measured = clock.sample_clock(capture)
+def even_rows(trace, measured):
+    """The Trace with the rows that its SampleClock says were lost put in, on a cubic through the
+    others (a straight line would cut the peaks off): what is smoothed and turned from row to row
+    needs even ones. Not in its rests, whose readings are those that were read; and where more are
+    lost than a curve can be drawn through, the rows beside them are known instead."""
     if measured is None or not measured.lost_after:
-        return capture, np.zeros(n, bool)
-    missing = np.zeros(n, int)
+        return trace
+    missing, beside, resting = (np.zeros(len(trace.t), kind) for kind in (int, bool, bool))
+    for first, end in trace.rests:
+        resting[first:end] = True
     for row, samples in measured.lost_after:
-        missing[row + 1] = samples
-    at = np.arange(n) + np.cumsum(missing)
+        if samples > PUT_IN_S * measured.rate_hz:
+            beside[row:row + 2] = True
+        elif not resting[row:row + 2].all():
+            missing[row + 1] = samples
+    at = np.arange(len(trace.t)) + np.cumsum(missing)
     every = np.arange(at[-1] + 1)
 
-    def between(counts):
-        if counts is None:
+    def between(values, quantum):
+        if values is None:
             return None
-        course = np.rint(CubicSpline(at, counts, axis=0)(every))
-        return np.clip(course, counts.min(axis=0), counts.max(axis=0)).astype(counts.dtype)
+        course = np.rint(CubicSpline(at, values, axis=0)(every) / quantum) * quantum
+        course[at] = values
+        return course
 
-    pose = capture.pose if capture.pose is None else capture.pose[
-        np.searchsorted(at, every, "right") - 1]
-    even = Capture(capture.meta, np.interp(every, at, capture.t_us).astype(np.int64),
-                   between(capture.accel), between(capture.gyro), between(capture.temp), pose=pose)
-    return even, ~np.isin(every, at)
+    put_in, railed = ~np.isin(every, at), np.zeros(len(every), bool)
+    put_in[at], railed[at] = beside, trace.railed
+    return replace(
+        trace, t=np.interp(every, at, trace.t), force=between(trace.force, trace.quantum[0]),
+        rate=between(trace.rate, trace.quantum[1]),
+        celsius=None if trace.celsius is None else np.interp(every, at, trace.celsius),
+        rate_hz=measured.rate_hz, railed=railed, put_in=put_in,
+        rests=tuple((int(at[first]), int(at[end - 1]) + 1) for first, end in trace.rests))
 
 
 def _rests(capture, rate_hz):
