@@ -227,7 +227,9 @@ def _slope(x, y):
 def comes_and_goes(sessions):
     """(times as loud, p) of the gyro's noise that comes and goes at rest, where that of the
     accelerometer does not: what shakes a box shakes both. A floor that shakes may move the
-    accelerometer alone, so that nothing follows from its noise."""
+    accelerometer alone, so that nothing follows from its noise, nor from a gyro's alone."""
+    if any(s.capture.accel is None for s in sessions):
+        return 1.0, 1.0
     found = {}
     for sensor in registers.SENSORS:
         every = []
