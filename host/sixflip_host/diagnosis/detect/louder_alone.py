@@ -10,7 +10,9 @@ import numpy as np
 from ...capture.registers import SENSORS
 from ...capture.rests import LOUDER_ONLY, ROUNDING, WHITE
 
-NEAR_S = 4.0  # of the rests before and after, by which what is read at rest is known
+# Of the rests before and after, by which what is read at rest is known: eight times the half
+# second that is held against it, so that its own error counts little.
+NEAR_S = 4.0
 
 
 def windows(session, runs, sensor, length):

@@ -12,7 +12,8 @@ import numpy as np
 from scipy import special, stats
 
 # Windows of a chain, in which each is at most so many lengths after the one before: what changes
-# from one chain to the next may be the place that the box was put down on.
+# from one chain to the next may be the place that the box was put down on. In fewer windows than
+# that, ten seconds, the correlation is not normal so far out as it is judged.
 LONGEST_GAP, FEWEST = 4.0, 20
 
 
