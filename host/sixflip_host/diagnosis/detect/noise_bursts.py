@@ -224,19 +224,17 @@ def _slope(x, y):
     return float(np.median((y[second] - y[first])[apart] / across[apart]))
 
 
-def comes_and_goes(sessions):
+def comes_and_goes(sessions, measured):
     """(times as loud, p) of the gyro's noise that comes and goes at rest, where that of the
     accelerometer does not: what shakes a box shakes both. A floor that shakes may move the
-    accelerometer alone, so that nothing follows from its noise, nor from a gyro's alone."""
-    if any(s.capture.accel is None for s in sessions):
+    accelerometer alone, so that nothing follows from its noise, nor from a gyro's alone.
+    measured: {sensor: of each session its windows() with the steps that its counts lie on}."""
+    if "accel" not in measured:
         return 1.0, 1.0
     found = {}
-    for sensor in registers.SENSORS:
-        every = []
-        for session in sessions:
-            power, _, first = windows(session, sensor)
-            least = BETWEEN_CODES * registers.steps(getattr(session.capture, sensor)) ** 2
-            every.append(noise_level.changes(power, first, window(session), least))
+    for sensor, of_sessions in measured.items():
+        every = [noise_level.changes(power, first, window(session), BETWEEN_CODES * step ** 2)
+                 for session, (power, _, first, step) in zip(sessions, of_sessions)]
         times, p = min(every, key=lambda one: one[1])
         found[sensor] = times, min(1.0, p * len(sessions))
     both = present(-np.log(max(found["accel"][1], odds.SMALLEST)))
@@ -247,11 +245,12 @@ def unsteady(sessions):
     """[(sensor, sentence, p)] of noise that comes in bursts, or changes from rest to rest or from
     session to session."""
     sentences = []
-    for sensor, words in registers.SENSORS.items():
-        if any(getattr(s.capture, sensor) is None for s in sessions):
-            continue
-        every = [(*windows(session, sensor)[:2], registers.steps(getattr(session.capture, sensor)))
-                 for session in sessions]
+    measured = {sensor: [(*windows(s, sensor), registers.steps(getattr(s.capture, sensor)))
+                         for s in sessions] for sensor in registers.SENSORS
+                if all(getattr(s.capture, sensor) is not None for s in sessions)}
+    for sensor, of_sessions in measured.items():
+        words = registers.SENSORS[sensor]
+        every = [(power, place, step) for power, place, _, step in of_sessions]
         sums = np.sum([loud(*one) for one in every], axis=0)
         if sums[0] >= FEWEST and sums[1] >= FEWEST_RESTS:
             m = window(sessions[0])
@@ -274,7 +273,7 @@ def unsteady(sessions):
             sentences.append((sensor, "the noise of the %s in %d of %d rests is up to %.2g times "
                               "what it is in the others" % (words, louder, number, times), p))
             continue
-        times, p = comes_and_goes(sessions) if sensor == "gyro" else (1.0, 1.0)
+        times, p = comes_and_goes(sessions, measured) if sensor == "gyro" else (1.0, 1.0)
         if times > GROWN and present(-np.log(max(p, odds.SMALLEST))):
             sentences.append((
                 sensor, "the noise of the %s comes and goes at rest: for a quarter of the time it "

@@ -9,7 +9,7 @@ Stat. 14 (1943) 378].
 import math
 
 import numpy as np
-from scipy import special, stats
+from scipy import special
 
 # Windows of a chain, in which each is at most so many lengths after the one before: what changes
 # from one chain to the next may be the place that the box was put down on. In fewer windows than
@@ -33,7 +33,7 @@ def changes(power, first, length, least):
         level = [np.log(np.maximum(power[chain, axis], least[axis])) for chain in chains]
         level = [x - np.median(x) for x in level]
         every = np.concatenate(level)
-        score = stats.norm.ppf((stats.rankdata(every) - 0.5) / len(every))
+        score = special.ndtri((_ranks(every) - 0.5) / len(every))
         score = np.split(score, np.cumsum([len(x) for x in level])[:-1])
         pairs = sum(len(x) - 1 for x in score)
         together = sum(float(x[1:] @ x[:-1]) for x in score) / pairs
@@ -42,3 +42,10 @@ def changes(power, first, length, least):
         spread = np.subtract(*np.quantile(every, [0.75, 0.25])) * math.sqrt(max(together, 0.0))
         found.append((math.exp(0.5 * spread), min(p, 1.0)))
     return min(found, key=lambda one: one[1])
+
+
+def _ranks(values):
+    """(n,) rank of each of values (n,), from 1 on; those that are the same have their mean rank:
+    scipy.stats.rankdata, which takes a second to import."""
+    _, place, number = np.unique(values, return_inverse=True, return_counts=True)
+    return (np.cumsum(number) - 0.5 * (number - 1))[place]

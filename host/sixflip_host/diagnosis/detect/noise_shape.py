@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 from numpy.polynomial import legendre
-from scipy import stats
+from scipy import special
 
 from ...capture import registers
 from .detection import present
@@ -22,7 +22,7 @@ COURSE = 3  # degree of what is taken off a piece, which settles or fades
 # rounding is noise itself from there on [Widrow & Kollar, Quantization Noise (2008)].
 DITHERED = 0.5
 FEWEST = 8  # pieces
-QUARTILES = float(np.ptp(stats.norm.ppf([0.25, 0.75])))  # apart, of a standard deviation of 1
+QUARTILES = float(np.ptp(special.ndtri([0.25, 0.75])))  # apart, of a standard deviation of 1
 # Variances over the normal one of the same middle half, and skewness, that noise may have: in the
 # recordings up to 1.17 and 0.07 (`python -m tests.studies.robustness.tails`), by Laplace's
 # distribution 1.9, by the exponential one 2.

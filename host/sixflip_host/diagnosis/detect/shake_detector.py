@@ -5,7 +5,7 @@ import copy
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import signal, special
+from scipy import special
 
 from . import line_frequency, saturation, spectral_lines, strides
 from .detection import Finding
@@ -114,6 +114,7 @@ def _edge(rate):
 
 def _fast(x, rate):
     """(n, 3) what of readings (n, 3) is faster than motion."""
+    from scipy import signal  # it takes a second to import
     return signal.sosfiltfilt(signal.cheby2(
         ORDER, STOPPED_DB, _edge(rate), "highpass", fs=rate, output="sos"), x, axis=0)
 
