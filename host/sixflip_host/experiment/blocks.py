@@ -14,7 +14,7 @@ from sixflip.poses import faces
 from .. import progress
 from ..capture import registers, rests, rests_by_variance
 from ..capture.find_poses import HELD_BY_HAND, by_a_person, find_poses
-from . import block_measures, thermometer
+from . import block_measures, thermometer, way_memory
 from .session import Session
 
 # Of a labelled rest: without its edges it has two short means, whose difference tells its noise
@@ -59,6 +59,7 @@ def session_of(name, capture, runs=None):
     runs = tuple(runs_of(capture) if runs is None else runs)
     smooth = thermometer.of_capture(capture, t_s)
     return Session(name, capture, rate, t_s, timeless, labelled, runs, smooth,
+                   way_memory.Way(capture, rate, t_s),
                    **block_measures.of_runs(capture, runs, rate, t_s, labelled, smooth))
 
 

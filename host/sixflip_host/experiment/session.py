@@ -48,11 +48,11 @@ class Session(ReadOnlyArrays):
 
     name; capture, labelled; rate (Hz); t_s (N,) s of every sample; timeless: the timestamps
     stand still; labelled: by whoever captured it; runs: tuple of rests.Run, the placements;
-    thermometer or None. Of the blocks (n,): placement (number of its run), code, face (-1:
-    leaning), first, end (samples), t and since (s, since the capture's and the rest's begin),
-    seconds; accel (n, 3) mg and gyro (n, 3) deg/s as the chip gave them, None of a sensor that
-    there is not; temperature and temperature_rate or None; loudness mg rms from sample to sample.
-    Of the sensor (3,):
+    thermometer or None; way: None without samples. Of the blocks (n,): placement (its run), code,
+    face (-1: leaning), first, end (samples), t and since (s, since the capture's and the rest's
+    begin), seconds; accel (n, 3) mg and gyro (n, 3) deg/s as the chip gave them, None of a sensor
+    that there is not; temperature and temperature_rate or None; loudness mg rms from sample to
+    sample. Of the sensor (3,):
     noise_accel, noise_gyro of a mean over one second, mg and deg/s; rounding_accel,
     rounding_gyro of the mean of a rest, by steps of the counts; None without a gyro.
     thermal, fastest (degC/s), vibration (n,) mg rms, shaken_mg: what sessions that are judged
@@ -67,6 +67,7 @@ class Session(ReadOnlyArrays):
     labelled: bool
     runs: tuple
     thermometer: thermometer.Thermometer | None
+    way: way_memory.Way | None
     placement: np.ndarray
     code: np.ndarray
     first: np.ndarray
@@ -164,12 +165,15 @@ class Session(ReadOnlyArrays):
 
     def of_capture(self, capture):
         """The same rests of another capture of the same samples, measured anew."""
-        return replace(self, capture=capture)._of_runs(self.runs)
+        return self._reading(capture)._of_runs(self.runs)
 
     def reading(self, capture):
         """The same blocks and noise with the means of another capture of the same samples."""
         accel, gyro = block_measures.readings(capture, self.first, self.end)
-        return replace(self, capture=capture, accel=accel, gyro=gyro)
+        return replace(self._reading(capture), accel=accel, gyro=gyro)
+
+    def _reading(self, capture):
+        return replace(self, capture=capture, way=way_memory.Way(capture, self.rate, self.t_s))
 
     def with_gyro_axes(self, read):
         """The same session with its gyro's means turned by a signed permutation (3, 3)."""
@@ -187,29 +191,22 @@ class Session(ReadOnlyArrays):
         starts = np.array([self.t_s[run[1]] for run in self.runs])
         return fading(starts, up, tau_s)[self.placement]
 
-    @cached_property
+    @property
     def friction(self):
         """(n, len(FRICTION), 3): how far what rubs lags behind the specific force of each axis in
         the middle of each block."""
-        f, step = way_memory.in_steps(self.capture.accel, self.rate)
-        return self._halfway(way_memory.friction(f / self.capture.meta["accel_lsb_per_g"]), step)
+        return self._halfway(self.way.friction)
 
-    @cached_property
+    @property
     def turned(self):
         """(n, len(way_memory.TURNED_S), 3): quarter turns about each axis that are not yet
         forgotten in the middle of each block, as the gyro tells them."""
-        counts, step = way_memory.in_steps(self.capture.gyro, self.rate)
-        rate = counts / self.capture.meta["gyro_lsb_per_dps"]
-        if len(rate):
-            rate -= np.median(rate, axis=0)  # the box rests most of the time
-        ends = self.t_s[step - 1::step][:len(rate)]
-        return self._halfway(way_memory.turned(
-            rate * step / self.rate, np.diff(ends, prepend=ends[:1])), step)
+        return self._halfway(self.way.turned)
 
-    def _halfway(self, values, step):
-        """(n, ...) of values (steps, ...), one a step of so many samples, in the middle of each
-        block; read-only."""
-        halfway = values[np.minimum((self.first + self.end) // 2 // step, len(values) - 1)]
+    def _halfway(self, values):
+        """(n, ...) of values (steps, ...) along the way in the middle of each block; read-only."""
+        halfway = values[np.minimum((self.first + self.end) // 2 // self.way.step,
+                                    len(values) - 1)]
         halfway.setflags(write=False)
         return halfway
 

@@ -7,8 +7,12 @@ value depends on the one before, for as many as a session has tenths of a second
 faster here than arrays.
 """
 import math
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+
+from ..capture.capture_file import Capture
 
 PLAY_G = (0.1, 0.2, 0.4)  # widths of a play operator: octaves below half of what a pose changes by
 SLIP_G = (0.5, 1.0)  # lengths of way over which what sticks begins to slip: half a move and one
@@ -23,10 +27,39 @@ TURNED_S = (5.0, 20.0, 80.0)  # time constants in which a turn is forgotten
 STEP_S = 0.1
 
 
-def in_steps(values, rate_hz):
-    """((n, 3) means of values (samples, 3) over each step, samples in a step)."""
-    step = max(1, int(STEP_S * rate_hz))
-    return values[:len(values) // step * step].reshape(-1, step, 3).mean(axis=1), step
+@dataclass(frozen=True, eq=False)
+class Way:
+    """The way of a capture in steps; t_s (N,) s of every sample. What remembers it is worked out
+    once, when it is first asked for, for every Session of the same samples: their halves, and
+    those that are judged with others."""
+
+    capture: Capture
+    rate: float
+    t_s: np.ndarray
+
+    @property
+    def step(self):
+        """Samples in a step."""
+        return max(1, int(STEP_S * self.rate))
+
+    @cached_property
+    def friction(self):
+        """(steps, len(FRICTION), 3): friction() behind the specific force of each axis."""
+        return friction(self._means(self.capture.accel) / self.capture.meta["accel_lsb_per_g"])
+
+    @cached_property
+    def turned(self):
+        """(steps, len(TURNED_S), 3): turned() about each axis, as the gyro tells it."""
+        rate = self._means(self.capture.gyro) / self.capture.meta["gyro_lsb_per_dps"]
+        if len(rate):
+            rate -= np.median(rate, axis=0)  # the box rests most of the time
+        ends = self.t_s[self.step - 1::self.step][:len(rate)]
+        return turned(rate * self.step / self.rate, np.diff(ends, prepend=ends[:1]))
+
+    def _means(self, values):
+        """(steps, 3) means of values (N, 3) over each step."""
+        steps = len(values) // self.step
+        return values[:steps * self.step].reshape(steps, self.step, 3).mean(axis=1)
 
 
 def levelling(f, friction):

@@ -133,7 +133,7 @@ class Summary:
         runs = tuple(rests.Run(*row) for row in a["runs"][:, :3].tolist())
         return SummarySession(
             self.about["name"], self.capture(), float(self.meta["rate_hz"]),
-            np.array(self.about["bounds"]), False, self.about["found_labelled"], runs, smooth,
+            np.array(self.about["bounds"]), False, self.about["found_labelled"], runs, smooth, None,
             starts=a["starts"], friction=a["friction"], turned=a.get("turned"), **values)
 
 
