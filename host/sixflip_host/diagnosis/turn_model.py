@@ -47,8 +47,7 @@ def design(name, chosen, chip, variant="", shape=None):
         m.w = tuple(turn.middle.T)
         m.temperature = turn.temperature if turn.temperature is not None else m.temperature
         own = terms.of_terms(name, "gyro", m, len(turn.dt), variant, chip=chip, shape=shape)
-        added = own.columns.reshape(len(turn.dt), 3, -1)
-        parts.append(turns.projected(turn, added))
+        parts.append(turns.projected(turn, own.columns.reshape(len(turn.dt), 3, -1)))
     return terms.Design(name, variant, own.keys, own.axes, np.vstack(parts), own.prior)
 
 
@@ -240,15 +239,16 @@ def squareness(chosen):
 def usable(session, nominal):
     """True when there are enough turns to judge."""
     return session.gyro is not None and len(
-        turns.usable_turns(session, nominal.up)) >= FEWEST_MOVES
+        turns.usable_moves(session, nominal.up)) >= FEWEST_MOVES
 
 
 def swapped(sessions, nominal):
     """Finding of gyro axes that are swapped or inverted, or None; its read (3, 3) takes what is
     true to what is read."""
     # A turn about the vertical looks the same to gravity whichever way the axes point.
-    chosen = [t for s, m in zip(sessions, nominal) for t in turns.usable_turns(s, m.up)
-              if t.before @ t.after < 0.8][:10]
+    leaning = (turn for s, m in zip(sessions, nominal) for turn in turns.integrated(
+        [move for move in turns.usable_moves(s, m.up) if move.before @ move.after < 0.8], s, m.up))
+    chosen = [turn for _, turn in zip(range(10), leaning)]
     plain = np.array([t.off() for t in chosen])
     if len(chosen) < 3 or plain.mean() < WRONG_DEG:  # the plain order does: no other is tried
         return None

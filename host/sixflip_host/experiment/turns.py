@@ -6,8 +6,8 @@ ICRA 2014, eq. 13-18, linearised]. Flips of one face also say that the turn was 
 Everything is divided by the length of the move, so that it is in deg/s, as the effects are. Turns
 are values: to take something out of their rates is to make other turns.
 """
-import weakref
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -25,9 +25,6 @@ PULL_DPS = 0.1  # deg/s per g, typical (effects/typical.py: g_sensitivity)
 SHORTEST_S, LONGEST_S, LEAST_DEG = 0.3, 60.0, 20.0
 WHOLE = 0.7  # samples: half of one that is missing, and what the stamps of both ends scatter by
 LEAST_STEP = 0.05  # periods between two samples, whatever their stamps
-# {Session: {up: turns}}: turns are values, so that what was integrated once is kept for as long as
-# the session lives; nobody can change it.
-_known = weakref.WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,9 +55,16 @@ class Turn(ReadOnlyArrays):
     attitude: np.ndarray | None = None
     end: np.ndarray | None = None
 
-    @property
+    @cached_property
     def dt(self):
         return np.diff(self.t)
+
+    @cached_property
+    def shown(self):
+        """(2 or 3, n - 1, 3): by how much what is observed of it grows with the rate between two
+        samples, about each axis."""
+        return np.tensordot(rows(self, lateral_basis(self.before)),
+                            self.attitude * self.dt[:, None, None], axes=(1, 1))
 
     @property
     def seconds(self):
@@ -124,26 +128,36 @@ def _even(t, period_s, uneven=False):
 def usable_turns(session, up):
     """tuple of Turn, integrated: every usable one between neighbouring placements of a Session
     (of a part: of its own). up (placements, 3)."""
-    known = _known.setdefault(session, {})
-    key = up.tobytes()
-    if key not in known:
-        known[key] = _usable_turns(session, up)
-    return known[key]
+    return tuple(integrated(usable_moves(session, up), session, up))
 
 
-def _usable_turns(session, up):
-    kept = np.unique(session.placement).tolist()
-    rest = {p: session.gyro[session.placement == p].mean(axis=0) for p in kept}
-    pairs = [p for p in kept if p + 1 in rest]
+def usable_moves(session, up):
+    """[Turn] as usable_turns() has them, not integrated."""
+    rest = _bias(session)
+    pairs = [p for p in rest if p + 1 in rest]
     if not pairs:
-        return ()
+        return []
     # A bias that changes from rest to rest is known to about half of that in between.
     wander = np.sqrt(np.mean([(rest[p + 1] - rest[p]) ** 2 for p in pairs], axis=0)) / 2.0
     # What drifts is halfway between the rests before and after.
     candidates = (between(session, up, 0.5 * (rest[p] + rest[p + 1]), p, wander) for p in pairs)
-    pull = _pull(np.array([rest[p] for p in kept]), up[kept])
-    return tuple(_without_pull(turn.integrated(), pull) for turn in candidates
-                 if turn.usable(session.rate))
+    return [turn for turn in candidates if turn.usable(session.rate)]
+
+
+def integrated(moves, session, up):
+    """The Turns of some of the usable_moves() of a Session, integrated one by one as they are
+    asked for."""
+    rest = _bias(session)
+    if not rest:
+        return iter(())
+    pull = _pull(np.array(list(rest.values())), up[list(rest)])
+    return (_without_pull(turn.integrated(), pull) for turn in moves)
+
+
+def _bias(session):
+    """{placement: (3,) deg/s}, what the gyro reads in the rests of a Session, in their order."""
+    return {p: session.gyro[session.placement == p].mean(axis=0)
+            for p in np.unique(session.placement).tolist()}
 
 
 def _pull(bias, up):
@@ -192,17 +206,14 @@ def observed(turn):
 
 def projected(turn, added):
     """(2 or 3, k): rates added (n, 3, k), deg/s, as what is observed."""
-    weights = turn.attitude * turn.dt[:, None, None]
-    phi = weights.transpose(1, 0, 2).reshape(3, -1) @ added.reshape(-1, added.shape[2])
-    return rows(turn, lateral_basis(turn.before)) @ phi
+    return turn.shown.reshape(len(turn.shown), -1) @ added.reshape(-1, added.shape[2])
 
 
 def projected_by_axis(turn, functions):
     """(2 or 3, 3k): k functions (n, 3) of each axis' own rate, deg/s, with a coefficient an axis:
     those of the first function first."""
-    weights = (turn.attitude * turn.dt[:, None, None]).transpose(2, 1, 0)
-    phi = weights @ np.stack(functions, 2).transpose(1, 0, 2)
-    return rows(turn, lateral_basis(turn.before)) @ phi.transpose(1, 2, 0).reshape(3, -1)
+    by_axis = turn.shown.transpose(2, 0, 1) @ np.stack(functions, 2).transpose(1, 0, 2)
+    return by_axis.transpose(1, 2, 0).reshape(len(turn.shown), -1)
 
 
 def wandering(chosen):

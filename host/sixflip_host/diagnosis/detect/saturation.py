@@ -88,7 +88,8 @@ def lost_at_peaks(rates, dt, level):
     less = np.zeros_like(rates)
     width = max(FLANK, round(FLANK_S / float(np.median(dt))))
     at = np.cumsum(dt) - 0.5 * dt
-    for axis, column in enumerate(rates.T):
+    for axis in np.flatnonzero((rates > level).any(axis=0)):
+        column = rates[:, axis]
         above = ndimage.binary_closing(column > level[axis], np.ones(width))
         for run, in ndimage.find_objects(ndimage.label(above)[0]):
             if run.start < width or run.stop > len(column) - width:
