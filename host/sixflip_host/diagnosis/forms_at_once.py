@@ -129,11 +129,13 @@ def _diagonal(matrices):
 
 def _products(unit, points, index, elimination):
     """(P, F, k, k) of columns index (F, k), less what private columns take off."""
-    own, place = np.unique(index, axis=0, return_inverse=True)  # forms may differ by prior only
+    places = {}  # forms may differ by prior only
+    place = [places.setdefault(row.tobytes(), len(places)) for row in index]
+    own = index[np.unique(place, return_index=True)[1]]
     gram = unit.gram.each(points, own)
     if elimination is not None:
         gram = gram - elimination.taken(points, own)
-    return gram[:, place.ravel()]
+    return gram if len(own) == len(index) else gram[:, place]
 
 
 def _blocks(unit, points, rows, columns, elimination):

@@ -189,15 +189,15 @@ def _centres(gram, inner, theta, apart):
 def _expected(move, left, centre, covariance):
     """(n, 3) mg²: squares that are expected of what is left of a move about its own centre, which
     is known to a covariance only [Dempster, Laird & Rubin, J. R. Stat. Soc. B 39 (1977) 1]."""
-    columns = move.table[:, :, CENTRE]
-    return (left - columns @ centre) ** 2 + _spread(columns, covariance)
+    return (left - (own := move.table[:, :, CENTRE]) @ centre) ** 2 + _spread(own, covariance)
 
 
 def _spread(columns, covariance):
     """(n, 3): variance of what columns (n, 3, k) add, their sizes known to a covariance only. A
     few moves are fitted better by their habits than the next ones will be, and a hand that seems
     to hold still would make any of them evidence."""
-    return ((columns @ covariance) * columns).sum(axis=2)
+    rows = columns.reshape(-1, len(covariance))
+    return np.einsum("ij,ij->i", rows @ covariance, rows).reshape(columns.shape[:2])
 
 
 def _settled(gram, inner, wide, shared, sessions):
