@@ -101,15 +101,15 @@ def move(turn, capture, nominal, course, session, by_hand, white, lag_ms=0.0):
     own = seen.spectrum(effects)
     edge = own[:, :, :3] @ frame.T * (not flat)
     # What bends with the attitude, and remembers the one before.
-    static = seen.held(projection.by_axis([
+    static = seen.held([
         *terms.harmonics(felt, "accel"), np.abs(felt), np.hypot(felt, KNEE_G),
-        *(felt ** degree for degree in OWN_DEGREES), felt[0] - felt]))
-    bias = projection.by_axis(course[:, turn.first:turn.last])
-    strange = seen.spectrum(_of_motion(felt, rate, np.stack(m.w_rate, 1)))
+        *(felt ** degree for degree in OWN_DEGREES), felt[0] - felt])
+    bias = seen.held(course[:, turn.first:turn.last])
+    strange = seen.frequencies(seen.by_axis(_of_motion(felt, rate, np.stack(m.w_rate, 1))))
     habits = seen.frequencies(_habits(turn, seen.share, flat))
     shared = [own, strange, edge, habits, static]
     return Move(turn, session, by_hand, white, flat, turn.seconds, turn.seconds / seen.n, y,
-                np.concatenate([*shared, own[:, :, :3], seen.held(bias)], axis=2),
+                np.concatenate([*shared, own[:, :, :3], bias], axis=2),
                 sum(part.shape[2] for part in shared))
 
 
@@ -217,13 +217,19 @@ class Seen:
         return cls(n, _frame(turn, body, rate)[0] @ body, share,
                    np.linspace(0, len(share), n + 1).astype(int), cosines)
 
-    def held(self, values):
-        """spectrum() of what is there at rest, too: across gravity that was taken for the
-        attitude."""
-        table = self.turned @ values
-        share = self.share[:, None, None]
-        table[:, :2] -= ((1.0 - share) * table[0] + share * table[-1])[:, :2]
-        return self.frequencies(table)
+    def by_axis(self, functions):
+        """(samples, 3, 3k) onwards, along the axis and up: functions as projection.by_axis() has
+        them, each column of which is on one axis of the body only."""
+        each = np.stack([np.broadcast_to(f.reshape(len(f), -1), (len(f), 3)) for f in functions], 1)
+        return (self.turned[:, :, None] * each[:, None]).reshape(len(each), 3, -1)
+
+    def held(self, functions):
+        """(n, 3, 3k) of by_axis() of what is there at rest, too: across gravity that was taken for
+        the attitude."""
+        table = self.by_axis(functions)
+        means, share = self._means(table), self._means(self.share)[:, None, None]
+        means[:, :2] -= (1.0 - share) * table[0, :2] + share * table[-1, :2]
+        return np.tensordot(self.cosines, means, axes=1)
 
     def spectrum(self, values):
         """(n, 3, k) from (samples, 3, k) in the body."""
@@ -231,15 +237,17 @@ class Seen:
 
     def frequencies(self, table):
         """(n, 3, k) from (samples, 3, k) onwards, along the axis and up."""
-        means = np.add.reduceat(table, self.edges[:-1], axis=0)
-        means /= np.diff(self.edges)[:, None, None]
-        return np.tensordot(self.cosines, means, axes=1)
+        return np.tensordot(self.cosines, self._means(table), axes=1)
+
+    def _means(self, values):
+        """(n, ...) means of values (samples, ...) in the bins."""
+        return (np.add.reduceat(values, self.edges[:-1], axis=0).T / np.diff(self.edges)).T
 
 
 def _of_motion(felt, rate, change):
-    """(n, 3, k): functions of the rate (n, 3) deg/s and its change that no name has, mg on each
-    axis, in the order of COMPETING."""
+    """Functions of the rate (n, 3) deg/s and its change that no name has, mg on each axis, in the
+    order of COMPETING."""
     w, faster = rate / FAST_DPS, change / FAST_DPS2
     speed = np.linalg.norm(w, axis=1)
     pairs = [w[:, i] * w[:, j] for i in range(3) for j in range(i + 1)]
-    return projection.by_axis([speed, *w.T, *pairs, *faster.T, felt * speed[:, None]])
+    return [speed, *w.T, *pairs, *faster.T, felt * speed[:, None]]

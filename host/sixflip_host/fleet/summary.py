@@ -133,8 +133,8 @@ class Summary:
         runs = tuple(rests.Run(*row) for row in a["runs"][:, :3].tolist())
         return SummarySession(
             self.about["name"], self.capture(), float(self.meta["rate_hz"]),
-            np.array(self.about["bounds"]), False, self.about["found_labelled"], runs, smooth, None,
-            starts=a["starts"], friction=a["friction"], turned=a.get("turned"), **values)
+            np.array(self.about["bounds"]), False, self.about["found_labelled"], runs, smooth,
+            None, starts=a["starts"], friction=a["friction"], turned=a.get("turned"), **values)
 
 
 def summarise(name, capture):
