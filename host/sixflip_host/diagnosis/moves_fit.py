@@ -291,10 +291,10 @@ def spectra(moves, squares, weights):
             if flat:  # no way is onwards
                 square = np.stack([0.5 * (square[:, 0] + square[:, 1])] * 2 + [square[:, 2]], 1)
             excess = (square - white(moves[number])) / weight[:, None]
-            for b in np.unique(band):
-                s = sums.setdefault(int(b), np.zeros(4))
-                s[:3] += weights[number] * excess[band == b].sum(axis=0)
-                s[3] += weights[number] * (band == b).sum()
+            counted = np.column_stack([excess, np.ones(len(band))])
+            first = np.flatnonzero(np.diff(band, prepend=-1))  # in the order of frequency
+            for b, total in zip(band[first].tolist(), np.add.reduceat(counted, first)):
+                sums[b] = sums.get(b, 0.0) + weights[number] * total
         level = _levels(sums)
         for number in members:
             band, weight = bands(moves[number])

@@ -220,7 +220,8 @@ class Seen:
     def by_axis(self, functions):
         """(samples, 3, 3k) onwards, along the axis and up: functions as projection.by_axis() has
         them, each column of which is on one axis of the body only."""
-        each = np.stack([np.broadcast_to(f.reshape(len(f), -1), (len(f), 3)) for f in functions], 1)
+        each = np.stack([np.broadcast_to(f.reshape(len(f), -1), (len(f), 3))
+                         for f in functions], 1)
         return (self.turned[:, :, None] * each[:, None]).reshape(len(each), 3, -1)
 
     def held(self, functions):
