@@ -4,6 +4,7 @@ What counts is how much likelier the samples at one level are if everything beyo
 level than if the readings thin out towards their largest one as they do everywhere.
 """
 import math
+from typing import NamedTuple
 
 import numpy as np
 from scipy import ndimage, special
@@ -32,19 +33,21 @@ def saturation(sessions, sensor, columns):
         for session, counts in zip(sessions, columns):
             x = counts[:, i].astype(np.int64)
             on_rail = np.abs(x) >= _range_rail(session, sensor)
+            span = _span(x)
             if on_rail.any():
+                span = _span(np.abs(x))
                 level = np.abs(x), on_rail
-                nats = level_nats(*level, RAIL_CODES)
+                nats = level_nats(*level, RAIL_CODES, span)
                 said = "%d samples of the %s axis sit on the rail" % (on_rail.sum(), "xyz"[i])
                 size = int(np.abs(x).max())
             else:
-                nats, level = max(((cut_off_nats(y), (y, y == y.max()))
+                nats, level = max(((cut_off_nats(y, span), (y, y == y.max()))
                                    for y in (x, -x)), key=lambda pair: pair[0])
                 size = int(np.abs(level[0].max()))
                 said = _below(session, sensor, "xyz"[i], level[0].max())
             if present(nats):
                 value["xyz"[i]] = max(value.get("xyz"[i], 0), size)
-                number += peaks(*level)[0]
+                number += peaks(*level, span)[0]
                 score += nats
                 words.setdefault("xyz"[i], said)
                 limits.setdefault("xyz"[i], RANGE if on_rail.any() else BELOW)
@@ -74,8 +77,9 @@ def railed(session, sensor="accel"):
     at_end = np.zeros(len(counts), bool)
     for column in counts.T.astype(np.int64):
         at_end |= np.abs(column) >= rail
+        span = _span(column)
         for sign in (1, -1):
-            if present(cut_off_nats(sign * column)):
+            if present(cut_off_nats(sign * column, span)):
                 at_end |= sign * column == (sign * column).max()
     return at_end
 
@@ -109,24 +113,24 @@ def _range_rail(session, sensor):
     return registers.rail(session.capture, sensor) - RAIL_CODES
 
 
-def cut_off_nats(x):
+def cut_off_nats(x, span=None):
     """level_nats of the largest value of x, against peaks that end anywhere or at one steady
     reading again and again; the one sample that is the largest anyhow is no evidence, and the
-    largest values that were looked at are taken off."""
+    largest values that were looked at are taken off. span: of x, where it is known already."""
     at = x == x.max()
     if at.all():
         return 0.0
-    nats = level_nats(x, at, 1, 1) - math.log(LOOKED_AT)
-    return -float(np.logaddexp(-nats, math.log(STEADY) - _piled_up_nats(x)))
+    span = span or _span(x)
+    nats = level_nats(x, at, 1, span, 1) - math.log(LOOKED_AT)
+    return -float(np.logaddexp(-nats, math.log(STEADY) - _piled_up_nats(x, span.step)))
 
 
-def _piled_up_nats(x):
+def _piled_up_nats(x, step):
     """Log likelihood ratio (nats) of the largest code being read oftener than those below it that
     noise makes of one reading, as where what would be larger reads it, against more rarely, as in
     the noise of one steady reading; the one sample that is the largest anyhow is no evidence.
     Either share has all values alike."""
     at = x == x.max()
-    step = _spread(x)[0]
     below = max(1, round(_noise(x, at, step)))
     hits = int(at.sum()) - 1
     misses = int((x >= x.max() - below * step).sum()) - hits - 1
@@ -142,18 +146,17 @@ def _noise(x, at, step):
     return 1.4826 / math.sqrt(6.0) * float(np.median(bends)) / step
 
 
-def level_nats(x, at, width, free=0):
+def level_nats(x, at, width, span, free=0):
     """Log likelihood ratio (nats) of readings x being held at their largest `width` codes, where
     `at` is True, against readings whose peaks end anywhere in the last part of their span. That
     the next sample stays at the level counts for as much as it does so more often than noise and
-    the other readings let it. free: peaks that end there anyhow."""
-    step, spread = _spread(x)
-    reached, inside = peaks(x, at)
+    the other readings let it. span: of x; free: peaks that end there anyhow."""
+    reached, inside = peaks(x, at, span)
     runs = max(reached - free, 0)
     # A rail is known beforehand: what jumps there alone could have jumped anywhere.
     known = not free and not inside
-    share = width / float(RAIL + 1) if known else width * step / spread
-    return _oftener(runs, inside, share) + _held_nats(x, at, step)
+    share = width / float(RAIL + 1) if known else width * span.step / span.last
+    return _oftener(runs, inside, share) + _held_nats(x, at, span.step)
 
 
 def _held_nats(x, at, step):
@@ -175,19 +178,26 @@ def _oftener(hits, misses, chance):
                - hits * math.log(chance) - misses * math.log1p(-chance))
 
 
-def peaks(x, at):
+def peaks(x, at, span):
     """(peaks that end at the level where `at` is True, those that end just inside of it)."""
-    near = x >= x[at].min() - _spread(x)[1]
+    near = x >= x[at].min() - span.last
     reached = _reached(near, at & near)
     return reached, number_of_runs(near) - reached
 
 
-def _spread(x):
-    """(step of the counts, width of the last part of their span). Where a bit sticks, of x or of
-    what x is the negative of, what is on either side of it reads alike: a step of two weights."""
+class Span(NamedTuple):
+    """step of the counts, and width of the last part of their span; of x as of -x."""
+
+    step: int
+    last: float
+
+
+def _span(x):
+    """Span of counts x (n,). Where a bit sticks, of x or of what x is the negative of, what is on
+    either side of it reads alike: a step of two weights."""
     stuck = fixed_bits(x) + fixed_bits(-x)
     step = max([int(steps(x[:, None])[0]), *(2 << bit for bit, _ in stuck)])
-    return step, max(4.0, 3.0 * step, SPREAD_SHARE * float(np.ptp(x)))
+    return Span(step, max(4.0, 3.0 * step, SPREAD_SHARE * float(np.ptp(x))))
 
 
 def _reached(near, at):
