@@ -20,6 +20,7 @@ MOST_ROWS = 4000  # of a log that a fit looks at; each stands for those around i
 # Stretches of a log, each of them one observation of what its coefficients are worth: a standard
 # error by twenty is known to a sixth, and of a minute's log each holds about one move.
 STRETCHES = 20
+HEARD = 2.0  # times what is left of a channel, above which its own motion would show in it
 POINTS = 6  # off by 1e-3 at the end of the widest band, eight rows a period
 
 
@@ -81,12 +82,22 @@ def candidates(hypothesis, measured, kind, live):
     if hypothesis.name:
         size = np.linalg.norm(free, axis=1)
         near = axis_order.nearest(free / np.maximum(size, 1e-9)[:, None])
-        dead = live & (size < DEAD * np.median(size[live]))
+        # Of a robot on a floor z is what x and y make of it by how crooked it stands, and noise:
+        # what it answers to does not show.
+        own = np.stack([left_of(y[:, i], np.delete(design, i, axis=1)) for i in range(3)], 1)
+        heard = np.median(size[live]) * own.std(axis=0) > HEARD * left_of(
+            measured, design).std(axis=0)
+        dead = live & heard & (size < DEAD * np.median(size[live]))
         if dead.any():
             near = np.where(dead[:, None], 0.0, near)
         if not np.array_equal(near[live], np.eye(3)[live]):
             tried += [(near, unit) for unit in units]
     return tried
+
+
+def left_of(values, design):
+    """values (n, ...) less what the columns of a design (n, k) say of them."""
+    return values - design @ np.linalg.lstsq(design, values, rcond=None)[0]
 
 
 def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, rows, left=True,
