@@ -35,7 +35,12 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
     sessions = [blocks.session_of(name, capture) for name, capture in captures]
     own, comparisons = None, []
     if simulator:
-        from .simulator import against_simulator, comparison, convention_findings
+        from .simulator import (
+            against_simulator,
+            comparison,
+            convention_findings,
+            effects_in_both,
+        )
         progress.doing("conventions and parameters of the simulator")
         comparisons = [comparison.compare(captures, *log) for log in simulator]
         # What a log with another convention reads is no effect of a sensor.
@@ -46,25 +51,27 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
             names, simulated = zip(*sound)
             progress.doing("the simulator's own captures")
             own = against_simulator.read(list(simulated), list(names), settings)
-            settings = replace(settings, simulated=own.known)
+            settings = replace(settings, simulated=effects_in_both.not_compared(
+                own.known, comparisons))
     result = diagnosis.diagnose_sessions(sessions, settings, own, comparisons, damages)
     return _beyond(result, own, sessions, damages) if comparisons else result
 
 
 def _beyond(result, own, sessions, damages):
-    """The Diagnosis without what two logs of one motion show to be in both, and with the
-    simulator's parameters beside the effects that it lacks."""
-    from .simulator import effects_beside
+    """The Diagnosis without what two logs of one motion show to be in both, with what they alone
+    show, and with the simulator's parameters beside the effects that it lacks."""
+    from .simulator import effects_beside, effects_in_both, lacking_effects
     progress.doing("parameters beside the effects")
     for _ in range(MOST_ROUNDS):
-        both = effects_beside.in_both(result)
+        both = effects_in_both.in_both(result)
         if not both:
             break
         known = result.settings.simulated
         settings = replace(result.settings, simulated={
             **known, **{kind: [*known.get(kind, ()), *more] for kind, more in both.items()}})
         result = diagnosis.diagnose_sessions(sessions, settings, own, result.comparisons, damages)
-    return effects_beside.beyond(result)
+    progress.doing("effects that the motion shows")
+    return effects_beside.beyond(lacking_effects.added(result))
 
 
 def flicker_levels(capture, path):

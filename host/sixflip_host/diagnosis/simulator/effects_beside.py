@@ -14,12 +14,10 @@ from sixflip_sim.effects.library import EFFECTS
 
 from ...experiment import noise_arrays, terms
 from .. import closed_loop, odds
-from ..hypotheses import Form, columns_of
-from . import conventions, hypotheses, pairing, parameters
+from ..detect.detection import Finding
+from ..hypotheses import Form
+from . import conventions, hypotheses, pairing, parameters, remaining_gap
 
-# Standard errors within which the share of an effect in the difference is none, so that both logs
-# have it, if it is also as far from all of it: either is wrong in one of 370 (normal).
-BOTH = 3.0
 FLAT, RESTS_DPS = 0.966, 2.0  # cosine of 15 deg, as the simulator has a face; slower is a rest
 SAME = 1e-5  # of a scale that does not differ: a tenth of a count at 1 g
 MOST_SETS = 16  # of names that classes may stand for, tried: each takes a fit of the whole log
@@ -51,6 +49,7 @@ def _compared(comparison, diagnosis):
     """The Comparison with its effects, and bias, scale and misalignment beside them."""
     for kind, sensor_fit in comparison.fits.items():
         mine = [c for sensor, c in diagnosis.causes if sensor == kind and c.plausible]
+        mine += [f for f in diagnosis.findings if f.sensor == kind and f.plausible]
         names = _likeliest(kind, sensor_fit, mine, diagnosis)
         if names:
             comparison = _beside(comparison, kind, names, diagnosis)
@@ -59,71 +58,47 @@ def _compared(comparison, diagnosis):
 
 def _beside(comparison, kind, names, diagnosis):
     """The Comparison with the effects names ([(name, Cause)]) of one sensor, and its bias, scale
-    and misalignment beside them. What does not differ is the same in both when the sizes are
-    taken: a cubic is much like a scale."""
+    and misalignment, and what is left of the gap, beside them. A scale that does not differ is the
+    same in both when the sizes are taken: a cubic is much like one."""
     sensor_fit = comparison.fits[kind]
     fit, _ = _fitted(kind, sensor_fit, names, diagnosis)
     numbers = parameters.shapes(comparison.real, comparison.simulated,
                                 {kind: replace(sensor_fit, fit=fit)}, {kind: True})
     known = {(p.name, p.axis): p for p in numbers if p.sensor == kind}
-    differs = np.array([[any(p.differs for p in numbers if p.sensor == kind and p.axis in (
-        a + b, a * (a == b)) and p.name in ("scale", "misalignment")) for b in "xyz"]
-        for a in "xyz"])
-    same = replace(sensor_fit, hypothesis=replace(
-        sensor_fit.hypothesis, shape_sd=np.where(differs, hypotheses.SHAPE, SAME)))
+    width = np.full((3, 3), hypotheses.SHAPE)
+    for i, axis in enumerate("xyz"):
+        if not any(p.differs for p in numbers
+                   if (p.sensor, p.name, p.axis) == (kind, "scale", axis)):
+            width[i, i] = SAME
+    same = replace(sensor_fit, hypothesis=replace(sensor_fit.hypothesis, shape_sd=width))
+    fit, designs = _fitted(kind, same, names, diagnosis)
+    left = remaining_gap.not_foretold(wide(sensor_fit, designs))
+    before, after, noise = comparison.gap[kind]
+    wanders = remaining_gap.wandering({kind: sensor_fit}, {kind: left})
+    turned = {c.sensor for c in parameters.bias_sign(numbers)}
     return replace(
-        comparison, effects=comparison.effects + _sizes(
-            kind, *_fitted(kind, same, names, diagnosis), names, diagnosis),
+        comparison, effects=comparison.effects + _sizes(kind, fit, designs, names, diagnosis),
+        conventions=tuple(c for c in comparison.conventions
+                          if (c.name, c.sensor) != ("bias_sign", kind) or kind in turned),
+        gap={**comparison.gap, kind: (before, min(after, remaining_gap.size(kind, left)), noise)},
+        wanders=comparison.wanders - {kind} | wanders,
         parameters=tuple(known.get((p.name, p.axis), p) if p.sensor == kind else p
                          for p in comparison.parameters))
 
 
-def in_both(diagnosis):
-    """{sensor: [(effect, variant, key, coefficient)]} of the causes of a Diagnosis that two logs
-    of one motion show to be in the simulator as well: of what such a cause adds to the real
-    readings, nothing is in their difference. Each log by itself may take one effect for several,
-    and not alike, which is no gap between them."""
-    shared = {}
-    for comparison in diagnosis.comparisons:
-        for kind, fit in comparison.fits.items():
-            gap = diagnosis.gaps.get(kind)
-            for cause in gap.causes if gap else ():
-                if _is_in_both(kind, fit, cause, diagnosis):
-                    shared.setdefault(kind, []).extend(_coefficients(gap, cause))
-    return shared
-
-
-def _coefficients(gap, cause):
-    """[(effect, variant, key, coefficient)] of a cause of a SensorGap."""
-    every = [(d.effect, d.variant, key) for d in gap.units[0].designs for key in d.keys]
-    columns = columns_of(cause.chosen).index
-    return [(*every[column], float(size)) for column, size in zip(columns, cause.theta)]
-
-
-def _is_in_both(kind, sensor_fit, cause, diagnosis):
-    names = (*terms.of_the_moment(kind), "box_tilt")
-    if sensor_fit.hypothesis.name == "" or cause.effect not in names or not cause.value:
-        return False
-    design = _design(kind, cause.effect, cause, sensor_fit.pair, diagnosis)
-    added = design.columns @ [cause.value.get(key, 0.0) for key in design.keys]
-    fit = _fit(kind, sensor_fit, [replace(
-        design, keys=["share"], columns=added[:, None], prior=np.ones(1))])
-    share, sigma = fit.extra[-1], fit.extra_sigma[-1]
-    return bool(abs(share) < BOTH * sigma < abs(1.0 - share))
-
-
 def _likeliest(kind, sensor_fit, causes, diagnosis):
     """[(name, Cause)]: of each cause the name in whose form both logs bear it out best."""
-    causes = [c for c in causes if any(name in terms.of_the_moment(kind) for name in c.names)]
+    possible = terms.of_the_moment(kind)
+    causes = [c for c in causes if any(name in possible for name in c.probabilities)]
     if sensor_fit.hypothesis.name == "" or not causes:
         return []
     sets = [list(zip(names, causes)) for names in islice(product(
-        *([n for n in c.names if n in terms.of_the_moment(kind)] for c in causes)), MOST_SETS)
+        *([n for n in c.probabilities if n in possible] for c in causes)), MOST_SETS)
         if len(set(names)) == len(names)]
     if len(sets) < 2:
         return sets[0] if sets else []
-    return max(sets, key=lambda names: _fit(kind, sensor_fit, [
-        _design(kind, *named, sensor_fit.pair, diagnosis) for named in names]).log)
+    return max(sets, key=lambda names: fit_with(kind, sensor_fit, [
+        design(kind, *named, sensor_fit.pair, diagnosis) for named in names]).log)
 
 
 def _fitted(kind, sensor_fit, names, diagnosis):
@@ -131,8 +106,8 @@ def _fitted(kind, sensor_fit, names, diagnosis):
     which the real readings are once it is taken off."""
     pair = sensor_fit.pair
     for _ in range(2):
-        designs = [_design(kind, *named, pair, diagnosis) for named in names]
-        fit = _fit(kind, sensor_fit, designs)
+        designs = [design(kind, *named, pair, diagnosis) for named in names]
+        fit = fit_with(kind, sensor_fit, designs)
         pair = _less(kind, sensor_fit.pair, designs, fit)
     return fit, designs
 
@@ -153,15 +128,16 @@ def _columns(kind, pair, designs):
 
 
 def _shape(name, cause, diagnosis):
-    """{parameter: value}; another name of a class has no variant of its own."""
-    form = cause if name == cause.effect else Form(name)
+    """{parameter: value}; another name of a class has no variant of its own, nor has what the
+    motion shows (lacking_effects)."""
+    form = Form(name) if name != cause.effect or isinstance(cause, Finding) else cause
     shape = closed_loop.shape(form, diagnosis.conditions.reference_c)
     if name == "warm_up":
         shape.setdefault("tau_s", EFFECTS["warm_up"].shapes["tau_s"][0])
     return shape
 
 
-def _design(kind, name, cause, pair, diagnosis):
+def design(kind, name, cause, pair, diagnosis):
     """terms.Design of an effect on a Pair's samples."""
     chip = diagnosis.sessions[0].capture.meta["sensor"]
     return terms.of_terms(name, kind, moment(pair), len(pair.t), chip=chip,
@@ -189,26 +165,35 @@ def moment(pair):
     return m
 
 
-def _fit(kind, sensor_fit, designs):
+def fit_with(kind, sensor_fit, designs):
     """Fit of the sensor's own hypothesis with the designs' columns beside it; what the real
     sensor may do besides is left out, since it would take their place."""
+    widened = replace(wide(sensor_fit, designs), own=None)
+    # What is left without them may be much, and says little of the noise then.
+    first = widened.refitted(conventions.local_noise(sensor_fit.fit.left[:, sensor_fit.live]))
+    return widened.refitted(conventions.local_noise(first.left[:, sensor_fit.live]))
+
+
+def wide(sensor_fit, designs):
+    """The SensorFit whose hypothesis has the designs' columns beside its own."""
+    if not designs:
+        return sensor_fit
     h = sensor_fit.hypothesis
-    wide = replace(h, columns=np.concatenate(
-                       [h.columns, -_columns(kind, sensor_fit.pair, designs)], axis=2),
-                   mean=np.concatenate([h.mean, *(np.zeros(len(d.keys)) for d in designs)]),
-                   sd=np.concatenate([h.sd, *(d.prior for d in designs)]))
-    rows = conventions.local_noise(sensor_fit.fit.left[:, sensor_fit.live])
-    return replace(sensor_fit, hypothesis=wide, own=None).refitted(rows)
+    return replace(sensor_fit, hypothesis=replace(
+        h, columns=np.concatenate(
+            [h.columns, -_columns(sensor_fit.kind, sensor_fit.pair, designs)], axis=2),
+        mean=np.concatenate([h.mean, *(np.zeros(len(d.keys)) for d in designs)]),
+        sd=np.concatenate([h.sd, *(d.prior for d in designs)])))
 
 
 def _sizes(kind, fit, designs, names, diagnosis):
     """Effects of a Fit."""
     effects, start = [], len(fit.extra) - sum(len(d.keys) for d in designs)
-    for design, (name, cause) in zip(designs, names):
-        part = slice(start, start + len(design.keys))
+    for one, (name, cause) in zip(designs, names):
+        part = slice(start, start + len(one.keys))
         start = part.stop
-        value = dict(zip(design.keys, fit.extra[part].tolist()))
-        half = dict(zip(design.keys, (odds.Z_90 * fit.extra_sigma[part]).tolist()))
+        value = dict(zip(one.keys, fit.extra[part].tolist()))
+        half = dict(zip(one.keys, (odds.Z_90 * fit.extra_sigma[part]).tolist()))
         effects.append(Beside(
             name, kind, value, {k: (v - half[k], v + half[k]) for k, v in value.items()},
             EFFECTS[name].units[kind], _shape(name, cause, diagnosis),

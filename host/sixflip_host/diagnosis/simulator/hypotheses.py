@@ -116,6 +116,12 @@ def nameless(signal, everything, copies):
 def own_effects(kind, t, celsius, force, rate, g):
     """(columns (n, q), prior sizes (q,)): what the real sensor of a kind adds of itself to each
     channel; the simulator lacks it, so it is in the difference whatever its conventions are."""
+    time, motion = of_time(kind, t, celsius), of_motion(kind, force, rate, g)
+    return np.concatenate([time[0], motion[0]], 1), np.concatenate([time[1], motion[1]])
+
+
+def of_time(kind, t, celsius):
+    """own_effects() that go with the time and the temperature."""
     size = OWN[kind]
     fades = [np.exp(-(t - t[0]) / tau) for tau in FADES_S]
     columns = [x - x.mean() for x in fades] + [(t - t.mean()) / np.ptp(t)]
@@ -123,6 +129,12 @@ def own_effects(kind, t, celsius, force, rate, g):
     if celsius is not None and np.ptp(celsius) > 0.3:
         columns.append(celsius - celsius.mean())
         sizes.append(size["celsius"])
+    return np.stack(columns, 1), np.array(sizes)
+
+
+def of_motion(kind, force, rate, g):
+    """own_effects() that go with what acts."""
+    size, columns, sizes = OWN[kind], [], []
     f = force / g
     own = f if kind == "accel" else rate
     for name, bent in (("pairs", pairs(own)), ("signs", np.abs(own))):

@@ -49,17 +49,19 @@ def held_out(fits, not_explained, real, sim):
     without a rest does not tell it."""
     gaps = {}
     for kind, sensor_fit in fits.items():
-        pair, scale = sensor_fit.pair, MG if kind == "accel" else DEG
-        before = pair.simulated(kind) - pair.real(kind)
-        left = not_explained[kind]
+        pair = sensor_fit.pair
         levels = [trace.noise[kind] for trace in (real, sim)]
         noise = 0.0 if None in levels else sum(
             (level.density ** 2).mean() * 2.0 * min(pair.band_hz, trace.rate_hz / 2)
             for level, trace in zip(levels, (real, sim)))
-        gaps[kind] = tuple(float(scale * x) for x in (
-            np.sqrt((before ** 2).mean()), np.sqrt((left ** 2).mean()),
-            np.sqrt(noise)))
+        gaps[kind] = (size(kind, pair.simulated(kind) - pair.real(kind)),
+                      size(kind, not_explained[kind]), size(kind, np.sqrt(noise)))
     return gaps
+
+
+def size(kind, values):
+    """Root mean square of values (m/s2, rad/s) of a sensor, mg or deg/s."""
+    return float(np.sqrt((values ** 2).mean()) * (MG if kind == "accel" else DEG))
 
 
 def wandering(fits, not_explained):

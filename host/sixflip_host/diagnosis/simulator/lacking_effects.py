@@ -1,0 +1,241 @@
+"""Layer three of one motion: what the real sensor does of itself as it moves, and the simulator
+lacks. The best convention is fitted once more with the columns of each effect beside it; names
+compete with each other, with nothing, and with what has no name: products, signs and forces in
+every channel, and any bent line of each axis of the sensor's own.
+
+What goes with time alone (warming up, a thermometer's, what fades) is beside all of them: two logs
+tell it from a bias that wanders no better than one does (rest_gap).
+"""
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sixflip import STANDARD_G
+from sixflip_sim.effects.library import EFFECTS
+
+from ...experiment import terms
+from .. import odds, verdict
+from ..detect.detection import Finding
+from ..effect_estimates import believable
+from ..hypotheses import Form
+from . import alignment as align_by
+from . import conventions, effects_beside, evidence_of_logs, hypotheses, pairing, remaining_gap
+from .parameters import MG
+
+# Effects that are functions of what acts while a thing moves.
+OF_MOTION = ("quadratic", "cubic", "cross_quadratic", "asymmetry", "g_sensitivity",
+             "thermal_scale")
+# Of these the form may be another one that is as large to both sides, by a little: |f|^1.5 lies
+# between the two. What is odd may be a dead band or a soft end, and has no such room.
+EVEN = ("quadratic", "asymmetry")
+# Of the prior's width, ten times the typical size: what the logs make likeliest of them is taken,
+# as of what has no name (conventions.sized).
+WIDTHS = (1.0, 0.1, 0.01)
+MOST = 2  # names of one sensor that are looked for: GAP.md's pairs
+KNOTS = 8  # of the bent line of an axis: four a side, a front end that levels off has one or two
+BENT = 0.03  # of a reading, by which such a line may be off: a bend of 3 % (hypotheses.SHAPE)
+# Standard errors of what a name foretells in blocks it was not fitted on, from which on it does:
+# by chance in one of 740 (normal, one side).
+EARNS = 3.0
+
+
+@dataclass(frozen=True)
+class Rival:
+    """What may be there: names, () for nothing, "" among them for what has none; designs
+    (terms.Design, ...) of those that have one; nuisance: (columns (n, q), sizes (q,)) of each
+    channel; fit (evidence_of_logs.Fit) to one log."""
+
+    names: tuple
+    designs: tuple
+    nuisance: tuple
+    fit: object
+
+
+def log_posterior(rivals):
+    """Of one hypothesis by its Rivals of all logs, but for what all hypotheses have in common."""
+    names = rivals[0].names
+    prior = conventions.PRIOR_NAMELESS if "" in names else (
+        conventions.PRIOR_EACH ** len(names) if names else conventions.PRIOR_HEALTHY)
+    return sum(r.fit.log for r in rivals) + np.log(prior)
+
+
+def added(diagnosis):
+    """The Diagnosis with a Finding of each effect that logs of one motion show and its rests have
+    no name for."""
+    findings = []
+    for kind in ("accel", "gyro"):
+        logs = [(c.fits[kind], c.gap[kind][2]) for c in diagnosis.comparisons
+                if kind in c.fits and c.fits[kind].hypothesis.name]
+        if not _explained(kind, diagnosis) and any(open_without(*log) for log in logs):
+            findings += found(kind, logs, diagnosis)
+    return replace(diagnosis, findings=(*diagnosis.findings, *findings)) if findings else diagnosis
+
+
+def _explained(kind, diagnosis):
+    return any(sensor == kind and cause.plausible and set(cause.names) & set(OF_MOTION)
+               for sensor, cause in diagnosis.causes)
+
+
+def found(kind, logs, diagnosis):
+    """[Finding] of a sensor; logs: [(SensorFit, noise of both logs in the band, mg or deg/s, 0
+    where that is unknown)]."""
+    names = [name for name in OF_MOTION if name in terms.of_the_moment(kind)
+             and name not in diagnosis.settings.without
+             and (name != "thermal_scale" or all(f.pair.celsius is not None for f, _ in logs))]
+    findings, held = [], ()
+    while len(held) < MOST:
+        weighed = [judged(kind, sensor_fit, held, names, diagnosis) for sensor_fit, _ in logs]
+        hypotheses_of_all = list(zip(*(rivals for rivals, _, _ in weighed)))
+        scores = np.array([log_posterior(rivals) for rivals in hypotheses_of_all])
+        weights = np.exp(scores - scores.max()) / np.exp(scores - scores.max()).sum()
+        told = sorted(((float(w), rivals) for w, rivals in zip(weights, hypotheses_of_all)
+                       if len(rivals[0].names) > len(held) and "" not in rivals[0].names),
+                      key=lambda x: -x[0])
+        if sum(w for w, _ in told) < odds.HOLDS:
+            break
+        best, nothing = told[0][1], hypotheses_of_all[0]
+        share, blocks = earned([blocks_of(fit, rows, a, b) for (_, fit, rows), a, b in zip(
+            weighed, nothing, best)], [noise for _, noise in logs])
+        if share < 1.0 - verdict.CLOSED:
+            break
+        held = best[0].names
+        finding = _finding(kind, best, nothing, {r[0].names[-1]: w for w, r in told}, share,
+                           blocks, diagnosis)
+        if not finding.axes:
+            break
+        findings.append(finding)
+    return findings
+
+
+def open_without(sensor_fit, noise):
+    """Whether more than the noise (mg, deg/s), by a tenth of its power, is left of a SensorFit
+    where nothing that the real sensor does of itself is beside the convention."""
+    fit = replace(sensor_fit, own=None).refitted(None)
+    left = fit.left[:, sensor_fit.live] / fit.unit * (
+        MG if sensor_fit.kind == "accel" else hypotheses.DEG)
+    return float((left ** 2).mean()) * verdict.CLOSED > noise ** 2
+
+
+def judged(kind, sensor_fit, held, names, diagnosis):
+    """([Rival] beside the effects held, the SensorFit that they were judged by, rows (n,)): by
+    the noise of each sample, and how many are one, that the likeliest leaves."""
+    weighed = replace(sensor_fit, inflation=1.0)
+    best = max(_rivals(kind, weighed, held, names, diagnosis, None), key=lambda r: r.fit.log)
+    left = _fitted(weighed, best.designs, best.nuisance, None).left[:, weighed.live]
+    rows = conventions.local_noise(left)
+    weighed = replace(weighed, inflation=align_by.independent(left / rows[:, None]))
+    return _rivals(kind, weighed, held, names, diagnosis, rows), weighed, rows
+
+
+def _rivals(kind, sensor_fit, held, names, diagnosis, rows):
+    pair = sensor_fit.pair
+    beside = tuple(_design(kind, name, pair, diagnosis) for name in held)
+
+    def likeliest(names, designs, nuisances):
+        """Rival with the width, and the nuisance, that make the logs likeliest."""
+        return max((Rival(names, made, nuisance, _fitted(sensor_fit, made, nuisance, rows, False))
+                    for width in WIDTHS
+                    for made in [(*beside, *(replace(d, prior=d.prior * width) for d in designs))]
+                    for nuisance in nuisances), key=lambda r: r.fit.log)
+
+    def widened(nuisance, more, widths):
+        columns, sizes = more
+        return [(np.concatenate([nuisance[0], columns], 1),
+                 np.concatenate([nuisance[1], sizes * width])) for width in widths]
+
+    def of_other_form(name, nuisance):
+        return widened(nuisance, bent(np.abs(readings)), WIDTHS[1:]) if name in EVEN else []
+
+    readings = pair.real(kind)
+    none = np.zeros((len(pair.t), 0)), np.zeros(0)
+    time = widened(none, hypotheses.of_time(kind, pair.t, pair.celsius), WIDTHS)
+    nothing = likeliest(held, (), time + [
+        wide for name in held for each in time for wide in of_other_form(name, each)])
+    time, rivals = nothing.nuisance, [nothing]
+    for name in names:
+        if name not in held:
+            rivals.append(likeliest((*held, name), (_design(kind, name, pair, diagnosis),),
+                                    [time, *of_other_form(name, time)]))
+    for nameless in (hypotheses.of_motion(kind, pair.force, pair.motion.rate, STANDARD_G),
+                     bent(readings)):
+        rivals.append(likeliest((*held, ""), (), widened(time, nameless, WIDTHS)))
+    return rivals
+
+
+def _design(kind, name, pair, diagnosis):
+    return effects_beside.design(kind, name, Form(name), pair, diagnosis)
+
+
+def bent(readings):
+    """(columns (n, 3 KNOTS), sizes): of readings (n, 3) any line of each axis that bends at
+    knots evenly apart, by hats."""
+    columns, sizes = [], []
+    for own in readings.T:
+        knots = np.linspace(own.min(), own.max(), KNOTS)
+        hats = np.stack([np.interp(own, knots, hat) for hat in np.eye(KNOTS)], 1)
+        columns.append(hats - hats.mean(axis=0))
+        sizes += [BENT * float(np.abs(own).max())] * KNOTS
+    return np.concatenate(columns, 1), np.array(sizes)
+
+
+def _fitted(sensor_fit, designs, nuisance, rows, left=True):
+    """Fit of the SensorFit's convention with effects and nuisance beside it."""
+    wide = effects_beside.wide(sensor_fit, designs)
+    return evidence_of_logs.fit_one(
+        wide.hypothesis, wide.pair.simulated(wide.kind), wide.fit.axes, wide.fit.unit,
+        pairing.GRID_HZ, wide.kind, wide.inflation, nuisance, wide.live, rows, left=left,
+        noise_bends=wide.noise_bends)
+
+
+def blocks_of(sensor_fit, rows, nothing, best):
+    """(before, after) (b,): mean squares, (mg)2 or (deg/s)2, of what nothing and the best Rival
+    leave of each block, by a fit that has not seen it; and how many samples it has."""
+    pair, scale = sensor_fit.pair, MG if sensor_fit.kind == "accel" else hypotheses.DEG
+    block = ((pair.t - pair.t[0]) / remaining_gap.FOLD_S).astype(int)
+    power = []
+    for rival in (nothing, best):
+        left = np.empty((len(pair.t), 3))
+        for fold in (0, 1):
+            hidden = np.where(block % 2 == fold, remaining_gap.UNSEEN, rows)
+            fit = _fitted(sensor_fit, rival.designs, rival.nuisance, hidden)
+            left[block % 2 == fold] = scale * fit.left[block % 2 == fold] / fit.unit
+        power.append(np.bincount(block, (left[:, sensor_fit.live] ** 2).mean(axis=1)))
+    size = np.bincount(block)
+    return power[0][size > 0], power[1][size > 0], size[size > 0]
+
+
+def earned(blocks, noises):
+    """(share, blocks): the share of what nothing leaves beyond the noise that the best Rival
+    foretells in blocks that its fit has not seen (blocks_of() of each log), and how many of them;
+    (0, 0) where they do not bear it out."""
+    before, after, size = (np.concatenate(each) for each in zip(*blocks))
+    nats = np.log(np.maximum(before, 1e-30) / np.maximum(after, 1e-30))
+    if len(nats) < 2 or nats.mean() < EARNS * nats.std(ddof=1) / np.sqrt(len(nats)):
+        return 0.0, 0
+    floor = min(sum(noise ** 2 * s.sum() for noise, (_, _, s) in zip(noises, blocks)), after.sum())
+    gain = float((before - after).sum())
+    return float(np.clip(gain / max(before.sum() - floor, 1e-30), 0.0, 1.0)), len(nats)
+
+
+def _finding(kind, best, nothing, chances, share, blocks, diagnosis):
+    """Finding of the last name of a hypothesis by its Rivals of all logs; chances {name:
+    probability} of those in its place."""
+    name, keys = best[0].names[-1], best[0].designs[-1].keys
+    weights = np.array([r.fit.extra_sigma[-len(keys):] ** -2.0 for r in best])
+    mean = (weights * [r.fit.extra[-len(keys):] for r in best]).sum(axis=0) / weights.sum(axis=0)
+    value = dict(zip(keys, mean.tolist()))
+    sigma = dict(zip(keys, (weights.sum(axis=0) ** -0.5).tolist()))
+    interval = {k: (v - odds.Z_90 * sigma[k], v + odds.Z_90 * sigma[k]) for k, v in value.items()}
+    axes = sorted({k[0] for k, (low, high) in interval.items() if low > 0.0 or high < 0.0})
+    kept, total = {}, 0.0
+    for other, chance in chances.items():
+        if total < odds.HOLDS:
+            kept[other], total = chance, total + chance
+    chip = diagnosis.sessions[0].capture.meta["sensor"]
+    return Finding(
+        name, kind, axes, value, EFFECTS[name].units[kind],
+        sum(a.fit.log - b.fit.log for a, b in zip(best, nothing)), terms.DOMAIN[name],
+        "does what the simulator lacks in the same motion: %s" % name.replace("_", " "),
+        interval=interval, rivals={other: "" for other in kept if other != name},
+        plausible=believable(name, chip, kind, value, sigma), share=share, number=blocks,
+        place={**kept, "": max(0.0, 1.0 - total)})
