@@ -6,6 +6,7 @@ import pytest
 
 from sixflip_host.diagnosis.simulator import (
     alignment,
+    channel_regression,
     comparison,
     evidence_of_logs,
     hypotheses,
@@ -49,8 +50,9 @@ def test_a_coefficient_is_as_uncertain_as_stretches_of_the_log_disagree_on_it():
     slopes = rng.normal(0.0, 0.1, 20)
     x = rng.normal(size=(2000, 1))
     y = np.repeat((x * np.repeat(slopes, 100)[:, None]), 3, 1) + 0.01 * rng.normal(size=(2000, 3))
-    result = evidence_of_logs.regression(y, x, np.array([10.0]), np.zeros((2000, 3, 0)),
-                                         np.zeros(0), np.zeros(0), 1.0, np.ones(3, bool))
+    result = channel_regression.regression(
+        y, x, np.array([10.0]), np.zeros((2000, 3, 0)), np.zeros(0), np.zeros(0), 1.0,
+        np.ones(3, bool))
     sigma = result[5][:, 0]
     assert sigma == pytest.approx(slopes.std() / np.sqrt(20.0), rel=0.4)
 

@@ -2,7 +2,7 @@
 
 traces, single_log, held_readings  what one log says of itself
 alignment, pairing                 two logs of one motion on one clock and one grid
-hypotheses, evidence_of_logs, conventions, convention_findings
+hypotheses, evidence_of_logs, channel_regression, conventions, convention_findings
                                    layer 1: what the simulator's numbers mean, by the same motion
 own_calibration, own_motion, own_consistency, gravity_directions
                                    layer 1 where the motions differ: each log by its own rests

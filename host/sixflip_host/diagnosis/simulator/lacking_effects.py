@@ -34,6 +34,9 @@ WIDTHS = (1.0, 0.1, 0.01)
 MOST = 2  # names of one sensor that are looked for: GAP.md's pairs
 KNOTS = 8  # of the bent line of an axis: four a side, a front end that levels off has one or two
 BENT = 0.03  # of a reading, by which such a line may be off: a bend of 3 % (hypotheses.SHAPE)
+# That a log is cut into, half of them to be foretold from the others: each is as long as a rest
+# with its move or longer, in which a box that lies otherwise than planned lies so all the time.
+BLOCKS = 16
 # Standard errors of what a name foretells in blocks it was not fitted on, from which on it does:
 # by chance in one of 740 (normal, one side).
 EARNS = 3.0
@@ -54,8 +57,8 @@ class Rival:
 def log_posterior(rivals):
     """Of one hypothesis by its Rivals of all logs, but for what all hypotheses have in common."""
     names = rivals[0].names
-    prior = conventions.PRIOR_NAMELESS if "" in names else (
-        conventions.PRIOR_EACH ** len(names) if names else conventions.PRIOR_HEALTHY)
+    prior = np.prod([conventions.prior(name or "unknown") for name in names]) if names else \
+        conventions.PRIOR_HEALTHY
     return sum(r.fit.log for r in rivals) + np.log(prior)
 
 
@@ -191,7 +194,8 @@ def blocks_of(sensor_fit, rows, nothing, best):
     """(before, after) (b,): mean squares, (mg)2 or (deg/s)2, of what nothing and the best Rival
     leave of each block, by a fit that has not seen it; and how many samples it has."""
     pair, scale = sensor_fit.pair, MG if sensor_fit.kind == "accel" else hypotheses.DEG
-    block = ((pair.t - pair.t[0]) / remaining_gap.FOLD_S).astype(int)
+    seconds = max(remaining_gap.FOLD_S, 1.001 * np.ptp(pair.t) / BLOCKS)
+    block = ((pair.t - pair.t[0]) / seconds).astype(int)
     power = []
     for rival in (nothing, best):
         left = np.empty((len(pair.t), 3))

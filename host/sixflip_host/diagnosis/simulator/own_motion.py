@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import alignment as align_by
-from . import conventions, evidence_of_logs, hypotheses, traces
+from . import conventions, hypotheses, traces
+from .channel_regression import regression
 from .pairing import GRID_HZ
 
 ARM_M = 0.3  # prior of a lever arm in a log: of the sensor, and of the point it is turned about
@@ -56,8 +57,8 @@ def fitted(trace, sensor):
     live = np.ones(3, bool)
     rows, inflation = None, 1.0
     for _ in range(3):
-        result = evidence_of_logs.regression(force - signal, own, sds, columns, np.zeros(7), prior,
-                                             inflation, live, rows, covariance=True)
+        result = regression(force - signal, own, sds, columns, np.zeros(7), prior, inflation,
+                            live, rows, covariance=True)
         left = result[4]
         rows = conventions.local_noise(left)
         inflation = align_by.independent(left / rows[:, None])
@@ -68,7 +69,7 @@ def fitted(trace, sensor):
     parts = []
     for number in np.unique(groups):
         keep = groups != number
-        parts.append(evidence_of_logs.regression(
+        parts.append(regression(
             (force - signal)[keep], own[keep], sds, columns[keep], np.zeros(7), prior, inflation,
             live, rows[keep])[2])
     parts = np.array(parts)
