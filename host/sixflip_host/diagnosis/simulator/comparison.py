@@ -8,6 +8,7 @@ from . import (
     convention_findings,
     conventions,
     held_readings,
+    levelled_off,
     noise_and_registers,
     own_calibration,
     own_consistency,
@@ -113,7 +114,7 @@ def compare_traces(real, sim, aligned):
     live, constant = constant_channels(real, sim)
     findings += constant
     own_real = own_calibration.fitted(real_free)
-    fits, late, late_sigma, judged, lacks_delay = {}, None, None, False, False
+    fits, stops, late, late_sigma, judged, lacks_delay = {}, {}, None, None, False, False
     row_s = 1.0 / min(real.rate_hz, sim.rate_hz)
     motion = None
     if aligned.same and own_real is not None:
@@ -127,6 +128,10 @@ def compare_traces(real, sim, aligned):
     elif aligned.same and motion is not None:
         fresh = {k: sim.rate_hz / v.rows for k, v in holds["sim"].items()}
         fits = conventions.same_motion(real_free, sim_free, aligned, motion, live, fresh)
+        stops = levelled_off.stops(fits)
+        if stops:
+            real_free = levelled_off.marked(real_free, stops)
+            fits = conventions.same_motion(real_free, sim_free, aligned, motion, live, fresh)
         late, late_sigma, delays = conventions.delay(fits, row_s)
         delays = [c for c in delays if _late_itself(sim_free, late)]
         judged = len(fits) == 2
@@ -146,6 +151,8 @@ def compare_traces(real, sim, aligned):
     left = {kind: remaining_gap.not_foretold(sensor_fit) for kind, sensor_fit in fits.items()}
     gap = remaining_gap.held_out(fits, left, real, sim)
     numbers = parameters.together(numbers, fits, gap)
+    cut = {(p.sensor, p.axis) for p in numbers if p.name == "range"}
+    numbers += [p for p in levelled_off.ranges(stops, real, sim) if (p.sensor, p.axis) not in cut]
     if len(fits) == 2 and not findings:
         numbers += noise_and_registers.shaking(real, sim)
     numbers += parameters.timing(late, late_sigma, fits, aligned)

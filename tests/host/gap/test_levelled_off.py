@@ -1,0 +1,70 @@
+"""A front end that saturates before the converter does: the real log levels off within its noise,
+or softly, where the simulator's goes on."""
+import numpy as np
+import pytest
+
+from sixflip_host.diagnosis.simulator import comparison, levelled_off
+from tests.worlds.tumbled import read, tumbled
+
+
+def cut(rate):
+    return np.clip(rate, -80.0, 80.0)
+
+
+def soft(rate):
+    return rate / (1.0 + np.abs(rate / 80.0) ** 8) ** 0.125
+
+
+def compared(change, seed=1):
+    t, force, rate = tumbled(seed)
+    return comparison.compare([("real", read(t, force, change(rate), seed))], "sim",
+                              read(t, force, rate, 100 + seed))
+
+
+@pytest.mark.parametrize("change", [cut, soft])
+def test_where_it_stops_is_a_range_and_no_scale(change, monkeypatch):
+    """It was a scale that is some percent less, and most of the gap was left."""
+    found = compared(change)
+    ranges = {p.axis: p.real for p in found.differs if p.name == "range"}
+    assert ranges and all(level == pytest.approx(80.0, rel=0.04) for level in ranges.values())
+    monkeypatch.setattr(levelled_off, "stops", lambda fits: {})
+    without = compared(change)
+    assert scale(found) < 0.6 < 1.5 < scale(without)
+    assert found.gap["gyro"][1] < 0.2 * without.gap["gyro"][1]
+
+
+def scale(found):
+    """Percent by which the scale of a gyro's axis differs at most."""
+    return max(abs(p.difference) for p in found.parameters
+               if (p.name, p.sensor) == ("scale", "gyro"))
+
+
+def smoothed(rate):
+    """Behind a pole of 1.2 Hz, which takes the most of the fastest of its turns."""
+    course, share = np.zeros_like(rate), 1.0 - np.exp(-2.0 * np.pi * 1.2 / 100.0)
+    for k in range(1, len(rate)):
+        course[k] = course[k - 1] + share * (rate[k] - course[k - 1])
+    return course
+
+
+def weaker(rate):
+    return 0.94 * rate
+
+
+def shaken(rate):
+    return rate + 15.0 * np.random.default_rng(5).standard_normal(rate.shape)
+
+
+def curved(rate):
+    return rate - 1e-6 * rate ** 3
+
+
+@pytest.mark.parametrize("change", [np.copy, smoothed, weaker, shaken, curved])
+def test_what_only_makes_less_of_its_peaks_has_no_other_range(change):
+    assert not [p for p in compared(change).parameters if p.name == "range"]
+
+
+def test_few_readings_beyond_say_nothing():
+    real, simulated = np.sin(np.linspace(0.0, 60.0, 3000)), np.sin(np.linspace(0.0, 60.0, 3000))
+    simulated[70:80] = 1.5
+    assert levelled_off._stop(real, simulated) is None
