@@ -156,3 +156,17 @@ def test_a_channel_that_hears_no_more_than_the_others_and_noise_is_not_constant(
     h = hypotheses.Hypothesis("healthy", signal + 0.1 * np.sin(0.9 * t)[:, None],
                               *hypotheses.none(len(t)))
     assert any(dead(measured))
+
+
+def test_a_channel_of_nothing_but_noise_says_nothing_of_another_ones_gain():
+    """A thing that swings about one axis: y had a gain of five in x, and was constant by it."""
+    rng, t = np.random.default_rng(4), np.arange(4000) / 50.0
+    noise = 0.004 * rng.standard_normal(len(t))
+    signal = np.stack([np.sin(0.7 * t), noise, np.cos(0.7 * t) ** 2], 1)
+    measured = signal + 0.004 * rng.standard_normal(signal.shape)
+    measured[:, 1] = 0.004 * rng.standard_normal(len(t))
+    measured[:, 0] += 5.0 * noise
+    measured[:, 2] += 5.0 * noise
+    h = hypotheses.Hypothesis("healthy", signal, *hypotheses.none(len(t)))
+    assert all(axes[1].any() for axes, _ in evidence_of_logs.candidates(
+        h, measured, "accel", np.ones(3, bool)))

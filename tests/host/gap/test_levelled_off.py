@@ -68,3 +68,13 @@ def test_few_readings_beyond_say_nothing():
     real, simulated = np.sin(np.linspace(0.0, 60.0, 3000)), np.sin(np.linspace(0.0, 60.0, 3000))
     simulated[70:80] = 1.5
     assert levelled_off._stop(real, simulated) is None
+
+
+def test_a_motor_that_does_not_go_beyond_its_rate_is_no_stop():
+    """A simulator's controller that does, for a moment, made a range of the steady rate."""
+    t = np.arange(0.0, 60.0, 0.02)
+    rate = np.clip(4.0 * np.sin(0.6 * t), -1.0, 1.0)
+    started = np.convolve(np.abs(np.diff(rate, prepend=0.0)) > 0.0, np.ones(16), "full")[:len(t)]
+    beyond = rate * (1.0 + 0.15 * (started > 0.0) * (np.abs(rate) >= 1.0))
+    assert levelled_off._stop(rate, beyond) is None
+    assert levelled_off._stop(rate, 4.0 * np.sin(0.6 * t)) == pytest.approx(1.0)

@@ -80,9 +80,11 @@ def candidates(hypothesis, measured, kind, live):
         # Of a robot on a floor z is what x and y make of it by how crooked it stands, and noise:
         # what it answers to does not show.
         own = np.stack([left_of(y[:, i], np.delete(design, i, axis=1)) for i in range(3)], 1)
-        heard = np.median(size[live]) * own.std(axis=0) > HEARD * left_of(
-            measured, design).std(axis=0)
-        dead = live & heard & (size < DEAD * np.median(size[live]))
+        # By their power: the gain of a channel that reads noise alone may be anything.
+        gain = np.sqrt(measured[:, live].var(axis=0).sum() / max(y[:, live].var(axis=0).sum(),
+                                                                 1e-30))
+        heard = gain * own.std(axis=0) > HEARD * left_of(measured, design).std(axis=0)
+        dead = live & heard & (size < DEAD * gain)
         if dead.any():
             near = np.where(dead[:, None], 0.0, near)
         if not np.array_equal(near[live], np.eye(3)[live]):

@@ -17,6 +17,7 @@ from .parameters import MG, Parameter
 BEYOND, RISES = 1.08, 0.5
 NEAR = 0.85  # of the largest reading: what is read there, not what two kinds of shaking leave
 AT = 0.95  # of a stop: by as much the band that is compared rounds it off
+OVER = 0.7  # of the readings at a stop are beyond it in the simulator; of a steady rate half are
 FEWEST, PEAKS = 15, 3  # samples (at pairing.GRID_HZ) and peaks beyond, to both sides together
 
 
@@ -45,6 +46,10 @@ def _stop(real, simulated):
         return None
     rises = np.cov(np.abs(real[beyond]), np.abs(simulated[beyond]))
     level = float(np.median(np.abs(real[beyond])))
+    # A motor that comes to its rate, in the simulator after going beyond it, stays there longer.
+    there = np.abs(real) > AT * level
+    if (np.abs(simulated[there]) > level).mean() < OVER:
+        return None
     return level if level > NEAR * top and rises[0, 1] < RISES * rises[1, 1] else None
 
 
@@ -58,8 +63,8 @@ def marked(trace, found):
 
 
 def ranges(found, real, sim):
-    """[Parameter] of the stops() found, as large as most that the real Trace reads near them,
-    beside the simulator's Trace."""
+    """[Parameter] of the stops() found: the median of what the real Trace reads from AT of them
+    on, and by how much the simulator's Trace goes beyond it."""
     numbers = []
     for (kind, axis), stop in found.items():
         scale, unit, name = (MG, "mg", "force") if kind == "accel" else (DEG, "°/s", "rate")
