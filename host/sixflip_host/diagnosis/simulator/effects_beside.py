@@ -61,7 +61,7 @@ def _beside(comparison, kind, names, diagnosis):
     and misalignment, and what is left of the gap, beside them. A scale that does not differ is the
     same in both when the sizes are taken: a cubic is much like one."""
     sensor_fit = comparison.fits[kind]
-    fit, _ = _fitted(kind, sensor_fit, names, diagnosis)
+    fit, _ = _fitted(kind, sensor_fit, names, comparison.real, diagnosis)
     numbers = parameters.shapes(comparison.real, comparison.simulated,
                                 {kind: replace(sensor_fit, fit=fit)}, {kind: True})
     known = {(p.name, p.axis): p for p in numbers if p.sensor == kind}
@@ -71,7 +71,7 @@ def _beside(comparison, kind, names, diagnosis):
                    if (p.sensor, p.name, p.axis) == (kind, "scale", axis)):
             width[i, i] = SAME
     same = replace(sensor_fit, hypothesis=replace(sensor_fit.hypothesis, shape_sd=width))
-    fit, designs = _fitted(kind, same, names, diagnosis)
+    fit, designs = _fitted(kind, same, names, comparison.real, diagnosis)
     left = remaining_gap.not_foretold(wide(sensor_fit, designs))
     before, after, noise = comparison.gap[kind]
     wanders = remaining_gap.wandering({kind: sensor_fit}, {kind: left})
@@ -101,14 +101,17 @@ def _likeliest(kind, sensor_fit, causes, diagnosis):
         design(kind, *named, sensor_fit.pair, diagnosis) for named in names]).log)
 
 
-def _fitted(kind, sensor_fit, names, diagnosis):
+def _fitted(kind, sensor_fit, names, own, diagnosis):
     """(Fit, designs) of effects beside the parameters. An effect is a function of what acts,
-    which the real readings are once it is taken off."""
-    pair = sensor_fit.pair
+    which the real readings are once it is taken off, and the forces once their OwnSensor's bias
+    and scale are: the square of a reading with a bias is a scale besides."""
+    acting = replace(sensor_fit.pair,
+                     force=(sensor_fit.pair.force - own.bias) @ own.accel.T)
+    pair = acting
     for _ in range(2):
         designs = [design(kind, *named, pair, diagnosis) for named in names]
         fit = fit_with(kind, sensor_fit, designs)
-        pair = _less(kind, sensor_fit.pair, designs, fit)
+        pair = _less(kind, acting, designs, fit)
     return fit, designs
 
 
@@ -168,10 +171,8 @@ def moment(pair):
 def fit_with(kind, sensor_fit, designs):
     """Fit of the sensor's own hypothesis with the designs' columns beside it; what the real
     sensor may do besides is left out, since it would take their place."""
-    widened = replace(wide(sensor_fit, designs), own=None)
-    # What is left without them may be much, and says little of the noise then.
-    first = widened.refitted(conventions.local_noise(sensor_fit.fit.left[:, sensor_fit.live]))
-    return widened.refitted(conventions.local_noise(first.left[:, sensor_fit.live]))
+    rows = conventions.local_noise(sensor_fit.fit.left[:, sensor_fit.live])
+    return replace(wide(sensor_fit, designs), own=None).refitted(rows)
 
 
 def wide(sensor_fit, designs):
