@@ -91,7 +91,32 @@ def test_what_has_no_name_gets_none(added):
     assert not [c for c in causes if set(c["class"]) & set(lacking_effects.OF_MOTION)]
 
 
-def test_an_effect_without_a_name_in_the_library_asked_for_is_not_looked_for():
+def test_what_leaves_most_of_the_gap_is_not_its_name():
+    """An accelerometer that is cut off at 0.9 g is a little like a cube, which closed a fifth."""
+    t, force, rate = tumbled(1, 60.0)
+    found = answer.as_dict(diagnose([("real", read(t, np.clip(force, -0.9, 0.9), rate, 1))],
+                                    [("sim", read(t, force, rate, 101))], jobs=1))
+    assert not [c for c in found["causes"] if set(c["class"]) & set(lacking_effects.OF_MOTION)]
+
+
+def test_a_real_log_counts_once_whatever_is_held_against_it(monkeypatch):
+    """Its noise is the same in each comparison; the simulator's log that is nearest is taken."""
+    def comparison(log, against, correlation):
+        fit = SimpleNamespace(log=log, hypothesis=SimpleNamespace(name="healthy"))
+        return SimpleNamespace(fits={"accel": fit}, gap={"accel": (3.0, 2.0, 1.0)},
+                               against=against,
+                               alignment=SimpleNamespace(correlation=correlation))
+    asked = []
+    monkeypatch.setattr(lacking_effects, "open_without", lambda fit, noise: True)
+    monkeypatch.setattr(lacking_effects, "found", lambda kind, logs, diagnosis: asked.extend(
+        fit.log for fit, _ in logs) or [])
+    lacking_effects.added(SimpleNamespace(causes=(), findings=(), comparisons=(
+        comparison("a", "real 1", 0.98), comparison("b", "real 1", 0.99),
+        comparison("c", "real 1", 0.97), comparison("d", "real 2", 0.9))))
+    assert sorted(asked) == ["b", "d"]
+
+
+def test_an_effect_that_is_left_out_is_not_looked_for():
     t, force, rate = tumbled(1)
     found = diagnose([("real", read(t, *softened(force, rate), 1))],
                      [("sim", read(t, force, rate, 101))], without=("asymmetry",), jobs=1)

@@ -28,12 +28,13 @@ def changes(power, first, length, least):
     chains = [chain for chain in chains if len(chain) >= FEWEST]
     if not chains:
         return 1.0, 1.0
+    from scipy import stats  # it takes a second to import
     found = []
     for axis in range(3):
         level = [np.log(np.maximum(power[chain, axis], least[axis])) for chain in chains]
         level = [x - np.median(x) for x in level]
         every = np.concatenate(level)
-        score = special.ndtri((_ranks(every) - 0.5) / len(every))
+        score = special.ndtri((stats.rankdata(every) - 0.5) / len(every))
         score = np.split(score, np.cumsum([len(x) for x in level])[:-1])
         pairs = sum(len(x) - 1 for x in score)
         together = sum(float(x[1:] @ x[:-1]) for x in score) / pairs
@@ -42,10 +43,3 @@ def changes(power, first, length, least):
         spread = np.subtract(*np.quantile(every, [0.75, 0.25])) * math.sqrt(max(together, 0.0))
         found.append((math.exp(0.5 * spread), min(p, 1.0)))
     return min(found, key=lambda one: one[1])
-
-
-def _ranks(values):
-    """(n,) rank of each of values (n,), from 1 on; those that are the same have their mean rank:
-    scipy.stats.rankdata, which takes a second to import."""
-    _, place, number = np.unique(values, return_inverse=True, return_counts=True)
-    return (np.cumsum(number) - 0.5 * (number - 1))[place]

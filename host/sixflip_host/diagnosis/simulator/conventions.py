@@ -39,11 +39,12 @@ class SensorFit:
     live: np.ndarray
     noise_bends: tuple
 
-    def refitted(self, rows):
-        """The Fit of the same hypothesis with other noise of each sample, rows (n,)."""
+    def refitted(self, rows, left=True):
+        """The Fit of the same hypothesis with other noise of each sample, rows (n,); left: with
+        what it leaves of every sample."""
         return evidence_of_logs.fit_one(
             self.hypothesis, self.pair.simulated(self.kind), self.fit.axes, self.fit.unit,
-            pairing.GRID_HZ, self.kind, self.inflation, self.own, self.live, rows,
+            pairing.GRID_HZ, self.kind, self.inflation, self.own, self.live, rows, left=left,
             noise_bends=self.noise_bends)
 
     @property

@@ -20,7 +20,7 @@ from ..detect.detection import Finding
 from ..effect_estimates import believable
 from ..hypotheses import Form
 from . import alignment as align_by
-from . import conventions, effects_beside, evidence_of_logs, hypotheses, pairing, remaining_gap
+from . import conventions, effects_beside, hypotheses, remaining_gap
 from .parameters import MG
 
 # Effects that are functions of what acts while a thing moves.
@@ -119,9 +119,8 @@ def open_without(sensor_fit, noise):
     """Whether more than the noise (mg, deg/s), by a tenth of its power, is left of a SensorFit
     where nothing that the real sensor does of itself is beside the convention."""
     fit = replace(sensor_fit, own=None).refitted(None)
-    left = fit.left[:, sensor_fit.live] / fit.unit * (
-        MG if sensor_fit.kind == "accel" else hypotheses.DEG)
-    return float((left ** 2).mean()) * verdict.CLOSED > noise ** 2
+    left = remaining_gap.size(sensor_fit.kind, fit.left[:, sensor_fit.live] / fit.unit)
+    return left ** 2 * verdict.CLOSED > noise ** 2
 
 
 def judged(kind, sensor_fit, held, names, diagnosis):
@@ -188,11 +187,7 @@ def bent(readings):
 
 def _fitted(sensor_fit, designs, nuisance, rows, left=True):
     """Fit of the SensorFit's convention with effects and nuisance beside it."""
-    wide = effects_beside.wide(sensor_fit, designs)
-    return evidence_of_logs.fit_one(
-        wide.hypothesis, wide.pair.simulated(wide.kind), wide.fit.axes, wide.fit.unit,
-        pairing.GRID_HZ, wide.kind, wide.inflation, nuisance, wide.live, rows, left=left,
-        noise_bends=wide.noise_bends)
+    return replace(effects_beside.wide(sensor_fit, designs), own=nuisance).refitted(rows, left)
 
 
 def blocks_of(sensor_fit, rows, nothing, best):

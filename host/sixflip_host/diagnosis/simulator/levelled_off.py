@@ -32,13 +32,13 @@ def stops(fits):
             continue
         real = shifted(sensor_fit.pair.real(kind), fit.delay_s * GRID_HZ)
         for axis in range(3):
-            stop = _stop(real[:, axis], sensor_fit.pair.simulated(kind)[:, axis])
+            stop = stop_of(real[:, axis], sensor_fit.pair.simulated(kind)[:, axis])
             if stop is not None:
                 found[kind, axis] = stop
     return found
 
 
-def _stop(real, simulated):
+def stop_of(real, simulated):
     """What real (n,) stops at where simulated goes beyond the largest of it, or None."""
     top = np.abs(real).max()
     beyond = (np.abs(simulated) > BEYOND * top) & (real * simulated > 0.0)
