@@ -79,11 +79,16 @@ def swinging(force, rate):
     return force, rate * (1.0 + 0.02 * np.sin(0.36 * np.arange(len(rate)) / RATE_HZ)[:, None])
 
 
+def kinked(force, rate):
+    """5 % more from 45 deg/s on: a cube closes much of it, a bent line more."""
+    return force, rate + 0.05 * np.sign(rate) * np.maximum(np.abs(rate) - 45.0, 0.0)
+
+
 def healthy(force, rate):
     return force, rate
 
 
-@pytest.mark.parametrize("added", [healthy, bent_at_the_end, dead, swinging])
+@pytest.mark.parametrize("added", [healthy, bent_at_the_end, dead, swinging, kinked])
 def test_what_has_no_name_gets_none(added):
     """A front end that levels off, a dead band and a scale that swings are like a cube, a square
     or a warm scale, and none of these."""
