@@ -4,6 +4,7 @@ from dataclasses import replace
 import numpy as np
 
 from .. import progress
+from ..capture import capture_file
 from ..errors import BadFile
 from ..experiment import blocks, long_rest
 from ..experiment.signal_measures import allan
@@ -24,7 +25,11 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
     certified_box  the box is known to be square; without: effects left out of the library
     jobs       processors, 0: all
     prior      fleet_prior.FleetPrior of boards of this kind, None: the data sheets' sizes
+
+    BadFile where one beside a simulator is a gyro's alone, or a reference does not rest.
     """
+    for each in (*captures, *simulator) if simulator else ():
+        capture_file.with_accelerometer(*each)  # two logs are held together by gravity
     noise = {}
     for name, capture in reference:
         noise = flicker_levels(capture, name)

@@ -5,6 +5,7 @@ import pytest
 from sixflip_host.capture.capture_file import Capture
 from sixflip_host.diagnosis import answer
 from sixflip_host.diagnosis.diagnose import diagnose
+from sixflip_host.errors import BadFile
 from sixflip_host.present import gap_words
 
 RATE, SECONDS, LSB = 50.0, 300.0, 131.0
@@ -13,8 +14,8 @@ META = {"sensor": "other", "rate_hz": RATE, "gyro_lsb_per_dps": LSB, "temp_lsb_p
 BIAS = np.array([0.8, -1.2, 0.3])
 
 
-def told(change=None, slope=0.0, wave=0.0):
-    """The answer on a rest of white noise of 0.05 deg/s a sample; slope: deg/s per degC on y;
+def capture_of(change=None, slope=0.0, wave=0.0):
+    """A rest of white noise of 0.05 deg/s a sample; slope: deg/s per degC on y;
     wave: deg/s of a sine of 0.31 Hz on z."""
     t = np.arange(int(RATE * SECONDS)) / RATE
     warm = 25.0 + 10.0 * (1.0 - np.exp(-t / 100.0))
@@ -22,10 +23,14 @@ def told(change=None, slope=0.0, wave=0.0):
     rates[:, 1] += slope * (warm - warm.mean())
     rates[:, 2] += wave * np.sin(2.0 * np.pi * 0.31 * t)
     counts = np.rint(rates * LSB).astype(np.int16)
-    capture = Capture(dict(META), np.rint(t * 1e6).astype(np.int64), None,
-                      change(counts) if change else counts,
-                      np.rint(100.0 * warm).astype(np.int16))
-    return answer.as_dict(diagnose([("gyro", capture)], jobs=1))
+    return Capture(dict(META), np.rint(t * 1e6).astype(np.int64), None,
+                   change(counts) if change else counts,
+                   np.rint(100.0 * warm).astype(np.int16))
+
+
+def told(*args, **kinds):
+    """The answer on such a capture."""
+    return answer.as_dict(diagnose([("gyro", capture_of(*args, **kinds))], jobs=1))
 
 
 def test_a_sound_gyro_has_its_bias_and_noise_and_no_gap():
@@ -58,3 +63,8 @@ def test_damage_of_a_gyro_alone():
     found = told(lambda counts: np.repeat(counts[::2], 2, axis=0))
     assert [(d["kind"], d["sensor"]) for d in found["damage"]] == [("repeats", "gyro")]
     assert found["verdict"] == "unexplained" and found["causes"] == []
+
+
+def test_beside_a_simulator_it_needs_an_accelerometer():
+    with pytest.raises(BadFile, match="^own: it holds a gyro alone, expected ax ay az"):
+        diagnose([("own", capture_of())], simulator=[("sim", capture_of(slope=0.01))])
