@@ -65,7 +65,7 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
 def _beyond(result, own, sessions, damages):
     """The Diagnosis without what two logs of one motion show to be in both, with what they alone
     show, and with the simulator's parameters beside the effects that it lacks."""
-    from .simulator import effects_beside, effects_in_both, lacking_effects
+    from .simulator import dead_zone, effects_beside, effects_in_both, lacking_effects
     progress.doing("parameters beside the effects")
     for _ in range(MOST_ROUNDS):
         both = effects_in_both.in_both(result)
@@ -76,7 +76,7 @@ def _beyond(result, own, sessions, damages):
             **known, **{kind: [*known.get(kind, ()), *more] for kind, more in both.items()}})
         result = diagnosis.diagnose_sessions(sessions, settings, own, result.comparisons, damages)
     progress.doing("effects that the motion shows")
-    return effects_beside.beyond(lacking_effects.added(result))
+    return effects_beside.beyond(lacking_effects.added(dead_zone.added(result)))
 
 
 def flicker_levels(capture, path):

@@ -7,6 +7,7 @@ from . import (
     alignment,
     convention_findings,
     conventions,
+    dead_zone,
     held_readings,
     levelled_off,
     noise_and_registers,
@@ -38,7 +39,8 @@ class Comparison:
     effects (tuple of effects_beside.Beside): those found, as far as two logs of one motion show
     their size; wanders: sensors of which what is left of one motion goes on for seconds: it is no
     shaking, which each log has of its own; lacks_delay: of two motions, the real one shows a delay
-    between its sensors that the simulator's does not."""
+    between its sensors that the simulator's does not; bands (dead_zone.Band, ...): in which the
+    real gyro does not answer, and with which the fits have the simulator's turns."""
 
     log: str
     against: str
@@ -57,6 +59,7 @@ class Comparison:
     effects: tuple = ()
     wanders: frozenset = frozenset()
     lacks_delay: bool = False
+    bands: tuple = ()
 
     @property
     def differs(self):
@@ -114,7 +117,8 @@ def compare_traces(real, sim, aligned):
     live, constant = constant_channels(real, sim)
     findings += constant
     own_real = own_calibration.fitted(real_free)
-    fits, stops, late, late_sigma, judged, lacks_delay = {}, {}, None, None, False, False
+    fits, unmended, stops, bands = {}, {}, {}, ()
+    late, late_sigma, judged, lacks_delay = None, None, False, False
     row_s = 1.0 / min(real.rate_hz, sim.rate_hz)
     motion = None
     if aligned.same and own_real is not None:
@@ -132,6 +136,11 @@ def compare_traces(real, sim, aligned):
         if stops:
             real_free = levelled_off.marked(real_free, stops)
             fits = conventions.same_motion(real_free, sim_free, aligned, motion, live, fresh)
+        unmended = fits
+        bands = dead_zone.found(fits, real_free, sim_free)
+        if bands:
+            fits = conventions.same_motion(real_free, dead_zone.taken_off(sim_free, bands),
+                                           aligned, motion, live, fresh)
         late, late_sigma, delays = conventions.delay(fits, row_s)
         delays = [c for c in delays if _late_itself(sim_free, late)]
         judged = len(fits) == 2
@@ -149,7 +158,7 @@ def compare_traces(real, sim, aligned):
     own_sim = own_calibration.fitted(mended)
     numbers, of_numbers = numbers_of(real, sim, mended, (own_real, own_sim), fits, findings)
     left = {kind: remaining_gap.not_foretold(sensor_fit) for kind, sensor_fit in fits.items()}
-    gap = remaining_gap.held_out(fits, left, real, sim)
+    gap = remaining_gap.held_out(unmended, left, real, sim)
     numbers = parameters.together(numbers, fits, gap)
     cut = {(p.sensor, p.axis) for p in numbers if p.name == "range"}
     numbers += [p for p in levelled_off.ranges(stops, real, sim) if (p.sensor, p.axis) not in cut]
@@ -165,7 +174,8 @@ def compare_traces(real, sim, aligned):
                       (*said_of(real, sim, aligned), *why_not), tuple(unseen),
                       judged or convention_findings.only_in_motion(findings),
                       None if real.celsius is None else float(real.celsius.mean()),
-                      wanders=remaining_gap.wandering(fits, left), lacks_delay=lacks_delay)
+                      wanders=remaining_gap.wandering(fits, left), lacks_delay=lacks_delay,
+                      bands=bands)
 
 
 def _late_itself(sim, late):

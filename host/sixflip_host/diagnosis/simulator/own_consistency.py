@@ -25,6 +25,7 @@ POSSIBLE = 0.002  # probability from which on a name is one of those that it may
 LEVEL_DEG = 20.0  # that gravity moves in the sensor where its axes can be told: five SIGMA
 NONE = 0.0  # of gravity
 MOVES = 10.0  # times its noise at rest: a gyro that turns at all
+OF_GYRO = {"gyro_axes", "both_axes"}  # names that say what its axes are
 
 
 @dataclass(frozen=True)
@@ -77,12 +78,12 @@ def conventions_of(real, sim):
     tried = []
     says = directions.should_turn(ups, ways)
     planar = max(*directions.turned(ups, ways), says) < np.radians(LEVEL_DEG)
-    # Where gravity stays where it is, and the gyro says so, its axes and frame make no difference.
-    rate_units, gyros = ([(0.0, 1.0)], [eye]) if planar else (units_of(real, sim), SIGNED)
+    # Where gravity stays where it is, and the gyro says so, its unit makes no difference.
+    rate_units = [(0.0, 1.0)] if planar else units_of(real, sim)
     for accel, seen in accels:
         body = ups @ accel
         for unit_log, rate_unit in rate_units:
-            for gyro in gyros:
+            for gyro in SIGNED:
                 tried.append((Reading(accel, gyro, gyro_unit=rate_unit),
                               seen + unit_log + directions.carried_log(
                                   body, ways, gyro * rate_unit)))
@@ -98,7 +99,7 @@ def conventions_of(real, sim):
     more = judged(tried)
     if len(sim.rests) < 2 or not ways:
         unseen.append("axes and frame of the gyro of %s: no move between two rests" % sim.name)
-    elif planar:
+    elif planar and not any({c.name, *c.one_of} & OF_GYRO for c in more):
         unseen.append("axes and frame of the gyro of %s: gravity stays where it is in the sensor"
                       % sim.name)
     return findings + more, unseen

@@ -57,9 +57,7 @@ def paired(real, sim, alignment, motion, band_hz=BANDS[0]):
     t, there = t[inside], there[inside]
 
     def onto(trace, values, at):
-        flat = align_by.smooth(values.reshape(len(values), -1), trace.rate_hz, band_hz)
-        resampled = CubicSpline(*increasing(trace.t, flat))(at)
-        return resampled.reshape((len(at),) + values.shape[1:])
+        return at_times(trace, values, at, band_hz)
 
     # A simulator without a gyro is compared by its forces alone.
     sim_rate = np.zeros_like(sim.force) if sim.rate is None else sim.rate
@@ -77,6 +75,14 @@ def paired(real, sim, alignment, motion, band_hz=BANDS[0]):
                 None if real.celsius is None else np.interp(there, real.t, real.celsius)[keep],
                 Motion(**{k: v[keep] for k, v in fields.items()}),
                 onto(sim, sim.force, t)[keep], onto(sim, sim_rate, t)[keep], band_hz)
+
+
+def at_times(trace, values, at, band_hz):
+    """(m, …) of values (n, …), one a row of a Trace, what is slower than the band at times at (m,)
+    s of its clock."""
+    flat = align_by.smooth(values.reshape(len(values), -1), trace.rate_hz, band_hz)
+    resampled = CubicSpline(*increasing(trace.t, flat))(at)
+    return resampled.reshape((len(at),) + values.shape[1:])
 
 
 def one_motion(real, sim, alignment, motion, live):

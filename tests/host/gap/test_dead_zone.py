@@ -1,0 +1,116 @@
+"""A real gyro that does not answer slow turns, beside a simulator of the same motion: a dead band
+of its size, and no scale."""
+import numpy as np
+import pytest
+
+from sixflip_host.diagnosis import answer
+from sixflip_host.diagnosis.diagnose import diagnose
+from sixflip_host.diagnosis.simulator import comparison, dead_zone
+from tests.worlds.tumbled import read, tumbled
+
+TRUE = 3.0  # deg/s
+
+
+def soft(rate):
+    return rate - np.clip(rate, -TRUE, TRUE)
+
+
+def hard(rate):
+    return rate * (np.abs(rate) >= TRUE)
+
+
+def rounded(rate):
+    return rate - TRUE * np.tanh(rate / TRUE)
+
+
+def logs(change, seed=1, loud=1.0):
+    """(real, simulated) captures; loud: times its noise that the simulator's gyro has."""
+    t, force, rate = tumbled(seed, 60.0)
+    noise = 0.05 * np.sqrt(loud ** 2 - 1.0) * np.random.default_rng(7).standard_normal(rate.shape)
+    return read(t, force, change(rate), seed), read(t, force, rate + noise, 100 + seed)
+
+
+def compared(*args, **kinds):
+    real, simulated = logs(*args, **kinds)
+    return comparison.compare([("real", real)], "sim", simulated)
+
+
+def scale(found):
+    """Percent by which the scale of a gyro's axis differs at most."""
+    return max(abs(p.difference) for p in found.parameters
+               if (p.name, p.sensor) == ("scale", "gyro"))
+
+
+@pytest.mark.parametrize("change", [soft, hard, rounded])
+def test_its_width_and_form_are_found_and_no_scale_is_wrong(change, monkeypatch):
+    """The scales were some percent less, and most of the gap was left."""
+    found = compared(change)
+    assert [band.axis for band in found.bands] == [0, 1, 2]
+    for band in found.bands:
+        assert band.form == change.__name__
+        assert np.degrees(band.rate) == pytest.approx(TRUE, rel=0.05)
+        low, high = np.degrees(band.interval)
+        assert low - 0.05 < TRUE < high + 0.05 and high - low < 0.5
+    monkeypatch.setattr(dead_zone, "found", lambda *logs: ())
+    without = compared(change)
+    assert scale(found) < 0.1 and scale(found) < 0.5 * scale(without)
+    assert found.gap["gyro"][1] < 0.3 * without.gap["gyro"][1]
+    assert found.gap["gyro"][0] == without.gap["gyro"][0]
+
+
+def test_it_is_a_cause_in_counts_that_explains_the_gap():
+    real, simulated = logs(soft)
+    found = answer.as_dict(diagnose([("real", real)], [("sim", simulated)], jobs=1))
+    cause, = found["causes"]
+    assert (cause["effect"], cause["class"], cause["sensor"]) == (
+        "dead_band", ["dead_band"], "gyro")
+    assert all(size == pytest.approx(65.5 * TRUE, rel=0.05) for size in cause["value"].values())
+    assert set(cause["value"]) == set("xyz") and cause["share"] > 0.9
+    assert found["verdict"] == "explained"
+
+
+def test_about_the_zero_of_a_reading_that_has_a_bias():
+    found = compared(lambda rate: hard(rate + 1.0))
+    assert [band.axis for band in found.bands] == [0, 1, 2]
+    assert all(np.degrees(band.rate) == pytest.approx(TRUE, rel=0.1) for band in found.bands)
+
+
+def curved(rate):
+    return rate + 2e-6 * rate ** 3
+
+
+def one_sided(rate):
+    return rate * (1.0 + 0.03 * (rate > 0.0))
+
+
+def coarse(rate):
+    return TRUE * np.rint(rate / TRUE)
+
+
+def shaken(rate):
+    return rate + 5.0 * np.random.default_rng(5).standard_normal(rate.shape)
+
+
+def limited(rate):
+    return np.clip(rate, -60.0, 60.0)
+
+
+def averaged(rate):
+    return np.stack([np.convolve(x, np.ones(30) / 30.0, "same") for x in rate.T], 1)
+
+
+@pytest.mark.parametrize("change", [
+    np.copy, curved, one_sided, coarse, shaken, limited, averaged],
+    ids=lambda change: change.__name__)
+def test_what_answers_to_slow_turns_has_none(change):
+    assert compared(change).bands == ()
+
+
+def test_a_simulator_that_is_louder_at_rest_has_no_band_in_the_real_one():
+    assert compared(np.copy, loud=20.0).bands == ()
+
+
+def test_a_log_in_other_axes_is_not_asked():
+    real, simulated = logs(soft)
+    simulated.gyro = simulated.gyro[:, [1, 0, 2]]
+    assert comparison.compare([("real", real)], "sim", simulated).bands == ()
