@@ -98,8 +98,11 @@ def _does(cause):
     lines = {}
     for axis, hz in cause["hz"].items():
         lines.setdefault("%.6g Hz" % hz, []).append(axis.upper())
+    other = [axis.upper() for axis in cause["axes"] if axis not in cause["hz"]]
+    alone = len(lines) == 1 and not other
     return "is shaken at a steady frequency, " + ", ".join(
-        hz + (" on " + " and ".join(axes) if len(lines) > 1 else "") for hz, axes in lines.items())
+        hz + ("" if alone else " on " + " and ".join(axes)) for hz, axes in lines.items()) + (
+        ", and at none on " + " and ".join(other) if other else "")
 
 
 def _cut_below(cause):

@@ -1,6 +1,7 @@
 """The user's own simulator beside the real sensor: which conventions, numbers and effects differ.
 
-traces, single_log, held_readings  what one log says of itself
+traces, row_times, single_log, held_readings
+                                   what one log says of itself
 alignment, pairing                 two logs of one motion on one clock and one grid
 hypotheses, evidence_of_logs, channel_regression, conventions, convention_findings
                                    layer 1: what the simulator's numbers mean, by the same motion
@@ -8,7 +9,7 @@ own_calibration, own_motion, own_consistency, gravity_directions
                                    layer 1 where the motions differ: each log by its own rests
 parameters, noise_and_registers, levelled_off
                                    layer 2: the numbers to set
-against_simulator, effects_in_both, lacking_effects, effects_beside
+against_simulator, effects_in_both, dead_zone, lacking_effects, effects_beside
                                    layer 3: the effects that one has and the other lacks
 remaining_gap                      layer 4: what is left of the gap, and what it does to a robot
 comparison, simulator_answer       all layers in their order, and the JSON of them

@@ -2,6 +2,8 @@
 conventions, parameters, effects (of diagnosis.Diagnosis), task."""
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from .. import verdict
 from . import (
     alignment,
@@ -74,9 +76,12 @@ class Comparison:
     def shaken(self):
         """Sensors of which far more is left than noise, and than a tenth of the gap, and nothing
         that goes on for seconds: it may be shaking that each log has of its own, and may be the
-        sensor's."""
+        sensor's. Where the real one is known to shake more, by more than is left, it is that."""
+        shakes = {kind: np.sqrt(sum(p.difference ** 2 for p in self.differs if (
+            p.name, p.sensor) == ("shaking", kind) and p.difference > 0.0) / 3.0)
+            for kind in self.gap}
         return [kind for kind, gap in self.gap.items()
-                if kind not in self.wanders and _open(gap, FAR_ABOVE)]
+                if kind not in self.wanders and gap[1] > shakes[kind] and _open(gap, FAR_ABOVE)]
 
     @property
     def left(self):
@@ -88,11 +93,11 @@ class Comparison:
 
 
 def _open(gap, times):
-    """Whether of a gap (before, after, noise alone) so many times the noise is left, and a tenth
-    of what is above it."""
+    """Whether of a gap (before, after, noise alone), root mean squares, so many times the noise is
+    left, and a tenth of what is above it."""
     before, after, noise = gap
-    return min(before, after) > times * noise > 0.0 and (
-        before ** 2 - after ** 2 < verdict.CLOSED * (before ** 2 - noise ** 2))
+    after = min(before, after)
+    return after > times * noise > 0.0 and before - after < verdict.CLOSED * (before - noise)
 
 
 def compare(real_logs, name, capture):
@@ -151,6 +156,9 @@ def compare_traces(real, sim, aligned):
     else:
         more, unseen, judged, lacks_delay = different_motion(real_free, sim_free, own_real, row_s)
         findings += more
+        if aligned.same:
+            unseen = ["conventions and parameters of %s, but for what its own rests show: no rest "
+                      "in %s to begin with" % (sim.name, real.name)]
     if real.rate is not None and sim.rate is None:
         unseen = [*unseen, "the gyro: there is none in %s" % sim.name]
     findings = convention_findings.merged(findings)
@@ -210,7 +218,9 @@ def numbers_of(real, sim, mended, own, fits, findings):
                or (c.name, c.sensor) == ("time_step", "gyro")]
     usable = {k: not any(c.sensor in (k, "device") for c in spoiled) for k in ("accel", "gyro")}
     densities, on_noise = noise_and_registers.noises(real, mended)
-    return (parameters.shapes(*own, fits, usable) + densities
+    rounded = {kind: sim.quantum[kind == "gyro"] / np.sqrt(12.0) for kind in fits
+               if conventions.silent(sim, kind)}
+    return (parameters.shapes(*own, fits, usable, rounded) + densities
             + noise_and_registers.registers(real, sim), on_noise)
 
 

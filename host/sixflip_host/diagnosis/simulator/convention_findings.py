@@ -37,7 +37,7 @@ WORDS = {
     "accel_rate_held": "repeats readings: it is slower than its rows",
     "gyro_rate_held": "repeats readings: it is slower than its rows",
     "noise_per_sample": "takes a noise density for the noise of a sample",
-    "constant_channel": "never changes",
+    "constant_channel": "has a channel that never changes",
     "bias_sign": "has the bias with the wrong sign",
     "unknown": "does something that no convention here explains",
 }
@@ -102,8 +102,10 @@ def told(named, logs, possible, sensor, described):
             findings.append(described(name, probability, nats))
     quiet = float(sum(w for names, w in zip(named, weights) if not names))
     if named[int(logs.argmax())] and not findings and quiet < 1.0 - CERTAIN:
-        candidates = sorted({n for names, w in zip(named, weights) if w > possible for n in names})
-        findings.append(one_of(sensor, candidates, 1.0 - quiet, nats))
+        # Where what has no name is the likeliest, those that it may be are not all there are.
+        candidates = set() if "unknown" in named[int(logs.argmax())] else {
+            n for names, w in zip(named, weights) if w > possible for n in names}
+        findings.append(one_of(sensor, sorted(candidates), 1.0 - quiet, nats))
     return findings
 
 

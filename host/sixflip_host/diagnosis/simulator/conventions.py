@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from . import alignment as align_by
-from . import convention_findings, evidence_of_logs, hypotheses, pairing
+from . import convention_findings, evidence_of_logs, hypotheses, pairing, single_log
 
 # Before looking: nine simulators in ten are right about each sensor, and every single thing that
 # public reports name is one in some fifty of them.
@@ -71,7 +71,7 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
     def asked(pair):
         values, measured = pair.real(kind), pair.simulated(kind)
         share = own_noise(values, measured, noise, theirs, pair.band_hz)
-        if (share < 1.0).any():
+        if (share < 1.0).any() or silent(sim, kind):
             measured = measured + rounding(kind, real, sim, pair)
             pair = replace(pair, **{"sim_force" if kind == "accel" else "sim_rate": measured})
         made = hypotheses.accelerometer if kind == "accel" else hypotheses.gyro
@@ -139,10 +139,18 @@ def own_noise(values, measured, noise, theirs, band_hz):
 
 def rounding(kind, real, sim, pair):
     """(n, 3) of as much noise as the rounding of both logs leaves in the band: two that were made
-    of the same samples do not say that they agree any better."""
-    power = sum((log.quantum[kind == "gyro"] or 0.0) ** 2 / 12.0 * min(
-        1.0, 2.0 * pair.band_hz / log.rate_hz) for log in (real, sim))
+    of the same samples, and one that has no noise, which rounds what is slow the same way again
+    and again, do not say that they agree any better."""
+    power = sum((log.quantum[kind == "gyro"] or 0.0) ** 2 / 12.0 * (
+        1.0 if silent(log, kind) else min(1.0, 2.0 * pair.band_hz / log.rate_hz))
+        for log in (real, sim))
     return np.sqrt(power) * np.random.default_rng(20200517).standard_normal((len(pair.t), 3))
+
+
+def silent(log, kind):
+    """Whether a sensor's noise in a log hardly ever crosses a count."""
+    noise, count = log.noise.get(kind), log.quantum[kind == "gyro"]
+    return noise is not None and bool((noise.per_sample < single_log.DROWNED * count).all())
 
 
 def sized(own, log):

@@ -14,10 +14,18 @@ from scipy.optimize import minimize_scalar
 from sixflip_sim.effects.library import EFFECTS
 
 from ...experiment import terms
-from .. import odds, verdict
+from .. import odds
 from ..detect.detection import Finding
 from . import alignment as align_by
-from . import conventions, hypotheses, lacking_effects, pairing, remaining_gap, single_log
+from . import (
+    conventions,
+    hypotheses,
+    lacking_effects,
+    pairing,
+    parameters,
+    remaining_gap,
+    single_log,
+)
 from .evidence_of_logs import shifted
 from .pairing import GRID_HZ
 
@@ -31,8 +39,8 @@ FORMS = {"hard": lambda rate, band: rate * (np.abs(rate) >= band),
 # apart that say how well it is known, by nats that are never quite none.
 MOST, STEP, NEAR, BESIDE, SURE = 0.5, 1.4, 0.002, 0.05, 0.01
 SPOILT = 10.0  # times what no band leaves, of one beside which the scale is none of a part's
-# Times the simulator's own noise from which on a band is not its shaking at rest. Nor is one below
-# a step of the real one's codes any other than those.
+# Times the noise of both from which on a band is none of their shaking at rest. Nor is one below a
+# step of the real one's codes any other than those.
 OF_NOISE = 5.0
 GAIN = 0.1  # that its scale may be off beside the band: more than a part's is (ITG-3205 PS, 6 %)
 
@@ -69,7 +77,7 @@ def found(fits, real, sim):
         return ()
     hertz = 2.0 * sensor_fit.pair.band_hz
     noise = np.hypot(*(log.noise["gyro"].density for log in (real, sim))) * np.sqrt(hertz)
-    least = np.maximum(OF_NOISE * sim.noise["gyro"].density * np.sqrt(hertz),
+    least = np.maximum(OF_NOISE * noise,
                        single_log.step(real.rate[~real.put_in], real.quantum[1]))
     still = sim.rest_means(sim.rate).mean(axis=0)
     # About no turn, or about a reading of 0 of a real sensor that has another bias.
@@ -132,7 +140,7 @@ def _of_axis(axis, sensor_fit, sim, noise, least, centres):
 
     own = turns[:, axis]
     plain, _ = left(own)
-    if (plain ** 2).mean() * verdict.CLOSED < noise ** 2:
+    if plain.std() < parameters.TOGETHER * noise:
         return None
     top = MOST * np.abs(own - centres.mean()).max()
     if least >= top:
@@ -151,8 +159,9 @@ def _of_axis(axis, sensor_fit, sim, noise, least, centres):
     likeliest = []
     for form, centre in product(FORMS, centres):
         near = min(widths, key=lambda width: power(width, form, centre))
-        best = minimize_scalar(power, args=(form, centre), method="bounded",
-                               bounds=(near / STEP, near * STEP), options={"xatol": NEAR * near})
+        best = minimize_scalar(
+            power, args=(form, centre), method="bounded",
+            bounds=(max(least, near / STEP), near * STEP), options={"xatol": NEAR * near})
         likeliest.append((float(best.fun), form, float(centre), float(best.x)))
     least_power, form, centre, rate = min(likeliest)
     rest = left(banded(form, centre, rate))[0]

@@ -16,6 +16,7 @@ from .channel_regression import MOST_ROWS, regression
 from .hypotheses import BIAS, DEAD, DEG, DELAY_S, FREE, SHAPE, SMOOTH_S2
 
 HEARD = 2.0  # times what is left of a channel, above which its own motion would show in it
+NOTHING = 0.5  # of a channel's power, from which on it says nothing of the motion
 POINTS = 6  # off by 1e-3 at the end of the widest band, eight rows a period
 
 
@@ -83,11 +84,14 @@ def candidates(hypothesis, measured, kind, live):
         # By their power: the gain of a channel that reads noise alone may be anything.
         gain = np.sqrt(measured[:, live].var(axis=0).sum() / max(y[:, live].var(axis=0).sum(),
                                                                  1e-30))
-        heard = gain * own.std(axis=0) > HEARD * left_of(measured, design).std(axis=0)
-        dead = live & heard & (size < DEAD * gain)
-        if dead.any():
-            near = np.where(dead[:, None], 0.0, near)
-        if not np.array_equal(near[live], np.eye(3)[live]):
+        left = left_of(measured, design)
+        heard = gain * own.std(axis=0) > HEARD * left.std(axis=0)
+        # Of a channel that does not follow no axis can be told; a dead one follows from nothing.
+        strays = left.var(axis=0) > NOTHING * measured.var(axis=0)
+        dead = live & heard & strays & (size < DEAD * gain)
+        near = np.where(dead[:, None], 0.0, np.where(strays[:, None], np.eye(3), near))
+        once = np.abs(near[live]).sum(axis=0).max() < 2
+        if once and not np.array_equal(near[live], np.eye(3)[live]):
             tried += [(near, unit) for unit in units]
     return tried
 

@@ -31,10 +31,10 @@ def moves(trace):
     return ways
 
 
-def closeness(a, b):
+def closeness(a, b, sigma=SIGMA):
     """log density of direction a given b, each (…, 3), up to a constant; nothing at all is
-    always possible [Fisher, Proc. R. Soc. A 217 (1953), 295]."""
-    kappa = 1.0 / SIGMA ** 2
+    always possible [Fisher, Proc. R. Soc. A 217 (1953), 295]. sigma: rad, of a direction."""
+    kappa = 1.0 / sigma ** 2
     near = kappa / (2.0 * np.pi) * np.exp(kappa * ((a * b).sum(axis=-1) - 1.0))
     return np.log((1 - ASTRAY) * near + ASTRAY / (4.0 * np.pi))
 
@@ -70,6 +70,13 @@ def world_log(body, ways):
         best.append(total)
     top = max(best)
     return float(top + np.log(np.mean(np.exp(np.array(best) - top))))
+
+
+def nameless_log(ups, ways):
+    """Gravity goes as far as it does in this log, into any direction: the gyro says nothing."""
+    far = np.sqrt(np.mean(np.square(turned(ups, ways))) / 2.0)
+    return float(sum(closeness(ups[after], ups[before], max(far, SIGMA))
+                     for before, after, _ in ways))
 
 
 def constant_log(ups, ways, sim):

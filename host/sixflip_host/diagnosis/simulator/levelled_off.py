@@ -18,7 +18,7 @@ BEYOND, RISES = 1.08, 0.5
 NEAR = 0.85  # of the largest reading: what is read there, not what two kinds of shaking leave
 AT = 0.95  # of a stop: by as much the band that is compared rounds it off
 OVER = 0.7  # of the readings at a stop are beyond it in the simulator; of a steady rate half are
-FEWEST, PEAKS = 15, 3  # samples (at pairing.GRID_HZ) and peaks beyond, to both sides together
+FEWEST, PEAKS = 15, 2  # samples (at pairing.GRID_HZ) and peaks beyond, to both sides together
 
 
 def stops(fits):
@@ -27,8 +27,7 @@ def stops(fits):
     found = {}
     for kind, sensor_fit in fits.items():
         fit = sensor_fit.fit
-        if not sensor_fit.hypothesis.name or fit.unit != 1.0 or not np.array_equal(
-                fit.axes, np.eye(3)):
+        if fit.unit != 1.0 or not np.array_equal(fit.axes, np.eye(3)):
             continue
         real = shifted(sensor_fit.pair.real(kind), fit.delay_s * GRID_HZ)
         for axis in range(3):

@@ -20,8 +20,8 @@ ANY = 2.0  # natural logarithm, of a noise that was set to anything: a factor of
 # (convention_findings.CERTAIN), since it is said only where the densities differ anyhow.
 LIKELY = 0.95
 # Times its noise, a step in which noise is not told any more: the differences of neighbouring
-# samples are then mostly 0 or a whole step. Noise below DROWNED of a step hardly ever crosses one.
-COARSE, DROWNED = 1.5, 0.3
+# samples are then mostly 0 or a whole step.
+COARSE = 1.5
 COARSER = 1.5  # times the other's step: registers differ by factors of two
 FASTER_HZ = 2.0 * BAND_HZ  # where what the logs are compared by has faded
 SHOWS = 0.4  # of the rows a second: what a log of them shows undistorted
@@ -29,6 +29,7 @@ SHAKES = 3.0  # times as hard: two runs over one floor differ by less (`make zoo
 GAP = 1.5  # rows: a step at a place where some are missing shakes nothing
 FEWEST_S = 8  # of moving, and half of that of rest
 RANGE_APART = 1.01  # times the other's: a range that differs; full scales are twofold apart
+PEAK = 5.0  # standard deviations of noise, that one in two million samples is from its mean
 
 
 def noises(real, sim):
@@ -45,7 +46,7 @@ def noises(real, sim):
         scale = MG if kind == "accel" else DEG
         unit = "mg/√Hz" if kind == "accel" else "°/s/√Hz"
         floor = [x.quantum[0 if kind == "accel" else 1] for x in (real, sim)]
-        silent = bool((b.per_sample < DROWNED * floor[1]).all())
+        silent = conventions.silent(sim, kind)
         for i, axis in enumerate("xyz"):
             if not np.ptp(values[1][:, i]):
                 continue  # a channel that says nothing is a convention
@@ -58,7 +59,8 @@ def noises(real, sim):
             numbers.append(compared(
                 "noise_density", kind, axis, unit, da, da * a.relative_sigma, db,
                 db * b.relative_sigma, apart=ratio / np.hypot(a.relative_sigma, b.relative_sigma)))
-        if not silent and (a.per_sample > DROWNED * floor[0]).all() and (b.density > 0).all():
+        if not silent and (a.per_sample > single_log.DROWNED * floor[0]).all() and (
+                b.density > 0).all():
             findings += density_convention(kind, a, b, sim.rate_hz)
     return numbers, merged_noise(findings)
 
@@ -181,20 +183,22 @@ def registers(real, sim):
                 numbers.append(Parameter("step", kind, axis, unit, steps[0], None, steps[1], None,
                                          steps[0] - steps[1], None, bool(coarse),
                                          steps[0] if coarse else None))
-            numbers += ranges(kind, axis, unit, *(v[:, i] * scale for v in (a, b)))
+            numbers += ranges(kind, axis, unit, *(v[:, i] * scale for v in (a, b)), scale * sum(
+                log.noise[kind].per_sample[i] for log in (real, sim) if log.noise[kind]))
     numbers.append(Parameter("rate", "device", "", "Hz", real.rate_hz, None, sim.rate_hz, None,
                              real.rate_hz - sim.rate_hz, None, False, None))
     return numbers
 
 
-def ranges(kind, axis, unit, real, sim):
-    """[Parameter] where one channel, real (n,) or sim (m,), stops and the other goes on."""
+def ranges(kind, axis, unit, real, sim, noise=0.0):
+    """[Parameter] where one channel, real (n,) or sim (m,), stops and the other goes on, by more
+    than its noise."""
     ends = [float(np.abs(x).max()) for x in (real, sim)]
     stop, theirs = single_log.limit(real), single_log.limit(sim)
-    if stop is not None and ends[1] > stop * RANGE_APART:
+    if stop is not None and ends[1] > stop * RANGE_APART + PEAK * noise:
         return [Parameter("range", kind, axis, unit, stop, None, theirs, None, stop - ends[1],
                           None, True, stop)]
-    if theirs is not None and ends[0] > theirs * RANGE_APART:
+    if theirs is not None and ends[0] > theirs * RANGE_APART + PEAK * noise:
         # Where the real one would stop is not known: it goes as far as this at least.
         return [Parameter("range", kind, axis, unit, stop, None, theirs, None, ends[0] - theirs,
                           None, True, stop)]

@@ -32,13 +32,15 @@ OF_GYRO = {"gyro_axes", "both_axes"}  # names that say what its axes are
 class Reading:
     """A hypothesis on both sensors: accel and gyro, signed permutations (3, 3), the gyro's unit
     or how many times too large a wrong time step makes its rates, constant (gravity always along
-    one axis of the sensor), world (rates along the world's axes)."""
+    one axis of the sensor), world (rates along the world's axes), nameless (gravity follows
+    nothing that the gyro says)."""
 
     accel: np.ndarray
     gyro: np.ndarray
     gyro_unit: float = 1.0
     constant: bool = False
     world: bool = False
+    nameless: bool = False
 
 
 def conventions_of(real, sim):
@@ -96,6 +98,8 @@ def conventions_of(real, sim):
             ups, ways, eye * times)) for times in TIMES]
     if says > TURNED:
         tried.append((Reading(eye, eye, constant=True), directions.constant_log(ups, ways, sim)))
+    tried.append((Reading(eye, eye, nameless=True), directions.direction_log(
+        ups, real, sim) + directions.nameless_log(ups, ways)))
     more = judged(tried)
     if len(sim.rests) < 2 or not ways:
         unseen.append("axes and frame of the gyro of %s: no move between two rests" % sim.name)
@@ -160,6 +164,8 @@ def unit_by_size(real, sim):
 def names_of(reading):
     """What a Reading says the simulator does other than a sensor, by name: [] is healthy."""
     eye = np.eye(3)
+    if reading.nameless:
+        return ["unknown"]
     if reading.constant:
         return ["gravity_after_rotation"]
     names = ["world_frame_rates"] if reading.world else []
@@ -182,7 +188,7 @@ def log_prior(names):
     47 signed permutations that are none, a time step off by any of TIMES."""
     if not names:
         return np.log(conventions.PRIOR_HEALTHY)
-    return sum(np.log(conventions.PRIOR_EACH / (
+    return sum(np.log(conventions.prior(name) / (
         47 if name.endswith("_axes") else len(TIMES) if name == "time_step" else 1))
         for name in names)
 

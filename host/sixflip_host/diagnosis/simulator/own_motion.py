@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import alignment as align_by
-from . import conventions, hypotheses, traces
+from . import conventions, hypotheses, row_times, traces
 from .channel_regression import regression
 from .pairing import GRID_HZ
 
@@ -38,7 +38,7 @@ def fitted(trace, sensor):
 
     def onto(values):
         flat = align_by.smooth(values.reshape(len(values), -1), trace.rate_hz, BAND_HZ)
-        return np.stack([np.interp(t, *traces.increasing(trace.t, flat[:, i]))
+        return np.stack([np.interp(t, *row_times.increasing(trace.t, flat[:, i]))
                          for i in range(flat.shape[1])], 1)
 
     up, rate, rate_dot, force = (onto(x) for x in (motion.up, motion.rate, motion.rate_dot,

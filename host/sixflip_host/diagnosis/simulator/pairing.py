@@ -11,7 +11,9 @@ from scipy.interpolate import CubicSpline
 from scipy.signal import coherence
 
 from . import alignment as align_by
-from .traces import Motion, increasing
+from . import row_times
+from .row_times import increasing
+from .traces import Motion
 
 GRID_HZ = 50.0  # eight points in a period of the widest band
 EDGE_S = 0.4  # left out at both ends, where the low-pass (alignment.smooth) has one side only
@@ -80,8 +82,8 @@ def paired(real, sim, alignment, motion, band_hz=BANDS[0]):
 def at_times(trace, values, at, band_hz):
     """(m, …) of values (n, …), one a row of a Trace, what is slower than the band at times at (m,)
     s of its clock."""
-    flat = align_by.smooth(values.reshape(len(values), -1), trace.rate_hz, band_hz)
-    resampled = CubicSpline(*increasing(trace.t, flat))(at)
+    t, flat = row_times.on_even_times(trace.t, values.reshape(len(values), -1), trace.rate_hz)
+    resampled = CubicSpline(*increasing(t, align_by.smooth(flat, trace.rate_hz, band_hz)))(at)
     return resampled.reshape((len(at),) + values.shape[1:])
 
 

@@ -21,6 +21,7 @@ DIFFERS = 4.0
 # Times the noise, root mean square, of a gap from which on numbers that do not differ by
 # themselves do so together, and less than which they leave; how many of them at most.
 TOGETHER, FEW = 1.5, 4
+FOLLOWS = 0.5  # of the power of a channel, that may be left where its scale is told
 MG = 1000.0 / STANDARD_G
 # An engine whose rates are half a physics step older than its forces (MuJoCo, Featherstone's
 # semi-implicit step) differs from itself by as much at two step sizes of 1 and 2 ms.
@@ -90,9 +91,11 @@ def _span(x, sigma):
     return float(x - odds.Z_90 * sigma), float(x + odds.Z_90 * sigma)
 
 
-def shapes(real, sim, fits, usable):
+def shapes(real, sim, fits, usable, rounded=None):
     """Bias, scale, misalignment; real, sim: OwnSensor or None; fits {sensor: SensorFit} of one
-    motion or {}; usable {sensor: bool}: its conventions leave its numbers what they are."""
+    motion or {}; usable {sensor: bool}: its conventions leave its numbers what they are; rounded
+    {sensor: m/s2 or rad/s}, by which a simulator without noise errs the same way again and again.
+    """
     numbers = []
     for kind in ("accel", "gyro"):
         if not usable.get(kind) or real is None or sim is None:
@@ -105,6 +108,10 @@ def shapes(real, sim, fits, usable):
         more = None if fit is None else np.linalg.inv(
             np.eye(3) + fit.axes.T @ fit.shape @ fit.axes) - np.eye(3)
         shift = None if fit is None else -(np.eye(3) + more) @ fit.axes.T @ fit.bias / fit.unit
+        told, coarse = np.ones(3, bool), np.zeros(3)
+        if fit is not None:
+            told, coarse = _follows(fits[kind]), (rounded or {}).get(kind, 0.0) / np.maximum(
+                fits[kind].pair.simulated(kind).std(axis=0), 1e-12)
         for i, axis in enumerate("xyz"):
             pair = (None, None) if fit is None else (shift[i] * scale,
                                                      fit.bias_sigma[i] * scale / fit.unit)
@@ -122,12 +129,21 @@ def shapes(real, sim, fits, usable):
                 pair = (None, None) if fit is None else (more[i, j] * size,
                                                          fit.shape_sigma[i, j] * size)
                 (a, sa), (b, sb) = [(v[2][i, j] * size, v[3][i, j] * size) for v in values]
-                if fit is None and kind == "accel" and i > j:
+                if fit is None and kind == "accel" and i > j or not told[i]:
                     continue  # a turn of the whole accelerometer cannot be seen by rests alone
                 numbers.append(compared("scale" if i == j else "misalignment", kind,
                                         "xyz"[i] + ("" if i == j else "xyz"[j]),
-                                        "%" if i == j else "°", a, sa, b, sb, *pair))
+                                        "%" if i == j else "°", a, sa, b, sb, *pair,
+                                        least=size * coarse[j]))
     return numbers
+
+
+def _follows(sensor_fit):
+    """(3,) bool: channels of the simulator that follow from the real log by more than half; what
+    the others leave is none of their scale."""
+    fit, measured = sensor_fit.fit, sensor_fit.pair.simulated(sensor_fit.kind)
+    follow = fit.left.var(axis=0) < FOLLOWS * measured.var(axis=0)
+    return (np.abs(fit.axes[follow]).sum(axis=0) > 0.5) if follow.any() else follow
 
 
 def together(numbers, fits, gaps):

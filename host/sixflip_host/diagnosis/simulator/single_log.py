@@ -18,6 +18,7 @@ DEAD, ALIVE = 0.03, 0.15
 # hundred independent samples errs by 14 %), and what moves a robot moves its other channels by
 # MORE.
 SAME, MORE = 1.3, 10.0
+DROWNED = 0.3  # of a count: noise below it hardly ever crosses one
 
 
 @dataclass(frozen=True)
@@ -44,12 +45,13 @@ def dead(real, sim):
         if getattr(real, name) is None or getattr(sim, name) is None:
             channels[kind] = np.zeros(3, bool)
             continue
-        shares = [getattr(x, name).std(axis=0) / max(getattr(x, name).std(axis=0).max(), 1e-12)
-                  for x in (real, sim)]
-        channels[kind] = (shares[1] < DEAD) & (shares[0] > ALIVE)
         still = [at_rest(x, getattr(x, name), x.quantum[kind == "gyro"]) for x in (real, sim)]
+        ours, theirs = (getattr(x, name).var(axis=0) for x in (real, sim))
+        # What the real one has at rest, too, is noise, which a simulator may lack.
+        moved = ours if still[0] is None else np.maximum(ours - still[0], 0.0)
+        shares = [np.sqrt(x / max(x.max(), 1e-24)) for x in (moved, theirs)]
+        channels[kind] = (shares[1] < DEAD) & (shares[0] > ALIVE)
         if still[0] is not None and still[1] is not None:
-            ours, theirs = (getattr(x, name).var(axis=0) for x in (real, sim))
             channels[kind] |= (theirs < SAME * still[1]) & (theirs.max() > MORE * still[1]) & (
                 ours > MORE * np.maximum(*still))
     return channels

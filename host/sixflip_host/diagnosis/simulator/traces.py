@@ -3,11 +3,10 @@
 Simulator and sensor are compared as two such logs. Gravity and the motion come from the gyro,
 levelled at every rest by the accelerometer, so that nothing but the log itself is needed.
 """
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from sixflip.poses import faces
 
@@ -16,7 +15,7 @@ from ...capture import rests as rest_finder
 from ...capture.attitude import carried, levelled, rotation_between, rotations
 from ...experiment.block_measures import EDGE_S
 from .. import adequacy
-from . import single_log
+from . import row_times, single_log
 
 SHORTEST_REST_S = 0.5  # of a robot that stops between two moves
 WINDOW_S = 0.3  # over which a log is still: shorter than such a stop with its edges
@@ -24,7 +23,6 @@ WINDOW_S = 0.3  # over which a log is still: shorter than such a stop with its e
 # than any robot's, and more than a gyro's bias changes by within a log (20 deg/s over 60 degC).
 LOUDER, SLOW_DPS = 2.5, 1.5
 COUNT_VARIANCE = 0.25  # counts: a channel that toggles between two of them
-PUT_IN_S = 0.15  # of lost rows in one place: a period of the band that is compared
 DPS = np.pi / 180.0
 UP = np.array([0.0, 0.0, 1.0])  # of the world
 
@@ -88,42 +86,8 @@ def trace_from_capture(name, capture):
                   None if capture.gyro is None else capture.gyro * quantum[1], celsius,
                   float(rate_hz), capture.g, rests, ups, quantum, flicker, railed,
                   np.zeros(len(t), bool))
-    return even_rows(trace, clock.sample_clock(capture))
-
-
-def even_rows(trace, measured):
-    """The Trace with the rows that its SampleClock says were lost put in, on a cubic through the
-    others (a straight line would cut the peaks off): what is smoothed and turned from row to row
-    needs even ones. Not in its rests, whose readings are those that were read; and where more are
-    lost than a curve can be drawn through, the rows beside them are known instead."""
-    if measured is None or not measured.lost_after:
-        return trace
-    missing, beside, resting = (np.zeros(len(trace.t), kind) for kind in (int, bool, bool))
-    for first, end in trace.rests:
-        resting[first:end] = True
-    for row, samples in measured.lost_after:
-        if samples > PUT_IN_S * measured.rate_hz:
-            beside[row:row + 2] = True
-        elif not resting[row:row + 2].all():
-            missing[row + 1] = samples
-    at = np.arange(len(trace.t)) + np.cumsum(missing)
-    every = np.arange(at[-1] + 1)
-
-    def between(values, quantum):
-        if values is None:
-            return None
-        course = np.rint(CubicSpline(at, values, axis=0)(every) / quantum) * quantum
-        course[at] = values
-        return course
-
-    put_in, railed = ~np.isin(every, at), np.zeros(len(every), bool)
-    put_in[at], railed[at] = beside, trace.railed
-    return replace(
-        trace, t=np.interp(every, at, trace.t), force=between(trace.force, trace.quantum[0]),
-        rate=between(trace.rate, trace.quantum[1]),
-        celsius=None if trace.celsius is None else np.interp(every, at, trace.celsius),
-        rate_hz=measured.rate_hz, railed=railed, put_in=put_in,
-        rests=tuple((int(at[first]), int(at[end - 1]) + 1) for first, end in trace.rests))
+    measured = clock.sample_clock(capture)
+    return row_times.evened(row_times.as_read(trace, measured), measured)
 
 
 def _rests(capture, rate_hz):
@@ -227,15 +191,9 @@ def motion(trace):
     return Motion(turn, up, rate, _slope(trace.t, rate), moved, speed)
 
 
-def increasing(t, values):
-    """(t, values) without rows whose time does not grow."""
-    keep = np.concatenate([[True], np.diff(np.maximum.accumulate(t)) > 0])
-    return t[keep], values[keep]
-
-
 def _slope(t, values):
     """(n, 3) change of values (n, 3) with time; where a stamp repeats, as around it."""
-    at, own = increasing(t, values)
+    at, own = row_times.increasing(t, values)
     if len(at) < 3:
         return np.zeros_like(values)
     return np.stack([np.interp(t, at, slope) for slope in np.gradient(own, at, axis=0).T], 1)

@@ -1,0 +1,104 @@
+"""When the rows of a log were read, and those that nobody read: what is smoothed, turned and put
+on another log's times from row to row needs even rows, at the times that they belong to."""
+from dataclasses import replace
+
+import numpy as np
+from scipy.interpolate import CubicSpline, PchipInterpolator
+
+PUT_IN_S = 0.15  # of lost rows in one place: a period of the band that is compared
+# Of a period, by which a stamp is late that matters; rows that are, before it is asked what their
+# readings say of it; times as much as by the stamps, that these bend between the rows beside them
+# where they were read in time: noise alone bends as much by both.
+LATE, FEWEST, LESS = 0.3, 8, 0.8
+SOME = 0.25  # of the intervals, at most, where stamps are told from a clock that is coarse
+
+
+def as_read(trace, measured):
+    """The Trace with the times at which its rows were read, by its SampleClock: a row that was
+    handed over late was read in time, or was itself late. Its readings, between those beside it,
+    say which."""
+    if measured is None or measured.pauses or not measured.late:
+        return trace
+    period = 1.0 / measured.rate_hz
+    even = period * (np.arange(len(trace.t)) + np.cumsum(_missing(len(trace.t), measured)))
+    even += np.median(trace.t - even)
+    late = np.abs(trace.t - even) > LATE * period
+    late[:-1] |= late[1:]
+    late[1:] |= late[:-1]
+    rows = 1 + np.flatnonzero(late[1:-1])
+    if len(rows) < FEWEST:
+        return trace
+    bends = [sum(_bend(t, values, rows) for values in (trace.force, trace.rate)
+                 if values is not None) for t in (trace.t, even)]
+    return replace(trace, t=even - even[0]) if bends[1] < LESS * bends[0] else trace
+
+
+def _missing(n, measured):
+    """(n,) int: rows that were lost just before each."""
+    missing = np.zeros(n, int)
+    for row, samples in measured.lost_after:
+        missing[row + 1] = samples
+    return missing
+
+
+def _bend(t, values, rows):
+    """How far readings (n, 3) at rows are from a straight line between those beside them, squares
+    together, of each channel in units of how far all of them are from the mean of the two."""
+    before, after = t[rows - 1], t[rows + 1]
+    share = np.clip((t[rows] - before) / np.maximum(after - before, 1e-9), 0.0, 1.0)[:, None]
+    off = values[rows] - (1.0 - share) * values[rows - 1] - share * values[rows + 1]
+    usual = values[1:-1] - 0.5 * (values[:-2] + values[2:])
+    return float((off ** 2 / np.maximum((usual ** 2).mean(axis=0), 1e-30)).sum())
+
+
+def evened(trace, measured):
+    """The Trace with the rows that its SampleClock says were lost put in, on a cubic through the
+    others (a straight line would cut the peaks off): what is smoothed and turned from row to row
+    needs even ones. Not in its rests, whose readings are those that were read; and where more are
+    lost than a curve can be drawn through, the rows beside them are known instead."""
+    if measured is None or not measured.lost_after:
+        return trace
+    missing, beside, resting = (np.zeros(len(trace.t), kind) for kind in (int, bool, bool))
+    for first, end in trace.rests:
+        resting[first:end] = True
+    for row, samples in measured.lost_after:
+        if samples > PUT_IN_S * measured.rate_hz:
+            beside[row:row + 2] = True
+        elif not resting[row:row + 2].all():
+            missing[row + 1] = samples
+    at = np.arange(len(trace.t)) + np.cumsum(missing)
+    every = np.arange(at[-1] + 1)
+
+    def between(values, quantum):
+        if values is None:
+            return None
+        course = np.rint(CubicSpline(at, values, axis=0)(every) / quantum) * quantum
+        course[at] = values
+        return course
+
+    put_in, railed = ~np.isin(every, at), np.zeros(len(every), bool)
+    put_in[at], railed[at] = beside, trace.railed
+    return replace(
+        trace, t=np.interp(every, at, trace.t), force=between(trace.force, trace.quantum[0]),
+        rate=between(trace.rate, trace.quantum[1]),
+        celsius=None if trace.celsius is None else np.interp(every, at, trace.celsius),
+        rate_hz=measured.rate_hz, railed=railed, put_in=put_in,
+        rests=tuple((int(at[first]), int(at[end - 1]) + 1) for first, end in trace.rests))
+
+
+def on_even_times(t, values, rate_hz):
+    """(t, values (n, k)) on an even clock, where rows were read far from one: what is smoothed
+    from row to row takes them for even. By a curve that does not overshoot where two lie close;
+    where most stamps are coarse they say nothing of single rows."""
+    off = np.abs(np.diff(t) * rate_hz - 1.0) > LATE
+    if not off.any() or off.mean() > SOME:
+        return t, values
+    even = t[0] + np.arange(int((t[-1] - t[0]) * rate_hz + 0.5) + 1) / rate_hz
+    even[-1] = min(even[-1], t[-1])
+    return even, PchipInterpolator(*increasing(t, values))(even)
+
+
+def increasing(t, values):
+    """(t, values) without rows whose time does not grow."""
+    keep = np.concatenate([[True], np.diff(np.maximum.accumulate(t)) > 0])
+    return t[keep], values[keep]

@@ -1,0 +1,56 @@
+"""Rows whose stamps are late: read in time and handed over late, or late themselves."""
+import numpy as np
+import pytest
+
+from sixflip_host.capture.capture import Capture
+from sixflip_host.diagnosis.simulator import comparison, traces
+from tests.worlds.tumbled import META, RATE_HZ, read, tumbled
+
+
+def late_by(n, seed=2):
+    """(n,) s by which rows are late: of some, and those after them catch up."""
+    rng, late = np.random.default_rng(seed), np.zeros(n)
+    for row in rng.choice(np.arange(50, n - 50), n // 60, replace=False):
+        behind = rng.uniform(0.012, 0.024)
+        for k in range(4):
+            late[row + k] = max(late[row + k], behind - 0.009 * k, 0.0)
+    return late
+
+
+def stamped(late, read_late):
+    """(real, simulated) captures of one motion: of the real one rows are stamped late, and read
+    at their stamps (read_late) or on an even clock."""
+    t, force, rate = tumbled(1, 60.0)
+    at = t + late
+    if read_late:
+        force, rate = (np.stack([np.interp(at, t, x) for x in values.T], 1)
+                       for values in (force, rate))
+    capture = read(t, force, rate, 1)
+    real = Capture(dict(META), np.rint(1e6 * at).astype(np.int64), capture.accel, capture.gyro)
+    return real, read(*tumbled(1, 60.0), 101)
+
+
+@pytest.mark.parametrize("read_late", [False, True])
+def test_the_readings_say_when_rows_were_read(read_late):
+    late = late_by(int(60.0 * RATE_HZ))
+    real, _ = stamped(late, read_late)
+    t = traces.trace_from_capture("real", real).t
+    off = t - np.arange(len(t)) / RATE_HZ - (late if read_late else 0.0)
+    assert np.abs(off - np.median(off)).max() < 1e-3
+
+
+@pytest.mark.parametrize("read_late", [False, True])
+def test_late_stamps_are_nothing_that_a_simulator_lacks(read_late):
+    """Both sensors of a healthy rover were something that no convention explains: a curve through
+    rows that were caught up overshoots."""
+    real, simulated = stamped(late_by(int(60.0 * RATE_HZ)), read_late)
+    found = comparison.compare([("real", real)], "sim", simulated)
+    assert found.conventions == () and not found.left and not found.shaken
+    before, after, noise = found.gap["gyro"]
+    assert after < 2.0 * noise
+
+
+def test_stamps_that_are_in_time_stay_as_they_are():
+    real, _ = stamped(np.zeros(int(60.0 * RATE_HZ)), False)
+    trace = traces.trace_from_capture("real", real)
+    assert np.array_equal(trace.t, 1e-6 * (real.t_us - real.t_us[0]))
