@@ -23,11 +23,12 @@ def rounded(rate):
     return rate - TRUE * np.tanh(rate / TRUE)
 
 
-def logs(change, seed=1, loud=1.0):
-    """(real, simulated) captures; loud: times its noise that the simulator's gyro has."""
+def logs(change, seed=1, loud=1.0, bias=0.0):
+    """(real, simulated) captures; loud: times its noise, bias: deg/s, that the simulator's gyro
+    has."""
     t, force, rate = tumbled(seed, 60.0)
     noise = 0.05 * np.sqrt(loud ** 2 - 1.0) * np.random.default_rng(7).standard_normal(rate.shape)
-    return read(t, force, change(rate), seed), read(t, force, rate + noise, 100 + seed)
+    return read(t, force, change(rate), seed), read(t, force, rate + bias + noise, 100 + seed)
 
 
 def compared(*args, **kinds):
@@ -70,7 +71,7 @@ def test_it_is_a_cause_in_counts_that_explains_the_gap():
 
 
 def test_about_the_zero_of_a_reading_that_has_a_bias():
-    found = compared(lambda rate: hard(rate + 1.0))
+    found = compared(lambda rate: hard(rate + 1.0), bias=2.0)
     assert [band.axis for band in found.bands] == [0, 1, 2]
     assert all(np.degrees(band.rate) == pytest.approx(TRUE, rel=0.1) for band in found.bands)
 

@@ -80,8 +80,8 @@ def found(fits, real, sim):
     least = np.maximum(OF_NOISE * noise,
                        single_log.step(real.rate[~real.put_in], real.quantum[1]))
     still = sim.rest_means(sim.rate).mean(axis=0)
-    # About no turn, or about a reading of 0 of a real sensor that has another bias.
-    centres = np.unique([still, still + fit.bias], axis=0)
+    # About no turn, or about what the simulator reads where the real one, of another bias, has 0.
+    centres = np.unique([still, fit.bias], axis=0)
     bands = (_of_axis(axis, sensor_fit, sim, noise[axis], least[axis], centres[:, axis])
              for axis in np.flatnonzero(sensor_fit.live))
     return tuple(band for band in bands if band is not None)
