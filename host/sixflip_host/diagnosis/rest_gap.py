@@ -148,7 +148,7 @@ def _sensor(rest, kind, chip, settings, jumps):
     chosen = [f for f in posterior.best.forms if not f.generic and len(f.shared)]
     strange = [(f, ["xyz"[axis] for axis, _ in members.axes_of(model, posterior, f)])
                for f in posterior.best.forms
-               if f.generic and not _settled(f, units, fits, levels, kind)]
+               if f.generic and not _settled(f, units, fits, levels, rest, kind)]
     causes = [members.in_full(model, forms, posterior, cause)
               for cause in aliases.causes(posterior, units, forms)]
     told = [_told(c, data, fits, chip, kind, chosen, posterior) for c in causes]
@@ -175,10 +175,11 @@ def _sensor(rest, kind, chip, settings, jumps):
                    frozenset(f.effect for f in forms))
 
 
-def _settled(form, units, fits, levels, kind):
+def _settled(form, units, fits, levels, rest, kind):
     """Whether a member of the set is no more than what switching on again, or putting down
-    again, does to a reading."""
-    return form.effect == SETTLED and all(
+    again, does to a reading; a gyro that stays on reads the same again."""
+    again = kind == "accel" or np.ptp(rest.session) > 0
+    return form.effect == SETTLED and again and all(
         u.grid[k][0] <= max(between_sessions.UNUSUAL["bias"][kind], levels.usual(u)[0])
         for u, k in zip(units, fits.index))
 
