@@ -98,6 +98,29 @@ def test_values_without_steps_keep_their_means_and_get_no_step(tmp_path, capsys)
     assert np.abs(back.mean(axis=0) - values[20:].mean(axis=0)).max() < 900 / 32000 / 300
 
 
+@pytest.mark.parametrize("times", [2, 3])
+def test_values_that_repeat_become_counts_that_repeat(tmp_path, capsys, times):
+    """A log that is read twice as fast as its sensor measures says so once it is imported."""
+    generator = np.random.default_rng(13)
+    values = generator.normal((0.1, 0.2, G), 0.05, (ROWS, 3)).repeat(times, axis=0)
+    text = table(["%.3f" % (k / 200) for k in range(times * ROWS)], accel=values, form="%.9g")
+    capture, said = imported(tmp_path, capsys, text, "--units", "si")
+    assert "kept as floats" in said and "m/s2" in said and "SI units" not in said
+    assert (capture.accel[::times] == capture.accel[times - 1::times]).all()
+    back = capture.accel.mean(axis=0) / capture.meta["accel_lsb_per_g"] * G
+    assert np.abs(back - values.mean(axis=0)).max() < values.max() / 32000 / 50
+
+
+def test_a_value_that_stays_keeps_its_mean(tmp_path, capsys):
+    values = np.tile((0.1234567, -0.7654321, G), (20 * ROWS, 1))
+    values[:ROWS] += np.random.default_rng(14).normal(0, 0.1, (ROWS, 3))
+    text = table(["%.2f" % (k / 100) for k in range(20 * ROWS)], accel=values, form="%.9g")
+    capture, _ = imported(tmp_path, capsys, text)
+    back = capture.accel[ROWS:].mean(axis=0) / capture.meta["accel_lsb_per_g"] * G
+    assert np.abs(back - values[-1]).max() < G / 32000 / 50
+    assert ((np.diff(capture.accel[ROWS:], axis=0) != 0).sum(axis=0) < 20 * ROWS / 50).all()
+
+
 def test_printed_decimals_are_no_steps_of_the_sensor(tmp_path, capsys):
     values = np.random.default_rng(11).normal((0, 0, G), 0.05, (ROWS, 3))
     capture, said = imported(tmp_path, capsys, table(

@@ -20,7 +20,10 @@ MOST_DISTINCT = 1 << 17 # sizes of values in whole steps: 16 bits have a quarter
 ON_GRID = 0.02          # of a step: how far values may lie off whole steps to be called counts
 ROOM = 32000            # counts that the largest of float values gets; the rest is headroom
 MOST_ON_RAIL = 1e-3     # share of samples one count beyond 16 bits that are taken as on the rail
-AT_A_TIME = 1 << 16
+AT_A_TIME = 1 << 16     # rows; the first of them are new values
+# Rows in which a value that stays has one count: more than any log has that is read faster than
+# its sensor (32 in detect/held_values.py), few enough for the mean of a rest.
+HELD_ROWS = 64
 
 
 def find_step(values):
@@ -114,11 +117,11 @@ def counts_of(path, what, values, unit, lsb, per_unit, step=None):
     else:
         words = "are printed to %.2g %s, which says nothing of the sensor's own steps"
     return Counts(_shaped(values, step), 1 / (step * per_unit), "float",
-                  ["%s values %s" % (what, words % (step, _name(unit)))])
+                  ["%s values %s" % (what, words % (step, _name(what, unit)))])
 
 
-def _name(unit):
-    return {"si": "SI units"}.get(unit, unit)
+def _name(what, unit):
+    return {"accelerometer": "m/s2", "gyro": "rad/s"}[what] if unit == "si" else unit
 
 
 def _printed(step):
@@ -180,16 +183,22 @@ def _clipped(path, what, beyond, rows, lsb):
 
 
 def _shaped(values, step):
-    """int16 counts of values in steps, the rounding error of each carried over to the next, so
-    that the sum of any rows is right to one step however coarse it is."""
+    """int16 counts of values in steps, the rounding error of each value carried over to the next,
+    so that means and sums are right to a few steps however coarse it is. Values that are equal in
+    rows on end are one value, and become equal counts: that a log repeats its rows says how fast
+    its sensor was read. One that stays for longer is a new value every HELD_ROWS rows."""
     shaped = np.empty(values.shape, np.int16)
     carry, at = np.zeros(values.shape[1]), 0
     for block in _blocks(values):
-        total = np.cumsum(block / step, axis=0) + carry
-        whole = np.rint(total)
-        counts = np.diff(whole, axis=0, prepend=0.0)
-        shaped[at:at + len(block)] = np.clip(counts, -32768, RAIL)
-        carry = total[-1] - whole[-1]
+        for axis, column in enumerate(block.T):
+            began = np.flatnonzero(np.append(True, column[1:] != column[:-1]))
+            lasts = np.diff(np.append(began, len(column)))
+            fresh = (np.arange(len(column)) - np.repeat(began, lasts)) % HELD_ROWS == 0
+            total = np.cumsum(column[fresh] / step) + carry[axis]
+            whole = np.rint(total)
+            counts = np.clip(np.diff(whole, prepend=0.0), -32768, RAIL)
+            shaped[at:at + len(block), axis] = counts[np.cumsum(fresh) - 1]
+            carry[axis] = total[-1] - whole[-1]
         at += len(block)
     return shaped
 
