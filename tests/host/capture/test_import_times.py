@@ -160,3 +160,31 @@ def test_times_that_fit_the_stated_rate_in_no_unit_are_refused(tmp_path, capsys)
     assert "SampleTimeFine taken as ms: 10 Hz, but the file says 100 Hz" in said
     capture, _ = imported(tmp_path, capsys, text, "--rate", "100")
     assert capture.meta["rate_hz"] == 100.0
+
+
+@pytest.mark.parametrize("name, scale", [
+    ("device_timestamp_ms", 1e3), ("uptime (ms)", 1e3), ("age in microseconds", 1e6),
+    ("counter_ns", 1e9), ("when_s", 1.0)])
+def test_the_unit_in_the_name_of_the_column_that_was_said(tmp_path, capsys, name, scale):
+    """A row a second or so: its number alone would be a plausible one of another unit."""
+    times = ["%.0f" % (scale * 0.9 * k + 40 * scale) if scale > 1 else "%.1f" % (0.9 * k)
+             for k in range(ROWS)]
+    capture, _ = imported(tmp_path, capsys, table(times, name), "--time-column", name)
+    assert capture.meta["rate_hz"] == pytest.approx(1 / 0.9, rel=1e-3)
+
+
+@pytest.mark.parametrize("head", ["server_time", "host_timestamp", "rx_time", "received_at_time"])
+def test_the_devices_own_clock_is_better_than_when_its_rows_came(tmp_path, capsys, head):
+    late = np.random.default_rng(15).exponential(0.1, ROWS)
+    times = ["%s,%.0f" % (clock(t + more, "%Y-%m-%dT%H:%M:%S.%f"), 1e3 * t) for t, more in zip(
+        SECONDS, np.maximum.accumulate(SECONDS + late) - SECONDS)]
+    capture, said = imported(tmp_path, capsys, table(times, head + ",device_timestamp_ms"))
+    assert "times are in the column device_timestamp_ms" in said
+    assert (np.diff(capture.t_us) == 10_000).all()
+
+
+def test_a_finer_clock_is_better_than_whole_seconds(tmp_path, capsys):
+    times = ["%s,%.0f" % (clock(t, "%Y-%m-%d %H:%M:%S"), 1e3 * t) for t in SECONDS]
+    capture, said = imported(tmp_path, capsys, table(times, "Timestamp,Milliseconds"))
+    assert "times are in the column Milliseconds" in said
+    assert (np.diff(capture.t_us) == 10_000).all()

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from .column_vocabulary import (
     ACCEL,
+    ARRIVALS,
     DEGREES,
     DERIVED,
     FILLERS,
@@ -210,17 +211,14 @@ def times(names):
     """[(column name or (seconds, nanoseconds), unit or "")] that may be times, best first."""
     ranks = []
     for name in names:
-        bare, unit = _without_unit(name)
+        bare, _ = _without_unit(name)
         words = _words(bare)
-        unit = UNIT_OF_TIME.get(unit.lower(), "")
         if not words or set(words) & {"covariance", "diff", "delta", "dt", "zone"}:
             continue
-        said = [UNIT_OF_TIME[word] for word in words if word in UNIT_OF_TIME]
         if set(words) & TIMES:
-            unit = unit or (said[-1] if said and words[-1] in UNIT_OF_TIME else "")
-            rank = 0 if "stamp" in words and "header" in words else 3 if "date" in words \
-                else 4 if bare == "T" else 1  # a T alone is as often a temperature
-            ranks.append((rank, name, unit))
+            rank = 0 if "stamp" in words and "header" in words else \
+                3 if set(words) & ARRIVALS else 4 if bare == "T" else 1
+            ranks.append((rank, name, unit_of_time(name)))
         elif len(words) == 1 and len(words[0]) > 1 \
                 and UNIT_OF_TIME.get(words[0]) in TIME_UNITS:
             ranks.append((2, name, UNIT_OF_TIME[words[0]]))
@@ -229,6 +227,13 @@ def times(names):
     taken = {name for pair in pairs for name in pair}
     ranked = sorted((row for row in ranks if row[1] not in taken), key=lambda row: row[0])
     return chosen + [(name, unit) for _, name, unit in ranked]
+
+
+def unit_of_time(name):
+    """The unit that a column of times has by its name: in brackets, or its last word; or ""."""
+    bare, unit = _without_unit(name)
+    last = _words(bare)[-1:]
+    return UNIT_OF_TIME.get(unit.lower()) or UNIT_OF_TIME.get("".join(last), "")
 
 
 def _second_pairs(names):

@@ -4,10 +4,16 @@ the first row."""
 import os
 from typing import NamedTuple
 
+import numpy as np
+
 from ...errors import BadFile, UsageError
 from ..capture_header import ACCEL, GYRO, MAG
 from ..capture_rows import quoted
 from . import column_names, csv_mapping, wall_clock
+
+# Share of rows that have another stamp than the row before, where a clock tells them apart: a log
+# that is read three times as fast as its sensor may take the sensor's stamps with its values.
+ROWS_OF_THEIR_OWN = 0.3
 
 
 class Readings(NamedTuple):
@@ -69,23 +75,28 @@ def _no_column(table, absent):
 def times(options, table, taken):
     """Times of a table; taken: the columns of its readings. Where nobody says a rate, UsageError
     where there is no column of that name, BadFile where what is in it is no time."""
-    unread = []
     if options.time_column:
         table.index(options.time_column)
-        return Times((options.time_column,), _unit_of_stamps(options, table, options.time_column),
-                     None, ())
+        return Times((options.time_column,), _unit_of_stamps(options, table, options.time_column)
+                     or column_names.unit_of_time(options.time_column), None, ())
+    found, unread = [], []
     for name, unit in column_names.times(table.names or ()):
         pair = name if isinstance(name, tuple) else (name,)
         if set(pair) & taken:
             continue
         if len(pair) == 1 and _unit_of_stamps(options, table, name):
-            return Times(pair, "s", None, (
-                "times are the dates and times of day in the column %s" % name,))
-        if all(table.holds_numbers(one) for one in pair):
-            if options.rate is not None and options.time_unit is None and not unit:
-                return Times(None, unit, None, ())      # the rate was said, and no more
-            return Times(pair, unit, None, ("times are in the column %s" % " and ".join(pair),))
-        unread += [one for one in pair if not table.holds_numbers(one)]
+            found.append(Times(pair, "s", None, (
+                "times are the dates and times of day in the column %s" % name,)))
+        elif all(table.holds_numbers(one) for one in pair):
+            found.append(Times(None, unit, None, ()) if options.rate is not None
+                         and options.time_unit is None and not unit     # the rate was said
+                         else Times(pair, unit, None, (
+                             "times are in the column %s" % " and ".join(pair),)))
+        else:
+            unread += [one for one in pair if not table.holds_numbers(one)]
+    if found:
+        fine = [one for one in found if len(found) == 1 or _tells_rows_apart(table, one.columns)]
+        return (fine or found)[0]
     stated = getattr(table, "rate_hz", None)
     if options.rate is None and stated is not None:
         return Times(None, "", stated, ("%g Hz, as the file says" % stated,))
@@ -98,6 +109,19 @@ def times(options, table, taken):
                          "--time-column with one of %s" % (table.path, " ".join(
                              table.names or ["1 to %d" % table.width])))
     return Times(None, "", None, ())
+
+
+def _tells_rows_apart(table, columns):
+    """True where the first rows of columns of times, or of none, have stamps of their own: more
+    than whole seconds are, which the rows of one share."""
+    if columns is None:
+        return True
+    try:
+        stamps = next(table.blocks(list(columns))).values
+    except BadFile:         # of a column that is not needed where there is a better one
+        return False
+    anew = np.any(stamps[1:] != stamps[:-1], axis=1)
+    return not len(anew) or bool(anew.mean() > ROWS_OF_THEIR_OWN)
 
 
 def _unit_of_stamps(options, table, name):
