@@ -41,7 +41,7 @@ def test_times_by_name_and_value(tmp_path, capsys, head, times):
 
 def test_times_that_two_units_would_do_for_are_asked_for(tmp_path, capsys):
     said = refused(tmp_path, capsys, table([200 * k for k in range(ROWS)]))
-    assert "expected --time-unit with one of us (5000 Hz), ms (5 Hz)" in said
+    assert "expected --time-unit with one of us (5000 Hz, 0.0798 s), ms (5 Hz, 79.8 s)" in said
     said = refused(tmp_path, capsys, table(range(ROWS)))
     assert "t counts by 1, which may be samples" in said
 
@@ -188,3 +188,16 @@ def test_a_finer_clock_is_better_than_whole_seconds(tmp_path, capsys):
     capture, said = imported(tmp_path, capsys, table(times, "Timestamp,Milliseconds"))
     assert "times are in the column Milliseconds" in said
     assert (np.diff(capture.t_us) == 10_000).all()
+
+
+@pytest.mark.parametrize("seconds", [0.5, 0.25])
+def test_a_log_of_a_few_rows_a_second_is_no_fast_one_of_a_moment(tmp_path, capsys, seconds):
+    times = seconds * (np.arange(ROWS) + np.random.default_rng(16).uniform(-0.05, 0.05, ROWS))
+    capture, said = imported(tmp_path, capsys, table(["%.17g" % t for t in times], "Time"))
+    assert capture.meta["rate_hz"] == pytest.approx(1 / seconds, rel=0.01)
+    assert "Time taken as s: " in said
+    assert " s; --time-unit if it is ms (" in said and " Hz, 0." in said
+    capture, said = imported(tmp_path, capsys, table(["%.17g" % t for t in times], "Time"),
+                             "--time-unit", "ms")
+    assert capture.meta["rate_hz"] == pytest.approx(1000 / seconds, rel=0.01)
+    assert "taken as" not in said

@@ -10,6 +10,7 @@ from .column_vocabulary import TIME_UNITS
 EPOCH_S = (1e9, 3e9)
 USUAL_HZ = (15.0, 4000.0)       # of an IMU's log; a factor below 1000, so that one unit fits
 POSSIBLE_HZ = (0.5, 8000.0)
+SHORTEST_S = 1.0                # of a log that somebody keeps: no rest is found in less
 MOST_C_PER_S = 10.0             # no chip's temperature changes faster
 LATEST_US = 1e16                # three centuries: what times in the wrong unit pass
 FAR_ROWS = 3                    # so few rows behind a gap that is longer than all the rest
@@ -40,16 +41,22 @@ def unit_of(path, column, times, celsius=None):
                       "with --rate HZ, or --time-unit ms" % (path, column))
     units = [unit for unit in TIME_UNITS if celsius is None
              or _warming(times, celsius, unit) < MOST_C_PER_S]
-    likely = [unit for unit in units if _within(rates[unit], *USUAL_HZ)]
+    seconds = {unit: float(times[-1] - times[0]) * us / 1e6 for unit, us in TIME_UNITS.items()}
+    usually = [unit for unit in units if _within(rates[unit], *USUAL_HZ)]
+    possible = [unit for unit in units if _within(rates[unit], *POSSIBLE_HZ)]
+    likely = [unit for unit in usually if seconds[unit] >= SHORTEST_S]
     if not likely:
-        likely = [unit for unit in units if _within(rates[unit], *POSSIBLE_HZ)]
-        if len(likely) > 1 and (times[:1000] != np.rint(times[:1000])).any():
-            likely = [unit for unit in likely if unit == "s"] or likely
+        parts = bool((times[:1000] != np.rint(times[:1000])).any())
+        likely = ["s"] if parts and "s" in possible else usually or possible
+    readings = {unit: "%s (%.4g Hz, %.3g s)" % (unit, rates[unit], seconds[unit])
+                for unit in TIME_UNITS}
     if len(likely) != 1:
         raise BadFile("%s: %s goes on by %.6g, expected --time-unit with one of %s" % (
-            path, column, usual, ", ".join("%s (%.4g Hz)" % (unit, rates[unit])
-                                           for unit in likely or TIME_UNITS)))
-    return likely[0], "%s taken as %s: %.4g Hz" % (column, likely[0], rates[likely[0]])
+            path, column, usual, ", ".join(readings[unit] for unit in likely or TIME_UNITS)))
+    others = [readings[unit] for unit in possible if unit != likely[0]]
+    return likely[0], "%s taken as %s: %.4g Hz%s" % (
+        column, likely[0], rates[likely[0]], ", %.3g s; --time-unit if it is %s" % (
+            seconds[likely[0]], " or ".join(others)) if others else "")
 
 
 def check_stated(path, words, times, unit, stated):
