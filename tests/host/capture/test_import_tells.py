@@ -9,6 +9,7 @@ from sixflip_host.cli import main
 from tests.worlds.imported_text import (
     COUNTS,
     GYRO,
+    NAMES,
     ROWS,
     SECONDS,
     G,
@@ -86,6 +87,29 @@ def test_the_gyros_unit_is_told_from_how_gravity_turns(tmp_path, capsys):
     assert "the gyro is in rad/s, as goes with m/s2" in said
     (tmp_path / "out.csv").unlink()
     assert "expected --units ,dps" in refused(tmp_path, capsys, turning(1.0), "--units", "si")
+
+
+@pytest.mark.parametrize("unit, per_dps", [("dps", 1.0), ("rad/s", np.pi / 180)])
+@pytest.mark.parametrize("size", [250 / 32768, 500 / 32768, 1 / 131, 1 / 16.4, 0.07])
+def test_a_chips_step_tells_the_gyros_unit(tmp_path, capsys, unit, per_dps, size):
+    """In m/s² or in g beside it: at rest nothing else tells."""
+    for accel, others in ((G, "m/s2"), (1.0, "g")):
+        values = np.c_[COUNTS / 16384 * accel, GYRO * size * per_dps]
+        rows = ["%.2f,%s" % pair for pair in zip(SECONDS, lines(values, "%.9g"))]
+        capture, said = imported(tmp_path, capsys, "t,%s\n" % NAMES + "\n".join(rows) + "\n")
+        assert "the accelerometer is in %s: |a|" % others in said
+        assert "the gyro is in %s: its step of" % unit in said
+        assert capture.meta["gyro_lsb_per_dps"] == pytest.approx(1 / size, rel=1e-4)
+
+
+def test_a_chips_step_tells_an_accelerometer_whose_scale_is_off(tmp_path, capsys):
+    text = table(["%.2f" % t for t in SECONDS], accel=1.4 * COUNTS / 16384 * G, form="%.9g")
+    assert "no gravity in g, m/s2" in refused(tmp_path, capsys, text)
+    counts = np.rint(1.4 * COUNTS)
+    text = table(["%.2f" % t for t in SECONDS], accel=counts / 16384 * 9.81, form="%.9g")
+    capture, said = imported(tmp_path, capsys, text)
+    assert "the accelerometer is in m/s2: its step of 0.000598755 is a chip's" in said
+    assert (capture.accel == counts).all()
 
 
 def test_values_without_steps_keep_their_means_and_get_no_step(tmp_path, capsys):

@@ -173,7 +173,8 @@ class Conversion:
             if signed:
                 self.assumed.append("%s counts have no sign: taken as %s" % (
                     _what(group), signed))
-        told = ToldUnits(path, options, self.named_units, self.rows, self.assumed)
+        told = ToldUnits(path, options, self.named_units, self.rows, self._sizes,
+                         self.assumed)
         accel_unit, accel_lsb = told.of_accelerometer(accel)
         gyro_unit = told.of_gyro(gyro, accel_unit)
         if accel is not None and gyro is not None:

@@ -4,7 +4,8 @@ another unit than it says is a fault of the simulator, which diagnose is there t
 
 
 from ...errors import BadFile
-from . import column_vocabulary, gravity, units
+from ..capture_header import ACCEL, GYRO
+from . import chip_steps, column_vocabulary, gravity, units
 from .options import said_units
 
 GRAVITY_FREE = 0.3              # of what gravity would be: it has been taken out
@@ -16,11 +17,13 @@ class ToldUnits:
     """The units of one table; what nobody said goes into `assumed`, a list of sentences.
 
     named   {sensor: unit} in the columns' names, or of the format; rows: of the table
+    sizes   {group of columns: units.Sizes}
     """
 
-    def __init__(self, path, options, named, rows, assumed):
+    def __init__(self, path, options, named, rows, sizes, assumed):
         self.path, self.options, self.named_units = path, options, named
         self.rows, self.assumed = rows, assumed
+        self.by_step = {group: chip_steps.told(group, one.step()) for group, one in sizes.items()}
         self._assumed_gyro = None       # where in `assumed` the gyro's unit stands
 
     def of_accelerometer(self, values):
@@ -43,6 +46,10 @@ class ToldUnits:
                     told[1], seen.size))
                 return unit, told[1]
             return unit, options.accel_lsb
+        step = self.by_step[ACCEL]
+        if told is None and step is not None and self._may_be(step.unit, seen):
+            self.assumed.append("the accelerometer is in %s: %s" % step)
+            return step.unit, options.accel_lsb
         if told is None:
             return self._without_gravity(seen, whole), options.accel_lsb
         self.assumed.append("the accelerometer is in %s: |a| is %.4g%s" % (
@@ -50,6 +57,11 @@ class ToldUnits:
         if told[0] == "counts":
             self.assumed.append("it has %d counts per g" % told[1])
         return told[0], options.accel_lsb or told[1]
+
+    def _may_be(self, unit, seen):
+        """False where gravity is off by a factor from what it is in a unit."""
+        return not self.options.gravity or seen is None or not seen.rests or (
+            1 / gravity.DISAGREES <= seen.size * units.ACCEL_UNITS[unit] <= gravity.DISAGREES)
 
     def _contradicted(self, unit, seen, told, said):
         """BadFile where gravity is off by a factor from what was said of the unit."""
@@ -90,6 +102,10 @@ class ToldUnits:
         if values is None:
             return None
         said = said_units(self.options.units)[1] or self.named_units.get(column_vocabulary.GYRO)
+        step = self.by_step[GYRO]
+        if said is None and step is not None:
+            said, self._assumed_gyro = step.unit, len(self.assumed)
+            self.assumed.append("the gyro is in %s: %s" % step)
         if said is None and self.options.gyro_lsb is not None and units.are_whole(values):
             said = "counts"
         if said is None:
