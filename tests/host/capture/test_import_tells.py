@@ -112,6 +112,52 @@ def test_a_chips_step_tells_an_accelerometer_whose_scale_is_off(tmp_path, capsys
     assert (capture.accel == counts).all()
 
 
+WHOLE = np.c_[np.rint(COUNTS / 16.384), np.rint(2.0 * GYRO)]    # mg, and counts below 100
+
+
+@pytest.mark.parametrize("words", [(), ("--units", "mg")])
+def test_whole_numbers_of_many_sizes_are_counts_of_a_gyro(tmp_path, capsys, words):
+    text = "%s\n%s\n" % (NAMES, "\n".join(lines(WHOLE)))
+    words = "--rate", "100", *words
+    said = refused(tmp_path, capsys, text, *words)
+    assert "the gyro is in counts, so its LSB must be given (--gyro-lsb, counts per deg/s)" in said
+    said = refused(tmp_path, capsys, text, *words, "--sensor", "mpu6050")
+    assert "131 or 65.5 or 32.8 or 16.4 of a mpu6050" in said
+
+
+def test_a_chip_with_one_range_tells_the_scale_of_its_counts(tmp_path, capsys):
+    text = "%s\n%s\n" % (NAMES, "\n".join(lines(np.c_[np.rint(COUNTS / 64), GYRO])))
+    capture, said = imported(tmp_path, capsys, text, "--rate", "100", "--sensor", "gy85")
+    assert "the gyro has 14.375 counts per deg/s, as a gy85" in said
+    assert (capture.gyro == GYRO).all() and capture.meta["gyro_lsb_per_dps"] == 14.375
+
+
+def test_a_gyro_alone_without_a_unit_says_that_no_accelerometer_was_recognised(tmp_path, capsys):
+    values = np.random.default_rng(17).normal(0, 0.1, (ROWS, 6))
+    rows = "\n".join("%.2f,%s" % pair for pair in zip(SECONDS, lines(values, "%.9f")))
+    said = refused(tmp_path, capsys, "t,tx,ty,tz,wx,wy,wz\n%s\n" % rows)
+    assert "no accelerometer was recognised" in said and "--map ax=NAME" in said
+
+
+@pytest.mark.parametrize("scale, words, said", [
+    (1.49, ("--units", "si"), "gravity is 1.49 g in the rests"), (1.1, ("--units", "si"), ""),
+    (0.7, ("--units", "si"), "gravity is 0.7 g in the rests"),
+    (1.49, (), "gravity is 1.49 g in the rests")])
+def test_rests_that_read_far_from_1_g_are_said(tmp_path, capsys, scale, words, said):
+    text = table(["%.2f" % t for t in SECONDS], form="%.9g",
+                 accel=np.rint(scale * COUNTS) / 16384 * G)
+    found = imported(tmp_path, capsys, text, *words)[1]
+    assert said in found and ("gravity is" in found) == bool(said)
+
+
+def test_the_lowest_count_of_all_is_a_whole_step(tmp_path, capsys):
+    gyro = GYRO.copy()
+    gyro[5, 0] = -32768
+    capture, _ = imported(tmp_path, capsys, table(
+        ["%.2f" % t for t in SECONDS], accel=COUNTS / 16384, gyro=gyro / 131, form="%.6f"))
+    assert "gyro_values" not in capture.meta and (capture.gyro == gyro).all()
+
+
 def test_values_without_steps_keep_their_means_and_get_no_step(tmp_path, capsys):
     values = np.random.default_rng(10).normal((0.1, 0.2, G), 1e-5, (ROWS, 3))
     values[7] = 900.0       # a knock sets the range that 16 bits have to hold

@@ -44,3 +44,11 @@ def told(sensor, step):
                 return ChipStep(unit, "its step of %.6g is a chip's, 1/%.6g %s" % (
                     step, 1 / size, of))
     return None
+
+
+def gyro_lsb(sensor):
+    """Counts per deg/s in each of the ranges that a chip has, by its name; () of one that is not
+    known."""
+    if sensor not in catalogue.SENSORS:
+        return ()
+    return tuple(sorted({row[1] for row in catalogue.driver(sensor).GYRO_RANGES}, reverse=True))

@@ -174,11 +174,11 @@ class Conversion:
                 self.assumed.append("%s counts have no sign: taken as %s" % (
                     _what(group), signed))
         told = ToldUnits(path, options, self.named_units, self.rows, self._sizes,
-                         self.assumed)
+                         self.assumed, self.remarks)
         accel_unit, accel_lsb = told.of_accelerometer(accel)
-        gyro_unit = told.of_gyro(gyro, accel_unit)
+        gyro_unit, gyro_lsb = told.of_gyro(gyro, accel_unit)
         if accel is not None and gyro is not None:
-            gyro_unit = told.turned(accel, gyro, gyro_unit, meta["rate_hz"])
+            gyro_unit = told.turned(accel, gyro, gyro_unit, gyro_lsb, meta["rate_hz"])
         counts = {}
         if accel is not None:
             per_unit = {"si": 1 / options.g, "m/s2": 1 / options.g}.get(
@@ -193,7 +193,7 @@ class Conversion:
                                     "resolution is %.2f mg" % (step, 1e3 * step
                                                                / counts[ACCEL].lsb))
         if gyro is not None:
-            counts[GYRO] = units.counts_of(path, "gyro", gyro, gyro_unit, options.gyro_lsb,
+            counts[GYRO] = units.counts_of(path, "gyro", gyro, gyro_unit, gyro_lsb,
                                            units.GYRO_UNITS[gyro_unit],
                                            self._sizes[GYRO].step())
             meta["gyro_lsb_per_dps"] = counts[GYRO].lsb

@@ -87,6 +87,11 @@ def said_units(text):
     return accel, gyro
 
 
+def gyro_is_implied(text):
+    """True where nobody said the gyro's unit, or one word that is the accelerometer's as well."""
+    return text is None or text in ("si", "g", "mg")
+
+
 def _unknown_units(text):
     return UsageError("--units %s: expected one of %s, a comma, one of %s" % (
         text, " ".join(units.ACCEL_UNITS), " ".join(units.GYRO_UNITS)))

@@ -6,7 +6,7 @@ another unit than it says is a fault of the simulator, which diagnose is there t
 from ...errors import BadFile
 from ..capture_header import ACCEL, GYRO
 from . import chip_steps, column_vocabulary, gravity, units
-from .options import said_units
+from .options import gyro_is_implied, said_units
 
 GRAVITY_FREE = 0.3              # of what gravity would be: it has been taken out
 TURNS_ALIKE = 0.6               # correlation from which gyro and accelerometer turn together
@@ -14,15 +14,17 @@ FEW_ROWS = 40                   # too few to contradict what was said of a unit
 
 
 class ToldUnits:
-    """The units of one table; what nobody said goes into `assumed`, a list of sentences.
+    """The units of one table; what nobody said goes into `assumed`, a list of sentences,
+    and what is odd into `remarks`.
 
     named   {sensor: unit} in the columns' names, or of the format; rows: of the table
     sizes   {group of columns: units.Sizes}
     """
 
-    def __init__(self, path, options, named, rows, sizes, assumed):
+    def __init__(self, path, options, named, rows, sizes, assumed, remarks):
         self.path, self.options, self.named_units = path, options, named
-        self.rows, self.assumed = rows, assumed
+        self.rows, self.sizes = rows, sizes
+        self.assumed, self.remarks = assumed, remarks
         self.by_step = {group: chip_steps.told(group, one.step()) for group, one in sizes.items()}
         self._assumed_gyro = None       # where in `assumed` the gyro's unit stands
 
@@ -49,6 +51,7 @@ class ToldUnits:
         step = self.by_step[ACCEL]
         if told is None and step is not None and self._may_be(step.unit, seen):
             self.assumed.append("the accelerometer is in %s: %s" % step)
+            self._contradicted(step.unit, seen, told, step.unit)
             return step.unit, options.accel_lsb
         if told is None:
             return self._without_gravity(seen, whole), options.accel_lsb
@@ -73,6 +76,7 @@ class ToldUnits:
         if per_unit is None or seen is None or not seen.rests or self.rows < FEW_ROWS:
             return
         if 1 / gravity.DISAGREES <= seen.size * per_unit <= gravity.DISAGREES:
+            self._far_from_1_g(seen.size * per_unit)
             return
         what = "--accel-lsb %g" % options.accel_lsb if unit == "counts" else \
             "--units %s" % options.units if said else "the unit that the file says, %s," % unit
@@ -80,6 +84,12 @@ class ToldUnits:
             told[0], " --accel-lsb %d" % told[1] if told[1] else "")
         raise BadFile("%s: %s makes |a| at rest %.4g g%s" % (
             self.path, what, seen.size * per_unit, looks or ", expected 1 g"))
+
+    def _far_from_1_g(self, size):
+        """Says so where rests read farther from 1 g than any part that is whole."""
+        if abs(size - 1) > gravity.ZERO_G:
+            self.remarks.append("gravity is %.3g g in the rests of this file: its scale is off, "
+                                "or its unit is another one" % size)
 
     def _without_gravity(self, seen, whole):
         """The unit of values that gravity does not tell; BadFile where it was to be told."""
@@ -98,36 +108,54 @@ class ToldUnits:
                       "--units, such as g,dps" % (path, size))
 
     def of_gyro(self, values, accel_unit):
-        """The unit of the gyro, said, in its name, or by the accelerometer's."""
+        """(unit, counts per deg/s or None) of the gyro: said, in its name, by its values or by the
+        accelerometer's."""
         if values is None:
-            return None
-        said = said_units(self.options.units)[1] or self.named_units.get(column_vocabulary.GYRO)
-        step = self.by_step[GYRO]
-        if said is None and step is not None:
-            said, self._assumed_gyro = step.unit, len(self.assumed)
-            self.assumed.append("the gyro is in %s: %s" % step)
-        if said is None and self.options.gyro_lsb is not None and units.are_whole(values):
-            said = "counts"
-        if said is None:
-            whole = bool(len(values)) and units.are_whole(values)
-            said = {"si": "rad/s", "m/s2": "rad/s", "g": "dps", "mg": "dps",
-                    "counts": "counts"}.get(accel_unit)
-            if whole and said != "counts" and max(values.max(), -values.min()) > 100:
-                said = "counts"
-            if said is None:
-                raise BadFile("%s: the gyro's unit is not told by anything, expected --units ,dps "
-                              "or ,rad/s or ,counts" % self.path)
-            if said != "counts":
-                self._assumed_gyro = len(self.assumed)
-                self.assumed.append("the gyro is in %s, as goes with %s" % (said, accel_unit))
-        if said == "counts" and self.options.gyro_lsb is None:
-            raise BadFile("%s: the gyro is in counts, so its LSB must be given (--gyro-lsb, "
-                          "counts per deg/s)" % self.path)
-        return said
+            return None, None
+        lsb = self.options.gyro_lsb
+        named = self.named_units.get(column_vocabulary.GYRO)
+        unit = said_units(self.options.units)[1] or named
+        whole = units.are_whole(values)
+        if whole and not named and gyro_is_implied(self.options.units) and (
+                lsb is not None and unit is None or accel_unit == "counts"
+                or self.sizes[GYRO].are_many() or max(values.max(), -values.min()) > 100):
+            unit = "counts"
+        if unit is None:
+            unit, why = self._gyro_by(self.by_step[GYRO], accel_unit)
+            self._assumed_gyro = len(self.assumed)
+            self.assumed.append("the gyro is in %s%s" % (unit, why))
+        return unit, self._only_lsb() if unit == "counts" and lsb is None else lsb
 
-    def turned(self, accel, gyro, unit, rate_hz):
+    def _gyro_by(self, step, accel_unit):
+        """(unit, words) of a gyro by its step, or by the accelerometer's unit; BadFile where there
+        is neither."""
+        if step is not None:
+            return step.unit, ": " + step.words
+        if accel_unit is None:
+            raise BadFile("%s: no accelerometer was recognised, which would tell the gyro's unit, "
+                          "expected --map ax=NAME,ay=NAME,az=NAME, or --units ,dps or ,rad/s or "
+                          ",counts" % self.path)
+        unit = {"si": "rad/s", "m/s2": "rad/s", "g": "dps", "mg": "dps"}.get(accel_unit)
+        if unit is None:
+            raise BadFile("%s: the gyro's unit is not told by anything, expected --units ,dps "
+                          "or ,rad/s or ,counts" % self.path)
+        return unit, ", as goes with %s" % accel_unit
+
+    def _only_lsb(self):
+        """Counts per deg/s of the sensor that was said, where it has one range; else BadFile."""
+        sensor = self.options.sensor
+        choices = chip_steps.gyro_lsb(sensor)
+        if len(choices) != 1:
+            raise BadFile("%s: the gyro is in counts, so its LSB must be given (--gyro-lsb, "
+                          "counts per deg/s%s)" % (self.path, ": %s of a %s" % (
+                              " or ".join("%g" % one for one in choices), sensor)
+                              if choices else ""))
+        self.assumed.append("the gyro has %g counts per deg/s, as a %s" % (choices[0], sensor))
+        return choices[0]
+
+    def turned(self, accel, gyro, unit, lsb, rate_hz):
         """The gyro's unit, held against how gravity turns in the accelerometer."""
-        per_unit = 1 / self.options.gyro_lsb if unit == "counts" else units.GYRO_UNITS[unit]
+        per_unit = 1 / lsb if unit == "counts" else units.GYRO_UNITS[unit]
         turned = gravity.turn_factor(accel, gyro, per_unit, rate_hz)
         if turned is None or abs(turned[1]) < TURNS_ALIKE:
             return unit

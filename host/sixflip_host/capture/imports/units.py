@@ -17,6 +17,7 @@ GYRO_UNITS = {"counts": None, "si": 180 / math.pi, "rad/s": 180 / math.pi, "dps"
               "deg/s": 1.0, "mdps": 1e-3}
 LARGEST = 1e9           # in any unit: no sensor, and squares of more leave a float
 MOST_DISTINCT = 1 << 17 # sizes of values in whole steps: 16 bits have a quarter of that
+MOST_ROUNDED = 40       # sizes of whole numbers that may be rounded ones: counts at rest have less
 ON_GRID = 0.02          # of a step: how far values may lie off whole steps to be called counts
 ROOM = 32000            # counts that the largest of float values gets; the rest is headroom
 MOST_ON_RAIL = 1e-3     # share of samples one count beyond 16 bits that are taken as on the rail
@@ -51,6 +52,10 @@ class Sizes:
         self._distinct = np.union1d(self._distinct, np.abs(values))
         if len(self._distinct) > MOST_DISTINCT:
             self._distinct = None
+
+    def are_many(self):
+        """True for more sizes than whole degrees a second have, which somebody rounded to."""
+        return self._distinct is None or len(self._distinct) > MOST_ROUNDED
 
     def step(self):
         """What all of them are whole multiples of, or None."""
@@ -106,7 +111,7 @@ def counts_of(path, what, values, unit, lsb, per_unit, step=None):
             remarks.append("%s values are not whole counts at %g per %s: rounded by up to %.2f "
                            "count" % (what, lsb, of, rounding))
         return Counts(counts, lsb, "counts", remarks)
-    if step is not None and largest / step <= RAIL + 1 and not _printed(step):
+    if step is not None and round(largest / step) <= RAIL + 1 and not _printed(step):
         lsb = 1 / (step * per_unit)
         counts, _, remarks = _scaled(path, what, values, 1 / step)
         return Counts(counts, lsb, "counts", [
