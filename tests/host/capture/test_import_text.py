@@ -129,3 +129,32 @@ def test_names_behind_a_comment_with_another_delimiter(tmp_path, capsys):
     rows = ["%d\t%s" % (10 * k, one.replace(",", "\t")) for k, one in enumerate(lines(COUNTS))]
     text = "// Update Rate: 100.0Hz\nt_ms\tAcc_X\tAcc_Y\tAcc_Z\n" + "\n".join(rows) + "\n"
     assert (imported(tmp_path, capsys, text)[0].accel == COUNTS).all()
+
+
+@pytest.mark.parametrize("greeting", [
+    "GPIO initialized.\ni2c bus opened with handle 0.\nDevice with address a0 found\n",
+    "\nMPU6050, ready\n\n", "Calibrating: 1 2 3\nOffsets 12 -7 5\nDone!\n"])
+@pytest.mark.parametrize("between", [",", ", ", ";", "\t", " "])
+def test_what_a_board_says_when_it_starts_is_no_row(tmp_path, capsys, greeting, between):
+    rows = [one.replace(",", between) for one in lines(np.c_[COUNTS, GYRO])]
+    capture, said = imported(tmp_path, capsys, greeting + "\n".join(rows) + "\n", "--rate", "100",
+                             "--gyro-lsb", "131", "--columns", NAMES)
+    assert (capture.accel == COUNTS).all() and (capture.gyro == GYRO).all()
+    assert "passed over: lines before the first row" in said
+
+
+def test_a_comma_with_blanks_behind_it_is_the_delimiter(tmp_path, capsys):
+    """Behind an empty line, and with more blanks in a row than commas."""
+    rows = ["\n315964.%05d, 3,  %s ,  0.0\n  " % (1000 * k, one.replace(",", ",  "))
+            for k, one in enumerate(lines(COUNTS[:60] / 16384 * G, "%.3f"))]
+    capture, _ = imported(tmp_path, capsys, "\n".join(rows) + "\n", "--columns",
+                          "t,-,ax,ay,az,-")
+    assert len(capture) == 60 and capture.meta["rate_hz"] == pytest.approx(100.0)
+
+
+def test_names_that_nobody_knows_behind_a_greeting(tmp_path, capsys):
+    text = "logger 7\nt,p,q,r\n" + "".join(
+        "%.2f,%s\n" % pair for pair in zip(SECONDS, lines(COUNTS)))
+    assert "with one of t p q r" in refused(tmp_path, capsys, text)
+    capture, _ = imported(tmp_path, capsys, text, "--map", "ax=p,ay=q,az=r")
+    assert (capture.accel == COUNTS).all()

@@ -33,13 +33,14 @@ class Table:
 
     names       column names, or None when the file has none
     width       values in every row
-    preamble    lines before the names
+    preamble    lines before the names, or before the rows of a file that has none
     passed_over {what: lines} that means nothing, after blocks() has come to its end
     said        {sentence: True} on what nobody said of the text itself, after blocks()
     units       {sensor: unit} that the file's format says, whatever the names
     """
 
     units = {}
+    names_in_file = False
 
     def __init__(self, path, source, names, width, separator, first, preamble=(), comma=False,
                  dress=None):
@@ -90,6 +91,9 @@ class Table:
         places = [self.index(column) for column in columns]
         word = None if label is None else self.index(label)
         self.passed_over = {}
+        before = [] if self.names_in_file else csv_text.filled(self.preamble)
+        if before:
+            self._pass_over("lines before the first row", len(before))
         line, rows = 0, 0
         for line, text in self._texts():
             texts = text.split("\n")
@@ -240,4 +244,7 @@ def read_table(path, delimiter="auto", skip=None, names=None, is_header=None):
                 and not text.startswith(COMMENT)), "")
     width = len(names) if names else len(cells_of(row, separator))
     comma = separator != "," and bool(DECIMAL_COMMA.search(row))
-    return Table(path, source, names, width, separator, first, lines[:head or 0], comma, dress)
+    table = Table(path, source, names, width, separator, first,
+                  lines[:first if head is None else head], comma, dress)
+    table.names_in_file = head is not None
+    return table

@@ -7,7 +7,9 @@ of them, so that nothing is guessed that a reading depends on.
 """
 
 import codecs
+import collections
 import csv
+import re
 
 from ...errors import BadFile
 from ..unpack import whole_lines
@@ -18,6 +20,7 @@ MOST_LATIN = 0.05       # of the bytes: a text with more is no table of numbers
 UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 DELIMITERS = (",", ";", "\t", None)     # None: any run of blanks
 SEARCH = 200            # lines in which the column names must appear
+DECIMAL = re.compile(r"(?<=\d),(?=\d)")
 COMMENT = ("#", "//")
 
 
@@ -88,15 +91,43 @@ def find_header(path, lines, delimiter, skip, is_header):
         for separator in choices:
             if is_header and is_header(cells_of(lines[number].lstrip("#"), separator)):
                 return number, number + 1, separator
-    while skip is None and start + 1 < len(lines) and (
-            not lines[start].strip() or lines[start].startswith(COMMENT)):
-        start += 1
-    separator = max(choices, key=lambda one: (len(cells_of(lines[start], one)), one is not None))
-    points = lines[start] if separator == "," else lines[start].replace(",", ".")
-    cells = cells_of(points, separator)
-    if any(all_numbers([cell]) for cell in cells):     # no line of names has numbers in it
+    separator = max(choices, key=lambda one: (
+        sum(len(_numbers(line, one)) for line in lines[start:start + SEARCH]),
+        len(cells_of(lines[start], one)), one is not None))
+    if skip is None:
+        start = _before_rows(lines, separator)
+    if _numbers(lines[start], separator):       # no line of names has numbers in it
         return None, start, separator
     return start, start + 1, separator
+
+
+def _before_rows(lines, separator):
+    """Index of the first line that is a row, or of the one before it where that has as many cells:
+    names that nobody knows. What else stands before them is what a board says when it starts. Rows
+    are the lines with the usual number of numbers; where there are none, of the first line with
+    anything in it."""
+    places = filled(lines[:SEARCH])
+    numbers = [len(_numbers(lines[place], separator)) for place in places]
+    rows = collections.Counter(number for number in numbers if number)
+    if not rows:
+        return places[0] if places else len(lines) - 1
+    first = numbers.index(rows.most_common(1)[0][0])
+    named = first > 0 and not numbers[first - 1] and len({
+        len(cells_of(lines[place], separator)) for place in places[first - 1:first + 1]}) == 1
+    return places[first - named]
+
+
+def filled(lines):
+    """The indices of lines that are neither blank nor comments."""
+    return [place for place, line in enumerate(lines)
+            if line.strip() and not line.startswith(COMMENT)]
+
+
+def _numbers(line, separator):
+    """The cells of a line that are numbers. Between two digits a comma that is no delimiter may be
+    where decimals begin."""
+    cells = cells_of(line if separator == "," else DECIMAL.sub(".", line), separator)
+    return [cell for cell in cells if all_numbers([cell])]
 
 
 def cells_of(line, separator):
