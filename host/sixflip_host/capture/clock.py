@@ -14,7 +14,7 @@ what an even clock expects over the time without pauses, always.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -113,6 +113,14 @@ def measure(t_us, recorder=(), lost=()):
         float(gaps.lift[pause].max(initial=0)) / 1e6,
         gaps.late, gaps.bursts, gaps.latest / 1e3, gaps.jitter / 1e3, resolution / 1e3,
         tuple(zip(gaps.places[missing > 0].tolist(), missing[missing > 0].tolist())))
+
+
+def within(measured, part):
+    """The SampleClock with an interval of the rate that is at least such a part of it to either
+    side: for times that say less than they look like."""
+    low, high = measured.interval_hz
+    return replace(measured, interval_hz=(min(low, measured.rate_hz * (1.0 - part)),
+                                          max(high, measured.rate_hz * (1.0 + part))))
 
 
 def sample_clock(capture):

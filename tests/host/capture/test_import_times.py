@@ -201,3 +201,32 @@ def test_a_log_of_a_few_rows_a_second_is_no_fast_one_of_a_moment(tmp_path, capsy
                              "--time-unit", "ms")
     assert capture.meta["rate_hz"] == pytest.approx(1000 / seconds, rel=0.01)
     assert "taken as" not in said
+
+
+def test_rows_that_share_whole_seconds_are_spread_evenly(tmp_path, capsys):
+    """31 Hz from somewhere within a second, to somewhere within one."""
+    times = [clock(k / 31 + 0.3, "%Y-%m-%d %H:%M:%S") for k in range(ROWS)]
+    capture, said = imported(tmp_path, capsys, table(times, "Timestamp"))
+    assert "Timestamp goes on in steps of 1 s, which 31 rows share: they are spread" in said
+    assert "bursts:" not in said and "jitter:" not in said
+    assert capture.meta["rate_hz"] == pytest.approx(31, rel=1 / ROWS)
+    low, high = capture.meta["rate_interval_hz"]
+    assert low < 31 < high and high - low > 31 / ROWS
+    assert np.abs(capture.t_us - np.arange(ROWS) * 1e6 / 31).max() < 40_000
+
+
+def test_rows_that_share_seconds_of_a_recorder_that_stood_still(tmp_path, capsys):
+    """Rows after a pause of 7 s are no row a quarter of a second."""
+    seconds = np.arange(ROWS) / 31 + 0.3 + 7.0 * (np.arange(ROWS) >= 200)
+    times = [clock(t, "%Y-%m-%d %H:%M:%S") for t in seconds]
+    capture, said = imported(tmp_path, capsys, table(times, "Timestamp"))
+    assert "pauses: the recorder stood still 1 time" in said and "bursts:" not in said
+    assert np.abs(capture.t_us - 1e6 * (seconds - seconds[0])).max() < 1.1e6
+    assert capture.meta["rate_hz"] == pytest.approx(31, rel=0.03)
+
+
+def test_rows_that_a_link_hands_over_together_keep_their_stamps(tmp_path, capsys):
+    arrived = np.cumsum(80_000 + np.random.default_rng(18).integers(-3000, 3000, ROWS // 8))
+    capture, said = imported(tmp_path, capsys, table(np.repeat(arrived, 8), "t_us"))
+    assert "spread" not in said
+    assert (capture.t_us == np.repeat(arrived - arrived[0], 8)).all()

@@ -93,7 +93,7 @@ class Conversion:
         return ({group: one.array() for group, one in grown.items()},
                 times.array() if self.time else None, labels)
 
-    _first_second = None
+    _first_second = _spread = None
 
     def _whole_seconds(self, seconds):
         """Seconds from the first one on: with nanoseconds behind them they are beyond a float."""
@@ -158,7 +158,14 @@ class Conversion:
         time_stamps.check_stretch(
             self.table.path, name, times, scale,
             lambda row: self.line_of(int(row if order is None else order[row])))
-        return time_stamps.microseconds(self.table.path, name, times, scale, unit), order
+        t_us = time_stamps.microseconds(self.table.path, name, times, scale, unit)
+        self._spread = time_stamps.spread(t_us)
+        if self._spread is not None:
+            self.assumed.append("%s goes on in steps of %.4g s, which %d rows share: they are "
+                                "spread evenly" % (name, self._spread.step_us / 1e6,
+                                                   self._spread.rows))
+            t_us = self._spread.t_us
+        return t_us, order
 
     # counts
 
@@ -233,6 +240,8 @@ class Conversion:
                 raise BadFile("%s: the times do not say the rate, expected times that run, or "
                               "--rate HZ" % self.table.path)
         else:
+            if self._spread is not None:    # when a new stamp begins is known to a row
+                measured = clock.within(measured, 1.0 / self._spread.between)
             self.remarks += clock_words.words(measured)
         if self.options.rate is not None:
             return {"rate_hz": self.options.rate, "rate": "stated"}

@@ -1,9 +1,12 @@
 """The times in somebody's table: their unit told by plausibility, put in order, made
 microseconds."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ...errors import BadFile
+from .. import stamp_envelope
 from .column_vocabulary import TIME_UNITS
 
 # When a stamp counts from 1970 it lies between 2001 and 2065 in one unit only.
@@ -18,6 +21,8 @@ FAR_ROWS = 3                    # so few rows behind a gap that is longer than a
 COUNTERS = (2.0 ** 16, 2.0 ** 24, 2.0 ** 32, 1e3, 1e6, 1e9, 86400.0)
 LONGEST_STEPS = 50.0            # usual intervals that may be missing where a counter begins anew
 TIMES_STATED = 2.0              # a rate that was set may be that far off, rows left out
+FEWEST_STEPS = 3                # new stamps that show a grid
+FEWEST_SHARED = 2               # rows of a stamp, usually: with fewer clock.measure sees the rest
 SPAN = 20                       # rows over which intervals are averaged
 
 
@@ -149,3 +154,48 @@ def microseconds(path, column, times, scale_us, unit):
         some = slice(first, first + (1 << 16))
         whole[some] = times[some].astype(np.int64)
     return whole
+
+
+class Spread(NamedTuple):
+    """t_us int64 (n,): times of rows; step_us: of the stamps that rows shared; rows: that usually
+    shared one; between: rows of stamps that are whole, which tell the rate."""
+
+    t_us: np.ndarray
+    step_us: float
+    rows: int
+    between: int
+
+
+def spread(t_us):
+    """The Spread of rows that share their stamps, as those of a second do where a log has whole
+    seconds; None where they have their own. (Rows that a link hands over together share one, too,
+    but that is on no grid.) Where the recorder stood still, the rows behind have a clock anew."""
+    anew = np.flatnonzero(np.diff(t_us)) + 1        # rows with a new stamp
+    if len(anew) < FEWEST_STEPS:
+        return None
+    shared, step = np.diff(anew), stamp_envelope.resolution(t_us)
+    usual = int(np.median(shared))
+    if usual < FEWEST_SHARED or np.median(np.diff(t_us[anew])) != step:
+        return None
+    went_on = np.diff(t_us)[anew - 1] == step
+    whole = went_on[1:] & went_on[:-1]              # stamps whose rows are all there
+    between = int(shared[whole].sum())
+    if not between:
+        return None
+    period, times = step * whole.sum() / between, []
+    for rows in np.split(np.arange(len(t_us)), anew[~went_on]):
+        new = anew[(anew > rows[0]) & (anew <= rows[-1])]
+        times.append(_evenly(rows, new, t_us[new], period) if len(new)
+                     else t_us[rows[0]] + (rows - rows[0]) * min(period, step / len(rows)))
+    even = np.maximum.accumulate(np.concatenate(times))
+    return Spread(np.rint(even - even[0]).astype(np.int64), step, usual, between)
+
+
+def _evenly(rows, new, stamps, period):
+    """Times of rows, by those of them with a new stamp: of an even clock, where they are of one,
+    each to a row; else evenly from one to the next."""
+    off = stamps - new * period
+    if np.ptp(off) <= 2.0 * period:
+        return off.mean() + rows * period
+    beyond = np.minimum(rows - new[0], 0) + np.maximum(rows - new[-1], 0)
+    return np.interp(rows, new, stamps) + beyond * period
