@@ -149,6 +149,19 @@ def test_a_line_is_taken_off_before_the_means_are_made():
     assert without.values["accel"][:, 2].std() < 0.4
 
 
+def test_a_bias_that_changes_from_stop_to_stop_of_one_log_is_a_gap():
+    """A car's gyro went by a tenth of a deg/s within an hour, and it was no gap: switching on
+    again may do that, and nobody had."""
+    made = rest().capture
+    stop = (T / 40.0).astype(int)
+    made.pose[:] = np.where(T % 40.0 < 30.0, 1, 0)
+    made.gyro[:, 2] += np.rint(131.0 * np.array(
+        [0.0, 0.06, 0.01, -0.07, -0.02, 0.05, 0.1, -0.04, 0.02, -0.08])[stop]).astype(np.int16)
+    found = rest_gap.gaps_by_sensor([blocks.session_of("car", made)], Settings())["gyro"]
+    assert found.causes or max(found.nameless, default=0.0) > 0.5
+    assert found.by_axis["z"].before > 5.0 * found.by_axis["z"].floor
+
+
 def put_down_again(every_s=40.0, degrees=1.0, seed=3):
     """(n,) mg that x reads of gravity where the box is put down again, another way each time, and
     which of the samples it is moved in."""
