@@ -10,6 +10,7 @@ from sixflip_host.diagnosis import answer, diagnosis, samples_judged
 from sixflip_host.diagnosis.detect import (
     noise_bursts,
     saturation,
+    spectral_lines,
     spikes,
     torn_reads,
 )
@@ -388,3 +389,13 @@ def test_samples_with_swapped_bytes_move_no_rest():
     assert found.verdict == "unexplained" and found.causes == []
     assert {(w.sensor, w.domain) for w in found.where} == {("accel", "noise")}
     assert any("spikes" in remark for remark in found.remarks)
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+@pytest.mark.parametrize("rate", [0.6, 1.2, 3.0])
+def test_a_log_of_one_row_a_second_has_no_lines_where_nothing_rests(rate):
+    """Two seconds of it are a sample or two, whose window is 0: nothing was divided by nothing."""
+    session = resting(12.0)
+    moving = SimpleNamespace(capture=session.capture, rate=rate, runs=())
+    assert spectral_lines.rests([moving], "accel") == []
+    assert spectral_lines.strongest([moving], "accel", 0) is None

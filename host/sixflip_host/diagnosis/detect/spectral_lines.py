@@ -121,7 +121,8 @@ def rests(sessions, sensor):
     """list of (n, 3) stretches of samples in mg or deg/s, all at rest, equally long; of the
     whole capture where there is no rest."""
     if not any(session.runs for session in sessions):
-        return _stretches(sessions, sensor, int(MOVING_S * sessions[0].rate), whole=True)
+        length = int(MOVING_S * sessions[0].rate)
+        return _stretches(sessions, sensor, length, whole=True) if length >= SHORTEST else []
     rate = sessions[0].rate
     lengths = [int(seconds * rate) for seconds in LENGTHS_S if seconds * rate >= SHORTEST]
     numbers = {length: sum(len(range(*_starts(session, run, length)))
