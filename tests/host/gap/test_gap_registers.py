@@ -126,6 +126,16 @@ def test_a_rail_of_the_chip_is_its_range():
     assert set(found.limits.values()) == {"range"}
 
 
+@pytest.mark.parametrize("wide", [1, 5566])
+def test_noise_of_a_few_codes_is_not_cut_off(wide):
+    """At rest the last of them is read many times, also where decimals are rounded to either
+    side."""
+    rng = np.random.default_rng(3)
+    x = wide * np.clip(np.rint(0.5 + 0.8 * rng.standard_normal(400)), -1, 2).astype(int)
+    x += rng.integers(0, 2, 400) if wide > 1 else 0
+    assert not present(saturation.cut_off_nats(x))
+
+
 def test_coarse_steps_are_no_bend():
     two = captures(sensor="gy85")  # 4 mg a count, noise narrower than the step
     for capture in two:

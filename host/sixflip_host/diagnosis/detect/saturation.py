@@ -10,7 +10,7 @@ import numpy as np
 from scipy import ndimage, special
 
 from ...capture import registers
-from ...capture.registers import RAIL, RAIL_CODES, fixed_bits, steps
+from ...capture.registers import FEWEST_VALUES, RAIL, RAIL_CODES, fixed_bits, steps
 from .codes import number_of_runs
 from .detection import BELOW, RANGE, Finding, present
 
@@ -118,11 +118,20 @@ def cut_off_nats(x, span=None):
     reading again and again; the one sample that is the largest anyhow is no evidence, and the
     largest values that were looked at are taken off. span: of x, where it is known already."""
     at = x == x.max()
-    if at.all():
+    if _different(x) < FEWEST_VALUES:
         return 0.0
     span = span or _span(x)
     nats = level_nats(x, at, 1, span, 1) - math.log(LOOKED_AT)
     return -float(np.logaddexp(-nats, math.log(STEADY) - _piled_up_nats(x, span.step)))
+
+
+def _different(x):
+    """How many readings x has that differ: two that lie far closer than all do on average are one,
+    which decimals rounded to either side. In noise of a few codes the last is read often, and
+    what is cut off has more of them below it."""
+    values = np.unique(x)
+    return 1 + int((2 * np.diff(values) * (len(values) - 1) >= np.ptp(values)).sum()) if len(
+        values) > 1 else 1
 
 
 def _piled_up_nats(x, step):
