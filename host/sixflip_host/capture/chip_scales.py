@@ -6,6 +6,14 @@ OFF = 0.02              # published drivers shipped 62.5 for 65.5
 # An ADXL345 has 256 counts per g in every range, or 512 over the range with FULL_RES off, give or
 # take 10 % (data sheet rev. E, table 1).
 ADXL345_PRODUCT, ADXL345_OFF = 512, 0.1
+# Ends of the ranges that accelerometers (g) and gyros (deg/s) are sold with, all times a power of
+# two. ST calls a gyro's by 245 (L3GD20, LSM9DS1) or 250; its register ends where its 4.375 mdps a
+# count do (LSM6DS3, DocID026899, table 3): 143 deg/s of 125, and 2294 of 2000.
+FULL_SCALES = {"accel": tuple(2.0 * 2 ** k for k in range(5)), "gyro": tuple(
+    first * 2 ** k for first in (125.0, 4.375e-3 * 2 ** 15, 245.0) for k in range(6))}
+# Sensitivities are rounded: 32767 counts are 250.1 deg/s at the 131 of an MPU6050, 1998 at 16.4,
+# 2279 at the 14.375 of an ITG3205.
+ROUNDED = 0.01
 
 
 def full_scale(chip):
@@ -17,6 +25,11 @@ def full_scale(chip):
     return tuple(rows[0][0] * rows[0][1]
                  if rows and len({row[1] for row in rows}) == len(rows) else None
                  for rows in (driver.ACCEL_RANGES, driver.GYRO_RANGES))
+
+
+def is_full_scale(sensor, size):
+    """True when a size (g or deg/s) is where a usual range of a sensor ("accel", "gyro") ends."""
+    return any(abs(size / full - 1.0) <= ROUNDED for full in FULL_SCALES[sensor])
 
 
 def wrong(chip, range_g, accel_lsb, range_dps, gyro_lsb):

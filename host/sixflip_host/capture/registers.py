@@ -9,6 +9,7 @@ from sixflip import RAIL
 SENSORS = {"accel": "accelerometer", "gyro": "gyro"}  # in words
 RANGES = {"accel": "accel_range_g", "gyro": "gyro_range_dps"}  # of a capture's header
 SCALES = {"accel": "accel_lsb_per_g", "gyro": "gyro_lsb_per_dps"}
+UNITS = {"accel": "g", "gyro": "deg/s"}  # of ranges and scales
 RAIL_CODES = 4  # the last codes of a range: scales that are rounded end a few short of 2^15
 FEWEST_VALUES = 12  # distinct counts before a common divisor means anything
 FEWEST_SAMPLES = 50
@@ -58,6 +59,12 @@ def rail(capture, sensor):
         return stated
     last = int(beyond.max())
     return last if (beyond >= last - RAIL_CODES).mean() > 0.5 else RAIL + 1
+
+
+def end_known(meta, sensor):
+    """True when a header tells where a sensor's readings end: an import that is told no range
+    scales values so that its counts have nothing to do with a converter's."""
+    return "imported_from" not in meta or RANGES[sensor] in meta
 
 
 def _stated(meta, sensor):

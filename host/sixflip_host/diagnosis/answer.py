@@ -1,6 +1,7 @@
 """The answer as JSON, in the words and with the keys of GAP.md."""
 from sixflip_sim.effects.drift import FLOOR_OF_KERNEL
 
+from ..capture import registers
 from ..json_numbers import number, spelled
 from ..planning import next_capture
 from . import closed_loop, detectability, rest_noise
@@ -30,7 +31,7 @@ def as_dict(diagnosis):
 
 def causes(diagnosis):
     """list of dict, the cause of the largest share first."""
-    entries = [_finding(f) for f in diagnosis.findings]
+    entries = [of_finding(f) for f in diagnosis.findings]
     entries += [_cause(kind, c, diagnosis.conditions.reference_c) for kind, c in diagnosis.causes]
     entries += [_drift(kind, gap) for kind, gap in diagnosis.gaps.items() if gap.drift]
     known = {(e.sensor, e.stands_for): e for comparison in diagnosis.comparisons
@@ -116,13 +117,17 @@ def _by_both_logs(cause, effect):
             "shape": effect.shape}
 
 
-def _finding(f):
+def of_finding(f):
+    """The cause that a detection.Finding is."""
     entry = _entry(f.sensor, f.axes, f.probabilities, f.score, f.value, f.unit,
                    f.interval or {}, f.plausible, f.share)
     if f.share_interval:
         entry["share_interval_90"] = [number(v) for v in f.share_interval]
     if f.limits:
         entry["cut_off_at"] = f.limits
+    if f.levels:
+        entry["cut_off_level"] = _sizes(f.levels)
+        entry["cut_off_unit"] = spelled(registers.UNITS[f.sensor])
     if f.hz:
         entry["hz"] = {key: number(hz, 7) for key, hz in f.hz.items()}
     if f.lines:

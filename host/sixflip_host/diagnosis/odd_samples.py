@@ -6,7 +6,7 @@ import numpy as np
 
 from ..capture import registers
 from .detect import codes, noise_shape, spectral_lines
-from .detect.detection import BELOW, present
+from .detect.detection import RANGE, present
 
 OWN_SHAPE = {"torn_reads", "dead_band", "saturation"}  # what makes samples anything but normal
 
@@ -76,13 +76,13 @@ def _full_grids(finding, uneven):
         if finding.effect == "torn_reads":
             return None
         if finding.effect == "saturation":
-            odd = {axis for axis, limit in finding.limits.items() if limit == BELOW}
+            odd = {axis for axis, limit in finding.limits.items() if limit != RANGE}
     if finding.effect not in ("quantisation", "dead_band", "saturation") or not odd:
         return finding
     axes = [axis for axis in finding.axes if axis not in odd]
     return replace(finding, axes=axes, place=None, **{
         name: {a: size for a, size in getattr(finding, name).items() if a in axes}
-        for name in ("value", "interval", "limits")},
+        for name in ("value", "interval", "limits", "levels")},
         **{name: getattr(finding, name) * len(axes) / len(finding.axes)
            for name in ("score", "number")}) if axes else None
 

@@ -86,9 +86,11 @@ def _clause(cause):
 
 def _does(cause):
     """What a part with this effect does; what shakes it has a frequency or has none; what cuts
-    its readings off is the chip's limit or another one."""
-    if _cut_below(cause):
+    its readings off is the chip's limit or another one, or nobody knows which."""
+    if _ends_at(cause, "below_range"):
         return "is cut off below its range"
+    if _ends_at(cause, "level"):
+        return "levels off"
     if cause["effect"] != "vibration":
         return DOES.get(cause["effect"], cause["effect"])
     if not cause.get("hz"):
@@ -105,17 +107,22 @@ def _does(cause):
         ", and at none on " + " and ".join(other) if other else "")
 
 
-def _cut_below(cause):
-    return "below_range" in cause.get("cut_off_at", {}).values()
+def _ends_at(cause, limit):
+    """True when readings of an axis are cut off at such a limit ("cut_off_at" of the answer)."""
+    return limit in cause.get("cut_off_at", {}).values()
 
 
 def _size(cause):
-    values = [v for v in cause["value"].values() if v is not None]
-    if not values or cause["unit"] in ("1", "axis"):
+    """The largest size, in units where a log's counts are not its chip's."""
+    sizes, unit = cause["value"], cause["unit"]
+    if "cut_off_level" in cause:
+        sizes, unit = cause["cut_off_level"], cause["cut_off_unit"]
+    values = [v for v in sizes.values() if v is not None]
+    if not values or unit in ("1", "axis"):
         return ""
-    if len(values) == 1:
-        return ", %.3g %s" % (values[0], cause["unit"])
-    return ", up to %.3g %s" % (max(values, key=abs), cause["unit"])
+    joined = " at " if _does(cause) == "levels off" else ", "
+    return "%s%s%.3g %s" % (joined, "up to " if len(values) > 1 else "", max(values, key=abs),
+                            unit)
 
 
 def _closed(answer):
@@ -171,8 +178,10 @@ def row(c):
     """Effect, sensor, probability, share and every size with its interval, as text."""
     name = c["effect"] or " or ".join("%s %s" % (effect, percent(p)) for effect, p in
                                       c["class_probabilities"].items())
-    if _cut_below(c):
+    if _ends_at(c, "below_range"):
         name += " (below the range)"
+    elif _ends_at(c, "level"):
+        name += " (levels off)"
     if not c["plausible"]:
         name += " (numerically helpful, physically implausible)"
     sizes = []
@@ -183,7 +192,13 @@ def row(c):
                                   span))
     return (name, SENSOR[c["sensor"]], percent(c["probability"]),
             "-" if c["share"] is None else "%.0f %%" % (100 * c["share"]),
-            ", ".join(sizes) + " " + c["unit"])
+            ", ".join(sizes) + " " + c["unit"] + _level(c))
+
+
+def _level(c):
+    """Where an imported log is cut off, in units: its counts are the import's."""
+    levels = ", ".join("%s %.4g" % level for level in c.get("cut_off_level", {}).items())
+    return " (%s %s)" % (levels, c["cut_off_unit"]) if levels else ""
 
 
 def holdout_line(kind, gap, held):

@@ -126,6 +126,45 @@ def test_a_rail_of_the_chip_is_its_range():
     assert set(found.limits.values()) == {"range"}
 
 
+def imported(size, level, sensor="gyro", **meta):
+    """Session of a log that was imported with 100 counts a unit: a turn or a shake of so many
+    units that ends at a level."""
+    x = 100.0 * size * np.sin(np.arange(3000) / 40.0)[:, None] * [1.0, 0.3, 0.2]
+    x += np.random.default_rng(1).normal(0.0, 3.0, x.shape)
+    read = np.clip(np.rint(x), -100.0 * level, 100.0 * level).astype(np.int16)
+    header = {"sensor": "other", "rate_hz": 100.0, "imported_from": "log.csv",
+              "accel_lsb_per_g": 100.0, "gyro_lsb_per_dps": 100.0, **meta}
+    return SimpleNamespace(capture=Capture(header, 10_000 * np.arange(3000), read, read),
+                           at_rest=np.zeros(3000, bool))
+
+
+@pytest.mark.parametrize("sensor, level, meta, limit", [
+    ("gyro", 249.98, {}, "range"), ("gyro", 250.13, {}, "range"), ("gyro", 245.0, {}, "range"),
+    ("accel", 2.0, {"accel_lsb_per_g": 1000.0}, "range"), ("gyro", 180.0, {}, "level"),
+    ("gyro", 180.0, {"gyro_range_dps": 250}, "below_range"), ("accel", 1.2, {}, "level")])
+def test_where_an_imported_log_ends_is_its_range_where_that_is_a_usual_one(sensor, level, meta,
+                                                                           limit):
+    """Its counts are the import's, and the codes where they end are no converter's: 250 deg/s was
+    'below its range'."""
+    session = imported(1.3 * level, level, sensor, **meta)
+    scale = session.capture.meta[counts.SCALES[sensor]]
+    session = imported(1.3 * level * scale / 100.0, level * scale / 100.0, sensor, **meta)
+    found, = saturation.saturation([session], sensor, [getattr(session.capture, sensor)])
+    assert found.limits == {"x": limit}
+    assert found.levels == ({} if meta.get(counts.RANGES[sensor]) else {"x": pytest.approx(level)})
+
+
+def test_an_imported_log_levels_off_at_a_value_with_its_unit():
+    session = imported(234.0, 180.0)
+    found, = saturation.saturation([session], "gyro", [session.capture.gyro])
+    cause = answer.of_finding(found)
+    assert cause["cut_off_at"] == {"x": "level"}
+    assert (cause["cut_off_level"], cause["cut_off_unit"]) == ({"x": 180.0}, "°/s")
+    said = {"verdict": "explained", "causes": [cause], "damage": [], "gap": {}}
+    assert gap_words.sentence(said) == "The X gyro levels off at 180 °/s."
+    assert gap_words.row(cause)[0] == "saturation (levels off)"
+
+
 @pytest.mark.parametrize("wide", [1, 5566])
 def test_noise_of_a_few_codes_is_not_cut_off(wide):
     """At rest the last of them is read many times, also where decimals are rounded to either

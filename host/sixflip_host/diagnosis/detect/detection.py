@@ -12,7 +12,9 @@ from scipy import special
 
 from .. import odds
 
-RANGE, BELOW = "range", "below_range"  # where readings are cut off: at the chip's limit or not
+# Where readings are cut off: at the chip's limit, below it, or at a level of a log that does not
+# tell where its chip's range ends.
+RANGE, BELOW, LEVEL = "range", "below_range", "level"
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,8 +26,9 @@ class Finding:
     tell how well the share is known; place: {name: probability} of what stands here, "" nothing,
     by the score where it is not given; hz: {axis: frequency of a steady line};
     lines: the line_frequency.Line of each axis; files: names of the sessions that alone have it,
-    () for all; read (3, 3): what is true as swapped axes read it; limits: {axis: RANGE or BELOW}
-    of what is cut off."""
+    () for all; read (3, 3): what is true as swapped axes read it; limits: {axis: RANGE, BELOW or
+    LEVEL} of what is cut off; levels: {axis: g or deg/s} of it, where counts are not the chip's
+    own."""
 
     effect: str
     sensor: str
@@ -46,6 +49,7 @@ class Finding:
     files: tuple = ()
     read: object = None
     limits: dict = field(default_factory=dict)
+    levels: dict = field(default_factory=dict)
 
     def __post_init__(self):
         if self.place is None:

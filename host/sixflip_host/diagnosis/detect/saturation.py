@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy import ndimage, special
 
-from ...capture import registers
+from ...capture import chip_scales, registers
 from ...capture.registers import FEWEST_VALUES, RAIL, RAIL_CODES, fixed_bits, steps
 from .codes import number_of_runs
-from .detection import BELOW, RANGE, Finding, present
+from .detection import BELOW, LEVEL, RANGE, Finding, present
 
 # s of a peak's flanks that are looked at, and samples at least: judged, a hand turns a box half
 # round in half a second or more, and comes up to its rate in a third of that.
@@ -28,7 +28,7 @@ SPREAD_SHARE = 0.02
 
 def saturation(sessions, sensor, columns):
     """Samples on a rail, or many that share the largest value and few near it."""
-    value, words, limits, score, number = {}, {}, {}, 0.0, 0
+    value, words, limits, levels, score, number = {}, {}, {}, {}, 0.0, 0
     for i in range(3):
         for session, counts in zip(sessions, columns):
             x = counts[:, i].astype(np.int64)
@@ -39,35 +39,46 @@ def saturation(sessions, sensor, columns):
                 level = np.abs(x), on_rail
                 nats = level_nats(*level, RAIL_CODES, span)
                 said = "%d samples of the %s axis sit on the rail" % (on_rail.sum(), "xyz"[i])
-                size = int(np.abs(x).max())
+                size, limit = int(np.abs(x).max()), RANGE
             else:
                 nats, level = max(((cut_off_nats(y, span), (y, y == y.max()))
                                    for y in (x, -x)), key=lambda pair: pair[0])
                 size = int(np.abs(level[0].max()))
-                said = _below(session, sensor, "xyz"[i], level[0].max())
+                limit, said = _cut_off(session, sensor, "xyz"[i], size)
             if present(nats):
                 value["xyz"[i]] = max(value.get("xyz"[i], 0), size)
                 number += peaks(*level, span)[0]
                 score += nats
                 words.setdefault("xyz"[i], said)
-                limits.setdefault("xyz"[i], RANGE if on_rail.any() else BELOW)
+                limits.setdefault("xyz"[i], limit)
+                if not registers.end_known(session.capture.meta, sensor):
+                    levels["xyz"[i]] = max(levels.get("xyz"[i], 0.0), size / _lsb(session, sensor))
     if not value:
         return []
     return [Finding("saturation", sensor, sorted(value), value, "counts", score, "amplitude",
                     "; ".join(words[axis] for axis in sorted(words)),
                     {k: (v, v) for k, v in value.items()},
-                    share=1.0, number=number, limits=limits)]  # a peak that ends inside is sound
+                    share=1.0, number=number, limits=limits,
+                    levels=levels)]  # a peak that ends inside is sound
 
 
-def _below(session, sensor, axis, level):
-    """What is said of peaks that end below the rail: no limit of the chip's numbers."""
-    meta = session.capture.meta
-    lsb, unit = ((meta["accel_lsb_per_g"], "g") if sensor == "accel"
-                 else (meta["gyro_lsb_per_dps"], "deg/s"))
-    return ("peaks of the %s axis are cut off at %d counts (%.4g %s), below the rail of %.4g %s: "
-            "a range that was set otherwise, a filter's or a simulator's limit" % (
-                axis, abs(level), abs(level) / lsb, unit,
-                registers.rail(session.capture, sensor) / lsb, unit))
+def _cut_off(session, sensor, axis, size):
+    """(limit, what is said) of peaks of so many counts that end before the last codes. Where a
+    log does not tell its converter's end, a usual full scale is the chip's."""
+    lsb, unit = _lsb(session, sensor), registers.UNITS[sensor]
+    at = "%d counts (%.4g %s)" % (size, size / lsb, unit)
+    if registers.end_known(session.capture.meta, sensor):
+        return BELOW, ("peaks of the %s axis are cut off at %s, below the rail of %.4g %s: a range"
+                       " that was set otherwise, a filter's or a simulator's limit" % (
+                           axis, at, registers.rail(session.capture, sensor) / lsb, unit))
+    if chip_scales.is_full_scale(sensor, size / lsb):
+        return RANGE, "peaks of the %s axis end at %s, where a usual range does" % (axis, at)
+    return LEVEL, ("peaks of the %s axis level off at %s; where the range of its chip ends, the "
+                   "log does not say" % (axis, at))
+
+
+def _lsb(session, sensor):
+    return session.capture.meta[registers.SCALES[sensor]]
 
 
 def railed(session, sensor="accel"):
