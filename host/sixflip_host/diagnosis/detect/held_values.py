@@ -122,7 +122,7 @@ def as_read(captures):
     captures_as_read, nats, number = [], 0.0, 0
     for name, capture in captures:
         more, rows = _not_read(capture)
-        captures_as_read.append((name, _without(capture, rows) if len(rows) else capture))
+        captures_as_read.append((name, without_rows(capture, rows) if len(rows) else capture))
         nats, number = nats + more, number + len(rows)
     if not number:
         return captures_as_read, []
@@ -177,7 +177,8 @@ def _resting(counts):
     return lengths(same) >= AT_REST * (usual if held else 1.0)
 
 
-def _without(capture, rows):
+def without_rows(capture, rows):
+    """A Capture without some of its rows; the one given is not changed."""
     shorter = copy.copy(capture)
     for name in ("t_us", "accel", "gyro", "temp", "mag", "pose"):
         if getattr(shorter, name) is not None:
