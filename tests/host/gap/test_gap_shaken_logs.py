@@ -110,3 +110,16 @@ def test_of_a_log_of_few_rows_nothing_is_shaken(rows):
     capture = Capture({"sensor": "mpu6050", "rate_hz": 50.0, "accel_lsb_per_g": 16384},
                       20_000 * np.arange(rows), np.zeros((rows, 3), np.int16))
     assert shake_detector.findings([blocks.session_of("short", capture)]) == []
+
+
+@pytest.mark.parametrize("jerks", [0.0, 400.0])
+def test_what_is_next_to_nothing_of_all_that_is_fast_does_not_shake_it(jerks):
+    """A pen that was moved now and then was shaken most of the time, by a three-hundredth of the
+    power that its jerks have."""
+    rng, second = np.random.default_rng(8), np.arange(120 * 100) // 100
+    noise = np.where(second % 3 == 0, 2.0, 20.0) + jerks * (second % 20 == 7)
+    accel = noise[:, None] * rng.standard_normal((len(second), 3))
+    capture = Capture({"sensor": "mpu6050", "rate_hz": 100.0, "accel_lsb_per_g": 16384},
+                      10_000 * np.arange(len(second)), np.rint(accel).astype(np.int16), None, None)
+    found = shake_detector.shaken([blocks.session_of("pen", capture)])
+    assert [f.axes for f in found] == ([["x", "y", "z"]] if not jerks else [])

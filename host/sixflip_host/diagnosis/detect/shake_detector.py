@@ -19,6 +19,9 @@ QUIET = 0.02  # share of the windows that counts as quiet
 # Times the quiet level, root mean square, in at least half of the windows; and as many times what
 # chance makes of few values in a window: of two, noise alone is eight times the quiet level.
 SHAKEN, ABOVE_CHANCE = 3.0, 2.0
+# Of the power of all that is fast, below which that is not what shakes it: jerks are, or the end
+# of a rest, and what lies between is next to none of it.
+LEAST = 0.1
 FEWEST_WINDOWS = 8  # of which half and one quiet one are compared
 
 
@@ -102,9 +105,11 @@ def shaken(sessions):
         mean = float((level[:, i] ** 2).mean()) - quiet[i] ** 2
         power.append((min(usual[i] ** 2 - quiet[i] ** 2, mean), mean))
         score += 0.5 * len(ranked) * np.log(0.25 / (QUIET * (1.0 - QUIET)))
+    steadily, all_of_it = np.sum(power, axis=0)
+    if steadily < LEAST * all_of_it:
+        return []
     return [Finding("vibration", "accel", sorted(value), value, "mg", score, "frequency",
-                    "it is shaken most of the time", interval,
-                    share=float(np.sum(power, axis=0)[0] / np.sum(power, axis=0)[1]))]
+                    "it is shaken most of the time", interval, share=float(steadily / all_of_it))]
 
 
 def _edge(rate):
