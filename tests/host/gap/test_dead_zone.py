@@ -2,11 +2,12 @@
 of its size, and no scale."""
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from sixflip_host.diagnosis import answer
 from sixflip_host.diagnosis.diagnose import diagnose
 from sixflip_host.diagnosis.simulator import comparison, dead_zone
-from tests.worlds.tumbled import read, tumbled
+from tests.worlds.tumbled import RATE_HZ, read, tumbled
 
 TRUE = 3.0  # deg/s
 
@@ -115,3 +116,20 @@ def test_a_log_in_other_axes_is_not_asked():
     real, simulated = logs(soft)
     simulated.gyro = simulated.gyro[:, [1, 0, 2]]
     assert comparison.compare([("real", real)], "sim", simulated).bands == ()
+
+
+@pytest.mark.parametrize("change", [soft, hard, rounded])
+def test_what_turns_it_may_not_answer_and_the_forces_say_so(change):
+    """A motor that does not start below some rate: the gyro is sound, and was blamed."""
+    t, force, rate = tumbled(1, 60.0)
+    turn, forces = Rotation.identity(), []
+    for step in np.radians(change(rate)) / RATE_HZ:
+        forces.append(turn.as_matrix()[2])
+        turn = turn * Rotation.from_rotvec(step)
+    moved, simulated = read(t, np.array(forces), change(rate), 1), read(t, force, rate, 101)
+    found = comparison.compare([("real", moved)], "sim", simulated)
+    assert found.bands and found.of_gyro < -dead_zone.GYRO and "gyro" in found.shaken
+    assert any("what turns it does not answer" in remark for remark in found.remarks)
+    said = answer.as_dict(diagnose([("real", moved)], [("sim", simulated)], jobs=1))
+    assert said["causes"] == [] and said["verdict"] != "explained"
+    assert compared(change).of_gyro > dead_zone.GYRO

@@ -54,3 +54,16 @@ def test_stamps_that_are_in_time_stay_as_they_are():
     real, _ = stamped(np.zeros(int(60.0 * RATE_HZ)), False)
     trace = traces.trace_from_capture("real", real)
     assert np.array_equal(trace.t, 1e-6 * (real.t_us - real.t_us[0]))
+
+
+@pytest.mark.parametrize("pause_s", [3.0, 60.0])
+def test_a_recorder_that_stood_still_makes_no_conventions(pause_s):
+    """Gravity and forces had another sign: rows over all of the time are no rate, and a curve
+    across what nobody read overshoots."""
+    t, force, rate = tumbled(1, 60.0)
+    later = np.rint(1e6 * (t + pause_s * (t > 20.1))).astype(np.int64)
+    logs = [Capture(dict(META), later, made.accel, made.gyro) for made in (
+        read(t, force, rate, seed) for seed in (1, 101))]
+    found = comparison.compare([("real", logs[0])], "sim", logs[1])
+    assert found.alignment.same and found.conventions == () and not found.differs
+    assert found.gap["gyro"][1] < 2.0 * found.gap["gyro"][2]

@@ -112,3 +112,23 @@ def test_what_rests_at_zero_was_read(law, rows):
     for name in ("t_us", "accel", "gyro"):
         setattr(capture, name, getattr(capture, name)[::rows])
     assert unread_rows.as_read([("one", capture)])[1] == []
+
+
+def test_an_axis_that_is_always_at_that_code_is_no_unread_row(sound):
+    """A channel that says nothing beside three rows of a sensor that were not read: the whole log
+    was taken out."""
+    capture = spoilt(sound, "accel", np.array([1000, 2400, 4500]), 0)
+    capture.accel[:, 1] = 0
+    ((_, shorter),), damages = unread_rows.as_read([("one", capture)])
+    assert len(shorter) >= len(capture) - 3 and len(damages) <= 1
+    capture = spoilt(sound, "gyro", np.array([1000, 2400, 4500]), 0)
+    capture.gyro[5613:, 0] = 0
+    ((_, shorter),), (damage,) = unread_rows.as_read([("one", capture)])
+    assert damage.value == {"rows": 3} and len(shorter) == len(capture) - 3
+
+
+@pytest.mark.parametrize("code", [32767, -32768])
+def test_a_knock_that_drives_all_axes_to_one_end_was_read(sound, code):
+    capture = spoilt(sound, "accel", np.array([1500, 1501]), code)
+    capture.accel[[1499, 1502]] = code // np.array([3, 4, 5])
+    assert unread_rows.as_read([("one", capture)])[1] == []

@@ -69,6 +69,8 @@ def _unread(counts):
     chance = np.maximum(chance, chance_back)
     nats = -np.log(chance) - _log_of_codes(x[~alike], code) - math.log(len(code))
     unread = (chance <= odds.CHANCE) & (nats >= odds.COST + odds.PRESENT)
+    # A knock may drive all axes to one end; before the first reading nothing has knocked.
+    unread &= (np.abs(code) < np.abs(x).max() - 1) | (first == 0)
     rows = [np.arange(a - early, b + late) for a, b, early, late in zip(
         first[unread], after[unread], begins[unread], ends[unread])]
     codes = np.unique(code[unread]).tolist()
@@ -89,7 +91,7 @@ def _in_part(x, codes):
             beside = column[[k for k in (run.start - 1, run.stop) if 0 <= k < len(column)]]
             leaps = np.zeros((len(beside), AXES), np.int64)
             leaps[:, axis] = np.abs(beside - code)
-            if (_rare(leaps, steps) <= odds.CHANCE).all():
+            if len(beside) == 2 and (_rare(leaps, steps) <= odds.CHANCE).all():
                 rows += range(run.start, run.stop)
     return np.array(rows, dtype=int)
 

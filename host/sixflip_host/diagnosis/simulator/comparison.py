@@ -41,8 +41,9 @@ class Comparison:
     effects (tuple of effects_beside.Beside): those found, as far as two logs of one motion show
     their size; wanders: sensors of which what is left of one motion goes on for seconds: it is no
     shaking, which each log has of its own; lacks_delay: of two motions, the real one shows a delay
-    between its sensors that the simulator's does not; bands (dead_zone.Band, ...): in which the
-    real gyro does not answer, and with which the fits have the simulator's turns."""
+    between its sensors that the simulator's does not; bands (dead_zone.Band, ...): of slow turns
+    that the real log lacks, and with which the fits have the simulator's; of_gyro: nats by which
+    it is the gyro that does not answer them, and not what turns it."""
 
     log: str
     against: str
@@ -62,6 +63,7 @@ class Comparison:
     wanders: frozenset = frozenset()
     lacks_delay: bool = False
     bands: tuple = ()
+    of_gyro: float = 0.0
 
     @property
     def differs(self):
@@ -76,12 +78,14 @@ class Comparison:
     def shaken(self):
         """Sensors of which far more is left than noise, and than a tenth of the gap, and nothing
         that goes on for seconds: it may be shaking that each log has of its own, and may be the
-        sensor's. Where the real one is known to shake more, by more than is left, it is that."""
+        sensor's. Where the real one is known to shake more, by more than is left, it is that. And
+        the gyro that lacks slow turns, which what turns it may lack."""
         shakes = {kind: np.sqrt(sum(p.difference ** 2 for p in self.differs if (
             p.name, p.sensor) == ("shaking", kind) and p.difference > 0.0) / 3.0)
             for kind in self.gap}
         return [kind for kind, gap in self.gap.items()
-                if kind not in self.wanders and gap[1] > shakes[kind] and _open(gap, FAR_ABOVE)]
+                if kind not in self.wanders and gap[1] > shakes[kind] and _open(gap, FAR_ABOVE)
+                or kind == "gyro" and self.bands and self.of_gyro < dead_zone.GYRO]
 
     @property
     def left(self):
@@ -122,7 +126,7 @@ def compare_traces(real, sim, aligned):
     live, constant = constant_channels(real, sim)
     findings += constant
     own_real = own_calibration.fitted(real_free)
-    fits, unmended, stops, bands = {}, {}, {}, ()
+    fits, unmended, stops, bands, of_gyro = {}, {}, {}, (), 0.0
     late, late_sigma, judged, lacks_delay = None, None, False, False
     row_s = 1.0 / min(real.rate_hz, sim.rate_hz)
     motion = None
@@ -146,6 +150,9 @@ def compare_traces(real, sim, aligned):
         if bands:
             fits = conventions.same_motion(real_free, dead_zone.taken_off(sim_free, bands),
                                            aligned, motion, live, fresh)
+            of_gyro = dead_zone.nats_of_gyro(
+                replace(real_free, force=own_real.applied(real_free).force), sim_free, aligned,
+                fits["gyro"].fit)
         late, late_sigma, delays = conventions.delay(fits, row_s)
         delays = [c for c in delays if _late_itself(sim_free, late)]
         judged = len(fits) == 2
@@ -156,9 +163,9 @@ def compare_traces(real, sim, aligned):
     else:
         more, unseen, judged, lacks_delay = different_motion(real_free, sim_free, own_real, row_s)
         findings += more
-        if aligned.same:
-            unseen = ["conventions and parameters of %s, but for what its own rests show: no rest "
-                      "in %s to begin with" % (sim.name, real.name)]
+        if aligned.same and not real.rests:
+            unseen = ["conventions and parameters of %s, but for what its own rests show: there "
+                      "is none in %s" % (sim.name, real.name)]
     if real.rate is not None and sim.rate is None:
         unseen = [*unseen, "the gyro: there is none in %s" % sim.name]
     findings = convention_findings.merged(findings)
@@ -179,11 +186,12 @@ def compare_traces(real, sim, aligned):
     task, why_not = remaining_gap.tried(real_free, mended, own_real, own_sim, fits)
     return Comparison(sim.name, real.name, aligned, tuple(findings), tuple(numbers), task, gap,
                       fits, own_real, own_sim,
-                      (*said_of(real, sim, aligned), *why_not), tuple(unseen),
+                      (*said_of(real, sim, aligned), *dead_zone.said_of(bands, of_gyro), *why_not),
+                      tuple(unseen),
                       judged or convention_findings.only_in_motion(findings),
                       None if real.celsius is None else float(real.celsius.mean()),
                       wanders=remaining_gap.wandering(fits, left), lacks_delay=lacks_delay,
-                      bands=bands)
+                      bands=bands, of_gyro=of_gyro)
 
 
 def _late_itself(sim, late):

@@ -25,6 +25,7 @@ from . import (
     parameters,
     remaining_gap,
     single_log,
+    traces,
 )
 from .evidence_of_logs import shifted
 from .pairing import GRID_HZ
@@ -42,6 +43,7 @@ SPOILT = 10.0  # times what no band leaves, of one beside which the scale is non
 # Times the noise of both from which on a band is none of their shaking at rest. Nor is one below a
 # step of the real one's codes any other than those.
 OF_NOISE = 5.0
+GYRO = odds.PRESENT  # nats from which on it is the gyro: what turns a thing is as likely
 GAIN = 0.1  # that its scale may be off beside the band: more than a part's is (ITG-3205 PS, 6 %)
 
 
@@ -95,6 +97,33 @@ def taken_off(sim, bands):
     return replace(sim, rate=rate)
 
 
+def nats_of_gyro(real, sim, alignment, fit):
+    """How much likelier the real forces are where the thing turned as the simulator's did, and the
+    gyro did not answer, than where it turned as the gyro says: what turns it may not answer
+    either. By what is left of the forces beside gravity, which turns along. real: a Trace with the
+    true forces; fit: of the gyro to the simulator's turns with the bands taken off."""
+    at = (real.t - alignment.offset_s) / (1.0 + alignment.drift)
+    inside = (at > 0.0) & (at < sim.seconds)
+    own = (real.rate - traces.rest_line(real, real.rate)) @ (np.eye(3) + fit.shape).T
+    turns = np.stack([np.interp(at, sim.t, x) for x in (
+        sim.rate - traces.rest_line(sim, sim.rate)).T], 1)
+    moved = [align_by.smooth(traces.motion(replace(real, rate=rate)).moved, real.rate_hz)[inside]
+             for rate in (own, np.where(inside[:, None], turns, own))]
+    number = inside.sum() / align_by.independent(moved[1])
+    return float(0.5 * number * np.log((moved[0] ** 2).mean() / (moved[1] ** 2).mean()))
+
+
+def said_of(bands, of_gyro):
+    """[sentence] on Bands that the gyro need not be the cause of."""
+    if not bands or of_gyro >= GYRO:
+        return []
+    who = "what turns it does not answer, as its forces say" if of_gyro <= -GYRO else \
+        "its gyro does not answer, or what turns it does not: its forces do not tell which"
+    return ["the real log lacks turns slower than %s deg/s, which the simulator's has: %s" % (
+        ", ".join("%.3g about %s" % (np.degrees(band.rate), "xyz"[band.axis]) for band in bands),
+        who)]
+
+
 def added(diagnosis):
     """The Diagnosis with a Finding of the bands that its logs of one motion show, where neither
     the codes nor the turns between the rests have it already."""
@@ -103,7 +132,8 @@ def added(diagnosis):
     if any("dead_band" in cause.probabilities for cause in known):
         return diagnosis
     best = {}
-    for band in (band for comparison in diagnosis.comparisons for band in comparison.bands):
+    for band in (band for comparison in diagnosis.comparisons if comparison.of_gyro >= GYRO
+                 for band in comparison.bands):
         if band.axis not in best or band.nats > best[band.axis].nats:
             best[band.axis] = band
     if not best:

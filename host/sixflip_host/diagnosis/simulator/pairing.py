@@ -56,6 +56,8 @@ def paired(real, sim, alignment, motion, band_hz=BANDS[0]):
     there = alignment.of_simulator(t)
     inside = (there > EDGE_S) & (there < real.seconds - EDGE_S) & (t > EDGE_S) & (
         t < sim.seconds - EDGE_S)
+    for log, at in ((real, there), (sim, t)):
+        inside &= ~paused(log, at)
     t, there = t[inside], there[inside]
 
     def onto(trace, values, at):
@@ -77,6 +79,15 @@ def paired(real, sim, alignment, motion, band_hz=BANDS[0]):
                 None if real.celsius is None else np.interp(there, real.t, real.celsius)[keep],
                 Motion(**{k: v[keep] for k, v in fields.items()}),
                 onto(sim, sim.force, t)[keep], onto(sim, sim_rate, t)[keep], band_hz)
+
+
+def paused(trace, at):
+    """(m,) True at times at which nobody read the Trace for longer than lost rows are put in, and
+    EDGE_S around them, where the low-pass has one side only."""
+    out = np.zeros(len(at), bool)
+    for k in np.flatnonzero(np.diff(trace.t) > max(row_times.PUT_IN_S, 2.0 / trace.rate_hz)):
+        out |= (at > trace.t[k] - EDGE_S) & (at < trace.t[k + 1] + EDGE_S)
+    return out
 
 
 def at_times(trace, values, at, band_hz):

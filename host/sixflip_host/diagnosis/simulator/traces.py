@@ -71,7 +71,10 @@ def trace_from_capture(name, capture):
     t = (capture.t_us - capture.t_us[0]) * 1e-6
     if len(t) > 1 and t[-1] <= 0.0:
         t = np.arange(len(t)) / float(meta["rate_hz"])
-    rate_hz = (len(t) - 1) / t[-1] if len(t) > 1 else float(meta["rate_hz"])
+    measured = clock.sample_clock(capture)
+    rate_hz = float(meta["rate_hz"]) if len(t) < 2 else (len(t) - 1) / t[-1]
+    if measured is not None and measured.pauses:
+        rate_hz = measured.rate_hz  # a pause is none of its time
     quantum = (capture.g / meta["accel_lsb_per_g"],
                DPS / meta["gyro_lsb_per_dps"] if capture.gyro is not None else None)
     celsius = None
@@ -86,7 +89,6 @@ def trace_from_capture(name, capture):
                   None if capture.gyro is None else capture.gyro * quantum[1], celsius,
                   float(rate_hz), capture.g, rests, ups, quantum, flicker, railed,
                   np.zeros(len(t), bool))
-    measured = clock.sample_clock(capture)
     return row_times.evened(row_times.as_read(trace, measured), measured)
 
 
