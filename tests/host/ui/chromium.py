@@ -1,11 +1,9 @@
 """A headless Chromium for the tests: Debian's, installed when missing, driven by selenium."""
 
-import os
 import shutil
-import subprocess
 import tempfile
 
-import pytest
+from tests.debian_tier import Unavailable, install, without
 
 PACKAGES = ("chromium", "chromium-driver")
 TOOLS = ("chromium", "chromedriver")
@@ -14,32 +12,12 @@ FLAGS = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-
          "--window-size=1200,1500")
 
 
-class Unavailable(Exception):
-    """No browser can be had on this machine; the text is the line for the user."""
-
-
-def install():
-    """Browser and driver from Debian; as root they are installed when missing."""
-    missing = [tool for tool in TOOLS if not shutil.which(tool)]
-    if not missing:
-        return
-    line = "no %s: apt-get install %s" % (", ".join(missing), " ".join(PACKAGES))
-    if not shutil.which("apt-get") or os.geteuid() != 0:
-        raise Unavailable(line)
-    for words in (["update"], ["install", "-y", "--no-install-recommends", *PACKAGES]):
-        answer = subprocess.run(["apt-get", "-q", *words], stdin=subprocess.DEVNULL,
-                                capture_output=True, text=True, timeout=1200,
-                                env=dict(os.environ, DEBIAN_FRONTEND="noninteractive"))
-    if answer.returncode or any(not shutil.which(tool) for tool in TOOLS):
-        raise Unavailable(line + " (tried, failed: %s)" % answer.stderr.strip()[-200:])
-
-
 def require():
-    """For a user a missing browser is a skip, in CI (CI=true) a failure."""
+    """Browser and driver; for a user a missing one is a skip, in CI (CI=true) a failure."""
     try:
-        install()
+        install(PACKAGES, lambda: [tool for tool in TOOLS if not shutil.which(tool)])
     except Unavailable as error:
-        pytest.skip(str(error))
+        without("browser", error)
 
 
 class Browser:

@@ -152,7 +152,7 @@ def compare_traces(real, sim, aligned):
                                            aligned, motion, live, fresh)
             of_gyro = dead_zone.nats_of_gyro(
                 replace(real_free, force=own_real.applied(real_free).force), sim_free, aligned,
-                fits["gyro"].fit)
+                fits)
         late, late_sigma, delays = conventions.delay(fits, row_s)
         delays = [c for c in delays if _late_itself(sim_free, late)]
         judged = len(fits) == 2

@@ -1,7 +1,5 @@
-"""Where the real gyro does not answer slow turns, which the simulator of the same motion has: a
-dead band, hard or soft, about the rate that it reads or about no turn at all. A fit by a scale
-and a bias is percents off beside one.
-
+"""Where the real log lacks slow turns, which the simulator's of the same motion has: a dead band
+of its gyro, hard or soft, about the rate that it reads or about no turn, or one of what turns it.
 Asked is what the real log makes of the simulator's turns, axis by axis: of them as they are, with
 a band of some width taken off, and of any bent line, which has no name.
 """
@@ -27,7 +25,7 @@ from . import (
     single_log,
     traces,
 )
-from .evidence_of_logs import shifted
+from .evidence_of_logs import left_of, shifted
 from .pairing import GRID_HZ
 
 # What is left of rates (rad/s) by a band: counts below it read 0 (the library's form), it is
@@ -77,8 +75,7 @@ def found(fits, real, sim):
     fit = sensor_fit.fit
     if fit.unit != 1.0 or not np.array_equal(fit.axes, np.eye(3)):
         return ()
-    hertz = 2.0 * sensor_fit.pair.band_hz
-    noise = np.hypot(*(log.noise["gyro"].density for log in (real, sim))) * np.sqrt(hertz)
+    noise = _in_band(real, sim, "gyro", sensor_fit.pair.band_hz)
     least = np.maximum(OF_NOISE * noise,
                        single_log.step(real.rate[~real.put_in], real.quantum[1]))
     still = sim.rest_means(sim.rate).mean(axis=0)
@@ -97,20 +94,39 @@ def taken_off(sim, bands):
     return replace(sim, rate=rate)
 
 
-def nats_of_gyro(real, sim, alignment, fit):
-    """How much likelier the real forces are where the thing turned as the simulator's did, and the
-    gyro did not answer, than where it turned as the gyro says: what turns it may not answer
-    either. By what is left of the forces beside gravity, which turns along. real: a Trace with the
-    true forces; fit: of the gyro to the simulator's turns with the bands taken off."""
+def nats_of_gyro(real, sim, alignment, fits):
+    """How much likelier the forces are where the thing turned as the simulator's did, and the gyro
+    did not answer, than where it turned as the gyro says: what turns it may not answer either.
+    Gravity goes another way in the two, by a known course: of what the accelerometer's fit leaves
+    of the simulator's forces that is all or nothing. 0 at most where the forces are not alike but
+    for noise: then it moved otherwise, wherever it turned. fits: with the bands taken off."""
+    accel, gyro = fits.get("accel"), fits["gyro"].fit
+    if accel is None or accel.fit.unit != 1.0 or None in (real.noise["accel"], sim.noise["accel"]):
+        return 0.0
     at = (real.t - alignment.offset_s) / (1.0 + alignment.drift)
-    inside = (at > 0.0) & (at < sim.seconds)
-    own = (real.rate - traces.rest_line(real, real.rate)) @ (np.eye(3) + fit.shape).T
+    inside = ((at > 0.0) & (at < sim.seconds))[:, None]
+    own = (real.rate - traces.rest_line(real, real.rate)) @ (np.eye(3) + gyro.shape).T
     turns = np.stack([np.interp(at, sim.t, x) for x in (
         sim.rate - traces.rest_line(sim, sim.rate)).T], 1)
-    moved = [align_by.smooth(traces.motion(replace(real, rate=rate)).moved, real.rate_hz)[inside]
-             for rate in (own, np.where(inside[:, None], turns, own))]
-    number = inside.sum() / align_by.independent(moved[1])
-    return float(0.5 * number * np.log((moved[0] ** 2).mean() / (moved[1] ** 2).mean()))
+    ups = [traces.motion(replace(real, rate=rate)).up for rate in (
+        np.where(inside, turns, own), own)]
+    pair = accel.pair
+    course = real.g * pairing.at_times(real, ups[0] - ups[1], alignment.of_simulator(pair.t),
+                                       pair.band_hz)
+    design = np.column_stack([pair.force, np.ones(len(pair.t))])  # which the fit has, too
+    left, course = (left_of(x, design) for x in (accel.fit.left, course))
+    noise = _in_band(real, sim, "accel", pair.band_hz)
+    most = 0.0 if left.std() > parameters.TOGETHER * np.sqrt((noise ** 2).mean()) else np.inf
+    power = max(float((course ** 2).sum()), 1e-30)
+    share = float((left * course).sum()) / power
+    rest = left - share * course
+    variance = float((rest ** 2).mean()) * align_by.independent(rest) / power
+    return min(most, (1.0 - 2.0 * share) / (2.0 * variance))
+
+
+def _in_band(real, sim, kind, band_hz):
+    """(3,): the noise of two Traces together, in the frequencies compared, m/s2 or rad/s."""
+    return np.hypot(*(log.noise[kind].density for log in (real, sim))) * np.sqrt(2.0 * band_hz)
 
 
 def said_of(bands, of_gyro):
