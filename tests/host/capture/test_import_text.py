@@ -158,3 +158,30 @@ def test_names_that_nobody_knows_behind_a_greeting(tmp_path, capsys):
     assert "with one of t p q r" in refused(tmp_path, capsys, text)
     capture, _ = imported(tmp_path, capsys, text, "--map", "ax=p,ay=q,az=r")
     assert (capture.accel == COUNTS).all()
+
+
+@pytest.mark.parametrize("above, names", [
+    ("t,p,q,r\ns,m/s2,m/s2,m/s2\n", "t [s] p [m/s2] q [m/s2] r [m/s2]"),
+    ("a,log,of,mine\nt,p,q,r\n", "t p q r")])
+def test_names_that_nobody_knows_stand_above_their_units(tmp_path, capsys, above, names):
+    rows = ["%.2f,%s" % one for one in zip(SECONDS, lines(COUNTS / 16384 * G, "%.6f"))]
+    said = refused(tmp_path, capsys, above + "\n".join(rows) + "\n", "--map", "ax=b,ay=q,az=r")
+    assert said.rstrip().endswith("expected one of " + names)
+
+
+def test_a_step_that_is_a_chips_does_not_put_gravity_back(tmp_path, capsys):
+    """A step of 1/256 is an ADXL345's in g, and one of m/s2 from which gravity was taken."""
+    free = np.rint(np.random.default_rng(1).normal(0.0, 0.3, (ROWS, 3)) * 256)
+    free[100:300] += np.rint(512 * np.sin(np.arange(200) / 9.0))[:, None]
+    said = refused(tmp_path, capsys, table(["%.2f" % t for t in SECONDS], "t", free / 256,
+                                           form="%.8f"))
+    assert "gravity has been taken out of it" in said
+
+
+def test_a_time_that_is_no_number_is_said_and_not_passed_over(tmp_path, capsys):
+    """Arrivals were taken instead, without a word."""
+    rows = ["%s,%.3f,%s" % ("nan" if k == 70 else "%d" % (10 * k), 1e-2 * k + 0.002 * (k % 3), one)
+            for k, one in enumerate(lines(COUNTS))]
+    said = refused(tmp_path, capsys, "t_ms,host_time,ax,ay,az\n" + "\n".join(rows) + "\n",
+                   "--accel-lsb", "16384")
+    assert "t_ms" in said or "72" in said

@@ -13,6 +13,7 @@ import re
 
 from ...errors import BadFile
 from ..unpack import whole_lines
+from . import column_names
 
 LONGEST_LINE = 1 << 16
 LATIN = 0xA0            # the first letter or sign of Latin-1 beyond ASCII
@@ -102,19 +103,21 @@ def find_header(path, lines, delimiter, skip, is_header):
 
 
 def _before_rows(lines, separator):
-    """Index of the first line that is a row, or of the one before it where that has as many cells:
-    names that nobody knows. What else stands before them is what a board says when it starts. Rows
-    are the lines with the usual number of numbers; where there are none, of the first line with
-    anything in it."""
+    """Index of the first line that is a row, or of the one before it where that has as many cells,
+    names that nobody knows, or of that before a line of their units. What else stands before them
+    is what a board says when it starts. Rows are the lines with the usual number of numbers; where
+    there are none, of the first line with anything in it."""
     places = filled(lines[:SEARCH])
     numbers = [len(_numbers(lines[place], separator)) for place in places]
     rows = collections.Counter(number for number in numbers if number)
     if not rows:
         return places[0] if places else len(lines) - 1
     first = numbers.index(rows.most_common(1)[0][0])
-    named = first > 0 and not numbers[first - 1] and len({
-        len(cells_of(lines[place], separator)) for place in places[first - 1:first + 1]}) == 1
-    return places[first - named]
+    cells = [cells_of(lines[place], separator) for place in places[:first + 1]]
+    named = first > 0 and not numbers[first - 1] and len(cells[first - 1]) == len(cells[first])
+    units = named and first > 1 and not numbers[first - 2] and column_names.with_units(
+        cells[first - 2], cells[first - 1])
+    return places[first - named - bool(units)]
 
 
 def filled(lines):

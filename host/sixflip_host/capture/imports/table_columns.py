@@ -118,8 +118,8 @@ def _tells_rows_apart(table, columns):
         return True
     try:
         stamps = next(table.blocks(list(columns))).values
-    except BadFile:         # of a column that is not needed where there is a better one
-        return False
+    except BadFile:         # which is said where they are read, if they are the best there are
+        return True
     anew = np.any(stamps[1:] != stamps[:-1], axis=1)
     return not len(anew) or bool(anew.mean() > ROWS_OF_THEIR_OWN)
 

@@ -63,7 +63,7 @@ class ToldUnits:
 
     def _may_be(self, unit, seen):
         """False where gravity is off by a factor from what it is in a unit."""
-        return not self.options.gravity or seen is None or not seen.rests or (
+        return not self.options.gravity or seen is None or (
             1 / gravity.DISAGREES <= seen.size * units.ACCEL_UNITS[unit] <= gravity.DISAGREES)
 
     def _contradicted(self, unit, seen, told, said):

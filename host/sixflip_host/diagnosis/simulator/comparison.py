@@ -178,7 +178,7 @@ def compare_traces(real, sim, aligned):
     cut = {(p.sensor, p.axis) for p in numbers if p.name == "range"}
     numbers += [p for p in levelled_off.ranges(stops, real, sim) if (p.sensor, p.axis) not in cut]
     if len(fits) == 2 and not findings:
-        numbers += noise_and_registers.shaking(real, sim)
+        numbers += noise_and_registers.shaking(real, dead_zone.taken_off(sim, bands))
     numbers += parameters.timing(late, late_sigma, fits, aligned)
     findings += of_numbers + parameters.bias_sign(numbers)
     if any(c.name == "noise_per_sample" for c in findings):
