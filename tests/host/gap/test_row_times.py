@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture.capture import Capture
-from sixflip_host.diagnosis.simulator import comparison, traces
+from sixflip_host.diagnosis.simulator import comparison, row_times, traces
 from tests.worlds.tumbled import META, RATE_HZ, read, tumbled
 
 
@@ -67,3 +67,37 @@ def test_a_recorder_that_stood_still_makes_no_conventions(pause_s):
     found = comparison.compare([("real", logs[0])], "sim", logs[1])
     assert found.alignment.same and found.conventions == () and not found.differs
     assert found.gap["gyro"][1] < 2.0 * found.gap["gyro"][2]
+
+
+@pytest.mark.parametrize("read_late", [False, True])
+def test_rows_that_were_lost_beside_late_ones_keep_their_place(read_late):
+    late = late_by(int(60.0 * RATE_HZ))
+    real, _ = stamped(late, read_late)
+    kept = np.setdiff1d(np.arange(len(late)), [*range(1000, 1004), *range(3500, 3502)])
+    lacking = Capture(dict(META), real.t_us[kept], real.accel[kept], real.gyro[kept])
+    trace = traces.trace_from_capture("real", lacking)
+    assert len(trace.t) == len(late) and trace.put_in.sum() >= 6
+    off = trace.t - np.arange(len(late)) / RATE_HZ - (late if read_late else 0.0)
+    assert np.abs(off - np.median(off))[~trace.put_in].max() < 1e-3
+
+
+def test_noise_alone_says_nothing_of_when_a_row_was_read():
+    late = late_by(int(60.0 * RATE_HZ))
+    t = np.arange(len(late)) / RATE_HZ
+    made = read(t, np.zeros((len(t), 3)) + (0.0, 0.0, 1.0), np.zeros((len(t), 3)), 3)
+    stamps = np.rint(1e6 * (t + late)).astype(np.int64)
+    still = Capture(dict(META), stamps, made.accel, made.gyro)
+    assert np.array_equal(traces.trace_from_capture("still", still).t, 1e-6 * (stamps - stamps[0]))
+
+
+def test_a_curve_through_rows_that_lie_close_does_not_overshoot():
+    t = np.arange(500) / 100.0
+    t[100::50] -= 0.0098
+    noise = np.random.default_rng(4).choice([-1.0, 1.0], (500, 1))
+    even, curve = row_times.on_even_times(t, noise, 100.0)
+    assert np.abs(curve).max() <= 1.0 and np.allclose(np.diff(even), 0.01)
+
+
+def test_stamps_of_a_coarse_clock_say_nothing_of_single_rows():
+    t, values = np.floor(np.arange(500) / 2.0) / 50.0, np.zeros((500, 3))
+    assert row_times.on_even_times(t, values, 100.0) == (t, values)

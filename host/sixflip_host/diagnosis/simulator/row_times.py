@@ -43,12 +43,14 @@ def _missing(n, measured):
 
 def _bend(t, values, rows):
     """How far readings (n, 3) at rows are from a straight line between those beside them, squares
-    together, of each channel in units of how far all of them are from the mean of the two."""
+    together in units of what noise alone is, of each channel beside how far all of them are from
+    the mean of the two."""
     before, after = t[rows - 1], t[rows + 1]
     share = np.clip((t[rows] - before) / np.maximum(after - before, 1e-9), 0.0, 1.0)[:, None]
     off = values[rows] - (1.0 - share) * values[rows - 1] - share * values[rows + 1]
+    off2 = off ** 2 / (1.0 + share ** 2 + (1.0 - share) ** 2)
     usual = values[1:-1] - 0.5 * (values[:-2] + values[2:])
-    return float((off ** 2 / np.maximum((usual ** 2).mean(axis=0), 1e-30)).sum())
+    return float((off2 / np.maximum((usual ** 2).mean(axis=0), 1e-30)).sum())
 
 
 def evened(trace, measured):
