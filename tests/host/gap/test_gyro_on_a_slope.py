@@ -1,6 +1,7 @@
 """A simulated robot that never leans far, of another motion than the real one's: what its gyro's
 axes are shows in where gravity goes as it turns on a slope."""
 import numpy as np
+import pytest
 from scipy.spatial.transform import Rotation
 
 from sixflip_host.diagnosis.simulator import comparison
@@ -50,3 +51,13 @@ def test_what_follows_nothing_has_no_name():
     found = compared(lambda rate: 3.0 * np.roll(other, 777, axis=0)[:, [1, 2, 0]])
     assert all(convention.name == "unknown" and not convention.one_of
                for convention in found.conventions)
+
+
+@pytest.mark.parametrize("rows", [1, 2, 40, 200])
+def test_a_log_of_a_moment_is_told_of_and_breaks_nothing(rows):
+    """An attitude filter had not settled before a log of two seconds ended."""
+    t, force, rate = (values[200:200 + rows] for values in on_slope(1))
+    t = t - t[0]
+    found = comparison.compare([("real", read(t, force, rate, 1))], "sim",
+                               read(t, force, rate, 101))
+    assert found.task is None and any("task was not tried" in remark for remark in found.remarks)

@@ -98,7 +98,7 @@ def direction_log(body, real, sim):
     theirs = real.rest_means(real.force)
     if not len(theirs):
         return 0.0
-    theirs = theirs / np.linalg.norm(theirs, axis=1)[:, None]
+    theirs = theirs / np.maximum(np.linalg.norm(theirs, axis=1), 1e-12)[:, None]
     kappa = 1.0 / POSE ** 2
     near = kappa / (2 * np.pi) * np.exp(kappa * (body @ theirs.T - 1.0))
     density = np.log(0.9 * near.mean(axis=1) + 0.1 / (4 * np.pi))

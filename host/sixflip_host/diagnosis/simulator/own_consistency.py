@@ -131,6 +131,8 @@ def by_norm(norms, moved=None):
 def moved_ratio(real, sim):
     """How much the simulator's force changes from row to row beside the real one's, or None: what
     shakes a robot on its way has gravity in neither."""
+    if min(len(x.force) for x in (real, sim)) < 2:
+        return None
     sizes = [float(np.sqrt((np.diff(x.force, axis=0) ** 2).sum(axis=1).mean()) * x.rate_hz)
              for x in (real, sim)]
     return sizes[1] / sizes[0] if min(sizes) > 0.0 else None

@@ -160,6 +160,8 @@ def tried(real, sim, own_real, own_sim, fits):
     """(Task of the logs, or None where it cannot be tried; [sentence on why])."""
     if own_real is None or own_sim is None:
         return None, ["the task was not tried: it needs a gyro and a rest in both logs"]
+    if min(real.seconds, sim.seconds) < 2.0 * SETTLE_S:
+        return None, ["the task was not tried: it needs %g s of both logs" % (2.0 * SETTLE_S)]
     if not available():
         return None, ["the task was not tried: imufusion is not installed (pip install imufusion)"]
     if len(fits) == 2:
