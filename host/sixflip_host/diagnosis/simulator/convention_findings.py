@@ -15,6 +15,7 @@ from ...capture.registers import SENSORS
 # Probability from which on a convention is named: whoever reads it changes a simulator, so that
 # one wrong name in a hundred is the most that is allowed.
 CERTAIN = 0.99
+NAMELESS = 0.9  # probability of what has no name, from which on none of the others is listed
 WORDS = {
     "no_gravity": "outputs acceleration without gravity",
     "gravity_sign": "adds gravity with its sign turned",
@@ -102,8 +103,9 @@ def told(named, logs, possible, sensor, described):
             findings.append(described(name, probability, nats))
     quiet = float(sum(w for names, w in zip(named, weights) if not names))
     if named[int(logs.argmax())] and not findings and quiet < 1.0 - CERTAIN:
-        # Where what has no name is the likeliest, those that it may be are not all there are.
-        candidates = set() if "unknown" in named[int(logs.argmax())] else {
+        # Where it hardly is any of those with a name, none of them is said.
+        strange = sum(w for names, w in zip(named, weights) if "unknown" in names)
+        candidates = set() if strange > NAMELESS else {
             n for names, w in zip(named, weights) if w > possible for n in names}
         findings.append(one_of(sensor, sorted(candidates), 1.0 - quiet, nats))
     return findings
