@@ -81,6 +81,11 @@ def curved(rate):
     return rate + 2e-6 * rate ** 3
 
 
+def bent_widely(rate):
+    """Less by up to 3 deg/s over 40: a bent line says it better than a band of one does."""
+    return rate - 3.0 * np.tanh(rate / 40.0)
+
+
 def one_sided(rate):
     return rate * (1.0 + 0.03 * (rate > 0.0))
 
@@ -102,7 +107,7 @@ def averaged(rate):
 
 
 @pytest.mark.parametrize("change", [
-    np.copy, curved, one_sided, coarse, shaken, limited, averaged],
+    np.copy, curved, bent_widely, one_sided, coarse, shaken, limited, averaged],
     ids=lambda change: change.__name__)
 def test_what_answers_to_slow_turns_has_none(change):
     assert compared(change).bands == ()
