@@ -75,8 +75,7 @@ def test_torn_reads_are_the_same_however_many_samples_are_looked_at_at_once(monk
     sound = np.rint(16380.0 + 50.0 * generator.standard_normal(3000)).astype(np.int64)
     column = torn(sound, 2e-2, generator)
     whole = torn_reads.competed(sample_neighbours.tabled(column, False))[:2]
-    for module in (torn_reads, sample_neighbours):
-        monkeypatch.setattr(module, "AT_A_TIME", 77)
+    monkeypatch.setattr(sample_neighbours, "AT_A_TIME", 77)
     assert torn_reads.competed(sample_neighbours.tabled(column, False))[:2] == pytest.approx(
         whole, rel=1e-9)
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .torn_reads import student
+from .sample_neighbours import student
 
 FREEDOM = (1.0, 3.0, 200.0)  # of Student's t: tails of Cauchy, heavy ones, normal ones
 SHARES = 10.0 ** np.arange(-5.0, -0.29, 0.5)  # of leaps, tried in half-decades

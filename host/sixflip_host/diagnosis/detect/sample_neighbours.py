@@ -1,4 +1,7 @@
-"""How far each sample of a column lies from what the samples around it predict."""
+"""How far each sample of a column lies from what the samples around it predict, and how likely
+that is of samples that are sound, that jump, or that are torn.
+"""
+import math
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -20,6 +23,11 @@ WHITE = 0.1  # correlation with the sample before, up to which a level at rest i
 BESIDE = 5  # samples: itself and the four by which it is foreseen where the level moves
 NEAR = 2.0  # standard deviations beyond which a sample may be a jump, and counts as so far
 AT_A_TIME = 1 << 16  # samples that are looked at at once: memory, not time
+SHARES = tuple(10.0 ** np.arange(-5.0, -0.49, 0.25))  # tried, of torn samples and of jumps
+WIDE = 4096.0  # counts: jumps of any size are spread evenly that far to both sides
+CROSSED = 0.1  # chance of a sample to lie on another page than the one before, where it may
+LEAST = 1e-200  # of a density: what a float still divides by
+KNOCKED = (5.0, 15.0, 50.0)  # times the noise: what knocks, gaits and chattering contacts make
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,3 +142,99 @@ def _white(z, among):
     z = np.clip(z, -NEAR, NEAR)
     now, following = z[:-1][pairs], z[1:][pairs]
     return float(now @ following) <= WHITE * float(now @ now)
+
+
+@dataclass(frozen=True, eq=False)
+class Densities:
+    """How likely Samples are, their noise Student's t of so much freedom, some of them at a time:
+    sound, a share of them jumping as `other` says, or jumping by what a function of a part says.
+    """
+
+    samples: Samples
+    freedom: float
+    share: float = 0.0
+    other: object = None
+
+    def _parts(self):
+        """Triples of Samples, some at a time, their density (n,) when none jumps by pages, and
+        (n,) when all do."""
+        for first in range(0, len(self.samples), AT_A_TIME):
+            part = self.samples.subset(slice(first, first + AT_A_TIME))
+            paged_by = student(part.moved, self.freedom) / part.sigma
+            density = student(part.off, self.freedom) / part.sigma
+            if self.share:
+                density = density + self.share * self.other(part, paged_by)
+            yield part, density, paged_by
+
+    def best(self, *jumps):
+        """(log likelihood when none jumps by pages, [(gain in nats, share)] of the likeliest share
+        of SHARES of samples that jump as each of jumps says, pairs of a function of a part and
+        of its density moved by pages, and among how many of them). To samples that are not far
+        off a jump adds to first order only."""
+        alone = len(self.samples) * math.log1p(-self.share)
+        gains = [np.array([among * math.log1p(-share) for share in SHARES])
+                 for _, among in jumps]
+        for part, density, paged_by in self._parts():
+            alone += float(np.log(density).sum())
+            far = np.abs(part.off) > NEAR
+            for gain, (jump, _) in zip(gains, jumps):
+                ratio = jump(part, paged_by) / density
+                gain += np.array(SHARES) * ratio[~far].sum()
+                ratio = ratio[far]
+                ratio = ratio[ratio > 0.0]
+                gain += [np.log1p(share * ratio).sum() for share in SHARES]
+        places = [int(gain.argmax()) for gain in gains]
+        return alone, [(float(gain[k]), SHARES[k]) for gain, k in zip(gains, places)]
+
+    def otherwise(self):
+        """(log likelihood as it is, [(gain, share)] of those that jump anywhere or are knocked,
+        (share, jump) of the likeliest of them)"""
+        others = [anywhere, *(louder(times, self.freedom) for times in KNOCKED)]
+        alone, gains = self.best(*((jump, len(self.samples)) for jump in others))
+        likeliest = max(range(len(others)), key=lambda k: gains[k][0])
+        return alone, gains, (gains[likeliest][1], others[likeliest])
+
+    def held(self, jump, share):
+        """Expected number of samples that jump."""
+        return float(sum(_held(density, share * jump(part, paged_by))
+                         for part, density, paged_by in self._parts()))
+
+
+def anywhere(part, paged_by):
+    """A jump of any size."""
+    return 0.5 / WIDE
+
+
+def louder(times, freedom):
+    """A jump: noise so many times as wide."""
+    return lambda part, _: student(part.off / times, freedom) / (part.sigma * times)
+
+
+def moved(part, paged_by):
+    """A jump by pages, up or down."""
+    return 0.5 * paged_by
+
+
+def led_back(part, paged_by):
+    """What a torn read is held against: a jump from wherever a page more or less leads, which way
+    it was being known. Knocks and gaits are no noise, and some of theirs look torn by chance."""
+    return paged_by
+
+
+def torn_by(side):
+    """A jump by a page that the sample before, or after, does not have; or to where the low byte
+    before, or after, leads on another page, which is one count."""
+    if side in ("stale", "ahead"):
+        return lambda part, _: CROSSED * getattr(part, side)
+    return lambda part, paged_by: paged_by * getattr(part, side)
+
+
+def _held(sound, jump):
+    return (jump / (sound + jump)).sum()
+
+
+def student(z, freedom):
+    """Density of Student's t."""
+    peak = math.exp(math.lgamma(0.5 * (freedom + 1.0)) - math.lgamma(0.5 * freedom)
+                    ) / math.sqrt(math.pi * freedom)
+    return peak * np.maximum((1.0 + z * z / freedom) ** (-0.5 * (freedom + 1.0)), LEAST)

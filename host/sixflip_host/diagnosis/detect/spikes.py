@@ -12,7 +12,7 @@ from ...capture import registers
 from .. import odds
 from .detection import present
 from .ringing import LIFTS_S
-from .torn_reads import student
+from .sample_neighbours import student
 
 SPIKE = 4.5  # standard deviations of a sample off its neighbours, which agree
 AGREE = 4.0  # standard deviations that the four neighbours, but one in a pair, may differ by

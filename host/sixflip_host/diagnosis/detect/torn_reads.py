@@ -3,8 +3,8 @@
 Each sample is judged by those around it. Sound, it lies as far from what they predict as the
 noise of the axis allows. Torn, it has the page (high byte) of the sample before, or after, and
 would lie so near with a page more or less; or it has a page of its own and the low byte of the
-sample before, or after. What has no name jumps by any amount, or by whole
-pages whatever the pages around. Torn reads are found where a share of the samples being torn
+sample before, or after. What has no name jumps by any amount, or by whole pages whatever the
+pages around. Torn reads are found where a share of the samples being torn
 makes all samples likelier than the same jumps do without a name. What moves has peaks and kinks
 that look torn as often wherever pages end, and of other widths, too: only what is beyond those is
 of bytes.
@@ -18,20 +18,21 @@ from ...capture import registers
 from .. import odds
 from .detection import Finding, present
 from .sample_neighbours import (
-    AT_A_TIME,
     FEWEST,
-    NEAR,
     PAGE,
-    Samples,
+    SHARES,
+    Densities,
+    anywhere,
+    led_back,
+    louder,
+    moved,
     tabled,
     together,
+    torn_by,
 )
 
-WIDE = 4096.0  # counts: jumps of any size are spread evenly that far to both sides
-SHARES = tuple(10.0 ** np.arange(-5.0, -0.49, 0.25))  # tried, of torn samples and of jumps
 FREEDOM = (5.0, 15.0, 200.0)  # of Student's t: how heavy the tails of the noise are
 LOUD = (2.0, 3.0, 5.0)  # times the noise, of samples that are louder without a name
-KNOCKED = (5.0, 15.0, 50.0)  # and of those that knocks, gaits and chattering contacts make
 # Counts that no byte is wide: what speaks for pages of these too is the motion of legs, wheels or
 # a knock, not the bytes. As far from a page as two samples differ where a page is looked at.
 NO_PAGES = (150, 163, 181, 300, 337, 367)
@@ -40,8 +41,6 @@ NO_EDGES = (PAGE // 4, PAGE // 2, 3 * PAGE // 4)
 # Standard deviations that a page is wide at least, where the pages around say nothing: of normal
 # noise one sample in 16,000 is so far off, and a heavier tail competes.
 BEYOND = 4.0
-CROSSED = 0.1  # chance of a sample to lie on another page than the one before, where it may
-LEAST = 1e-200  # of a density: what a float still divides by
 
 
 def finding(sessions, sensor, banded=()):
@@ -196,99 +195,3 @@ class Torn:
         others = beside.held(anywhere, often)
         torn = Densities(calm, self.densities.freedom).held(self.jump, self.often)
         return {"share": torn / (torn + others), "number": max(1, round(torn + others))}
-
-
-@dataclass(frozen=True, eq=False)
-class Densities:
-    """How likely Samples are, their noise Student's t of so much freedom, some of them at a time:
-    sound, a share of them jumping as `other` says, or jumping by what a function of a part says.
-    """
-
-    samples: Samples
-    freedom: float
-    share: float = 0.0
-    other: object = None
-
-    def _parts(self):
-        """Triples of Samples, some at a time, their density (n,) when none jumps by pages, and
-        (n,) when all do."""
-        for first in range(0, len(self.samples), AT_A_TIME):
-            part = self.samples.subset(slice(first, first + AT_A_TIME))
-            paged_by = student(part.moved, self.freedom) / part.sigma
-            density = student(part.off, self.freedom) / part.sigma
-            if self.share:
-                density = density + self.share * self.other(part, paged_by)
-            yield part, density, paged_by
-
-    def best(self, *jumps):
-        """(log likelihood when none jumps by pages, [(gain in nats, share)] of the likeliest share
-        of SHARES of samples that jump as each of jumps says, pairs of a function of a part and
-        of its density moved by pages, and among how many of them). To samples that are not far
-        off a jump adds to first order only."""
-        alone = len(self.samples) * math.log1p(-self.share)
-        gains = [np.array([among * math.log1p(-share) for share in SHARES])
-                 for _, among in jumps]
-        for part, density, paged_by in self._parts():
-            alone += float(np.log(density).sum())
-            far = np.abs(part.off) > NEAR
-            for gain, (jump, _) in zip(gains, jumps):
-                ratio = jump(part, paged_by) / density
-                gain += np.array(SHARES) * ratio[~far].sum()
-                ratio = ratio[far]
-                ratio = ratio[ratio > 0.0]
-                gain += [np.log1p(share * ratio).sum() for share in SHARES]
-        places = [int(gain.argmax()) for gain in gains]
-        return alone, [(float(gain[k]), SHARES[k]) for gain, k in zip(gains, places)]
-
-    def otherwise(self):
-        """(log likelihood as it is, [(gain, share)] of those that jump anywhere or are knocked,
-        (share, jump) of the likeliest of them)"""
-        others = [anywhere, *(louder(times, self.freedom) for times in KNOCKED)]
-        alone, gains = self.best(*((jump, len(self.samples)) for jump in others))
-        likeliest = max(range(len(others)), key=lambda k: gains[k][0])
-        return alone, gains, (gains[likeliest][1], others[likeliest])
-
-    def held(self, jump, share):
-        """Expected number of samples that jump."""
-        return float(sum(_held(density, share * jump(part, paged_by))
-                         for part, density, paged_by in self._parts()))
-
-
-def anywhere(part, paged_by):
-    """A jump of any size."""
-    return 0.5 / WIDE
-
-
-def louder(times, freedom):
-    """A jump: noise so many times as wide."""
-    return lambda part, _: student(part.off / times, freedom) / (part.sigma * times)
-
-
-def moved(part, paged_by):
-    """A jump by pages, up or down."""
-    return 0.5 * paged_by
-
-
-def led_back(part, paged_by):
-    """What a torn read is held against: a jump from wherever a page more or less leads, which way
-    it was being known. Knocks and gaits are no noise, and some of theirs look torn by chance."""
-    return paged_by
-
-
-def torn_by(side):
-    """A jump by a page that the sample before, or after, does not have; or to where the low byte
-    before, or after, leads on another page, which is one count."""
-    if side in ("stale", "ahead"):
-        return lambda part, _: CROSSED * getattr(part, side)
-    return lambda part, paged_by: paged_by * getattr(part, side)
-
-
-def _held(sound, jump):
-    return (jump / (sound + jump)).sum()
-
-
-def student(z, freedom):
-    """Density of Student's t."""
-    peak = math.exp(math.lgamma(0.5 * (freedom + 1.0)) - math.lgamma(0.5 * freedom)
-                    ) / math.sqrt(math.pi * freedom)
-    return peak * np.maximum((1.0 + z * z / freedom) ** (-0.5 * (freedom + 1.0)), LEAST)
