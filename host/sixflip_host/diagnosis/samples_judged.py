@@ -128,7 +128,7 @@ def judge(sessions, settings=ALONE, damages=()):
         sessions = tuple(s.without_samples(stuck_axes.stuck_rows(s, stuck)) for s in sessions)
     return SamplesJudged(sessions, tuple(findings), tuple(damages), tuple(nameless),
                          (*remarks, *(words for _, words, _ in unsteady),
-                          *noise_bursts.in_common(without_spikes, noisy)))
+                          *noise_shape.in_common(without_spikes, noisy)))
 
 
 def _without_bands(session, findings):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture.capture_file import Capture
-from sixflip_host.diagnosis.detect import noise_bursts, noise_level
+from sixflip_host.diagnosis.detect import noise_bursts
 from sixflip_host.experiment import blocks
 
 RATE, SECONDS = 100.0, 150.0
@@ -83,5 +83,5 @@ def test_a_filter_s_noise_has_no_level_that_changes():
         x = np.diff(x[wide:] - x[:-wide], axis=0)[:len(T) // 50 * 50 - 50]
         power = (x.reshape(-1, 50, 3) ** 2).mean(axis=1)
         first, least = 50 * np.arange(len(power)), np.full(3, 0.5)
-        found.append(noise_level.changes(power, first, 50, least)[1])
+        found.append(noise_bursts.level_changes(power, first, 50, least)[1])
     assert min(found) > 1e-3

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture import capture_file, rests
-from sixflip_host.diagnosis.detect import noise_bursts, spikes
+from sixflip_host.diagnosis.detect import noise_bursts, noise_shape, spikes
 from sixflip_host.experiment import blocks
 from sixflip_host.simulation import scenario, simulated_session
 from tests.worlds.still_session import resting
@@ -96,10 +96,10 @@ def test_noise_that_two_axes_have_in_common_is_said(share, said):
     level = np.repeat(8192.0 * np.vstack([np.eye(3), -np.eye(3)]), 600, axis=0)
     session.capture.accel[:, 1] += np.rint(
         share * (session.capture.accel - level)[:, 0]).astype(np.int16)
-    found = noise_bursts.in_common([session])
+    found = noise_shape.in_common([session])
     assert len(found) == said
     assert all("x axis" in words and "y axis" in words for words in found)
-    assert noise_bursts.in_common([session], ["accel"]) == []
+    assert noise_shape.in_common([session], ["accel"]) == []
 
 
 def test_a_session_between_two_coarse_codes_is_no_louder_one():
@@ -120,14 +120,14 @@ def test_a_knock_that_all_axes_feel_is_no_noise_in_common():
     session = resting(10.0, n=600)
     session.capture.accel[800:830] += np.rint(np.random.default_rng(2).normal(
         0.0, 2000.0, (30, 1))).astype(np.int16)
-    assert noise_bursts.in_common([session]) == []
-    assert np.abs(noise_bursts.correlations([session])[1] - np.eye(3)).max() < 0.1
+    assert noise_shape.in_common([session]) == []
+    assert np.abs(noise_shape.correlations([session])[1] - np.eye(3)).max() < 0.1
 
 
 def test_sessions_without_a_sensor_in_common_have_no_noise_in_common():
     one, other = resting(10.0, n=600), resting(10.0, n=600)
     other.capture.gyro, other.capture.accel = other.capture.accel, None
-    assert noise_bursts.in_common([one, other]) == []
+    assert noise_shape.in_common([one, other]) == []
 
 
 def test_a_table_that_rings_under_a_box_put_down_is_no_burst_of_noise():

@@ -6,11 +6,11 @@ normal.
 
 Rests of the recordings (SIXFLIP_DATA), pieces with a knock left out: each sample less the median
 of the two before and the two after. What the diagnosis takes for tails of noise, not for spikes,
-is t of detect/spikes.TAILS. The second table is what noise_bursts.LOUDER_REST and SHARED stand
-beside: of each recording the rests, times the variance of the median rest that the loudest two
-have, and the largest correlation of two axes. The third is what noise_shape.HEAVY and SKEW stand
-beside: mean squares over those that the middle half of the samples says, and skewness, the largest
-of all axes.
+is t of detect/spikes.TAILS. The second table is what noise_bursts.LOUDER_REST and
+noise_shape.SHARED stand beside: of each recording the rests, times the variance of the median rest
+that the loudest two have, and the largest correlation of two axes. The third is what
+noise_shape.HEAVY and SKEW stand beside: mean squares over those that the middle half of the
+samples says, and skewness, the largest of all axes.
 """
 import numpy as np
 from scipy import stats
@@ -48,7 +48,7 @@ def of_rests(capture):
         power, place, _ = noise_bursts.windows(session, sensor)
         steps = registers.steps(getattr(capture, sensor))
         every += noise_bursts.of_rests(power, place, steps)[1].tolist()
-    _, common, _ = noise_bursts.correlations([session])
+    _, common, _ = noise_shape.correlations([session])
     size = np.abs(common - np.eye(len(common))).max()
     return len(every), sorted(every)[-2:][::-1], float(size)
 

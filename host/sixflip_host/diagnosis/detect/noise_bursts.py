@@ -1,10 +1,9 @@
 """Noise that is not the same all the while: seconds or whole rests far louder than the others,
 noise that grows or dies down from rest to rest, goes with the end of an axis that is up or is
-another one in another session; and noise that two axes have in common.
+another one in another session; and noise whose level changes from second to second of one rest.
 
 No effect of the library does that, and no touch does it often: it is said where, not what.
 """
-import itertools
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,13 +12,10 @@ import numpy as np
 from scipy import special
 
 from ...capture import registers
-from ...capture.rests import joined
 from .. import odds
-from . import louder_alone, noise_level
 from .detection import present
-from .ringing import LIFTS_S, SETTLES_S
+from .noise_windows import WINDOW_S, window, windows
 
-WINDOW_S = 0.5  # a touch or a step on the floor rings for less
 LOUD = 9.0  # times the usual variance: three times as loud, which no touch is mistaken for
 ROUNDING = 1.0 / 6.0  # steps²: of differences of readings that nothing but rounding moves
 BETWEEN_CODES = 0.5  # steps²: of a reading without noise that is as often the one as the other
@@ -27,12 +23,14 @@ FEWEST_WINDOWS = 8  # of a session: four seconds at rest
 FEWEST, FEWEST_RESTS = 4, 3  # windows, rests with one: a single event rings in one rest, or in two
 FEWEST_SAMPLES = 64  # of a rest, whose noise is known to a tenth
 GROWN = 1.5  # times as loud at one end of a session, or of an axis, as at the other
-# Times the variance of the median rest that one has from its begin to its end, and correlation of
-# two axes from which on it is worth a word: half of either's noise. What rests of the recordings
-# have of both prints `python -m tests.studies.robustness.tails`.
-LOUDER_REST, SHARED = 2.5, 0.5
-FEWEST_CORRELATED = 24  # half seconds
+# Times the variance of the median rest that one has from its begin to its end. What rests of the
+# recordings have prints `python -m tests.studies.robustness.tails`.
+LOUDER_REST = 2.5
 FEWEST_COMPARED = 10  # rests whose noise is compared
+# Windows of a chain, in which each is at most so many lengths after the one before: what changes
+# from one chain to the next may be the place that the box was put down on. In fewer windows than
+# that, ten seconds, the correlation is not normal so far out as it is judged.
+LONGEST_GAP, FEWEST_CHAINED = 4.0, 20
 
 
 def loud(power, place, step):
@@ -43,37 +41,6 @@ def loud(power, place, step):
     usual = np.maximum(np.median(power, axis=0), ROUNDING * step ** 2)
     high = (power > LOUD * usual).any(axis=1)
     return int(high.sum()), len(np.unique(place[high])), len(high)
-
-
-def window(session):
-    """Samples of half a second."""
-    return max(8, int(WINDOW_S * session.rate))
-
-
-def windows(session, sensor):
-    """((w, 3) counts², (w,) number of the rest, (w,) first sample) of a session's half seconds at
-    rest, once the box has settled and before a hand takes it up: the mean square of the
-    differences from one sample to the next. Where nobody labelled the poses of a box that was
-    turned over, those are at rest as well in which it is only louder; a vehicle may move without
-    a turn. Where one sensor alone is louder, nothing moves."""
-    counts = getattr(session.capture, sensor)
-    m = window(session)
-    settles, lifts = (int(seconds * session.rate) for seconds in (SETTLES_S, LIFTS_S))
-    power, place, begins = [np.zeros((0, 3))], [np.zeros(0, int)], [np.zeros(0, int)]
-    runs = session.runs
-    if not session.labelled and session.turned_over:
-        runs = joined(session.capture, runs)
-    for number, (_, first, end) in enumerate(runs):
-        settled = first + settles
-        x = np.diff(counts[settled:max(settled, end - lifts)].astype(float), axis=0)
-        k = len(x) // m
-        power.append((x[:k * m].reshape(k, m, 3) ** 2).mean(axis=1))
-        place.append(np.full(k, number))
-        begins.append(settled + m * np.arange(k))
-    alone = louder_alone.windows(session, runs, sensor, m + 1)
-    x = np.diff(counts[alone[:, :1] + np.arange(m + 1)].astype(float), axis=1)
-    return (np.concatenate([*power, (x ** 2).mean(axis=1)]),
-            np.concatenate([*place, alone[:, 1]]), np.concatenate([*begins, alone[:, 0]]))
 
 
 def of_rests(power, place, step):
@@ -100,51 +67,6 @@ def louder_rests(session, power, place, step):
     freedom = np.bincount(place)[rests] * WINDOW_S * session.rate / 3.0 / (0.5 * math.pi)
     p = 3.0 * len(rests) * special.chdtrc(freedom, freedom * ratio / LOUDER_REST)
     return len(rests), int((ratio > LOUDER_REST).sum()), math.sqrt(ratio.max()), min(p.min(), 1.0)
-
-
-def correlations(sessions, but=()):
-    """([(sensor, axis letter)], (k, k) correlations of their noise in the median half second, how
-    many samples they are of) of all Sessions, but of some sensors: a knock, or a hand that takes
-    the box away, is not in the median."""
-    names = [(sensor, axis) for sensor in registers.SENSORS for axis in "xyz" if sensor not in but
-             and all(getattr(s.capture, sensor) is not None for s in sessions)]
-    found = [_by_window(s, names, *run[1:]) for s in sessions for run in s.runs if names]
-    every = np.concatenate(found) if found else np.zeros((0, 0, 0))
-    if len(every) < FEWEST_CORRELATED:
-        return [], np.zeros((0, 0)), 0
-    return names, np.median(every, axis=0), len(every) * WINDOW_S * min(s.rate for s in sessions)
-
-
-def in_common(sessions, but=()):
-    """[sentence] of the two axes whose noise has most in common, more than SHARED: a supply or a
-    reference that both are on. Of the usual size noise may have any shape, so it is no gap."""
-    names, median, number = correlations(sessions, but)
-    if not names:
-        return []
-    pairs = list(itertools.combinations(range(len(names)), 2))
-    first, second = max(pairs, key=lambda pair: abs(median[pair]))
-    size = min(abs(float(median[first, second])), 1.0 - 1e-9)
-    # Fisher's z, with as many samples' worth as in louder_rests.
-    z = (math.atanh(size) - math.atanh(SHARED)) * math.sqrt(number / 3.0 / (0.5 * math.pi))
-    p = min(1.0, len(pairs) * 2.0 * float(special.ndtr(-z)))
-    if not present(-np.log(max(p, odds.SMALLEST))):
-        return []
-    return ["the noise of the %s axis of the %s and of the %s axis of the %s goes together: a "
-            "correlation of %.2g" % (names[first][1], registers.SENSORS[names[first][0]],
-                                     names[second][1], registers.SENSORS[names[second][0]],
-                                     median[first, second])]
-
-
-def _by_window(session, names, first, end):
-    """(w, k, k) correlations of what the axes of a rest change by from sample to sample in its
-    half seconds, 0 of those that never change."""
-    begin, m = first + int(SETTLES_S * session.rate), max(8, int(WINDOW_S * session.rate))
-    steps = np.diff(np.stack([getattr(session.capture, sensor)[begin:end, "xyz".index(axis)]
-                              for sensor, axis in names], 1).astype(float), axis=0)
-    steps = steps[:len(steps) // m * m].reshape(-1, m, len(names))
-    size = np.sqrt((steps ** 2).mean(axis=1, keepdims=True))
-    steps = steps / np.where(size > 0.0, size, 1.0)
-    return steps.transpose(0, 2, 1) @ steps / m
 
 
 def loudest(sessions, every, sensor):
@@ -224,6 +146,39 @@ def _slope(x, y):
     return float(np.median((y[second] - y[first])[apart] / across[apart]))
 
 
+def level_changes(power, first, length, least):
+    """(times as loud in the louder quarter as in the softer one, p of that by steady noise) of the
+    axis that says most; power (w, 3) counts² of windows of `length` samples from `first` (w,) on,
+    of which less than least (3,) counts² tells how near the mean is to the edge of a code.
+
+    Steady noise has half seconds that are louder and softer by chance, each by itself (two lines
+    that beat have not, and are found before). Where the level changes, a loud one is beside a loud
+    one: the correlation of the ranks of neighbours is what chance does not make [Wald &
+    Wolfowitz, Ann. Math. Stat. 14 (1943) 378]."""
+    order = np.argsort(first)
+    power, first = power[order], first[order]
+    chains = np.split(np.arange(len(first)),
+                      1 + np.flatnonzero(np.diff(first) > LONGEST_GAP * length))
+    chains = [chain for chain in chains if len(chain) >= FEWEST_CHAINED]
+    if not chains:
+        return 1.0, 1.0
+    from scipy import stats  # it takes a second to import
+    found = []
+    for axis in range(3):
+        level = [np.log(np.maximum(power[chain, axis], least[axis])) for chain in chains]
+        level = [x - np.median(x) for x in level]
+        every = np.concatenate(level)
+        score = special.ndtri((stats.rankdata(every) - 0.5) / len(every))
+        score = np.split(score, np.cumsum([len(x) for x in level])[:-1])
+        pairs = sum(len(x) - 1 for x in score)
+        together = sum(float(x[1:] @ x[:-1]) for x in score) / pairs
+        p = 3.0 * float(special.ndtr(-together * math.sqrt(pairs)))
+        # What neighbours have in common is the level's.
+        spread = np.subtract(*np.quantile(every, [0.75, 0.25])) * math.sqrt(max(together, 0.0))
+        found.append((math.exp(0.5 * spread), min(p, 1.0)))
+    return min(found, key=lambda one: one[1])
+
+
 def comes_and_goes(sessions, measured):
     """(times as loud, p) of the gyro's noise that comes and goes at rest, where that of the
     accelerometer does not: what shakes a box shakes both. A floor that shakes may move the
@@ -233,7 +188,7 @@ def comes_and_goes(sessions, measured):
         return 1.0, 1.0
     found = {}
     for sensor, of_sessions in measured.items():
-        every = [noise_level.changes(power, first, window(session), BETWEEN_CODES * step ** 2)
+        every = [level_changes(power, first, window(session), BETWEEN_CODES * step ** 2)
                  for session, (power, _, first, step) in zip(sessions, of_sessions)]
         times, p = min(every, key=lambda one: one[1])
         found[sensor] = times, min(1.0, p * len(sessions))

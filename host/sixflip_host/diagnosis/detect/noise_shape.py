@@ -1,10 +1,12 @@
 """Noise at rest that is not normal: pulses that come again, a skew, far heavier tails than a
-sensor's noise has. No effect of the library does that: it is said where, not what.
+sensor's noise has; and noise that two axes have in common. No effect of the library does that: it
+is said where, not what.
 
 Of each piece of a rest, less a slow course: how large the mean square is beside what the middle
 half of the samples says, and their skewness. Both are those of the median piece, so that knocks on
 a table are nothing. The readings are spread over the step that they were rounded to.
 """
+import itertools
 import math
 
 import numpy as np
@@ -12,7 +14,9 @@ from numpy.polynomial import legendre
 from scipy import special
 
 from ...capture import registers
+from .. import odds
 from .detection import present
+from .noise_windows import WINDOW_S, window
 from .ringing import LIFTS_S, SETTLES_S
 
 PIECE_S, LEAST_S = 8.0, 2.0  # of a rest: a slow pulse is in each
@@ -29,6 +33,10 @@ QUARTILES = float(np.ptp(special.ndtri([0.25, 0.75])))  # apart, of a standard d
 HEAVY, SKEW = 1.4, 0.5
 MORE = 2.0  # times what is known: what shakes an axis in turns is beyond its middle half, too
 TESTS = 24  # of 6 axes, both ways of a skew and of the size
+# Correlation of two axes from which on it is worth a word: half of either's noise. What rests of
+# the recordings have of it prints `python -m tests.studies.robustness.tails`.
+SHARED = 0.5
+FEWEST_CORRELATED = 24  # half seconds
 
 
 def shapes(session, sensor):
@@ -95,3 +103,48 @@ def _nats(values, most):
     middle = float(np.median(values))
     scatter = math.sqrt(0.5 * math.pi * float(np.var(values, ddof=1)) / len(values))
     return 0.5 * ((middle - most) / max(scatter, 1e-9)) ** 2 if middle > most else 0.0
+
+
+def correlations(sessions, but=()):
+    """([(sensor, axis letter)], (k, k) correlations of their noise in the median half second, how
+    many samples they are of) of all Sessions, but of some sensors: a knock, or a hand that takes
+    the box away, is not in the median."""
+    names = [(sensor, axis) for sensor in registers.SENSORS for axis in "xyz" if sensor not in but
+             and all(getattr(s.capture, sensor) is not None for s in sessions)]
+    found = [_by_window(s, names, *run[1:]) for s in sessions for run in s.runs if names]
+    every = np.concatenate(found) if found else np.zeros((0, 0, 0))
+    if len(every) < FEWEST_CORRELATED:
+        return [], np.zeros((0, 0)), 0
+    return names, np.median(every, axis=0), len(every) * WINDOW_S * min(s.rate for s in sessions)
+
+
+def in_common(sessions, but=()):
+    """[sentence] of the two axes whose noise has most in common, more than SHARED: a supply or a
+    reference that both are on. Of the usual size noise may have any shape, so it is no gap."""
+    names, median, number = correlations(sessions, but)
+    if not names:
+        return []
+    pairs = list(itertools.combinations(range(len(names)), 2))
+    first, second = max(pairs, key=lambda pair: abs(median[pair]))
+    size = min(abs(float(median[first, second])), 1.0 - 1e-9)
+    # Fisher's z, with as many samples' worth as in noise_bursts.louder_rests.
+    z = (math.atanh(size) - math.atanh(SHARED)) * math.sqrt(number / 3.0 / (0.5 * math.pi))
+    p = min(1.0, len(pairs) * 2.0 * float(special.ndtr(-z)))
+    if not present(-np.log(max(p, odds.SMALLEST))):
+        return []
+    return ["the noise of the %s axis of the %s and of the %s axis of the %s goes together: a "
+            "correlation of %.2g" % (names[first][1], registers.SENSORS[names[first][0]],
+                                     names[second][1], registers.SENSORS[names[second][0]],
+                                     median[first, second])]
+
+
+def _by_window(session, names, first, end):
+    """(w, k, k) correlations of what the axes of a rest change by from sample to sample in its
+    half seconds, 0 of those that never change."""
+    begin, m = first + int(SETTLES_S * session.rate), window(session)
+    steps = np.diff(np.stack([getattr(session.capture, sensor)[begin:end, "xyz".index(axis)]
+                              for sensor, axis in names], 1).astype(float), axis=0)
+    steps = steps[:len(steps) // m * m].reshape(-1, m, len(names))
+    size = np.sqrt((steps ** 2).mean(axis=1, keepdims=True))
+    steps = steps / np.where(size > 0.0, size, 1.0)
+    return steps.transpose(0, 2, 1) @ steps / m

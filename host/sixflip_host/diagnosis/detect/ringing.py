@@ -11,7 +11,7 @@ from ...capture.registers import SENSORS
 from .. import odds
 from .detection import present
 
-SETTLES_S = 1.0  # of a box that was put down, twice as long as a touch rings (noise_bursts.py)
+SETTLES_S = 1.0  # of a box that was put down, twice as long as a touch rings (noise_windows.py)
 LIFTS_S = 0.5  # of a box that is taken up: a hand is on it before it moves
 PART_S = 1.5  # of a rest, early and late
 FEWEST = 12  # rests: the scatter of what they say is known to a fifth
