@@ -11,7 +11,7 @@ from sixflip_sim.effects import typical
 
 from .. import side_by_side
 from ..capture import registers
-from . import localisation, odd_samples, odds
+from . import localisation, odds
 from .detect import (
     axis_order,
     codes,
@@ -30,7 +30,7 @@ from .detect import (
     wandering_tone,
     wrong_scale,
 )
-from .detect.detection import Finding, present
+from .detect.detection import agreed_by_axis, present
 from .settings import Conditions, Settings
 
 COARSE = ("quantisation", "dead_band", "saturation", "torn_reads")
@@ -80,7 +80,7 @@ def judge(sessions, settings=ALONE, damages=()):
     findings = [f for f in sum(found, []) + lines if f.effect not in without]
     if any(d.kind == held_values.NOT_READ for d in damages):
         findings = [f for f in findings if f.effect != "dropped_samples"]
-    findings, uneven = odd_samples.uneven(sessions, findings, {sensor for sensor, *_ in whole[2]})
+    findings, uneven = codes.uneven(sessions, findings, {sensor for sensor, *_ in whole[2]})
     coarse = {(f.sensor, axis) for f in findings if f.effect in COARSE for axis in f.axes}
     stuck = stuck_axes.stuck_for_a_while(sessions, coarse)
     held, scales, bits = whole
@@ -91,7 +91,7 @@ def judge(sessions, settings=ALONE, damages=()):
         f.sensor for f in findings if f.effect in ("torn_reads", "dead_band")}
     sessions = [_without_bands(s, findings) for s in sessions]
     without_spikes, wild = spikes.without_spikes(sessions, leaping)
-    findings, shaped = odd_samples.not_normal(without_spikes, findings, leaping)
+    findings, shaped = noise_shape.not_normal(without_spikes, findings, leaping)
     noisy = leaping | {f.sensor for f in findings if f.effect in NOISY}
     unsteady = [burst for burst in noise_bursts.unsteady(without_spikes) if burst[0] not in noisy]
     # A rail cuts off what moves: it makes no single sample of a rest stand out.
@@ -180,11 +180,11 @@ def _of_registers(sensor, sessions):
         return []
     meta, rate = sessions[0].capture.meta, min(s.rate for s in sessions)
     noise = typical.noise_at(typical.chip_of(meta["sensor"], sensor), rate)
-    band = _dead_band(sensor, columns, [s.at_rest for s in sessions], min(
+    band = dead_band.findings(sensor, columns, [s.at_rest for s in sessions], min(
         noise) / QUIETEST / registers.unit_of_count(meta, sensor))
-    return (_per_axis("quantisation", sensor, [registers.steps(c) for c in columns],
-                      [codes.step_nats(c) for c in columns], "counts come in steps",
-                      [codes.distinct(c) for c in columns])
+    return (agreed_by_axis("quantisation", sensor, [registers.steps(c) for c in columns],
+                           [codes.step_nats(c) for c in columns], "counts come in steps",
+                           [codes.distinct(c) for c in columns])
             + band + saturation.saturation(sessions, sensor, columns)
             + torn_reads.finding(sessions, sensor, ["xyz".index(a) for f in band for a in f.axes]))
 
@@ -197,57 +197,3 @@ def _of_rows(sessions):
 
 # Functions of sessions: what they find is told in this order.
 FOUND_BY = (partial(_of_registers, "accel"), partial(_of_registers, "gyro"), _of_rows)
-
-
-def _per_axis(effect, sensor, sizes, nats, words, numbers):
-    """One Finding of what all sessions agree on, axis by axis (3,) in counts; 0 is nothing;
-    nats (3,) of each session; numbers (3,): of codes, or of runs of zeros. There is no sample
-    that does otherwise: it is all of the gap."""
-    least, total = np.min(sizes, axis=0), np.sum(nats, axis=0)
-    axes = [i for i in range(3) if least[i] > 1 and present(total[i])]
-    if not axes:
-        return []
-    value = {"xyz"[i]: int(least[i]) for i in axes}
-    number = int(np.sum(numbers, axis=0)[axes].sum())
-    return [Finding(effect, sensor, ["xyz"[i] for i in axes], value, "counts",
-                    sum(total[i] for i in axes), "amplitude", words,
-                    {k: (v, v) for k, v in value.items()}, share=1.0, number=number)]
-
-
-def _dead_band(sensor, columns, at_rest, noise=0.0):
-    """[Finding] of readings near 0 that are 0, by the codes that are missing or too frequent; on
-    other axes by how the readings pass through 0, and by how quiet they are at rest there; noise:
-    counts that any such part has at least."""
-    words = "counts near 0 read 0"
-    about = [[codes.resting(column) for column in c.T] for c in columns]
-    if np.any(about):  # a bias was taken off before, and put back on
-        words = "counts near %s read the same" % ", ".join(
-            str(code) for code in dict.fromkeys(np.ravel(about).tolist()))
-    columns = [np.clip(c.astype(np.int32) - np.array(code), -RAIL - 1, RAIL)
-               for c, code in zip(columns, about)]
-    findings = _per_axis("dead_band", sensor, [registers.dead_band(c) for c in columns],
-                         [codes.band_nats(c) for c in columns], words,
-                         [codes.zeros(c) for c in columns])
-    known = {axis for f in findings for axis in f.axes}
-    nats, least = dead_band.nats_of_rests(columns, at_rest, noise)
-    value, interval, score, number = {}, {}, 0.0, 0
-    for k, axis in enumerate("xyz"):
-        if axis in known:
-            continue
-        band = dead_band.band_of_columns([c[:, k] for c in columns])
-        if band.counts > 1.0 and present(band.nats):
-            value[axis], interval[axis] = round(band.counts), band.interval
-            score, number = score + band.nats, number + band.number
-        elif present(nats[k]):
-            value[axis] = max(1, round(least[k]))
-            # Beyond the largest reading it does not reach; more is not known.
-            interval[axis] = value[axis], float(max(np.abs(c[:, k]).max() for c in columns))
-            score, number = score + nats[k], number + int(np.sum([codes.zeros(c)[k]
-                                                                  for c in columns]))
-    if not value:
-        return findings
-    for f in findings:
-        value, interval = {**f.value, **value}, {**f.interval, **interval}
-        score, number = score + f.score, number + f.number
-    return [Finding("dead_band", sensor, sorted(value), value, "counts", score, "amplitude", words,
-                    interval, share=1.0, number=number)]

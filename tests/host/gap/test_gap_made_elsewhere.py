@@ -166,10 +166,10 @@ def test_a_band_about_a_bias_is_a_dead_band():
     others = generator.normal(20.0, 4.0, (20000, 2))
     counts = np.rint(np.column_stack([others, gated])).astype(np.int16)
     still = [np.arange(20000) % 5000 <= 2500]
-    found, = samples_judged._dead_band("gyro", [counts], still)
+    found, = dead_band.findings("gyro", [counts], still)
     assert found.axes == ["z"] and found.value["z"] == pytest.approx(86, abs=2)
     plain = np.rint(np.column_stack([others, 55.0 + rate])).astype(np.int16)
-    assert samples_judged._dead_band("gyro", [plain], still) == []
+    assert dead_band.findings("gyro", [plain], still) == []
 
 
 def test_an_axis_beside_one_that_leaps_has_no_dead_band():
@@ -211,13 +211,13 @@ def test_an_axis_that_is_quieter_at_rest_than_its_sensor_lets_it_has_a_dead_band
     rate = 400.0 * np.sin(2.0 * np.pi * np.arange(20000) / 200.0) * ~still + 3.0
     rates = rate[:, None] + generator.normal(0.0, 3.0, (20000, 3))
     rates[:, 2] = rates[:, 2] * (1.0 - np.exp(-(rates[:, 2] / 30.0) ** 4))
-    found, = samples_judged._dead_band("gyro", [np.rint(rates).astype(np.int16)], [still])
+    found, = dead_band.findings("gyro", [np.rint(rates).astype(np.int16)], [still])
     assert found.axes == ["z"]
     low, high = found.interval["z"]
     assert 2.0 <= low < 30.0 < high
     # A part whose Z is half as noisy, about 0, is none.
     rates[:, 2] = np.where(still, generator.normal(0.0, 1.6, 20000), rate)
-    assert samples_judged._dead_band("gyro", [np.rint(rates).astype(np.int16)], [still]) == []
+    assert dead_band.findings("gyro", [np.rint(rates).astype(np.int16)], [still]) == []
 
 
 @pytest.mark.parametrize("known, said", [(0.7, ["x", "y", "z"]), (0.1, [])])
@@ -230,7 +230,7 @@ def test_a_gyro_that_is_gated_on_all_axes_has_a_dead_band(known, said):
     rates = turn[:, None] * [1.0, -0.7, 0.8] + generator.normal(0.0, 3.0, (20000, 3))
     gated = np.rint(rates - np.where(np.abs(rates) > 30.0, 900.0 / rates, rates)).astype(np.int16)
     assert not gated[still].any()
-    found = samples_judged._dead_band("gyro", [gated], [still], known)
+    found = dead_band.findings("gyro", [gated], [still], known)
     assert [axis for f in found for axis in f.axes] == said
 
 

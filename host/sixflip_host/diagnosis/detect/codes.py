@@ -1,10 +1,23 @@
-"""Which codes a sensor gives, and how likely that would be if it gave all of them."""
+"""Which codes a sensor gives, how likely that would be if it gave all of them, and the findings
+that give way where it leaves some out.
+"""
 import math
+from dataclasses import replace
 
 import numpy as np
 from scipy import fft, ndimage, special
 
-from ...capture.registers import LOW_BITS, RAIL, codes, spacing, steps, zeros_beyond_noise
+from ...capture.registers import (
+    LOW_BITS,
+    RAIL,
+    SENSORS,
+    codes,
+    of_counts,
+    spacing,
+    steps,
+    zeros_beyond_noise,
+)
+from .detection import RANGE, odd_axes, present
 
 STEPS_TRIED = 1 << LOW_BITS
 # Codes to either side that say how often one is read: as many as the usual difference of two
@@ -163,6 +176,57 @@ def _even(apart):
     return not len(apart) or max(
         apart[(apart == step) | (apart == step + 1)].sum() for step in set(apart.tolist())
     ) >= (1.0 - RARE) * apart.sum()
+
+
+def uneven(sessions, findings, stuck):
+    """(findings that stay, [(sensor, axis letter, nats)] whose codes are uneven) of Sessions;
+    stuck: sensors with a bit that is, which leaves codes out."""
+    odd = _uneven(sessions, findings, stuck)
+    return [f for f in (_full_grids(f, odd) for f in findings) if f], odd
+
+
+def _uneven(sessions, findings, stuck):
+    """Axes whose codes at rest, counted in the steps that were found, are by far not as frequent
+    as those around them."""
+    uneven = []
+    sizes = {(f.effect, f.sensor, axis): f.value[axis] for f in findings
+             if f.effect in ("quantisation", "dead_band") for axis in f.axes}
+    for sensor in (kind for kind in SENSORS if kind not in stuck):
+        read = [s for s in of_counts(sessions, sensor)
+                if getattr(s.capture, sensor) is not None]
+        for k, axis in enumerate("xyz"):
+            step = sizes.get(("quantisation", sensor, axis), 1)
+            band = sizes.get(("dead_band", sensor, axis), 0)
+            rests = []
+            for session in read:
+                column = getattr(session.capture, sensor)[:, k].astype(np.int32)
+                about = resting(column) if band else 0
+                rests += [(column[run.first:run.end] - about) // step for run in session.runs]
+            nats = uneven_nats(rests, 1 + band // step)
+            if present(nats):
+                uneven.append((sensor, axis, nats))
+    return uneven
+
+
+def _full_grids(finding, uneven):
+    """The Finding without axes whose codes are `uneven`: steps that are not all there are none,
+    codes that are missing near 0 as elsewhere are no dead band, and where a sensor leaves codes
+    out many peaks end at one below its rail, and many low bytes are that of the sample before.
+    None where none is left."""
+    odd = odd_axes(finding, uneven)
+    if any(sensor == finding.sensor for sensor, *_ in uneven):
+        if finding.effect == "torn_reads":
+            return None
+        if finding.effect == "saturation":
+            odd = {axis for axis, limit in finding.limits.items() if limit != RANGE}
+    if finding.effect not in ("quantisation", "dead_band", "saturation") or not odd:
+        return finding
+    axes = [axis for axis in finding.axes if axis not in odd]
+    return replace(finding, axes=axes, place=None, **{
+        name: {a: size for a, size in getattr(finding, name).items() if a in axes}
+        for name in ("value", "interval", "limits", "levels")},
+        **{name: getattr(finding, name) * len(axes) / len(finding.axes)
+           for name in ("score", "number")}) if axes else None
 
 
 def resting(column):

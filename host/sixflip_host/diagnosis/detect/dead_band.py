@@ -12,9 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import special
 
-from ...capture.registers import LEAST_NOISE, QUIET, WINDOW, steps
+from ...capture import registers
+from ...capture.registers import LEAST_NOISE, QUIET, RAIL, WINDOW, steps
 from ..odds import Z_90
-from .codes import number_of_runs
+from . import codes
+from .detection import Finding, agreed_by_axis, present
 
 FASTER = 3.0  # than the noise, from a sample to the next: its sign is that of the motion
 LONGEST = 8  # samples at 0 while something passes; more is a pause
@@ -52,6 +54,45 @@ class Band:
 NOTHING = Band(0.0, 1.0, 0)
 
 
+def findings(sensor, columns, at_rest, noise=0.0):
+    """[Finding] of readings near 0 that are 0, by the codes that are missing or too frequent; on
+    other axes by how the readings pass through 0, and by how quiet they are at rest there; noise:
+    counts that any such part has at least."""
+    words = "counts near 0 read 0"
+    about = [[codes.resting(column) for column in c.T] for c in columns]
+    if np.any(about):  # a bias was taken off before, and put back on
+        words = "counts near %s read the same" % ", ".join(
+            str(code) for code in dict.fromkeys(np.ravel(about).tolist()))
+    columns = [np.clip(c.astype(np.int32) - np.array(code), -RAIL - 1, RAIL)
+               for c, code in zip(columns, about)]
+    findings = agreed_by_axis("dead_band", sensor, [registers.dead_band(c) for c in columns],
+                         [codes.band_nats(c) for c in columns], words,
+                         [codes.zeros(c) for c in columns])
+    known = {axis for f in findings for axis in f.axes}
+    nats, least = nats_of_rests(columns, at_rest, noise)
+    value, interval, score, number = {}, {}, 0.0, 0
+    for k, axis in enumerate("xyz"):
+        if axis in known:
+            continue
+        band = band_of_columns([c[:, k] for c in columns])
+        if band.counts > 1.0 and present(band.nats):
+            value[axis], interval[axis] = round(band.counts), band.interval
+            score, number = score + band.nats, number + band.number
+        elif present(nats[k]):
+            value[axis] = max(1, round(least[k]))
+            # Beyond the largest reading it does not reach; more is not known.
+            interval[axis] = value[axis], float(max(np.abs(c[:, k]).max() for c in columns))
+            score, number = score + nats[k], number + int(np.sum([codes.zeros(c)[k]
+                                                                  for c in columns]))
+    if not value:
+        return findings
+    for f in findings:
+        value, interval = {**f.value, **value}, {**f.interval, **interval}
+        score, number = score + f.score, number + f.number
+    return [Finding("dead_band", sensor, sorted(value), value, "counts", score, "amplitude", words,
+                    interval, share=1.0, number=number)]
+
+
 def nats_of_rests(columns, at_rest, least=0.0):
     """((3,) nats of an axis' reading 0 at rest more often than the noise of its sensor's others
     lets it; (3,) counts, half the width that this takes at least). columns: list of (n, 3) counts;
@@ -84,7 +125,7 @@ def nats_of_rests(columns, at_rest, least=0.0):
             each = share * np.log(share / chance) + (1.0 - share) * np.log(
                 (1.0 - share) / (1.0 - chance))
             # What is held says one thing a window.
-            nats[axis] += each * max(number_of_runs(zero) / share, len(x) / WINDOW)
+            nats[axis] += each * max(codes.number_of_runs(zero) / share, len(x) / WINDOW)
             widths[axis] = min(widths[axis], usual * special.ndtri(0.5 + 0.5 * share))
     return nats, widths
 

@@ -8,6 +8,7 @@ missing anywhere, gaps of any length, any matrix). What was tried to find it is 
 """
 from dataclasses import dataclass, field
 
+import numpy as np
 from scipy import special
 
 from .. import odds
@@ -101,6 +102,27 @@ class Damage:
 def present(score):
     """True when an effect is more likely there than HOLDS."""
     return score >= odds.COST + odds.PRESENT
+
+
+def agreed_by_axis(effect, sensor, sizes, nats, words, numbers):
+    """One Finding of what all sessions agree on, axis by axis (3,) in counts; 0 is nothing;
+    nats (3,) of each session; numbers (3,): of codes, or of runs of zeros. There is no sample
+    that does otherwise: it is all of the gap."""
+    least, total = np.min(sizes, axis=0), np.sum(nats, axis=0)
+    axes = [i for i in range(3) if least[i] > 1 and present(total[i])]
+    if not axes:
+        return []
+    value = {"xyz"[i]: int(least[i]) for i in axes}
+    number = int(np.sum(numbers, axis=0)[axes].sum())
+    return [Finding(effect, sensor, ["xyz"[i] for i in axes], value, "counts",
+                    sum(total[i] for i in axes), "amplitude", words,
+                    {k: (v, v) for k, v in value.items()}, share=1.0, number=number)]
+
+
+def odd_axes(finding, odd):
+    """Those letters of a Finding's axes that are odd, [(sensor, axis letter, ...)]."""
+    return {axis for sensor, axis, *_ in odd if sensor == finding.sensor}.intersection(
+        finding.axes)
 
 
 def damages(recording_damages):

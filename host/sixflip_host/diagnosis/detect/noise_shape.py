@@ -1,6 +1,6 @@
 """Noise at rest that is not normal: pulses that come again, a skew, far heavier tails than a
-sensor's noise has; and noise that two axes have in common. No effect of the library does that: it
-is said where, not what.
+sensor's noise has, and the lines that give way to them; and noise that two axes have in common.
+No effect of the library does that: it is said where, not what.
 
 Of each piece of a rest, less a slow course: how large the mean square is beside what the middle
 half of the samples says, and their skewness. Both are those of the median piece, so that knocks on
@@ -15,7 +15,8 @@ from scipy import special
 
 from ...capture import registers
 from .. import odds
-from .detection import present
+from . import spectral_lines
+from .detection import odd_axes, present
 from .noise_windows import WINDOW_S, window
 from .ringing import LIFTS_S, SETTLES_S
 
@@ -37,6 +38,7 @@ TESTS = 24  # of 6 axes, both ways of a skew and of the size
 # the recordings have of it prints `python -m tests.studies.robustness.tails`.
 SHARED = 0.5
 FEWEST_CORRELATED = 24  # half seconds
+OWN_SHAPE = {"torn_reads", "dead_band", "saturation"}  # what makes samples anything but normal
 
 
 def shapes(session, sensor):
@@ -90,6 +92,41 @@ def words(sensor, axis, times, skew):
     return ("the noise of the %s axis of the %s is not normal: its square is %.2g times what its "
             "middle half says, its skewness is %.1f" % (axis, registers.SENSORS[sensor], times,
                                                         skew))
+
+
+def not_normal(sessions, findings, leaping):
+    """(findings that stay, [(sensor, axis letter, nats, times the variance, skewness)] whose noise
+    is not normal) of Sessions without spikes; leaping: sensors whose codes leap anyhow."""
+    odd = _not_normal(sessions, findings, leaping)
+    rate = sessions[0].rate
+    return [f for f in (_lines_alone(f, odd, rate) for f in findings) if f], odd
+
+
+def _not_normal(sessions, findings, leaping):
+    """Axes whose noise is not normal where neither its codes nor what is found in single samples
+    make it so; leaping: sensors whose codes do."""
+    not_normal = []
+    for sensor in (kind for kind in registers.SENSORS if kind not in leaping):
+        own = {f.effect: f for f in findings if f.sensor == sensor}
+        if OWN_SHAPE.intersection(own):
+            continue
+        powers = {}
+        if "vibration" in own:
+            unit = registers.unit_of_count(sessions[0].capture.meta, sensor)
+            powers = {axis: 0.5 * (size / unit) ** 2
+                      for axis, size in own["vibration"].value.items()}
+        not_normal += [(sensor, *axis) for axis in odd(sessions, sensor, powers)]
+    return not_normal
+
+
+def _lines_alone(finding, shaped, rate):
+    """The Finding without lines of axes of which far more is not normal: what comes again as a
+    pulse has a line at each multiple. None where none is left."""
+    odd = odd_axes(finding, shaped)
+    if finding.effect != "vibration" or not odd:
+        return finding
+    lines = [line for line in finding.lines if line.letter not in odd]
+    return spectral_lines.told(lines, finding.sensor, rate) if lines else None
 
 
 def _without_course(x):
