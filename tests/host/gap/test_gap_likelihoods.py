@@ -11,6 +11,7 @@ from sixflip_host.diagnosis import aliases, odds, samples_judged, verdict
 from sixflip_host.diagnosis.detect import (
     axis_order,
     codes,
+    rest_spectra,
     sample_neighbours,
     spectral_lines,
     torn_reads,
@@ -82,7 +83,7 @@ def test_torn_reads_are_the_same_however_many_samples_are_looked_at_at_once(monk
 
 def test_a_line_is_the_likelier_the_stronger_it_is_however_strong():
     for x, number in ((0.5, 3), (30.0, 12), (400.0, 150)):
-        assert spectral_lines.log_beyond(x, number) == pytest.approx(
+        assert rest_spectra.log_beyond(x, number) == pytest.approx(
             stats.gamma.logsf(x, number), rel=1e-9)
     scores = []
     for mg in (20.0, 60.0, 200.0):

@@ -9,6 +9,7 @@ from sixflip_host.capture.capture_file import Capture
 from sixflip_host.diagnosis import answer, diagnosis, samples_judged
 from sixflip_host.diagnosis.detect import (
     noise_bursts,
+    rest_spectra,
     saturation,
     spectral_lines,
     spikes,
@@ -341,5 +342,5 @@ def test_a_log_of_one_row_a_second_has_no_lines_where_nothing_rests(rate):
     """Two seconds of it are a sample or two, whose window is 0: nothing was divided by nothing."""
     session = resting(12.0)
     moving = SimpleNamespace(capture=session.capture, rate=rate, runs=())
-    assert spectral_lines.rests([moving], "accel") == []
+    assert rest_spectra.rests([moving], "accel") == []
     assert spectral_lines.strongest([moving], "accel", 0) is None

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import special
 
-from . import line_frequency, saturation, spectral_lines, strides
+from . import line_frequency, rest_spectra, saturation, spectral_lines, strides
 from .detection import Finding
 
 # A filter that lets a thousandth of the power through of what hands, legs and wheels do
@@ -57,7 +57,7 @@ def _longest_move(session):
     edges = [0, *(edge for run in session.runs for edge in (run.first, run.end)),
              len(session.capture)]
     first, end = max(zip(edges[::2], edges[1::2]), key=lambda part: part[1] - part[0])
-    if end - first < spectral_lines.FEWEST * spectral_lines.MOVING_S * session.rate:
+    if end - first < rest_spectra.FEWEST * rest_spectra.MOVING_S * session.rate:
         return None
     cut = copy.copy(session.capture)
     cut.accel = cut.accel[first:end] if cut.accel is not None else None

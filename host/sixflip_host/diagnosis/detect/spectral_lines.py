@@ -10,15 +10,12 @@ import math
 import numpy as np
 from scipy import ndimage, special
 
-from ...capture.registers import steps, unit_of_count
 from .. import odds, verdict
 from . import line_across_rests, line_frequency, ringing, strides
 from .detection import Finding
 from .line_frequency import Line
+from .rest_spectra import log_beyond, rests, scatter, slow_noise, spectrum, step
 
-# Of a stretch, without the edges: a rest of the paper's protocol (5 s), shorter ones (4 s, 2 s),
-# a short one, one on the way.
-LENGTHS_S, MOVING_S = (4.5, 3.5, 1.8, 1.0), 2.0
 LOWEST_HZ, LOWEST_MOVING_HZ = 0.7, 2.0  # a hand or a vehicle moves more slowly than that
 # What has no steady frequency is a motion's own up to here, where nothing rests: a hand trembles
 # at 4 to 12 Hz [Elble & Koller, Tremor (1990)], steps and swings are slower.
@@ -26,11 +23,6 @@ MOTION_HZ = 15.0
 LEAST_CYCLES = 1.4  # of a line in a stretch: what settles in a rest has less
 BRIEF_S = 1.5  # a shorter stretch is all of its rest, and begins where the box was just put down
 CHANCE = 0.001  # six axes together: well below what registers and spectra share, see odds.py
-FEWEST, SHORTEST = 4, 8  # stretches, samples of one: a log of one row a second has no lines
-# Of what the shortest stretches hold of the rests, that longer ones must hold: a few long rests
-# say nothing of what is there while the box is handled.
-HELD = 0.5
-EDGE_S = 0.1  # of either end of a rest, which may be the move's yet
 MEDIAN_SHARE = 0.25  # of the band: wider than any line, narrower than a filter's colour
 # Of the counts: rounding makes lines as large as that, unless the noise is half a step or more,
 # which makes its error noise as well [Widrow & Kollar, Quantization Noise (2008)].
@@ -40,10 +32,6 @@ LEAST_STEPS, DITHERED = 0.5, 0.5
 LOBE, BESIDE, NARROW = 2, 10, 0.6
 MULTIPLES = 5  # of a frequency: what a motor's imbalance, blades and bearings shake at
 SWEPT, FALLS = 2, 0.5  # the lowest bins hold the straight line taken off; of a line's power
-LINE_BINS = 3  # to each side, of a line whose frequency lies between two bins
-# Of slow noise: bins of its corner beyond the first, levels there over the largest power of all.
-CORNERS = np.array([1.0, 3.0, 10.0, 30.0])
-LEVELS = tuple(2.0 ** -k for k in range(16))
 LEAST_SHARE = 0.25  # of the standard deviation of the noise: smaller is no matter
 # A bench or a table sways at its own frequencies, by chance: from stretch to stretch the power
 # there scatters as much as its mean (noise through a resonance is exponential). Something that
@@ -115,76 +103,6 @@ def told(lines, sensor, rate):
                    "mg" if sensor == "accel" else "deg/s", top.nats, "frequency", words, interval,
                    hz={line.letter: line.hz for line in steady}, lines=lines,
                    share=share, number=max(1, int(0.5 / top.error ** 2)))
-
-
-def rests(sessions, sensor):
-    """list of (n, 3) stretches of samples in mg or deg/s, all at rest, equally long; of the
-    whole capture where there is no rest."""
-    if not any(session.runs for session in sessions):
-        length = int(MOVING_S * sessions[0].rate)
-        return _stretches(sessions, sensor, length, whole=True) if length >= SHORTEST else []
-    rate = sessions[0].rate
-    lengths = [int(seconds * rate) for seconds in LENGTHS_S if seconds * rate >= SHORTEST]
-    numbers = {length: sum(len(range(*_starts(session, run, length)))
-                           for session in sessions for run in session.runs)
-               for length in lengths}
-    most = max((length * number for length, number in numbers.items()), default=0)
-    for length, number in numbers.items():
-        if number >= FEWEST and length * number >= HELD * most:
-            return _stretches(sessions, sensor, length)
-    return []
-
-
-def _stretches(sessions, sensor, length, whole=False):
-    stretches = []
-    for session in sessions:
-        scale = unit_of_count(session.capture.meta, sensor)
-        counts = getattr(session.capture, sensor)
-        for run in [(0, 0, len(counts))] if whole else session.runs:
-            for start in range(*_starts(session, run, length)):
-                stretches.append(counts[start:start + length] * scale)
-    return stretches
-
-
-def _starts(session, run, length):
-    """(start, stop, step) of a range: where stretches of `length` samples of a rest begin."""
-    _, first, end = run
-    edge = int(EDGE_S * session.rate)
-    return first + edge, end - edge - length + 1, length
-
-
-def spectrum(stretches, axis):
-    """(mean power (k,), the same with every stretch counted alike, R)."""
-    power = periodograms(np.array([s[:, axis] for s in stretches]))
-    # Every stretch counts alike: a burst of noise in one of them is no line.
-    level = np.median(power[:, 1:], axis=1)
-    alike = power
-    if (level > 0.0).all():
-        alike = power * (np.median(level) / level)[:, None]
-    return power.mean(axis=0), alike.mean(axis=0), len(power)
-
-
-def periodograms(x):
-    """(R, k): power of stretches x (R, n), each bin that of a sample's noise on average."""
-    window = np.hanning(x.shape[1])
-    # What creeps or drifts is no line: a straight one is taken off.
-    course = np.linspace(-1.0, 1.0, x.shape[1])
-    x = x - x.mean(axis=1)[:, None] - np.outer(x @ course / (course @ course), course)
-    return np.abs(np.fft.rfft(x * window, axis=1)) ** 2 / (window ** 2).sum()
-
-
-def step(sessions, sensor, axis):
-    """mg or deg/s of the steps that an axis counts in: rounding makes lines of its own."""
-    scale = unit_of_count(sessions[0].capture.meta, sensor)
-    return scale * min(int(steps(getattr(s.capture, sensor)[:, [axis]])[0]) for s in sessions)
-
-
-def scatter(stretches, axis, k):
-    """Standard deviation over mean of the power around index k, from stretch to stretch."""
-    window = np.hanning(len(stretches[0]))
-    x = np.array([s[:, axis] - s[:, axis].mean() for s in stretches])
-    power = (np.abs(np.fft.rfft(x * window, axis=1)) ** 2)[:, max(0, k - 1):k + 2].sum(axis=1)
-    return float(power.std(ddof=1) / max(power.mean(), 1e-300))
 
 
 def strongest(sessions, sensor, axis):
@@ -287,26 +205,3 @@ def multiples_of(k, n, first, size):
         wide = LOBE + (times + 1) // 2
         known[max(0, at - wide):max(0, at + wide + 1)] = True
     return known
-
-
-def slow_noise(band, even, at, number):
-    """(k,) power of noise below a corner frequency beyond an even floor, as that of a sensor that
-    wanders is (an Ornstein-Uhlenbeck process; with its corner at the first bin, nearly a random
-    walk): the likeliest in a mean of `number` spectra beside a line at one bin [Whittle; Percival
-    & Walden, equation 10.3]."""
-    others = np.abs(np.arange(len(band)) - at) > LINE_BINS
-    bins = 1.0 + np.arange(len(band))
-    shapes = 1.0 / (1.0 + (bins / CORNERS[:, None]) ** 2)
-    noise = even + np.concatenate([
-        np.zeros((1, len(band))),
-        *(level * band[others].max() * shapes / shapes[:, :1] for level in LEVELS)])
-    cost = number * (np.log(noise) + band / noise)[:, others].sum(axis=1)
-    return noise[int(cost.argmin())] - even
-
-
-def log_beyond(x, number):
-    """Logarithm of the probability that a Gamma variable of a whole number of stretches exceeds
-    x, however small: exp(-x) times the first terms of the series of exp(x)."""
-    k = np.arange(number)
-    return float(special.logsumexp(k * math.log(x) - special.gammaln(k + 1.0))) - x
-

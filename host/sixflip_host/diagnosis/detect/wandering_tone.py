@@ -11,7 +11,7 @@ import sys
 import numpy as np
 from scipy import special
 
-from . import spectral_lines
+from . import rest_spectra, spectral_lines
 
 RARE = 0.001  # that noise has such a tone in one stretch; how many have one is judged
 # What that is taken for: a median of so few stretches is off by a fifth, which at exp(-12) makes
@@ -26,7 +26,7 @@ def axes(sessions, sensor):
     if any(getattr(s.capture, sensor) is None for s in sessions) or not any(
             s.runs for s in sessions):
         return []
-    stretches = spectral_lines.rests(sessions, sensor)
+    stretches = rest_spectra.rests(sessions, sensor)
     if len(stretches) < FEWEST:
         return []
     tones = [("xyz"[axis], *_tone(np.array([s[:, axis] for s in stretches]), sessions[0].rate))
@@ -52,7 +52,7 @@ def chances(x, rate):
     """Of each of the stretches x (R, n): (the probability of its largest bin by noise alone, the
     bin, the power of its lobe beyond noise), (R,) each; ones where the spectra tell nothing."""
     first = max(spectral_lines.LOBE + 1, int(spectral_lines.LOWEST_HZ * x.shape[1] / rate) + 1)
-    power, nothing = spectral_lines.periodograms(x), np.zeros(len(x))
+    power, nothing = rest_spectra.periodograms(x), np.zeros(len(x))
     if power.shape[1] - first < 2 * FEWEST:
         return np.ones(len(x)), nothing.astype(int), nothing
     level = np.median(power[:, first:-1], axis=1)
