@@ -95,6 +95,20 @@ def _fitted(rows, wanted, designs, point):
     return back @ white[:, -1], spread, back @ white[:, fitted:-1], bool(determined)
 
 
+def of_rests(kind, units, parts, levels):
+    """[Unit of what lies between the sessions] at rest: units of those, parts [(Session,
+    NominalSensor)], evidence.Levels. Without a thermometer another scale may be that of another
+    temperature, and says nothing."""
+    designs, models = units[0].designs, [model for _, model in parts]
+    found = unit("bias", kind, [biases(kind, u.rows, model, u.designs)
+                                for u, model in zip(units, models)], designs)
+    if kind == "accel" and all(session.thermometer for session, _ in parts):
+        found += unit("scale", kind, [
+            scales(u.rows, u.designs, likeliest(u, levels), model.matrix)
+            for u, model in zip(units, models)], designs)
+    return found
+
+
 def unit(quantity, kind, constants, designs):
     """[Unit of the differences of S Constants], none where there is nothing between or where the
     poses leave one open: 3 (S - 1) contrasts, each session against those before it."""

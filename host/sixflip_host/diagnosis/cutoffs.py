@@ -17,7 +17,7 @@ from .. import atomic_write
 from . import evidence, forms_at_once, mimicry
 from .elimination import NONE
 from .mimicry import Mimicry
-from .odds import CHANCE, RARER
+from .odds import CHANCE, COST, RARER
 
 RUNS = 160  # of which the upper tenth, 16, tell the scale of the tail to a quarter
 FIRST = 16  # of them, which tell the levels of noise that all are likely at
@@ -60,6 +60,14 @@ def folder():
     if not root:
         root = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "sixflip"
     return Path(root) / "thresholds"
+
+
+def least_nats(number):
+    """Nats below which none of so many forms is taken in. A habit of the hand is in the moves, and
+    no lot of their signs shows it; so the nulls alone are not trusted with less than what holds
+    for any: exp(nats) of a predictive likelihood is 1 on average without an effect, and the
+    largest of `number` exceeds `number` / CHANCE in at most CHANCE [Markov's inequality]."""
+    return COST + math.log(number) + MARGIN_NATS
 
 
 def for_protocol(units, forms, levels):

@@ -4,13 +4,11 @@ Of the contrasts z = mu + noise of the session held out and the prediction d of 
 coefficients come from the other sessions, all figures are weighted root mean squares: before^2 =
 z'Qz / tr Q, after^2 = (z - d)'Q(z - d) / tr Q and floor^2, the same of noise alone. The weights Q
 are those of the fit with flicker as it usually is: a contrast that a hand scatters counts little.
-The share is that of these figures, (before^2 - after^2) / (before^2 - floor^2): what is closed,
-2 d'Qz - d'Qd, of the gap. Both are sums whose variances follow from noise drawn at the levels
-that the contrasts show, each as often as it is likely, so their ratio has a Fieller interval
-[Fieller, JRSS B 16 (1954) 175]; unbounded means that the gap is too small to measure. Noise that
-wanders more than any part's counts as noise only where it is named: else what a session has
-beyond the prediction would be taken for it. What lies between three sessions and more counts for
-the share; the figures are of what is within a session.
+The share is that of these figures (gap_share.py): what is closed, 2 d'Qz - d'Qd, of the gap. The
+variances of both follow from noise drawn at the levels that the contrasts show, each as often as
+it is likely. Noise that wanders more than any part's counts as noise only where it is named: else
+what a session has beyond the prediction would be taken for it. What lies between three sessions
+and more counts for the share; the figures are of what is within a session.
 `python -m tests.studies.robustness.shares` prints how often the intervals hold what is true.
 
 In motion a session is held out at a time by what the others say of the sizes, or every other move
@@ -21,69 +19,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from . import adequacy, between_sessions, coefficient_fits, excess, hypotheses, moves_fit, odds
+from ..experiment import linear_model, nominal_rows
+from . import adequacy, between_sessions, coefficient_fits, excess, hypotheses, moves_fit
+from .gap_share import NOTHING, Shrinkage, Sums, spread
 
 DRAWN = 400  # of noise: their variance is known to 7 %, an interval's length to 4 %
 DRAWN_FLOOR = 100  # where its mean alone is asked for: a floor of 100 contrasts to half a percent
 UNTOLD = 0.1  # of an effect's power: a variance of its size of a tenth of its square
 FAR = 6.63  # times their mean, that squares are in one of a hundred at most, of one size or more
 RESAMPLED = 400  # of which 20 lie beyond either end of a 90 % interval
-
-
-@dataclass(frozen=True)
-class Shrinkage:
-    """before, after, floor (weighted RMS a contrast, mg or deg/s); share, interval (or None);
-    further: what was held out lies surely further off from what the others foretell than from
-    nothing, by more than they may be off in the sizes."""
-
-    before: float
-    after: float
-    floor: float
-    share: float | None
-    interval: tuple | None
-    further: bool = False
-
-
-@dataclass(frozen=True)
-class Sums:
-    """Weighted squares of what was held out before, after and of noise alone; weight: sum of the
-    weights; spread: variances of the gap's and of the closed part's estimates, and the covariance
-    of both."""
-
-    before: float
-    after: float
-    floor: float
-    weight: float
-    spread: tuple
-
-    def __add__(self, other):
-        return Sums(self.before + other.before, self.after + other.after,
-                    self.floor + other.floor, self.weight + other.weight,
-                    tuple(a + b for a, b in zip(self.spread, other.spread)))
-
-    def times(self, factor):
-        """The same with so much of the weight."""
-        return Sums(factor * self.before, factor * self.after, factor * self.floor,
-                    factor * self.weight, tuple(factor * v for v in self.spread))
-
-    def shrinkage(self, named, beside=None):
-        """Shrinkage; named: something was found that can be foretold; beside: Sums of what counts
-        for the share only, of whose gap the others' noise, where it is overrated, takes nothing
-        off."""
-        rms = [math.sqrt(max(v, 0.0) / self.weight) if self.weight > 0.0 else 0.0
-               for v in (self.before, self.after, self.floor)]
-        if not named:
-            return Shrinkage(*rms, None, None)
-        gap, every = self.before - self.floor, self
-        if beside is not None and beside.weight > 0.0:
-            gap, every = max(gap, 0.0) + beside.before - beside.floor, self + beside
-        closed = every.before - every.after
-        ends = _ends(gap, closed, *every.spread)
-        return Shrinkage(*rms, *fieller(gap, closed, *every.spread),
-                         closed < 0.0 and ends is not None and ends[1] <= 0.0)
-
-
-NOTHING = Sums(0.0, 0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
+ALONG_FREEDOM = 10  # contrasts along gravity that a half of a session must have
 
 
 def shrinkage(data, chosen, index, usual, wanders=False, private=None):
@@ -177,35 +122,6 @@ def _sums(unit, metric, foretold, noise):
                     float((with_z * with_d).mean()), float((with_d ** 2).mean())))
 
 
-def spread(alone, of_z, both, of_d):
-    """Variances of the gap's and of the closed part's estimates and their covariance, of: the
-    variance of noise's own squares; z'QCQz, z'QCQd and d'QCQd with the noise's covariance C. What
-    the noise in z has in common with other noise is taken off z, in size."""
-    of_mean = max(of_z - 0.5 * alone, 0.0)
-    return alone + 4.0 * of_mean, 4.0 * of_d, 4.0 * both * math.sqrt(of_mean / max(of_z, 1e-300))
-
-
-def fieller(gap, closed, variance_gap, variance_closed, both):
-    """(share, (low, high)); (None, None) where the interval is unbounded, or nothing is closed,
-    which is too little to learn it from. both: the covariance."""
-    ends = _ends(gap, closed, variance_gap, variance_closed, both)
-    if ends is None or closed <= 0.0:
-        return None, None
-    return min(closed / gap, 1.0), (min(ends[0], 1.0), min(ends[1], 1.0))
-
-
-def _ends(gap, closed, variance_gap, variance_closed, both):
-    """(low, high) of the share, or None where it is unbounded."""
-    z2 = odds.Z_90 ** 2
-    a = gap * gap - z2 * variance_gap
-    b = -2.0 * (gap * closed - z2 * both)
-    c = closed * closed - z2 * variance_closed
-    root = b * b - 4.0 * a * c
-    if a <= 0.0 or root < 0.0:
-        return None
-    return (-b - math.sqrt(root)) / (2 * a), (-b + math.sqrt(root)) / (2 * a)
-
-
 @dataclass(frozen=True, eq=False)
 class HeldMoves:
     """What the sizes found do on the moves held out: shrinkage; by_others {fold: sizes (4,)} that
@@ -266,3 +182,20 @@ def share_of_effect(gap, held, name):
     without = gap.sizes * ~np.isin(np.arange(4), moves_fit.EFFECTS[name])
     whole, rest = (float(v @ power @ v) for v in (gap.sizes, without))
     return float(np.clip(held.shrinkage.share * (1.0 - rest / whole), 0.0, 1.0))
+
+
+def halves(kind, session, model, certified):
+    """The two halves of a session as [(part, model)], [] where they are too small."""
+    half = session.placements() // 2
+    parts = [session.part(range(half)), session.part(range(half, session.placements()))]
+    if min(len(np.unique(p.placement)) for p in parts) < 6:
+        return []
+    if kind == "accel" and min(along(p, model, certified) for p in parts) < ALONG_FREEDOM:
+        return []
+    return [(p, model) for p in parts]
+
+
+def along(part, model, certified):
+    """Contrasts that no lateral position of a placement can touch."""
+    rows = nominal_rows.rows("accel", part, model, certified)
+    return linear_model.unit(rows.loosened(), []).freedom

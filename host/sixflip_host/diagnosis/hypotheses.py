@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ..experiment import terms
-from . import strangers
+from . import session_strangers, strangers
 from .elimination import NONE, Columns
 
 TYPICAL = 0.2  # of a design's prior, which is ten times the typical size: twice typical
@@ -93,6 +93,15 @@ def columns_of(forms):
     return sum((form.shared for form in forms), NONE)
 
 
+def distinct_columns(forms):
+    """The same, each column once."""
+    priors = {}
+    for form in forms:
+        for index, prior in zip(form.shared.index.tolist(), form.shared.prior.tolist()):
+            priors.setdefault(index, prior)
+    return Columns(np.array(list(priors), int), np.array(list(priors.values()), float))
+
+
 def domain(effect):
     """Where a hypothesis shows itself."""
     if effect in FREE:
@@ -108,9 +117,9 @@ def forms_of(units, without=(), drift=True):
         start += len(design.keys)
         if design.effect in without or design.beside:
             continue
-        if design.variant == strangers.COURSE:
+        if design.variant == session_strangers.COURSE:
             forms += [_course(design, columns, variant)
-                      for variant in strangers.COURSES[design.effect]]
+                      for variant in session_strangers.COURSES[design.effect]]
             continue
         if design.choices:
             forms.append(_private(design, columns, units[0].apart))
@@ -158,13 +167,13 @@ def by_fleet(forms, sensor, prior):
 def _course(design, columns, variant):
     """A course in time that is a session's own, on all axes or on one, as wide as a drift."""
     term = np.array([int(key[1:]) for key in design.keys])
-    size, axes = strangers.roughness(variant)[term], np.array(design.axes)
+    size, axes = session_strangers.roughness(variant)[term], np.array(design.axes)
     choices = tuple(Columns(columns[mine], width * size[mine] * design.prior[mine])
                     for mine in [axes >= 0, *(axes == axis for axis in range(3))]
                     for width in WALKS) + (NONE,)
     return Form(design.effect, variant, None, design.keys, design.axes, NONE, choices,
                 index=tuple(columns.tolist()),
-                instead="" if variant == strangers.ASKED_OF_ALL else "drift")
+                instead="" if variant == session_strangers.ASKED_OF_ALL else "drift")
 
 
 def _one_axis(design, columns):

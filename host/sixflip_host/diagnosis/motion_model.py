@@ -72,7 +72,7 @@ class MotionGap:
 
     @property
     def shrinkage(self):
-        """holdout_gain.Shrinkage, or None where nothing is found."""
+        """gap_share.Shrinkage, or None where nothing is found."""
         return self.held and self.held.shrinkage
 
     def with_effect(self, name):
@@ -164,20 +164,12 @@ def _searched(fit, without, rounding=0.0):
     model = scored_sets.Model(units, [u.statistics() for u in units], moves_unit.NO_LEVELS)
     # Each at its own cost: few moves of a hand carry most of what it adds, and a form that those
     # few mimic gains ten times in nulls what another does.
-    least = least_nats(len(forms))
+    least = cutoffs.least_nats(len(forms))
     own = {form: max(nats, least) for form, nats in cutoffs.simulated_each(
         units, forms, moves_unit.NO_LEVELS, [0] * len(units)).items()}
     posterior = search_sets(model, forms, cutoffs.Cutoffs(least, STRANGE_SHARE, own=own))
     alone = model.scored(())
     return posterior, {f.effect: model.scored((f,)).score - alone.score for f in forms}
-
-
-def least_nats(number):
-    """Nats below which none of so many forms is taken in. A habit of the hand is in the moves, and
-    no lot of their signs shows it; so the nulls alone are not trusted with less than what holds
-    for any: exp(nats) of a predictive likelihood is 1 on average without an effect, and the
-    largest of `number` exceeds `number` / CHANCE in at most CHANCE [Markov's inequality]."""
-    return odds.COST + math.log(number) + cutoffs.MARGIN_NATS
 
 
 def _told(gap):

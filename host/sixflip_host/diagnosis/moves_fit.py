@@ -4,9 +4,8 @@ A move is the unit of replication: its own information on the sizes, weighted by
 with the others (Student's t), habits of the hand and bends of the sensor beside them. The point
 that it is turned about is another one in each, by as much as the moves themselves say. How
 strongly hands (or wheels) shake and shift the box on its way is told frequency by frequency: a
-spectrum for each kind of move of each session, along each direction, from the moves themselves.
-The lowest four frequencies of a move are how it was carried (metres, whatever its length), those
-above how it trembled (a density), the mean how well gravity is known on the way.
+spectrum for each kind of move of each session, along each direction, from the moves themselves
+(moves_unit.spectra).
 """
 from dataclasses import dataclass
 
@@ -15,6 +14,7 @@ import numpy as np
 from sixflip_sim.effects import typical
 
 from ..experiment import inertial_fit
+from . import moves_unit
 
 FEWEST_FLAT = 6  # turns on a table, if there is one session only
 SINGLE_FOLDS = 2  # of one session: every other move is foretold by those between
@@ -26,11 +26,6 @@ CENTRE = EFFECTS["lever_arm"]
 # cm, tried: how far apart the points are that single moves turn about. A box on an axle, a hand
 # that rolls it over its edges, one that holds it in the air.
 CENTRES_CM = (0.0, 0.1, 0.3, 1.0, 3.0)
-# A hand moves with the least jerk [Flash & Hogan, J. Neurosci. 5 (1985) 1688]: 96 % of the square
-# of such a move's acceleration is in its first four cosines.
-CARRIED = 4
-FIRST_HZ, OCTAVE = 0.3, 1.6  # of the bands of the tremor
-FEWEST = 4  # values for a level of its own
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +104,7 @@ def fit(moves, chip):
     squares, weights = [m.y ** 2 for m in moves], np.ones(len(moves))
     hands, theta = np.array([m.by_hand for m in moves]), np.zeros(len(wide))
     for _ in range(ROUNDS):
-        variances = spectra(moves, squares, weights)
+        variances = moves_unit.spectra(moves, squares, weights)
         plain = _information(moves, sessions, variances, len(wide))
         apart = _apart(*plain, theta, hands)
         gram, inner = _each_about_its_own(*plain, apart)
@@ -245,72 +240,11 @@ def _weighted(gram, inner, theta):
     q = (np.where(keep, turned ** 2 / np.where(keep, values, 1.0), 0.0)).sum(axis=1)
     rank = keep.sum(axis=1)
     weights = (FREEDOM + rank) / (FREEDOM + q)
-    excess = float((weights * q).sum() / rank.sum())
-    return weights, max(excess, 1.0)
+    return weights, max(float((weights * q).sum() / rank.sum()), 1.0)
 
 
 def _evidence(gram, inner, prior):
     """Log evidence of all columns against none of them; inner (k,)."""
-    scaled = gram * prior * prior[:, None] + np.eye(len(prior))
-    lower = np.linalg.cholesky(scaled)
+    lower = np.linalg.cholesky(gram * prior * prior[:, None] + np.eye(len(prior)))
     half = np.linalg.solve(lower, inner * prior)
     return float(0.5 * (half ** 2).sum() - np.log(np.diag(lower)).sum())
-
-
-def bands(move):
-    """(n,) band of each frequency and (n,) what a level is multiplied with there."""
-    k = np.arange(len(move.y))
-    hz = k / (2.0 * move.seconds)
-    band = 1 + CARRIED + np.maximum(0, np.log(np.maximum(hz, FIRST_HZ) / FIRST_HZ)
-                                    / np.log(OCTAVE)).astype(int)
-    band[:CARRIED + 1] = np.arange(CARRIED + 1)
-    weight = np.ones(len(k))
-    weight[1:CARRIED + 1] = len(k) / move.seconds ** 4
-    weight[0] = len(k)
-    return band, weight
-
-
-def white(move):
-    """mg²: of the sensor in one bin."""
-    return move.white ** 2 / move.bin_s
-
-
-def spectra(moves, squares, weights):
-    """list of (n, 3) variances, one of each move. squares: of what is unexplained of each (n, 3);
-    weights (moves,): how far each is believed."""
-    groups = {}
-    for number, move in enumerate(moves):
-        groups.setdefault((move.session, move.flat), []).append(number)
-    variances = [None] * len(moves)
-    for members in groups.values():
-        flat = moves[members[0]].flat
-        sums = {}
-        for number in members:
-            band, weight = bands(moves[number])
-            square = squares[number]
-            if flat:  # no way is onwards
-                square = np.stack([0.5 * (square[:, 0] + square[:, 1])] * 2 + [square[:, 2]], 1)
-            excess = (square - white(moves[number])) / weight[:, None]
-            counted = np.column_stack([excess, np.ones(len(band))])
-            first = np.flatnonzero(np.diff(band, prepend=-1))  # in the order of frequency
-            for b, total in zip(band[first].tolist(), np.add.reduceat(counted, first)):
-                sums[b] = sums.get(b, 0.0) + weights[number] * total
-        level = _levels(sums)
-        for number in members:
-            band, weight = bands(moves[number])
-            levels = np.stack([level[int(b)] for b in band])
-            # No level is below the sensor's own noise.
-            variances[number] = white(moves[number]) + np.maximum(levels, 0.0) * weight[:, None]
-    return variances
-
-
-def _levels(sums):
-    """{band: (3,)}; bands with too little in them are joined with the one before."""
-    levels, before = {}, None
-    for b in sorted(sums):
-        total = sums[b].copy()
-        if total[3] < FEWEST and before is not None and b > CARRIED + 1:
-            total += before
-        levels[b] = total[:3] / max(total[3], 1e-9)
-        before = total
-    return levels

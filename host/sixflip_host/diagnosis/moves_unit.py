@@ -1,6 +1,7 @@
-"""The moves from rest to rest of all sessions, those with poses and those of a robot that drives,
-and those of one session, or of a half of one, as a unit of the posterior: what they say of the
-effects and of the strangers of motion, all else integrated out with its prior.
+"""The moves from rest to rest of all sessions, those with poses and those of a robot that drives;
+how strongly each is shaken on its way, frequency by frequency; and those of one session, or of a
+half of one, as a unit of the posterior: what they say of the effects and of the strangers of
+motion, all else integrated out with its prior.
 
 A null is made of the moves themselves: what all hypotheses together leave of each, by the sizes
 that the others give, with its sign by lot. That leaves the hand as it is, and takes away what it
@@ -25,6 +26,11 @@ SLOW = 5  # frequencies that a way is in, and its mean
 # turns are some samples behind, a tenth of a second at most (GAP: a gyro 40 to 80 ms late).
 LINEAR_MS, MOST_LATE_MS = 15.0, 150.0
 NO_LEVELS = Levels(1.0, 1.0, 1.0, 1.0)  # of noise to choose from: the moves' own spectra are taken
+# A hand moves with the least jerk [Flash & Hogan, J. Neurosci. 5 (1985) 1688]: 96 % of the square
+# of such a move's acceleration is in its first four cosines.
+CARRIED = 4
+FIRST_HZ, OCTAVE = 0.3, 1.6  # of the bands of the tremor
+FEWEST = 4  # values for a level of its own
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,3 +174,64 @@ def _white(capture, runs):
     counts = np.sqrt(np.median(differences ** 2, axis=0) / MEDIAN_OF_SQUARE / 2.0 + 1.0 / 12.0)
     return float(counts.mean()) * 1000.0 / capture.meta["accel_lsb_per_g"] / np.sqrt(
         capture.meta["rate_hz"])
+
+
+def bands(move):
+    """(n,) band of each frequency and (n,) what a level is multiplied with there."""
+    k = np.arange(len(move.y))
+    hz = k / (2.0 * move.seconds)
+    band = 1 + CARRIED + np.maximum(0, np.log(np.maximum(hz, FIRST_HZ) / FIRST_HZ)
+                                    / np.log(OCTAVE)).astype(int)
+    band[:CARRIED + 1] = np.arange(CARRIED + 1)
+    weight = np.ones(len(k))
+    weight[1:CARRIED + 1] = len(k) / move.seconds ** 4
+    weight[0] = len(k)
+    return band, weight
+
+
+def white(move):
+    """mg²: of the sensor in one bin."""
+    return move.white ** 2 / move.bin_s
+
+
+def spectra(moves, squares, weights):
+    """list of (n, 3) variances, one of each move. squares: of what is unexplained of each (n, 3);
+    weights (moves,): how far each is believed. The lowest four frequencies of a move are how it
+    was carried (metres, whatever its length), those above how it trembled (a density), the mean
+    how well gravity is known on the way."""
+    groups = {}
+    for number, move in enumerate(moves):
+        groups.setdefault((move.session, move.flat), []).append(number)
+    variances = [None] * len(moves)
+    for members in groups.values():
+        flat = moves[members[0]].flat
+        sums = {}
+        for number in members:
+            band, weight = bands(moves[number])
+            square = squares[number]
+            if flat:  # no way is onwards
+                square = np.stack([0.5 * (square[:, 0] + square[:, 1])] * 2 + [square[:, 2]], 1)
+            excess = (square - white(moves[number])) / weight[:, None]
+            counted = np.column_stack([excess, np.ones(len(band))])
+            first = np.flatnonzero(np.diff(band, prepend=-1))  # in the order of frequency
+            for b, total in zip(band[first].tolist(), np.add.reduceat(counted, first)):
+                sums[b] = sums.get(b, 0.0) + weights[number] * total
+        level = _levels(sums)
+        for number in members:
+            band, weight = bands(moves[number])
+            levels = np.stack([level[int(b)] for b in band])
+            # No level is below the sensor's own noise.
+            variances[number] = white(moves[number]) + np.maximum(levels, 0.0) * weight[:, None]
+    return variances
+
+
+def _levels(sums):
+    """{band: (3,)}; bands with too little in them are joined with the one before."""
+    levels, before = {}, None
+    for b in sorted(sums):
+        total = sums[b].copy()
+        if total[3] < FEWEST and before is not None and b > CARRIED + 1:
+            total += before
+        levels[b] = total[:3] / max(total[3], 1e-9)
+        before = total
+    return levels

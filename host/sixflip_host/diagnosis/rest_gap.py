@@ -77,7 +77,7 @@ class RestCause:
 @dataclass(frozen=True)
 class RestGap:
     """One sensor: kind, rest (LongRest), causes (tuple of RestCause), places (tuple of Place),
-    nameless (probabilities that something without a name is there), sums (one holdout_gain.Sums
+    nameless (probabilities that something without a name is there), sums (one gap_share.Sums
     an axis), looked_at (names of effects)."""
 
     kind: str
@@ -90,12 +90,12 @@ class RestGap:
 
     @property
     def shrinkage(self):
-        """holdout_gain.Shrinkage of the three axes together."""
+        """gap_share.Shrinkage of the three axes together."""
         return sum(self.sums[1:], self.sums[0]).shrinkage(self._named)
 
     @property
     def by_axis(self):
-        """{"x": holdout_gain.Shrinkage, ...}"""
+        """{"x": gap_share.Shrinkage, ...}"""
         return {k: sums.shrinkage(self._named) for k, sums in zip("xyz", self.sums)}
 
     @property

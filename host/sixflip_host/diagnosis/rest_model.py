@@ -17,6 +17,7 @@ from . import (
     hypotheses,
     members,
     scored_sets,
+    session_strangers,
     strangers,
     wandering,
 )
@@ -24,11 +25,7 @@ from .posterior import judge_likeliest, search_sets
 from .sensor_gap import DOUBT, SensorGap
 from .settings import Conditions, Settings
 
-ALONG_FREEDOM = 10  # contrasts along gravity that a half of a session must have
 SECOND_ORDER_CHI2 = 2.0  # of what turned poses change in a cause: one nat, at most
-# Nats that a drift has for it at most from what it does within the rests: beyond doubt (odds.COST
-# and twice what a choice costs).
-MOVES = 10.0
 JUDGED_AGAIN = 3  # times, at most, that a set is with what a walk does beside the rest of it
 SHRUNK = 0.1  # of the usual sizes: of what next to nothing is known, next to nothing
 
@@ -169,7 +166,7 @@ class RestModel:
         private = [own + strange for own in gap.posterior.best.private]
         if gap.same_session and gap.chosen:
             certified = self.settings.certified
-            parts = halves(self.kind, *gap.parts[0], certified)
+            parts = holdout_gain.halves(self.kind, *gap.parts[0], certified)
             if parts:
                 wanted = hypotheses.columns_of(gap.chosen).index
                 data = coefficient_fits.data_of([self.unit(*part, certified, wanted)
@@ -192,7 +189,8 @@ class RestModel:
             designs += terms.along_axes(part, model, self.chip)
             designs.append(terms.of_terms("box_tilt", "accel", part.moment(model.up), part.n,
                                                chip=self.chip))
-        designs += strangers.designs(part, model.up, self.kind, reference, rows.left())
+        designs += strangers.shared(part, model.up, self.kind, reference)
+        designs += session_strangers.private(part, model.up, self.kind, rows.left())
         if self.kind == "accel":
             designs = terms.corrected(designs, model.matrix)
         if self.settings.certified:
@@ -228,32 +226,14 @@ class RestModel:
     def _within(self, part, explained=0.0):
         """{(effect, variant, number of its choice): nats}: what the rests say of each walk, and
         what the choice of a period or of a step costs; explained: see wandering.within_rests."""
-        nats = np.array([wandering.within_rests(
-            part, self.kind, explained, width * strangers.SCALE[self.kind],
-            adequacy.usual(self.chip, self.kind)) for width in hypotheses.WALKS])
-        by_choice = {("drift", "walk", k): float(row.sum()) for k, row in enumerate(nats)}
-        by_choice.update({("drift", hypotheses.ONE_AXIS, k): float(v)
-                          for k, v in enumerate(nats.T.ravel())})
-        # It is enough to know that it moves while the box lies still: so do other things, whose
-        # own likelihood says so.
-        by_choice = {key: min(value, MOVES) for key, value in by_choice.items()}
-        return {**by_choice, **strangers.looked_at(
-            part.t, len(hypotheses.PARTS) * len(hypotheses.WIDTHS))}
+        return {**wandering.walks_within_rests(part, self.kind, self.chip, explained),
+                **session_strangers.looked_at(
+                    part.t, len(hypotheses.PARTS) * len(hypotheses.WIDTHS))}
 
     def between(self, units, parts):
         """[Unit of what lies between the sessions], none where there is nothing between; parts:
-        [(Session, NominalSensor)]. Without a thermometer another scale may be that of another
-        temperature, and says nothing."""
-        designs, levels = units[0].designs, self.usual()
-        found = between_sessions.unit("bias", self.kind, [
-            between_sessions.biases(self.kind, u.rows, model, u.designs)
-            for u, (_, model) in zip(units, parts)], designs)
-        if self.kind == "accel" and all(session.thermometer for session, _ in parts):
-            found += between_sessions.unit("scale", self.kind, [
-                between_sessions.scales(u.rows, u.designs, between_sessions.likeliest(
-                    u, levels), model.matrix)
-                for u, (_, model) in zip(units, parts)], designs)
-        return found
+        [(Session, NominalSensor)]."""
+        return between_sessions.of_rests(self.kind, units, parts, self.usual())
 
     def _less_known(self, rows, designs):
         """The rows without what the simulator compared with predicts already."""
@@ -266,20 +246,3 @@ class RestModel:
         if not sizes.any():
             return rows
         return replace(rows, y=rows.y - np.hstack([d.columns for d in designs]) @ sizes)
-
-
-def halves(kind, session, model, certified):
-    """The two halves of a session as [(part, model)], [] where they are too small."""
-    half = session.placements() // 2
-    parts = [session.part(range(half)), session.part(range(half, session.placements()))]
-    if min(len(np.unique(p.placement)) for p in parts) < 6:
-        return []
-    if kind == "accel" and min(along(p, model, certified) for p in parts) < ALONG_FREEDOM:
-        return []
-    return [(p, model) for p in parts]
-
-
-def along(part, model, certified):
-    """Contrasts that no lateral position of a placement can touch."""
-    rows = nominal_rows.rows("accel", part, model, certified)
-    return linear_model.unit(rows.loosened(), []).freedom

@@ -38,7 +38,7 @@ def judge(rests, findings, settings, conditions):
     accel, gyro = (RestModel(kind, chip, settings, conditions) for kind in ("accel", "gyro"))
     jobs = [lambda: accel.fit(sessions, nominal)]
     if all(s.gyro is not None for s in sessions):
-        swapped = turn_model.swapped(sessions, nominal)
+        swapped = stray_turns.swapped(sessions, nominal)
         # The Earth's rate on the wrong axes looks like gravity in the gyro.
         upright = sessions if swapped is None else [
             s.with_gyro_axes(swapped.read) for s in sessions]

@@ -1,13 +1,14 @@
 """The score of a set of hypotheses on the units of one sensor: evidence.py with the columns of all
 members, those of each unit's own chosen one by one, and what was computed once kept.
 """
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass
+from functools import cached_property, reduce
 
 import numpy as np
 
 from . import evidence, forms_at_once
 from .elimination import NONE, Columns, Elimination
+from .hypotheses import distinct_columns
 
 KEPT = 8  # eliminations of each unit that are kept
 NEAR = 14  # forms that are looked at with all levels of noise
@@ -46,7 +47,7 @@ class Scored:
 
     @property
     def shared(self):
-        return _distinct(self.forms)
+        return distinct_columns(self.forms)
 
     @property
     def names(self):
@@ -69,10 +70,7 @@ class Model:
 
     def scored(self, forms):
         """Scored of a tuple of Forms."""
-        scored = self._empty
-        for form in forms:
-            scored = self.extended(scored, form)
-        return scored
+        return reduce(self.extended, forms, self._empty)
 
     def extended(self, base, form):
         """Scored of a Scored set with one more Form; what each session chooses for the others is
@@ -105,7 +103,7 @@ class Model:
         scored = [self._rough(base, form) if form.choices or form.free else None for form in forms]
         plain = [place for place, done in enumerate(scored) if done is None]
         free, private = _free(base.forms), base.private
-        shared = [_distinct((*base.forms, forms[place])) for place in plain]
+        shared = [distinct_columns((*base.forms, forms[place])) for place in plain]
         for places in forms_at_once.by_size(shared).values():
             index, prior = (np.stack([getattr(shared[k], name) for k in places])
                             for name in ("index", "prior"))
@@ -114,7 +112,8 @@ class Model:
                 self._levels_tried(number, free),
                 self._elimination(number, private[number]))
                 for number, (unit, statistics) in enumerate(zip(self.units, self.statistics))]
-            scores = self._score(fits, Columns(index, prior)) + _worth(base.chosen)
+            scores = _worth(base.chosen) + evidence.score(
+                fits, Columns(index, prior), self.units[0].apart, self._positive)
             for number, k in enumerate(places):
                 scored[plain[k]] = Scored(
                     (*base.forms, forms[plain[k]]), float(scores[number]),
@@ -125,13 +124,12 @@ class Model:
         """Scored of a base with one more Form (both None: of no form), looked at with few levels
         of noise; what is private in the base stays as it is."""
         forms = () if base is None else (*base.forms, form)
-        shared, free = _distinct(forms), _free(forms)
+        shared, free = distinct_columns(forms), _free(forms)
         likeliest, there = [], []
         for place, unit in enumerate(self.units):
             choices = () if base is None else base.chosen[place]
-            added = ((), ())
-            if form is not None and form.choices and not unit.between:
-                added = [(one,) for one in self._choice(place, shared, choices, form, free)]
+            added = [(one,) for one in self._choice(place, shared, choices, form, free)] \
+                if form is not None and form.choices and not unit.between else ((), ())
             likeliest.append((*choices, *added[0]))
             there.append((*choices, *added[1]))
         # A session by itself has no need of what the others say it has.
@@ -141,14 +139,19 @@ class Model:
 
     def _fitted(self, forms, shared, free, chosen):
         """Scored of forms with these choices, looked at with few levels of noise."""
-        fits = []
-        for place, (unit, statistics) in enumerate(zip(self.units, self.statistics)):
-            private = _private(chosen[place])
-            fits.append(evidence.fit(
-                unit, statistics, shared, private, self._prior(place, free),
-                self._levels_tried(place, free), self._elimination(place, private)))
-        score = float(self._score(fits, shared)[0]) + _worth(chosen)
-        return Scored(forms, score, tuple(fits), chosen)
+        return self._scored(forms, shared, chosen, [
+            self._fit(place, shared, _private(choices), free, self._levels_tried(place, free))
+            for place, choices in enumerate(chosen)])
+
+    def _scored(self, forms, shared, chosen, fits):
+        """Scored of forms with the evidence.Fit of each unit."""
+        score = evidence.score(fits, shared, self.units[0].apart, self._positive)[0]
+        return Scored(forms, float(score) + _worth(chosen), tuple(fits), chosen)
+
+    def _fit(self, place, shared, private, free, points):
+        """evidence.Fit of one unit at these points of its grid."""
+        return evidence.fit(self.units[place], self.statistics[place], shared, private,
+                            self._prior(place, free), points, self._elimination(place, private))
 
     def _rechosen(self, rough):
         """The Scored set with every session's choices made again beside all the others, as long
@@ -177,17 +180,11 @@ class Model:
 
     def _closer(self, rough):
         """The Scored set looked at with all levels of noise around its likeliest."""
-        free, fits = _free(rough.forms), []
-        for place, (unit, fit) in enumerate(zip(self.units, rough.fits)):
-            private = rough.private[place]
-            fits.append(evidence.fit(
-                unit, self.statistics[place], rough.shared, private, self._prior(place, free),
-                unit.around(int(fit.index[0])), self._elimination(place, private)))
-        score = float(self._score(fits, rough.shared)[0]) + _worth(rough.chosen)
-        return replace(rough, score=score, fits=tuple(fits))
-
-    def _score(self, fits, shared):
-        return evidence.score(fits, shared, self.units[0].apart, self._positive)
+        shared, free = rough.shared, _free(rough.forms)
+        return self._scored(rough.forms, shared, rough.chosen, [
+            self._fit(place, shared, private, free, unit.around(int(fit.index[0])))
+            for place, (unit, fit, private) in enumerate(zip(
+                self.units, rough.fits, rough.private))])
 
     def _prior(self, place, free):
         """(G,) log prior of one unit's grid, made once for what is free."""
@@ -232,10 +229,9 @@ class Model:
             for number, likelihood in zip(numbers, likelihoods.tolist()):
                 within = unit.within.get((form.effect, form.variant, number), 0.0)
                 tried.append((likelihood + within + form.chances[number], number, within))
+        something = [one for one in tried if len(form.choices[one[1]])] or tried
         return tuple(Choice(form, number, within)
-                     for _, number, within in (max(tried), max(
-                         (one for one in tried if len(form.choices[one[1]])),
-                         default=max(tried))))
+                     for _, number, within in (max(tried), max(something)))
 
 
 def _private(choices):
@@ -251,12 +247,3 @@ def _worth(chosen):
 def _free(forms):
     """Names of the levels that may be anything."""
     return frozenset().union(*(form.free for form in forms))
-
-
-def _distinct(forms):
-    """Shared Columns of all forms, each column once."""
-    priors = {}
-    for form in forms:
-        for index, prior in zip(form.shared.index.tolist(), form.shared.prior.tolist()):
-            priors.setdefault(index, prior)
-    return Columns(np.array(list(priors), int), np.array(list(priors.values()), float))

@@ -1,4 +1,5 @@
-"""Turns that end far from where gravity says while the others do not, as where samples were lost.
+"""Turns that end far from where gravity says: all of them, where a gyro's axes are swapped; or
+some while the others do not, as where samples were lost.
 
 What is left across gravity of each turn, degrees, is either of one kind, normal or with the
 heavier tails of a hand (Student's t), or of that kind and of a far larger one for a share of them.
@@ -12,6 +13,8 @@ import numpy as np
 from scipy import special
 
 from ..experiment import turns
+from .detect import axis_order, wrong_scale
+from .detect.detection import Finding, present
 from .moves_fit import FREEDOM
 
 LEVELS_DEG = tuple(0.03 * 1.35 ** k for k in range(23))  # of turns that are alike
@@ -19,6 +22,8 @@ FAR_DEG, FAR_TIMES = (5.0, 15.0, 45.0), 5.0  # a tenth of a second that is lost,
 SHARES = (0.01, 0.03, 0.1, 0.3)  # tried, of turns that are far off
 TAILS = (FREEDOM, 1e6)  # degrees of freedom of turns that are alike; so many are normal
 ROUNDS = 8  # of weighting turns by how far they are off
+WRONG_DEG = 25.0  # of a turn's end: as of a label that gravity contradicts (blocks.FAR_OFF_DEG)
+OFF_DEG = 6.0  # of a turn's end by a gyro not yet calibrated: a few percent of a half turn
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,3 +124,45 @@ def _likelihoods(sessions, kinds):
 def _weighted(columns, precision):
     """(D, p, 2 n) of columns (2 n, p) and precision (D, n, 2)."""
     return columns.T * precision.reshape(len(precision), 1, -1)
+
+
+def swapped(sessions, nominal):
+    """Finding of gyro axes that are swapped or inverted, or None; its read (3, 3) takes what is
+    true to what is read."""
+    # A turn about the vertical looks the same to gravity whichever way the axes point.
+    leaning = (turn for s, m in zip(sessions, nominal) for turn in turns.integrated(
+        [move for move in turns.usable_moves(s, m.up) if move.before @ move.after < 0.8], s, m.up))
+    chosen = [turn for _, turn in zip(range(10), leaning)]
+    plain = np.array([t.off() for t in chosen])
+    if len(chosen) < 3 or plain.mean() < WRONG_DEG:  # the plain order does: no other is tried
+        return None
+    # Nor is the plain order in a range that is not the header's another order.
+    plain = min([plain, *(np.array([t.integrated(np.eye(3) / times).off() for t in chosen])
+                          for times in wrong_scale.RANGES)], key=np.sum)
+    if plain.mean() < WRONG_DEG:
+        return None
+    off, matrix = min(((np.array([t.integrated(order).off() for t in chosen]), order)
+                       for order in axis_order.SIGNED), key=lambda pair: pair[0].mean())
+    score = order_nats(off, plain)
+    if not present(score):
+        return None
+    read = matrix.T  # what register i carries: true = matrix · read
+    sensor, order = axis_order.whose(read, any(s.labelled for s in sessions))
+    value = axis_order.sources(order)
+    return Finding("axis_swap", sensor, sorted(value), value, "axis", score, "orientation",
+                   "axes are swapped or inverted against the %s's" % (
+                       "gyro" if sensor == "accel" else "accelerometer"),
+                   {k: (v, v) for k, v in value.items()},
+                   share=axis_order.explained(plain, off), number=len(plain),
+                   read=read)
+
+
+def order_nats(off, plain):
+    """Log likelihood ratio (nats) of turns whose ends are off (n,) degrees in an order of the
+    axes, as a direction normal about the right one, against the plain order's (n,), and against
+    ends that lie anywhere on the sphere."""
+    def likelihood(degrees):
+        return float((-0.5 * (degrees / OFF_DEG) ** 2
+                      - np.log(2.0 * np.pi * np.radians(OFF_DEG) ** 2)).sum())
+    anywhere = -len(off) * np.log(4.0 * np.pi)
+    return likelihood(off) - max(likelihood(plain), anywhere) - np.log(len(axis_order.SIGNED))

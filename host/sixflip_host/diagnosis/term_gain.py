@@ -10,7 +10,7 @@ from sixflip.record.correction import correction_of
 from .. import record_terms
 from ..experiment import attitude_fit, nominal_rows
 from ..export.corrected_rows import corrected_rows
-from . import coefficient_fits, rest_model, turn_model
+from . import coefficient_fits, holdout_gain, turn_model
 
 
 def corrected(session, record):
@@ -71,7 +71,7 @@ def gains(gap, record, certified):
     parts, data, index = [(s, None) for s, _ in gap.parts], gap.data, gap.adequacy.index
     if gap.same_session:
         session, model = gap.parts[0]
-        halves = [] if _turning(gap) else rest_model.halves(gap.kind, session, model, certified)
+        halves = [] if _turning(gap) else holdout_gain.halves(gap.kind, session, model, certified)
         if not halves:
             return Gains(gap, record, certified, [], data, 0.0)
         parts = [(session, set(p.placement.tolist())) for p, _ in halves]

@@ -9,8 +9,7 @@ from ..experiment import covariance, linear_model, noise_arrays, nominal_rows, t
 from ..experiment.projection import lateral_basis
 from ..planning.detectable import FLIP_DEG
 from . import between_sessions, stray_turns
-from .detect import axis_order, saturation, wrong_scale
-from .detect.detection import Finding, present
+from .detect import saturation
 from .evidence import Levels
 from .hypotheses import TYPICAL
 from .rest_model import RestModel
@@ -20,8 +19,6 @@ ATTITUDE_DEG = 0.03  # of gravity's direction at rest
 # Of half a turn by hand, a level of its own: a careless one is five to ten degrees off.
 FLIPS_DEG = (0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8)
 FEWEST_MOVES = 6  # two equations each: as many as nine of the matrix and three of the bias
-WRONG_DEG = 25.0  # of a turn's end: as of a label that gravity contradicts (blocks.FAR_OFF_DEG)
-OFF_DEG = 6.0  # of a turn's end by a gyro not yet calibrated: a few percent of a half turn
 BANDS_DPS = (1.0, 4.0)  # widths over which a dead band bends the rates beyond it
 TIMES = (1.0, 10.0)  # the usual width of a dead band: no data sheet gives one
 # Times what its flanks foretell is what a peak that is cut off has lost: the usual coefficient,
@@ -240,45 +237,3 @@ def usable(session, nominal):
     """True when there are enough turns to judge."""
     return session.gyro is not None and len(
         turns.usable_moves(session, nominal.up)) >= FEWEST_MOVES
-
-
-def swapped(sessions, nominal):
-    """Finding of gyro axes that are swapped or inverted, or None; its read (3, 3) takes what is
-    true to what is read."""
-    # A turn about the vertical looks the same to gravity whichever way the axes point.
-    leaning = (turn for s, m in zip(sessions, nominal) for turn in turns.integrated(
-        [move for move in turns.usable_moves(s, m.up) if move.before @ move.after < 0.8], s, m.up))
-    chosen = [turn for _, turn in zip(range(10), leaning)]
-    plain = np.array([t.off() for t in chosen])
-    if len(chosen) < 3 or plain.mean() < WRONG_DEG:  # the plain order does: no other is tried
-        return None
-    # Nor is the plain order in a range that is not the header's another order.
-    plain = min([plain, *(np.array([t.integrated(np.eye(3) / times).off() for t in chosen])
-                          for times in wrong_scale.RANGES)], key=np.sum)
-    if plain.mean() < WRONG_DEG:
-        return None
-    off, matrix = min(((np.array([t.integrated(order).off() for t in chosen]), order)
-                       for order in axis_order.SIGNED), key=lambda pair: pair[0].mean())
-    score = order_nats(off, plain)
-    if not present(score):
-        return None
-    read = matrix.T  # what register i carries: true = matrix · read
-    sensor, order = axis_order.whose(read, any(s.labelled for s in sessions))
-    value = axis_order.sources(order)
-    return Finding("axis_swap", sensor, sorted(value), value, "axis", score, "orientation",
-                   "axes are swapped or inverted against the %s's" % (
-                       "gyro" if sensor == "accel" else "accelerometer"),
-                   {k: (v, v) for k, v in value.items()},
-                   share=axis_order.explained(plain, off), number=len(plain),
-                   read=read)
-
-
-def order_nats(off, plain):
-    """Log likelihood ratio (nats) of turns whose ends are off (n,) degrees in an order of the
-    axes, as a direction normal about the right one, against the plain order's (n,), and against
-    ends that lie anywhere on the sphere."""
-    def likelihood(degrees):
-        return float((-0.5 * (degrees / OFF_DEG) ** 2
-                      - np.log(2.0 * np.pi * np.radians(OFF_DEG) ** 2)).sum())
-    anywhere = -len(off) * np.log(4.0 * np.pi)
-    return likelihood(off) - max(likelihood(plain), anywhere) - np.log(len(axis_order.SIGNED))

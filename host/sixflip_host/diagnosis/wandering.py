@@ -1,8 +1,8 @@
 """Noise that wanders: how much a sensor does, with its interval, and what the rests say of it.
 
-A random walk is given to the contrasts as a few slow terms (strangers.walk). What it does from
-one block of a rest to the next is faster than those, and is judged within the rests: what only
-differs from pose to pose does nothing while the box lies still, and is no drift.
+A random walk is given to the contrasts as a few slow terms (session_strangers.walk). What it does
+from one block of a rest to the next is faster than those, and is judged within the rests: what
+only differs from pose to pose does nothing while the box lies still, and is no drift.
 """
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ import numpy as np
 from ..experiment import long_rest, nominal_rows
 from ..experiment.flicker import differences
 from ..experiment.noise_spectrum import HALF_OF_90
-from . import adequacy, evidence, excess
+from . import adequacy, evidence, excess, hypotheses, strangers
 from .elimination import NONE
 
 # s of the short means whose steps are looked at; steps that their tails are known from; steps that
@@ -20,6 +20,9 @@ STEP_S, FEWEST_STEPS, KNOCKS = (0.5, 1.0, 2.0, 4.0, 8.0), 60, 3
 # Of gravity along an axis: a box on a face, 18 degrees off at most; differences within the rests
 # that it is upright in, of an axis.
 ON_FACE, FEWEST_OF_AXIS = 0.95, 6
+# Nats that a drift has for it at most from what it does within the rests: beyond doubt (odds.COST
+# and twice what a choice costs).
+MOVES = 10.0
 
 
 @dataclass(frozen=True)
@@ -171,6 +174,19 @@ def within_rests(part, kind, explained, size, flicker):
                   for v in (over, more))
     ratio = np.log(over / more) + apart ** 2 * (1.0 / over - 1.0 / more)
     return 0.5 * ratio.sum(axis=0)
+
+
+def walks_within_rests(part, kind, chip, explained):
+    """{(effect, variant, number of its choice): nats}: what the rests of a session say of each
+    walk; explained: see within_rests. It is enough to know that it moves while the box lies still:
+    so do other things, whose own likelihood says so."""
+    nats = np.array([within_rests(
+        part, kind, explained, width * strangers.SCALE[kind], adequacy.usual(chip, kind))
+        for width in hypotheses.WALKS])
+    by_choice = {("drift", "walk", k): float(row.sum()) for k, row in enumerate(nats)}
+    by_choice.update({("drift", hypotheses.ONE_AXIS, k): float(v)
+                      for k, v in enumerate(nats.T.ravel())})
+    return {key: min(value, MOVES) for key, value in by_choice.items()}
 
 
 def jumps(rests, rate):

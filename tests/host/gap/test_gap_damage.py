@@ -7,7 +7,7 @@ import pytest
 
 from sixflip.poses import faces
 from sixflip_host.capture import registers
-from sixflip_host.diagnosis import samples_judged, turn_model
+from sixflip_host.diagnosis import samples_judged, stray_turns
 from sixflip_host.diagnosis.detect import (
     byte_faults,
     codes,
@@ -202,7 +202,7 @@ def test_a_wrong_range_of_the_gyro_is_no_other_order_of_its_axes(sound, factor):
     other = copy.copy(sound)
     other.meta = dict(sound.meta, gyro_lsb_per_dps=sound.meta["gyro_lsb_per_dps"] / factor)
     session = blocks.session_of("one", other)
-    assert turn_model.swapped([session], [attitude_fit.fit(session)]) is None
+    assert stray_turns.swapped([session], [attitude_fit.fit(session)]) is None
 
 
 def test_flips_alone_tell_the_gyros_range(sound):

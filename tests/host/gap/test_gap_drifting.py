@@ -11,7 +11,7 @@ from sixflip_host.diagnosis import (
     hypotheses,
     localisation,
     rest_model,
-    strangers,
+    session_strangers,
     wandering,
 )
 from sixflip_host.experiment import attitude_fit, blocks
@@ -133,7 +133,7 @@ def test_what_something_else_explains_says_nothing_of_a_walk(captures):
                       for k in range(axis * len(hypotheses.WALKS),
                                      (axis + 1) * len(hypotheses.WALKS))) for axis in range(3)]
         alone = wandering.within_rests(session, "gyro", 0.0, 0.05, 0.003)
-        assert within[0] < 1.0 < within[1] and alone[0] > rest_model.MOVES
+        assert within[0] < 1.0 < within[1] and alone[0] > wandering.MOVES
 
 
 def gyro_at_rest(sessions):
@@ -200,7 +200,7 @@ def test_what_was_looked_for_costs_what_was_looked_through(captures):
     forms = [form for form in gap.options if form.effect in lengths]
     assert {form.effect for form in forms} == set(lengths)
     for form in forms:
-        fixed = len(designs[form.effect].choices) - strangers.STRONGEST
+        fixed = len(designs[form.effect].choices) - session_strangers.STRONGEST
         last = first[form.effect] + designs[form.effect].choices[fixed][0]
         cost = [gap.units[0].within.get((form.effect, "", k), 0.0)
                 for k in range(len(form.choices))]
@@ -214,8 +214,8 @@ def test_the_largest_step_is_found_on_the_axis_that_has_it(n):
     """One axis is a hundred times as noisy as the one that jumps."""
     left = np.random.default_rng(2).normal(0.0, 1.0, (n, 3)) * np.array([100.0, 0.1, 0.1])
     left[n // 2:, 2] += 5.0
-    first, *others = strangers.highest(np.arange(n), left)
-    assert first.shape == (n,) and len(others) == strangers.STRONGEST - 1
+    first, *others = session_strangers.highest(np.arange(n), left)
+    assert first.shape == (n,) and len(others) == session_strangers.STRONGEST - 1
     if n > 2:
         assert np.flatnonzero(np.diff(first)).tolist() == [n // 2 - 1]
 

@@ -9,7 +9,7 @@ from scipy.signal import savgol_filter
 from sixflip_host import cli
 from sixflip_host.capture import capture_file, rests
 from sixflip_host.capture.capture_file import Capture
-from sixflip_host.diagnosis import closed_loops, motion_model, moves_fit, rests_judged
+from sixflip_host.diagnosis import closed_loops, motion_model, moves_fit, moves_unit, rests_judged
 from sixflip_host.diagnosis.holdout_gain import Shrinkage
 from sixflip_host.experiment import attitude_fit, blocks, inertial_fit, turns
 from sixflip_host.simulation import scenario, simulated_session
@@ -205,7 +205,7 @@ def test_rests_of_a_capture_without_labels():
 
 
 class Kind:
-    """What moves_fit.spectra reads of a move."""
+    """What moves_unit.spectra reads of a move."""
 
     session, flat, seconds, bin_s, white = 0, False, 4.0, 0.1, 0.1
 
@@ -218,7 +218,7 @@ def test_a_hands_spectrum_is_that_of_its_moves():
     kinds = [Kind(40) for _ in range(400)]
     sizes = np.where(np.arange(40) < 5, 20.0, 4.0)[:, None] * [1.0, 2.0, 0.5]
     left = [rng.standard_normal((40, 3)) * sizes for _ in kinds]
-    found = moves_fit.spectra(kinds, [x ** 2 for x in left], np.ones(400))
+    found = moves_unit.spectra(kinds, [x ** 2 for x in left], np.ones(400))
     assert np.sqrt(found[0]) == pytest.approx(sizes, rel=0.12)
 
 

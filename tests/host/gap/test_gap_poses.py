@@ -6,7 +6,7 @@ import pytest
 
 from sixflip_host.capture import rests
 from sixflip_host.capture.capture_file import Capture
-from sixflip_host.diagnosis import turn_model
+from sixflip_host.diagnosis import stray_turns
 from sixflip_host.experiment import attitude_fit, blocks
 from sixflip_host.simulation import scenario, simulated_session
 from tests.worlds.unlabelled import FACES, unlabelled
@@ -60,5 +60,5 @@ def test_without_labels_the_fewest_axes_to_be_put_right_are_the_wrong_ones(order
     capture.pose = None
     capture.accel = capture.accel @ np.array(order, capture.accel.dtype).T
     session = blocks.session_of("swapped", capture)
-    found = turn_model.swapped([session], [attitude_fit.fit(session)])
+    found = stray_turns.swapped([session], [attitude_fit.fit(session)])
     assert (found.sensor, found.value) == (sensor, value)

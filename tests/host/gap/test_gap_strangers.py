@@ -3,7 +3,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from sixflip_host.diagnosis import hypotheses, strangers
+from sixflip_host.diagnosis import hypotheses, session_strangers, strangers
 from sixflip_host.experiment import blocks, way_memory
 from sixflip_host.simulation import scenario, simulated_session
 
@@ -55,7 +55,7 @@ def test_a_session_may_have_nothing_of_what_is_its_own():
     plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 5})
     one = blocks.session_of("", simulated_session.session(plan, 0))
     up = np.zeros((len(one.runs), 3))
-    designs = strangers.private(one, up, "accel", np.zeros((one.n, 3)))
+    designs = session_strangers.private(one, up, "accel", np.zeros((one.n, 3)))
     silent = np.zeros(sum(len(design.keys) for design in designs), bool)
     forms = hypotheses.forms_of([SimpleNamespace(designs=designs, silent=silent, apart=False)])
     private = [form for form in forms if form.choices]

@@ -1,0 +1,96 @@
+"""How far a gap shrinks: its figures before, after and of noise alone, and the share of it that
+is closed.
+
+The share is that of squares, (before^2 - after^2) / (before^2 - floor^2). Both are sums whose
+variances are known, so their ratio has a Fieller interval [Fieller, JRSS B 16 (1954) 175];
+unbounded means that the gap is too small to measure.
+"""
+import math
+from dataclasses import dataclass
+
+from . import odds
+
+
+@dataclass(frozen=True)
+class Shrinkage:
+    """before, after, floor (weighted RMS a contrast, mg or deg/s); share, interval (or None);
+    further: what was held out lies surely further off from what the others foretell than from
+    nothing, by more than they may be off in the sizes."""
+
+    before: float
+    after: float
+    floor: float
+    share: float | None
+    interval: tuple | None
+    further: bool = False
+
+
+@dataclass(frozen=True)
+class Sums:
+    """Weighted squares of what was held out before, after and of noise alone; weight: sum of the
+    weights; spread: variances of the gap's and of the closed part's estimates, and the covariance
+    of both."""
+
+    before: float
+    after: float
+    floor: float
+    weight: float
+    spread: tuple
+
+    def __add__(self, other):
+        return Sums(self.before + other.before, self.after + other.after,
+                    self.floor + other.floor, self.weight + other.weight,
+                    tuple(a + b for a, b in zip(self.spread, other.spread)))
+
+    def times(self, factor):
+        """The same with so much of the weight."""
+        return Sums(factor * self.before, factor * self.after, factor * self.floor,
+                    factor * self.weight, tuple(factor * v for v in self.spread))
+
+    def shrinkage(self, named, beside=None):
+        """Shrinkage; named: something was found that can be foretold; beside: Sums of what counts
+        for the share only, of whose gap the others' noise, where it is overrated, takes nothing
+        off."""
+        rms = [math.sqrt(max(v, 0.0) / self.weight) if self.weight > 0.0 else 0.0
+               for v in (self.before, self.after, self.floor)]
+        if not named:
+            return Shrinkage(*rms, None, None)
+        gap, every = self.before - self.floor, self
+        if beside is not None and beside.weight > 0.0:
+            gap, every = max(gap, 0.0) + beside.before - beside.floor, self + beside
+        closed = every.before - every.after
+        ends = _ends(gap, closed, *every.spread)
+        return Shrinkage(*rms, *fieller(gap, closed, *every.spread),
+                         closed < 0.0 and ends is not None and ends[1] <= 0.0)
+
+
+NOTHING = Sums(0.0, 0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
+
+
+def spread(alone, of_z, both, of_d):
+    """Variances of the gap's and of the closed part's estimates and their covariance, of: the
+    variance of noise's own squares; z'QCQz, z'QCQd and d'QCQd with the noise's covariance C. What
+    the noise in z has in common with other noise is taken off z, in size."""
+    of_mean = max(of_z - 0.5 * alone, 0.0)
+    return alone + 4.0 * of_mean, 4.0 * of_d, 4.0 * both * math.sqrt(of_mean / max(of_z, 1e-300))
+
+
+def fieller(gap, closed, variance_gap, variance_closed, both):
+    """(share, (low, high)); (None, None) where the interval is unbounded, or nothing is closed,
+    which is too little to learn it from. both: the covariance."""
+    ends = _ends(gap, closed, variance_gap, variance_closed, both)
+    if ends is None or closed <= 0.0:
+        return None, None
+    return min(closed / gap, 1.0), (min(ends[0], 1.0), min(ends[1], 1.0))
+
+
+def _ends(gap, closed, variance_gap, variance_closed, both):
+    """(low, high) of the share, or None where it is unbounded."""
+    z2 = odds.Z_90 ** 2
+    a = gap * gap - z2 * variance_gap
+    b = -2.0 * (gap * closed - z2 * both)
+    c = closed * closed - z2 * variance_closed
+    root = b * b - 4.0 * a * c
+    if a <= 0.0 or root < 0.0:
+        return None
+    return (-b - math.sqrt(root)) / (2 * a), (-b + math.sqrt(root)) / (2 * a)
