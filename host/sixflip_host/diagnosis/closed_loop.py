@@ -18,7 +18,7 @@ from sixflip_sim.effects.library import make as make_effect
 from sixflip_sim.sensor_model import SensorModel, Triad
 
 from ..capture.capture_file import Capture
-from ..experiment import attitude_fit, blocks, nominal_rows, terms
+from ..experiment import attitude_fit, blocks, nominal_rows, session_terms
 from ..experiment.session_rows import body_to_table
 from ..simulation import replica
 from . import effect_estimates
@@ -84,7 +84,7 @@ def specs(gap, theta, reference_c):
         keys, powers = candidate.keys, candidate.powers
         mine = theta[start:start + len(keys)]
         start += len(keys)
-        if terms.remembers_otherwise(candidate):
+        if session_terms.remembers_otherwise(candidate):
             keys, columns = _in_the_library(gap, candidate)
             powers, mine = (1,) * len(keys), _nearest(gap, candidate, columns, mine)
         elif candidate.discrepancy:

@@ -41,12 +41,7 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
     sessions = [blocks.session_of(name, capture) for name, capture in captures]
     own, comparisons = None, []
     if simulator:
-        from .simulator import (
-            against_simulator,
-            comparison,
-            convention_findings,
-            effects_in_both,
-        )
+        from .simulator import against_simulator, comparison, convention_findings
         progress.doing("conventions and parameters of the simulator")
         comparisons = [comparison.compare(captures, *log) for log in simulator]
         # What a log with another convention reads is no effect of a sensor.
@@ -57,7 +52,7 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
             names, simulated = zip(*sound)
             progress.doing("the simulator's own captures")
             own = against_simulator.read(list(simulated), list(names), settings)
-            settings = replace(settings, simulated=effects_in_both.not_compared(
+            settings = replace(settings, simulated=against_simulator.not_compared(
                 own.known, comparisons))
     result = diagnosis.diagnose_sessions(sessions, settings, own, comparisons, damages)
     return _beyond(result, own, sessions, damages) if comparisons else result
@@ -66,10 +61,10 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
 def _beyond(result, own, sessions, damages):
     """The Diagnosis without what two logs of one motion show to be in both, with what they alone
     show, and with the simulator's parameters beside the effects that it lacks."""
-    from .simulator import dead_zone, effects_beside, effects_in_both, lacking_effects
+    from .simulator import against_simulator, dead_zone, effects_beside, lacking_effects
     progress.doing("parameters beside the effects")
     for _ in range(MOST_ROUNDS):
-        both = effects_in_both.in_both(result)
+        both = against_simulator.in_both(result)
         if not both:
             break
         known = result.settings.simulated

@@ -8,7 +8,7 @@ from scipy import optimize, special
 from sixflip_sim.effects import typical
 from sixflip_sim.effects.library import EFFECTS
 
-from ..experiment import terms
+from ..experiment import session_terms, terms
 from . import hypotheses, odds
 
 FORM = 0.05  # of a size, standard deviation: parts do not have the library's very curves
@@ -35,7 +35,7 @@ def sized(cause, data, levels, chip, kind, share=None):
 def _unit(form, kind):
     """Unit of a Form's sizes."""
     unit = EFFECTS[form.effect].units[kind]
-    return unit.removesuffix("/g") if terms.remembers_otherwise(form) else unit
+    return unit.removesuffix("/g") if session_terms.remembers_otherwise(form) else unit
 
 
 def _intervals(cause, gram, value, sigma):

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..experiment import terms
+from ..experiment import session_terms, terms
 from ..experiment.terms import Design
 from ..experiment.thermometer import MOVES_C
 from . import strangers
@@ -28,7 +28,7 @@ def designs(rest, sensor, chip, settings):
     designs = []
     if rest.moved_c >= MOVES_C:
         designs += _thermal(rest, sensor, chip)
-    for tau in sorted({*terms.WARM_UP_S, *(share * rest.span_s for share in DECAYS)}):
+    for tau in sorted({*session_terms.WARM_UP_S, *(share * rest.span_s for share in DECAYS)}):
         designs.append(_library("warm_up", rest, sensor, chip, rest.moment(), "tau %.3g s" % tau,
                                 {"tau_s": float(np.clip(tau, 1.0, 7200.0))}))
     designs += _nameless(rest, sensor)
@@ -50,7 +50,7 @@ def _thermal(rest, sensor, chip):
     that follows it, where an axis feels gravity."""
     designs, shape = [], {"reference_c": float(rest.temperature.mean())}
     along = tuple(i for i in range(3) if abs(rest.up[i]) >= ALONG and sensor == "accel")
-    for lag in (lag for lag in terms.LAGS_S if rest.span_s >= LASTS * abs(lag)):
+    for lag in (lag for lag in session_terms.LAGS_S if rest.span_s >= LASTS * abs(lag)):
         felt, label = rest.moment(lag), "lag %g s" % lag if lag else ""
         slope = _library("thermal_bias", rest, sensor, chip, felt, label, shape)
         designs += [slope, _bent(slope)]

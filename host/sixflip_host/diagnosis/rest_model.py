@@ -4,7 +4,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import progress
-from ..experiment import attitude_fit, block_measures, linear_model, nominal_rows, terms
+from ..experiment import attitude_fit, block_measures, linear_model, nominal_rows, session_terms
+from ..experiment.terms import corrected, of_terms
 from . import (
     adequacy,
     aliases,
@@ -46,7 +47,8 @@ class RestModel:
     def fit(self, sessions, nominal):
         """SensorGap of sessions with their NominalSensors."""
         progress.doing("effects of the %s" % ("gyro" if self.kind == "gyro" else "accelerometer"))
-        parts = list(zip(terms.agreed([self._heard(session) for session in sessions]), nominal))
+        heard = [self._heard(session) for session in sessions]
+        parts = list(zip(session_terms.agreed(heard), nominal))
         searched = self._searched(parts)
         turned = self._turned_back(parts, searched)
         if turned:
@@ -184,15 +186,15 @@ class RestModel:
         linear_model.unit."""
         reference = self.conditions.reference_c
         rows = self._banded(nominal_rows.rows(self.kind, part, model, certified), part)
-        designs = terms.library(part, model.up, self.kind, reference, self.chip)
+        designs = session_terms.library(part, model.up, self.kind, reference, self.chip)
         if self.kind == "accel":
-            designs += terms.along_axes(part, model, self.chip)
-            designs.append(terms.of_terms("box_tilt", "accel", part.moment(model.up), part.n,
-                                               chip=self.chip))
+            designs += session_terms.along_axes(part, model, self.chip)
+            designs.append(of_terms("box_tilt", "accel", part.moment(model.up), part.n,
+                                    chip=self.chip))
         designs += strangers.shared(part, model.up, self.kind, reference)
         designs += session_strangers.private(part, model.up, self.kind, rows.left())
         if self.kind == "accel":
-            designs = terms.corrected(designs, model.matrix)
+            designs = corrected(designs, model.matrix)
         if self.settings.certified:
             designs = [d for d in designs if d.effect != "box_tilt"]
         return linear_model.unit(self._less_known(rows, designs), designs, wanted,

@@ -15,7 +15,8 @@ from numpy.polynomial import legendre
 from sixflip.poses import faces
 
 from ..experiment.projection import by_axis
-from ..experiment.terms import LAGS_S, RECTIFIED, Design, harmonics
+from ..experiment.session_terms import LAGS_S, RECTIFIED
+from ..experiment.terms import Design, harmonics
 from ..experiment.way_memory import TURNED_S
 
 SCALE = {"accel": 5.0, "gyro": 0.05}  # mg, deg/s: as large as the library's effects are

@@ -13,9 +13,9 @@ from ..capture.registers import fixed_bits, steps, unit_of_count
 # s left out at both ends of a rest: where it begins and ends is known to some samples only, and
 # the hand may still be on the box there. Of a protocol's rest it costs one sample in 25.
 EDGE_S = 0.1
-# Two blocks tell what fades within a rest, of which the fastest creep (terms.CREEP_S, 5 s) needs
-# one each half of its time. All blocks of a rest are in one matrix (covariance.Group): a minute's
-# rest has no more than six, and a rest as short as a protocol's no more than two.
+# Two blocks tell what fades within a rest, of which the fastest creep (session_terms.CREEP_S, 5 s)
+# needs one each half of its time. All blocks of a rest are in one matrix (covariance.Group): a
+# minute's rest has no more than six, and a rest as short as a protocol's no more than two.
 BLOCK_S, MOST_BLOCKS = 2.5, 6
 SHORT_REST_BLOCKS = 2
 LONG_REST_S = 12.0  # more than twice a protocol's rest (5 s, planning/protocols.py)

@@ -28,7 +28,7 @@ class Group:
     unit level; kernel (r, r) of unit flicker within; from_before (r, J) how the states that
     groups before have left are felt, to_later (r, J) what it leaves to those after it, decay
     (J,) of the states over it; basis (r, r - l): across l directions that are a nuisance in
-    this group only, see nominal_rows.across().
+    this group only, see projection.across_blocks().
     """
 
     rows: slice

@@ -4,8 +4,7 @@ The gyro, as the rests and turns have calibrated it, says where gravity is on th
 at the rests before and after corrects it at both ends. What is left of the readings is expressed
 in the frame of the table, as frequencies over the move (a cosine transform). The hand's own
 acceleration is large there and may have any course, but its mean is zero, since the box rests at
-both ends; what is fixed to the box or to the sensor turns with it, and is told from it by that.
-"""
+both ends; what is fixed to the box or to the sensor turns with it, and is told from it by that."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,8 +25,7 @@ EACH = (0, 1, 2)  # x y z
 COMPETING = (("lever_arm", "", EACH), ("filter_lag", "", (0,)), ("motion", "speed", EACH),
              ("motion", "rates", EACH * 3), ("motion", "squares", EACH * 6),
              ("motion", "changes", EACH * 3), ("motion", "scale", EACH))
-EFFECTS_NUMBER = 4  # columns of those with a name
-LAG = EFFECTS_NUMBER - 1  # the column of the accelerometer's delay behind the gyro
+EFFECTS_NUMBER, LAG = 4, 3  # columns with a name; that of the accelerometer behind the gyro
 COMPETING_NUMBER = sum(len(axes) for _, _, axes in COMPETING)
 # deg/s and deg/s2 of a hand that turns a box over in one to two seconds: the nameless functions
 # are in units of them, so that PRIOR_MG is what one of them adds in a quick move.
@@ -106,8 +104,7 @@ def move(turn, capture, nominal, course, session, by_hand, white, lag_ms=0.0):
         *(felt ** degree for degree in OWN_DEGREES), felt[0] - felt])
     bias = seen.held(course[:, turn.first:turn.last])
     strange = seen.frequencies(seen.by_axis(_of_motion(felt, rate, np.stack(m.w_rate, 1))))
-    habits = seen.frequencies(_habits(turn, seen.share, flat))
-    shared = [own, strange, edge, habits, static]
+    shared = [own, strange, edge, seen.frequencies(_habits(turn, seen.share, flat)), static]
     return Move(turn, session, by_hand, white, flat, turn.seconds, turn.seconds / seen.n, y,
                 np.concatenate([*shared, own[:, :, :3], bias], axis=2),
                 sum(part.shape[2] for part in shared))
@@ -165,9 +162,8 @@ def priors(chip):
     times the typical size, as everywhere."""
     effect = [10.0 * typical.size(name, chip, "accel")[0] for name in EFFECT_NAMES
               for _ in EFFECTS[name].keys]
-    strange = [PRIOR_MG] * (COMPETING_NUMBER - EFFECTS_NUMBER)
-    return np.concatenate([effect, strange, [PRIOR_CM] * 3, [PRIOR_METRES] * (3 * HABITS),
-                           [PRIOR_MG] * BENDS])
+    return np.concatenate([effect, [PRIOR_MG] * (COMPETING_NUMBER - EFFECTS_NUMBER),
+                           [PRIOR_CM] * 3, [PRIOR_METRES] * (3 * HABITS), [PRIOR_MG] * BENDS])
 
 
 def local_priors(by_hand):

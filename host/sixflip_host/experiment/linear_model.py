@@ -9,8 +9,7 @@ Everything later needs only z' C^-1 z, S' C^-1 z and S' C^-1 S at the points of 
 columns of all effects), so these are what a Unit holds, the last only where it is asked for
 (gram.py): to try a set of effects is to take some of their rows and columns. What is a nuisance of
 one placement only is projected out there, and the covariance is factored in time (covariance.py),
-so that time and memory grow as the session does.
-"""
+so that time and memory grow as the session does."""
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -118,7 +117,7 @@ class Unit:
         noise = base + placement ** 2 * lateral + level ** 2 * kernel
         if not with_common:
             return noise
-        common = self._common()
+        common = self.rows.turned_common()
         left = common - self.space @ (self.space.T @ common)
         known = left @ self._open_still(common, placement, level) if self.rows.fitted else left
         return noise + float((known * left).sum())
@@ -132,9 +131,6 @@ class Unit:
         taken = np.linalg.lstsq(white[:, :number], white[:, number:], rcond=None)[0]
         left = white[:, number:] - white[:, :number] @ taken
         return np.linalg.inv(np.eye(common.shape[1]) + left.T @ left)
-
-    def _common(self):
-        return _common(self.rows)
 
     def statistics(self, z=None, points=None):
         """(quadratic (G, R), projections (G, K, R)) of contrasts z (m, R), default the data's;
@@ -151,7 +147,8 @@ class Unit:
     def products(self, z, index):
         """(R, R) z'Qz of contrasts z (m, R), Q the inverse of their covariance at one point of
         the grid, across what is a nuisance."""
-        white = self._factor(index).whitened(np.hstack([self.space, self._common(), z]))[0]
+        common = self.rows.turned_common()
+        white = self._factor(index).whitened(np.hstack([self.space, common, z]))[0]
         number = white.shape[1] - z.shape[1]
         fixed, data = white[:, :number], white[:, number:]
         metric = fixed.T @ fixed
@@ -169,7 +166,12 @@ class Unit:
 
     @cached_property
     def _together(self):
-        return _together(self.groups)
+        """[Group] of the same readings: one where they are few, which takes less time than
+        many."""
+        if self.groups[-1].rows.stop > covariance.FEW or len(self.groups) == 1:
+            return self.groups
+        base, _, kernel = covariance.components(self.groups)
+        return covariance.alone(base, linalg.block_diag(*(g.lateral for g in self.groups)), kernel)
 
     def _factor(self, index):
         """covariance.Factor at one point of the grid; the last one is kept."""
@@ -183,7 +185,7 @@ class Unit:
         """Contrasts (m, R) without any effect, with the levels of one point of the grid."""
         factor = self._factor(index)
         z = factor.coloured(generator.standard_normal((factor.n, number)))
-        common = self._common()
+        common = self.rows.turned_common()
         z = z + common @ generator.standard_normal((common.shape[1], number))
         return z - self.space @ (self.space.T @ z)
 
@@ -199,7 +201,7 @@ class Unit:
         fitted = np.hstack([self.rows.nuisance, self.raw(private)])
         x = covariance.turned(self.rows.groups, np.column_stack(
             [fitted, self.rows.y - explained]))
-        common = self._common()
+        common = self.rows.turned_common()
         white = factor.whitened(np.hstack([common, x]))[0]
         # Coefficients known to a standard deviation of 1 are observed as 0 with that error.
         known = np.eye(common.shape[1], white.shape[1])
@@ -241,22 +243,8 @@ def unit(rows, designs, wanted=None, **about):
     grid = [(a, b) for a in placements for b in flickers]
     shape = len(placements), len(flickers)
     make = gram.dense_products if len(columns) <= covariance.FEW else factored_gram.FactoredGram
-    grams = make(groups, grid, space, _common(rows), columns)
+    grams = make(groups, grid, space, rows.turned_common(), columns)
     quadratic, inner, logdet = grams.statistics(z)
     return Unit(rows, designs, grid, shape, groups, space, z[:, 0],
                 columns, len(z) - space.shape[1], 3.0 * (raw ** 2).mean(axis=0), silent, grams,
                 logdet, quadratic[:, 0], inner[:, :, 0], **about)
-
-
-def _together(groups):
-    """[Group] of the same readings: one where they are few, which takes less time than many."""
-    if groups[-1].rows.stop > covariance.FEW or len(groups) == 1:
-        return groups
-    base, _, kernel = covariance.components(groups)
-    return covariance.alone(base, linalg.block_diag(*(g.lateral for g in groups)), kernel)
-
-
-def _common(rows):
-    if rows.common is None:
-        return np.zeros((sum(g.basis.shape[1] for g in rows.groups), 0))
-    return covariance.turned(rows.groups, rows.common)

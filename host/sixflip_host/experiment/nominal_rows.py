@@ -15,7 +15,7 @@ from sixflip_sim.effects import typical
 
 from . import block_measures, covariance, flicker
 from .attitude_fit import face_axes
-from .projection import lateral_basis
+from .projection import across_blocks, lateral_basis
 
 # Levels that are tried of what a hand scatters a placement by, mg in each direction across
 # gravity: closest about 0.05 degrees (0.87 mg), from a jig's hundredth of a degree to a careless
@@ -128,20 +128,6 @@ def _placements(session):
     return [(slice(a, b), int(session.placement[a])) for a, b in zip(starts, ends)]
 
 
-def across(columns):
-    """(3k, 3k - 2): orthonormal, across two columns (3k, 2) that are the same two directions in
-    each of k blocks: first the differences between the blocks, axis by axis, then the mean
-    across both directions."""
-    k = len(columns) // 3
-    first, second = columns[:3].T
-    helmert = np.zeros((k, k - 1))
-    for i in range(1, k):
-        helmert[:i, i - 1], helmert[i, i - 1] = -1.0 / i, 1.0
-    helmert /= np.linalg.norm(helmert, axis=0)
-    mean = np.tile(np.cross(first, second), k) / np.sqrt(k)
-    return np.hstack([np.kron(helmert, np.eye(3)), mean[:, None] / np.linalg.norm(mean)])
-
-
 def _groups(session, values, noise, rounding, directions):
     """list of covariance.Group, one a placement. values (n, 3), noise, rounding (3,);
     directions(place, placement) -> (lateral (2, 3) or None, free (2, 3) or None): across which a
@@ -153,7 +139,7 @@ def _groups(session, values, noise, rounding, directions):
         base = np.diag(white) + np.kron(np.ones((k, k)), np.diag(rounding ** 2))
         lateral, free = (np.zeros((3 * k, 0)) if d is None else np.tile(d.T, (k, 1))
                          for d in directions(place, placement))
-        basis = across(free) if free.shape[1] else np.eye(3 * k)
+        basis = across_blocks(free) if free.shape[1] else np.eye(3 * k)
         parts.append((place, base, lateral, basis))
     return covariance.in_time(session.t, session.seconds,
                               axis_shares(session, values, noise), parts)
@@ -182,11 +168,17 @@ class Rows:
         taken = self.nuisance @ np.linalg.lstsq(self.nuisance, self.y, rcond=None)[0]
         return (self.y - taken).reshape(-1, 3)
 
+    def turned_common(self):
+        """(m, c) the columns of common in the basis of the groups."""
+        if self.common is None:
+            return np.zeros((sum(g.basis.shape[1] for g in self.groups), 0))
+        return covariance.turned(self.groups, self.common)
+
     def loosened(self):
         """The same rows where every placement is free across its lateral directions."""
         groups = [covariance.Group(
             g.rows, g.base, np.zeros((len(g.base), 0)), g.kernel, g.from_before, g.to_later,
-            g.decay, across(g.lateral) if g.lateral.shape[1] else g.basis)
+            g.decay, across_blocks(g.lateral) if g.lateral.shape[1] else g.basis)
             for g in self.groups]
         return replace(self, groups=groups, levels=(self.levels[0][:1], self.levels[1]))
 

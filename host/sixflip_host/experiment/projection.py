@@ -21,6 +21,20 @@ def lateral_basis(axis):
     return np.stack([first, cross(axis, first)])
 
 
+def across_blocks(columns):
+    """(3k, 3k - 2): orthonormal, across two columns (3k, 2) that are the same two directions in
+    each of k blocks: first the differences between the blocks, axis by axis, then the mean
+    across both directions."""
+    k = len(columns) // 3
+    first, second = columns[:3].T
+    helmert = np.zeros((k, k - 1))
+    for i in range(1, k):
+        helmert[:i, i - 1], helmert[i, i - 1] = -1.0 / i, 1.0
+    helmert /= np.linalg.norm(helmert, axis=0)
+    mean = np.tile(np.cross(first, second), k) / np.sqrt(k)
+    return np.hstack([np.kron(helmert, np.eye(3)), mean[:, None] / np.linalg.norm(mean)])
+
+
 def cross(a, b):
     """(3,) of two vectors; numpy's own takes thirty times as long for a single pair."""
     (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()

@@ -12,7 +12,7 @@ import numpy as np
 from sixflip_sim.effects.library import EFFECTS
 
 from ..diagnosis import adequacy, evidence, hypotheses
-from ..experiment import linear_model, nominal_rows, terms
+from ..experiment import linear_model, nominal_rows, session_terms, terms
 from ..json_numbers import spelled
 
 # One form of each effect that rests can show, the likeliest cause first: where a protocol cannot
@@ -62,7 +62,7 @@ def information(rests, chip, gaps=None):
     told = {sensor: nothing(sensor) for sensor in FORMS}
     if not rests.nominal:
         return told, [*rests.remarks, "too few rests in known poses: no effects"]
-    agreed = terms.agreed(rests.sessions)
+    agreed = session_terms.agreed(rests.sessions)
     for sensor in FORMS:
         if any(getattr(one, sensor) is None for one in agreed):
             continue
@@ -76,7 +76,7 @@ def information(rests, chip, gaps=None):
 
 
 def _unit(sensor, session, nominal, reference_c, chip):
-    designs = [d for d in terms.library(session, nominal.up, sensor, reference_c, chip)
+    designs = [d for d in session_terms.library(session, nominal.up, sensor, reference_c, chip)
                if (d.effect, d.variant) in FORMS[sensor] and not d.record]
     if sensor == "accel":
         designs = terms.corrected(designs, nominal.matrix)

@@ -14,7 +14,7 @@ NAMES = ("paper", "return", "random", "backward", "recommended", "thermal", "soa
          "turntable", "drive")
 STILL = ("paper", "return", "random", "backward", "thermal", "recommended")  # poses, no motion
 DWELL_S, MOVE_S = 5.0, 10.0  # METHOD section 1: a pose has 3-5 s; a move, its prompt included
-LONG_DWELL_S = 60.0  # creep of 60 s (terms.CREEP_S) goes most of its way in it
+LONG_DWELL_S = 60.0  # creep of 60 s (session_terms.CREEP_S) goes most of its way in it
 SHAKE_MG = 300.0  # mg rms of a motor on the table; where an effect shows does not depend on it
 OFF_FACES = math.cos(math.radians(22.0))  # the board takes what leans 15 degrees for a face
 STATES = {"warming": (22.0, 9.0, 300.0), "warm": (31.0, 2.0, 200.0),

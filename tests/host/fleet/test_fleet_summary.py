@@ -8,7 +8,7 @@ from sixflip_host.calibrate import solution, solution_json
 from sixflip_host.capture import capture_file
 from sixflip_host.diagnosis import rest_model, settings, usable_rests
 from sixflip_host.errors import BadFile
-from sixflip_host.experiment import attitude_fit, blocks, terms
+from sixflip_host.experiment import attitude_fit, blocks, session_terms
 from sixflip_host.experiment.session import OF_BLOCKS
 from sixflip_host.fleet import analysis, diagnosed, effects, sources, summary, summary_file
 from sixflip_host.simulation import scenario, simulated_session
@@ -36,7 +36,7 @@ def test_the_rests_of_both_are_the_same_rows(captured):
     for session in (blocks.session_of("s", capture), one.session()):
         nominal = attitude_fit.fit(session)
         model = rest_model.RestModel("gyro", "mpu6050", settings.Settings())
-        units.append(model.unit(terms.agreed([session])[0], nominal, False))
+        units.append(model.unit(session_terms.agreed([session])[0], nominal, False))
         assert session.contradicted() == []
     assert np.array_equal(units[0].quadratic, units[1].quadratic)
     assert np.array_equal(units[0].inner, units[1].inner)

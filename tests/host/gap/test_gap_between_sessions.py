@@ -17,7 +17,7 @@ from sixflip_host.diagnosis import (
     rest_model,
     turn_model,
 )
-from sixflip_host.experiment import attitude_fit, blocks, covariance, terms
+from sixflip_host.experiment import attitude_fit, blocks, covariance, session_terms, terms
 from sixflip_host.simulation import scenario, simulated_session
 
 
@@ -173,7 +173,7 @@ def test_what_scales_change_by_in_an_ordinary_session_is_known_to_its_error():
         made = sessions(seed=200 + seed)
         model = rest_model.RestModel("accel", "mpu6050", diagnosis.Settings())
         nominal = [attitude_fit.fit(session) for session in made]
-        units = [model.unit(*part, False) for part in zip(terms.agreed(made), nominal)]
+        units = [model.unit(*part, False) for part in zip(session_terms.agreed(made), nominal)]
         (scale,) = [u for u in model.between(units, list(zip(made, nominal)))
                     if u.between == "scale"]
         errors = covariance.dense(scale.groups, 0.0, 0.0)

@@ -15,7 +15,7 @@ from sixflip_host.diagnosis import (
     scored_sets,
     turn_model,
 )
-from sixflip_host.experiment import attitude_fit, blocks, terms, turns
+from sixflip_host.experiment import attitude_fit, blocks, session_terms, turns
 from sixflip_host.experiment.session import OF_BLOCKS
 from sixflip_host.present import gap_words
 from sixflip_host.simulation import scenario, simulated_session
@@ -36,7 +36,7 @@ def capture():
 
 
 def test_blocks_cannot_be_changed(capture):
-    whole, = terms.agreed([blocks.session_of("s", capture)])
+    whole, = session_terms.agreed([blocks.session_of("s", capture)])
     with pytest.raises(dataclasses.FrozenInstanceError):
         whole.accel = None
     for name in (*OF_BLOCKS, "t_s", "noise_accel", "rounding_gyro"):

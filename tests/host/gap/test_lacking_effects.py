@@ -8,7 +8,7 @@ import pytest
 from sixflip_host.diagnosis import answer
 from sixflip_host.diagnosis.diagnose import diagnose
 from sixflip_host.diagnosis.simulator import (
-    effects_in_both,
+    against_simulator,
     evidence_of_logs,
     hypotheses,
     lacking_effects,
@@ -145,20 +145,20 @@ def made(effect, is_in, monkeypatch):
     cause = SimpleNamespace(effect=effect, theta=[2.0], chosen=None)
     design = SimpleNamespace(effect=effect, variant="", keys=("x",))
     gap = SimpleNamespace(causes=[cause], units=[SimpleNamespace(designs=[design])])
-    monkeypatch.setattr(effects_in_both, "columns_of", lambda form: SimpleNamespace(index=[0]))
-    monkeypatch.setattr(effects_in_both, "_is_in_both", lambda kind, fit, cause, diagnosis: fit)
+    monkeypatch.setattr(against_simulator, "columns_of", lambda form: SimpleNamespace(index=[0]))
+    monkeypatch.setattr(against_simulator, "_is_in_both", lambda kind, fit, cause, diagnosis: fit)
     return SimpleNamespace(gaps={"accel": gap}, comparisons=[
         SimpleNamespace(fits={"accel": one}) for one in is_in])
 
 
 def test_what_three_logs_show_in_both_is_taken_off_once(monkeypatch):
     """It was taken off once a log, so that twice as much was left with the other sign."""
-    shared = effects_in_both.in_both(made("box_tilt", (True, True, True), monkeypatch))
+    shared = against_simulator.in_both(made("box_tilt", (True, True, True), monkeypatch))
     assert shared == {"accel": [("box_tilt", "", "x", 2.0)]}
 
 
 def test_what_one_of_three_logs_lacks_is_a_gap(monkeypatch):
-    assert effects_in_both.in_both(made("box_tilt", (True, False, True), monkeypatch)) == {}
+    assert against_simulator.in_both(made("box_tilt", (True, False, True), monkeypatch)) == {}
 
 
 def test_of_one_motion_the_logs_say_what_is_in_both_and_not_the_simulators_rests():
@@ -166,9 +166,9 @@ def test_of_one_motion_the_logs_say_what_is_in_both_and_not_the_simulators_rests
              "gyro": [("g_sensitivity", "", "xx", 0.1)]}
     fit = SimpleNamespace(hypothesis=SimpleNamespace(name="healthy"))
     compared = [SimpleNamespace(fits={"accel": fit})]
-    assert effects_in_both.not_compared(known, compared) == {
+    assert against_simulator.not_compared(known, compared) == {
         "accel": [("hysteresis", "", "x", 3.0)], "gyro": [("g_sensitivity", "", "xx", 0.1)]}
-    assert effects_in_both.not_compared(known, [SimpleNamespace(fits={})]) == known
+    assert against_simulator.not_compared(known, [SimpleNamespace(fits={})]) == known
 
 
 def test_a_channel_that_hears_no_more_than_the_others_and_noise_is_not_constant():

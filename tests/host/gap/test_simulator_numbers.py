@@ -7,7 +7,6 @@ import pytest
 from sixflip_host.diagnosis.simulator import (
     alignment,
     channel_regression,
-    comparison,
     evidence_of_logs,
     hypotheses,
     noise_and_registers,
@@ -15,6 +14,7 @@ from sixflip_host.diagnosis.simulator import (
     own_motion,
     pairing,
     parameters,
+    remaining_gap,
     simulator_answer,
     single_log,
 )
@@ -168,12 +168,12 @@ def test_a_fit_that_is_smoother_takes_noise_away():
 def test_which_of_two_logs_is_late_is_not_said_where_the_simulators_own_says_nothing(monkeypatch):
     """A real gyro behind a filter of 22 ms, on a pendulum: the simulator was "late"."""
     asked = SimpleNamespace(rests=(), rate=None)
-    assert not comparison._late_itself(asked, -0.022)
+    assert not own_motion.shown_late(asked, -0.022)
     for delay_s, itself in ((0.022, True), (0.0, False)):
         monkeypatch.setattr(own_calibration, "fitted", lambda sim: "a sensor")
         monkeypatch.setattr(own_motion, "fitted", lambda sim, sensor, d=delay_s:
                             own_motion.OwnMotion(d, 0.001))
-        assert comparison._late_itself(SimpleNamespace(rests=((0, 9),)), -0.022) is itself
+        assert own_motion.shown_late(SimpleNamespace(rests=((0, 9),)), -0.022) is itself
 
 
 def test_a_line_is_no_noise_of_a_log():
@@ -214,7 +214,7 @@ def test_a_bias_that_no_attitude_tells_from_a_scale_is_no_no_gap(off_mg):
     assert not any(p.differs for p in numbers)
     fits = {"accel": SimpleNamespace(pair=pair, conventions=())}
     before = parameters.MG * np.sqrt(((level + noise[0] - simulated) ** 2).mean())
-    told = parameters.together(numbers, fits, {"accel": (float(before), 0.72, 0.72)})
+    told = remaining_gap.together(numbers, fits, {"accel": (float(before), 0.72, 0.72)})
     differs = [p for p in told if p.differs]
     if not off_mg:
         assert told == numbers

@@ -24,7 +24,7 @@ from sixflip_host.diagnosis import (
 )
 from sixflip_host.diagnosis.rest_model import RestModel
 from sixflip_host.diagnosis.settings import Settings
-from sixflip_host.experiment import attitude_fit, blocks, terms
+from sixflip_host.experiment import attitude_fit, blocks, session_terms
 from sixflip_host.simulation import scenario, simulated_session
 
 CHIP = "mpu6050"
@@ -62,7 +62,7 @@ def units(model, seed, effects, scatter):
             "effects": [effect] if effect else [], "world": {"placement_scatter_deg": scatter}})
         sessions.append(blocks.session_of(str(number), simulated_session.session(world, number)))
     nominal = [attitude_fit.fit(session) for session in sessions]
-    found = [model.unit(*part, False) for part in zip(terms.agreed(sessions), nominal)]
+    found = [model.unit(*part, False) for part in zip(session_terms.agreed(sessions), nominal)]
     return found + model.between(found, nominal)
 
 

@@ -14,7 +14,6 @@ from . import (
     levelled_off,
     noise_and_registers,
     own_calibration,
-    own_consistency,
     own_motion,
     pairing,
     parameters,
@@ -123,7 +122,7 @@ def compare_traces(real, sim, aligned):
     findings = held_readings.findings(real, sim, holds["real"], holds["sim"])
     sim_free = held_readings.free(sim, holds["sim"])
     real_free = held_readings.free(real, holds["real"])
-    live, constant = constant_channels(real, sim)
+    live, constant = single_log.constant_channels(real, sim)
     findings += constant
     own_real = own_calibration.fitted(real_free)
     fits, unmended, stops, bands, of_gyro = {}, {}, {}, (), 0.0
@@ -154,14 +153,15 @@ def compare_traces(real, sim, aligned):
                 replace(real_free, force=own_real.applied(real_free).force), sim_free, aligned,
                 fits)
         late, late_sigma, delays = conventions.delay(fits, row_s)
-        delays = [c for c in delays if _late_itself(sim_free, late)]
+        delays = [c for c in delays if own_motion.shown_late(sim_free, late)]
         judged = len(fits) == 2
         findings += [c for f in fits.values() for c in f.conventions if not (
             constant and c.name == "constant_channel")] + delays
     elif constant:
         unseen.append("other conventions of %s: a channel of it says nothing" % sim.name)
     else:
-        more, unseen, judged, lacks_delay = different_motion(real_free, sim_free, own_real, row_s)
+        more, unseen, judged, lacks_delay = own_motion.different_motion(
+            real_free, sim_free, own_real, row_s)
         findings += more
         if aligned.same and not real.rests:
             unseen = ["conventions and parameters of %s, but for what its own rests show: there "
@@ -174,7 +174,7 @@ def compare_traces(real, sim, aligned):
     numbers, of_numbers = numbers_of(real, sim, mended, (own_real, own_sim), fits, findings)
     left = {kind: remaining_gap.not_foretold(sensor_fit) for kind, sensor_fit in fits.items()}
     gap = remaining_gap.held_out(unmended, left, real, sim)
-    numbers = parameters.together(numbers, fits, gap)
+    numbers = remaining_gap.together(numbers, fits, gap)
     cut = {(p.sensor, p.axis) for p in numbers if p.name == "range"}
     numbers += [p for p in levelled_off.ranges(stops, real, sim) if (p.sensor, p.axis) not in cut]
     if len(fits) == 2 and not findings:
@@ -194,31 +194,6 @@ def compare_traces(real, sim, aligned):
                       bands=bands, of_gyro=of_gyro)
 
 
-def _late_itself(sim, late):
-    """Whether a simulator's log of the real one's motion is late by itself, as its own rests and
-    moves say. Which of two logs it is that is late the pair does not tell: where nothing else does
-    a real sensor behind a filter is as likely, and the delay is a number to be set."""
-    sensor = own_calibration.fitted(sim)
-    moved = own_motion.fitted(sim, sensor) if sensor is not None and sim.rests else None
-    return moved is not None and own_motion.late_itself(moved, late)
-
-
-def constant_channels(real, sim):
-    """({sensor: (3,) bool} of the simulator's channels that change and answer, [Convention] of
-    those that do not)."""
-    live, dead = single_log.live(sim), single_log.dead(real, sim)
-    findings = []
-    for kind, mask in dead.items():
-        still = mask | ~live[kind] & (kind == "accel" or sim.rate is not None)
-        if still.any():
-            axes = [a for a, x in zip("xyz", still) if x]
-            findings.append(convention_findings.finding(
-                "constant_channel", kind, 1.0, 100.0, "its %s says nothing of the motion" %
-                " and ".join(axes), value=dict.fromkeys(axes, 0.0), unit="1"))
-            live[kind] = live[kind] & ~still
-    return live, findings
-
-
 def numbers_of(real, sim, mended, own, fits, findings):
     """([Parameter], [Convention] on the noise) of two Traces; mended: that of the simulator with
     the conventions found put right; own: OwnSensor or None of the real one, of the simulator."""
@@ -230,23 +205,6 @@ def numbers_of(real, sim, mended, own, fits, findings):
                if conventions.silent(sim, kind)}
     return (parameters.shapes(*own, fits, usable, rounded) + densities
             + noise_and_registers.registers(real, sim), on_noise)
-
-
-def different_motion(real, sim, own_real, row_s):
-    """(Conventions, sentences on what cannot be seen, whether what shows in motion was compared,
-    whether the simulator lacks a delay) of logs of two motions."""
-    if sim.rate is None or real.rate is None:
-        return [], ["conventions of %s: they need a gyro in both logs" % sim.name], False, False
-    findings, unseen = own_consistency.conventions_of(real, sim)
-    if findings or own_real is None or not sim.rests:
-        return findings, unseen, False, False
-    moved = own_motion.fitted(real, own_real), own_motion.fitted(
-        sim, own_calibration.fitted(sim))
-    if None in moved:
-        return findings, unseen + ["delay of %s: fewer than %d moves between rests" % (
-            sim.name, own_motion.FEWEST_MOVES)], False, False
-    findings, lacks_delay = own_motion.compared(*moved, row_s)
-    return findings, unseen, True, lacks_delay
 
 
 def said_of(real, sim, aligned):

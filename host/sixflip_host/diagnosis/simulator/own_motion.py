@@ -1,13 +1,13 @@
-"""How late one sensor of a log is behind the other, by the log's own motion: what the force is
-beside the gravity that the gyro carries along, against how the sensor turns. What the hand or the
-wheels do besides is noise.
+"""Logs of different motions side by side; and how late one sensor of a log is behind the other, by
+the log's own motion: what the force is beside the gravity that the gyro carries along, against how
+the sensor turns. What the hand or the wheels do besides is noise.
 """
 from dataclasses import dataclass
 
 import numpy as np
 
 from . import alignment as align_by
-from . import conventions, hypotheses, row_times, traces
+from . import conventions, hypotheses, own_calibration, own_consistency, row_times, traces
 from .channel_regression import regression
 from .pairing import GRID_HZ
 
@@ -103,3 +103,28 @@ def late_itself(sim, late):
     """Whether the simulator's own motion shows most of a delay against the real log (s)."""
     return abs(sim.delay_s) > max(APART * sim.delay_sigma_s, 0.5 * abs(late)) \
         and sim.delay_s * late < 0.0
+
+
+def shown_late(sim, late):
+    """Whether a simulator's log of the real one's motion is late by itself, as its own rests and
+    moves say. Which of two logs it is that is late the pair does not tell: where nothing else does
+    a real sensor behind a filter is as likely, and the delay is a number to be set."""
+    sensor = own_calibration.fitted(sim)
+    moved = fitted(sim, sensor) if sensor is not None and sim.rests else None
+    return moved is not None and late_itself(moved, late)
+
+
+def different_motion(real, sim, own_real, row_s):
+    """(Conventions, sentences on what cannot be seen, whether what shows in motion was compared,
+    whether the simulator lacks a delay) of logs of two motions."""
+    if sim.rate is None or real.rate is None:
+        return [], ["conventions of %s: they need a gyro in both logs" % sim.name], False, False
+    findings, unseen = own_consistency.conventions_of(real, sim)
+    if findings or own_real is None or not sim.rests:
+        return findings, unseen, False, False
+    moved = fitted(real, own_real), fitted(sim, own_calibration.fitted(sim))
+    if None in moved:
+        return findings, unseen + ["delay of %s: fewer than %d moves between rests" % (
+            sim.name, FEWEST_MOVES)], False, False
+    findings, lacks_delay = compared(*moved, row_s)
+    return findings, unseen, True, lacks_delay

@@ -12,7 +12,6 @@ from sixflip import STANDARD_G
 
 from .. import odds
 from . import convention_findings
-from .alignment import errors
 from .hypotheses import DEG
 
 # Some thirty numbers are compared: at this many standard errors one log pair in 500 shows a
@@ -144,62 +143,6 @@ def _follows(sensor_fit):
     fit, measured = sensor_fit.fit, sensor_fit.pair.simulated(sensor_fit.kind)
     follow = fit.left.var(axis=0) < FOLLOWS * measured.var(axis=0)
     return (np.abs(fit.axes[follow]).sum(axis=0) > 0.5) if follow.any() else follow
-
-
-def together(numbers, fits, gaps):
-    """The numbers, where those of a sensor differ together though none does by itself: a bias that
-    a log of one attitude does not tell from a scale. Those that close most of the gap, one after
-    the other, then differ, the others taken for equal. gaps: see Comparison."""
-    for kind, sensor_fit in fits.items():
-        before, after, noise = gaps[kind]
-        enough = TOGETHER * noise
-        if not after < enough < before or sensor_fit.conventions or any(
-                p.differs for p in numbers if p.sensor == kind):
-            continue
-        found = _closing(sensor_fit.pair, kind, enough)
-        numbers = [alone(p, *found[p.name, p.axis]) if p.sensor == kind and (
-            p.name, p.axis) in found else p for p in numbers]
-    return numbers
-
-
-def _closing(pair, kind, enough):
-    """{(name, axis) of a Parameter: (difference, standard error)} of the fewest that leave less of
-    the gap than `enough`, mg or deg/s; none where more than FEW would have to."""
-    simulated = pair.simulated(kind)
-    off = pair.real(kind) - simulated
-    scale, ones = (MG if kind == "accel" else DEG), np.ones(len(off))
-    columns = {}
-    for i, row in enumerate("xyz"):
-        columns["bias", row] = i, ones, scale
-        for j, column in enumerate("xyz"):
-            key = ("scale", row) if i == j else ("misalignment", row + column)
-            columns[key] = i, simulated[:, j], 100.0 if i == j else DEG
-    chosen, left = [], off
-
-    def without(keys):
-        """(n, 3) what is left of the gap."""
-        rest = off.copy()
-        for i in range(3):
-            own = [columns[key][1] for key in keys if columns[key][0] == i]
-            if own:
-                own = np.stack(own, 1)
-                rest[:, i] -= own @ np.linalg.lstsq(own, off[:, i], rcond=None)[0]
-        return rest
-    while scale * np.sqrt((left ** 2).mean()) > enough and len(chosen) < FEW:
-        chosen.append(min((key for key in columns if key not in chosen),
-                          key=lambda key: float((without([*chosen, key]) ** 2).sum())))
-        left = without(chosen)
-    if scale * np.sqrt((left ** 2).mean()) > enough:
-        return {}
-    found = {}
-    for key in chosen:
-        i, _, unit = columns[key]
-        beside = [other for other in chosen if columns[other][0] == i]
-        own = np.stack([columns[other][1] for other in beside], 1)
-        place = beside.index(key)
-        size = np.linalg.lstsq(own, off[:, i], rcond=None)[0]
-        found[key] = unit * size[place], unit * errors(own, left[:, i])[place]
-    return found
 
 
 def alone(parameter, difference, sigma):

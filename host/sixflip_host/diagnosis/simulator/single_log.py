@@ -6,6 +6,7 @@ import numpy as np
 
 from ...experiment.block_measures import SUBMEAN_S
 from ...experiment.signal_measures import MEDIAN_OF_SQUARE
+from . import convention_findings
 
 # Standard error of a deviation taken from the median of squares of a standard normal, times the
 # root of the number [Rousseeuw, Croux, J. Am. Stat. Assoc. 88 (1993)].
@@ -55,6 +56,21 @@ def dead(real, sim):
             channels[kind] |= (theirs < SAME * still[1]) & (theirs.max() > MORE * still[1]) & (
                 ours > MORE * np.maximum(*still))
     return channels
+
+
+def constant_channels(real, sim):
+    """({sensor: (3,) bool} of the simulator's channels that change and answer, [Convention] of
+    those that do not)."""
+    answer, findings = live(sim), []
+    for kind, mask in dead(real, sim).items():
+        still = mask | ~answer[kind] & (kind == "accel" or sim.rate is not None)
+        if still.any():
+            axes = [a for a, x in zip("xyz", still) if x]
+            findings.append(convention_findings.finding(
+                "constant_channel", kind, 1.0, 100.0, "its %s says nothing of the motion" %
+                " and ".join(axes), value=dict.fromkeys(axes, 0.0), unit="1"))
+            answer[kind] = answer[kind] & ~still
+    return answer, findings
 
 
 def at_rest(trace, values, quantum):
