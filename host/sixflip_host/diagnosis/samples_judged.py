@@ -20,6 +20,7 @@ from .detect import (
     line_across_rests,
     noise_bursts,
     noise_shape,
+    rest_spectra,
     ringing,
     sample_clock,
     saturation,
@@ -27,7 +28,6 @@ from .detect import (
     spikes,
     stuck_axes,
     torn_reads,
-    wandering_tone,
     wrong_scale,
 )
 from .detect.detection import agreed_by_axis, present
@@ -160,7 +160,7 @@ def _without_lines(session, findings):
 def _of_spectra(sessions):
     """(what rings after it was put down, tones that wander, Findings of lines beside that)."""
     rings = ringing.ringing_axes(sessions)
-    tones = [(sensor, *tone) for sensor in SENSOR for tone in wandering_tone.axes(
+    tones = [(sensor, *tone) for sensor in SENSOR for tone in rest_spectra.wandering_tones(
         sessions, sensor)]
     return rings, tones, spectral_lines.findings(
         sessions, *([found[:2] for found in of] for of in (rings, tones)))

@@ -10,11 +10,11 @@ from sixflip_host.diagnosis import samples_judged, verdict, wandering
 from sixflip_host.diagnosis.detect import (
     dead_band,
     held_values,
+    rest_spectra,
     sample_neighbours,
     spectral_lines,
     spikes,
     torn_reads,
-    wandering_tone,
 )
 from sixflip_host.diagnosis.detect.detection import Finding, present
 from sixflip_host.experiment import blocks
@@ -354,20 +354,21 @@ def test_of_a_log_of_less_than_a_sample_a_second_no_line_is_told():
 def test_of_a_log_of_a_few_samples_a_second_no_tone_is_told():
     """A recording at 2 Hz had numpy's warning about the mean of an empty slice on stderr."""
     few = np.random.default_rng(3).standard_normal((30, 4))
-    chance, _, lobe = wandering_tone.chances(few, 2.0)
+    chance, _, lobe = rest_spectra.largest_bins(few, 2.0)
     assert (chance == 1.0).all() and not lobe.any()
 
 
 def test_noise_a_resonance_and_a_steady_line_are_no_tones_that_wander():
-    """By chance one of so few stretches has one less often than wandering_tone.DOUBTED says."""
+    """By chance one of so few stretches has one less often than rest_spectra.DOUBTED says."""
     generator, n = np.random.default_rng(2), 250
     t = np.arange(30 * n) * 0.01
     white = generator.standard_normal((30 * n, 200))
     sway = signal.lfilter([1.0], [1.0, -1.9 * np.cos(0.9), 0.9025], white[:, :20], axis=0)
     line = white[:, :20] + 2.0 * np.sin(2.0 * np.pi * 17.3 * t)[:, None]
     for columns in (white, sway, line):
-        assert all(wandering_tone._tone(x.reshape(30, n), 100.0)[0] == 0.0 for x in columns.T)
-    found = np.concatenate([wandering_tone.chances(x.reshape(30, n), 100.0)[0] for x in white.T])
-    assert (found < wandering_tone.RARE).mean() < wandering_tone.DOUBTED
+        assert all(rest_spectra._wandering(x.reshape(30, n), 100.0)[0] == 0.0 for x in columns.T)
+    found = np.concatenate([rest_spectra.largest_bins(x.reshape(30, n), 100.0)[0]
+                            for x in white.T])
+    assert (found < rest_spectra.RARE).mean() < rest_spectra.DOUBTED
     chirp = white[:, 0] + 2.0 * np.sin(2.0 * np.pi * np.cumsum(0.01 * (5.0 + t % 40.0)))
-    assert wandering_tone._tone(chirp.reshape(30, n), 100.0)[0] > 30.0
+    assert rest_spectra._wandering(chirp.reshape(30, n), 100.0)[0] > 30.0

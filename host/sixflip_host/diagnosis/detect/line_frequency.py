@@ -20,7 +20,7 @@ STEADY = 0.5
 PADDED = 4  # times its length: the transform in which a peak is looked for
 PAIRED = 1000  # points, half a million pairs: their number grows with the square
 SHORT_BINS = 1.5  # bins of a short stretch within which the line lies: Hann's lobe has two
-# s of a rest that shows lines slower than spectral_lines.LOWEST_HZ: the slowest has SLOWEST
+# s of a rest that shows lines slower than rest_spectra.LOWEST_HZ: the slowest has SLOWEST
 # periods in it, and up to FASTEST_HZ there are more bins than the floor's median is wide.
 SLOW_S = 40.0
 SLOWEST, FASTEST_HZ = 8.0, 1.0  # periods in the rest, and what short stretches see

@@ -1,7 +1,11 @@
-"""Stretches at rest, all equally long, their spectra, and what noise makes of these: by them lines
-and tones that wander are told.
+"""Stretches at rest, all equally long, their spectra, what noise makes of these, and a tone that
+is in every stretch by itself.
+
+By the mean of all spectra lines are told (spectral_lines.py). A tone whose frequency wanders, a
+chirp or a pump whose speed is regulated, is no line in it: it is told stretch by stretch.
 """
 import math
+import sys
 
 import numpy as np
 from scipy import special
@@ -20,6 +24,15 @@ EDGE_S = 0.1  # of either end of a rest, which may be the move's yet
 CORNERS = np.array([1.0, 3.0, 10.0, 30.0])
 LEVELS = tuple(2.0 ** -k for k in range(16))
 LINE_BINS = 3  # to each side, of a line whose frequency lies between two bins
+LOWEST_HZ = 0.7  # a hand or a vehicle moves more slowly than that
+LOBE = 2  # bins to each side, of a line
+STRONG_SHARE = 0.4  # of the standard deviation of the noise: what is as large is named in any case
+RARE = 0.001  # that noise has such a tone in one stretch; how many have one is judged
+# What that is taken for: a median of so few stretches is off by a fifth, which at exp(-12) makes
+# eleven times as many.
+DOUBTED, FEWEST_TOLD = 0.02, 24
+OFTEN = 0.25  # share of the stretches that has one: less is a visit, no state of the sensor
+WANDERS = 3.0  # bins, quartile to quartile: the lobe of a steady line is four bins wide
 
 
 def rests(sessions, sensor):
@@ -112,3 +125,55 @@ def log_beyond(x, number):
     x, however small: exp(-x) times the first terms of the series of exp(x)."""
     k = np.arange(number)
     return float(special.logsumexp(k * math.log(x) - special.gammaln(k + 1.0))) - x
+
+
+def wandering_tones(sessions, sensor):
+    """[(axis letter, nats, (lowest, highest) Hz)] of the tones of a sensor at rest whose frequency
+    wanders.
+
+    Over the median of all stretches the power of one of them, bin by bin, is exponential with mean
+    1 where there is only noise, and so is what comes and goes at one resonance; the largest of K
+    bins is beyond x with a probability of 1 - (1 - exp(-x))^K [Fisher, Proc. R. Soc. A 125 (1929)
+    54]."""
+    if any(getattr(s.capture, sensor) is None for s in sessions) or not any(
+            s.runs for s in sessions):
+        return []
+    stretches = rests(sessions, sensor)
+    if len(stretches) < FEWEST_TOLD:
+        return []
+    tones = [("xyz"[axis], *_wandering(np.array([s[:, axis] for s in stretches]),
+                                       sessions[0].rate)) for axis in range(3)]
+    return [tone for tone in tones if tone[1] > 0.0]
+
+
+def _wandering(x, rate):
+    """(nats, (lowest, highest) Hz) of stretches x (R, n); 0 nats where there is none."""
+    n = x.shape[1]
+    chance, place, lobe = largest_bins(x, rate)
+    amplitude = np.sqrt(np.maximum(4.0 * lobe / n, 0.0))
+    tone = (chance < RARE) & (amplitude > STRONG_SHARE * x.std(axis=1))
+    bins = place[tone]
+    if tone.mean() < OFTEN or np.subtract(*np.quantile(bins, (0.75, 0.25))) < WANDERS:
+        return 0.0, (0.0, 0.0)
+    hz = np.quantile(bins, (0.05, 0.95)) * rate / n
+    chance = special.bdtrc(tone.sum() - 1, len(tone), DOUBTED)
+    return -math.log(max(chance, sys.float_info.min)), tuple(hz)
+
+
+def largest_bins(x, rate):
+    """Of each of the stretches x (R, n): (the probability of its largest bin by noise alone, the
+    bin, the power of its lobe beyond noise), (R,) each; ones where the spectra tell nothing."""
+    first = max(LOBE + 1, int(LOWEST_HZ * x.shape[1] / rate) + 1)
+    power, nothing = periodograms(x), np.zeros(len(x))
+    if power.shape[1] - first < 2 * FEWEST_TOLD:
+        return np.ones(len(x)), nothing.astype(int), nothing
+    level = np.median(power[:, first:-1], axis=1)
+    if not (level > 0.0).all():
+        return np.ones(len(x)), nothing.astype(int), nothing
+    alike = power / level[:, None]
+    ratio = (alike / (np.median(alike, axis=0) / math.log(2.0)))[:, first:-1]
+    place = first + ratio.argmax(axis=1)
+    chance = -np.expm1(ratio.shape[1] * np.log1p(-np.exp(-ratio.max(axis=1))))
+    wide = LOBE
+    lobe = np.array([own[k - wide:k + wide + 1].sum() for own, k in zip(power, place)])
+    return chance, place, lobe - (2 * wide + 1) * level / math.log(2.0)

@@ -14,9 +14,19 @@ from .. import odds, verdict
 from . import line_across_rests, line_frequency, ringing, strides
 from .detection import Finding
 from .line_frequency import Line
-from .rest_spectra import log_beyond, rests, scatter, slow_noise, spectrum, step
+from .rest_spectra import (
+    LOBE,
+    LOWEST_HZ,
+    STRONG_SHARE,
+    log_beyond,
+    rests,
+    scatter,
+    slow_noise,
+    spectrum,
+    step,
+)
 
-LOWEST_HZ, LOWEST_MOVING_HZ = 0.7, 2.0  # a hand or a vehicle moves more slowly than that
+LOWEST_MOVING_HZ = 2.0  # a hand or a vehicle moves more slowly than that
 # What has no steady frequency is a motion's own up to here, where nothing rests: a hand trembles
 # at 4 to 12 Hz [Elble & Koller, Tremor (1990)], steps and swings are slower.
 MOTION_HZ = 15.0
@@ -29,14 +39,14 @@ MEDIAN_SHARE = 0.25  # of the band: wider than any line, narrower than a filter'
 LEAST_STEPS, DITHERED = 0.5, 0.5
 # Bins to each side; a line has that share of the power in them in its own lobe. A hand that
 # steadies the box, or a motor under load, has a wider bump.
-LOBE, BESIDE, NARROW = 2, 10, 0.6
+BESIDE, NARROW = 10, 0.6
 MULTIPLES = 5  # of a frequency: what a motor's imbalance, blades and bearings shake at
 SWEPT, FALLS = 2, 0.5  # the lowest bins hold the straight line taken off; of a line's power
 LEAST_SHARE = 0.25  # of the standard deviation of the noise: smaller is no matter
 # A bench or a table sways at its own frequencies, by chance: from stretch to stretch the power
 # there scatters as much as its mean (noise through a resonance is exponential). Something that
 # runs is steadier. Only what is steady, or strong, is named.
-STEADY, STRONG_SHARE = 0.6, 0.4
+STEADY = 0.6
 MOST = 0.5  # of what stands out of the noise: of two explanations that which takes more
 
 

@@ -11,7 +11,6 @@ from . import (
     conventions,
     dead_zone,
     held_readings,
-    levelled_off,
     noise_and_registers,
     own_calibration,
     own_motion,
@@ -140,9 +139,9 @@ def compare_traces(real, sim, aligned):
     elif aligned.same and motion is not None:
         fresh = {k: sim.rate_hz / v.rows for k, v in holds["sim"].items()}
         fits = conventions.same_motion(real_free, sim_free, aligned, motion, live, fresh)
-        stops = levelled_off.stops(fits)
+        stops = held_readings.stops(fits)
         if stops:
-            real_free = levelled_off.marked(real_free, stops)
+            real_free = held_readings.marked(real_free, stops)
             fits = conventions.same_motion(real_free, sim_free, aligned, motion, live, fresh)
         unmended = fits
         bands = dead_zone.found(fits, real_free, sim_free)
@@ -176,7 +175,7 @@ def compare_traces(real, sim, aligned):
     gap = remaining_gap.held_out(unmended, left, real, sim)
     numbers = remaining_gap.together(numbers, fits, gap)
     cut = {(p.sensor, p.axis) for p in numbers if p.name == "range"}
-    numbers += [p for p in levelled_off.ranges(stops, real, sim) if (p.sensor, p.axis) not in cut]
+    numbers += [p for p in held_readings.ranges(stops, real, sim) if (p.sensor, p.axis) not in cut]
     if len(fits) == 2 and not findings:
         numbers += noise_and_registers.shaking(real, dead_zone.taken_off(sim, bands))
     numbers += parameters.timing(late, late_sigma, fits, aligned)
