@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import discrepancy, hypotheses, odds, pruning
+from . import discrepancy, hypotheses, members, odds
 from .odds import HOLDS, PRESENT
 from .scored_sets import Scored
 
@@ -72,7 +72,7 @@ def search_sets(model, forms, cost, most=MOST):
             break
         beam = grown
         reached += grown
-    return _judged(model, forms, pruning.pruned(model, max(reached, key=worth), cost), cost)
+    return _judged(model, forms, members.pruned(model, max(reached, key=worth), cost), cost)
 
 
 def judge_likeliest(model, forms, cost, likeliest):
@@ -107,7 +107,7 @@ def _refined(model, forms, best, cost):
     that the others have made superfluous: of all that were come by, the best."""
     changed, reached = True, []
     while changed and best.forms:
-        best, changed = pruning.pruned(model, best, cost), False
+        best, changed = members.pruned(model, best, cost), False
         reached.append(best)
         for form in best.forms:
             fewer = model.scored(tuple(f for f in best.forms if f is not form))

@@ -9,9 +9,9 @@ from sixflip_host.diagnosis import (
     cutoffs,
     discrepancy,
     hypotheses,
+    members,
     odds,
     posterior,
-    pruning,
     scored_sets,
 )
 from sixflip_host.diagnosis.elimination import Columns
@@ -104,7 +104,7 @@ def test_only_a_walk_is_seen_within_the_rests_and_beside_what_the_pose_alone_doe
     best = scored_sets.Scored((form,), 0.0, (), tuple(
         (scored_sets.Choice(form, 0, nats),) for nats in within))
     cost = cutoffs.Cutoffs(8.0, 0.15)
-    assert pruning._seen_within(best, form, hypotheses.Form(other), cost) == seen
+    assert members._seen_within(best, form, hypotheses.Form(other), cost) == seen
 
 
 @pytest.mark.parametrize("alike, kept", [(0.95, 1), (0.0, 2)])
@@ -129,7 +129,7 @@ def test_of_two_that_are_nearly_alike_one_stands_for_what_lies_between_them(alik
     cost = cutoffs.Cutoffs(6.0, 0.06)
     gains = [both.score - model.scored((form,)).score for form in forms]
     assert min(gains) > cost.member + odds.PRESENT
-    assert len(pruning.pruned(model, both, cost).forms) == kept
+    assert len(members.pruned(model, both, cost).forms) == kept
 
 
 def test_what_differs_from_session_to_session_leaves_nothing_to_a_name_within_them():
@@ -138,6 +138,6 @@ def test_what_differs_from_session_to_session_leaves_nothing_to_a_name_within_th
     named, nameless = (hypotheses.Form(name, shared=Columns(np.array([0]), np.ones(1)))
                        for name in ("hysteresis", "orientation"))
     level = hypotheses.Form("session", free=frozenset(["switch_on"]))
-    assert pruning._unknown(named, level, cost) == 0.0
-    assert pruning._unknown(named, nameless, cost) == 0.5
-    assert pruning._unknown(named, named, cost) == cost.form
+    assert members._unknown(named, level, cost) == 0.0
+    assert members._unknown(named, nameless, cost) == 0.5
+    assert members._unknown(named, named, cost) == cost.form

@@ -142,7 +142,7 @@ def _is_in_both(kind, sensor_fit, cause, diagnosis):
         return False
     acting = design(kind, cause.effect, cause, sensor_fit.pair, diagnosis)
     added = acting.columns @ [cause.value.get(key, 0.0) for key in acting.keys]
-    fit = fit_with(kind, sensor_fit, [replace(
+    fit = fit_with(sensor_fit, [replace(
         acting, keys=["share"], columns=added[:, None], prior=np.ones(1))])
     share, sigma = fit.extra[-1], fit.extra_sigma[-1]
     return bool(abs(share) < BOTH * sigma < abs(1.0 - share))

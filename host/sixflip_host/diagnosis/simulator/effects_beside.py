@@ -97,7 +97,7 @@ def _likeliest(kind, sensor_fit, causes, diagnosis):
         if len(set(names)) == len(names)]
     if len(sets) < 2:
         return sets[0] if sets else []
-    return max(sets, key=lambda names: fit_with(kind, sensor_fit, [
+    return max(sets, key=lambda names: fit_with(sensor_fit, [
         design(kind, *named, sensor_fit.pair, diagnosis) for named in names]).log)
 
 
@@ -110,7 +110,7 @@ def _fitted(kind, sensor_fit, names, own, diagnosis):
     pair = acting
     for _ in range(2):
         designs = [design(kind, *named, pair, diagnosis) for named in names]
-        fit = fit_with(kind, sensor_fit, designs)
+        fit = fit_with(sensor_fit, designs)
         pair = _less(kind, acting, designs, fit)
     return fit, designs
 
@@ -168,7 +168,7 @@ def moment(pair):
     return m
 
 
-def fit_with(kind, sensor_fit, designs):
+def fit_with(sensor_fit, designs):
     """Fit of the sensor's own hypothesis with the designs' columns beside it; what the real
     sensor may do besides is left out, since it would take their place."""
     rows = conventions.local_noise(sensor_fit.fit.left[:, sensor_fit.live])
