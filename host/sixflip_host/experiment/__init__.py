@@ -8,7 +8,9 @@ long_rest, noise_spectrum rests in one attitude, and the noise in them
 session_rows              the moments of a session that is only planned
 nominal_rows, covariance (flicker)
                           rest readings as rows: what is unknown in them, and how they err
-terms, fleet_prior        the columns of every effect, and what a fleet knows of their sizes
+terms, session_terms, fleet_prior
+                          the columns of every effect, its variants that rests can show, and what a
+                          fleet knows of their sizes
 linear_model (gram, factored_gram)
                           rows and columns reduced to what all later questions need
 projection, signal_measures, noise_arrays
