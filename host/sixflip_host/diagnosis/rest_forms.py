@@ -16,7 +16,7 @@ from ..experiment.thermometer import MOVES_C
 from . import strangers
 
 DECAYS = (0.25, 0.5, 1.0, 2.0)  # of the rest's length: decays beside those of the library
-CORNERS, JUMPS, WALK = 8, 24, 16  # as strangers.py has them for sessions
+CORNERS, JUMPS, WALK = 8, 24, 16  # as session_strangers.py has them
 WAVES = 24  # half periods in a rest, at most; what is faster is looked for in the spectrum
 BEND = 0.5  # of the slope's own effect: standard deviation of its square and of its cube
 LASTS = 4.0  # times a lag: a shorter rest cannot show it

@@ -22,7 +22,7 @@ FAR_DEG, FAR_TIMES = (5.0, 15.0, 45.0), 5.0  # a tenth of a second that is lost,
 SHARES = (0.01, 0.03, 0.1, 0.3)  # tried, of turns that are far off
 TAILS = (FREEDOM, 1e6)  # degrees of freedom of turns that are alike; so many are normal
 ROUNDS = 8  # of weighting turns by how far they are off
-WRONG_DEG = 25.0  # of a turn's end: as of a label that gravity contradicts (blocks.FAR_OFF_DEG)
+WRONG_DEG = 25.0  # of a turn's end: as of a label that gravity contradicts (session.FAR_OFF_DEG)
 OFF_DEG = 6.0  # of a turn's end by a gyro not yet calibrated: a few percent of a half turn
 
 

@@ -37,7 +37,7 @@ FEWEST_BINS, MOST_BINS = 12, 60  # five samples each in between: a hand moves be
 FLAT_DEG = 15.0
 HATS = 4  # of the bias's course over a session: a straight line, or one that bends twice
 # Cosines that hands have in common when they turn a box: most of a way is in four of them
-# (moves_fit.py), but what is alike in all moves is as strong evidence in the faster ones.
+# (moves_unit.py), but what is alike in all moves is as strong evidence in the faster ones.
 HABITS = 10
 # A hand turns a box smoothly: at 13 % of the time it is 2 % of the way [Flash and Hogan, J.
 # Neuroscience 5 (1985) 1688, equation 9: the way of least jerk].
