@@ -16,8 +16,8 @@ from sixflip_host.experiment import (
     nominal_rows,
 )
 from sixflip_host.experiment.flicker import flicker_kernel
-from sixflip_host.experiment.nominal_rows import Rows, across
-from sixflip_host.experiment.projection import lateral_basis
+from sixflip_host.experiment.nominal_rows import Rows
+from sixflip_host.experiment.projection import across_blocks, lateral_basis
 from sixflip_host.experiment.terms import Design
 from sixflip_host.simulation import scenario, simulated_session
 
@@ -48,7 +48,7 @@ class Plain:
             free = number in FREE
             (self.free if free else self.lateral).append(columns)
             parts.append((place, base, columns[own, :0 if free else 2],
-                          across(columns[own]) if free else np.eye(3 * k)))
+                          across_blocks(columns[own]) if free else np.eye(3 * k)))
         self.lateral, self.free = np.hstack(self.lateral), np.hstack(self.free)
         self.kernel = np.kron(flicker_kernel(T, SECONDS), np.diag(SHARES))
         self.common = rng.standard_normal((n, 1))
@@ -219,7 +219,7 @@ def made_of(number):
         up = rng.standard_normal(3)
         columns = np.tile(lateral_basis(up / np.linalg.norm(up)).T, (2, 1))
         parts.append((slice(2 * k, 2 * k + 2), np.eye(6), columns[:, :2 * (k % 2)],
-                      np.eye(6) if k % 2 else across(columns)))
+                      np.eye(6) if k % 2 else across_blocks(columns)))
     n = 6 * number
     design = Design("slope", "", ["x"] * 20, [0] * 20, rng.standard_normal((n, 20)), np.ones(20))
     return linear_model.unit(Rows(
