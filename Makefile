@@ -2,17 +2,19 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal --durations 10
 export SIXFLIP_CACHE ?= $(CURDIR)/.cache
 # Hundreds of programs are started here: where compiled files may not be kept, each of them
 # compiles scipy anew, which is a tenth of a whole test run.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help setup micropython demo test test-qemu test-pico size check bench bench-accuracy bench-fleet fidelity real blind \
+.PHONY: help setup micropython demo test test-long test-qemu test-pico size check bench bench-accuracy bench-fleet fidelity real blind \
 	blind-studies zoo reproduce pictures box package.json clean
 
 help:
 	@echo "make demo            a virtual board calibrates itself and the host checks it (no hardware)"
-	@echo "make test            every test: CPython, real MicroPython, an emulated Cortex-M3"
+	@echo "make test            the tests: CPython, real MicroPython, an emulated Cortex-M3"
+	@echo "make test-long       those of them that take seven seconds each or more; CI runs both"
 	@echo "make setup           the command 'sixflip' in $(BIN)"
 	@echo "make micropython     the MicroPython interpreter that the virtual board runs on"
 	@echo "make test-qemu       the tests on the emulated Cortex-M3 and micro:bit, a session of every chip"
@@ -47,7 +49,10 @@ demo: micropython
 	@$(BIN)/sixflip demo --keep demo-output
 
 test: micropython check
-	$(BIN)/python -m pytest -n auto --dist worksteal --durations 10
+	$(PYTEST) -m "not long"
+
+test-long: micropython
+	$(PYTEST) -m long
 
 test-qemu: setup
 	SIXFLIP_QEMU_CHIPS=all $(BIN)/python -m pytest -s tests/on_qemu tests/on_microbit

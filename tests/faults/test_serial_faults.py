@@ -51,6 +51,7 @@ def test_pull_over_a_bad_cable(micropython, tmp_path, seed):
         assert wrong == ""
 
 
+@pytest.mark.long
 def test_provision_over_a_bad_cable_and_calibrate_cut_off(micropython, tmp_path):
     with VirtualBoard(SESSION, tmp_path / "f.img", micropython=micropython) as board:
         board.relay.corrupt = BadCable(1, 0.05, 3000)

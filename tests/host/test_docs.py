@@ -47,6 +47,7 @@ def run(line, folder, port=None):
     return done.stdout
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("page", [p for p in PAGES if commands(p)], ids=lambda p: p.name)
 def test_the_commands_of_a_page(page, micropython, tmp_path, monkeypatch):
     monkeypatch.setenv("SIXFLIP_MICROPYTHON", micropython)

@@ -16,6 +16,7 @@ NOTEBOOK = Path(__file__).resolve().parents[2] / "docs" / "python-api.ipynb"
 PAPER = {"seed": 3, "scene": "paper"}
 
 
+@pytest.mark.long
 def test_the_notebook_runs_from_top_to_bottom(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     cells = [cell for cell in json.loads(NOTEBOOK.read_text())["cells"]

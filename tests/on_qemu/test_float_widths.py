@@ -1,10 +1,13 @@
 """Three sessions solved in float32 on the board and in float64 here: the table, and its limits."""
 
+import pytest
+
 from .float_widths import LIMIT_MG, compare, table
 
 SEEDS = range(3)
 
 
+@pytest.mark.long
 def test_what_differs_between_single_and_double_precision(board):
     found = compare(board, SEEDS)
     print("\n" + table(found, len(SEEDS)))

@@ -13,6 +13,7 @@ from .shared_tests import SHARED_TESTS, pass_on_the_board
 from .simulated_sums import session_sums, vector_error_mg
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", SHARED_TESTS)
 def test_shared_tests_pass_on_the_board(board, name):
     pass_on_the_board(board, name)

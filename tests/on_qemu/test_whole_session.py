@@ -115,6 +115,7 @@ def test_a_whole_session_with_the_heap_locked_while_sampling(powered_up, sensor,
     assert gyro < 1e-5
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("sensor", ["gy85"])  # two chips take the more
 def test_a_late_redo_costs_no_session(powered_up, sensor):
     """The tape has no more of the face that is taken again: the session ends without it."""

@@ -25,6 +25,7 @@ def board(micropython, tmp_path):
         yield board
 
 
+@pytest.mark.long
 def test_a_session_a_redo_and_a_redo_without_a_restart(board, capsys):
     assert cli.main(["calibrate", "--port", board.port]) == 0
     assert cli.main(["calibrate", "--port", board.port, "--redo", "X+"]) == 0

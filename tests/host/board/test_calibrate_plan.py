@@ -102,6 +102,7 @@ def board_code(name):
     return pose_code(name)
 
 
+@pytest.mark.long
 def test_a_plan_through_micropython(micropython, tmp_path, plan, world, capsys):
     """Leaning poses, repeats, rests and effects: led, captured, solved, verified, and sample
     by sample what the numpy simulator counts."""

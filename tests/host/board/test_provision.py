@@ -114,6 +114,7 @@ def modules(link):
             and "/" in name}
 
 
+@pytest.mark.long
 def test_compiled_it_takes_the_place_of_the_source_and_back(link, monkeypatch):
     as_source(monkeypatch, link)
     assert modules(link) == {"py"}
@@ -135,6 +136,7 @@ def test_what_an_earlier_firmware_had_and_this_one_has_not_goes(link):
     assert "sixflip_device/maker.txt" in there
 
 
+@pytest.mark.long
 def test_source_left_beside_a_half_copied_firmware_is_not_imported(link, monkeypatch):
     as_source(monkeypatch, link)
     link.remove("main.py")

@@ -217,6 +217,7 @@ def test_killing_the_program_loses_the_last_block_at_most(resting, tmp_path):
     assert cli.main(["show", str(path)]) == 0
 
 
+@pytest.mark.long
 def test_pulling_the_plug_loses_the_last_block_at_most(resting, tmp_path):
     board, port = resting()
     path = tmp_path / "pulled.bin"
@@ -264,6 +265,7 @@ def test_over_a_bad_cable_the_gaps_are_said(resting, tmp_path, capsys):
     assert capture_binary.lost_on_the_way(capture)[0] > 0
 
 
+@pytest.mark.long
 def test_the_recommended_plan_leaves_every_sample_on_a_pico(micropython, tmp_path, capsys,
                                                         monkeypatch):
     """calibrate --plan recommended --record, then diagnose; what the documentation shows."""

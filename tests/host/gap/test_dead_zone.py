@@ -43,6 +43,7 @@ def scale(found):
                if (p.name, p.sensor) == ("scale", "gyro"))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("change", [soft, hard, rounded])
 def test_its_width_and_form_are_found_and_no_scale_is_wrong(change, monkeypatch):
     """The scales were some percent less, and most of the gap was left."""
@@ -123,6 +124,7 @@ def test_a_log_in_other_axes_is_not_asked():
     assert comparison.compare([("real", real)], "sim", simulated).bands == ()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("change", [soft, hard, rounded])
 def test_what_turns_it_may_not_answer_and_the_forces_say_so(change):
     """A motor that does not start below some rate: the gyro is sound, and was blamed."""

@@ -94,6 +94,7 @@ def test_two_causes_are_named_with_size_axis_and_share(
     assert len(again.worlds) == 2
 
 
+@pytest.mark.long
 def test_a_simulator_that_has_the_effects_differs_by_its_parameters_alone(
         two_sessions, tmp_path, capsys):
     twin = captures(tmp_path, "recommended", EFFECTS, seed=31)

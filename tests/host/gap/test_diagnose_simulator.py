@@ -72,6 +72,7 @@ def test_logs_of_different_rates_are_compared_on_one_grid(real, tmp_path, capsys
     assert answer["simulator"]["conventions"] == []
 
 
+@pytest.mark.long
 def test_what_the_simulator_lacks_of_the_sensor_is_no_convention(tmp_path, capsys):
     """A gyro with other scales up and down, and a rate that is heard in the accelerometer: the
     one was a convention without a name, the other a centripetal term that was left out."""
@@ -173,6 +174,7 @@ def noisy(t, force, rate, seed):
             rate + 0.001 * rng.normal(size=rate.shape))
 
 
+@pytest.mark.long
 def test_a_flight_log_is_held_against_a_simulators_bag(tmp_path, capsys):
     """Directly, of logs that only turn: with its sign wrong, its steps of time are not, too."""
     t, force, rate = turning(1)
@@ -323,6 +325,7 @@ def test_rates_that_are_divided_by_the_wrong_time_step_are_named(real, tmp_path,
     assert step["sensor"] == "gyro" and step["value"]["factor"] == pytest.approx(0.5, rel=0.02)
 
 
+@pytest.mark.long
 def test_a_delay_of_the_real_gyro_is_no_delay_of_the_simulator(tmp_path, capsys):
     """The pair of logs does not say which is late; each by itself does."""
     t, force, rate = turning(1, 80.0)
@@ -337,6 +340,7 @@ def test_a_delay_of_the_real_gyro_is_no_delay_of_the_simulator(tmp_path, capsys)
     assert names(has) == ["gyro_delay"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("mg, differs", [(0.25, False), (3.0, True)])
 def test_a_bias_differs_by_more_than_it_flickers(tmp_path, capsys, mg, differs):
     """In minutes of one motion a quarter of a milligravity is certain, and at the next power-up
@@ -358,6 +362,7 @@ def test_biases_that_differ_together_differ_by_more_than_they_flicker():
     assert more.differs and more.set_to == pytest.approx(0.12)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("late_s, verdict", [(0.045, "explained"), (0.0, "no gap")])
 def test_a_delay_that_a_simulator_of_another_motion_lacks_is_named(tmp_path, capsys, late_s,
                                                                    verdict):

@@ -138,6 +138,7 @@ def stood_at(temperatures, sensor, slope, axis):
     return made
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("sensor", ["accel", "gyro"])
 def test_a_scale_that_goes_with_temperature_shows_between_sessions_of_one_each(sensor):
     """Within each of these sessions the temperature stands still: the scale of each was a

@@ -46,6 +46,7 @@ def on_z(values):
     return values[:, None] * np.array([0.0, 0.0, 1.0])
 
 
+@pytest.mark.long
 def test_the_right_class_gains_with_the_size(captures):
     scores = []
     for times in (0.3, 1.0, 3.0):
@@ -57,6 +58,7 @@ def test_the_right_class_gains_with_the_size(captures):
     assert scores == sorted(scores) and scores[2] > 3.0 * scores[0]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("change", [
     lambda t, warm, g: on_z(9.0 * np.tanh(0.15 * warm)),
     lambda t, warm, g: on_z(8.0 * g[:, 2] ** 2 + 4.0 * (t > 300.0))],
@@ -95,6 +97,7 @@ FORMS = {"levels off": ("thermal_bias", lambda t, warm, g: on_z(8.0 * np.tanh(0.
              6.0 * g[:, 2] ** 2 + 6.0 * np.abs(g[:, 2])))}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("form", FORMS)
 def test_a_cause_of_another_form_than_the_library_s_ends_in_its_class(captures, form):
     """With discrepancy.with_discrepancy returning None the bias that levels off with temperature
@@ -138,6 +141,7 @@ def test_a_pair_of_which_one_is_in_the_registers(captures):
     assert all(0.9 < c["share"] <= 1.0 for c in found)
 
 
+@pytest.mark.long
 def test_what_a_part_remembers_from_before_its_first_pose_may_be_anything(captures):
     """Nobody saw the box come to its first pose: a reading that remembered nothing there was a
     step in time and something of history."""
@@ -157,6 +161,7 @@ def test_what_a_part_remembers_from_before_its_first_pose_may_be_anything(captur
     assert cause["value"]["y"] == pytest.approx(-14.0 * np.tanh(1.6), rel=0.15)
 
 
+@pytest.mark.long
 def test_a_session_that_started_warmer_warms_up_by_less(captures):
     """Of two time constants, and by another amount in each session, it was a course in time."""
     times = iter((1.0, 0.7))
@@ -168,6 +173,7 @@ def test_a_session_that_started_warmer_warms_up_by_less(captures):
     assert cause["value"]["z"] == pytest.approx(34.0, rel=0.25)
 
 
+@pytest.mark.long
 def test_a_matrix_that_levels_off_is_still_g_sensitivity():
     """Of another generator's board a stranger of orientation stood beside it, and four other names
     were in its class: products of two axes, which few poses show, were expected to be ten times as

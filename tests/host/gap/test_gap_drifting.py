@@ -70,6 +70,7 @@ def diagnosed(captures, course):
     return diagnosis.diagnose_sessions(moved(captures, course), diagnosis.Settings(jobs=1))
 
 
+@pytest.mark.long
 def test_a_random_walk_of_each_axis_drifts(captures):
     found = diagnosed(captures, walks)
     assert found.gaps["gyro"].drift and found.verdict == "explained"
@@ -91,12 +92,14 @@ def test_the_walk_that_any_such_gyro_has_is_no_drift(captures, seed):
     assert not gap.drift and not gap.posterior.best.names and gap.adequacy.ok
 
 
+@pytest.mark.long
 def test_a_walk_as_wide_as_no_other_effect_drifts(captures):
     """0.6 deg/s were "unexplained": what moves in steps was wider than the widest walk."""
     found = diagnosed(captures, lambda generator, t: 4.0 * walk(generator, t, 3))
     assert found.gaps["gyro"].drift and found.verdict == "explained"
 
 
+@pytest.mark.long
 def test_a_slope_beside_a_walk_keeps_its_name(captures):
     warmest = max(c.temp.max() for c in captures)
 
@@ -258,6 +261,7 @@ def test_a_drift_between_the_levels_tried_is_explained_and_has_its_size():
         assert low < 0.6 < high
 
 
+@pytest.mark.long
 def test_what_leans_under_the_box_is_no_drift_of_its_accelerometer(captures):
     """A table of foam that gives way by a degree in each rest was "partly explained: drift"."""
     generator, leaning, wanders = np.random.default_rng(7), [], []

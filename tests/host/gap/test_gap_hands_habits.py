@@ -4,6 +4,7 @@ The motion is made here, by rotations from scipy: each move carries the box up a
 one and the same way while it is turned over, and the hand trembles at 5 to 9 Hz on the way.
 """
 import numpy as np
+import pytest
 from scipy.spatial.transform import Rotation
 
 from sixflip.poses import faces
@@ -95,6 +96,7 @@ def test_a_hand_that_always_lifts_in_the_same_way_is_no_gap():
     assert motion() == ([], [])
 
 
+@pytest.mark.long
 def test_a_hand_that_waits_now_longer_now_shorter_has_the_same_habit():
     """In shares of the time from rest to rest, the waiting included, each lift had a course of its
     own, and what goes with the rate follows the lift better: a reading that follows the size of

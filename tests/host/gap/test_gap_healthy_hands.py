@@ -73,6 +73,7 @@ def test_a_hand_that_turns_by_half_a_circle_carelessly_is_no_gap_of_the_gyro(off
     assert gap.units[0].grid[gap.adequacy.index[0]][1] >= 0.5 * off_deg
 
 
+@pytest.mark.long
 def test_a_board_without_a_box_that_lies_anyhow_is_no_gap():
     """Five degrees off its faces, with no level of placement as large: unexplained."""
     plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 2,

@@ -134,6 +134,7 @@ def test_spikes_are_no_torn_reads_even_where_they_are_a_page_high(size):
     assert found(change=spiked) == {}
 
 
+@pytest.mark.long
 def test_a_clock_is_the_likelier_off_the_more_it_is_and_sessions_must_agree():
     scores = [found([{"effect": "sample_rate", "rate": rate}])["sample_rate", "device"].score
               for rate in (0.2, 0.3, 0.7)]

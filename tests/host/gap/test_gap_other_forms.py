@@ -119,6 +119,7 @@ def crept(force):
     return lag
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("memory, name, axis", [
     (played, "hysteresis", 2), (played, "hysteresis", 1), (crept, "creep", 2)])
 def test_a_bend_beside_what_remembers_keeps_its_name(memory, name, axis):
@@ -139,6 +140,7 @@ def turned(force):
         force[:, 2], force[:, 1])))[:, None]
 
 
+@pytest.mark.long
 def test_what_another_form_of_a_name_does_by_itself_is_nameless():
     """It was `cross_quadratic`, next to nothing of a product beside all that a form of it may
     have, which no stranger had to compete with."""

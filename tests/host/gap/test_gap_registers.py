@@ -127,6 +127,7 @@ def test_a_rail_of_the_chip_is_its_range():
     assert set(found.limits.values()) == {"range"}
 
 
+@pytest.mark.long
 def test_coarse_steps_are_no_bend():
     two = captures(sensor="gy85")  # 4 mg a count, noise narrower than the step
     for capture in two:
@@ -186,6 +187,7 @@ def test_what_rounding_leaves_of_a_mean(noise):
     assert (got < min(0.3, 2.0 * np.std(errors) / step + 0.02) * step).all()
 
 
+@pytest.mark.long
 def test_torn_reads_in_noise_of_a_fifth_of_a_page():
     torn = captures([{"effect": "torn_reads", "sensor": "accel", "chance": 0.5}], seed=5)
     sessions = [blocks.session_of(str(k), c) for k, c in enumerate(torn)]
@@ -275,6 +277,7 @@ def test_bursts_of_noise_are_no_vibration():
     assert ("accel", "noise") in [(w.sensor, w.domain) for w in found.where]
 
 
+@pytest.mark.long
 def test_a_converter_with_fewer_codes_further_out_cuts_nothing_off():
     """Steps that grow with what is read: the largest code of most peaks was a level cut off."""
     two = captures()

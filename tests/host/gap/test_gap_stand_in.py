@@ -41,6 +41,7 @@ def accelerometer(added, sessions=2, world=None):
         found, [attitude_fit.fit(session) for session in found])
 
 
+@pytest.mark.long
 def test_a_play_along_the_whole_way_is_hysteresis_whatever_its_form():
     """A play of 0.2 g, as a gear has it, through a tanh: no form that the simulator has."""
     def added(t, g, generator):
@@ -72,6 +73,7 @@ def test_a_mount_that_creeps_with_two_time_constants_creeps():
     assert gap.causes[0].share > 0.9
 
 
+@pytest.mark.long
 def test_what_sticks_and_slips_in_many_places_is_hysteresis():
     """Plays of many widths, as friction has them [Prandtl-Ishlinskii], were two causes."""
     def added(t, g, generator):
@@ -199,6 +201,7 @@ def test_what_shifts_while_a_motor_is_on_is_rectified(rectified):
     assert gap.causes[0].share > 0.8
 
 
+@pytest.mark.long
 def test_a_motor_that_is_on_in_one_session_rectifies_there():
     """But for two poses all of that session was as loud as its own quietest rests, so that nothing
     shook."""

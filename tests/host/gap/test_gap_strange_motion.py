@@ -32,6 +32,7 @@ def diagnosed(captures, change):
             capture.accel, capture.gyro = accel, gyro
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("delay_ms", [10.0, 80.0])
 def test_a_late_gyro_is_late_and_nothing_else(captures, delay_ms):
     def late(t, accel, gyro):
@@ -55,6 +56,7 @@ def test_a_band_that_the_gyro_reads_less_by_is_a_dead_band(captures, band_dps):
         assert 0.8 < counts / (band_dps * LSB_DPS) < 2.2  # what was turned within it is lost, too
 
 
+@pytest.mark.long
 def test_a_gyro_that_reads_more_by_a_band_has_no_dead_band(captures):
     """A band has a width: what is less than nothing is something else."""
     def more(t, accel, gyro):
@@ -81,6 +83,7 @@ def test_a_reading_that_follows_the_size_of_the_rate_has_no_name(captures, senso
     assert first["axis"] == {"accel": "x", "gyro": "y"}[sensor]
 
 
+@pytest.mark.long
 def test_samples_lost_in_every_turn_under_a_steady_clock_are_a_gap():
     """All turns end degrees from where gravity says: alike, that was taken for their noise."""
     plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": 4})
@@ -139,6 +142,7 @@ def test_turns_that_each_end_far_off_have_no_name():
     assert any("samples may be lost" in said for said in found.remarks)
 
 
+@pytest.mark.long
 def test_rows_of_an_old_buffer_are_no_delay(captures):
     """Ten of 97 rows of the accelerometer are those of a second before: in motion it was a
     `filter_lag` beside that."""
@@ -152,6 +156,7 @@ def test_rows_of_an_old_buffer_are_no_delay(captures):
     assert [d["value"]["later"] for d in found["damage"]] == [100]
 
 
+@pytest.mark.long
 def test_what_bends_an_accelerometer_bends_a_hand_s_acceleration_with_it(captures):
     """Beside `cubic` something nameless followed the rate: a hand's acceleration on its way, which
     is read by another scale than gravity is."""
@@ -164,6 +169,7 @@ def test_what_bends_an_accelerometer_bends_a_hand_s_acceleration_with_it(capture
     assert found["verdict"] == "explained"
 
 
+@pytest.mark.long
 def test_what_follows_the_rate_has_no_name_beside_a_bend_either(captures):
     """That a bend reads a hand's acceleration by another scale is no reason for it."""
     def follows(t, accel, gyro):

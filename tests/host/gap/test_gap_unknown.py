@@ -28,6 +28,7 @@ def test_a_step_at_another_time_in_each_session_is_unexplained(two_sessions):
     assert (found["where"][0]["sensor"], found["where"][0]["domain"]) == ("accel", "time")
 
 
+@pytest.mark.long
 def test_a_table_that_gives_way_under_the_box_is_no_drift(two_sessions):
     """A third of a degree about an axis of the box, anew in each rest: it was 0.8 mg of drift."""
     for capture in two_sessions:
@@ -43,6 +44,7 @@ def test_a_table_that_gives_way_under_the_box_is_no_drift(two_sessions):
     assert found["where"][0]["domain"] == "time_since_move"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("course", [
     lambda u: 1.0 * (u > 0.4), lambda u: 1.0 / (1.0 + np.exp((0.5 - u) * 30.0))],
     ids=["a scale that steps", "what soaks in"])
@@ -92,6 +94,7 @@ def test_a_log_without_a_rest_cannot_tell_that_there_is_no_gap():
     assert found.verdict == "cannot tell"
 
 
+@pytest.mark.long
 def test_a_fifth_power_is_cubic_and_no_product_of_axes(two_sessions):
     """Products of axes with a discrepancy that showed forty times more than they did were named
     as well."""
@@ -105,6 +108,7 @@ def test_a_fifth_power_is_cubic_and_no_product_of_axes(two_sessions):
     assert found["verdict"] == "explained"
 
 
+@pytest.mark.long
 def test_a_gyro_whose_scale_grows_is_a_gap_in_time(two_sessions):
     """3 % over a session were no gap: nothing that turns show was a function of time."""
     for capture in two_sessions:
@@ -117,6 +121,7 @@ def test_a_gyro_whose_scale_grows_is_a_gap_in_time(two_sessions):
     assert (found["where"][0]["sensor"], found["where"][0]["domain"]) == ("gyro", "time")
 
 
+@pytest.mark.long
 def test_what_a_gyro_forgets_of_its_turns_is_no_drift(two_sessions):
     """A firmware that takes off what is slow: 2 % of the mean of 15 s. It was drift that explained
     all, as nothing nameless knew how far the box had been turned."""

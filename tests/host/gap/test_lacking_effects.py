@@ -44,6 +44,7 @@ def bowed(force, rate):
     return force + on("x", 0.005 * np.abs(force[:, 0]) ** 1.5), rate
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("added, effect, sensor, key, size", [
     (softened, "asymmetry", "gyro", "z", 3.0), (pulled, "g_sensitivity", "gyro", "zz", 0.1),
     (bowed, "quadratic", "accel", "x", 5.0)], ids=["asymmetry", "g_sensitivity", "quadratic"])
@@ -59,6 +60,7 @@ def test_what_the_motion_shows_has_a_name_and_its_size(added, effect, sensor, ke
     assert gap["after"] < 0.1 * gap["before"] or gap["after"] < 1.1 * gap["floor"]
 
 
+@pytest.mark.long
 def test_logs_of_several_sessions_tell_an_effect_together_and_once():
     found = answered(bowed, seeds=(1, 2))
     cause, = found["causes"]
@@ -88,6 +90,7 @@ def healthy(force, rate):
     return force, rate
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("added", [healthy, bent_at_the_end, dead, swinging, kinked])
 def test_what_has_no_name_gets_none(added):
     """A front end that levels off, a dead band and a scale that swings are like a cube, a square
@@ -96,6 +99,7 @@ def test_what_has_no_name_gets_none(added):
     assert not [c for c in causes if set(c["class"]) & set(lacking_effects.OF_MOTION)]
 
 
+@pytest.mark.long
 def test_what_leaves_most_of_the_gap_is_not_its_name():
     """An accelerometer that is cut off at 0.9 g is a little like a cube, which closed a fifth."""
     t, force, rate = tumbled(1, 60.0)
@@ -121,6 +125,7 @@ def test_a_real_log_counts_once_whatever_is_held_against_it(monkeypatch):
     assert sorted(asked) == ["b", "d"]
 
 
+@pytest.mark.long
 def test_an_effect_that_is_left_out_is_not_looked_for():
     t, force, rate = tumbled(1)
     found = diagnose([("real", read(t, *softened(force, rate), 1))],

@@ -21,6 +21,7 @@ def compared(change, seed=1):
                               read(t, force, rate, 100 + seed))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("change", [cut, soft])
 def test_where_it_stops_is_a_range_and_no_scale(change, monkeypatch):
     """It was a scale that is some percent less, and most of the gap was left."""
@@ -59,6 +60,7 @@ def curved(rate):
     return rate - 1e-6 * rate ** 3
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("change", [np.copy, smoothed, weaker, shaken, curved])
 def test_what_only_makes_less_of_its_peaks_has_no_other_range(change):
     assert not [p for p in compared(change).parameters if p.name == "range"]

@@ -45,6 +45,7 @@ def capture(tmp_path_factory):
     return ["--replay", str(path), "--speed", "6"]
 
 
+@pytest.mark.long
 def test_quit_and_come_back_without_losing_what_was_captured(port):
     """On a board, to the end; the first time without colour."""
     with Terminal("calibrate", "--port", port, NO_COLOR="1") as terminal:

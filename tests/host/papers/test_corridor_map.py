@@ -74,6 +74,7 @@ def test_the_robot_comes_round():
     assert leg.tolist() == [-1, 4]
 
 
+@pytest.mark.long
 def test_without_slam_the_path_is_the_odometry(small):
     for reading in drive.READINGS:
         path = experiment.placed(small.driven, small.maps[PLAIN.name, reading].path)
@@ -82,6 +83,7 @@ def test_without_slam_the_path_is_the_odometry(small):
         assert np.abs(floor_plan.wrapped(path[:, 2] - odometry[:, 2])).max() < 2e-3
 
 
+@pytest.mark.long
 def test_a_true_odometry_draws_the_walls_where_they_are(program, small):
     made = small.driven
     found = slam.run(program, PLAIN, made.pose, made.scans, made.t_s, reach_m=drive.REACH_M)
@@ -90,6 +92,7 @@ def test_a_true_odometry_draws_the_walls_where_they_are(program, small):
     assert quality.closure_m < 2e-3 and quality.closes
 
 
+@pytest.mark.long
 def test_each_reading_is_better_than_the_one_before_and_scan_matching_hides_it(small):
     off = {reading: small.quality[PLAIN.name, reading] for reading in drive.READINGS}
     assert off["raw"].corner_deg > off["rest"].corner_deg > off["Sixflip"].corner_deg
@@ -99,6 +102,7 @@ def test_each_reading_is_better_than_the_one_before_and_scan_matching_hides_it(s
     assert hidden.closes and not off["raw"].closes
 
 
+@pytest.mark.long
 def test_a_seed_gives_the_same_map_twice(program, small):
     made = small.driven
     again = slam.run(program, SAMPLING, made.odometry("Sixflip"), made.scans, made.t_s,
@@ -107,6 +111,7 @@ def test_a_seed_gives_the_same_map_twice(program, small):
     assert np.array_equal(again.path, small.maps[SAMPLING.name, "Sixflip"].path)
 
 
+@pytest.mark.long
 def test_the_command_prints_checks_and_keeps(program, monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(experiment, "CORRIDOR", SMALL)
     monkeypatch.setenv("SIXFLIP_DATA", str(tmp_path))
@@ -149,6 +154,7 @@ def test_the_best_scale_is_the_vertex():
     assert claims.best(list(range(len(claims.SCALES)))) == claims.SCALES[0]
 
 
+@pytest.mark.long
 def test_the_recording_is_mapped_better_without_the_bias(program, recordings):
     recording = botlab.load(recordings / botlab.RECORDING)
     half = slice(0, len(recording.scan_t) // 2)
@@ -200,6 +206,7 @@ def test_an_engine_that_leaves_nothing(tmp_path):
         slam.run(str(tmp_path / "nowhere"), PLAIN, **ONE)
 
 
+@pytest.mark.long
 def test_a_log_cut_short_is_told(program, small, tmp_path, monkeypatch):
     whole = rawlog.write
 
@@ -234,6 +241,7 @@ def test_wrong_words(words, capsys):
     assert capsys.readouterr().err.count("\n") == 1
 
 
+@pytest.mark.long
 def test_qualities_are_values(small):
     with pytest.raises(dataclasses.FrozenInstanceError):
         small.quality[PLAIN.name, "raw"].wall_m = 0.0

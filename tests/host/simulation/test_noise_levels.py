@@ -54,6 +54,7 @@ def test_six_hours_give_the_walk_back_within_three_percent_as_allantools_has_it(
     assert abs(np.mean(errors)) < 0.015
 
 
+@pytest.mark.long
 def test_the_intervals_hold_the_truth_as_often_as_they_say():
     held = [0, 0]
     for seed in range(40):

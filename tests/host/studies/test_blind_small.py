@@ -10,6 +10,7 @@ from tests.studies.blind import blind_run, reliability, seal, target_tables
 from tests.studies.blind.generator.case import Specification
 from tests.studies.blind.scoring import scored
 
+pytestmark = pytest.mark.long
 HERE = cluster.Target(None, 1)
 SQUARE = {"box_tilt_deg": 0.0}
 CASES = {

@@ -20,6 +20,7 @@ def judged(tmp_path_factory, once):
     return of
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("recording", SHORT, ids=[one.name for one in SHORT])
 def test_every_claim_stands_beside_a_plain_figure(recording, recordings, judged):
     answer, rows = judged(recording, recordings)

@@ -49,6 +49,7 @@ def through(model, capture):
                                 capture.pose)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name,own,effect", [
     ("healthy", True, "thermal_bias"), ("healthy", True, "quadratic"), ("no_noise", False, ""),
     ("gyro_late", True, "")])
@@ -71,6 +72,7 @@ def test_simulated_again_with_the_class_there_is_no_gap(box, once, tmp_path, nam
             gap["before"] < 2.0 * gap["floor"])
 
 
+@pytest.mark.long
 def test_mujoco_takes_its_own_snippet_and_the_lever_arm_with_it(box, tmp_path):
     real, sim = captures("no_lever_arm", box, own=False)
     text = exported(answered(real, sim), "mujoco", tmp_path)

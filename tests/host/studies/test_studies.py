@@ -46,6 +46,7 @@ def test_a_wrong_name_counts_only_when_it_stands_alone_and_explains():
     assert kind("no gap") == ("quiet", [])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("job", [
     ("g_sensitivity", "gyro", 3.0, 9700),
     ("cubic", "accel", 1.0, 10000)])  # a memory that levels off bends as it does, and was named
@@ -68,6 +69,7 @@ def test_resolved_means_that_the_rivals_are_gone():
     assert outcome() == outcome(cause("creep", sensor="gyro")) == "lost"
 
 
+@pytest.mark.long
 def test_the_capture_recommended_tells_temperature_from_warm_up():
     _, names, words, outcome = resolved.tried(("warm_up", "accel", 3.0, "one session", 7400))
     assert {"warm_up", "thermal_bias"} <= set(names)

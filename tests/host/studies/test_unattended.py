@@ -5,6 +5,7 @@ import pytest
 from tests.studies.robustness.unattended import ROWS, Heard
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ROWS)
 def test_what_is_known_of_a_recording_is_said(name, recordings):
     captures, known = ROWS[name]

@@ -79,6 +79,7 @@ class Puller:
         return self.hand.hear(data)
 
 
+@pytest.mark.long
 def test_eight_boards_of_which_three_fail(micropython, flash, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(raw_repl, "REOPEN_S", 0.5)
     monkeypatch.setenv(raw_repl.PATIENCE, "%g" % OF_EIGHT)
@@ -107,6 +108,7 @@ def test_eight_boards_of_which_three_fail(micropython, flash, tmp_path, monkeypa
     assert sorted(kept) == sorted(ids)
 
 
+@pytest.mark.long
 def test_ctrl_c_loses_nothing(micropython, flash, tmp_path, monkeypatch):
     """On the screen; afterwards both boards go on where they were, in lines. A busy machine may
     take its time over each of them: neither the host nor the hand leads on past a face."""

@@ -195,6 +195,7 @@ def window(browser):
     browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("size", SIZES)
 def test_what_counts_is_seen_without_scrolling(window, tmp_path, size):
     link = ScriptedLink()
@@ -285,6 +286,7 @@ def test_what_a_board_says_is_text_and_nothing_else(browser, tmp_path):
         assert browser.title == "Sixflip" and quiet(browser)
 
 
+@pytest.mark.long
 def test_a_dozen_tabs_share_one_board(browser, tmp_path):
     """A browser keeps six connections to a server; a tab that nobody sees holds none."""
     link = ScriptedLink()

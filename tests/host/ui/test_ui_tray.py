@@ -136,6 +136,7 @@ def shot(browser, name):
         browser.save_screenshot(str(folder / (name + ".png")))
 
 
+@pytest.mark.long
 def test_two_boards_in_a_browser(micropython, tmp_path):
     chromium.require()
     hand = JigHand({"one": WAYS[0], "two": WAYS[1]})

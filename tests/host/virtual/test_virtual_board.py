@@ -110,6 +110,7 @@ def test_raw_paste_takes_a_source_of_many_windows(link):
     assert link.run(source, "running").strip() == b"500"
 
 
+@pytest.mark.long
 def test_power_cut_leaves_the_old_or_the_new_file(board, link, monkeypatch):
     old, new = b"o" * 3000, b"n" * 3000
     link.put("f", old)
