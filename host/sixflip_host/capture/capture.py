@@ -1,4 +1,6 @@
 """A capture: the raw counts of one session, as the chip gave them."""
+import numpy as np
+
 from . import pose_sums
 from .capture_header import ACCEL, GYRO, MAG, STANDARD_G
 
@@ -14,6 +16,7 @@ class Capture:
     board_placements, notes, truncated, sums_only, taken, complete, withdrawn
             what only a board's own file knows, see capture_binary
     assumed sentences on what a foreign file did not say, see open_recording
+    taken_out_us  times of rows that were taken out, as nobody read them (int64, in any order)
     """
 
     def __init__(self, meta, t_us, accel, gyro=None, temp=None, mag=None, pose=None):
@@ -32,6 +35,7 @@ class Capture:
         self.taken = len(t_us)
         self.complete = True
         self.withdrawn = []
+        self.taken_out_us = np.zeros(0, np.int64)
 
     def __len__(self):
         return len(self.t_us)

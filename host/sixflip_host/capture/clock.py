@@ -20,6 +20,7 @@ import numpy as np
 
 from . import capture_binary, stamp_envelope
 from .board_extras import EXTRAS
+from .capture import Capture
 
 # Of a period, by which a gap lifts the envelope at least where most intervals are whole periods:
 # less than a row has to be late (stamp_envelope.PART), for the last stamp before a gap is a late
@@ -129,6 +130,15 @@ def sample_clock(capture):
     _, places = capture_binary.lost_on_the_way(capture)
     recorder = np.setdiff1d(capture_binary.write_pauses(capture), places)
     return measure(capture.t_us, recorder, places)
+
+
+def clock_of_log(capture):
+    """The SampleClock of all rows of a Capture's log, those that were taken out of it among them:
+    nobody read them, but they came, and are not lost."""
+    if not len(capture.taken_out_us):
+        return sample_clock(capture)
+    t_us = np.sort(np.concatenate([capture.t_us, capture.taken_out_us]))
+    return sample_clock(Capture(capture.meta, t_us, None))
 
 
 def of_a_board(capture):

@@ -78,8 +78,6 @@ def judge(sessions, settings=ALONE, damages=()):
         [partial(say, sessions) for say in (*FOUND_BY, _of_whole_axes, _of_spectra)],
         settings.processors)
     findings = [f for f in sum(found, []) + lines if f.effect not in without]
-    if any(d.kind == held_values.NOT_READ for d in damages):
-        findings = [f for f in findings if f.effect != "dropped_samples"]
     findings, uneven = codes.uneven(sessions, findings, {sensor for sensor, *_ in whole[2]})
     coarse = {(f.sensor, axis) for f in findings if f.effect in COARSE for axis in f.axes}
     stuck = stuck_axes.stuck_for_a_while(sessions, coarse)

@@ -132,3 +132,28 @@ def test_a_knock_that_drives_all_axes_to_one_end_was_read(sound, code):
     capture = spoilt(sound, "accel", np.array([1500, 1501]), code)
     capture.accel[[1499, 1502]] = code // np.array([3, 4, 5])
     assert unread_rows.as_read([("one", capture)])[1] == []
+
+
+def without(capture, rows):
+    """A log that lacks some rows, whose clock went on."""
+    out = copy.copy(capture)
+    for name in ("t_us", "accel", "gyro"):
+        setattr(out, name, np.delete(getattr(capture, name), rows, axis=0))
+    return out
+
+
+def test_rows_that_nobody_read_hide_none_that_are_lost(sound):
+    """Any row that was not read kept lost ones from being told; and none of those that were not
+    read is lost itself."""
+    unread = np.random.default_rng(6).choice(11000, 300, replace=False)
+    capture = spoilt(sound, "accel", unread, -1)
+    said = answer.as_dict(diagnose([("one", capture)]))
+    assert said["causes"] == [] and said["clock"][0]["losses"]["samples"] == 0
+    lost = np.setdiff1d(np.random.default_rng(5).choice(11000, 250, replace=False), unread)
+    said = answer.as_dict(diagnose([("one", without(capture, lost))]))
+    cause, = said["causes"]
+    assert cause["effect"] == "dropped_samples"
+    assert cause["value"]["chance"] == pytest.approx(100.0 * len(lost) / len(sound), rel=0.02)
+    damage, = said["damage"]
+    assert damage["value"] == {"rows": len(unread)}
+    assert "300 rows" in gap_words.sentence(said) and "loses samples" in gap_words.sentence(said)

@@ -180,6 +180,7 @@ def _resting(counts):
 def without_rows(capture, rows):
     """A Capture without some of its rows; the one given is not changed."""
     shorter = copy.copy(capture)
+    shorter.taken_out_us = np.concatenate([capture.taken_out_us, capture.t_us[rows]])
     for name in ("t_us", "accel", "gyro", "temp", "mag", "pose"):
         if getattr(shorter, name) is not None:
             setattr(shorter, name, np.delete(getattr(shorter, name), rows, axis=0))
