@@ -72,7 +72,7 @@ class SamplesJudged:
 
 def judge(sessions, settings=ALONE, damages=()):
     """SamplesJudged of all sessions; settings: settings.Settings; damages: those that were put
-    right before."""
+    right or taken out before, which leave no gap behind."""
     without = settings.without
     *found, whole, (rings, tones, lines) = side_by_side.results(
         [partial(say, sessions) for say in (*FOUND_BY, _of_whole_axes, _of_spectra)],
@@ -82,7 +82,8 @@ def judge(sessions, settings=ALONE, damages=()):
     coarse = {(f.sensor, axis) for f in findings if f.effect in COARSE for axis in f.axes}
     stuck = stuck_axes.stuck_for_a_while(sessions, coarse)
     held, scales, bits = whole
-    damages = [*damages, *held, *stuck, *scales]
+    left = [*held, *stuck, *scales]
+    damages = [*damages, *left]
     leaping = {sensor for sensor, *_ in [*bits, *uneven]} | {
         f.sensor for f in findings if f.effect == "dead_band"}
     jumpy = {sensor for sensor, *_ in uneven} | {
@@ -110,7 +111,7 @@ def judge(sessions, settings=ALONE, damages=()):
                  for sensor, axis, _, nats in rings]
     nameless += [localisation.Place(damage.sensor, axis, damage.domain, 1.0,
                                     odds.chance(damage.score))
-                 for damage in damages for axis in damage.axes or (None,)]
+                 for damage in left for axis in damage.axes or (None,)]
     nameless += [localisation.Place(sensor, axis, "amplitude", 1.0, odds.chance(nats))
                  for sensor, axis, nats in [*((*bit[:2], bit[-1]) for bit in bits), *uneven]]
     remarks += ["the %s axis of the %s reads some codes hardly ever and others too often"

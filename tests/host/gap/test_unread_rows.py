@@ -76,6 +76,7 @@ def test_zeros_that_a_log_is_filled_up_with_are_no_effect():
     assert said["causes"] == []
     damage, = said["damage"]
     assert damage["kind"] == "not read" and damage["value"] == {"rows": 239}
+    assert said["verdict"] == "no gap"
     assert "239 rows" in gap_words.sentence(said)
 
 
@@ -157,3 +158,14 @@ def test_rows_that_nobody_read_hide_none_that_are_lost(sound):
     damage, = said["damage"]
     assert damage["value"] == {"rows": len(unread)}
     assert "300 rows" in gap_words.sentence(said) and "loses samples" in gap_words.sentence(said)
+
+
+@pytest.mark.parametrize("sensor, rows, code", [
+    ("gyro", np.arange(32), -32768), ("accel", np.arange(11800, 12000), 0)])
+def test_what_is_taken_out_leaves_no_gap_behind(sound, sensor, rows, code):
+    """Rows that nobody read alone were a gap that nothing in the library explains."""
+    as_it_is = answer.as_dict(diagnose([("one", sound)]))
+    said = answer.as_dict(diagnose([("one", spoilt(sound, sensor, rows, code))]))
+    assert said["verdict"] == as_it_is["verdict"] and said["where"] == []
+    assert "%d rows" % len(rows) in gap_words.sentence(said)
+    assert "nothing in the library" not in gap_words.sentence(said)
