@@ -9,7 +9,7 @@ from ..errors import BadFile
 from ..experiment import blocks, long_rest
 from ..experiment.signal_measures import allan
 from . import diagnosis
-from .detect import byte_faults, held_values, unread_rows
+from .detect import damage_taken_out
 from .settings import Settings
 
 MOST_ROUNDS = 3  # times that what is in both logs is taken off
@@ -34,10 +34,7 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
     for name, capture in reference:
         noise = flicker_levels(capture, name)
     settings = Settings(certified_box, tuple(without), noise, jobs, prior=prior)
-    captures, unread = unread_rows.as_read(captures)
-    captures, held = held_values.as_read(captures)
-    captures, damages = byte_faults.repaired(captures, settings.processors)
-    damages = [*unread, *held, *damages]
+    captures, damages = damage_taken_out.taken_out(captures, settings.processors)
     sessions = [blocks.session_of(name, capture) for name, capture in captures]
     own, comparisons = None, []
     if simulator:

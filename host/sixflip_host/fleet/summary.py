@@ -16,7 +16,7 @@ from ..capture import rests
 from ..capture.capture_file import Capture
 from ..capture.find_poses import find_poses
 from ..diagnosis import samples_judged
-from ..diagnosis.detect import saturation
+from ..diagnosis.detect import damage_taken_out, saturation
 from ..experiment import blocks, thermometer
 from ..experiment.session import OF_BLOCKS, Session, fading
 
@@ -138,12 +138,13 @@ class Summary:
 
 
 def summarise(name, capture):
-    """Summary of a capture with samples; the capture itself is not changed."""
+    """Summary of a capture with samples, less its damage; the capture itself is not changed."""
+    ((_, capture),), damages = damage_taken_out.taken_out([(name, capture)])
     solved = solution.solve(copy.copy(capture))
     labelled = capture.pose is not None
     placed = capture if labelled else _with_poses(capture)
     session = blocks.session_of(name, capture)
-    judged = samples_judged.judge([session])
+    judged = samples_judged.judge([session], damages=damages)
     session, = judged.sessions
     if any(f.effect == "saturation" and f.sensor == "accel" for f in judged.findings):
         session = session.without_samples(saturation.railed(session))
@@ -151,7 +152,7 @@ def summarise(name, capture):
         "name": name, "labelled": labelled, "found_labelled": session.labelled,
         "gyro": capture.gyro is not None,
         "meta": {key: capture.meta[key] for key in KEPT if key in capture.meta},
-        "remarks": solved.remarks + list(capture.assumed),
+        "remarks": solved.remarks + list(capture.assumed) + [one.words for one in damages],
         "bounds": [0.0, float(session.t_s[-1])],
         "flips": {"reason": solved.flips.reason,
                   "angles": [[int(k), float(v)] for k, v in solved.flips.angles.items()],

@@ -21,7 +21,7 @@ from ..diagnosis import cutoffs
 from ..errors import BadFile
 from . import summary, summary_checks
 
-FORMAT = 5
+FORMAT = 6
 SUFFIX = ".summary.npz"
 PIECE = 1 << 20
 ARRAYS = {  # columns of each table

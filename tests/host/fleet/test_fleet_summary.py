@@ -1,4 +1,5 @@
 """A summary is its capture to the last digit, as far as solve and the rests' model look at it."""
+import copy
 import io
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 from sixflip_host.calibrate import solution, solution_json
 from sixflip_host.capture import capture_file
 from sixflip_host.diagnosis import rest_model, settings, usable_rests
+from sixflip_host.diagnosis.detect import damage_taken_out
 from sixflip_host.errors import BadFile
 from sixflip_host.experiment import attitude_fit, blocks, session_terms
 from sixflip_host.experiment.session import OF_BLOCKS
@@ -163,3 +165,20 @@ def test_numbers_out_of_range_are_refused_one_by_one(captured):
         with pytest.raises(BadFile, match="damaged"):
             summary_file.decode("s", summary_file.encode(changed))
     assert summary_file.decode("s", summary_file.encode(one)).solved().verdict
+
+
+def test_a_capture_is_summarised_without_what_nobody_read(captured):
+    """Rows with 0 on all axes of the accelerometer were in the means of a board's rests, which
+    `diagnose` leaves them out of."""
+    _, capture, one = captured
+    spoilt = copy.copy(capture)
+    spoilt.accel = np.array(capture.accel)
+    spoilt.accel[np.random.default_rng(2).choice(len(capture), 200, replace=False)] = 0
+    made = summary.summarise("s", spoilt)
+    gap, whole = (diagnosed.diagnose_board([each], [each.session()])[0] for each in (made, one))
+    assert gap["verdict"] == whole["verdict"]
+    assert [c["effect"] for c in gap["causes"]] == [c["effect"] for c in whole["causes"]]
+    read, (damage,) = damage_taken_out.taken_out([("s", spoilt)])
+    assert damage.value == {"rows": 200} and damage.words in made.solved().remarks
+    assert solution_json.to_json(made.solved())["accel"] == solution_json.to_json(
+        solution.solve(read[0][1]))["accel"]

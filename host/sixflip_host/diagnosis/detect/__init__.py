@@ -6,6 +6,7 @@ codes, torn_reads (sample_neighbours), saturation, dead_band, axis_order, sample
 byte_faults (course_likelihood), held_values (stuck_axes), unread_rows, wrong_scale
                                    damage: bytes, rows that repeat or that nobody read, full
                                    scales
+damage_taken_out                   captures without it
 spectral_lines (rest_spectra, line_frequency, line_across_rests),
 noise_bursts (noise_windows), noise_shape, spikes, ringing, shake_detector, strides
                                    lines of a spectrum, noise that changes, is shared or is not
