@@ -230,3 +230,29 @@ def test_rows_that_a_link_hands_over_together_keep_their_stamps(tmp_path, capsys
     capture, said = imported(tmp_path, capsys, table(np.repeat(arrived, 8), "t_us"))
     assert "spread" not in said
     assert (capture.t_us == np.repeat(arrived - arrived[0], 8)).all()
+
+
+@pytest.mark.parametrize("head, step, unit", [
+    ("time_us", 10, "ms (100 Hz)"), ("micros", 1, "ms (1000 Hz)"), ("t_ns", 5, "ms (200 Hz)")])
+def test_a_unit_by_name_that_no_log_is_as_fast_in_is_refused(tmp_path, capsys, head, step, unit):
+    """Milliseconds in a column time_us were a log of 100000 Hz."""
+    text = table([step * k for k in range(ROWS)], head)
+    said = refused(tmp_path, capsys, text)
+    assert "expected less than 8000 Hz: --time-unit " + unit in said
+    capture, _ = imported(tmp_path, capsys, text, "--time-unit", "ms")
+    assert capture.meta["rate_hz"] == pytest.approx(1e3 / step, rel=1e-3)
+    capture, _ = imported(tmp_path, capsys, table([step * k for k in range(ROWS)], "t_ms"))
+    assert capture.meta["rate_hz"] == pytest.approx(1e3 / step, rel=1e-3)
+
+
+def test_a_unit_by_name_that_a_log_is_slow_in_is_said(tmp_path, capsys):
+    capture, said = imported(tmp_path, capsys, table([10 * k for k in range(ROWS)], "time_s"))
+    assert capture.meta["rate_hz"] == pytest.approx(0.1, rel=1e-3)
+    assert "as its name says: 0.1 Hz; --time-unit if it is ms (100 Hz)" in said
+
+
+def test_a_moment_in_milliseconds_with_decimals_is_asked_for(tmp_path, capsys):
+    """400 rows at 1 kHz were as many seconds."""
+    times = ["%.3f" % t for t in np.arange(ROWS) + np.random.default_rng(3).uniform(0, 0.01, ROWS)]
+    said = refused(tmp_path, capsys, table(times))
+    assert "expected --time-unit with one of s (1 Hz, 399 s), ms (1000 Hz, 0.399 s)" in said

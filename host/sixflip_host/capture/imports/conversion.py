@@ -153,6 +153,9 @@ class Conversion:
             time_stamps.check_stated(self.table.path, words, times, unit,
                                      getattr(self.table, "rate_hz", None))
             self.assumed.append(words)
+        elif not options.time_unit:
+            words = time_stamps.check_named(self.table.path, name, times, unit)
+            self.assumed += [words] if words else []
         scale = 1e6 / options.rate if unit == "samples" else {
             **column_vocabulary.TIME_UNITS, **column_vocabulary.LONG_UNITS}[unit]
         time_stamps.check_stretch(

@@ -13,6 +13,9 @@ from .column_vocabulary import TIME_UNITS
 EPOCH_S = (1e9, 3e9)
 USUAL_HZ = (15.0, 4000.0)       # of an IMU's log; a factor below 1000, so that one unit fits
 POSSIBLE_HZ = (0.5, 8000.0)
+# The fastest that a log of a moment comes at as often as one of a row a second comes with decimals
+# [LSM6DSO, DocID030463 rev 2, table 52: 1.66 kHz; most parts end at 1 or 1.6].
+MOMENT_HZ = 1700.0
 SHORTEST_S = 1.0                # of a log that somebody keeps: no rest is found in less
 MOST_C_PER_S = 10.0             # no chip's temperature changes faster
 LATEST_US = 1e16                # three centuries: what times in the wrong unit pass
@@ -52,7 +55,10 @@ def unit_of(path, column, times, celsius=None):
     likely = [unit for unit in usually if seconds[unit] >= SHORTEST_S]
     if not likely:
         parts = bool((times[:1000] != np.rint(times[:1000])).any())
-        likely = ["s"] if parts and "s" in possible else usually or possible
+        likely = usually or possible
+        if parts and "s" in possible:
+            likely = ["s", *(unit for unit in usually
+                             if unit != "s" and rates[unit] <= MOMENT_HZ)]
     readings = {unit: "%s (%.4g Hz, %.3g s)" % (unit, rates[unit], seconds[unit])
                 for unit in TIME_UNITS}
     if len(likely) != 1:
@@ -62,6 +68,25 @@ def unit_of(path, column, times, celsius=None):
     return likely[0], "%s taken as %s: %.4g Hz%s" % (
         column, likely[0], rates[likely[0]], ", %.3g s; --time-unit if it is %s" % (
             seconds[likely[0]], " or ".join(others)) if others else "")
+
+
+def check_named(path, column, times, unit):
+    """A sentence on times whose unit, by their column's name, makes a log of rows far apart, where
+    another unit's are as usual, or ""; BadFile where it makes one faster than any."""
+    usual = _usual(times)
+    if not usual > 0 or unit not in TIME_UNITS:
+        return ""
+    rate = 1e6 / (usual * TIME_UNITS[unit])
+    others = " or ".join("%s (%.4g Hz)" % (other, 1e6 / (usual * us))
+                         for other, us in TIME_UNITS.items()
+                         if other != unit and _within(1e6 / (usual * us), *USUAL_HZ))
+    if rate > POSSIBLE_HZ[1]:
+        raise BadFile("%s: %s goes on by %.6g, which is %.6g Hz in %s as its name says, expected "
+                      "less than %g Hz: --time-unit %s, or %s if that is right" % (
+                          path, column, usual, rate, unit, POSSIBLE_HZ[1], others or "for another",
+                          unit))
+    return "%s taken as %s, as its name says: %.4g Hz; --time-unit if it is %s" % (
+        column, unit, rate, others) if rate < POSSIBLE_HZ[0] and others else ""
 
 
 def check_stated(path, words, times, unit, stated):
