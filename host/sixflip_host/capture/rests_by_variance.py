@@ -17,8 +17,11 @@ GYRO_STILL, GYRO_CREEPS_DPS = 4.0, 1.0   # times the quietest variance; off the 
 def sliding_variance(samples, window=WINDOW):
     """Norm of the three variances in the window around every sample.
 
-    samples (n, 3); returns (n - window + 1,), entry k belongs to sample k + window // 2.
+    samples (n, 3), window two and more: a single sample has no variance; returns
+    (n - window + 1,), entry k belongs to sample k + window // 2.
     """
+    if window < 2:
+        raise ValueError("a window of %d samples has no variance" % window)
     centred = samples - samples.mean(axis=0)
     zero = np.zeros((1, samples.shape[1]))
     total = np.vstack([zero, np.cumsum(centred, axis=0)])
@@ -29,16 +32,16 @@ def sliding_variance(samples, window=WINDOW):
     return np.linalg.norm(np.maximum(variance, 0.0), axis=1)
 
 
-def variance_at_rest(samples, first_rest=None):
+def variance_at_rest(samples, first_rest=None, window=WINDOW):
     """Norm of the variances of the sensor lying still.
 
     first_rest: number of samples at the start that are known to be still (imu_tk asks for
     this); None: the tenth part of all windows with the least variance, so that nobody has to
-    lie still on command.
+    lie still on command. A window must be shorter than a rest.
     """
     if first_rest:
         return float(np.linalg.norm(samples[:first_rest].var(axis=0, ddof=1)))
-    spread = np.sort(sliding_variance(samples))
+    spread = np.sort(sliding_variance(samples, window))
     return float(np.median(spread[: max(1, len(spread) // 10)]))
 
 

@@ -19,6 +19,8 @@ from . import row_times, single_log
 
 SHORTEST_REST_S = 0.5  # of a robot that stops between two moves
 WINDOW_S = 0.3  # over which a log is still: shorter than such a stop with its edges
+FEWEST_STILL = 3  # samples of that window: of fewer rows a second it is longer
+LEVEL_S, FEWEST = 1.0, 8  # over which the noise is told: s, and samples, of a rest as well
 # Times the noise of the quietest tenth up to which a log is still; deg/s of a turn that is slower
 # than any robot's, and more than a gyro's bias changes by within a log (20 deg/s over 60 degC).
 LOUDER, SLOW_DPS = 2.5, 1.5
@@ -94,7 +96,7 @@ def trace_from_capture(name, capture):
 
 def _rests(capture, rate_hz):
     """Rests by their labels where there are any, else by what stands still."""
-    edge, least = int(EDGE_S * rate_hz), max(8, int(SHORTEST_REST_S * rate_hz))
+    edge, least = int(EDGE_S * rate_hz), max(FEWEST, int(SHORTEST_REST_S * rate_hz))
     if capture.pose is not None and (capture.pose > 0).any():
         runs = rest_finder.labelled(capture.pose)
     else:
@@ -116,13 +118,14 @@ def _rests(capture, rate_hz):
 def still(capture, rate_hz):
     """[rests.Run] of a robot: both sensors no louder than a few times their quietest tenth (a
     count where they make no noise), and the gyro where it stands most often."""
-    window = 2 * int(WINDOW_S / 2 * rate_hz) + 1
+    window = max(2 * int(WINDOW_S / 2 * rate_hz) + 1, FEWEST_STILL)
+    second = min(max(int(LEVEL_S * rate_hz), FEWEST), rests_by_variance.WINDOW)
     mask = np.ones(len(capture), bool)
     for counts in (capture.accel, capture.gyro):
-        if counts is None or len(counts) <= 2 * window:
+        if counts is None or len(counts) <= max(2 * window, second):
             continue
         counts = counts.astype(float)
-        level = max(rests_by_variance.variance_at_rest(counts), COUNT_VARIANCE)
+        level = max(rests_by_variance.variance_at_rest(counts, window=second), COUNT_VARIANCE)
         here = np.zeros(len(capture), bool)
         for run in rests_by_variance.find(counts, LOUDER ** 2 * level, window, 1):
             here[run.first:run.end] = True
