@@ -26,7 +26,8 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
     jobs       processors, 0: all
     prior      fleet_prior.FleetPrior of boards of this kind, None: the data sheets' sizes
 
-    BadFile where one beside a simulator is a gyro's alone, or a reference does not rest.
+    BadFile where one beside a simulator is a gyro's alone or of a few rows, or a reference does
+    not rest.
     """
     for each in (*captures, *simulator) if simulator else ():
         capture_file.with_accelerometer(*each)  # two logs are held together by gravity
@@ -38,7 +39,9 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
     sessions = [blocks.session_of(name, capture) for name, capture in captures]
     own, comparisons = None, []
     if simulator:
-        from .simulator import against_simulator, comparison, convention_findings
+        from .simulator import against_simulator, comparison, convention_findings, traces
+        for each in (*captures, *simulator):
+            traces.check_rows(*each)
         progress.doing("conventions and parameters of the simulator")
         comparisons = [comparison.compare(captures, *log) for log in simulator]
         # What a log with another convention reads is no effect of a sensor.

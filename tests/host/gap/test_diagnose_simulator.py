@@ -384,3 +384,17 @@ def test_a_stamp_that_repeats_is_no_traceback(tmp_path, capsys):
     answer = diagnosed(capsys, capture(tmp_path / "real.csv", stamped, force, rate),
                        capture(tmp_path / "sim.csv", t, force, rate, seed=5))
     assert names(answer) == [] and answer["causes"] == []
+
+
+@pytest.mark.parametrize("rows", [1, 2, 7])
+@pytest.mark.parametrize("short", ["real", "sim"])
+def test_a_log_of_a_few_rows_is_refused(tmp_path, capsys, rows, short):
+    """A simulator's of one row had channels that never change, one of two its noise for a step."""
+    paths = {name: capture(tmp_path / (name + ".csv"), *turning(seed), seed=seed)
+             for seed, name in enumerate(("real", "sim"))}
+    text = (tmp_path / (short + ".csv")).read_text().split("\n")
+    (tmp_path / (short + ".csv")).write_text("\n".join(text[:3 + rows]) + "\n")
+    assert cli.main(["diagnose", paths["real"], "--sim", paths["sim"]]) == 4
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1 and "%s.csv: it has %d row" % (short, rows) in said
+    assert "expected 8 and more" in said

@@ -13,6 +13,7 @@ from sixflip.poses import faces
 from ...capture import clock, rests_by_variance
 from ...capture import rests as rest_finder
 from ...capture.attitude import carried, levelled, rotation_between, rotations
+from ...errors import BadFile
 from ...experiment.block_measures import EDGE_S
 from .. import adequacy
 from . import row_times, single_log
@@ -65,6 +66,14 @@ class Trace:
     def rest_means(self, values):
         """(rests, 3): the mean of values (n, 3) over each rest."""
         return np.array([values[a:b].mean(axis=0) for a, b in self.rests]).reshape(-1, 3)
+
+
+def check_rows(name, capture):
+    """BadFile for a log of fewer rows than the shortest rest has: of a row or two each channel
+    keeps its value, and steps by what its noise is."""
+    if len(capture) < FEWEST:
+        raise BadFile("%s: it has %d row%s, expected %d and more to compare a simulator with" % (
+            name, len(capture), "s" * (len(capture) > 1), FEWEST))
 
 
 def trace_from_capture(name, capture):
