@@ -169,3 +169,15 @@ def test_what_is_taken_out_leaves_no_gap_behind(sound, sensor, rows, code):
     assert said["verdict"] == as_it_is["verdict"] and said["where"] == []
     assert "%d rows" % len(rows) in gap_words.sentence(said)
     assert "nothing in the library" not in gap_words.sentence(said)
+
+
+@pytest.mark.parametrize("noise, unread", [(1.0, 0), (2.0, 0), (3.0, 1), (4.0, 1)])
+def test_a_code_that_is_usual_on_each_axis_was_read(noise, unread):
+    """A knock to one side and the other about a row of zeros: as coarse codes as a sensor has at
+    rest give one on all axes by chance, as often as it is knocked; finer ones hardly ever."""
+    counts = np.rint(np.random.default_rng(1).normal(0.0, noise, (2000, 3)))
+    counts[999:1002] = [[30, 2, 1], [0, 0, 0], [-30, 1, 2]]
+    capture = Capture({"sensor": "other", "rate_hz": 100.0, "gyro_lsb_per_dps": 16.0},
+                      10_000 * np.arange(2000), None, counts.astype(np.int16))
+    ((_, shorter),), _ = unread_rows.as_read([("one", capture)])
+    assert len(capture) - len(shorter) == unread
