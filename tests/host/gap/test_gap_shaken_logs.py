@@ -123,3 +123,18 @@ def test_what_is_next_to_nothing_of_all_that_is_fast_does_not_shake_it(jerks):
                       10_000 * np.arange(len(second)), np.rint(accel).astype(np.int16), None, None)
     found = shake_detector.shaken([blocks.session_of("pen", capture)])
     assert [f.axes for f in found] == ([["x", "y", "z"]] if not jerks else [])
+
+
+@pytest.mark.parametrize("rate", [50.0, 100.0, 400.0])
+def test_gravity_does_not_shake_what_it_turns_about(rate):
+    """A thousandth of it came through the filter: an axis of little noise that lies level in some
+    seconds was quiet then, and was shaken by 1 mg wherever it did not."""
+    t = np.arange(0.0, 120.0, 1.0 / rate)
+    angle = 2.0 * np.pi * t / 60.0
+    force = np.stack([np.sin(angle), np.full(len(t), 0.1), np.cos(angle)], 1)
+    assert np.abs(shake_detector._fast(1000.0 * force, rate)).max() < 0.1
+    noise = 0.00015 * np.random.default_rng(4).standard_normal(force.shape)
+    capture = Capture({"sensor": "other", "rate_hz": rate, "accel_lsb_per_g": 16384},
+                      np.rint(1e6 * t).astype(np.int64),
+                      np.rint(16384.0 * (force + noise)).astype(np.int16))
+    assert shake_detector.shaken([blocks.session_of("turned", capture)]) == []

@@ -11,9 +11,10 @@ from . import line_frequency, rest_spectra, saturation, spectral_lines, strides
 from .detection import Finding
 
 # A filter that lets a thousandth of the power through of what hands, legs and wheels do
-# (spectral_lines.MOTION_HZ), and half or more of what is a tenth faster. Where a log has too few
-# rows to show that it lets the last quarter of what it shows through: vibration folds into it.
-STOPPED_DB, ORDER, HIGHEST = 30.0, 8, 0.75
+# (spectral_lines.MOTION_HZ), and half or more of what is a fifth faster. Where a log has too few
+# rows to show that it lets the last quarter of what it shows through: vibration folds into it. Of
+# an odd order it lets nothing of a constant through; of an even one gravity is as loud as 1 mg.
+STOPPED_DB, ORDER, HIGHEST = 30.0, 7, 0.75
 WINDOW_S = 1.0  # a shaken second stands beside quiet ones; at 100 Hz it knows its level to 7 %
 QUIET = 0.02  # share of the windows that counts as quiet
 # Times the quiet level, root mean square, in at least half of the windows; and as many times what
