@@ -1,5 +1,6 @@
 """The answer for people: the verdict in one sentence, then tables."""
 from ..calibrate import term_words
+from ..diagnosis.detect.line_wander import digits
 from ..experiment.terms import DOMAIN
 from ..terminal import console, plain, styled, table
 from . import simulator_words
@@ -99,7 +100,8 @@ def _does(cause):
             " at about %s Hz" % " and ".join(about) if about else "")
     lines = {}
     for axis, hz in cause["hz"].items():
-        lines.setdefault("%.6g Hz" % hz, []).append(axis.upper())
+        known = cause.get("lines", {}).get(axis, {}).get("interval_90_hz", (hz, hz))
+        lines.setdefault("%s Hz" % digits(hz, *known), []).append(axis.upper())
     other = [axis.upper() for axis in cause["axes"] if axis not in cause["hz"]]
     alone = len(lines) == 1 and not other
     return "is shaken at a steady frequency, " + ", ".join(

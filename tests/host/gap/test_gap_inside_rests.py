@@ -40,7 +40,7 @@ def test_a_slow_ripple_of_8_mg_is_a_line_at_its_frequency(captures):
     cause, = found["causes"]
     assert cause["effect"] == "vibration" and cause["axes"] == ["x"]
     assert cause["value"]["x"] == pytest.approx(8.0, rel=0.1)
-    assert any("1.03 Hz" in remark for remark in found["remarks"])
+    assert any("1.0300 Hz" in remark for remark in found["remarks"])
     assert cause["hz"]["x"] == pytest.approx(1.03, abs=0.05)
 
 

@@ -13,6 +13,7 @@ from scipy import linalg, ndimage
 
 from ...capture.registers import unit_of_count
 from .. import odds
+from . import line_wander
 
 # Share of the power of short stretches that has to go on in phase over the whole. All of a sine's
 # does; of what wanders by a bin of the short stretches, over two of them and more, half at most.
@@ -44,8 +45,9 @@ class Line:
     it is the top of and excess, that with all else that stands out of the floor, in one unit;
     bump, bump_error: amplitude of that, as of a sine that wanders or comes and goes, and its
     relative error; left_hz: where most of the excess beside it is, 0 without any; steady: it goes
-    on in phase; low, high: 90 % interval of the frequency; files: ((name, hz, low, high), ...) of
-    those that show it by themselves."""
+    on in phase, and from rest to rest; low, high: 90 % interval of the frequency; files: ((name,
+    hz, low, high), ...) of those that show it by themselves; spread_hz: standard deviation of the
+    frequency between rests, of one that moves."""
 
     axis: int
     hz: float
@@ -63,6 +65,7 @@ class Line:
     low: float = 0.0
     high: float = 0.0
     files: tuple = ()
+    spread_hz: float = 0.0
 
     @property
     def letter(self):
@@ -79,15 +82,23 @@ def peak(power, k):
 
 
 def refined(line, sessions, sensor):
-    """The Line with its frequency by the longest unbroken stretch of each file; where none of them
-    keeps the phase it is not steady, and its amplitude is that of all its bump."""
+    """The Line with its frequency by the longest unbroken stretch of each file, or by all its
+    rests where some tell it; where none keeps the phase it is not steady, and its amplitude is
+    that of all its bump; nor is it where it moves from rest to rest."""
     seen = [(s.name, *sine) for s in sessions for sine in [_over_whole(line, s, sensor)] if sine]
     if not seen or not line.narrow:  # what wanders has the power of all its bump, no lobe's alone
         return replace(line, low=line.hz - line.bin_hz, high=line.hz + line.bin_hz,
                        amplitude=line.bump or line.amplitude,
                        error=line.bump_error or line.error)
-    best = max(seen, key=lambda file: file[1])
-    return replace(line, steady=True, hz=best[2], low=best[2] - best[3], high=best[2] + best[3],
+    rests = line_wander.over_rests(line, sessions, sensor, _sine_nearest)
+    if rests:
+        seen = [(name, amplitude, *rests.files.get(name, own)) for name, amplitude, *own in seen]
+    _, _, hz, half = max(seen, key=lambda file: file[1])
+    moves = bool(rests and rests.moves)
+    if moves:
+        half = math.hypot(half, odds.Z_90 * rests.spread)
+    return replace(line, steady=not moves, hz=hz, low=hz - half, high=hz + half,
+                   spread_hz=rests.spread if moves else 0.0,
                    files=tuple((name, hz, hz - half, hz + half) for name, _, hz, half in seen))
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from scipy import ndimage, special
 
 from .. import odds, verdict
-from . import line_across_rests, line_frequency, ringing, strides
+from . import line_across_rests, line_frequency, line_wander, ringing, strides
 from .detection import Finding
 from .line_frequency import Line
 from .rest_spectra import (
@@ -58,7 +58,8 @@ def findings(sessions, rings=(), tones=()):
     for sensor in ("accel", "gyro"):
         if any(getattr(s.capture, sensor) is None for s in sessions):
             continue
-        lines = [line for line in (line_of_axis(sessions, sensor, i) for i in range(3)) if line]
+        lines = line_wander.together([line for line in (
+            line_of_axis(sessions, sensor, i) for i in range(3)) if line])
         lines = [line for line in lines if not ((sensor, line.letter) in rings and ringing.fades(
             sessions, sensor, line.axis, line.hz))]
         lines = [line for line in lines if line.steady or (sensor, line.letter) not in tones
@@ -99,8 +100,12 @@ def told(lines, sensor, rate):
     steady = [line for line in lines if line.steady]
     if steady:
         strong = max(steady, key=lambda line: line.nats)
-        words = "a line at %.6g Hz (or folded from %.6g, %.6g Hz)" % (
-            strong.hz, rate - strong.hz, rate + strong.hz)
+        words = "a line at %s Hz (or folded from %s, %s Hz)" % tuple(
+            line_wander.digits(hz, strong.low, strong.high) for hz in (
+                strong.hz, rate - strong.hz, rate + strong.hz))
+    elif top.spread_hz:
+        words = "a line at about %s Hz, which moves by %.1g Hz from rest to rest" % (
+            line_wander.digits(top.hz, top.low, top.high), top.spread_hz)
     else:
         words = "it is shaken at about %.3g Hz, at no steady frequency" % top.hz
     share = float(np.average([line.power / line.excess for line in lines],
