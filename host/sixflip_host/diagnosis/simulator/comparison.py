@@ -12,6 +12,7 @@ from . import (
     dead_zone,
     held_readings,
     noise_and_registers,
+    numbers_told,
     own_calibration,
     own_motion,
     pairing,
@@ -172,8 +173,10 @@ def compare_traces(real, sim, aligned):
     own_sim = own_calibration.fitted(mended)
     numbers, of_numbers = numbers_of(real, sim, mended, (own_real, own_sim), fits, findings)
     left = {kind: remaining_gap.not_foretold(sensor_fit) for kind, sensor_fit in fits.items()}
+    attainable = remaining_gap.held_out(unmended, left, real, sim)
+    numbers, of_told = numbers_told.together(numbers, fits, attainable, real.flicker)
+    left = {kind: remaining_gap.not_foretold(fit) for kind, fit in of_told.items()}
     gap = remaining_gap.held_out(unmended, left, real, sim)
-    numbers = remaining_gap.together(numbers, fits, gap)
     cut = {(p.sensor, p.axis) for p in numbers if p.name == "range"}
     numbers += [p for p in held_readings.ranges(stops, real, sim) if (p.sensor, p.axis) not in cut]
     if len(fits) == 2 and not findings:
@@ -182,7 +185,8 @@ def compare_traces(real, sim, aligned):
     findings += of_numbers + parameters.bias_sign(numbers)
     if any(c.name == "noise_per_sample" for c in findings):
         numbers = [p for p in numbers if p.name != "noise_density"]
-    task, why_not = remaining_gap.tried(real_free, mended, own_real, own_sim, fits)
+    task, why_not = remaining_gap.tried(real_free, mended, own_real, own_sim, {
+        kind: replace(fit, fit=fit.refitted(None)) for kind, fit in of_told.items()})
     return Comparison(sim.name, real.name, aligned, tuple(findings), tuple(numbers), task, gap,
                       fits, own_real, own_sim,
                       (*said_of(real, sim, aligned), *dead_zone.said_of(bands, of_gyro), *why_not),

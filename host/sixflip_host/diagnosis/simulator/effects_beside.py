@@ -16,10 +16,9 @@ from ...experiment import noise_arrays, terms
 from .. import closed_loop, odds
 from ..detect.detection import Finding
 from ..hypotheses import Form
-from . import conventions, hypotheses, pairing, parameters, remaining_gap
+from . import conventions, hypotheses, numbers_told, pairing, parameters, remaining_gap
 
 FLAT, RESTS_DPS = 0.966, 2.0  # cosine of 15 deg, as the simulator has a face; slower is a rest
-SAME = 1e-5  # of a scale that does not differ: a tenth of a count at 1 g
 MOST_SETS = 16  # of names that classes may stand for, tried: each takes a fit of the whole log
 WARMING_S = 10.0  # over which the temperature's rate is taken: a thermometer has steps
 
@@ -63,16 +62,18 @@ def _beside(comparison, kind, names, diagnosis):
     sensor_fit = comparison.fits[kind]
     fit, _ = _fitted(kind, sensor_fit, names, comparison.real, diagnosis)
     numbers = parameters.shapes(comparison.real, comparison.simulated,
-                                {kind: replace(sensor_fit, fit=fit)}, {kind: True})
+                                {kind: replace(sensor_fit, fit=fit)}, {kind: True},
+                                beside=True)
     known = {(p.name, p.axis): p for p in numbers if p.sensor == kind}
     width = np.full((3, 3), hypotheses.SHAPE)
     for i, axis in enumerate("xyz"):
         if not any(p.differs for p in numbers
                    if (p.sensor, p.name, p.axis) == (kind, "scale", axis)):
-            width[i, i] = SAME
+            width[i, i] = numbers_told.SAME
     same = replace(sensor_fit, hypothesis=replace(sensor_fit.hypothesis, shape_sd=width))
     fit, designs = _fitted(kind, same, names, comparison.real, diagnosis)
-    left = remaining_gap.not_foretold(wide(sensor_fit, designs))
+    left = remaining_gap.not_foretold(numbers_told.told(
+        wide(sensor_fit, designs), numbers, comparison.real.flicker[kind]))
     before, after, noise = comparison.gap[kind]
     wanders = remaining_gap.wandering({kind: sensor_fit}, {kind: left})
     turned = {c.sensor for c in parameters.bias_sign(numbers)}

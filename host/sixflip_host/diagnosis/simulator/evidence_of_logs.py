@@ -120,7 +120,7 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
         sd = np.concatenate([h.sd, [DELAY_S, SMOOTH_S2]])
         own = [signal[some], np.ones((len(columns), 1))]
         own_sd = [np.full(3, SHAPE) if h.shape_sd is None else h.shape_sd,
-                  [h.bias_sd or BIAS[kind]]]
+                  np.reshape(BIAS[kind] if h.bias_sd is None else h.bias_sd, (-1, 1))]
         if h.free is not None:
             scale = np.maximum(h.free.std(axis=0), 1e-9)
             own.append(h.free[some])

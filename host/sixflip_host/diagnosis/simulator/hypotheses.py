@@ -44,8 +44,9 @@ DEG = 180.0 / np.pi
 class Hypothesis:
     """name ("": the nameless one); signal (n, 3); columns (n, 3, k) with prior sizes mean (k,) and
     sd (k,); heading: S is a turn about the vertical; free (n, f): further columns of each channel
-    with prior FREE; bias_sd; copies: the first so many triples of free, and (scaled) the first of
-    columns, carry the signal's noise; shape_sd (3, 3): of E, None for SHAPE."""
+    with prior FREE; bias_sd: one, or (3,), None for BIAS; copies: the first so many triples of
+    free, and (scaled) the first of columns, carry the signal's noise; shape_sd (3, 3): of E, None
+    for SHAPE."""
 
     name: str
     signal: np.ndarray
@@ -54,7 +55,7 @@ class Hypothesis:
     sd: np.ndarray
     heading: bool = False
     free: np.ndarray = None
-    bias_sd: float = None
+    bias_sd: np.ndarray = None
     copies: int = 0
     scaled: bool = False
     shape_sd: np.ndarray = None

@@ -90,10 +90,11 @@ def _span(x, sigma):
     return float(x - odds.Z_90 * sigma), float(x + odds.Z_90 * sigma)
 
 
-def shapes(real, sim, fits, usable, rounded=None):
+def shapes(real, sim, fits, usable, rounded=None, beside=False):
     """Bias, scale, misalignment; real, sim: OwnSensor or None; fits {sensor: SensorFit} of one
     motion or {}; usable {sensor: bool}: its conventions leave its numbers what they are; rounded
-    {sensor: m/s2 or rad/s}, by which a simulator without noise errs the same way again and again.
+    {sensor: m/s2 or rad/s}, by which a simulator without noise errs the same way again and again;
+    beside: the fits have effects besides, which what is read at rest has in it.
     """
     numbers = []
     for kind in ("accel", "gyro"):
@@ -115,8 +116,9 @@ def shapes(real, sim, fits, usable, rounded=None):
             pair = (None, None) if fit is None else (shift[i] * scale,
                                                      fit.bias_sigma[i] * scale / fit.unit)
             (a, sa), (b, sb) = [(v[0][i] * scale, v[1][i] * scale) for v in values]
-            if kind == "gyro":
-                pair = (None, None)  # at rest it is read directly
+            if kind == "gyro" and fit is not None and not beside:
+                # What is read at rest and what the motion leaves are two measurements of it.
+                pair = weighed(pair, (a - b, float(np.hypot(sa, sb))))
             # By less than it flickers a bias differs from itself.
             numbers.append(compared("bias", kind, axis, unit, a, sa, b, sb, *pair,
                                     least=real.flicker[kind]))
@@ -135,6 +137,16 @@ def shapes(real, sim, fits, usable, rounded=None):
                                         "%" if i == j else "°", a, sa, b, sb, *pair,
                                         least=size * coarse[j]))
     return numbers
+
+
+def weighed(one, other):
+    """(value, standard error) of a number that was measured twice, each (value, standard error):
+    by their inverse variances, and where they are further apart than those say as much less sure
+    [Birge, Phys. Rev. 40 (1932), 207]."""
+    total = one[1] ** -2.0 + other[1] ** -2.0
+    apart = abs(one[0] - other[0]) / np.hypot(one[1], other[1])
+    return ((one[0] * one[1] ** -2.0 + other[0] * other[1] ** -2.0) / total,
+            max(1.0, apart) * total ** -0.5)
 
 
 def _follows(sensor_fit):

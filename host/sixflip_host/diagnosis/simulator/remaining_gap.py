@@ -1,15 +1,13 @@
 """What is left of the gap where conventions and parameters are put right: of the readings of one
-motion, each block by a fit that has not seen it, which numbers close it together where none does
-alone; and, layer four, of what a robot makes of them. One attitude filter (imufusion, Madgwick's
-revised complementary filter) is run on the real log, on the simulator's and on the simulator's put
-right.
+motion, each block by a fit that has not seen it; and, layer four, of what a robot makes of them.
+One attitude filter (imufusion, Madgwick's revised complementary filter) is run on the real log, on
+the simulator's and on the simulator's put right.
 """
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from . import pairing, parameters
-from .alignment import errors
+from . import pairing
 from .hypotheses import DEG
 from .parameters import MG
 
@@ -56,8 +54,10 @@ def held_out(fits, not_explained, real, sim):
         noise = 0.0 if None in levels else sum(
             (level.density ** 2).mean() * 2.0 * min(pair.band_hz, trace.rate_hz / 2)
             for level, trace in zip(levels, (real, sim)))
-        gaps[kind] = (size(kind, pair.simulated(kind) - pair.real(kind)),
-                      size(kind, not_explained[kind]), size(kind, np.sqrt(noise)))
+        before = size(kind, pair.simulated(kind) - pair.real(kind))
+        # Nothing has to be done that makes it larger: a number that blocks are too short for.
+        gaps[kind] = (before, min(before, size(kind, not_explained[kind])),
+                      size(kind, np.sqrt(noise)))
     return gaps
 
 
@@ -70,62 +70,6 @@ def wandering(fits, not_explained):
     """frozenset of the sensors of which what is left goes on for seconds."""
     return frozenset(kind for kind, sensor_fit in fits.items()
                      if slow(not_explained[kind], sensor_fit.pair.band_hz) > SLOW)
-
-
-def together(numbers, fits, gaps):
-    """The numbers, where those of a sensor differ together though none does by itself: a bias that
-    a log of one attitude does not tell from a scale. Those that close most of the gap, one after
-    the other, then differ, the others taken for equal. gaps: see Comparison."""
-    for kind, sensor_fit in fits.items():
-        before, after, noise = gaps[kind]
-        enough = parameters.TOGETHER * noise
-        if not after < enough < before or sensor_fit.conventions or any(
-                p.differs for p in numbers if p.sensor == kind):
-            continue
-        found = _closing(sensor_fit.pair, kind, enough)
-        numbers = [parameters.alone(p, *found[p.name, p.axis]) if p.sensor == kind and (
-            p.name, p.axis) in found else p for p in numbers]
-    return numbers
-
-
-def _closing(pair, kind, enough):
-    """{(name, axis) of a Parameter: (difference, standard error)} of the fewest that leave less of
-    the gap than `enough`, mg or deg/s; none where more than FEW would have to."""
-    simulated = pair.simulated(kind)
-    off = pair.real(kind) - simulated
-    scale, ones = (MG if kind == "accel" else DEG), np.ones(len(off))
-    columns = {}
-    for i, row in enumerate("xyz"):
-        columns["bias", row] = i, ones, scale
-        for j, column in enumerate("xyz"):
-            key = ("scale", row) if i == j else ("misalignment", row + column)
-            columns[key] = i, simulated[:, j], 100.0 if i == j else DEG
-    chosen, left = [], off
-
-    def without(keys):
-        """(n, 3) what is left of the gap."""
-        rest = off.copy()
-        for i in range(3):
-            own = [columns[key][1] for key in keys if columns[key][0] == i]
-            if own:
-                own = np.stack(own, 1)
-                rest[:, i] -= own @ np.linalg.lstsq(own, off[:, i], rcond=None)[0]
-        return rest
-    while scale * np.sqrt((left ** 2).mean()) > enough and len(chosen) < parameters.FEW:
-        chosen.append(min((key for key in columns if key not in chosen),
-                          key=lambda key: float((without([*chosen, key]) ** 2).sum())))
-        left = without(chosen)
-    if scale * np.sqrt((left ** 2).mean()) > enough:
-        return {}
-    found = {}
-    for key in chosen:
-        i, _, unit = columns[key]
-        beside = [other for other in chosen if columns[other][0] == i]
-        own = np.stack([columns[other][1] for other in beside], 1)
-        place = beside.index(key)
-        size = np.linalg.lstsq(own, off[:, i], rcond=None)[0]
-        found[key] = unit * size[place], unit * errors(own, left[:, i])[place]
-    return found
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,119 @@
+"""What the numbers that are told close of the gap of two logs of one motion, and no others: what a
+user sets is what is said to differ, so the rest of the simulator stays as it is. Numbers of which
+none differs by itself may do so together: a bias that a log of one attitude does not tell from a
+scale, the scale of the one axis that a table turns about.
+"""
+from dataclasses import replace
+
+import numpy as np
+
+from . import hypotheses, parameters, remaining_gap
+from .alignment import errors
+from .hypotheses import DEG
+from .parameters import MG
+
+SAME = 1e-5  # of a scale that does not differ: a tenth of a count at 1 g
+NEAR = 1.1  # times the least left: what of several numbers leaves as little is told by evidence
+SAME_BIAS = 1e-6  # m/s2 and rad/s, of a bias that does not: less than a count of any chip
+
+
+def told(sensor_fit, numbers, flicker):
+    """The SensorFit in which only the numbers that differ are free, and what no two logs agree
+    in: numbers within what each of them differs from itself by, and a course as wide as the
+    flicker, mg or deg/s. numbers: list of Parameter of all sensors."""
+    kind, h = sensor_fit.kind, sensor_fit.hypothesis
+    unit = sensor_fit.fit.unit * (MG if kind == "accel" else DEG)
+    columns, sizes = hypotheses.of_time(kind, sensor_fit.pair.t, sensor_fit.pair.celsius)
+    course = columns, np.minimum(sizes, flicker / unit / np.ptp(columns, axis=0))
+    mine = [p for p in numbers if p.sensor == kind and p.name in ("bias", "scale", "misalignment")]
+    # Where none of them was compared, as beside a wrong time step, nothing is known of what is
+    # told; of turned axes each number is some of all.
+    bias, shape = np.full(3, not mine or h.heading), np.full((3, 3), not mine or h.heading)
+    for p in mine:
+        free = p.differs or abs(p.difference) <= parameters.DIFFERS * p.least
+        row = "xyz".index(p.axis[0])
+        if p.name == "bias":
+            bias[row] |= free
+        else:
+            shape[row, "xyz".index(p.axis[-1])] |= free
+    axes = np.abs(sensor_fit.fit.axes)
+    return replace(sensor_fit, own=course, hypothesis=replace(
+        h, bias_sd=h.bias_sd if h.bias_sd is not None else np.where(
+            axes @ bias > 0.0, hypotheses.BIAS[kind], SAME_BIAS),
+        shape_sd=np.where(axes @ shape @ axes.T > 0.0,
+                          hypotheses.SHAPE if h.shape_sd is None else h.shape_sd, SAME)))
+
+
+def together(numbers, fits, gaps, flicker):
+    """(The numbers, {sensor: told()} by them): where those told leave more of the gap of a sensor
+    than all of them do, the fewest of the others that close it differ as well, the rest taken for
+    equal. gaps {sensor: (before, after, noise alone)} with all numbers free; flicker {sensor: mg
+    or deg/s}."""
+    of_told = {}
+    for kind, sensor_fit in fits.items():
+        of_told[kind] = told(sensor_fit, numbers, flicker[kind])
+        _, after, noise = gaps[kind]
+        enough = parameters.TOGETHER * noise
+        left = remaining_gap.size(kind, remaining_gap.not_foretold(of_told[kind]))
+        if sensor_fit.conventions or not after < enough < left:
+            continue
+        found = _closing(sensor_fit, numbers, enough, flicker[kind])
+        if found:
+            numbers = [parameters.alone(p, *found[p.name, p.axis]) if p.sensor == kind and (
+                p.name, p.axis) in found else p for p in numbers]
+            of_told[kind] = told(sensor_fit, numbers, flicker[kind])
+    return numbers, of_told
+
+
+def _closing(sensor_fit, numbers, enough, flicker):
+    """{(name, axis) of a Parameter: (difference, standard error)} of the fewest that, beside those
+    that differ, leave less of the gap than `enough`, mg or deg/s; none where more than FEW would
+    have to."""
+    kind, simulated = sensor_fit.kind, sensor_fit.pair.simulated(sensor_fit.kind)
+    off = -told(sensor_fit, numbers, flicker).refitted(None).left
+    scale, ones = (MG if kind == "accel" else DEG), np.ones(len(off))
+    columns = {}
+    for i, row in enumerate("xyz"):
+        columns["bias", row] = i, ones, scale
+        for j, column in enumerate("xyz"):
+            key = ("scale", row) if i == j else ("misalignment", row + column)
+            columns[key] = i, simulated[:, j], 100.0 if i == j else DEG
+    mine = {(p.name, p.axis): p for p in numbers if p.sensor == kind}
+    given = [key for key in columns if key in mine and mine[key].differs]
+
+    def likely(keys):
+        """Log posterior with these free as well. (A fit's evidence leaves out what a scale below 1
+        earns, which may be the real log's noise made less; which scale it is does not matter.)"""
+        fit = told(sensor_fit, [replace(p, differs=key in given or key in keys)
+                                for key, p in mine.items()], flicker).refitted(None)
+        power = (fit.left[:, sensor_fit.live] ** 2).mean(axis=0)
+        sizes = np.append(fit.shape / hypotheses.SHAPE, fit.bias / hypotheses.BIAS[kind])
+        return -0.5 * (len(off) / sensor_fit.inflation * np.log(power).sum() + (sizes ** 2).sum())
+    chosen, left, found = [], off, {}
+    while scale * np.sqrt((left ** 2).mean()) > enough:
+        tried = [[*chosen, key] for key in columns if key in mine and key not in (*given, *chosen)]
+        if len(chosen) == parameters.FEW or not tried:
+            return {}
+        tried = [(keys, *_regressed(off, columns, given, keys)) for keys in tried]
+        least = min(float((one[1] ** 2).sum()) for one in tried)
+        near = [one for one in tried if (one[1] ** 2).sum() < NEAR * least]
+        # What turns about one axis only may differ by the scale of that, or by many times as much
+        # of what little another axis has of it.
+        chosen, left, found = max(near, key=lambda one: likely(one[0])) if near[1:] else near[0]
+    return {key: found[key] for key in chosen}
+
+
+def _regressed(off, columns, given, keys):
+    """((n, 3) what is left of off (n, 3) by these keys and those given, {key: (difference,
+    standard error)})."""
+    left, sizes = off.copy(), {}
+    for i in range(3):
+        mine = [key for key in (*given, *keys) if columns[key][0] == i]
+        if mine:
+            own = np.stack([columns[key][1] for key in mine], 1)
+            size = np.linalg.lstsq(own, off[:, i], rcond=None)[0]
+            left[:, i] -= own @ size
+            sigma = errors(own, left[:, i])
+            for key, x, s in zip(mine, size, sigma):
+                sizes[key] = columns[key][2] * x, columns[key][2] * s
+    return left, sizes

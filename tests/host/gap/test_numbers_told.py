@@ -1,0 +1,63 @@
+"""What is left of the gap of two logs of one motion is what the numbers told leave, and no other
+numbers that a fit may have besides."""
+import numpy as np
+import pytest
+
+from sixflip_host.diagnosis.simulator import comparison
+from tests.worlds.tumbled import RATE_HZ, read, tumbled
+
+
+def compared(t, force, rate, real_force, real_rate):
+    return comparison.compare([("real", read(t, real_force, real_rate, 1))], "sim",
+                              read(t, force, rate, 101))
+
+
+def on_a_table(seconds=80.0):
+    """(t, specific force g, rate deg/s) of a table that turns about an axis which leans in the
+    sensor: x has a fifth of what z reads."""
+    t = np.arange(0.0, seconds, 1.0 / RATE_HZ)
+    way = np.clip(np.minimum(t % 20.0 - 3.0, 19.5 - t % 20.0) / 1.5, 0.0, 1.0)
+    spin = 60.0 * np.sin(0.7 * t) * way
+    return t, np.tile([0.0, 0.0, 1.0], (len(t), 1)), np.stack([0.2 * spin, 0.0 * spin, spin], 1)
+
+
+def test_a_course_that_nothing_told_has_stays_in_the_gap():
+    """Half a deg/s in the course of the log, as of warming up: it was taken off as what a sensor
+    may do of itself, and the gap was closed by a bias."""
+    t, force, rate = tumbled(1, 80.0)
+    warming = 1.0 + 0.5 * t[:, None] / t[-1] * [0.0, 0.0, 1.0]
+    found = compared(t, force, rate, force, rate + warming)
+    before, after, _ = found.gap["gyro"]
+    assert before == pytest.approx(np.sqrt((warming ** 2).mean()), rel=0.02)
+    # A straight line of that height has a twelfth of its square about its mean; one axis of three.
+    assert after == pytest.approx(0.5 / 6.0, rel=0.25)
+
+
+def test_a_bias_that_flickers_is_no_gap():
+    t, force, rate = tumbled(2, 80.0)
+    found = compared(t, force, rate, force, rate + 0.004 * np.cos(t[:, None] / 30.0))
+    assert not found.left and not found.shaken
+    assert not [p for p in found.differs if p.sensor == "gyro"]
+
+
+def test_the_scale_of_the_one_axis_that_is_turned_is_told():
+    """It did not differ by itself, and yet the gap was said to be closed: by a bias that did. What
+    little another axis has of the turn would do it as well, with five times as much."""
+    t, force, rate = on_a_table()
+    found = compared(t, force, rate, force, rate * [1.0, 1.0, 1.015] + [0.3, -0.2, 0.4])
+    shapes = {(p.name, p.axis): p for p in found.differs if p.sensor == "gyro"
+              and p.name != "bias"}
+    assert list(shapes) == [("scale", "z")]
+    assert shapes["scale", "z"].difference == pytest.approx(1.5, rel=0.05)
+    assert found.gap["gyro"][1] < 1.2 * found.gap["gyro"][2]
+
+
+def test_a_gyro_s_bias_is_told_by_the_motion_as_well():
+    """Two rests told it to 0.13 deg/s, whatever lies between them."""
+    t, force, rate = tumbled(3, 43.0)
+    t, force, rate = t[500:-800], force[500:-800], rate[500:-800]
+    found = compared(t, force, rate, force, rate + [0.3, 0.0, 0.0])
+    bias, = [p for p in found.parameters if (p.name, p.sensor, p.axis) == ("bias", "gyro", "x")]
+    assert bias.differs and bias.difference == pytest.approx(0.3, abs=0.01)
+    low, high = bias.difference_interval
+    assert low < 0.3 < high and high - low < 0.1
