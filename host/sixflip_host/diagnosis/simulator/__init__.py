@@ -1,6 +1,6 @@
 """The user's own simulator beside the real sensor: which conventions, numbers and effects differ.
 
-traces, row_times, single_log, held_readings
+traces, log_rests, rest_or_course, restless, row_times, single_log, held_readings
                                    what one log says of itself
 alignment, pairing                 two logs of one motion on one clock and one grid
 hypotheses, evidence_of_logs, channel_regression, conventions, convention_findings

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...capture.registers import SENSORS
 from .. import verdict
 from . import (
     alignment,
@@ -78,12 +79,14 @@ class Comparison:
         """Sensors of which far more is left than noise, and than a tenth of the gap, and nothing
         that goes on for seconds: it may be shaking that each log has of its own, and may be the
         sensor's. Where the real one is known to shake more, by more than is left, it is that. And
-        the gyro that lacks slow turns, which what turns it may lack."""
+        those of which that tenth is left while no log tells the noise; and the gyro that lacks
+        slow turns, which what turns it may lack."""
         shakes = {kind: np.sqrt(sum(p.difference ** 2 for p in self.differs if (
             p.name, p.sensor) == ("shaking", kind) and p.difference > 0.0) / 3.0)
             for kind in self.gap}
         return [kind for kind, gap in self.gap.items()
-                if kind not in self.wanders and gap[1] > shakes[kind] and _open(gap, FAR_ABOVE)
+                if not gap[2] and _open(gap, 0.0)
+                or kind not in self.wanders and gap[1] > shakes[kind] and _open(gap, FAR_ABOVE)
                 or kind == "gyro" and self.bands and self.of_gyro < dead_zone.GYRO]
 
     @property
@@ -97,10 +100,11 @@ class Comparison:
 
 def _open(gap, times):
     """Whether of a gap (before, after, noise alone), root mean squares, so many times the noise is
-    left, and a tenth of what is above it."""
+    left (not where that is not known), and a tenth of what is above it; times: 0 for any."""
     before, after, noise = gap
     after = min(before, after)
-    return after > times * noise > 0.0 and before - after < verdict.CLOSED * (before - noise)
+    above = after > times * noise > 0.0 if times else True
+    return above and before - after < verdict.CLOSED * (before - noise)
 
 
 def compare(real_logs, name, capture):
@@ -161,7 +165,7 @@ def compare_traces(real, sim, aligned):
         unseen.append("other conventions of %s: a channel of it says nothing" % sim.name)
     else:
         more, unseen, judged, lacks_delay = own_motion.different_motion(
-            real_free, sim_free, own_real, row_s)
+            real_free, sim_free, own_real if real.rests else None, row_s)
         findings += more
         if aligned.same and not real.rests:
             unseen = ["conventions and parameters of %s, but for what its own rests show: there "
@@ -171,6 +175,9 @@ def compare_traces(real, sim, aligned):
     findings = convention_findings.merged(findings)
     mended = convention_findings.trace_put_right(sim_free, findings)
     own_sim = own_calibration.fitted(mended)
+    if not fits:  # what never rests is known beside the other log of its motion alone
+        own_real, own_sim = (own if log.rests else None for own, log in (
+            (own_real, real), (own_sim, sim)))
     numbers, of_numbers = numbers_of(real, sim, mended, (own_real, own_sim), fits, findings)
     left = {kind: remaining_gap.not_foretold(sensor_fit) for kind, sensor_fit in fits.items()}
     attainable = remaining_gap.held_out(unmended, left, real, sim)
@@ -210,6 +217,13 @@ def numbers_of(real, sim, mended, own, fits, findings):
             + noise_and_registers.registers(real, sim), on_noise)
 
 
+def _drowned(trace):
+    """Of which sensors of a Trace the noise is not known, in words."""
+    kinds = [SENSORS[kind] for kind, noise in trace.noise.items() if noise is None]
+    return ": that of the %s is not told from what shakes it" % " and the ".join(kinds) \
+        if kinds else ""
+
+
 def said_of(real, sim, aligned):
     """Sentences on the two logs."""
     sentences = []
@@ -224,8 +238,9 @@ def said_of(real, sim, aligned):
             "held against its own rests and moves" % (sim.name, real.name, aligned.correlation))
     for trace in (real, sim):
         if not trace.rests:
-            sentences.append("no rest in %s: gravity and the gyro's bias are not known in it"
-                             % trace.name)
+            sentences.append("no rest in %s: gravity and the gyro's bias are known in it on "
+                             "average alone, and its noise by the quick end of its spectrum%s" % (
+                                 trace.name, _drowned(trace)))
         if trace.rate is None:
             sentences.append("no gyro in %s" % trace.name)
     if abs(real.rate_hz / sim.rate_hz - 1.0) > 0.02:

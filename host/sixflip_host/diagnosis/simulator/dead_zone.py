@@ -70,7 +70,7 @@ def found(fits, real, sim):
     """(Band, ...) of the gyro by {sensor: conventions.SensorFit} of two Traces of one motion."""
     sensor_fit = fits.get("gyro")
     if sensor_fit is None or not sensor_fit.hypothesis.name or None in (
-            real.noise["gyro"], sim.noise["gyro"]):
+            real.noise["gyro"], sim.noise["gyro"]) or not (real.rests and sim.rests):
         return ()
     fit = sensor_fit.fit
     if fit.unit != 1.0 or not np.array_equal(fit.axes, np.eye(3)):

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...capture.attitude import carried, rotations
-from . import traces
+from . import restless, traces
 from .hypotheses import BIAS, SHAPE
 
 ROUNDS = 8  # Gauss-Newton steps: after five the next change a matrix by 1e-9
@@ -23,7 +23,7 @@ NORM = 0.005  # m/s2: how well |force| repeats between rests, 0.5 mg with flicke
 class OwnSensor:
     """true force = accel (force - bias), accel (3, 3) symmetric (its turn cannot be seen); true
     rate = gyro (rate - bias at rest); sigmas of accel (3, 3), bias (3,), gyro (3, 3); gyro_bias
-    (3,) rad/s with its sigma; flicker: that of its Trace."""
+    (3,) rad/s with its sigma (infinite without a rest); flicker: that of its Trace."""
 
     accel: np.ndarray
     bias: np.ndarray
@@ -37,15 +37,22 @@ class OwnSensor:
 
     def applied(self, trace):
         """The Trace as this sensor's true force and rate."""
-        line = traces.rest_line(trace, trace.rate)
+        line = traces.rest_line(trace, trace.rate) if trace.rests else self.gyro_bias
         return replace(trace, force=(trace.force - self.bias) @ self.accel.T,
                        rate=(trace.rate - line) @ self.gyro.T)
 
 
 def fitted(trace):
-    """OwnSensor of a Trace with rests and a gyro, else None."""
-    if trace.rate is None or not trace.rests:
+    """OwnSensor of a Trace with a gyro, else None; of one that never rests nothing is known but
+    about where its gyro's bias is."""
+    if trace.rate is None:
         return None
+    if not trace.rests:
+        levelled = restless.levelled(trace.t, trace.force, trace.rate, trace.rate_hz, trace.g)
+        bias = trace.rate.mean(axis=0) if levelled is None else levelled[1]
+        unknown = np.full((3, 3), SHAPE)
+        return OwnSensor(np.eye(3), np.zeros(3), np.eye(3), unknown, np.full(3, BIAS["accel"]),
+                         unknown, bias, np.full(3, np.inf), trace.flicker)
     means = trace.rest_means(trace.force)
     norms = np.linalg.norm(means, axis=1)
     accel, bias = np.eye(3), np.zeros(3)

@@ -2,7 +2,7 @@
 the log's own motion: what the force is beside the gravity that the gyro carries along, against how
 the sensor turns. What the hand or the wheels do besides is noise.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -119,7 +119,9 @@ def different_motion(real, sim, own_real, row_s):
     whether the simulator lacks a delay) of logs of two motions."""
     if sim.rate is None or real.rate is None:
         return [], ["conventions of %s: they need a gyro in both logs" % sim.name], False, False
-    findings, unseen = own_consistency.conventions_of(real, sim)
+    # Where it drives slowly gravity is known as well as a direction has to be here.
+    findings, unseen = own_consistency.conventions_of(*(
+        replace(log, rests=log.calm) for log in (real, sim)))
     if findings or own_real is None or not sim.rests:
         return findings, unseen, False, False
     moved = fitted(real, own_real), fitted(sim, own_calibration.fitted(sim))

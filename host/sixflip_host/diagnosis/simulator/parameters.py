@@ -66,8 +66,9 @@ def compared(name, sensor, axis, unit, real, real_sigma, sim, sim_sigma, differe
         sigma = float(np.hypot(real_sigma, sim_sigma))
     sigma = float(np.hypot(sigma, least))
     differs = bool(apart > DIFFERS if apart is not None else abs(difference) > DIFFERS * sigma)
-    return Parameter(name, sensor, axis, unit, _number(real), _span(real, real_sigma),
-                     _number(sim), _span(sim, sim_sigma), float(difference),
+    shown = [x if np.isfinite(s) else None for x, s in ((real, real_sigma), (sim, sim_sigma))]
+    return Parameter(name, sensor, axis, unit, _number(shown[0]), _span(real, real_sigma),
+                     _number(shown[1]), _span(sim, sim_sigma), float(difference),
                      _span(difference, sigma), differs,
                      to_set(sim, sim_sigma, difference) if differs and sim is not None else None,
                      least=least)
@@ -116,7 +117,7 @@ def shapes(real, sim, fits, usable, rounded=None, beside=False):
             pair = (None, None) if fit is None else (shift[i] * scale,
                                                      fit.bias_sigma[i] * scale / fit.unit)
             (a, sa), (b, sb) = [(v[0][i] * scale, v[1][i] * scale) for v in values]
-            if kind == "gyro" and fit is not None and not beside:
+            if kind == "gyro" and fit is not None and not beside and np.isfinite(sa + sb):
                 # What is read at rest and what the motion leaves are two measurements of it.
                 pair = weighed(pair, (a - b, float(np.hypot(sa, sb))))
             # By less than it flickers a bias differs from itself.
@@ -232,7 +233,8 @@ def bias_sign(parameters):
     findings = []
     for kind in ("accel", "gyro"):
         own = [p for p in parameters if p.name == "bias" and p.sensor == kind]
-        if len(own) < 3 or not any(p.differs for p in own):
+        if len(own) < 3 or not any(p.differs for p in own) or any(
+                None in (p.real_interval, p.simulated_interval) for p in own):
             continue
         sigma = [np.hypot(*[(s[1] - s[0]) / 2.0 / odds.Z_90 for s in (
             p.real_interval, p.simulated_interval)]) for p in own]

@@ -85,7 +85,8 @@ def evened(trace, measured):
         rate=between(trace.rate, trace.quantum[1]),
         celsius=None if trace.celsius is None else np.interp(every, at, trace.celsius),
         rate_hz=measured.rate_hz, railed=railed, put_in=put_in,
-        rests=tuple((int(at[first]), int(at[end - 1]) + 1) for first, end in trace.rests))
+        **{name: tuple((int(at[a]), int(at[b - 1]) + 1) for a, b in getattr(trace, name))
+           for name in ("rests", "calm")})
 
 
 def on_even_times(t, values, rate_hz):

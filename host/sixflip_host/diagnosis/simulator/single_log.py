@@ -6,7 +6,7 @@ import numpy as np
 
 from ...experiment.block_measures import SUBMEAN_S
 from ...experiment.signal_measures import MEDIAN_OF_SQUARE
-from . import convention_findings
+from . import convention_findings, restless
 
 # Standard error of a deviation taken from the median of squares of a standard normal, times the
 # root of the number [Rousseeuw, Croux, J. Am. Stat. Assoc. 88 (1993)].
@@ -83,7 +83,8 @@ def at_rest(trace, values, quantum):
 
 
 def noise(trace, values):
-    """Noise of values (n, 3) at the Trace's rests, or None where there is none."""
+    """Noise of values (n, 3) at the Trace's rests; where there is none that is long enough, of the
+    quick end of their spectrum, or None where that does not show it."""
     m = max(2, int(SUBMEAN_S * trace.rate_hz))
     # A line leaks into plain means by as much as their noise, now more and now less.
     window = np.hanning(m + 2)[1:-1]
@@ -101,7 +102,9 @@ def noise(trace, values):
         rests = [r for r, own in zip(rests, level) if own <= SETTLING * np.median(level)]
     squares, sample = (np.concatenate(x) for x in zip(*rests)) if rests else ([], [])
     if len(squares) < 4:
-        return None
+        known = restless.white(values[~trace.put_in])
+        return None if known is None else Noise(
+            known[0] * np.sqrt(2.0 / trace.rate_hz), known[1], known[0])
     # By the median: in a part of a rest one axis may still be moved.
     per_mean = np.median(squares, axis=0) / MEDIAN_OF_SQUARE / 2.0
     return Noise(np.sqrt(per_mean / (window ** 2).sum() / trace.rate_hz),

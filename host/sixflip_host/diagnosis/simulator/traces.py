@@ -8,24 +8,12 @@ from functools import cached_property
 
 import numpy as np
 
-from sixflip.poses import faces
-
-from ...capture import clock, rests_by_variance
-from ...capture import rests as rest_finder
+from ...capture import clock
 from ...capture.attitude import carried, levelled, rotation_between, rotations
 from ...errors import BadFile
-from ...experiment.block_measures import EDGE_S
 from .. import adequacy
-from . import row_times, single_log
+from . import log_rests, restless, row_times, single_log
 
-SHORTEST_REST_S = 0.5  # of a robot that stops between two moves
-WINDOW_S = 0.3  # over which a log is still: shorter than such a stop with its edges
-FEWEST_STILL = 3  # samples of that window: of fewer rows a second it is longer
-LEVEL_S, FEWEST = 1.0, 8  # over which the noise is told: s, and samples, of a rest as well
-# Times the noise of the quietest tenth up to which a log is still; deg/s of a turn that is slower
-# than any robot's, and more than a gyro's bias changes by within a log (20 deg/s over 60 degC).
-LOUDER, SLOW_DPS = 2.5, 1.5
-COUNT_VARIANCE = 0.25  # counts: a channel that toggles between two of them
 DPS = np.pi / 180.0
 UP = np.array([0.0, 0.0, 1.0])  # of the world
 
@@ -37,7 +25,8 @@ class Trace:
     faces: the axis of each rest that a label says is up, (3,) or None; quantum: m/s2 and rad/s
     of one count; flicker: {sensor: mg or deg/s}, the level of such a chip (adequacy.usual), by
     which its bias is another one the next time; railed (n,): a channel stands at the end of what
-    it can say; put_in (n,): nobody read it, or what is beside it."""
+    it can say; put_in (n,): nobody read it, or what is beside it; calm: as rests, with
+    stretches in which it hardly moves, of a log that rests somewhere."""
 
     name: str
     t: np.ndarray
@@ -52,6 +41,7 @@ class Trace:
     flicker: dict
     railed: np.ndarray
     put_in: np.ndarray
+    calm: tuple = ()
 
     @property
     def seconds(self):
@@ -59,7 +49,7 @@ class Trace:
 
     @cached_property
     def noise(self):
-        """{sensor: single_log.Noise at rest, or None} of the sensors that there are."""
+        """{sensor: single_log.Noise, or None} of the sensors that there are."""
         return {kind: single_log.noise(self, values) for kind, values in (
             ("accel", self.force), ("gyro", self.rate)) if values is not None}
 
@@ -71,9 +61,9 @@ class Trace:
 def check_rows(name, capture):
     """BadFile for a log of fewer rows than the shortest rest has: of a row or two each channel
     keeps its value, and steps by what its noise is."""
-    if len(capture) < FEWEST:
+    if len(capture) < log_rests.FEWEST:
         raise BadFile("%s: it has %d row%s, expected %d and more to compare a simulator with" % (
-            name, len(capture), "s" * (len(capture) > 1), FEWEST))
+            name, len(capture), "s" * (len(capture) > 1), log_rests.FEWEST))
 
 
 def trace_from_capture(name, capture):
@@ -91,7 +81,7 @@ def trace_from_capture(name, capture):
     celsius = None
     if capture.temp is not None:
         celsius = capture.temp / meta["temp_lsb_per_c"] + meta["temp_offset_c"]
-    rests, ups = _rests(capture, rate_hz)
+    rests, ups, calm = log_rests.of_capture(capture, rate_hz)
     railed = _railed(capture.accel)
     if capture.gyro is not None:
         railed = railed | _railed(capture.gyro)
@@ -99,53 +89,8 @@ def trace_from_capture(name, capture):
     trace = Trace(name, t, capture.accel * quantum[0],
                   None if capture.gyro is None else capture.gyro * quantum[1], celsius,
                   float(rate_hz), capture.g, rests, ups, quantum, flicker, railed,
-                  np.zeros(len(t), bool))
+                  np.zeros(len(t), bool), calm)
     return row_times.evened(row_times.as_read(trace, measured), measured)
-
-
-def _rests(capture, rate_hz):
-    """Rests by their labels where there are any, else by what stands still."""
-    edge, least = int(EDGE_S * rate_hz), max(FEWEST, int(SHORTEST_REST_S * rate_hz))
-    if capture.pose is not None and (capture.pose > 0).any():
-        runs = rest_finder.labelled(capture.pose)
-    else:
-        runs = still(capture, rate_hz)
-    rests, ups = [], []
-    for code, first, end in runs:
-        if end - first - 2 * edge < least:
-            continue
-        rests.append((int(first + edge), int(end - edge)))
-        face = faces.face_of_code(int(code)) if code else -1
-        up = None
-        if face >= 0:
-            up = np.zeros(3)
-            up[faces.AXIS[face]] = faces.SIGN[face]
-        ups.append(up)
-    return tuple(rests), tuple(ups)
-
-
-def still(capture, rate_hz):
-    """[rests.Run] of a robot: both sensors no louder than a few times their quietest tenth (a
-    count where they make no noise), and the gyro where it stands most often."""
-    window = max(2 * int(WINDOW_S / 2 * rate_hz) + 1, FEWEST_STILL)
-    second = min(max(int(LEVEL_S * rate_hz), FEWEST), rests_by_variance.WINDOW)
-    mask = np.ones(len(capture), bool)
-    for counts in (capture.accel, capture.gyro):
-        if counts is None or len(counts) <= max(2 * window, second):
-            continue
-        counts = counts.astype(float)
-        level = max(rests_by_variance.variance_at_rest(counts, window=second), COUNT_VARIANCE)
-        here = np.zeros(len(capture), bool)
-        for run in rests_by_variance.find(counts, LOUDER ** 2 * level, window, 1):
-            here[run.first:run.end] = True
-        mask &= here
-    runs = [rest_finder.Run(0, first, end) for first, end in rest_finder.stretches(mask)]
-    if capture.gyro is None or not runs:
-        return runs
-    usual = np.median(capture.gyro[mask], axis=0)
-    slow = SLOW_DPS * capture.meta["gyro_lsb_per_dps"]
-    return [run for run in runs
-            if np.linalg.norm(capture.gyro[run.first:run.end].mean(axis=0) - usual) < slow]
 
 
 def _railed(counts):
@@ -165,7 +110,7 @@ class Motion:
     """What a Trace says its sensor went through, arrays over its samples: turn (n, 3, 3) body to
     world (heading 0 at the start); up (n, 3) unit vector against gravity in the body; rate
     (n, 3) rad/s less its bias at rest; rate_dot (n, 3); moved (n, 3) m/s2: specific force less
-    gravity; speed (n, 3) m/s in the body, zero at each rest."""
+    gravity; speed (n, 3) m/s in the body, zero at each rest (without one: on average)."""
 
     turn: np.ndarray
     up: np.ndarray
@@ -176,9 +121,12 @@ class Motion:
 
 
 def motion(trace):
-    """The Motion of a Trace with a gyro and a rest, else None."""
-    if trace.rate is None or not trace.rests:
+    """The Motion of a Trace with a gyro, else None; of one that never rests as far as it shows
+    the vertical."""
+    if trace.rate is None:
         return None
+    if not trace.rests:
+        return _restless_motion(trace)
     rate = trace.rate - rest_line(trace, trace.rate)
     ups = [_unit(v) for v in trace.rest_means(trace.force)]
     n = len(trace.t)
@@ -203,6 +151,16 @@ def motion(trace):
     moved = trace.force - trace.g * up
     speed = _speed(trace, turn, moved)
     return Motion(turn, up, rate, _slope(trace.t, rate), moved, speed)
+
+
+def _restless_motion(trace):
+    """The Motion of a Trace without a rest, or None where nothing in it shows the vertical."""
+    levelled = restless.levelled(trace.t, trace.force, trace.rate, trace.rate_hz, trace.g)
+    if levelled is None:
+        return None
+    turn, bias, speed = levelled
+    up, rate = turn[:, 2, :], trace.rate - bias
+    return Motion(turn, up, rate, _slope(trace.t, rate), trace.force - trace.g * up, speed)
 
 
 def _slope(t, values):

@@ -1,0 +1,78 @@
+"""The rests of a log: as its labels have them, or where it is calm and its gyro follows no course.
+"""
+import numpy as np
+
+from sixflip.poses import faces
+
+from ...capture import rests as rest_finder
+from ...capture import rests_by_variance
+from ...experiment.block_measures import EDGE_S
+from .. import adequacy
+from . import rest_or_course
+
+SHORTEST_REST_S = 0.5  # of a robot that stops between two moves
+WINDOW_S = 0.3  # over which a log is calm: shorter than such a stop with its edges
+FEWEST_STILL = 3  # samples of that window: of fewer rows a second it is longer
+LEVEL_S, FEWEST = 1.0, 8  # over which the noise is told: s, and samples, of a rest as well
+# Times the noise of the quietest tenth up to which a log is calm; deg/s of a turn that is slower
+# than any robot's, and more than a gyro's bias changes by within a log (20 deg/s over 60 degC).
+LOUDER, SLOW_DPS = 2.5, 1.5
+COUNT_VARIANCE = 0.25  # counts: a channel that toggles between two of them
+
+
+def of_capture(capture, rate_hz):
+    """(rests, the axis of each that a label says is up, (3,) or None, calm stretches) of a
+    Capture, spans (first, end) of samples: by the labels where there are any, else those found.
+    In a calm stretch a robot drives slowly, as level as to a few degrees, or rests."""
+    edge, least = int(EDGE_S * rate_hz), max(FEWEST, int(SHORTEST_REST_S * rate_hz))
+
+    def inside(runs):
+        return [run._replace(first=int(run.first + edge), end=int(run.end - edge)) for run in runs
+                if run.end - run.first - 2 * edge >= least]
+
+    if capture.pose is not None and (capture.pose > 0).any():
+        rests = inside(rest_finder.labelled(capture.pose))
+        spans = tuple((run.first, run.end) for run in rests)
+        return spans, tuple(_up(int(run.code)) for run in rests), spans
+    quiet = inside(calm(capture, rate_hz))
+    stops = still = [(run.first, run.end) for run in quiet]
+    if capture.gyro is not None:
+        lsb = capture.meta["gyro_lsb_per_dps"]
+        still = rest_or_course.resting(capture.gyro / lsb, still, rate_hz, adequacy.usual(
+            capture.meta["sensor"], "gyro"), 1.0 / lsb)
+        stops, still = (_unturned(capture, spans) for spans in (stops, still))
+    return tuple(still), (None,) * len(still), tuple(stops) if still else ()
+
+
+def _up(code):
+    """(3,) the axis that a pose's code says is up, or None."""
+    face = faces.face_of_code(code) if code else -1
+    return faces.SIGN[face] * np.eye(3)[faces.AXIS[face]] if face >= 0 else None
+
+
+def _unturned(capture, spans):
+    """Those of the spans in which the gyro stands where it stands most often."""
+    if not spans:
+        return []
+    usual = np.median(np.concatenate([capture.gyro[a:b] for a, b in spans]), axis=0)
+    slow = SLOW_DPS * capture.meta["gyro_lsb_per_dps"]
+    return [(a, b) for a, b in spans
+            if np.linalg.norm(capture.gyro[a:b].mean(axis=0) - usual) < slow]
+
+
+def calm(capture, rate_hz):
+    """[rests.Run] in which both sensors are no louder than a few times their quietest tenth (a
+    count where they make no noise)."""
+    window = max(2 * int(WINDOW_S / 2 * rate_hz) + 1, FEWEST_STILL)
+    second = min(max(int(LEVEL_S * rate_hz), FEWEST), rests_by_variance.WINDOW)
+    mask = np.ones(len(capture), bool)
+    for counts in (capture.accel, capture.gyro):
+        if counts is None or len(counts) <= max(2 * window, second):
+            continue
+        counts = counts.astype(float)
+        level = max(rests_by_variance.variance_at_rest(counts, window=second), COUNT_VARIANCE)
+        here = np.zeros(len(capture), bool)
+        for run in rests_by_variance.find(counts, LOUDER ** 2 * level, window, 1):
+            here[run.first:run.end] = True
+        mask &= here
+    return [rest_finder.Run(0, first, end) for first, end in rest_finder.stretches(mask)]
