@@ -64,6 +64,20 @@ def test_a_boat_that_never_rests_has_no_rest_and_the_noise_of_its_chip():
     assert np.sqrt((tilt ** 2).mean()) < 1.0
 
 
+def test_derivatives_of_roll_pitch_and_yaw_are_named():
+    """They were "explained" by biases, under a floor of noise that was the waves."""
+    t, force, rate, _, _ = boat()
+    later = 2.0
+    at, sim_force, _, angle_rates, _ = boat(40.0, 65.0, start=later)
+    found = comparison.compare(
+        [("real", read(t, force, rate, 1, (-0.7, 1.8, 0.8)))], "sim",
+        read(at, sim_force, angle_rates, 2))
+    assert [(c.name, c.sensor) for c in found.conventions] == [("euler_angle_rates", "gyro")]
+    before, after, floor = found.gap["gyro"]
+    assert after < 0.1 * before and floor < 0.05
+    assert found.alignment.offset_s == pytest.approx(later, abs=0.02)
+
+
 def test_a_boat_whose_simulator_turns_as_it_does_is_healthy():
     t, force, rate, _, _ = boat()
     at, sim_force, sim_rate, _, _ = boat(40.0, 65.0, start=2.0)

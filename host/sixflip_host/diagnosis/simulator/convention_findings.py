@@ -24,6 +24,7 @@ WORDS = {
                               "same axis of the sensor",
     "world_frame_forces": "outputs forces along the world's axes",
     "world_frame_rates": "outputs turn rates along the world's axes",
+    "euler_angle_rates": "outputs the derivatives of roll, pitch and yaw, no turn rates",
     "time_step": "divides by the wrong time step: what moves it is too large or too small, and "
                  "gravity is right",
     "no_centripetal_term": "leaves out the centripetal term",
@@ -50,13 +51,15 @@ SET = {
     "gravity_after_rotation": "f = Rᵀ(a - g): rotate after adding gravity",
     "world_frame_forces": "rotate into the body: f = Rᵀ f_world",
     "world_frame_rates": "rotate into the body: ω = Rᵀ ω_world",
+    "euler_angle_rates": "of roll φ, pitch θ and yaw ψ: ω = (φ' - ψ' sin θ, θ' cos φ + "
+                         "ψ' cos θ sin φ, ψ' cos θ cos φ - θ' sin φ)",
     "no_centripetal_term": "differentiate the velocity in the world's frame, then rotate",
     "lever_arm_missing": "add dω/dt × r + ω × (ω × r)",
     "noise_per_sample": "standard deviation of a sample = density · √rate",
 }
 # After these a simulator's numbers are not those of a sensor any more.
 SPOILED = ("no_gravity", "gravity_sign", "gravity_after_rotation", "constant_channel",
-           "world_frame_forces", "world_frame_rates", "unknown")
+           "world_frame_forces", "world_frame_rates", "euler_angle_rates", "unknown")
 # These are wrong only while it moves, or in noise: what its rests say stands.
 IN_MOTION = ("time_step", "no_centripetal_term", "lever_arm_missing", "accel_delay", "gyro_delay",
              "accel_rate_held", "gyro_rate_held", "noise_per_sample", "bias_sign")

@@ -37,6 +37,7 @@ FADES_S = (30.0, 120.0)  # time constants of what fades: of a minute's log, and 
 # Slower than that a gyro's tilt between two rests is its own: a cross axis of 1 % of a robot that
 # turns to one side, or a tenth of a deg/s of bias, make a degree in ten seconds.
 WANDERS_HZ = 0.05
+UPRIGHT = 0.05  # cosine of the pitch from which on roll and yaw are one: 87 degrees
 DEG = 180.0 / np.pi
 
 
@@ -98,15 +99,27 @@ def accelerometer(force, motion, g):
 
 def gyro(rate, motion, g):
     """Hypotheses of the gyro."""
-    n = len(rate)
+    n, at_rest = len(rate), rate.mean(axis=0) - motion.rate.mean(axis=0)
     world = np.einsum("nij,nj->ni", motion.turn, rate)
     tried = [Hypothesis("healthy", rate, *none(n)),
-             Hypothesis("world_frame_rates", world, *none(n), heading=True)]
+             Hypothesis("world_frame_rates", world, *none(n), heading=True),
+             Hypothesis("euler_angle_rates", angle_rates(rate - at_rest, motion.up), *none(n))]
     tried += [Hypothesis("time_step", rate, rate[:, :, None], np.array([k - 1.0]),
                          np.array([TIMES_SPREAD * k]), scaled=True) for k in TIMES]
     everything = np.concatenate([world, motion.rate_dot * 0.1, pairs(rate), motion.up,
                                  motion.moved / g], axis=1)
     return tried + [nameless(rate, everything, 1)]
+
+
+def angle_rates(rate, up):
+    """(n, 3): the derivatives of roll, pitch and yaw, in this order, of what turns by rate (n, 3)
+    in the body, up (n, 3) [Diebel, Representing attitude (2006), equations 75 and 76: turned about
+    z, then y, then x]. Angles to a vertical that points down are the same."""
+    x, y, z = (up if up[:, 2].mean() > 0.0 else -up).T
+    cosine = np.maximum(np.hypot(y, z), UPRIGHT)
+    about_z = (rate[:, 1] * y + rate[:, 2] * z) / cosine  # without the pitch
+    return np.stack([rate[:, 0] - x / cosine * about_z, (rate[:, 1] * z - rate[:, 2] * y) / cosine,
+                     about_z / cosine], 1)
 
 
 def nameless(signal, everything, copies):
