@@ -157,7 +157,8 @@ def compare_traces(real, sim, aligned):
                 replace(real_free, force=own_real.applied(real_free).force), sim_free, aligned,
                 fits)
         late, late_sigma, delays = conventions.delay(fits, row_s)
-        delays = [c for c in delays if own_motion.shown_late(sim_free, late)]
+        delays = [held_readings.beside(c, sim.rate_hz, holds["sim"]) for c in delays
+                  if own_motion.shown_late(sim_free, late)]
         judged = len(fits) == 2
         findings += [c for f in fits.values() for c in f.conventions if not (
             constant and c.name == "constant_channel")] + delays
@@ -196,8 +197,8 @@ def compare_traces(real, sim, aligned):
         kind: replace(fit, fit=fit.refitted(None)) for kind, fit in of_told.items()})
     return Comparison(sim.name, real.name, aligned, tuple(findings), tuple(numbers), task, gap,
                       fits, own_real, own_sim,
-                      (*said_of(real, sim, aligned), *dead_zone.said_of(bands, of_gyro), *why_not),
-                      tuple(unseen),
+                      (*said_of(real, sim, aligned), *dead_zone.said_of(bands, of_gyro),
+                       *why_not), tuple(unseen),
                       judged or convention_findings.only_in_motion(findings),
                       None if real.celsius is None else float(real.celsius.mean()),
                       wanders=remaining_gap.wandering(fits, left), lacks_delay=lacks_delay,

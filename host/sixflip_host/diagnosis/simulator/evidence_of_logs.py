@@ -174,15 +174,22 @@ def smoothed(smooth_s2, noise_bends):
 
 
 def shifted(x, rows, every=1):
-    """x (n, …) later by so many rows, its ends held; of so many rows one. By Lagrange's polynomial
-    through the POINTS around: half way between two rows a straight line is smoother than x is, as
-    behind a pole of 16 Hz, and a log that is late was one that needs a low-pass."""
+    """x (n, …) later by so many rows, beyond its ends in a straight line (what is held there has a
+    bend that nothing else comes near); of so many rows one. By Lagrange's polynomial through the
+    POINTS around: half way between two rows a straight line is smoother than x is, as behind a
+    pole of 16 Hz, and a log that is late was one that needs a low-pass."""
     if abs(rows) < 1e-6 or not x.size:
         return x[::every]
     n, number = len(x), min(POINTS, len(x))
-    at = np.clip(np.arange(0, n, every) - rows, 0, n - 1)
+    wanted = np.arange(0, n, every) - rows
+    at = np.clip(wanted, 0, n - 1)
+    beyond = wanted - at
     first = np.clip(at.astype(int) - (number // 2 - 1), 0, n - number)
     at = (at - first).reshape((-1,) + (1,) * (x.ndim - 1))
     points = range(number)
-    return sum(np.prod([(at - m) / (k - m) for m in points if m != k], axis=0) * x[first + k]
-               for k in points)
+    moved = sum(np.prod([(at - m) / (k - m) for m in points if m != k], axis=0) * x[first + k]
+                for k in points)
+    for end, slope in ((beyond < 0.0, x[:2]), (beyond > 0.0, x[-2:])):
+        if len(slope) == 2 and end.any():
+            moved[end] += np.multiply.outer(beyond[end], slope[1] - slope[0])
+    return moved

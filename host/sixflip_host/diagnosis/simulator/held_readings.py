@@ -31,6 +31,8 @@ SLOWER = 0.8  # of the real log's own rate of new readings: oscillators differ b
 # (6 %, ITG-3205 PS). Share of the simulator's rise there that the readings may have: a filter
 # takes the same part of all of a peak.
 BEYOND, RISES = 1.08, 0.5
+# Of a change from row to row, in counts: each row is rounded by 1/12 of a square count.
+ROUNDED = 1.0 / 6.0
 NEAR = 0.85  # of the largest reading: what is read there, not what two kinds of shaking leave
 AT = 0.95  # of a stop: by as much the band that is compared rounds it off
 OVER = 0.7  # of the readings at a stop are beyond it in the simulator; of a steady rate half are
@@ -67,28 +69,59 @@ def sensor_hold(values, quantum, rests=()):
     moving = wide > max(MOVING * quantum * WINDOW_ROWS / 8.0, np.quantile(wide, 0.6))
     if moving.sum() < 2 * WINDOW_ROWS:
         return Hold(1.0, np.ones(len(values), bool))
-    share = fresh[moving].mean()
-    rows = float(1.0 / max(share, 1e-3))
-    if rows >= LEAST:
-        return Hold(rows, np.concatenate([[True], change > 0]))
-    return under_noise(values, moving, rests)
+    rows = float(1.0 / max(fresh[moving].mean(), 1e-3))
+    at_random = Hold(rows, np.concatenate([[True], change > 0]))
+    stairs = under_noise(values / quantum, moving, rests)
+    if at_random.held and not (stairs.held and likelier(stairs, values / quantum, moving, rests)):
+        return at_random
+    return stairs
 
 
-def under_noise(values, moving, rests):
-    """The Hold of values (n, 3) that are never alike: stairs against a ramp.
+def likelier(stairs, counts, moving, rests):
+    """Whether a Hold of stairs says more of counts (n, 3) than that readings come at random rows,
+    each other than the last: noise of a tenth of a count changes a held reading, too, where it
+    lies between two codes."""
+    change = np.diff(counts, axis=0)[moving]
+    rises = stairs.starts[1:][moving]
+    fresh = change.any(axis=1)
+    noise = noise_of_changes(counts, rests)
+    of_stairs = normal(change[rises]) + normal(change[~rises], noise)
+    share = np.clip(fresh.mean(), 1e-3, 1.0 - 1e-3)
+    of_random = normal(change[fresh]) + fresh.sum() * np.log(share) + (
+        ~fresh).sum() * np.log(1.0 - share)
+    return of_stairs > of_random
+
+
+def normal(change, variance=None):
+    """Log likelihood of changes (n, 3) in counts, with the variance that suits them best."""
+    if not len(change):
+        return 0.0
+    if variance is None:
+        variance = np.maximum((change ** 2).mean(axis=0), ROUNDED)
+    return -0.5 * (change ** 2 / variance + np.log(2.0 * np.pi * variance)).sum()
+
+
+def noise_of_changes(counts, rests):
+    """(3,) variance of the change of counts (n, 3) from row to row at rest, of rounding at least;
+    None without a rest."""
+    still = [np.diff(counts[a:b], axis=0) for a, b in rests if b - a > 2]
+    return np.maximum(np.concatenate(still).var(axis=0), ROUNDED) if still else None
+
+
+def under_noise(counts, moving, rests):
+    """The Hold of counts (n, 3) that stand for some rows but for noise: stairs against a ramp.
 
     Where a sensor moves, a row differs from the row before by the slope and whatever shakes the
     robot, of any size. On stairs of k rows it differs by no more than at rest, but at each k-th,
     where the whole step comes. Half of the differences count, since neighbours share a row; every
     k and first row is as likely. rests: ((first, end), ...), where that noise is known from.
     """
-    n = len(values)
+    n = len(counts)
     everywhere = Hold(1.0, np.ones(n, bool))
-    still = [np.diff(values[a:b], axis=0) for a, b in rests if b - a > 2]
-    if not still:
+    noise = noise_of_changes(counts, rests)
+    if noise is None:
         return everywhere
-    noise = np.concatenate(still).var(axis=0) + 1e-30
-    change, row = np.diff(values, axis=0), np.arange(1, n)
+    change, row = np.diff(counts, axis=0), np.arange(1, n)
     mask = np.concatenate([moving[1:], [False]]) & moving
     best = (0.0, 1, 0)
     for k in range(2, LONGEST + 1):
@@ -96,7 +129,7 @@ def under_noise(values, moving, rests):
         kernel = np.convolve(np.ones(k), np.ones(k)) / k ** 2
         slope = np.column_stack([np.convolve(c, kernel, "same") for c in change.T])
         ramp = (change - slope) ** 2
-        level = ramp[mask].mean(axis=0) + 1e-30
+        level = ramp[mask].mean(axis=0) + ROUNDED
         told = 0.25 * (ramp / level + np.log(level) - change ** 2 / noise
                        - np.log(noise)).sum(axis=1)[mask]
         # each first row leaves out the rows on which its stairs rise
@@ -124,8 +157,11 @@ def free(trace, holds):
             continue
         at = np.flatnonzero(holds[kind].starts)
         means = np.add.reduceat(values, at, axis=0) / np.diff(np.append(at, len(values)))[:, None]
-        freed = replace(freed, **{name: np.stack([
-            np.interp(trace.t, trace.t[at], means[:, i]) for i in range(3)], 1)})
+        made = np.stack([np.interp(trace.t, trace.t[at], means[:, i]) for i in range(3)], 1)
+        if len(at) > 1:  # on from the last one as between the last two, until the log ends
+            slope = (means[-1] - means[-2]) / max(trace.t[at[-1]] - trace.t[at[-2]], 1e-9)
+            made[at[-1]:] = means[-1] + np.outer(trace.t[at[-1]:] - trace.t[at[-1]], slope)
+        freed = replace(freed, **{name: made})
     return freed
 
 
@@ -140,6 +176,17 @@ def findings(real, sim, holds_real, holds_sim):
                 "something new every %.3g rows" % (hz[0], hold.rows), value={"rate": hz[1]},
                 unit="Hz"))
     return held
+
+
+def beside(delay, rate_hz, holds_sim):
+    """The Convention of a sensor that is late, told from how long its readings stand: a reading
+    counts from the row with which it begins, and its rows are later than that on average."""
+    kind = delay.sensor
+    if not holds_sim[kind].held:
+        return delay
+    ms = 1e3 * (holds_sim[kind].rows - 1.0) / 2.0 / rate_hz
+    return replace(delay, set_to="%s, besides the %.1f ms by which its rows are late on average "
+                   "because they repeat readings" % (delay.set_to, ms))
 
 
 def stops(fits):
