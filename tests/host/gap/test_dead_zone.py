@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from sixflip_host.capture.capture import Capture
 from sixflip_host.diagnosis import answer
 from sixflip_host.diagnosis.diagnose import diagnose
-from sixflip_host.diagnosis.simulator import comparison, dead_zone
-from tests.worlds.tumbled import RATE_HZ, read, tumbled
+from sixflip_host.diagnosis.simulator import comparison, dead_zone, gyro_or_motor, traces
+from tests.worlds.tumbled import META, RATE_HZ, read, tumbled
 
 TRUE = 3.0  # deg/s
 
@@ -48,7 +49,7 @@ def scale(found):
 def test_its_width_and_form_are_found_and_no_scale_is_wrong(change, monkeypatch):
     """The scales were some percent less, and most of the gap was left."""
     found = compared(change)
-    assert [band.axis for band in found.bands] == [0, 1, 2] and found.of_gyro > dead_zone.GYRO
+    assert [band.axis for band in found.bands] == [0, 1, 2] and found.of_gyro > gyro_or_motor.GYRO
     for band in found.bands:
         assert band.form == change.__name__
         assert np.degrees(band.rate) == pytest.approx(TRUE, rel=0.05)
@@ -139,3 +140,43 @@ def test_what_turns_it_may_not_answer_and_the_forces_say_so(change):
     assert found.bands and found.of_gyro <= 0.0 and "gyro" in found.shaken
     assert any("lacks turns slower than" in remark for remark in found.remarks)
     assert not diagnosed.causes and not diagnosed.findings and diagnosed.verdict != "explained"
+
+
+def simulated_without_noise(t, force, rate, bias=0.0):
+    """60 rows a second of what has no noise, in the codes of 1000 deg/s."""
+    at = np.arange(0.0, t[-1], 1.0 / 60.0)
+    force, rate = (np.stack([np.interp(at, t, x) for x in own.T], 1) for own in (force, rate))
+    return Capture(dict(META, rate_hz=60.0, gyro_lsb_per_dps=32.8),
+                   np.rint(1e6 * at).astype(np.int64), np.rint(force * 8192).astype(np.int16),
+                   np.rint((rate + bias) * 32.8).astype(np.int16))
+
+
+def beside_no_noise(change, seconds=20.0):
+    """The Comparison of a quiet gyro that makes this of the rates."""
+    t, force, rate = tumbled(1, seconds)
+    real = read(t, force, np.zeros_like(rate), 1)
+    noise = 0.01 * np.random.default_rng(4).standard_normal(rate.shape)
+    real.gyro = np.rint((change(rate) + noise) * 65.5).astype(np.int16)
+    return comparison.compare([("real", real)], "sim", simulated_without_noise(t, force, rate))
+
+
+def test_what_is_drawn_for_a_simulators_rounding_earns_no_band():
+    """One of 2 counts had 200 nats by the lack of it on every axis, whatever the band was."""
+    assert beside_no_noise(np.copy).bands == ()
+
+
+@pytest.mark.long
+def test_beside_a_simulator_without_noise_a_band_is_found():
+    found = beside_no_noise(lambda rate: rate - np.clip(rate, -0.3, 0.3), 40.0)
+    assert [band.axis for band in found.bands] == [0, 1, 2]
+    assert all(np.degrees(band.rate) == pytest.approx(0.3, rel=0.1) for band in found.bands)
+
+
+def test_rounding_is_noise_of_what_has_none():
+    t, force, rate = tumbled(1, 20.0)
+    loud, silent = (traces.trace_from_capture("one", capture) for capture in (
+        read(t, force, rate, 1), simulated_without_noise(t, force, rate, 0.01)))
+    noise = gyro_or_motor.in_band(silent, silent, "gyro", 4.0)
+    assert np.degrees(noise) == pytest.approx(np.sqrt(2.0 / 12.0) / 32.8, rel=0.01)
+    noise = gyro_or_motor.in_band(loud, loud, "gyro", 4.0)
+    assert np.degrees(noise) == pytest.approx(0.05 * np.sqrt(2.0 * 2.0 * 4.0 / 100.0), rel=0.6)

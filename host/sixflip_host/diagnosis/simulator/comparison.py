@@ -11,6 +11,7 @@ from . import (
     convention_findings,
     conventions,
     dead_zone,
+    gyro_or_motor,
     held_readings,
     noise_and_registers,
     numbers_told,
@@ -87,7 +88,7 @@ class Comparison:
         return [kind for kind, gap in self.gap.items()
                 if not gap[2] and _open(gap, 0.0)
                 or kind not in self.wanders and gap[1] > shakes[kind] and _open(gap, FAR_ABOVE)
-                or kind == "gyro" and self.bands and self.of_gyro < dead_zone.GYRO]
+                or kind == "gyro" and self.bands and self.of_gyro < gyro_or_motor.GYRO]
 
     @property
     def left(self):
@@ -153,7 +154,7 @@ def compare_traces(real, sim, aligned):
         if bands:
             fits = conventions.same_motion(real_free, dead_zone.taken_off(sim_free, bands),
                                            aligned, motion, live, fresh)
-            of_gyro = dead_zone.nats_of_gyro(
+            of_gyro = gyro_or_motor.nats_of_gyro(
                 replace(real_free, force=own_real.applied(real_free).force), sim_free, aligned,
                 fits)
         late, late_sigma, delays = conventions.delay(fits, row_s)
@@ -197,7 +198,7 @@ def compare_traces(real, sim, aligned):
         kind: replace(fit, fit=fit.refitted(None)) for kind, fit in of_told.items()})
     return Comparison(sim.name, real.name, aligned, tuple(findings), tuple(numbers), task, gap,
                       fits, own_real, own_sim,
-                      (*said_of(real, sim, aligned), *dead_zone.said_of(bands, of_gyro),
+                      (*said_of(real, sim, aligned), *gyro_or_motor.said_of(bands, of_gyro),
                        *why_not), tuple(unseen),
                       judged or convention_findings.only_in_motion(findings),
                       None if real.celsius is None else float(real.celsius.mean()),

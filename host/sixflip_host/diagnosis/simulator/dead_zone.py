@@ -17,15 +17,15 @@ from ..detect.detection import Finding
 from . import alignment as align_by
 from . import (
     conventions,
+    gyro_or_motor,
     hypotheses,
     lacking_effects,
     pairing,
     parameters,
     remaining_gap,
     single_log,
-    traces,
 )
-from .evidence_of_logs import left_of, shifted
+from .evidence_of_logs import shifted
 from .pairing import GRID_HZ
 
 # What is left of rates (rad/s) by a band: counts below it read 0 (the library's form), it is
@@ -41,7 +41,6 @@ SPOILT = 10.0  # times what no band leaves, of one beside which the scale is non
 # Times the noise of both from which on a band is none of their shaking at rest. Nor is one below a
 # step of the real one's codes any other than those.
 OF_NOISE = 5.0
-GYRO = odds.PRESENT  # nats from which on it is the gyro: what turns a thing is as likely
 GAIN = 0.1  # that its scale may be off beside the band: more than a part's is (ITG-3205 PS, 6 %)
 
 
@@ -75,7 +74,7 @@ def found(fits, real, sim):
     fit = sensor_fit.fit
     if fit.unit != 1.0 or not np.array_equal(fit.axes, np.eye(3)):
         return ()
-    noise = _in_band(real, sim, "gyro", sensor_fit.pair.band_hz)
+    noise = gyro_or_motor.in_band(real, sim, "gyro", sensor_fit.pair.band_hz)
     least = np.maximum(OF_NOISE * noise,
                        single_log.step(real.rate[~real.put_in], real.quantum[1]))
     still = sim.rest_means(sim.rate).mean(axis=0)
@@ -94,52 +93,6 @@ def taken_off(sim, bands):
     return replace(sim, rate=rate)
 
 
-def nats_of_gyro(real, sim, alignment, fits):
-    """How much likelier the forces are where the thing turned as the simulator's did, and the gyro
-    did not answer, than where it turned as the gyro says: what turns it may not answer either.
-    Gravity goes another way in the two, by a known course: of what the accelerometer's fit leaves
-    of the simulator's forces that is all or nothing. 0 at most where the forces are not alike but
-    for noise: then it moved otherwise, wherever it turned. fits: with the bands taken off."""
-    accel, gyro = fits.get("accel"), fits["gyro"].fit
-    if accel is None or accel.fit.unit != 1.0 or None in (real.noise["accel"], sim.noise["accel"]):
-        return 0.0
-    at = (real.t - alignment.offset_s) / (1.0 + alignment.drift)
-    inside = ((at > 0.0) & (at < sim.seconds))[:, None]
-    own = (real.rate - traces.rest_line(real, real.rate)) @ (np.eye(3) + gyro.shape).T
-    turns = np.stack([np.interp(at, sim.t, x) for x in (
-        sim.rate - traces.rest_line(sim, sim.rate)).T], 1)
-    ups = [traces.motion(replace(real, rate=rate)).up for rate in (
-        np.where(inside, turns, own), own)]
-    pair = accel.pair
-    course = real.g * pairing.at_times(real, ups[0] - ups[1], alignment.of_simulator(pair.t),
-                                       pair.band_hz)
-    design = np.column_stack([pair.force, np.ones(len(pair.t))])  # which the fit has, too
-    left, course = (left_of(x, design) for x in (accel.fit.left, course))
-    noise = _in_band(real, sim, "accel", pair.band_hz)
-    most = 0.0 if left.std() > parameters.TOGETHER * np.sqrt((noise ** 2).mean()) else np.inf
-    power = max(float((course ** 2).sum()), 1e-30)
-    share = float((left * course).sum()) / power
-    rest = left - share * course
-    variance = float((rest ** 2).mean()) * align_by.independent(rest) / power
-    return min(most, (1.0 - 2.0 * share) / (2.0 * variance))
-
-
-def _in_band(real, sim, kind, band_hz):
-    """(3,): the noise of two Traces together, in the frequencies compared, m/s2 or rad/s."""
-    return np.hypot(*(log.noise[kind].density for log in (real, sim))) * np.sqrt(2.0 * band_hz)
-
-
-def said_of(bands, of_gyro):
-    """[sentence] on Bands that the gyro need not be the cause of."""
-    if not bands or of_gyro >= GYRO:
-        return []
-    who = "what turns it does not answer, as its forces say" if of_gyro <= -GYRO else \
-        "its gyro does not answer, or what turns it does not: its forces do not tell which"
-    return ["the real log lacks turns slower than %s deg/s, which the simulator's has: %s" % (
-        ", ".join("%.3g about %s" % (np.degrees(band.rate), "xyz"[band.axis]) for band in bands),
-        who)]
-
-
 def added(diagnosis):
     """The Diagnosis with a Finding of the bands that its logs of one motion show, where neither
     the codes nor the turns between the rests have it already."""
@@ -148,8 +101,8 @@ def added(diagnosis):
     if any("dead_band" in cause.probabilities for cause in known):
         return diagnosis
     best = {}
-    for band in (band for comparison in diagnosis.comparisons if comparison.of_gyro >= GYRO
-                 for band in comparison.bands):
+    for band in (band for comparison in diagnosis.comparisons
+                 if comparison.of_gyro >= gyro_or_motor.GYRO for band in comparison.bands):
         if band.axis not in best or band.nats > best[band.axis].nats:
             best[band.axis] = band
     if not best:
@@ -172,7 +125,14 @@ def added(diagnosis):
 def _of_axis(axis, sensor_fit, sim, noise, least, centres):
     """The Band of an axis or None; noise: of both logs in the frequencies compared, rad/s."""
     pair, delay = sensor_fit.pair, sensor_fit.fit.delay_s * GRID_HZ
-    read, turns = shifted(pair.rate, delay)[:, axis], pair.sim_rate
+    read = shifted(pair.rate, delay)[:, axis]
+
+    def compared(rows):
+        return pairing.at_times(sim, rows, pair.t, pair.band_hz)
+
+    # As the simulator's log has them, with no band as with any: what the Pair has may be drawn
+    # noise besides (conventions.rounding), and a band would earn what lacking that is worth.
+    turns = compared(sim.rate)
     beside = np.column_stack([
         np.delete(turns, axis, axis=1), np.ones(len(turns)),
         hypotheses.of_time("gyro", pair.t, pair.celsius)[0]])
@@ -195,8 +155,7 @@ def _of_axis(axis, sensor_fit, sim, noise, least, centres):
 
     def banded(form, centre, width):
         # Of every row, before what is fast is left out: that is what a sensor does.
-        rows = FORMS[form](sim.rate[:, axis] - centre, width)
-        return centre + pairing.at_times(sim, rows, pair.t, pair.band_hz)
+        return centre + compared(FORMS[form](sim.rate[:, axis] - centre, width))
 
     def power(width, form, centre):
         rest, gain = left(banded(form, centre, width))
