@@ -197,7 +197,8 @@ def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), d
                     "has it, too" % (f.effect, f.sensor)
                     for f in findings if not (compared_in_motion or simulator.shows(f))]
         findings = [f for f in findings if f.effect in lacking
-                    or simulator.shows(f) and simulator.new(f)]
+                    or simulator.shows(f) and simulator.new(f, sessions)]
+        nameless = [place for place in nameless if not simulator.has_tone(sessions, place)]
     if comparisons:
         # Where readings are cut off is a range, which the parameters of both logs compare.
         findings = [f for f in findings if f.effect != "saturation"]

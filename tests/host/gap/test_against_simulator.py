@@ -10,12 +10,12 @@ from sixflip_host.diagnosis.simulator import against_simulator
 def finding(value, half=None, effect="vibration", sensor="accel", domain="frequency"):
     interval = None if half is None else {k: (v - half, v + half) for k, v in value.items()}
     return SimpleNamespace(effect=effect, sensor=sensor, value=value, interval=interval,
-                           domain=domain)
+                           domain=domain, lines=())
 
 
 def simulator(*findings, motion=None):
-    return against_simulator.Simulator(SimpleNamespace(findings=list(findings), motion=motion),
-                                       {}, ())
+    return against_simulator.Simulator(SimpleNamespace(
+        findings=list(findings), motion=motion, sessions=()), {}, ())
 
 
 @pytest.mark.parametrize("value,half,new", [
@@ -25,13 +25,13 @@ def simulator(*findings, motion=None):
     ({"x": 10.3}, 0.01, False)], ids=str)  # as much as the scale of a part is off
 def test_two_sizes_are_equal_as_far_as_their_intervals_say(value, half, new):
     own = simulator(finding({"x": 10.0}, half))
-    assert own.new(finding(value, half)) is new
+    assert own.new(finding(value, half), ()) is new
 
 
 def test_another_sensor_or_effect_is_another_finding():
     own = simulator(finding({"x": 10.0}, 1.0))
-    assert own.new(finding({"x": 10.0}, 1.0, sensor="gyro"))
-    assert own.new(finding({"x": 10.0}, 1.0, effect="quantisation"))
+    assert own.new(finding({"x": 10.0}, 1.0, sensor="gyro"), ())
+    assert own.new(finding({"x": 10.0}, 1.0, effect="quantisation"), ())
 
 
 def test_what_only_the_simulator_has_is_passed_on():

@@ -14,7 +14,7 @@ from ...experiment import blocks, terms
 from .. import detectability, odds
 from .. import diagnosis as stages
 from ..hypotheses import columns_of
-from . import hypotheses
+from . import hypotheses, shaken_alike
 from .effects_beside import design, fit_with
 
 # Standard errors between two sizes from which on they are two effects: two of one size are as far
@@ -38,8 +38,9 @@ class Simulator:
     known: dict
     remarks: tuple
 
-    def new(self, finding):
-        """True when the simulator lacks a Finding of the real sensor, or has another size."""
+    def new(self, finding, sessions):
+        """True when the simulator lacks a Finding of the real sensor, of Sessions, or has another
+        size."""
         for other in self.diagnosis.findings:
             if (other.effect, other.sensor) != (finding.effect, finding.sensor):
                 continue
@@ -47,7 +48,18 @@ class Simulator:
             apart = [(_size(finding, k), _size(other, k)) for k in keys]
             if all(abs(a - b) <= APART * np.hypot(sa, sb) for (a, sa), (b, sb) in apart):
                 return False
-        return True
+        return not self.shakes_alike(sessions, finding.sensor,
+                                     {line.letter: line.hz for line in finding.lines})
+
+    def shakes_alike(self, sessions, sensor, shaken):
+        """Whether its log has the power of the real Sessions where that is shaken at rest, {axis
+        letter: Hz or None}: what each log by itself makes of it may differ."""
+        return shaken_alike.alike(sessions, self.diagnosis.sessions, sensor, shaken)
+
+    def has_tone(self, sessions, place):
+        """Whether a Place without a name is a tone, which its log has as well."""
+        return place.domain == "frequency" and place.axis is not None and self.shakes_alike(
+            sessions, place.sensor, {place.axis: None})
 
     def shows(self, finding):
         """True when its log would show a Finding of the real sensor, if it had it."""
