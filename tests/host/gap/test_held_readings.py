@@ -79,6 +79,9 @@ def test_how_late_poses_are_is_told_beside_how_long_they_stand():
     low, high = late.difference_interval
     assert low < -30.0 < high and high - low < 2.0
     assert found.gap["gyro"][1] < 0.02
+    # The mean of five rows; what is made of rows between two poses is none of the simulator's.
+    smooth, = (p for p in found.parameters if (p.name, p.sensor) == ("smoothness", "gyro"))
+    assert smooth.difference == pytest.approx(-0.5 * (5.0 ** 2 - 1.0) / 12.0 * 100.0, abs=15.0)
 
 
 def test_a_delay_says_what_its_repeated_rows_add():

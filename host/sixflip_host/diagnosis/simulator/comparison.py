@@ -190,7 +190,9 @@ def compare_traces(real, sim, aligned):
     numbers += [p for p in held_readings.ranges(stops, real, sim) if (p.sensor, p.axis) not in cut]
     if len(fits) == 2 and not findings:
         numbers += noise_and_registers.shaking(real, dead_zone.taken_off(sim, bands))
-    numbers += parameters.timing(late, late_sigma, fits, aligned)
+    numbers += parameters.timing(late, late_sigma, fits, aligned, {
+        kind: held_readings.smoothing_s2(holds["sim"][kind], sim)
+        - held_readings.smoothing_s2(holds["real"][kind], real) for kind in fits})
     findings += of_numbers + parameters.bias_sign(numbers)
     if any(c.name == "noise_per_sample" for c in findings):
         numbers = [p for p in numbers if p.name != "noise_density"]

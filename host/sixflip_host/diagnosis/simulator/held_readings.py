@@ -165,6 +165,12 @@ def free(trace, holds):
     return freed
 
 
+def smoothing_s2(hold, trace):
+    """By how much free() makes a sensor's readings smoother, as half the square of a time
+    constant: straight lines from one to the next are a mean with a triangle of two periods."""
+    return (hold.rows / trace.rate_hz) ** 2 / 12.0 if hold.held else 0.0
+
+
 def findings(real, sim, holds_real, holds_sim):
     """Conventions of sensors that the simulator holds and the real log does not."""
     held = []
