@@ -147,6 +147,9 @@ def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), d
     captures before; beside: these or others are held against a simulator, or are one's own."""
     settings = settings or Settings()
     sessions, remarks = accepted(sessions)
+    if not beside and not comparisons:
+        # Beside a simulator the rests are those of both, which each finds in the same way.
+        sessions = [blocks.with_whole_rests(session) for session in sessions]
     clocks = sample_clock.clocks(sessions)
     remarks += sample_clock.remarks(sessions, clocks)
     progress.doing("registers, clock and spectra")

@@ -12,7 +12,7 @@ import numpy as np
 from sixflip.poses import faces
 
 from .. import progress
-from ..capture import registers, rests, rests_by_variance
+from ..capture import registers, rests, rests_by_variance, shaken_rests
 from ..capture.find_poses import HELD_BY_HAND, by_a_person, find_poses
 from . import block_measures, thermometer, way_memory
 from .session import Session
@@ -61,6 +61,15 @@ def session_of(name, capture, runs=None):
     return Session(name, capture, rate, t_s, timeless, labelled, runs, smooth,
                    way_memory.Way(capture, rate, t_s),
                    **block_measures.of_runs(capture, runs, rate, t_s, labelled, smooth))
+
+
+def with_whole_rests(session):
+    """The Session with those rests made one between which it stood still: of those that nobody
+    labelled, of what is not turned over."""
+    if session.labelled or session.turned_over:
+        return session
+    whole = tuple(shaken_rests.joined(session.capture, session.runs))
+    return session if whole == session.runs else session.of_runs(whole)
 
 
 def runs_of(capture, by_hand=False):

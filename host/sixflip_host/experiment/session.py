@@ -116,7 +116,7 @@ class Session(ReadOnlyArrays):
     def without_poses(self, labels):
         """The same session without the placements with these labels."""
         codes = {faces.pose_code(label) for label in labels}
-        return self._of_runs([run for run in self.runs if run.code not in codes])
+        return self.of_runs([run for run in self.runs if run.code not in codes])
 
     @property
     def turned_over(self):
@@ -156,16 +156,16 @@ class Session(ReadOnlyArrays):
 
     def without_samples(self, bad):
         """The same session without the placements with more than a few bad samples; bad (N,)."""
-        return self._of_runs([run for run in self.runs
-                              if bad[run.first:run.end].mean() <= MOST_BAD])
+        return self.of_runs([r for r in self.runs if bad[r.first:r.end].mean() <= MOST_BAD])
 
-    def _of_runs(self, runs):
+    def of_runs(self, runs):
+        """The same session with other rests."""
         return replace(self, runs=tuple(runs), **block_measures.of_runs(
             self.capture, tuple(runs), self.rate, self.t_s, self.labelled, self.thermometer))
 
     def of_capture(self, capture):
         """The same rests of another capture of the same samples, measured anew."""
-        return self._reading(capture)._of_runs(self.runs)
+        return self._reading(capture).of_runs(self.runs)
 
     def reading(self, capture):
         """The same blocks and noise with the means of another capture of the same samples."""

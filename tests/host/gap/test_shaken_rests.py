@@ -1,0 +1,81 @@
+"""A thing that stands still while a machine runs beside it, or its readings move by themselves,
+and one that moves without a turn."""
+import numpy as np
+import pytest
+
+from sixflip_host.capture import shaken_rests
+from sixflip_host.capture.capture_file import Capture
+from sixflip_host.diagnosis import diagnosis
+from sixflip_host.experiment import blocks
+
+RATE, SECONDS = 100.0, 300.0
+T = np.arange(int(RATE * SECONDS)) / RATE
+ON = ((T > 40.0) & (T < 130.0)) | ((T > 190.0) & (T < 270.0))
+SHAKES = 15.0 * np.sin(2.0 * np.pi * (17.0 * T + 0.4 * np.sin(0.21 * T)))  # mg
+
+
+def standing(up=0.0, turns=0.0, seed=3):
+    """Session of a thing that nobody labelled; up (n,): mg along z beside gravity and noise;
+    turns (n,): deg/s about z."""
+    rng = np.random.default_rng(seed)
+    accel, gyro = rng.normal(0.0, 2.8, (len(T), 3)), rng.normal(0.0, 0.04, (len(T), 3))
+    accel[:, 2] += 1000.0 + up
+    gyro[:, 2] += turns
+    meta = {"sensor": "mpu6050", "rate_hz": RATE, "accel_lsb_per_g": 16384.0,
+            "gyro_lsb_per_dps": 65.5}
+    return blocks.session_of("s", Capture(
+        meta, np.rint(1e6 * T).astype(np.int64), np.rint(16.384 * accel).astype(np.int16),
+        np.rint(65.5 * gyro).astype(np.int16)))
+
+
+def whole(session):
+    return len(blocks.with_whole_rests(session).runs)
+
+
+def pulses(force_mg, seconds, starts):
+    """mg of something that gains speed at some of the starts, s, and loses it at the next ones."""
+    return sum((-1) ** k * force_mg * ((T > at) & (T < at + seconds))
+               for k, at in enumerate(starts))
+
+
+@pytest.mark.parametrize("shift_mg", [0.0, 4.0])
+def test_a_machine_nearby_cuts_no_rest(shift_mg):
+    """What it did for two thirds of a log was taken for a motion, and was "no gap"."""
+    session = standing(np.where(ON, SHAKES + shift_mg, 0.0))
+    assert len(session.runs) > 2 and whole(session) == 1
+    said = diagnosis.diagnose_sessions([session])
+    found, = [f for f in said.findings if f.effect == "vibration"]
+    assert "z" in found.axes and found.value["z"] == pytest.approx(15.0 * 0.57 ** 0.5, rel=0.2)
+    assert said.verdict == ("partly explained" if shift_mg else "explained")
+
+
+def test_another_force_for_long_that_nothing_makes_up_for_is_no_speed():
+    session = standing(np.where(ON, SHAKES + 20.0, 0.0))
+    assert len(session.runs) > 2 and whole(session) == 1
+
+
+def test_a_log_that_begins_and_ends_while_a_machine_runs_is_one_rest():
+    session = standing(np.where(ON, 0.0, SHAKES))
+    only, = blocks.with_whole_rests(session).runs
+    assert (only.first, only.end) == (0, len(T))
+
+
+@pytest.mark.parametrize("force_mg, seconds", [(100.0, 2.5), (150.0, 0.4), (30.0, 12.0)])
+def test_a_lift_moves_without_a_turn(force_mg, seconds):
+    """Its starts and stops, and a drive between the two that is louder than a rest."""
+    session = standing(pulses(force_mg, seconds, (45.0, 120.0, 195.0, 260.0)) + np.where(
+        ON, SHAKES, 0.0))
+    assert whole(session) == len(session.runs) > 2
+
+
+def test_what_turns_moves():
+    session = standing(turns=np.where(ON, 2.0 * np.sin(T), 0.0), up=np.where(ON, SHAKES, 0.0))
+    assert whole(session) == len(session.runs) > 2
+
+
+def test_without_a_gyro_nobody_knows_whether_it_turned():
+    capture = standing(np.where(ON, SHAKES, 0.0)).capture
+    capture.gyro = None
+    session = blocks.session_of("s", capture)
+    assert len(session.runs) > 2
+    assert shaken_rests.joined(capture, session.runs) == list(session.runs)
