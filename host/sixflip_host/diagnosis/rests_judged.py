@@ -59,7 +59,7 @@ def judge(rests, findings, settings, conditions):
         nameless += [place for place, _ in astray]
         remarks += [words for _, words in astray]
     carried = [*gaps.values(), *([turns] if turns else [])]
-    if conditions.stale:
+    if conditions.stale or conditions.hidden:
         motion = None
     elif motion and any(cause.domain == "orientation" for cause in gaps["accel"].causes):
         motion = motion.beside_a_bend()

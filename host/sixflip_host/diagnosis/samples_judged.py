@@ -18,6 +18,7 @@ from .detect import (
     dead_band,
     held_values,
     line_across_rests,
+    missing_rows,
     noise_bursts,
     noise_shape,
     rest_spectra,
@@ -67,7 +68,8 @@ class SamplesJudged:
             return {f.sensor: ["xyz".index(a) for a in f.axes] for f in self.findings
                     if f.effect == effect}
         return Conditions(reference_c, coarse, axes("vibration"), axes("dead_band"),
-                          any("later" in damage.value for damage in self.damages))
+                          any("later" in damage.value for damage in self.damages),
+                          max((f.hidden for f in self.findings), default=0.0))
 
 
 def judge(sessions, settings=ALONE, damages=()):
@@ -191,7 +193,10 @@ def _of_registers(sensor, sessions):
 def _of_rows(sessions):
     """list of Finding of whole rows: repeated and dropped samples, the true rate, axes swapped or
     inverted."""
-    return sample_clock.findings(sessions) + axis_order.swapped(sessions)
+    timing = sample_clock.findings(sessions)
+    if not any(finding.effect == "dropped_samples" for finding in timing):
+        timing += missing_rows.findings(sessions)
+    return timing + axis_order.swapped(sessions)
 
 
 # Functions of sessions: what they find is told in this order.

@@ -28,10 +28,11 @@ class Conditions:
     """reference_c: temperature that slopes are taken about; coarse: registers move what the
     accelerometer reads near zero; shaken, banded: {sensor: axes (0..2) that a line of the spectrum
     is on, that have a dead band}; stale: rows of a sensor come again later, so that in motion it
-    reads what was before."""
+    reads what was before; hidden: share of the samples that are missing under a steady clock."""
 
     reference_c: float = 25.0
     coarse: bool = False
     shaken: dict = field(default_factory=dict)
     banded: dict = field(default_factory=dict)
     stale: bool = False
+    hidden: float = 0.0

@@ -77,6 +77,7 @@ class TurnModel(RestModel):
                                     lambda turn: _of_temperature(turn, reference)))
         bases = [np.diag(([ATTITUDE_DEG] * 2 + [0.0] * t.flip) / np.array(t.seconds)) ** 2
                  + wandering for t, wandering in zip(chosen, turns.wandering(chosen))]
+        bases = [base + self.conditions.hidden * lost(t) for base, t in zip(bases, chosen)]
         by_hand = [np.diag([0.0, 0.0] + [t.seconds ** -2.0] * t.flip) for t in chosen]
         groups = covariance.apart(bases, [np.eye(len(b)) / t.seconds
                                           for b, t in zip(bases, chosen)], by_hand)
@@ -121,6 +122,14 @@ def scales(unit, levels):
     chosen = settled(unit, point)
     rows = replace(unit.rows, y=np.concatenate([turns.observed(turn) for turn in chosen]))
     return between_sessions.scales(rows, unit.designs, point, chosen[0].matrix, 1000.0)
+
+
+def lost(turn):
+    """(2 or 3, 2 or 3): covariance of what is observed of a turn of which each sample is missing
+    under a steady clock, by itself, with a small chance: of so many times that; what is missing on
+    the mean is the scale's."""
+    each = np.einsum("rni,ni->rn", turn.shown, turn.middle)
+    return each @ each.T
 
 
 def _bends(turn):

@@ -29,7 +29,7 @@ class Finding:
     lines: the line_frequency.Line of each axis; files: names of the sessions that alone have it,
     () for all; read (3, 3): what is true as swapped axes read it; limits: {axis: RANGE, BELOW or
     LEVEL} of what is cut off; levels: {axis: g or deg/s} of it, where counts are not the chip's
-    own."""
+    own; hidden: share of the samples that are missing under a steady clock."""
 
     effect: str
     sensor: str
@@ -51,6 +51,7 @@ class Finding:
     read: object = None
     limits: dict = field(default_factory=dict)
     levels: dict = field(default_factory=dict)
+    hidden: float = 0.0
 
     def __post_init__(self):
         if self.place is None:
