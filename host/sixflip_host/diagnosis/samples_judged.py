@@ -16,6 +16,7 @@ from .detect import (
     axis_order,
     codes,
     dead_band,
+    hand_tremor,
     held_values,
     line_across_rests,
     missing_rows,
@@ -76,7 +77,7 @@ def judge(sessions, settings=ALONE, damages=()):
     """SamplesJudged of all sessions; settings: settings.Settings; damages: those that were put
     right or taken out before, which leave no gap behind."""
     without = settings.without
-    *found, whole, (rings, tones, lines) = side_by_side.results(
+    *found, whole, (rings, tones, lines, held_by_hand) = side_by_side.results(
         [partial(say, sessions) for say in (*FOUND_BY, _of_whole_axes, _of_spectra)],
         settings.processors)
     findings = [f for f in sum(found, []) + lines if f.effect not in without]
@@ -94,6 +95,7 @@ def judge(sessions, settings=ALONE, damages=()):
     without_spikes, wild = spikes.without_spikes(sessions, leaping)
     findings, shaped = noise_shape.not_normal(without_spikes, findings, leaping)
     noisy = leaping | {f.sensor for f in findings if f.effect in NOISY}
+    noisy |= {"gyro"} if held_by_hand else set()
     unsteady = [burst for burst in noise_bursts.unsteady(without_spikes) if burst[0] not in noisy]
     # A rail cuts off what moves: it makes no single sample of a rest stand out.
     unsteady += [spike for spike in wild if spike[0] not in leaping | {
@@ -104,7 +106,7 @@ def judge(sessions, settings=ALONE, damages=()):
     remarks = [damage.words for damage in damages]
     remarks += ["bit %d of the %s axis of the %s always reads %d"
                % (bit, axis, SENSOR[sensor], value) for sensor, axis, bit, value, _ in bits]
-    remarks += [words for _, _, words, _ in rings]
+    remarks += [*(words for _, _, words, _ in rings), *held_by_hand]
     # Spikes that are pages are one gap, by whichever of both they are told more surely.
     noise = {sensor: min(p for other, _, p in unsteady if other == sensor)
              for sensor, _, _ in unsteady}
@@ -119,6 +121,7 @@ def judge(sessions, settings=ALONE, damages=()):
     remarks += ["the %s axis of the %s reads some codes hardly ever and others too often"
                 % (axis, SENSOR[sensor]) for sensor, axis, _ in uneven]
     shaken = {(f.sensor, a) for f in findings if f.effect == "vibration" for a in f.axes}
+    shaken |= {("gyro", axis) for axis in "xyz" if held_by_hand}
     tones = [tone for tone in tones if tone[:2] not in shaken]
     nameless += [localisation.Place(sensor, axis, "frequency", 1.0, odds.chance(nats))
                  for sensor, axis, nats, _ in tones]
@@ -159,12 +162,14 @@ def _without_lines(session, findings):
 
 
 def _of_spectra(sessions):
-    """(what rings after it was put down, tones that wander, Findings of lines beside that)."""
+    """(what rings after it was put down, tones that wander, Findings of lines beside that, what is
+    said of a hand)."""
     rings = ringing.ringing_axes(sessions)
     tones = [(sensor, *tone) for sensor in SENSOR for tone in rest_spectra.wandering_tones(
         sessions, sensor)]
-    return rings, tones, spectral_lines.findings(
-        sessions, *([found[:2] for found in of] for of in (rings, tones)))
+    lines = spectral_lines.findings(sessions, *([found[:2] for found in of]
+                                                for of in (rings, tones)))
+    return rings, tones, *hand_tremor.without(lines, sessions)
 
 
 def _of_whole_axes(sessions):

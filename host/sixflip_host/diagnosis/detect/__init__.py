@@ -8,7 +8,7 @@ byte_faults (course_likelihood), held_values (stuck_axes), unread_rows, wrong_sc
                                    scales
 damage_taken_out                   captures without it
 spectral_lines (rest_spectra, line_frequency, line_across_rests, line_wander),
-noise_bursts (noise_windows), noise_shape, spikes, ringing, shake_detector, strides
+noise_bursts (noise_windows), noise_shape, spikes, ringing, shake_detector, strides, hand_tremor
                                    lines of a spectrum, noise that changes, is shared or is not
                                    normal, single samples far off, what rings out after a move,
                                    hands, legs and vehicles
