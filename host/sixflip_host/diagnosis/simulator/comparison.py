@@ -13,6 +13,7 @@ from . import (
     dead_zone,
     gyro_or_motor,
     held_readings,
+    hypotheses,
     noise_and_registers,
     numbers_told,
     own_calibration,
@@ -129,6 +130,11 @@ def compare_traces(real, sim, aligned):
     real_free = held_readings.free(real, holds["real"])
     live, constant = single_log.constant_channels(real, sim)
     findings += constant
+    if aligned.by == "forces" and not single_log.turns(real) and not single_log.turns(sim):
+        aligned = replace(aligned, turning=False)
+        live = {**live, "gyro": np.zeros(3, bool)}  # noise says nothing of the other log's
+        unseen = ["%s of %s: nothing turns" % (", ".join(
+            name.replace("_", " ") for name in hypotheses.IN_TURNS), sim.name)]
     own_real = own_calibration.fitted(real_free)
     fits, unmended, stops, bands, of_gyro = {}, {}, {}, (), 0.0
     late, late_sigma, judged, lacks_delay = None, None, False, False
@@ -180,6 +186,11 @@ def compare_traces(real, sim, aligned):
     if not fits:  # what never rests is known beside the other log of its motion alone
         own_real, own_sim = (own if log.rests else None for own, log in (
             (own_real, real), (own_sim, sim)))
+    if not fits and None not in (own_real, own_sim):
+        mg = 1.645 * own_calibration.bias_unknown_mg(own_real, own_sim)
+        unseen += ["how the accelerometers of %s and %s differ at rest by less than %.0f mg: each "
+                   "lies too much alike in all of its rests" % (real.name, sim.name, mg)
+                   ] * bool(mg)
     numbers, of_numbers = numbers_of(real, sim, mended, (own_real, own_sim), fits, findings)
     left = {kind: remaining_gap.not_foretold(sensor_fit) for kind, sensor_fit in fits.items()}
     attainable = remaining_gap.held_out(unmended, left, real, sim)
@@ -233,13 +244,15 @@ def said_of(real, sim, aligned):
     sentences = []
     if aligned.same:
         sentences.append(
-            "%s and %s are of one motion (correlation of the turn rates %.3f): offset %.3f ± %.3f "
-            "s, %.0f s together" % (sim.name, real.name, aligned.correlation, aligned.offset_s,
-                                    1.645 * aligned.offset_sigma_s, aligned.overlap_s))
+            "%s and %s are of one motion (correlation of the %s %.3f): offset %.3f ± %.3f s, "
+            "%.0f s together" % (sim.name, real.name, aligned.by, aligned.correlation,
+                                 aligned.offset_s, 1.645 * aligned.offset_sigma_s,
+                                 aligned.overlap_s))
     else:
         sentences.append(
-            "%s and %s are of different motions (correlation of the turn rates %.2f): each was "
-            "held against its own rests and moves" % (sim.name, real.name, aligned.correlation))
+            "%s and %s are of different motions (correlation of the %s %.2f): each was held "
+            "against its own rests and moves" % (sim.name, real.name, aligned.by,
+                                                 aligned.correlation))
     for trace in (real, sim):
         if not trace.rests:
             sentences.append("no rest in %s: gravity and the gyro's bias are known in it on "

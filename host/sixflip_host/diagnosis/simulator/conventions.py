@@ -55,7 +55,8 @@ class SensorFit:
 
 
 def same_motion(real, sim, alignment, motion, live, fresh_hz):
-    """{sensor: SensorFit} of two aligned Traces; live {sensor: (3,)}: channels that change."""
+    """{sensor: SensorFit} of two aligned Traces; live {sensor: (3,)}: channels that change, none
+    of the gyro's where nothing turns."""
     sensor_fits = {}
     for kind in ("accel", "gyro"):
         if live[kind].any():
@@ -75,6 +76,7 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
             measured = measured + rounding(kind, real, sim, pair)
             pair = replace(pair, **{"sim_force" if kind == "accel" else "sim_rate": measured})
         made = hypotheses.accelerometer if kind == "accel" else hypotheses.gyro
+        made = made if alignment.turning else hypotheses.along_one_line
         heard = measured[:, live]
         left = pairing.not_foretold(made(values, pair.motion, real.g)[-1], heard)
         if noise is not None:

@@ -65,11 +65,12 @@ def _beside(comparison, kind, names, diagnosis):
                                 {kind: replace(sensor_fit, fit=fit)}, {kind: True},
                                 beside=True)
     known = {(p.name, p.axis): p for p in numbers if p.sensor == kind}
-    width = np.full((3, 3), hypotheses.SHAPE)
+    width = sensor_fit.hypothesis.shape_sd
+    width = np.full((3, 3), hypotheses.SHAPE) if width is None else np.array(width)
     for i, axis in enumerate("xyz"):
         if not any(p.differs for p in numbers
                    if (p.sensor, p.name, p.axis) == (kind, "scale", axis)):
-            width[i, i] = numbers_told.SAME
+            width[i, i] = min(width[i, i], numbers_told.SAME)
     same = replace(sensor_fit, hypothesis=replace(sensor_fit.hypothesis, shape_sd=width))
     fit, designs = _fitted(kind, same, names, comparison.real, diagnosis)
     left = remaining_gap.not_foretold(numbers_told.told(

@@ -5,7 +5,7 @@ what the real sensor went through. S is a signed permutation times a unit, or a 
 vertical; E, the bias and c have priors of their physical size. The nameless one is the sensor's
 own reading with every signal beside it, each with free coefficients.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -39,6 +39,11 @@ FADES_S = (30.0, 120.0)  # time constants of what fades: of a minute's log, and 
 WANDERS_HZ = 0.05
 UPRIGHT = 0.05  # cosine of the pitch from which on roll and yaw are one: 87 degrees
 DEG = 180.0 / np.pi
+
+
+# What shows where the thing turns only: along one line of forces a wrong time step is a scale and
+# a bias, and the world's axes are the body's.
+IN_TURNS = ("time_step", "no_centripetal_term", "lever_arm_missing", "world_frame_forces")
 
 
 @dataclass(frozen=True)
@@ -95,6 +100,15 @@ def accelerometer(force, motion, g):
     everything = np.concatenate([moved, world, up, transport[:, :, 0], motion.rate,
                                  motion.rate_dot, pairs(motion.rate)], axis=1)
     return tried + [nameless(force, everything, 2)]
+
+
+def along_one_line(force, motion, g):
+    """Hypotheses of the accelerometer of what does not turn: its forces change along one line.
+    What it reads across that does not tell its scale there, nor its misalignment."""
+    off = force - force.mean(axis=0)
+    line = np.abs(np.linalg.eigh(off.T @ off)[1][:, -1])
+    return [replace(h, shape_sd=SHAPE * np.tile(line, (3, 1)))
+            for h in accelerometer(force, motion, g) if h.name not in IN_TURNS]
 
 
 def gyro(rate, motion, g):

@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sixflip import STANDARD_G
+
 from ...capture.attitude import carried, rotations
 from . import restless, traces
 from .hypotheses import BIAS, SHAPE
@@ -70,6 +72,14 @@ def fitted(trace):
         np.full(3, 0.001)
     return OwnSensor(accel, bias, gyro, accel_sigma, bias_sigma, gyro_sigma, biases.mean(axis=0),
                      np.maximum(spread, trace.quantum[1] / np.sqrt(12.0)), trace.flicker)
+
+
+def bias_unknown_mg(real, sim):
+    """Standard error, mg, of the difference between the accelerometers' biases of two OwnSensors
+    on the axis where it is largest, where it is as much as any two parts differ by (BIAS); else 0:
+    what lies in one attitude all the while does not tell a bias from how it lies."""
+    error = float(np.hypot(real.bias_sigma, sim.bias_sigma).max())
+    return 1000.0 * error / STANDARD_G if error >= BIAS["accel"] else 0.0
 
 
 SYMMETRIC = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]

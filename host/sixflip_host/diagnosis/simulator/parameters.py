@@ -12,7 +12,7 @@ from sixflip import STANDARD_G
 
 from .. import odds
 from . import convention_findings
-from .hypotheses import DEG
+from .hypotheses import DEG, SHAPE
 
 # Some thirty numbers are compared: at this many standard errors one log pair in 500 shows a
 # difference that is none (Bonferroni, normal).
@@ -20,6 +20,9 @@ DIFFERS = 4.0
 # Times the noise, root mean square, of a gap from which on numbers that do not differ by
 # themselves do so together, and less than which they leave; how many of them at most.
 TOGETHER, FEW = 1.5, 4
+# Cosine between an axis and the one line that what does not turn moves along, which then tells
+# the scale of the axis: what is across it is no more than twice what is along.
+ALONG = 0.45
 FOLLOWS = 0.5  # of the power of a channel, that may be left where its scale is told
 MG = 1000.0 / STANDARD_G
 # An engine whose rates are half a physics step older than its forces (MuJoCo, Featherstone's
@@ -109,8 +112,9 @@ def shapes(real, sim, fits, usable, rounded=None, beside=False):
         more = None if fit is None else np.linalg.inv(
             np.eye(3) + fit.axes.T @ fit.shape @ fit.axes) - np.eye(3)
         shift = None if fit is None else -(np.eye(3) + more) @ fit.axes.T @ fit.bias / fit.unit
-        told, coarse = np.ones(3, bool), np.zeros(3)
+        told, across, coarse = np.ones(3, bool), np.zeros(3, bool), np.zeros(3)
         if fit is not None:
+            across = _across(fits[kind].hypothesis)
             told, coarse = _follows(fits[kind]), (rounded or {}).get(kind, 0.0) / np.maximum(
                 fits[kind].pair.simulated(kind).std(axis=0), 1e-12)
         for i, axis in enumerate("xyz"):
@@ -131,7 +135,10 @@ def shapes(real, sim, fits, usable, rounded=None, beside=False):
                 pair = (None, None) if fit is None else (more[i, j] * size,
                                                          fit.shape_sigma[i, j] * size)
                 (a, sa), (b, sb) = [(v[2][i, j] * size, v[3][i, j] * size) for v in values]
-                if fit is None and kind == "accel" and i > j or not told[i]:
+                # Along one line a channel that is across it and reads nothing tells how it lies.
+                if across[j] or not told[i] and (i == j or not across[i]):
+                    continue
+                if fit is None and kind == "accel" and i > j:
                     continue  # a turn of the whole accelerometer cannot be seen by rests alone
                 numbers.append(compared("scale" if i == j else "misalignment", kind,
                                         "xyz"[i] + ("" if i == j else "xyz"[j]),
@@ -156,6 +163,12 @@ def _follows(sensor_fit):
     fit, measured = sensor_fit.fit, sensor_fit.pair.simulated(sensor_fit.kind)
     follow = fit.left.var(axis=0) < FOLLOWS * measured.var(axis=0)
     return (np.abs(fit.axes[follow]).sum(axis=0) > 0.5) if follow.any() else follow
+
+
+def _across(hypothesis):
+    """(3,) bool: axes along which nothing moved, of what does not turn."""
+    sd = hypothesis.shape_sd
+    return np.zeros(3, bool) if sd is None else sd.max(axis=0) < ALONG * SHAPE
 
 
 def alone(parameter, difference, sigma):

@@ -1,5 +1,6 @@
 """The comparison with a simulator as JSON, and what it makes of the verdict."""
 from ...json_numbers import number, spelled
+from . import own_calibration
 
 
 def as_json(comparisons):
@@ -87,6 +88,12 @@ def rounded(values):
     return {k: number(v) for k, v in values.items()}
 
 
+def _known(x):
+    """Whether both sensors of a Comparison are known by their own rests."""
+    return None not in (x.real, x.simulated) and not own_calibration.bias_unknown_mg(
+        x.real, x.simulated)
+
+
 def verdict(effects, comparisons, named_effects=False):
     """The verdict over all layers; effects: that of the effects' layer alone; named_effects: it
     names some, be it under several names."""
@@ -105,7 +112,6 @@ def verdict(effects, comparisons, named_effects=False):
     if effects == "cannot tell" and not named_effects and all(
             x.alignment.same and x.motion_judged for x in comparisons):
         return "no gap"
-    if effects == "no gap" and not any(
-            x.alignment.same or None not in (x.real, x.simulated) for x in comparisons):
+    if effects == "no gap" and not any(x.alignment.same or _known(x) for x in comparisons):
         return "cannot tell"  # neither of one motion, nor is what each sensor is known by itself
     return effects

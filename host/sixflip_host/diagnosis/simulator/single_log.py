@@ -82,6 +82,15 @@ def at_rest(trace, values, quantum):
     return np.maximum(still, quantum ** 2 / 12.0)
 
 
+def turns(trace):
+    """Whether the gyro of a Trace reads more than it does at rest: what only drives does not turn.
+    Where there is no rest nobody knows."""
+    if trace.rate is None:
+        return False
+    still = at_rest(trace, trace.rate, trace.quantum[1])
+    return still is None or bool((trace.rate.var(axis=0) > SAME * still).any())
+
+
 def noise(trace, values):
     """Noise of values (n, 3) at the Trace's rests; where there is none that is long enough, of the
     quick end of their spectrum, or None where that does not show it."""
