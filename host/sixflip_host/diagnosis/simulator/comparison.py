@@ -45,7 +45,8 @@ class Comparison:
     shaking, which each log has of its own; lacks_delay: of two motions, the real one shows a delay
     between its sensors that the simulator's does not; bands (dead_zone.Band, ...): of slow turns
     that the real log lacks, and with which the fits have the simulator's; of_gyro: nats by which
-    it is the gyro that does not answer them, and not what turns it."""
+    it is the gyro that does not answer them, and not what turns it; otherwise: of two motions, at
+    rest they differ by a bias or by how the sensor lies."""
 
     log: str
     against: str
@@ -66,6 +67,7 @@ class Comparison:
     lacks_delay: bool = False
     bands: tuple = ()
     of_gyro: float = 0.0
+    otherwise: bool = False
 
     @property
     def differs(self):
@@ -186,11 +188,13 @@ def compare_traces(real, sim, aligned):
     if not fits:  # what never rests is known beside the other log of its motion alone
         own_real, own_sim = (own if log.rests else None for own, log in (
             (own_real, real), (own_sim, sim)))
+    otherwise = None
     if not fits and None not in (own_real, own_sim):
-        mg = 1.645 * own_calibration.bias_unknown_mg(own_real, own_sim)
-        unseen += ["how the accelerometers of %s and %s differ at rest by less than %.0f mg: each "
-                   "lies too much alike in all of its rests" % (real.name, sim.name, mg)
-                   ] * bool(mg)
+        otherwise = own_calibration.lies_otherwise(real_free, mended, own_real, own_sim)
+    if otherwise is not None:
+        unseen = [*unseen, "which of bias and attitude it is by which %s and %s differ at rest, "
+                  "(%.0f, %.0f, %.0f) mg: each lies too much alike in all of its rests" % (
+                      real.name, sim.name, *otherwise)]
     numbers, of_numbers = numbers_of(real, sim, mended, (own_real, own_sim), fits, findings)
     left = {kind: remaining_gap.not_foretold(sensor_fit) for kind, sensor_fit in fits.items()}
     attainable = remaining_gap.held_out(unmended, left, real, sim)
@@ -216,7 +220,8 @@ def compare_traces(real, sim, aligned):
                       judged or convention_findings.only_in_motion(findings),
                       None if real.celsius is None else float(real.celsius.mean()),
                       wanders=remaining_gap.wandering(fits, left), lacks_delay=lacks_delay,
-                      bands=bands, of_gyro=of_gyro)
+                      bands=bands, of_gyro=of_gyro,
+                      otherwise=otherwise is not None)
 
 
 def numbers_of(real, sim, mended, own, fits, findings):

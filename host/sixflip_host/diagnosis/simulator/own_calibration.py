@@ -8,8 +8,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sixflip import STANDARD_G
-
 from ...capture.attitude import carried, rotations
 from . import restless, traces
 from .hypotheses import BIAS, SHAPE
@@ -18,6 +16,9 @@ ROUNDS = 8  # Gauss-Newton steps: after five the next change a matrix by 1e-9
 CARRY_RAD = np.radians(0.3)  # of a placement's tilt by handling, and of the attitude carried
 FREEDOM = 4.0  # of Student's t [Lange et al., J. Am. Stat. Assoc. 84 (1989), 881]
 MEDIAN_OF_TWO = np.log(2.0)  # of half the sum of two squares of unit variance
+# Of what two logs read at rest, in g: standard errors between their means, and by how much a floor
+# leans, a degree.
+APART, LEANS = 4.0, 0.0175
 NORM = 0.005  # m/s2: how well |force| repeats between rests, 0.5 mg with flicker and rounding
 
 
@@ -74,12 +75,17 @@ def fitted(trace):
                      np.maximum(spread, trace.quantum[1] / np.sqrt(12.0)), trace.flicker)
 
 
-def bias_unknown_mg(real, sim):
-    """Standard error, mg, of the difference between the accelerometers' biases of two OwnSensors
-    on the axis where it is largest, where it is as much as any two parts differ by (BIAS); else 0:
-    what lies in one attitude all the while does not tell a bias from how it lies."""
-    error = float(np.hypot(real.bias_sigma, sim.bias_sigma).max())
-    return 1000.0 * error / STANDARD_G if error >= BIAS["accel"] else 0.0
+def lies_otherwise(real, sim, own_real, own_sim):
+    """(3,) mg by which two Traces of different motions, with their OwnSensors, read otherwise at
+    rest where that is more than their rests scatter by and a floor leans: how it lies, or a bias,
+    which what lies in one attitude all the while does not tell apart. None where they read alike,
+    or where their biases are known."""
+    if np.hypot(own_real.bias_sigma, own_sim.bias_sigma).max() < BIAS["accel"]:
+        return None
+    means = [trace.rest_means(trace.force) / trace.g for trace in (real, sim)]
+    off = np.median(means[0], axis=0) - np.median(means[1], axis=0)
+    scatter = np.sqrt(sum(m.var(axis=0) / len(m) for m in means))
+    return 1000.0 * off if (np.abs(off) > APART * scatter + LEANS).any() else None
 
 
 SYMMETRIC = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]

@@ -1,6 +1,5 @@
 """The comparison with a simulator as JSON, and what it makes of the verdict."""
 from ...json_numbers import number, spelled
-from . import own_calibration
 
 
 def as_json(comparisons):
@@ -89,9 +88,8 @@ def rounded(values):
 
 
 def _known(x):
-    """Whether both sensors of a Comparison are known by their own rests."""
-    return None not in (x.real, x.simulated) and not own_calibration.bias_unknown_mg(
-        x.real, x.simulated)
+    """Whether what both sensors of a Comparison read by themselves is known, and is alike."""
+    return None not in (x.real, x.simulated) and not x.otherwise
 
 
 def verdict(effects, comparisons, named_effects=False):
