@@ -16,6 +16,7 @@ WINDOW = 20             # rows that are averaged to see gravity
 MOST_WINDOWS = 2000     # that gravity is looked for in, evenly over the file
 QUIET = 0.05            # of |a|: scatter within a window that rests
 MOST_TURNS = 20_000     # twentieths of a second in which gravity is seen to turn: the first ones
+LAG = 4                 # of those, over which it is
 DISAGREES = 2.0         # factor from 1 g beyond which what was said of the unit is wrong
 
 
@@ -24,6 +25,15 @@ class Gravity(NamedTuple):
 
     size: float
     rests: bool
+
+
+class Turn(NamedTuple):
+    """factor: how much farther gravity turns in the accelerometer than by the gyro's rates; alike:
+    their correlation; number: of places in which it turns, of which LAG overlap."""
+
+    factor: float
+    alike: float
+    number: int
 
 
 def seen(values):
@@ -63,8 +73,7 @@ def unit(size, whole):
 
 
 def turn_factor(accel, gyro, dps, rate_hz):
-    """How much farther gravity turns in the accelerometer than by the gyro's rates, and how alike
-    they are (-1 to 1); None where nothing turns. dps: deg/s that one of the gyro's unit is.
+    """The Turn of gravity; None where nothing turns. dps: deg/s that one of the gyro's unit is.
 
     A direction that stands still in the world obeys du/dt = -w x u in a body that turns at w;
     least squares of one on the other over a fifth of a second.
@@ -81,8 +90,7 @@ def turn_factor(accel, gyro, dps, rate_hz):
     if usual <= 0:
         return None
     u = a / np.maximum(size, 1e-9)[:, None]
-    lag = 4
-    number = k - lag
+    lag, number = LAG, k - LAG
     rate = np.stack([w[j:j + number] for j in range(1, lag + 1)]).mean(axis=0)
     middle = u[lag // 2:lag // 2 + number]
     by_gyro = -np.cross(rate, middle) * (lag * m / rate_hz)
@@ -95,4 +103,4 @@ def turn_factor(accel, gyro, dps, rate_hz):
     both = math.sqrt(float(x @ x) * float(y @ y))
     if both <= 0:
         return None
-    return float(x @ y) / float(x @ x), float(x @ y) / both
+    return Turn(float(x @ y) / float(x @ x), float(x @ y) / both, int(good.sum()))

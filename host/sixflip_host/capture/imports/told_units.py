@@ -2,10 +2,11 @@
 gravity; refused where the file contradicts by a factor. A simulator's file is taken at its word:
 another unit than it says is a fault of the simulator, which diagnose is there to find."""
 
+import math
 
 from ...errors import BadFile
 from ..capture_header import ACCEL, GYRO
-from . import chip_steps, column_vocabulary, gravity, units
+from . import chip_steps, column_vocabulary, gravity, gyro_unit, units
 from .options import gyro_is_implied, said_units
 
 GRAVITY_FREE = 0.3              # of what gravity would be: it has been taken out
@@ -154,22 +155,32 @@ class ToldUnits:
         return choices[0]
 
     def turned(self, accel, gyro, unit, lsb, rate_hz):
-        """The gyro's unit, held against how gravity turns in the accelerometer."""
+        """The gyro's unit, held against how gravity turns in the accelerometer, and where nobody
+        said it also against what it would make of rests and of the fastest turn."""
+        if self._assumed_gyro is not None and unit in ("dps", "rad/s"):
+            return self._likelier(unit, gyro_unit.Evidence(accel, gyro, rate_hz))
         per_unit = 1 / lsb if unit == "counts" else units.GYRO_UNITS[unit]
         turned = gravity.turn_factor(accel, gyro, per_unit, rate_hz)
-        if turned is None or abs(turned[1]) < TURNS_ALIKE:
+        if turned is None or abs(turned.alike) < TURNS_ALIKE:
             return unit
-        factor, _ = turned
-        other = {True: "rad/s", False: "dps"}[factor > 1]
+        other = {True: "rad/s", False: "dps"}[turned.factor > 1]
         ratio = units.GYRO_UNITS[other] / per_unit
-        if unit == "counts" or not 0.4 < abs(factor) / ratio < 2.5 or abs(ratio - 1) < 0.1:
+        if unit == "counts" or not 0.4 < abs(turned.factor) / ratio < 2.5 \
+                or abs(ratio - 1) < 0.1:
             return unit
-        if self._assumed_gyro is None:
-            if not (self.options.gravity or said_units(self.options.units)[1]):
-                return unit
+        if self.options.gravity or said_units(self.options.units)[1]:
             raise BadFile("%s: its gyro in %s turns %.3g times as far as gravity does in the "
                           "accelerometer, expected --units ,%s" % (
-                              self.path, unit, 1 / abs(factor), other))
-        self.assumed[self._assumed_gyro] = ("the gyro is in %s: so it turns as gravity does in "
-                                            "the accelerometer" % other)
+                              self.path, unit, 1 / abs(turned.factor), other))
+        return unit
+
+    def _likelier(self, unit, evidence):
+        """The likelier unit of a gyro that was assumed to be in one, by the Evidence."""
+        odds = gyro_unit.BY_ITS_STEP if self.by_step[GYRO] else \
+            gyro_unit.GOES_WITH if self.options.gravity else gyro_unit.OF_A_SIMULATOR
+        other = "rad/s" if unit == "dps" else "dps"
+        nats = evidence.nats if other == "dps" else -evidence.nats
+        if nats <= math.log(odds):
+            return unit
+        self.assumed[self._assumed_gyro] = "the gyro is in %s: %s" % (other, evidence.why(other))
         return other
