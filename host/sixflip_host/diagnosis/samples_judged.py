@@ -80,6 +80,7 @@ def judge(sessions, settings=ALONE, damages=()):
     *found, whole, (rings, tones, lines, held_by_hand) = side_by_side.results(
         [partial(say, sessions) for say in (*FOUND_BY, _of_whole_axes, _of_spectra)],
         settings.processors)
+    lines = spectral_lines.within_the_rate(lines, whole[0], sessions[0].rate)
     findings = [f for f in sum(found, []) + lines if f.effect not in without]
     findings, uneven = codes.uneven(sessions, findings, {sensor for sensor, *_ in whole[2]})
     coarse = {(f.sensor, axis) for f in findings if f.effect in COARSE for axis in f.axes}

@@ -7,11 +7,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...errors import BadFile, UsageError
-from .. import clock, clock_words
 from ..capture_file import Capture, check_times
 from ..capture_header import ACCEL, GYRO, MAG, check_sensor
 from ..growing import Growing
-from . import column_vocabulary, csv_mapping, table_columns, temperature, time_stamps, units
+from . import (
+    column_vocabulary,
+    copied_rows,
+    csv_mapping,
+    header_rate,
+    table_columns,
+    temperature,
+    time_stamps,
+    units,
+)
 from .options import with_the_file
 from .told_units import ToldUnits
 
@@ -41,6 +49,11 @@ class Conversion:
     def run(self):
         """Imported."""
         values, times, labels = self._read()
+        times, values, labels, new, words = copied_rows.left_out(times, values, labels)
+        if new is not None:
+            self.remarks.append(words)
+            self._lines = [(0, np.concatenate([lines for _, lines in self._lines])[new])]
+            self.rows = int(new.sum())
         for why, lines in self.table.passed_over.items():
             self.remarks.append("passed over: %s (%d line%s)" % (why, lines, "s" * (lines > 1)))
         self.assumed += getattr(self.table, "said", ())
@@ -174,7 +187,8 @@ class Conversion:
 
     def _capture(self, values, t_us, pose):
         options, path = self.options, self.table.path
-        rate = self._rate(t_us)
+        rate, words = header_rate.told(path, options, self.time, t_us, self._spread)
+        self.remarks += words
         check_times(path, t_us, rate["rate_hz"])
         meta = {"sensor": options.sensor, **rate, "g": options.g}
         accel, gyro = values.pop(ACCEL, None), values.pop(GYRO, None)
@@ -232,26 +246,6 @@ class Conversion:
             "%s: %s, expected %s" % (path, found, expected)))
         return capture
 
-    def _rate(self, t_us):
-        """rate_hz of the header, and whether it was measured."""
-        if self.options.rate is not None and (self.time is None
-                                              or self.options.time_unit == "samples"):
-            return {"rate_hz": self.options.rate, "rate": "stated"}
-        measured = clock.measure(t_us)
-        if measured is None:
-            if self.options.rate is None:
-                raise BadFile("%s: the times do not say the rate, expected times that run, or "
-                              "--rate HZ" % self.table.path)
-        else:
-            if self._spread is not None:    # when a new stamp begins is known to a row
-                measured = clock.within(measured, 1.0 / self._spread.between)
-            self.remarks += clock_words.words(measured)
-        if self.options.rate is not None:
-            return {"rate_hz": self.options.rate, "rate": "stated"}
-        return clock.header(measured)
-
 
 def _what(group):
     return {ACCEL: "accelerometer", GYRO: "gyro", MAG: "magnetometer"}[group]
-
-

@@ -120,6 +120,20 @@ def told(lines, sensor, rate):
                    share=share, number=max(1, int(0.5 / top.error ** 2)))
 
 
+def within_the_rate(vibrations, damages, rate):
+    """list of Finding without lines above half the rate at which a sensor says something new, by
+    the Damages of what repeats its rows: those are of the stairs."""
+    fresh = {d.sensor: rate / d.value["times"] for d in damages if d.value.get("times", 0) > 1.0}
+    kept = []
+    for f in vibrations:
+        lines = [line for line in f.lines if line.hz <= 0.5 * fresh.get(f.sensor, np.inf)]
+        if len(lines) == len(f.lines):
+            kept.append(f)
+        elif lines:
+            kept.append(told(lines, f.sensor, rate))
+    return kept
+
+
 def strongest(sessions, sensor, axis):
     """The Line that is strongest in the spectrum of short stretches, or None."""
     stretches = rests(sessions, sensor)
