@@ -52,6 +52,11 @@ def _damage(sensor, found, total):
                   {"rows": number})
 
 
+def nobody_read(counts):
+    """(k,) rows of counts (n, 3) that nobody read."""
+    return _unread(counts)[1]
+
+
 def _unread(counts):
     """(nats of rows of counts (n, 3) not having been read over their being readings, (k,) rows,
     their codes)."""

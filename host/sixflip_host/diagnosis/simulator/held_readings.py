@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..detect import unread_rows
 from ..detect.codes import number_of_runs
 from . import convention_findings, conventions
 from .evidence_of_logs import shifted
@@ -25,6 +26,9 @@ WINDOW_ROWS = 40  # over which it is told whether a sensor moves: more than LONG
 # rows of a moving sensor are often alike without being held.
 MOVING = 8.0
 LONGEST = 25  # rows that a reading is looked for to be held under noise: 4 Hz at 100 rows a second
+# Of the changes from row to row, the largest: each says no more than the smallest of them, so that
+# odd rows, as of a knock, tell nothing. A quarter of the rises that the longest stairs have.
+ODD = 0.01
 LEAST = 1.5  # rows from which on a reading is held at all: half of the rows say nothing new
 SLOWER = 0.8  # of the real log's own rate of new readings: oscillators differ by 2 % (ITG-3205)
 # Times the largest reading, that the simulator goes beyond it: more than a gyro's scale is off
@@ -54,8 +58,19 @@ class Hold:
 
 def holds(trace):
     """{sensor: Hold} of a Trace."""
-    return {"accel": sensor_hold(trace.force, trace.quantum[0], trace.rests),
-            "gyro": sensor_hold(trace.rate, trace.quantum[1], trace.rests)}
+    return {kind: sensor_hold(None if values is None else _as_read(values, step), step,
+                              trace.rests)
+            for kind, values, step in (("accel", trace.force, trace.quantum[0]),
+                                       ("gyro", trace.rate, trace.quantum[1]))}
+
+
+def _as_read(values, quantum):
+    """values (n, 3) with a straight line over the rows that nobody read."""
+    unread = unread_rows.nobody_read(np.rint(values / quantum).astype(np.int64))
+    if not len(unread):
+        return values
+    read = np.setdiff1d(np.arange(len(values)), unread)
+    return np.stack([np.interp(np.arange(len(values)), read, x[read]) for x in values.T], 1)
 
 
 def sensor_hold(values, quantum, rests=()):
@@ -123,6 +138,8 @@ def under_noise(counts, moving, rests):
         return everywhere
     change, row = np.diff(counts, axis=0), np.arange(1, n)
     mask = np.concatenate([moving[1:], [False]]) & moving
+    most = np.quantile(np.abs(change[mask]), 1.0 - ODD, axis=0)
+    change = np.clip(change, -most, most)  # stairs are told by many rises, not by an odd row
     best = (0.0, 1, 0)
     for k in range(2, LONGEST + 1):
         # The change over k rows does not depend on where the stairs begin; smooth over k again.
