@@ -188,7 +188,8 @@ def _of_registers(sensor, sessions):
     meta, rate = sessions[0].capture.meta, min(s.rate for s in sessions)
     noise = typical.noise_at(typical.chip_of(meta["sensor"], sensor), rate)
     band = dead_band.findings(sensor, columns, [s.at_rest for s in sessions], min(
-        noise) / QUIETEST / registers.unit_of_count(meta, sensor))
+        noise) / QUIETEST / registers.unit_of_count(meta, sensor), [
+            s.capture.meta.get(sensor + "_values") == "float" for s in sessions])
     return (agreed_by_axis("quantisation", sensor, [registers.steps(c) for c in columns],
                            [codes.step_nats(c) for c in columns], "counts come in steps",
                            [codes.distinct(c) for c in columns])

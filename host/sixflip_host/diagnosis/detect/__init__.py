@@ -1,7 +1,7 @@
 """What is read off the samples themselves, before any model of the sensor.
 
 detection                          what is found: a sensor's effect, or a recording's damage
-codes, torn_reads (sample_neighbours), saturation, dead_band, axis_order, sample_clock,
+codes, torn_reads (sample_neighbours), saturation, dead_band (lattice), axis_order, sample_clock,
 missing_rows                       registers and timing
 byte_faults (course_likelihood), held_values (stuck_axes), unread_rows, wrong_scale
                                    damage: bytes, rows that repeat or that nobody read, full

@@ -15,7 +15,7 @@ from scipy import special
 from ...capture import registers
 from ...capture.registers import LEAST_NOISE, QUIET, RAIL, WINDOW, steps
 from ..odds import Z_90
-from . import codes
+from . import codes, lattice
 from .detection import Finding, agreed_by_axis, present
 
 FASTER = 3.0  # than the noise, from a sample to the next: its sign is that of the motion
@@ -54,10 +54,11 @@ class Band:
 NOTHING = Band(0.0, 1.0, 0)
 
 
-def findings(sensor, columns, at_rest, noise=0.0):
+def findings(sensor, columns, at_rest, noise=0.0, decimals=()):
     """[Finding] of readings near 0 that are 0, by the codes that are missing or too frequent; on
     other axes by how the readings pass through 0, and by how quiet they are at rest there; noise:
-    counts that any such part has at least."""
+    counts that any such part has at least; decimals: bool of each of the columns, True where they
+    are of a file of decimals, whose counts are none of a chip's."""
     words = "counts near 0 read 0"
     about = [[codes.resting(column) for column in c.T] for c in columns]
     if np.any(about):  # a bias was taken off before, and put back on
@@ -65,11 +66,17 @@ def findings(sensor, columns, at_rest, noise=0.0):
             str(code) for code in dict.fromkeys(np.ravel(about).tolist()))
     columns = [np.clip(c.astype(np.int32) - np.array(code), -RAIL - 1, RAIL)
                for c, code in zip(columns, about)]
-    findings = agreed_by_axis("dead_band", sensor, [registers.dead_band(c) for c in columns],
-                         [codes.band_nats(c) for c in columns], words,
-                         [codes.zeros(c) for c in columns])
+    lattices = [[lattice.of_column(column) if of_decimals else lattice.COUNTS for column in c.T]
+                for c, of_decimals in zip(columns, [*decimals, *[False] * len(columns)])]
+    numbers = [np.stack([one.numbers(column) for one, column in zip(ones, c.T)], 1)
+               for c, ones in zip(columns, lattices)]
+    spacings = [np.array([one.spacing for one in ones]) for ones in lattices]
+    findings = agreed_by_axis(
+        "dead_band", sensor,
+        [np.rint(registers.dead_band(c) * wide) for c, wide in zip(numbers, spacings)],
+        [codes.band_nats(c) for c in numbers], words, [codes.zeros(c) for c in numbers])
     known = {axis for f in findings for axis in f.axes}
-    nats, least = nats_of_rests(columns, at_rest, noise)
+    nats, least = nats_of_rests(columns, at_rest, noise, lattices)
     value, interval, score, number = {}, {}, 0.0, 0
     for k, axis in enumerate("xyz"):
         if axis in known:
@@ -93,14 +100,16 @@ def findings(sensor, columns, at_rest, noise=0.0):
                     interval, share=1.0, number=number)]
 
 
-def nats_of_rests(columns, at_rest, least=0.0):
+def nats_of_rests(columns, at_rest, least=0.0, lattices=None):
     """((3,) nats of an axis' reading 0 at rest more often than the noise of its sensor's others
     lets it; (3,) counts, half the width that this takes at least). columns: list of (n, 3) counts;
     at_rest: list of (n,) bool; least: counts of noise that any such part has, where all three
-    axes have none."""
+    axes have none; lattices: list of 3 Lattice, what the axes count in."""
     nats, widths = np.zeros(3), np.full(3, np.inf)
-    for counts, resting in zip(columns, at_rest):
-        x, step = counts[resting].astype(np.int64), np.maximum(steps(counts), 1)
+    for counts, resting, ones in zip(columns, at_rest, lattices or [
+            [lattice.COUNTS] * 3] * len(columns)):
+        x = counts[resting].astype(np.int64)
+        step = np.maximum(steps(counts), [one.spacing for one in ones])
         together = np.diff(np.flatnonzero(resting)) == 1
         if not together.any():
             continue
@@ -113,11 +122,13 @@ def nats_of_rests(columns, at_rest, least=0.0):
             usual = float(np.median(np.delete(noise, axis)))
             if max(noise) < SILENT:
                 usual = max(usual, least)
-            zero = x[:, axis] == 0
+            zero = ones[axis].numbers(x[:, axis]) == 0
             # What never leaves 0 is stuck, and what leaves it to one side has its end there.
             moves = counts[:, axis].min() < 0 < counts[:, axis].max() and counts[
                 ~resting, axis].any()
             chance = special.erf(0.5 * step[axis] * QUIETER / max(usual, 1e-9) / np.sqrt(2.0))
+            if middle[axis] > 0.0:  # it has noise of its own at rest, and may round it towards 0
+                chance = max(chance, special.erf(step[axis] / middle[axis]))
             share = min(zero.mean(), 1.0 - 1.0 / len(x))
             if not moves or share <= chance:
                 widths[axis] = 0.0

@@ -1,0 +1,61 @@
+"""The values that a column of a file of decimals lies on, where a chip's steps are wider than the
+file's own counts: an import scales those to its largest reading, so that steps of 0.061 deg/s
+become 5.35 counts and 0 may be no value at all. A code that is missing near 0 is missing
+everywhere then, and a dead band is one only by the values that the column has.
+
+How often each count is read has a line in its spectrum at one over the spacing, whose phase says
+where the values lie. Columns that lie on whole counts, or on none, have no such line.
+"""
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...capture.registers import RAIL
+
+# Counts to either side of 0 that are looked at, and readings there: what is farther away tells
+# nothing of a dead band. Spacings that are looked for: below, the import's own rounding, of a
+# count at most, fills what lies between; above, too few values lie near.
+NEAR, FEWEST, LEAST, MOST = 512, 500, 2.5, 64.0
+FINER = 16  # values of a spectrum in the width of a line
+# Of all readings, in phase: rounding to counts leaves 0.64 of the line of 5 counts and more in
+# public logs with a chip's steps, and 0.45 is the most of one without.
+IN_PHASE = 0.55
+BROAD = 0.1  # below this the spectrum is no longer that of how far the readings reach
+COMMON = 0.75  # quantile of the counts that are read, of which no more counts: what rests at one
+
+
+@dataclass(frozen=True)
+class Lattice:
+    """spacing and offset (counts) of the values, of which the one with number 0 is next to 0."""
+
+    spacing: float = 1.0
+    offset: float = 0.0
+
+    def numbers(self, column):
+        """int32 (n,) numbers of the values that a column reads."""
+        return np.clip(np.rint((column - self.offset) / self.spacing), -RAIL - 1, RAIL).astype(
+            np.int32)
+
+
+COUNTS = Lattice()
+
+
+def of_column(column):
+    """The Lattice of a column (n,) of whole numbers, COUNTS where it has no other."""
+    near = column[np.abs(column) < NEAR]
+    if len(near) < FEWEST:
+        return COUNTS
+    times = np.bincount(near + NEAR, minlength=2 * NEAR).astype(float)
+    times = np.minimum(times, np.quantile(times[times > 0], COMMON))
+    spectrum = np.fft.rfft(times, FINER * 2 * NEAR) / times.sum()
+    size, per_count = np.abs(spectrum), np.arange(len(spectrum)) / (FINER * 2 * NEAR)
+    beyond = int(np.argmax(size < BROAD))
+    asked = (np.arange(len(size)) > beyond) & (per_count > 1.0 / MOST) & (per_count < 1.0 / LEAST)
+    if size[beyond] >= BROAD or not asked.any():
+        return COUNTS
+    k = int(np.argmax(np.where(asked, size, 0.0)))
+    if size[k] < IN_PHASE:
+        return COUNTS
+    spacing = 1.0 / per_count[k]
+    first = -np.angle(spectrum[k]) / (2.0 * np.pi) * spacing - NEAR
+    return Lattice(spacing, float(first - spacing * np.rint(first / spacing)))

@@ -1,0 +1,80 @@
+"""Dead bands in files of decimals, whose counts are none of a chip's: a step that is wider than
+those leaves counts out near 0 as everywhere."""
+
+import numpy as np
+import pytest
+
+from sixflip_host.capture import open_recording
+from sixflip_host.cli import main
+from sixflip_host.diagnosis import samples_judged
+from sixflip_host.diagnosis.detect import dead_band, lattice
+from sixflip_host.diagnosis.detect.detection import present
+from sixflip_host.experiment import blocks
+from tests.worlds.imported_text import table
+
+ROWS = 6000
+
+
+def moving(seed, noise):
+    """(n, 3) that rests and swings about 0 by turns, and bool (n,) where it rests; the third axis
+    rests nearest to 0."""
+    rng = np.random.default_rng(seed)
+    still = np.arange(ROWS) % 3000 < 1500
+    swing = np.sin(2 * np.pi * np.arange(ROWS) / 700.0)[:, None] * [1.0, -0.8, 1.2] * (
+        ~still[:, None])
+    return 200.0 * noise * swing + rng.normal(0, noise, (ROWS, 3)) + noise * np.array(
+        [4.0, -3.0, 0.2]), still
+
+
+def found_in(tmp_path, accel=None, gyro=None):
+    """Effects in the registers of a file of decimals of 100 rows a second, in g and deg/s."""
+    if accel is None:
+        accel = [0.0, 0.0, 1.0] + np.random.default_rng(5).normal(0, 0.003, (ROWS, 3))
+    if gyro is None:
+        gyro = np.random.default_rng(6).normal(0, 0.07, (ROWS, 3))
+    (tmp_path / "in.csv").write_text(table(["%.2f" % (k / 100) for k in range(ROWS)],
+                                           accel=accel, gyro=gyro, form="%.7f"))
+    assert main(["import", str(tmp_path / "in.csv"), "-o", str(tmp_path / "out.csv"),
+                 "--units", "g,dps", "--no-poses"]) == 0
+    session = blocks.session_of("out.csv", open_recording.read_samples(tmp_path / "out.csv"))
+    return {f.effect for found_by in samples_judged.FOUND_BY[:2] for f in found_by([session])}
+
+
+def test_steps_that_are_rounded_towards_0_in_finer_ones_are_no_dead_band(tmp_path):
+    """3.8 mg, multiplied and cut off to steps of 1/2048 g: 7, 15, 23 ... and 0."""
+    tilt, _ = moving(2, 0.004)
+    codes = np.trunc(7.8 * np.rint((tilt + [0.0, 0.0, 1.0]) / 0.0038))
+    # to the last digits it was scaled, as by somebody's calibration
+    accel = codes / 2048 * 1.00113
+    assert "dead_band" not in found_in(tmp_path, accel=accel)
+
+
+def test_a_chips_steps_about_a_bias_that_was_taken_off_are_no_dead_band(tmp_path):
+    """0.061 deg/s beside a largest reading of 375 deg/s: 5.3 counts of the import's."""
+    turn, _ = moving(3, 0.11)
+    gyro = np.rint(turn * [1.0, 1.0, 0.6] / 0.061) * 0.061 * [1.007, 0.983, 1.0] + [0.027, -0.022, 0.006]
+    gyro[5000] = [375.0, 100.0, -200.0]
+    assert "dead_band" not in found_in(tmp_path, gyro=gyro)
+
+
+@pytest.mark.parametrize("noise", [8.0, 40.0])
+def test_an_axis_that_rounds_its_noise_towards_0_has_no_dead_band(noise):
+    """0 is read twice as often as the codes beside it, on the quietest axis that rests there."""
+    x, still = moving(4, noise)
+    x = (x - x[still].mean(axis=0) + [4.0 * noise, 3.0 * noise, 0.0]) * [1.2, 1.7, 1.0]
+    counts = np.trunc(x).astype(np.int16)
+    nats, _ = dead_band.nats_of_rests([counts], [still])
+    assert not present(nats.max())
+
+
+def test_a_band_in_a_file_of_decimals_is_found_in_its_values():
+    """Four of its own steps to either side read 0."""
+    x, still = moving(7, 12.0)
+    codes = np.rint(x / 5.346)
+    codes[np.abs(codes) <= 4] = 0
+    counts = np.rint(5.346 * codes).astype(np.int16)
+    found = lattice.of_column(counts[:, 0].astype(int))
+    assert found.spacing == pytest.approx(5.346, rel=0.01)
+    said, = dead_band.findings("gyro", [counts], [still], decimals=[True])
+    assert "z" in said.axes
+    assert all(value == pytest.approx(5 * 5.346, abs=6) for value in said.value.values())
