@@ -98,7 +98,10 @@ def step(sessions, sensor, axis):
 
 
 def scatter(stretches, axis, k):
-    """Standard deviation over mean of the power around index k, from stretch to stretch."""
+    """Standard deviation over mean of the power around index k, from stretch to stretch; 0 of one,
+    which does not tell."""
+    if len(stretches) < 2:
+        return 0.0
     window = np.hanning(len(stretches[0]))
     x = np.array([s[:, axis] - s[:, axis].mean() for s in stretches])
     power = (np.abs(np.fft.rfft(x * window, axis=1)) ** 2)[:, max(0, k - 1):k + 2].sum(axis=1)
