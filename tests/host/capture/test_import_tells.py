@@ -292,3 +292,18 @@ def test_an_axis_alone_is_of_the_sensor_whose_unit_it_has():
     assert [found[key] for key in ("ax", "ay", "az", "gz")] == [*names[1:4], "gz[mdps]"]
     assert units == {"a": "mg", "g": "mdps"}
     assert column_names.column("x-axis (g)")[:3] == ("a", "x", "g")
+
+
+@pytest.mark.parametrize("names", [("p", "q", "r"), ("P", "Q", "R")])
+def test_p_q_r_are_the_rates_of_roll_pitch_and_yaw(tmp_path, capsys, names):
+    rates = np.random.default_rng(12).normal(0.02, 0.004, (ROWS, 3))
+    rows = "\n".join("%.2f,%s" % pair for pair in zip(SECONDS, lines(
+        np.c_[COUNTS / 16384 * G, rates], "%.9f")))
+    capture, said = imported(tmp_path, capsys, "t,Ax,Ay,Az,%s\n%s\n" % (",".join(names), rows))
+    assert "columns %s are taken as the gyro's: the rates of roll" % " ".join(names) in said
+    assert "the gyro is in rad/s, as goes with m/s2" in said
+    read = np.radians(capture.gyro / capture.meta["gyro_lsb_per_dps"])
+    assert np.abs(read.mean(axis=0) - rates.mean(axis=0)).max() < 1e-3
+    other = "t,Ax,Ay,Az,p,q,s\n" + rows + "\n"
+    (tmp_path / "out.csv").unlink()
+    assert imported(tmp_path, capsys, other)[0].gyro is None

@@ -54,6 +54,11 @@ def readings(options, table):
         for name in MAG:
             chosen.pop(name, None)
     chosen.update(given)
+    rates = {name.strip().lower(): name for name in table.names or () if name not in used}
+    if "gx" not in chosen and "ax" in chosen and set("pqr") <= set(rates):
+        chosen.update((ours, rates[letter]) for ours, letter in zip(GYRO, "pqr"))
+        remarks.append("columns %s are taken as the gyro's: the rates of roll, pitch and yaw" % (
+            " ".join(chosen[ours] for ours in GYRO)))
     for group in (ACCEL, GYRO, MAG):
         there = [name for name in group if name in chosen]
         if there and len(there) < 3:
