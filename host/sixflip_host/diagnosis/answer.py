@@ -125,7 +125,11 @@ def of_finding(f):
         entry["share_interval_90"] = [number(v) for v in f.share_interval]
     if f.limits:
         entry["cut_off_at"] = f.limits
-    if f.levels:
+    if f.levels and not f.limits:
+        scale, unit = (1e3, "mg") if f.sensor == "accel" else (1.0, registers.UNITS[f.sensor])
+        entry["value_in"] = _sizes({axis: scale * size for axis, size in f.levels.items()})
+        entry["value_in_unit"] = spelled(unit)
+    elif f.levels:
         entry["cut_off_level"] = _sizes(f.levels)
         entry["cut_off_unit"] = spelled(registers.UNITS[f.sensor])
     if f.hz:

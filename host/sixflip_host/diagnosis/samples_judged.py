@@ -1,7 +1,7 @@
 """The first stage: what registers, clock and spectra say of the samples themselves, with a name
 and without."""
 import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -193,8 +193,17 @@ def _of_registers(sensor, sessions):
     return (agreed_by_axis("quantisation", sensor, [registers.steps(c) for c in columns],
                            [codes.step_nats(c) for c in columns], "counts come in steps",
                            [codes.distinct(c) for c in columns])
-            + band + saturation.saturation(sessions, sensor, columns)
+            + _in_units(band, sessions[0].capture.meta, sensor)
+            + saturation.saturation(sessions, sensor, columns)
             + torn_reads.finding(sessions, sensor, ["xyz".index(a) for f in band for a in f.axes]))
+
+
+def _in_units(findings, meta, sensor):
+    """The Findings with their sizes in g or deg/s, too, where counts are those of an import."""
+    if meta.get(sensor + "_values") != "float":
+        return findings
+    return [replace(f, levels={axis: size / meta[registers.SCALES[sensor]]
+                               for axis, size in f.value.items()}) for f in findings]
 
 
 def _of_rows(sessions):

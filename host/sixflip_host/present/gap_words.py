@@ -10,6 +10,7 @@ SENSOR = {"accel": "accelerometer", "gyro": "gyro", "device": "device",
 STYLE = {"no gap": "bold green", "explained": "bold green", "partly explained": "bold yellow",
          "unexplained": "bold red", "cannot tell": "bold yellow"}
 WHICH = ("effect", "sensor", "probability", "share", "size (90 % interval)")
+UNKNOWN = 10.0  # times its lower end, that an interval reaches to which has no upper one
 SUREST = 0.99  # the most that is said of a probability: the model is no surer of itself
 DOES = {  # what a part with this effect does
     "thermal_bias": "drifts with temperature", "thermal_scale": "changes its scale with "
@@ -116,9 +117,7 @@ def _ends_at(cause, limit):
 
 def _size(cause):
     """The largest size, in units where a log's counts are not its chip's."""
-    sizes, unit = cause["value"], cause["unit"]
-    if "cut_off_level" in cause:
-        sizes, unit = cause["cut_off_level"], cause["cut_off_unit"]
+    sizes, unit = _in_units(cause) or (cause["value"], cause["unit"])
     values = [v for v in sizes.values() if v is not None]
     if not values or unit in ("1", "axis"):
         return ""
@@ -190,6 +189,8 @@ def row(c):
     for key, value in c["value"].items():
         low, high = c["interval_90"].get(key, [None, None])
         span = "" if low is None or low == high else " (%.3g … %.3g)" % (low, high)
+        if c["effect"] == "dead_band" and span and high > UNKNOWN * low:
+            span = " or more"
         sizes.append("%s %s%s" % (key, "not determined" if value is None else "%.3g" % value,
                                   span))
     return (name, SENSOR[c["sensor"]], percent(c["probability"]),
@@ -197,10 +198,17 @@ def row(c):
             ", ".join(sizes) + " " + c["unit"] + _level(c))
 
 
+def _in_units(c):
+    """({axis: size}, unit) of an imported log, whose counts are the import's; None of others."""
+    return next(((c[key], c[unit]) for key, unit in (
+        ("cut_off_level", "cut_off_unit"), ("value_in", "value_in_unit")) if key in c), None)
+
+
 def _level(c):
-    """Where an imported log is cut off, in units: its counts are the import's."""
-    levels = ", ".join("%s %.4g" % level for level in c.get("cut_off_level", {}).items())
-    return " (%s %s)" % (levels, c["cut_off_unit"]) if levels else ""
+    """Sizes in units, where counts are the import's."""
+    levels, unit = _in_units(c) or ({}, "")
+    said = ", ".join("%s %.4g" % level for level in levels.items())
+    return " (%s %s)" % (said, unit) if said else ""
 
 
 def holdout_line(kind, gap, held):

@@ -6,10 +6,11 @@ import pytest
 
 from sixflip_host.capture import open_recording
 from sixflip_host.cli import main
-from sixflip_host.diagnosis import samples_judged
+from sixflip_host.diagnosis import answer, samples_judged
 from sixflip_host.diagnosis.detect import dead_band, lattice
-from sixflip_host.diagnosis.detect.detection import present
+from sixflip_host.diagnosis.detect.detection import Finding, present
 from sixflip_host.experiment import blocks
+from sixflip_host.present import gap_words
 from tests.worlds.imported_text import table
 
 ROWS = 6000
@@ -27,7 +28,7 @@ def moving(seed, noise):
 
 
 def found_in(tmp_path, accel=None, gyro=None):
-    """Effects in the registers of a file of decimals of 100 rows a second, in g and deg/s."""
+    """{effect: Finding} in the registers of a file of decimals, 100 rows a second."""
     if accel is None:
         accel = [0.0, 0.0, 1.0] + np.random.default_rng(5).normal(0, 0.003, (ROWS, 3))
     if gyro is None:
@@ -37,7 +38,7 @@ def found_in(tmp_path, accel=None, gyro=None):
     assert main(["import", str(tmp_path / "in.csv"), "-o", str(tmp_path / "out.csv"),
                  "--units", "g,dps", "--no-poses"]) == 0
     session = blocks.session_of("out.csv", open_recording.read_samples(tmp_path / "out.csv"))
-    return {f.effect for found_by in samples_judged.FOUND_BY[:2] for f in found_by([session])}
+    return {f.effect: f for found_by in samples_judged.FOUND_BY[:2] for f in found_by([session])}
 
 
 def test_steps_that_are_rounded_towards_0_in_finer_ones_are_no_dead_band(tmp_path):
@@ -78,3 +79,24 @@ def test_a_band_in_a_file_of_decimals_is_found_in_its_values():
     said, = dead_band.findings("gyro", [counts], [still], decimals=[True])
     assert "z" in said.axes
     assert all(value == pytest.approx(5 * 5.346, abs=6) for value in said.value.values())
+
+
+def test_a_band_in_a_file_of_decimals_has_a_width_in_units(tmp_path):
+    turn, _ = moving(3, 0.11)
+    gyro = np.where(np.abs(turn) < 0.4, 0.0, turn)
+    cause = answer.of_finding(found_in(tmp_path, gyro=gyro)["dead_band"])
+    assert cause["value_in_unit"] == "°/s"
+    # the import makes 32000 counts of the largest reading
+    for axis, counts in cause["value"].items():
+        assert cause["value_in"][axis] == pytest.approx(
+            counts * np.abs(gyro).max() / 32000, rel=0.01)
+        assert 0.3 < cause["value_in"][axis] < 0.8
+    said = {"verdict": "explained", "causes": [cause], "damage": [], "gap": {}}
+    assert gap_words.sentence(said).endswith("°/s.")
+    assert gap_words.row(cause)[-1].endswith("°/s)")
+
+
+def test_a_band_whose_upper_end_the_rests_do_not_show_is_so_much_or_more():
+    finding = Finding("dead_band", "gyro", ["z"], {"z": 2}, "counts", 30.0, "amplitude", "",
+                      {"z": (2, 18300.0)}, share=1.0)
+    assert gap_words.row(answer.of_finding(finding))[-1] == "z 2 or more counts"
