@@ -4,6 +4,9 @@ from ..terminal import plain, table
 CONVENTIONS = ("convention", "sensor", "sure", "what to set")
 PARAMETERS = ("parameter", "real", "simulator", "real less simulator (90 %)", "set to")
 EFFECTS = ("effect that it lacks", "sensor", "real less simulator (90 %)", "may as well be")
+# Times the interval of the difference, from which on a log by itself says nothing of a number: two
+# that are as sure as each other are 1.4 times as sure as their difference.
+SAYS_NOTHING = 4.0
 SENSOR = {"accel": "accelerometer", "gyro": "gyro", "device": "device"}
 
 
@@ -96,8 +99,8 @@ def parameter_rows(simulator, all_of_them=False):
                     continue
                 label = "%s%s, %s" % (name.replace("_", " "), "" if axis == "all" else " " + axis,
                                       SENSOR[sensor])
-                rows.append((label, valued(p["real"], p["real_interval_90"], ""),
-                             valued(p["simulator"], p["simulator_interval_90"], ""),
+                rows.append((label, owned(p["real"], p["real_interval_90"], p),
+                             owned(p["simulator"], p["simulator_interval_90"], p),
                              valued(p["difference"], p["difference_interval_90"], p["unit"]),
                              p["how"] if p["set"] is None else "%.4g %s" % (p["set"], p["unit"])))
     return rows
@@ -116,6 +119,17 @@ def settings(simulator):
     """[(setting, value)] of all that is to be set."""
     pairs = [(c["words"], c["set"]) for c in simulator["conventions"] if c["set"]]
     return pairs + [(row[0], row[4]) for row in parameter_rows(simulator) if row[4]]
+
+
+def owned(value, interval, parameter):
+    """What one log says by itself, or - where that is nothing: an interval about zero that is far
+    wider than that of the difference of both logs, as of a bias in one attitude."""
+    apart = parameter["difference_interval_90"]
+    if value is not None and interval is not None and apart is not None and (
+            interval[0] < 0.0 < interval[1]
+            and interval[1] - interval[0] > SAYS_NOTHING * (apart[1] - apart[0])):
+        return "-"
+    return valued(value, interval, "")
 
 
 def valued(value, interval, unit):

@@ -2,7 +2,8 @@
 between two rests takes gravity before to gravity after [Tedaldi et al., ICRA 2014].
 
 Maximum a posteriori with priors of datasheet size, so that a log with two rests is answered as
-honestly as one with twenty: what it cannot see keeps its prior's interval.
+honestly as one with twenty: what it cannot see keeps its prior's interval. So does a sensor that
+the priors find impossible: windows of a flying drone that look still are no rests.
 """
 from dataclasses import dataclass, replace
 
@@ -12,7 +13,8 @@ from ...capture.attitude import carried, rotations
 from . import restless, traces
 from .hypotheses import BIAS, SHAPE
 
-ROUNDS = 8  # Gauss-Newton steps: after five the next change a matrix by 1e-9
+ROUNDS = 8  # Gauss-Newton steps of the moves' fit: after five the next change a matrix by 1e-9
+STEPS, SMALL = 60, 1e-6  # of the rests' fit at most; standard errors that ends it
 CARRY_RAD = np.radians(0.3)  # of a placement's tilt by handling, and of the attitude carried
 FREEDOM = 4.0  # of Student's t [Lange et al., J. Am. Stat. Assoc. 84 (1989), 881]
 MEDIAN_OF_TWO = np.log(2.0)  # of half the sum of two squares of unit variance
@@ -20,6 +22,12 @@ MEDIAN_OF_TWO = np.log(2.0)  # of half the sum of two squares of unit variance
 # leans, a degree.
 APART, LEANS = 4.0, 0.0175
 NORM = 0.005  # m/s2: how well |force| repeats between rests, 0.5 mg with flicker and rounding
+# Times NORM, that |force| may repeat worse, doubled each time: to 0.5 g, where the windows are no
+# rests but pieces of a flight.
+WORSE = 2.0 ** np.arange(11)
+# Prior standard deviations beyond which a sensor is none: by 46 degrees another axis is nearer,
+# and 80 % of scale or 1.6 g of offset are a convention, or a fit to what are no rests.
+IMPOSSIBLE = 20.0
 
 
 @dataclass(frozen=True)
@@ -92,31 +100,73 @@ SYMMETRIC = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
 
 
 def by_norm(means, g):
-    """(matrix, bias, their sigmas) that make |matrix (mean - bias)| = g, rests weighed alike."""
-    p = np.zeros(9)
+    """(matrix, bias, their sigmas) that make |matrix (mean - bias)| = g.
+
+    How well |force| repeats is not known either: it has a half-Cauchy prior about NORM [Gelman,
+    Bayesian Analysis 1 (2006), 515], and the answer is the mean over it by how likely each makes
+    the rests [Laplace's approximation: Bishop (2006), section 4.4]. Rests are weighed by Student's
+    t besides.
+    """
     prior = np.concatenate([np.full(6, SHAPE), np.full(3, BIAS["accel"])])
-    for _ in range(ROUNDS):
+    p, logs, places, inverses = np.zeros(9), [], [], []
+    for worse in WORSE[::-1]:
+        p, gram, log = likeliest(p, means, g, NORM * worse, prior)
+        logs.append(log - 0.5 * np.linalg.slogdet(gram)[1] - np.log(worse + 1.0 / worse))
+        places.append(p)
+        inverses.append(np.linalg.inv(gram))
+    weights = np.exp(np.array(logs) - max(logs))
+    weights /= weights.sum()
+    p = weights @ places
+    apart = np.array(places) - p
+    covariance = np.einsum("k,kij->ij", weights, inverses) + (weights * apart.T) @ apart
+    spread = np.sqrt(np.diag(covariance))
+    if (np.abs(p) > IMPOSSIBLE * prior).any():
+        p, spread = np.zeros(9), prior
+    matrix, bias = matrix_of(p)
+    sigma = np.zeros((3, 3))
+    for k, (i, j) in enumerate(SYMMETRIC):
+        sigma[i, j] = sigma[j, i] = spread[k]
+    return matrix, bias, sigma, spread[6:]
+
+
+def likeliest(p, means, g, scale, prior):
+    """(parameters (9,), their information (9, 9), log posterior but for a constant) where |force|
+    repeats to so much (m/s2); by steps from p that are shortened until they make it likelier
+    [Levenberg, Q. Appl. Math. 2 (1944), 164]."""
+    def looked_at(p):
         matrix, bias = matrix_of(p)
         true = (means - bias) @ matrix.T
         size = np.linalg.norm(true, axis=1)
-        unit = true / size[:, None]
+        unit = true / np.maximum(size, 1e-9)[:, None]
         jacobian = np.empty((len(means), 9))
         for k, (i, j) in enumerate(SYMMETRIC):
             change = np.zeros((3, 3))
             change[i, j] = change[j, i] = 1.0
             jacobian[:, k] = (unit * ((means - bias) @ change.T)).sum(axis=1)
         jacobian[:, 6:] = -unit @ matrix
-        left = g - size
-        sigma = max(NORM, np.sqrt((left ** 2).sum() / max(len(means) - 9, 1))
-                    if len(means) > 12 else NORM)
-        gram = jacobian.T @ jacobian / sigma ** 2 + np.diag(prior ** -2.0)
-        p = p + np.linalg.solve(gram, jacobian.T @ left / sigma ** 2 - p / prior ** 2)
-    spread = np.sqrt(np.diag(np.linalg.inv(gram)))
-    matrix, bias = matrix_of(p)
-    sigma = np.zeros((3, 3))
-    for k, (i, j) in enumerate(SYMMETRIC):
-        sigma[i, j] = sigma[j, i] = spread[k]
-    return matrix, bias, sigma, spread[6:]
+        off = (g - size) / scale
+        log = -0.5 * (FREEDOM + 1.0) * np.log1p(off ** 2 / FREEDOM).sum() - len(off) * np.log(
+            scale) - 0.5 * ((p / prior) ** 2).sum()
+        return jacobian / scale, off, log
+
+    jacobian, off, log = looked_at(p)
+    damping = 1e-3
+    for _ in range(STEPS):
+        weight = (FREEDOM + 1.0) / (FREEDOM + off ** 2)
+        gram = (jacobian.T * weight) @ jacobian + np.diag(prior ** -2.0)
+        step = np.linalg.solve(gram + damping * np.diag(np.diag(gram)),
+                               jacobian.T @ (weight * off) - p / prior ** 2)
+        tried = looked_at(p + step)
+        if tried[2] < log:
+            damping *= 10.0
+        else:
+            p, damping = p + step, damping / 10.0
+            jacobian, off, log = tried
+        if step @ gram @ step < SMALL ** 2 or damping > 1e12:
+            break
+    # What Student's t says of its place on average [Lange et al. (1989), section 4].
+    known = (FREEDOM + 1.0) / (FREEDOM + 3.0)
+    return p, known * jacobian.T @ jacobian + np.diag(prior ** -2.0), log
 
 
 def matrix_of(p):
@@ -171,6 +221,8 @@ def by_carry(trace, rate, ups, tilt):
         if off:
             wider = max(1.0, np.sqrt(np.median(off) / MEDIAN_OF_TWO))
     spread = np.sqrt(np.diag(np.linalg.inv(gram)))
+    if (np.abs(p[:9]) > IMPOSSIBLE * SHAPE).any():
+        p, spread = np.zeros(12), prior
     return np.eye(3) + p[:9].reshape(3, 3), spread[:9].reshape(3, 3)
 
 

@@ -114,7 +114,7 @@ def attitude_errors(a, b, t):
     a, b = a[keep], b[keep]
     up = np.degrees(np.arccos(np.clip((a[:, 2] * b[:, 2]).sum(axis=1), -1.0, 1.0)))
     turn = np.einsum("nij,nkj->nik", a, b)
-    heading = np.unwrap(np.arctan2(turn[:, 1, 0] - turn[:, 0, 1], turn[:, 0, 0] + turn[:, 1, 1]))
+    heading = np.arctan2(turn[:, 1, 0] - turn[:, 0, 1], turn[:, 0, 0] + turn[:, 1, 1])
     return float(np.sqrt(np.mean(up ** 2))), float(np.degrees(heading[-1] - heading[0]))
 
 
@@ -151,8 +151,10 @@ def task_of_two_motions(real, sim, own_real, own_sim):
 
 
 def task_from_errors(against, results):
-    """Task of ((tilt, heading) before, after), degrees."""
-    (tilt, heading), (tilt_after, heading_after) = results
+    """Task of ((tilt, heading) before, after), degrees. A heading is no further off than half a
+    turn: of a log upside down it is any at any time, and would add up turns that nothing made."""
+    (tilt, heading), (tilt_after, heading_after) = (
+        (tilt, (heading + 180.0) % 360.0 - 180.0) for tilt, heading in results)
     return Task("imufusion", against,
                 {"before": abs(float(tilt)), "after": abs(float(tilt_after))},
                 {"before": abs(float(heading)), "after": abs(float(heading_after))})

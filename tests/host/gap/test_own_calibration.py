@@ -1,0 +1,114 @@
+"""What a log says of its own sensor: by rests that are some, by windows that are none, and how it
+is told; the heading of a task."""
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from sixflip_host.diagnosis.simulator import own_calibration, remaining_gap
+from sixflip_host.present import simulator_words
+
+G = 9.80665
+MATRIX = np.array([[1.02, 0.004, 0.0], [0.004, 0.99, -0.006], [0.0, -0.006, 1.01]])
+OFFSET = np.array([0.2, -0.1, 0.3])
+
+
+def means_of(directions, sizes):
+    """Readings of a sensor with MATRIX and OFFSET where so much (n,) acts along directions."""
+    ups = directions / np.linalg.norm(directions, axis=1)[:, None]
+    return (ups * sizes[:, None]) @ MATRIX.T + OFFSET
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_windows_of_a_flight_are_no_rests(seed):
+    """Seven windows of a racing drone in which |force| is other than g by some percent: its own
+    scale was -129000 %, its misalignment 213 +- 2 degrees."""
+    generator = np.random.default_rng(seed)
+    directions = np.array([0.0, 0.0, 1.0]) + 0.5 * generator.standard_normal((7, 3))
+    sizes = G * (1.0 + 0.04 * generator.standard_normal(7))
+    matrix, bias, sigma, bias_sigma = own_calibration.by_norm(means_of(directions, sizes), G)
+    off = matrix @ MATRIX - np.eye(3)
+    assert np.abs(off).max() < 0.1
+    assert (np.abs(off) < 3.0 * sigma).all() and (np.abs(bias - OFFSET) < 3.0 * bias_sigma).all()
+
+
+@pytest.mark.parametrize("astray", [0, 1])
+def test_rests_that_are_some_say_what_the_sensor_is(astray):
+    """Even with one among them in which it was moved."""
+    generator = np.random.default_rng(3)
+    sizes = G + 0.003 * generator.standard_normal(24)
+    sizes[:astray] += 0.5
+    matrix, bias, sigma, bias_sigma = own_calibration.by_norm(
+        means_of(generator.standard_normal((24, 3)), sizes), G)
+    assert np.abs(matrix @ MATRIX - np.eye(3)).max() < 0.002 and sigma.max() < 0.002
+    assert np.abs(bias - OFFSET).max() < 0.01 and bias_sigma.max() < 0.01
+
+
+def test_the_rests_fit_never_makes_them_less_likely():
+    generator = np.random.default_rng(5)
+    means = means_of(np.array([0.0, 0.0, 1.0]) + 0.4 * generator.standard_normal((7, 3)),
+                     G * (1.0 + 0.04 * generator.standard_normal(7)))
+    prior = np.concatenate([np.full(6, 0.04), np.full(3, 0.8)])
+    for scale in (0.005, 0.05, 0.5):
+        p, _, log = own_calibration.likeliest(np.zeros(9), means, G, scale, prior)
+        off = (G - np.linalg.norm(means, axis=1)) / scale
+        assert log >= -2.5 * np.log1p(off ** 2 / 4.0).sum() - 7 * np.log(scale)
+
+
+@pytest.mark.parametrize("scattered, scale, known", [
+    (0.0, 1.05, True), (0.0, 0.4, False), (0.3, 1.0, False)])
+def test_a_gyro_whose_moves_make_no_sense_is_not_known(scattered, scale, known):
+    """Rests between which gravity lies anywhere, or rates that no part reads so: of such a fit
+    nothing is to be set."""
+    generator = np.random.default_rng(7)
+    t = np.arange(0.0, 120.0, 0.02)
+    attitude, rate, ups, rests = Rotation.identity(), np.zeros((len(t), 3)), [], []
+    for k in range(24):
+        first = 250 * k
+        rests.append((first, first + 100))
+        ups.append(attitude.inv().apply([0.0, 0.0, 1.0]))
+        step = generator.standard_normal(3)
+        step *= 0.6 / np.linalg.norm(step)
+        rate[first + 100:first + 200] = step / (100 * 0.02)
+        attitude = attitude * Rotation.from_rotvec(step)
+    off = generator.standard_normal((len(ups), 3))
+    ups = np.array(ups) + scattered * off / np.linalg.norm(off, axis=1)[:, None]
+    ups /= np.linalg.norm(ups, axis=1)[:, None]
+    trace = SimpleNamespace(t=t, rests=tuple(rests))
+    gyro, sigma = own_calibration.by_carry(trace, rate * scale, ups, np.full(3, 0.001))
+    if known:
+        assert sigma.max() < 0.01
+        assert (np.abs(gyro - np.eye(3) / scale) < 4.0 * sigma).all()
+    else:
+        assert np.abs(gyro - np.eye(3)).max() < 0.1 and sigma.min() > 0.02
+
+
+def number(value, half, difference, apart):
+    interval = [value - half, value + half]
+    return {"accel": {"bias": {"x": {
+        "unit": "mg", "real": value, "real_interval_90": interval, "simulator": value,
+        "simulator_interval_90": interval, "difference": difference,
+        "difference_interval_90": [difference - apart, difference + apart], "differs": True,
+        "set": difference, "how": ""}}}}
+
+
+@pytest.mark.parametrize("value, half, said", [
+    (-1.7, 131.0, "-"), (12.0, 0.3, "12 (11.7 … 12.3)"), (0.1, 0.3, "0.1 (-0.2 … 0.4)"),
+    (210.0, 131.0, "210 (79 … 341)")])
+def test_what_a_log_alone_does_not_say_is_left_blank(value, half, said):
+    """"real: -1.7 (-133 … 130)" beside a difference of 3.58 +- 0.4."""
+    row, = simulator_words.parameter_rows({"parameters": number(value, half, 3.58, 0.4)})
+    assert row[1:3] == (said, said) and row[3].startswith("3.58")
+
+
+def test_a_heading_is_no_further_off_than_half_a_turn():
+    """An accelerometer with its sign turned: "heading 8622.00 degrees"."""
+    t = np.arange(0.0, 60.0, 0.02)
+    turned = [Rotation.from_rotvec(np.outer(rate * t, [0, 0, 1])).as_matrix()
+              for rate in (0.0, 2.5)]
+    task = remaining_gap.task_from_errors("it", [
+        remaining_gap.attitude_errors(turned[1], turned[0], t), (1.0, -181.0)])
+    once = np.degrees(2.5 * (t[-1] - t[t > remaining_gap.SETTLE_S][0])) % 360.0
+    assert task.heading["before"] == pytest.approx(min(once, 360.0 - once), abs=1e-6)
+    assert task.heading["after"] == pytest.approx(179.0)
