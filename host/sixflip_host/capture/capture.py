@@ -1,5 +1,4 @@
 """A capture: the raw counts of one session, as the chip gave them."""
-import numpy as np
 
 from . import pose_sums
 from .capture_header import ACCEL, GYRO, MAG, STANDARD_G
@@ -15,8 +14,9 @@ class Capture:
     pose    int16 (n,) codes of sixflip.poses.faces, 0 while moving; None when nobody labelled
     board_placements, notes, truncated, sums_only, taken, complete, withdrawn
             what only a board's own file knows, see capture_binary
+    recorded (int64 stamps of all rows that were recorded, indices of those that are here) where
+            some of them were left out, or None, see clock
     assumed sentences on what a foreign file did not say, see open_recording
-    taken_out_us  times of rows that were taken out, as nobody read them (int64, in any order)
     """
 
     def __init__(self, meta, t_us, accel, gyro=None, temp=None, mag=None, pose=None):
@@ -30,12 +30,12 @@ class Capture:
         self.board_placements = None
         self.notes = []
         self.assumed = []
+        self.recorded = None
         self.truncated = None
         self.sums_only = False
         self.taken = len(t_us)
         self.complete = True
         self.withdrawn = []
-        self.taken_out_us = np.zeros(0, np.int64)
 
     def __len__(self):
         return len(self.t_us)

@@ -20,7 +20,6 @@ import numpy as np
 
 from . import capture_binary, stamp_envelope
 from .board_extras import EXTRAS
-from .capture import Capture
 
 # Of a period, by which a gap lifts the envelope at least where most intervals are whole periods:
 # less than a row has to be late (stamp_envelope.PART), for the last stamp before a gap is a late
@@ -126,19 +125,31 @@ def within(measured, part):
 
 def sample_clock(capture):
     """The SampleClock of a Capture. Where a board's own file says that it wrote to its flash, it
-    read nothing meanwhile; that is no loss."""
+    read nothing meanwhile; that is no loss. Rows that were left out had their stamps, too: they
+    are missing, and make none of the others late."""
     _, places = capture_binary.lost_on_the_way(capture)
     recorder = np.setdiff1d(capture_binary.write_pauses(capture), places)
-    return measure(capture.t_us, recorder, places)
+    recorded = getattr(capture, "recorded", None)
+    if recorded is None or len(recorded[1]) != len(capture.t_us):
+        return measure(capture.t_us, recorder, places)
+    t_us, kept = recorded
+    measured = measure(t_us, kept[recorder], kept[places])
+    if measured is None:
+        return None
+    missing = np.zeros(len(t_us), int)      # between each row and the one before it
+    for row, samples in measured.lost_after:
+        missing[row + 1] = samples
+    all_before = (np.arange(len(t_us)) + np.cumsum(missing))[kept]
+    lacks = np.diff(all_before) - 1
+    rows = np.flatnonzero(lacks)
+    return replace(measured, lost_after=tuple(zip(rows.tolist(), lacks[rows].tolist())))
 
 
-def clock_of_log(capture):
-    """The SampleClock of all rows of a Capture's log, those that were taken out of it among them:
-    nobody read them, but they came, and are not lost."""
-    if not len(capture.taken_out_us):
-        return sample_clock(capture)
-    t_us = np.sort(np.concatenate([capture.t_us, capture.taken_out_us]))
-    return sample_clock(Capture(capture.meta, t_us, None))
+def recorded_without(capture, rows):
+    """What Capture.recorded is without some of its rows (k,)."""
+    t_us, kept = getattr(capture, "recorded", None) or (
+        capture.t_us, np.arange(len(capture.t_us)))
+    return t_us, np.delete(kept, rows)
 
 
 def of_a_board(capture):

@@ -67,8 +67,9 @@ def lines(simulator):
     said = []
     for kind, gap in simulator["gap"].items():
         said.append("Simulator less real, %s: %.3g %s before, %.3g with conventions and "
-                    "parameters put right (held out), noise alone %.3g." % (
-                        SENSOR[kind], gap["before"], gap["unit"], gap["after"], gap["floor"]))
+                    "parameters put right (held out), noise alone %s." % (
+                        SENSOR[kind], gap["before"], gap["unit"], gap["after"],
+                        "%.3g" % gap["floor"] if gap["floor"] else "is not known"))
     task = simulator["task"]
     if task:
         said.append("Task (%s against %s): roll and pitch %.2f° before, %.2f° after; heading "

@@ -53,7 +53,8 @@ def test_steps_that_are_rounded_towards_0_in_finer_ones_are_no_dead_band(tmp_pat
 def test_a_chips_steps_about_a_bias_that_was_taken_off_are_no_dead_band(tmp_path):
     """0.061 deg/s beside a largest reading of 375 deg/s: 5.3 counts of the import's."""
     turn, _ = moving(3, 0.11)
-    gyro = np.rint(turn * [1.0, 1.0, 0.6] / 0.061) * 0.061 * [1.007, 0.983, 1.0] + [0.027, -0.022, 0.006]
+    steps = np.rint(turn * [1.0, 1.0, 0.6] / 0.061)
+    gyro = steps * 0.061 * [1.007, 0.983, 1.0] + [0.027, -0.022, 0.006]
     gyro[5000] = [375.0, 100.0, -200.0]
     assert "dead_band" not in found_in(tmp_path, gyro=gyro)
 

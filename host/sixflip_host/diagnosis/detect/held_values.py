@@ -14,6 +14,7 @@ import math
 import numpy as np
 from scipy import special
 
+from ...capture import clock
 from ...capture.registers import SENSORS, steps
 from .detection import Damage, present
 from .stuck_axes import FEWEST, LEAST_NOISE, by_chance, lengths, unforeseen
@@ -180,7 +181,7 @@ def _resting(counts):
 def without_rows(capture, rows):
     """A Capture without some of its rows; the one given is not changed."""
     shorter = copy.copy(capture)
-    shorter.taken_out_us = np.concatenate([capture.taken_out_us, capture.t_us[rows]])
+    shorter.recorded = clock.recorded_without(capture, rows)
     for name in ("t_us", "accel", "gyro", "temp", "mag", "pose"):
         if getattr(shorter, name) is not None:
             setattr(shorter, name, np.delete(getattr(shorter, name), rows, axis=0))

@@ -29,7 +29,7 @@ APART = 3.0  # nats by which sessions may differ and still have one clock, GAP s
 def clocks(sessions):
     """[SampleClock, or None where the times do not run], one a session, of all its rows: those
     that nobody read came as well."""
-    return [None if session.timeless else clock.clock_of_log(session.capture)
+    return [None if session.timeless else clock.sample_clock(session.capture)
             for session in sessions]
 
 

@@ -144,6 +144,7 @@ def compare_traces(real, sim, aligned):
     motion = None
     if aligned.same and own_real is not None:
         motion = traces.motion(own_real.applied(real_free))
+    if motion is not None:
         aligned = replace(aligned, same=pairing.one_motion(real_free, sim_free, aligned, motion,
                                                            live))
     railed = [log.name for log in (real, sim) if log.railed.mean() > RAILED]
@@ -228,7 +229,8 @@ def numbers_of(real, sim, mended, own, fits, findings):
     """([Parameter], [Convention] on the noise) of two Traces; mended: that of the simulator with
     the conventions found put right; own: OwnSensor or None of the real one, of the simulator."""
     spoiled = [c for c in findings if c.name in convention_findings.SPOILED
-               or (c.name, c.sensor) == ("time_step", "gyro")]
+               or (c.name, c.sensor) == ("time_step", "gyro")
+               or c.name in convention_findings.OF_ATTITUDE and not real.rests]
     usable = {k: not any(c.sensor in (k, "device") for c in spoiled) for k in ("accel", "gyro")}
     densities, on_noise = noise_and_registers.noises(real, mended)
     rounded = {kind: sim.quantum[kind == "gyro"] / np.sqrt(12.0) for kind in fits

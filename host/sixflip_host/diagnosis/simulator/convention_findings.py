@@ -60,6 +60,9 @@ SET = {
 # After these a simulator's numbers are not those of a sensor any more.
 SPOILED = ("no_gravity", "gravity_sign", "gravity_after_rotation", "constant_channel",
            "world_frame_forces", "world_frame_rates", "euler_angle_rates", "unknown")
+# These are told by what is left of the forces without gravity, from which a log without a rest
+# does not tell the sensor's offset and crooked axes.
+OF_ATTITUDE = ("time_step", "no_centripetal_term")
 # These are wrong only while it moves, or in noise: what its rests say stands.
 IN_MOTION = ("time_step", "no_centripetal_term", "lever_arm_missing", "accel_delay", "gyro_delay",
              "accel_rate_held", "gyro_rate_held", "noise_per_sample", "bias_sign")

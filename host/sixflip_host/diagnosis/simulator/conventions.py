@@ -79,10 +79,10 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
         made = made if alignment.turning else hypotheses.along_one_line
         heard = measured[:, live]
         left = pairing.not_foretold(made(values, pair.motion, real.g)[-1], heard)
-        if noise is not None:
-            values = pairing.reliable(values, np.maximum(
-                np.sqrt(2.0 * pair.band_hz * share) * noise.density,
-                pairing.shaken(left, heard, values)))
+        # Where no log tells it what is not foretold is all that says how noisy they are.
+        density = 0.0 if noise is None else noise.density
+        values = pairing.reliable(values, np.maximum(np.sqrt(2.0 * pair.band_hz * share) * density,
+                                                     pairing.shaken(left, heard, values)))
         return pair, measured, made(values, pair.motion, real.g), evidence_of_logs.bends(
             left, pairing.GRID_HZ)
 

@@ -1,24 +1,23 @@
-"""The motion of a log that never rests, by gravity's mean over many seconds: what goes to and fro
-is not sped up for ever. Carried along by the gyro, that mean is the vertical in a frame that turns
-with the gyro's bias alone, of which it shows all but what is about the vertical itself [Laidig &
-Seel, VQF, Information Fusion 91 (2023), 187, sections 3.2 and 3.3]. And its noise, of the quick
-end of its spectrum.
+"""What a log that never rests says its sensor went through, and its noise.
+
+The gyro carries the attitude, and the vertical is where the specific force lies over some twenty
+seconds, in the frame that it carries: what moves a thing averages out, since it does not go ever
+faster [Mahony et al., IEEE Trans. Autom. Control 53 (2008), 1203, whose filter this is without its
+delay: past and future alike]. The noise is that of the quick end of the spectrum.
 """
 import numpy as np
 
 from ...capture.attitude import carried, rotations
 from .alignment import smooth
 
-# Hz: slower than waves and than a car brakes, and what a tenth of a deg/s of a gyro's bias turns
-# by in the meantime is two degrees.
-VERTICAL_HZ = 0.05
-PERIODS = 2.0  # of it, that a log must last
-SUSPENDED = 0.5  # of gravity, that the mean of a force must have to be one
-ROUNDS = 3  # of a bias, each of which leaves a tenth
-# Of the average axis, how well an axis is seen that is half believed: what stays level shows a
-# bias about the vertical by its tilt of a few degrees, and a car that brakes in bends otherwise.
-SEEN = 0.1
 UP = np.array([0.0, 0.0, 1.0])  # of the world
+# Hz below which the force is the vertical's; the first ones are for a bias of a gyro that turns
+# the frame by more than a radian in the period of the last (20 deg/s, ITG-3205 PS).
+BANDS, BIAS = (0.4, 0.1, 0.05), np.radians(20.0)
+# Of gravity, by which what moves a thing is still there in such a mean: 2 m/s of change in 20 s
+# are a hundredth, a drone that leans into a curve has some hundredths.
+STRAYS = 0.03
+SUSPENDED = 0.5  # of gravity, that the mean of a force must have to be one
 # Order of the differences that noise is taken from: of a wave of a tenth of the rate they leave
 # (2 sin 18 deg)^8, 2 %, while white noise is as strong in them as anywhere.
 ORDER, ORDER_POWER = 4, 70.0  # (its power in them is the binomial of 8 over 4)
@@ -36,36 +35,77 @@ FLAT_SIGMAS, UNTOLD = 4.0, 0.1
 def levelled(t, force, rate, rate_hz, g):
     """(turn (n, 3, 3) body to world, bias (3,) rad/s that is known but about the vertical, speed
     (n, 3) m/s in the body), or None where nothing shows the vertical; force, rate (n, 3)."""
-    if len(t) < 2 or (t[-1] - t[0]) * VERTICAL_HZ < PERIODS:
+    if len(t) < 2 or (t[-1] - t[0]) * BANDS[-1] < 1.0:
         return None
-    bias, dt = rate.mean(axis=0), np.diff(t)[:, None]
-    edge = slice(*(int(share * len(t)) for share in (0.05, 0.95)))  # one side only of the means
-    for left in range(ROUNDS, -1, -1):
-        own = rate - bias
-        turn = carried(rotations(0.5 * (own[1:] + own[:-1]) * dt))
-        carried_force = np.einsum("nij,nj->ni", turn, force) / g
-        vertical = smooth(carried_force, rate_hz, VERTICAL_HZ)
-        if not left:
-            break
-        # Of a rate that is too large by e a frame turns by it: dv/dt = (R e) x v.
-        columns = np.stack([smooth(np.cross(turn[:, :, k], carried_force), rate_hz, VERTICAL_HZ)
-                            for k in range(3)], 2)
-        slope = np.gradient(vertical, axis=0) / np.maximum(np.gradient(t), 1e-9)[:, None]
-        design, wanted = columns[edge].reshape(-1, 3), slope[edge].reshape(-1)
-        gram = design.T @ design
-        gram += SEEN * np.trace(gram) / 3.0 * np.eye(3)
-        bias = bias + np.linalg.solve(gram, design.T @ wanted)
-    size = np.linalg.norm(vertical, axis=1)
-    if size.min() < SUSPENDED:
+    bias = np.zeros(3)
+    for band in BANDS:
+        course = _carried(t, rate - bias)
+        bias = bias + _bias(t, course, _vertical(force, course, rate_hz, band)[0], band)
+    course = _carried(t, rate - bias)
+    vertical, size = _vertical(force, course, rate_hz, BANDS[-1])
+    if size.min() < SUSPENDED * g:
         return None
-    axis = np.cross(vertical / size[:, None], UP)
+    turn = _smallest(vertical) @ course
+    return turn, bias, _speed(t, turn, force - g * turn[:, 2, :], rate_hz)
+
+
+def _carried(t, rate):
+    """(n, 3, 3): attitudes in the frame of the first row, as a gyro carries them."""
+    return carried(rotations(0.5 * (rate[1:] + rate[:-1]) * np.diff(t)[:, None]))
+
+
+def _vertical(force, course, rate_hz, band):
+    """((n, 3) unit vectors against gravity in that frame, which a wrong bias lets wander; (n,)
+    m/s2 how large the mean force is)."""
+    slow = _slow(np.einsum("nij,nj->ni", course, force), rate_hz, band)
+    size = np.linalg.norm(slow, axis=1)
+    return slow / np.maximum(size, 1e-12)[:, None], size
+
+
+def _bias(t, course, vertical, band):
+    """(3,) rad/s of the gyro that makes the vertical wander as it does; what stays along it all
+    the time does not show, and keeps its prior's nothing."""
+    x, y, z = vertical.T
+    zero = np.zeros(len(x))
+    across = np.stack([np.stack([zero, z, -y], 1), np.stack([-z, zero, x], 1),
+                       np.stack([y, -x, zero], 1)], 1)
+    pull = across @ course
+    steps = 0.5 * (pull[1:] + pull[:-1]) * np.diff(t)[:, None, None]
+    wandered = np.concatenate([np.zeros((1, 3, 3)), np.cumsum(steps, axis=0)])
+    columns = _slow(wandered.reshape(-1, 9), (len(t) - 1) / (t[-1] - t[0]), band).reshape(-1, 3, 3)
+    columns = (columns - columns.mean(axis=0)).reshape(-1, 3)
+    off = (vertical - vertical.mean(axis=0)).ravel()
+    found, number = np.zeros(3), min(1.0, 2.0 * band * (t[-1] - t[0]) / len(vertical))
+    for _ in range(3):
+        # Two values a period of the band are independent, and err by what is left of them.
+        weight = number / max(STRAYS ** 2, 3.0 * np.mean((off - columns @ found) ** 2))
+        found = np.linalg.solve(weight * columns.T @ columns + np.eye(3) / BIAS ** 2,
+                                weight * columns.T @ off)
+    return found
+
+
+def _smallest(vertical):
+    """(n, 3, 3): the smallest rotations that take unit vectors (n, 3) to the world's vertical."""
+    axis = np.cross(vertical, UP)
     sine = np.linalg.norm(axis, axis=1)
-    angle = np.arctan2(sine, vertical[:, 2] / size)
-    turn = rotations(axis / np.maximum(sine, 1e-12)[:, None] * angle[:, None]) @ turn
-    world = np.einsum("nij,nj->ni", turn, force) - g * UP
-    way = np.concatenate([np.zeros((1, 3)), np.cumsum(0.5 * (world[1:] + world[:-1]) * dt, 0)])
-    way -= smooth(way, rate_hz, VERTICAL_HZ)
-    return turn, bias, np.einsum("nji,nj->ni", turn, way)
+    angle = np.arctan2(sine, vertical[:, 2])
+    return rotations(axis / np.maximum(sine, 1e-12)[:, None] * angle[:, None])
+
+
+def _speed(t, turn, moved, rate_hz):
+    """(n, 3) m/s in the body: the integral of what moves it, less what is as slow as that."""
+    world = np.einsum("nij,nj->ni", turn, moved)
+    steps = 0.5 * (world[1:] + world[:-1]) * np.diff(t)[:, None]
+    total = np.concatenate([np.zeros((1, 3)), np.cumsum(steps, axis=0)])
+    return np.einsum("nji,nj->ni", turn, total - _slow(total, rate_hz, BANDS[-1]))
+
+
+def _slow(values, rate_hz, slow_hz):
+    """(n, k): what is slower than that of values (n, k), whose ends are mirrored: by themselves
+    the first and the last reading would say what is there on average."""
+    wide = min(len(values) - 1, int(rate_hz / slow_hz))
+    longer = np.pad(values, ((wide, wide), (0, 0)), "reflect")
+    return smooth(longer, rate_hz, slow_hz)[wide:len(longer) - wide]
 
 
 def white(values):
