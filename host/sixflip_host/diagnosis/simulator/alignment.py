@@ -9,6 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import fft
 
+from ...capture.registers import SENSORS
+
 GRID_HZ = 100.0  # sixteen steps in a period of the band: the first offset, before it is refined
 BAND_HZ = 6.0  # of what is compared: beyond it a simulator's contacts are not repeatable
 # Correlation from which on two logs are of one motion. Less takes two runs of one schedule for one
@@ -193,3 +195,37 @@ def independent(x):
     auto = auto / auto[0]
     below = np.flatnonzero(auto <= 0.0)
     return float(1.0 + 2.0 * auto[1:below[0] if len(below) else len(auto)].sum())
+
+
+def _drowned(trace):
+    """Of which sensors of a Trace the noise is not known, in words."""
+    kinds = [SENSORS[kind] for kind, noise in trace.noise.items() if noise is None]
+    return ": that of the %s is not told from what shakes it" % " and the ".join(kinds) \
+        if kinds else ""
+
+
+def said_of(real, sim, aligned):
+    """Sentences on the two logs."""
+    sentences = []
+    if aligned.same:
+        sentences.append(
+            "%s and %s are of one motion (correlation of the %s %.3f): offset %.3f ± %.3f s, "
+            "%.0f s together" % (sim.name, real.name, aligned.by, aligned.correlation,
+                                 aligned.offset_s, 1.645 * aligned.offset_sigma_s,
+                                 aligned.overlap_s))
+    else:
+        sentences.append(
+            "%s and %s are of different motions (correlation of the %s %.2f): each was held "
+            "against its own rests and moves" % (sim.name, real.name, aligned.by,
+                                                 aligned.correlation))
+    for trace in (real, sim):
+        if not trace.rests:
+            sentences.append("no rest in %s: gravity and the gyro's bias are known in it on "
+                             "average alone, and its noise by the quick end of its spectrum%s" % (
+                                 trace.name, _drowned(trace)))
+        if trace.rate is None:
+            sentences.append("no gyro in %s" % trace.name)
+    if abs(real.rate_hz / sim.rate_hz - 1.0) > 0.02:
+        sentences.append("%s has %.4g rows a second, %s %.4g: compared on one grid" % (
+            sim.name, sim.rate_hz, real.name, real.rate_hz))
+    return sentences

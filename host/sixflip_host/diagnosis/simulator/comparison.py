@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...capture.registers import SENSORS
 from .. import verdict
 from . import (
     alignment,
@@ -14,6 +13,7 @@ from . import (
     gyro_or_motor,
     held_readings,
     hypotheses,
+    levelled_off,
     noise_and_registers,
     numbers_told,
     own_calibration,
@@ -22,6 +22,7 @@ from . import (
     parameters,
     remaining_gap,
     single_log,
+    timing,
     traces,
 )
 
@@ -154,9 +155,9 @@ def compare_traces(real, sim, aligned):
     elif aligned.same and motion is not None:
         fresh = {k: sim.rate_hz / v.rows for k, v in holds["sim"].items()}
         fits = conventions.same_motion(real_free, sim_free, aligned, motion, live, fresh)
-        stops = held_readings.stops(fits)
+        stops = levelled_off.stops(fits)
         if stops:
-            real_free = held_readings.marked(real_free, stops)
+            real_free = levelled_off.marked(real_free, stops)
             fits = conventions.same_motion(real_free, sim_free, aligned, motion, live, fresh)
         unmended = fits
         bands = dead_zone.found(fits, real_free, sim_free)
@@ -203,10 +204,10 @@ def compare_traces(real, sim, aligned):
     left = {kind: remaining_gap.not_foretold(fit) for kind, fit in of_told.items()}
     gap = remaining_gap.held_out(unmended, left, real, sim)
     cut = {(p.sensor, p.axis) for p in numbers if p.name == "range"}
-    numbers += [p for p in held_readings.ranges(stops, real, sim) if (p.sensor, p.axis) not in cut]
+    numbers += [p for p in levelled_off.ranges(stops, real, sim) if (p.sensor, p.axis) not in cut]
     if len(fits) == 2 and not findings:
         numbers += noise_and_registers.shaking(real, dead_zone.taken_off(sim, bands))
-    numbers += parameters.timing(late, late_sigma, fits, aligned, {
+    numbers += timing.timing(late, late_sigma, fits, aligned, {
         kind: held_readings.smoothing_s2(holds["sim"][kind], sim)
         - held_readings.smoothing_s2(holds["real"][kind], real) for kind in fits})
     findings += of_numbers + parameters.bias_sign(numbers)
@@ -216,8 +217,8 @@ def compare_traces(real, sim, aligned):
         kind: replace(fit, fit=fit.refitted(None)) for kind, fit in of_told.items()})
     return Comparison(sim.name, real.name, aligned, tuple(findings), tuple(numbers), task, gap,
                       fits, own_real, own_sim,
-                      (*said_of(real, sim, aligned), *gyro_or_motor.said_of(bands, of_gyro),
-                       *why_not), tuple(unseen),
+                      (*alignment.said_of(real, sim, aligned),
+                       *gyro_or_motor.said_of(bands, of_gyro), *why_not), tuple(unseen),
                       judged or convention_findings.only_in_motion(findings),
                       None if real.celsius is None else float(real.celsius.mean()),
                       wanders=remaining_gap.wandering(fits, left), lacks_delay=lacks_delay,
@@ -237,37 +238,3 @@ def numbers_of(real, sim, mended, own, fits, findings):
                if conventions.silent(sim, kind)}
     return (parameters.shapes(*own, fits, usable, rounded) + densities
             + noise_and_registers.registers(real, sim), on_noise)
-
-
-def _drowned(trace):
-    """Of which sensors of a Trace the noise is not known, in words."""
-    kinds = [SENSORS[kind] for kind, noise in trace.noise.items() if noise is None]
-    return ": that of the %s is not told from what shakes it" % " and the ".join(kinds) \
-        if kinds else ""
-
-
-def said_of(real, sim, aligned):
-    """Sentences on the two logs."""
-    sentences = []
-    if aligned.same:
-        sentences.append(
-            "%s and %s are of one motion (correlation of the %s %.3f): offset %.3f ± %.3f s, "
-            "%.0f s together" % (sim.name, real.name, aligned.by, aligned.correlation,
-                                 aligned.offset_s, 1.645 * aligned.offset_sigma_s,
-                                 aligned.overlap_s))
-    else:
-        sentences.append(
-            "%s and %s are of different motions (correlation of the %s %.2f): each was held "
-            "against its own rests and moves" % (sim.name, real.name, aligned.by,
-                                                 aligned.correlation))
-    for trace in (real, sim):
-        if not trace.rests:
-            sentences.append("no rest in %s: gravity and the gyro's bias are known in it on "
-                             "average alone, and its noise by the quick end of its spectrum%s" % (
-                                 trace.name, _drowned(trace)))
-        if trace.rate is None:
-            sentences.append("no gyro in %s" % trace.name)
-    if abs(real.rate_hz / sim.rate_hz - 1.0) > 0.02:
-        sentences.append("%s has %.4g rows a second, %s %.4g: compared on one grid" % (
-            sim.name, sim.rate_hz, real.name, real.rate_hz))
-    return sentences

@@ -1,25 +1,16 @@
-"""Readings that stand while what they are of goes on: over several rows, or at a level.
+"""Readings that stand over several rows while what they are of goes on.
 
-Over several rows the sensor is slower than the rows are. Either the same counts stand there again
+The sensor is slower than the rows are. Either the same counts stand there again
 (a board that reads faster than the chip measures, a simulator that publishes faster than it
 steps), or the value is held and noise is drawn anew for every row (a noise model behind the slow
 source), so that no two rows are alike.
-
-At a level the real sensor stops, within its noise or softly, while the simulator of the same
-motion goes on: a front end that saturates before the converter does. A log by itself does not tell
-it from a motor that comes to one rate again and again.
 """
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..detect import unread_rows
-from ..detect.codes import number_of_runs
 from . import convention_findings, conventions
-from .evidence_of_logs import shifted
-from .hypotheses import DEG
-from .pairing import GRID_HZ
-from .parameters import MG, Parameter
 
 WINDOW_ROWS = 40  # over which it is told whether a sensor moves: more than LONGEST
 # Eighths of a step that a reading has to change by, a row on average over a window: with less, two
@@ -31,16 +22,8 @@ LONGEST = 25  # rows that a reading is looked for to be held under noise: 4 Hz a
 ODD = 0.01
 LEAST = 1.5  # rows from which on a reading is held at all: half of the rows say nothing new
 SLOWER = 0.8  # of the real log's own rate of new readings: oscillators differ by 2 % (ITG-3205)
-# Times the largest reading, that the simulator goes beyond it: more than a gyro's scale is off
-# (6 %, ITG-3205 PS). Share of the simulator's rise there that the readings may have: a filter
-# takes the same part of all of a peak.
-BEYOND, RISES = 1.08, 0.5
 # Of a change from row to row, in counts: each row is rounded by 1/12 of a square count.
 ROUNDED = 1.0 / 6.0
-NEAR = 0.85  # of the largest reading: what is read there, not what two kinds of shaking leave
-AT = 0.95  # of a stop: by as much the band that is compared rounds it off
-OVER = 0.7  # of the readings at a stop are beyond it in the simulator; of a steady rate half are
-FEWEST, PEAKS = 15, 2  # samples (at pairing.GRID_HZ) and peaks beyond, to both sides together
 
 
 @dataclass(frozen=True)
@@ -210,56 +193,3 @@ def beside(delay, rate_hz, holds_sim):
     ms = 1e3 * (holds_sim[kind].rows - 1.0) / 2.0 / rate_hz
     return replace(delay, set_to="%s, besides the %.1f ms by which its rows are late on average "
                    "because they repeat readings" % (delay.set_to, ms))
-
-
-def stops(fits):
-    """{(sensor, axis): m/s2 or rad/s that the real channel does not go beyond} of {sensor:
-    conventions.SensorFit}, where the simulator's does."""
-    found = {}
-    for kind, sensor_fit in fits.items():
-        fit = sensor_fit.fit
-        if fit.unit != 1.0 or not np.array_equal(fit.axes, np.eye(3)):
-            continue
-        real = shifted(sensor_fit.pair.real(kind), fit.delay_s * GRID_HZ)
-        for axis in range(3):
-            stop = stop_of(real[:, axis], sensor_fit.pair.simulated(kind)[:, axis])
-            if stop is not None:
-                found[kind, axis] = stop
-    return found
-
-
-def stop_of(real, simulated):
-    """What real (n,) stops at where simulated goes beyond the largest of it, or None."""
-    top = np.abs(real).max()
-    beyond = (np.abs(simulated) > BEYOND * top) & (real * simulated > 0.0)
-    if beyond.sum() < FEWEST or number_of_runs(beyond) < PEAKS:
-        return None
-    rises = np.cov(np.abs(real[beyond]), np.abs(simulated[beyond]))
-    level = float(np.median(np.abs(real[beyond])))
-    # A motor that comes to its rate, in the simulator after going beyond it, stays there longer.
-    there = np.abs(real) > AT * level
-    if (np.abs(simulated[there]) > level).mean() < OVER:
-        return None
-    return level if level > NEAR * top and rises[0, 1] < RISES * rises[1, 1] else None
-
-
-def marked(trace, found):
-    """The Trace with what reaches the stops() found marked as at the end of what it can say."""
-    railed = trace.railed.copy()
-    for (kind, axis), stop in found.items():
-        values = (trace.force if kind == "accel" else trace.rate)[:, axis]
-        railed |= np.abs(values) > NEAR * stop
-    return replace(trace, railed=railed)
-
-
-def ranges(found, real, sim):
-    """[Parameter] of the stops() found: the median of what the real Trace reads from AT of them
-    on, and by how much the simulator's Trace goes beyond it."""
-    numbers = []
-    for (kind, axis), stop in found.items():
-        scale, unit, name = (MG, "mg", "force") if kind == "accel" else (DEG, "°/s", "rate")
-        ours, theirs = (np.abs(getattr(trace, name)[:, axis]) for trace in (real, sim))
-        level = scale * float(np.median(ours[ours > AT * stop]))
-        numbers.append(Parameter("range", kind, "xyz"[axis], unit, level, None, None, None,
-                                 level - scale * float(theirs.max()), None, True, level))
-    return numbers
