@@ -37,7 +37,7 @@ def test_it_is_wider_than_the_noise_of_both_at_rest(band, there):
     ones would tell one of a third of that, too, which either's shaking at rest may be."""
     found = bands_of(lambda rate: soft(rate, band), 90.0)
     assert len(found) == there
-    assert all(np.degrees(one.rate) == pytest.approx(band, rel=0.1) for one in found)
+    assert all(np.degrees(one.rate) == pytest.approx(band, rel=0.3) for one in found)
 
 
 @pytest.mark.parametrize("scale, there", [(0.7, 0), (0.93, 1), (1.06, 1), (1.3, 0)])

@@ -61,3 +61,15 @@ def test_a_gyro_s_bias_is_told_by_the_motion_as_well():
     assert bias.differs and bias.difference == pytest.approx(0.3, abs=0.01)
     low, high = bias.difference_interval
     assert low < 0.3 < high and high - low < 0.1
+
+
+@pytest.mark.parametrize("off_mg", [0.0, 40.0])
+def test_a_bias_that_no_attitude_tells_from_a_scale_is_no_no_gap(off_mg):
+    """A table that stays level: 23 mg of gap, all of it put right, and no number differed."""
+    t, force, rate = on_a_table(60.0)
+    found = compared(t, force, rate, force + [1e-3 * off_mg, 0.0, 0.0], rate)
+    differs = [p for p in found.differs if p.sensor == "accel"]
+    assert [(p.name, p.axis) for p in differs] == [("bias", "x")] * bool(off_mg)
+    for bias in differs:
+        low, high = bias.difference_interval
+        assert low < off_mg < high and high - low < 2.0

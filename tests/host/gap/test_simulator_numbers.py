@@ -14,7 +14,6 @@ from sixflip_host.diagnosis.simulator import (
     own_motion,
     pairing,
     parameters,
-    remaining_gap,
     simulator_answer,
     single_log,
     timing,
@@ -201,31 +200,6 @@ def test_what_is_compared_is_as_smooth_of_a_slow_log_as_of_a_fast_one(hertz):
     assert left[0] == pytest.approx(left[1], rel=1e-6)
     assert left[0] == pytest.approx(np.sqrt(0.5) / (1.0 + (hertz / alignment.BAND_HZ) ** 4),
                                     rel=1e-3)
-
-
-@pytest.mark.parametrize("off_mg", [0.0, 40.0])
-def test_a_bias_that_no_attitude_tells_from_a_scale_is_no_no_gap(off_mg):
-    """A rover on a flat floor: 23 mg of gap, 0.6 when put right, and no number differed."""
-    generator = np.random.default_rng(2)
-    level = np.array([0.05, -0.08, 9.80]) + 0.02 * generator.standard_normal((3000, 3))
-    noise = 0.005 * generator.standard_normal((2, 3000, 3))
-    simulated = level + noise[1] + np.array([off_mg / parameters.MG, 0.0, 0.0])
-    pair = SimpleNamespace(real=lambda kind: level + noise[0], simulated=lambda kind: simulated)
-    numbers = [parameters.compared(name, "accel", axis, unit, 0.0, 60.0, 0.0, 60.0)
-               for name, axis, unit in (("bias", "x", "mg"), ("bias", "z", "mg"),
-                                        ("misalignment", "xz", "°"), ("scale", "z", "%"))]
-    assert not any(p.differs for p in numbers)
-    fits = {"accel": SimpleNamespace(pair=pair, conventions=())}
-    before = parameters.MG * np.sqrt(((level + noise[0] - simulated) ** 2).mean())
-    told = remaining_gap.together(numbers, fits, {"accel": (float(before), 0.72, 0.72)})
-    differs = [p for p in told if p.differs]
-    if not off_mg:
-        assert told == numbers
-    else:
-        bias, = differs
-        assert (bias.name, bias.axis) == ("bias", "x")
-        low, high = bias.difference_interval
-        assert low < -40.0 < high and high - low < 0.5
 
 
 def moving(mg, seed, hertz=37.0):
