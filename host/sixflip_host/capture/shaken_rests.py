@@ -65,7 +65,8 @@ def _gained(capture, before, after):
         # What comes up to a speed at once, and goes on at it, has its force at the edges only.
         edges = np.array([counts[k:k + second].mean(axis=0)
                           for k in (before.end, after.first - second)])
-        error = np.sqrt((np.diff(parts, axis=1) ** 2).mean(axis=(0, 1)) / 2.0 / second)
+        # Of neighbours, also where a second has one row: then it is as uncertain as that.
+        error = np.sqrt((np.diff(counts[between], axis=0) ** 2).mean(axis=0) / 2.0 / second)
         limit = ALIKE * error + WANDERS[sensor] * capture.meta[scale] / unit + ROUNDING
         ends = [counts[run.first:run.end].mean(axis=0) for run in (before, after)
                 if run.end > run.first]

@@ -59,7 +59,7 @@ class SummarySession(Session):
         keep = np.isin(self.placement, list(placements))
         return replace(super().part(placements), **self._remembering(keep))
 
-    def _of_runs(self, runs):
+    def of_runs(self, runs):
         places = [self.runs.index(run) for run in runs]
         keep = np.isin(self.placement, places)
         number = np.full(len(self.runs), -1)

@@ -112,7 +112,7 @@ def test_what_only_samples_show_is_in_the_diagnosis_as_it_was_found(captured):
             "score_nats": 60.0, "words": "at 20 Hz", "value": {"x": 5.0}, "unit": "mg",
             "plausible": True, "share": 0.9, "number": 10.0, "place": {"vibration": 0.999}}
     samples = dict(one.about["samples"], findings=[seen])
-    few = one.session().part(range(3))._of_runs(())    # nothing but what the samples say
+    few = one.session().part(range(3)).of_runs(())    # nothing but what the samples say
     told = summary.Summary(dict(one.about, samples=samples), one.arrays)
     found, *_ = diagnosed.diagnose_board([told], [few])
     assert [c["effect"] for c in found["causes"]] == ["vibration"]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture import rests_by_variance
-from sixflip_host.diagnosis.simulator import traces
+from sixflip_host.diagnosis.simulator import log_rests
 from tests.worlds.tumbled import RATE_HZ, read, tumbled
 
 
@@ -24,7 +24,7 @@ def test_a_slow_log_rests_where_it_stands(fast, hz):
         setattr(slow, name, getattr(fast, name)[::every])
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        runs = traces.still(slow, float(hz))
+        runs = log_rests.calm(slow, float(hz))
     t = 1e-6 * slow.t_us % 20.0
     stands = (t <= 3.0) | (t >= 19.5)
     found = np.zeros(len(slow), bool)

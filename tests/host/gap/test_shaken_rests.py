@@ -5,6 +5,7 @@ import pytest
 
 from sixflip_host.capture import shaken_rests
 from sixflip_host.capture.capture_file import Capture
+from sixflip_host.capture.rests import Run
 from sixflip_host.diagnosis import diagnosis
 from sixflip_host.experiment import blocks
 
@@ -79,3 +80,16 @@ def test_without_a_gyro_nobody_knows_whether_it_turned():
     session = blocks.session_of("s", capture)
     assert len(session.runs) > 2
     assert shaken_rests.joined(capture, session.runs) == list(session.runs)
+
+
+def test_a_log_of_one_row_a_second_has_noise_to_be_held_against():
+    """A single row has no step within its second: any motion was as still as a rest."""
+    rng = np.random.default_rng(5)
+    accel = rng.normal([0.0, 0.0, 16384.0], 46.0, (300, 3))
+    accel[120:180, 0] += 1600.0 * np.sin(np.linspace(0.0, 12.0, 60))
+    meta = {"sensor": "mpu6050", "rate_hz": 1.0, "accel_lsb_per_g": 16384.0,
+            "gyro_lsb_per_dps": 65.5}
+    capture = Capture(meta, np.arange(300) * 1_000_000, np.rint(accel).astype(np.int16),
+                      np.rint(rng.normal(0.0, 3.0, (300, 3))).astype(np.int16))
+    runs = [Run(0, 0, 110), Run(0, 190, 300)]
+    assert shaken_rests.joined(capture, runs) == runs
