@@ -84,3 +84,11 @@ def test_logs_of_other_drives_that_read_otherwise_at_rest_do_not_tell_and_say_so
 def test_logs_of_other_drives_that_read_alike_at_rest_do_not_differ_there():
     found = compared(log(driven(), 1), log(driven(seed=5, late_s=4.7), 2))
     assert not found.alignment.same and not found.otherwise
+
+
+def test_an_axis_that_reads_one_value_tells_nothing_across_the_drive():
+    """A singular matrix, where the line of the forces has exactly nothing of an axis."""
+    real, sim = log(driven(), 1), log(driven(), 2)
+    real.accel[:, :2] = 0
+    found = compared(real, sim)
+    assert found.alignment.same

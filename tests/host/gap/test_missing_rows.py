@@ -116,3 +116,11 @@ def test_what_is_missing_of_a_turn_scatters_it_by_as_much_as_its_covariance_says
     turn = SimpleNamespace(shown=shown, middle=rate)
     drawn = [(rate[rng.random(200) < 0.04, 2] * dt).sum() / seconds for _ in range(4000)]
     assert 0.04 * turn_model.lost(turn)[2, 2] == pytest.approx(np.var(drawn), rel=0.1)
+
+
+@pytest.mark.parametrize("rows", [1, 2, 5])
+def test_a_log_of_a_few_rows_says_nothing_of_them(rows):
+    session = SimpleNamespace(capture=Capture(
+        {"rate_hz": 100.0}, np.arange(rows) * 10_000, np.zeros((rows, 3), np.int16),
+        np.ones((rows, 3), np.int16)), t_s=np.arange(rows) / 100.0, rate=100.0, runs=())
+    assert missing_rows.findings([session]) == []

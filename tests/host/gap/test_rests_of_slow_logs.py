@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture import rests_by_variance
-from sixflip_host.diagnosis.simulator import log_rests
+from sixflip_host.diagnosis.simulator import log_rests, rest_or_course
 from tests.worlds.tumbled import RATE_HZ, read, tumbled
 
 
@@ -36,3 +36,14 @@ def test_a_slow_log_rests_where_it_stands(fast, hz):
 def test_a_single_row_has_no_variance():
     with pytest.raises(ValueError, match="no variance"):
         rests_by_variance.sliding_variance(np.zeros((10, 3)), 1)
+
+
+@pytest.mark.parametrize("hz", [0.1, 0.3, 0.5, 1.0])
+def test_what_rolls_rests_at_no_rate_of_rows(hz):
+    """A piece of eight means tells no course from noise, one of none or of one cannot be cut."""
+    t = np.arange(0.0, 400.0 / hz, 1.0 / hz)
+    rng = np.random.default_rng(1)
+    rate = 8.0 * np.sin(2.0 * np.pi * 0.06 * hz * t)[:, None] * [1.0, 0.5, 0.2]
+    rate = rate + 0.02 * rng.standard_normal(rate.shape)
+    found = rest_or_course.resting(rate, [(0, len(t))], hz, 0.003, 0.015)
+    assert sum(b - a for a, b in found) < 0.2 * len(t)

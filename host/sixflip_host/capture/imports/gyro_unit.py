@@ -51,7 +51,7 @@ class Evidence:
         """Words on all that speaks for a unit, "dps" or "rad/s"."""
         sign, other = (1.0, "rad/s") if unit == "dps" else (-1.0, "deg/s")
         per_unit = units.GYRO_UNITS["rad/s" if unit == "dps" else "dps"]
-        least = min(TELLS, sign * self.nats)
+        least = min(TELLS, 0.999 * max(sign * nats for nats, _ in self.kinds))
         turning, *others = [sign * nats > least for nats, _ in self.kinds]
         words = ["so it turns as gravity does in the accelerometer"] if turning else []
         would = [words(per_unit * size) for tells, (_, (words, size)) in zip(

@@ -42,7 +42,7 @@ COUNTS = Lattice()
 
 def of_column(column):
     """The Lattice of a column (n,) of whole numbers, COUNTS where it has no other."""
-    near = column[np.abs(column) < NEAR]
+    near = column[(column > -NEAR) & (column < NEAR)]
     if len(near) < FEWEST:
         return COUNTS
     times = np.bincount(near + NEAR, minlength=2 * NEAR).astype(float)

@@ -24,6 +24,7 @@ SHARES = np.geomspace(0.002, 0.3, 26)  # of rows that are missing, tried: a fift
 ON_END = (0.0, 0.2, 0.5)  # share of the missing rows that another one follows
 MOST = 5  # periods of a step: beyond that its neighbours say little of it
 JUMPS = (-2.0, 6.0)  # times the steps beside it, of jumps of any size
+AROUND = 5  # rows with the step that is asked about and two on either side of it
 FEWEST = 200  # steps: of so many half a per cent is one
 TRIED = len(ON_END)  # the shares are tried of all else as well
 # Pairs of missing rows closer than half of their mean distance: as many as chance makes, or hardly
@@ -33,7 +34,8 @@ NEAR, REGULAR = 0.5, 0.05
 
 def findings(sessions):
     """[Finding]: samples that are missing although the times are steady."""
-    parts = [steps(session) for session in sessions if session.capture.gyro is not None]
+    parts = [steps(session) for session in sessions
+             if session.capture.gyro is not None and len(session.capture) > AROUND]
     ratio, noise = (np.concatenate(x) for x in zip(*(part[1:] for part in parts))) if parts else (
         np.zeros(0), np.zeros(0))
     if len(ratio) < FEWEST:

@@ -162,6 +162,8 @@ def refined(a, b, offset, drift):
         step = np.linalg.lstsq(gram, columns.T @ left, rcond=None)[0]
         offset, drift = offset + step[0], drift + step[1]
         sigma = errors(columns, left - columns @ step)
+    if not min(x.std(), y.std()) > 0.0:  # where they overlap one of them does not move
+        return Alignment(False, 0.0, 0.0, np.inf, 0.0, np.inf, inside.sum() / GRID_HZ)
     correlation = float(np.corrcoef(x, y)[0, 1])
     return Alignment(correlation >= ALIKE, correlation, float(offset), float(sigma[0]),
                      float(drift), float(sigma[1]), inside.sum() / GRID_HZ)

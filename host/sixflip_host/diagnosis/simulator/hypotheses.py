@@ -43,6 +43,7 @@ DEG = 180.0 / np.pi
 
 # What shows where the thing turns only: along one line of forces a wrong time step is a scale and
 # a bias, and the world's axes are the body's.
+LEAST_LINE = 1e-5  # of an axis across it: none, but for a prior that has a width
 IN_TURNS = ("time_step", "no_centripetal_term", "lever_arm_missing", "world_frame_forces")
 
 
@@ -107,7 +108,7 @@ def along_one_line(force, motion, g):
     What it reads across that does not tell its scale there, nor its misalignment."""
     off = force - force.mean(axis=0)
     line = np.abs(np.linalg.eigh(off.T @ off)[1][:, -1])
-    return [replace(h, shape_sd=SHAPE * np.tile(line, (3, 1)))
+    return [replace(h, shape_sd=SHAPE * np.tile(np.maximum(line, LEAST_LINE), (3, 1)))
             for h in accelerometer(force, motion, g) if h.name not in IN_TURNS]
 
 

@@ -67,8 +67,10 @@ def calm(capture, rate_hz):
     second = min(max(int(LEVEL_S * rate_hz), FEWEST), rests_by_variance.WINDOW)
     mask = np.ones(len(capture), bool)
     for counts in (capture.accel, capture.gyro):
-        if counts is None or len(counts) <= max(2 * window, second):
+        if counts is None:
             continue
+        if len(counts) <= max(2 * window, second):  # too short to tell
+            return []
         counts = counts.astype(float)
         level = max(rests_by_variance.variance_at_rest(counts, window=second), COUNT_VARIANCE)
         here = np.zeros(len(capture), bool)

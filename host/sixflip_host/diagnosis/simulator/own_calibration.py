@@ -21,6 +21,7 @@ MEDIAN_OF_TWO = np.log(2.0)  # of half the sum of two squares of unit variance
 # Of what two logs read at rest, in g: standard errors between their means, and by how much a floor
 # leans, a degree.
 APART, LEANS = 4.0, 0.0175
+UNKNOWN = 0.9  # of its prior width: what a bias has that no rest tells
 NORM = 0.005  # m/s2: how well |force| repeats between rests, 0.5 mg with flicker and rounding
 # Times NORM, that |force| may repeat worse, doubled each time: to 0.5 g, where the windows are no
 # rests but pieces of a flight.
@@ -88,7 +89,7 @@ def lies_otherwise(real, sim, own_real, own_sim):
     rest where that is more than their rests scatter by and a floor leans: how it lies, or a bias,
     which what lies in one attitude all the while does not tell apart. None where they read alike,
     or where their biases are known."""
-    if np.hypot(own_real.bias_sigma, own_sim.bias_sigma).max() < BIAS["accel"]:
+    if np.minimum(own_real.bias_sigma, own_sim.bias_sigma).max() < UNKNOWN * BIAS["accel"]:
         return None
     means = [trace.rest_means(trace.force) / trace.g for trace in (real, sim)]
     off = np.median(means[0], axis=0) - np.median(means[1], axis=0)

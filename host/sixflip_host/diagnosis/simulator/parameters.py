@@ -107,12 +107,18 @@ def shapes(real, sim, fits, usable, rounded=None, beside=False):
         shift = None if fit is None else -(np.eye(3) + more) @ fit.axes.T @ fit.bias / fit.unit
         told, across, coarse = np.ones(3, bool), np.zeros(3, bool), np.zeros(3)
         if fit is not None:
+            # Errors turn with their numbers into the real sensor's axes; of one that no channel of
+            # the simulator answers to nothing is known.
+            turn = np.abs(fit.axes)
+            silent = np.where(turn.any(axis=0), 0.0, np.inf)
+            bias_sigma = turn.T @ fit.bias_sigma + silent
+            shape_sigma = turn.T @ fit.shape_sigma @ turn + silent[:, None] + silent
             across = _across(fits[kind].hypothesis)
             told, coarse = _follows(fits[kind]), (rounded or {}).get(kind, 0.0) / np.maximum(
-                fits[kind].pair.simulated(kind).std(axis=0), 1e-12)
+                fits[kind].pair.simulated(kind).std(axis=0) @ turn, 1e-12)
         for i, axis in enumerate("xyz"):
             pair = (None, None) if fit is None else (shift[i] * scale,
-                                                     fit.bias_sigma[i] * scale / fit.unit)
+                                                     bias_sigma[i] * scale / fit.unit)
             (a, sa), (b, sb) = [(v[0][i] * scale, v[1][i] * scale) for v in values]
             if kind == "gyro" and fit is not None and not beside and np.isfinite(sa + sb):
                 # What is read at rest and what the motion leaves are two measurements of it.
@@ -126,7 +132,7 @@ def shapes(real, sim, fits, usable, rounded=None, beside=False):
             for j in range(3):
                 size = 100.0 if i == j else DEG
                 pair = (None, None) if fit is None else (more[i, j] * size,
-                                                         fit.shape_sigma[i, j] * size)
+                                                         shape_sigma[i, j] * size)
                 (a, sa), (b, sb) = [(v[2][i, j] * size, v[3][i, j] * size) for v in values]
                 # Along one line a channel that is across it and reads nothing tells how it lies.
                 if across[j] or not told[i] and (i == j or not across[i]):

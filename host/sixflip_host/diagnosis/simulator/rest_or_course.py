@@ -19,6 +19,7 @@ from .. import odds
 # s that are judged at once; which may be begun or ended by a move that was cut too late; and to
 # which what moves is cut at most, in search of a part that rests.
 PIECE_S, EDGE_S, LEAST_PIECE_S = 8.0, 1.0, 1.0
+PIECE_MEANS = 32  # means of a piece: of fewer rows a second it is longer
 # deg/s of a course, from what no gyro's bias does within seconds to what a hand's turn is; s for
 # which it goes one way, from a step of a walk to a ship's roll.
 COURSES_DPS, LASTS_S = (0.1, 0.3, 1.0, 3.0, 10.0, 30.0), (0.5, 1.0, 2.0, 4.0)
@@ -54,12 +55,13 @@ def resting(rate, runs, rate_hz, usual, quantum):
             return [span]
         return found if found is None else _parts(span, rate_hz, nats, -odds.PRESENT - prior)
 
-    cut = [pieces(*run, int(PIECE_S * rate_hz)) for run in runs]
+    whole = max(int(PIECE_S * rate_hz), PIECE_MEANS * max(1, round(SUBMEAN_S * rate_hz)))
+    cut = [pieces(*run, whole) for run in runs]
     told = [(span, found) for spans in cut for span in spans
             for found in [rests_in(span)] if found is not None]
     # Where most of what is calm in a log moves, the rest of it is not taken to rest [Laplace's
     # rule of succession, a piece for a case].
-    calm, still = (sum(end - first for first, end in spans) / (PIECE_S * rate_hz) for spans in (
+    calm, still = (sum(end - first for first, end in spans) / whole for spans in (
         [span for span, _ in told], [part for _, found in told for part in found]))
     prior = max(0.0, float(np.log((calm - still + 1.0) / (still + 1.0))))
     kept = []
@@ -80,7 +82,7 @@ def _parts(span, rate_hz, nats, most):
         found = nats(*part) if part[1] - part[0] >= least else None
         if found is not None and found < most:
             return [part]
-    if end - first < 2 * least:
+    if end - first < max(2 * least, 2 * FEWEST):
         return []
     parts = []
     for half in ((first, middle), (middle, end)):

@@ -63,11 +63,11 @@ def band(own, axis, hz):
     if hz is None:
         top = int(mean.argmax())
     else:
-        near = max(0, int(round(hz / own.hz[1])) - lobe)
+        near = min(max(0, int(round(hz / own.hz[1])) - lobe), len(mean) - 1)
         top = near + int(mean[near:near + 2 * lobe + 1].argmax())
     labels = ndimage.label(mean > ENDS * mean[top])[0]
     bins = np.flatnonzero(labels == labels[top])
-    first, last = min(bins[0], top - lobe), max(bins[-1], top + lobe)
+    first, last = min(bins[0], top - lobe), min(max(bins[-1], top + lobe), len(mean) - 1)
     return max(first, 0) * own.hz[1], last * own.hz[1]
 
 
