@@ -73,3 +73,18 @@ def test_a_bias_that_no_attitude_tells_from_a_scale_is_no_no_gap(off_mg):
     for bias in differs:
         low, high = bias.difference_interval
         assert low < off_mg < high and high - low < 2.0
+
+
+def test_what_shakes_each_log_keeps_no_number_from_being_told():
+    """Bumps left three times the noise, and what closed all the rest of 26 mg was not said."""
+    t, force, rate = on_a_table(60.0)
+    rng = np.random.default_rng(4)
+
+    def bumps():
+        slow = np.convolve(rng.standard_normal(len(t)), np.hanning(40), "same")
+        return np.outer(slow / slow.std() * (np.abs(rate[:, 2]) > 1.0), [0.006] * 3)
+    found = compared(t, force + bumps(), rate, force + bumps() + [0.04, 0.0, -0.02], rate)
+    before, after, noise = found.gap["accel"]
+    assert after > 2.0 * noise and after < 0.4 * before
+    told = {p.axis[0] for p in found.differs if p.sensor == "accel"}
+    assert told == {"x", "z"}

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from .. import verdict
 from . import hypotheses, parameters, remaining_gap
 from .alignment import errors
 from .hypotheses import DEG
@@ -52,10 +53,11 @@ def together(numbers, fits, gaps, flicker):
     of_told = {}
     for kind, sensor_fit in fits.items():
         of_told[kind] = told(sensor_fit, numbers, flicker[kind])
-        _, after, noise = gaps[kind]
-        enough = parameters.TOGETHER * noise
+        before, after, noise = gaps[kind]
+        # As far as all numbers close it, where more than noise is left then: bumps shake each log.
+        enough = max(parameters.TOGETHER * noise, before - verdict.CLOSED * (before - after))
         left = remaining_gap.size(kind, remaining_gap.not_foretold(of_told[kind]))
-        if sensor_fit.conventions or not after < enough < left:
+        if sensor_fit.conventions or not enough < left:
             continue
         found = _closing(sensor_fit, numbers, enough, flicker[kind])
         if found:
