@@ -200,7 +200,8 @@ def compare_traces(real, sim, aligned):
     numbers, of_numbers = numbers_of(real, sim, mended, (own_real, own_sim), fits, findings)
     left = {kind: remaining_gap.not_foretold(sensor_fit) for kind, sensor_fit in fits.items()}
     attainable = remaining_gap.held_out(unmended, left, real, sim)
-    numbers, of_told = numbers_told.together(numbers, fits, attainable, real.flicker)
+    numbers, of_told = numbers_told.together(
+        numbers, fits, attainable, remaining_gap.wandering(fits, left), real.flicker)
     left = {kind: remaining_gap.not_foretold(fit) for kind, fit in of_told.items()}
     gap = remaining_gap.held_out(unmended, left, real, sim)
     cut = {(p.sensor, p.axis) for p in numbers if p.name == "range"}

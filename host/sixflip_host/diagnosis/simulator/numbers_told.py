@@ -45,19 +45,21 @@ def told(sensor_fit, numbers, flicker):
                           hypotheses.SHAPE if h.shape_sd is None else h.shape_sd, SAME)))
 
 
-def together(numbers, fits, gaps, flicker):
+def together(numbers, fits, gaps, wanders, flicker):
     """(The numbers, {sensor: told()} by them): where those told leave more of the gap of a sensor
     than all of them do, the fewest of the others that close it differ as well, the rest taken for
-    equal. gaps {sensor: (before, after, noise alone)} with all numbers free; flicker {sensor: mg
-    or deg/s}."""
+    equal. gaps {sensor: (before, after, noise alone)} with all numbers free; wanders: the sensors
+    of which what is left then goes on for seconds, which no number is; flicker {sensor: mg or
+    deg/s}."""
     of_told = {}
     for kind, sensor_fit in fits.items():
         of_told[kind] = told(sensor_fit, numbers, flicker[kind])
         before, after, noise = gaps[kind]
-        # As far as all numbers close it, where more than noise is left then: bumps shake each log.
-        enough = max(parameters.TOGETHER * noise, before - verdict.CLOSED * (before - after))
+        enough = parameters.TOGETHER * noise
+        if kind not in wanders:  # bumps shake each log: as far as all numbers close it
+            enough = max(enough, before - verdict.CLOSED * (before - after))
         left = remaining_gap.size(kind, remaining_gap.not_foretold(of_told[kind]))
-        if sensor_fit.conventions or not enough < left:
+        if sensor_fit.conventions or not after < enough < left:
             continue
         found = _closing(sensor_fit, numbers, enough, flicker[kind])
         if found:
