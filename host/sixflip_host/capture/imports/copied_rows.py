@@ -12,7 +12,7 @@ COPIED_WRONG, SURE = 1e-3, 14.0
 
 def left_out(times, values, labels):
     """(times, {group: values}, labels, bool (n,) True for the rows that stay or None for all, a
-    remark); times (n, 1 or 2) or None, labels (n,) or None."""
+    remark); times (n,) or None, labels (n,) or None."""
     new = None if times is None else readings(times, [*values.values()] + (
         [] if labels is None else [labels[:, None]]))
     if new is None:
@@ -29,7 +29,7 @@ def readings(times, blocks):
     with one stamp are as well one message written over and over, they have all its values, as rows
     with two stamps have not; what was read and handed over together differs alike in both.
 
-    times (n,) or (n, 2); blocks: list of (n, k), all that a row has.
+    times (n,); blocks: list of (n, k), all that a row has.
     """
     same = np.ones(len(times) - 1, bool)
     for block in blocks:

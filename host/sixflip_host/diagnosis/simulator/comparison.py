@@ -150,7 +150,7 @@ def compare_traces(real, sim, aligned):
                                                            live))
     railed = [log.name for log in (real, sim) if log.railed.mean() > RAILED]
     if railed:
-        unseen.append("conventions: %s stands at the end of its range most of the time"
+        unseen.append("conventions: most of the time at the end of the range in %s"
                       % " and ".join(railed))
     elif aligned.same and motion is not None:
         fresh = {k: sim.rate_hz / v.rows for k, v in holds["sim"].items()}
@@ -194,7 +194,7 @@ def compare_traces(real, sim, aligned):
     if not fits and None not in (own_real, own_sim):
         otherwise = own_calibration.lies_otherwise(real_free, mended, own_real, own_sim)
     if otherwise is not None:
-        unseen = [*unseen, "which of bias and attitude it is by which %s and %s differ at rest, "
+        unseen = [*unseen, "whether a bias or how they lie makes %s and %s differ at rest, by "
                   "(%.0f, %.0f, %.0f) mg: each lies too much alike in all of its rests" % (
                       real.name, sim.name, *otherwise)]
     numbers, of_numbers = numbers_of(real, sim, mended, (own_real, own_sim), fits, findings)
