@@ -12,16 +12,14 @@ from . import (
     dead_zone,
     gyro_or_motor,
     held_readings,
-    hypotheses,
     levelled_off,
     noise_and_registers,
     numbers_told,
+    one_motion,
     own_calibration,
     own_motion,
-    pairing,
     parameters,
     remaining_gap,
-    single_log,
     timing,
     traces,
 )
@@ -126,105 +124,77 @@ def compare(real_logs, name, capture):
 
 def compare_traces(real, sim, aligned):
     """Comparison of two Traces, whose clocks lie as the Alignment says."""
-    unseen = []
-    holds = {"real": held_readings.holds(real), "sim": held_readings.holds(sim)}
-    findings = held_readings.findings(real, sim, holds["real"], holds["sim"])
-    sim_free = held_readings.free(sim, holds["sim"])
-    real_free = held_readings.free(real, holds["real"])
-    live, constant = single_log.constant_channels(real, sim)
-    findings += constant
-    if aligned.by == "forces" and not single_log.turns(real) and not single_log.turns(sim):
-        aligned = replace(aligned, turning=False)
-        live = {**live, "gyro": np.zeros(3, bool)}  # noise says nothing of the other log's
-        unseen = ["%s of %s: nothing turns" % (", ".join(
-            name.replace("_", " ") for name in hypotheses.IN_TURNS), sim.name)]
-    own_real = own_calibration.fitted(real_free)
-    fits, unmended, stops, bands, of_gyro = {}, {}, {}, (), 0.0
-    late, late_sigma, judged, lacks_delay = None, None, False, False
-    row_s = 1.0 / min(real.rate_hz, sim.rate_hz)
-    motion = None
-    if aligned.same and own_real is not None:
-        motion = traces.motion(own_real.applied(real_free))
-    if motion is not None:
-        aligned = replace(aligned, same=pairing.one_motion(real_free, sim_free, aligned, motion,
-                                                           live))
-    railed = [log.name for log in (real, sim) if log.railed.mean() > RAILED]
-    if railed:
-        unseen.append("conventions: most of the time at the end of the range in %s"
-                      % " and ".join(railed))
-    elif aligned.same and motion is not None:
-        fresh = {k: sim.rate_hz / v.rows for k, v in holds["sim"].items()}
-        fits = conventions.same_motion(real_free, sim_free, aligned, motion, live, fresh)
-        stops = levelled_off.stops(fits)
-        if stops:
-            real_free = levelled_off.marked(real_free, stops)
-            fits = conventions.same_motion(real_free, sim_free, aligned, motion, live, fresh)
-        unmended = fits
-        bands = dead_zone.found(fits, real_free, sim_free)
-        if bands:
-            fits = conventions.same_motion(real_free, dead_zone.taken_off(sim_free, bands),
-                                           aligned, motion, live, fresh)
-            of_gyro = gyro_or_motor.nats_of_gyro(
-                replace(real_free, force=own_real.applied(real_free).force), sim_free, aligned,
-                fits)
-        late, late_sigma, delays = conventions.delay(fits, row_s)
-        delays = [held_readings.beside(c, sim.rate_hz, holds["sim"]) for c in delays
-                  if own_motion.shown_late(sim_free, late)]
-        judged = len(fits) == 2
-        findings += [c for f in fits.values() for c in f.conventions if not (
-            constant and c.name == "constant_channel")] + delays
-    elif constant:
-        unseen.append("other conventions of %s: a channel of it says nothing" % sim.name)
-    else:
-        more, unseen, judged, lacks_delay = own_motion.different_motion(
-            real_free, sim_free, own_real if real.rests else None, row_s)
-        findings += more
-        if aligned.same and not real.rests:
-            unseen = ["conventions and parameters of %s, but for what its own rests show: there "
-                      "is none in %s" % (sim.name, real.name)]
+    logs = one_motion.logs_of(real, sim, aligned)
+    findings, unseen, judged, lacks_delay, together = _conventions(logs)
+    fits = together.fits
     if real.rate is not None and sim.rate is None:
         unseen = [*unseen, "the gyro: there is none in %s" % sim.name]
-    findings = convention_findings.merged(findings)
-    mended = convention_findings.trace_put_right(sim_free, findings)
-    own_sim = own_calibration.fitted(mended)
+    mended = convention_findings.trace_put_right(logs.sim_free, findings)
+    own = logs.own_real, own_calibration.fitted(mended)
     if not fits:  # what never rests is known beside the other log of its motion alone
-        own_real, own_sim = (own if log.rests else None for own, log in (
-            (own_real, real), (own_sim, sim)))
+        own = tuple(sensor if log.rests else None for sensor, log in zip(own, (real, sim)))
     otherwise = None
-    if not fits and None not in (own_real, own_sim):
-        otherwise = own_calibration.lies_otherwise(real_free, mended, own_real, own_sim)
+    if not fits and None not in own:
+        otherwise = own_calibration.lies_otherwise(logs.real_free, mended, *own)
     if otherwise is not None:
         unseen = [*unseen, "whether a bias or how they lie makes %s and %s differ at rest, by "
                   "(%.0f, %.0f, %.0f) mg: each lies too much alike in all of its rests" % (
                       real.name, sim.name, *otherwise)]
-    numbers, of_numbers = numbers_of(real, sim, mended, (own_real, own_sim), fits, findings)
-    left = {kind: remaining_gap.not_foretold(sensor_fit) for kind, sensor_fit in fits.items()}
-    attainable = remaining_gap.held_out(unmended, left, real, sim)
-    numbers, of_told = numbers_told.together(
-        numbers, fits, attainable, remaining_gap.wandering(fits, left), real.flicker)
-    left = {kind: remaining_gap.not_foretold(fit) for kind, fit in of_told.items()}
-    gap = remaining_gap.held_out(unmended, left, real, sim)
-    cut = {(p.sensor, p.axis) for p in numbers if p.name == "range"}
-    numbers += [p for p in levelled_off.ranges(stops, real, sim) if (p.sensor, p.axis) not in cut]
-    if len(fits) == 2 and not findings:
-        numbers += noise_and_registers.shaking(real, dead_zone.taken_off(sim, bands))
-    numbers += timing.timing(late, late_sigma, fits, aligned, {
-        kind: held_readings.smoothing_s2(holds["sim"][kind], sim)
-        - held_readings.smoothing_s2(holds["real"][kind], real) for kind in fits})
+    numbers, of_numbers = numbers_of(real, sim, mended, own, fits, findings)
+    numbers, of_told, gap, wanders = numbers_told.gap(numbers, fits, together.unmended, real, sim)
+    numbers += _of_range_and_time(logs, together, numbers, findings)
     findings += of_numbers + parameters.bias_sign(numbers)
     if any(c.name == "noise_per_sample" for c in findings):
         numbers = [p for p in numbers if p.name != "noise_density"]
-    task, why_not = remaining_gap.tried(real_free, mended, own_real, own_sim, {
+    task, why_not = remaining_gap.tried(logs.real_free, mended, *own, {
         kind: replace(fit, fit=fit.refitted(None)) for kind, fit in of_told.items()})
-    return Comparison(sim.name, real.name, aligned, tuple(findings), tuple(numbers), task, gap,
-                      fits, own_real, own_sim,
-                      (*alignment.said_of(real, sim, aligned),
-                       *gyro_or_motor.said_of(bands, of_gyro), *why_not), tuple(unseen),
+    remarks = (*alignment.said_of(real, sim, logs.aligned),
+               *gyro_or_motor.said_of(together.bands, together.of_gyro), *why_not)
+    return Comparison(sim.name, real.name, logs.aligned, tuple(findings), tuple(numbers), task,
+                      gap, fits, *own, remarks, tuple(unseen),
                       judged or convention_findings.only_in_motion(findings),
                       None if real.celsius is None else float(real.celsius.mean()),
-                      wanders=remaining_gap.wandering(fits, left), lacks_delay=lacks_delay,
-                      bands=bands, of_gyro=of_gyro,
-                      otherwise=otherwise is not None)
+                      wanders=wanders, lacks_delay=lacks_delay, bands=together.bands,
+                      of_gyro=together.of_gyro, otherwise=otherwise is not None)
+
+
+def _conventions(logs):
+    """([Convention] of one_motion.Logs, sentences on what cannot be seen, whether what shows in
+    motion was compared, whether the simulator lacks a delay, one_motion.OneMotion)."""
+    real, sim = logs.real, logs.sim
+    findings = held_readings.findings(real, sim, logs.holds["real"], logs.holds["sim"])
+    findings += logs.constant
+    unseen, judged, lacks_delay, together = list(logs.unseen), False, False, one_motion.NOTHING
+    railed = [log.name for log in (real, sim) if log.railed.mean() > RAILED]
+    if railed:
+        unseen.append("conventions: most of the time at the end of the range in %s"
+                      % " and ".join(railed))
+    elif logs.motion is not None:
+        together = one_motion.beside(logs)
+        judged = len(together.fits) == 2
+        findings += together.conventions
+    elif logs.constant:
+        unseen.append("other conventions of %s: a channel of it says nothing" % sim.name)
+    else:
+        more, unseen, judged, lacks_delay = own_motion.different_motion(
+            logs.real_free, logs.sim_free, logs.own_real if real.rests else None, logs.row_s)
+        findings += more
+        if logs.aligned.same and not real.rests:
+            unseen = ["conventions and parameters of %s, but for what its own rests show: there "
+                      "is none in %s" % (sim.name, real.name)]
+    return convention_findings.merged(findings), unseen, judged, lacks_delay, together
+
+
+def _of_range_and_time(logs, together, numbers, findings):
+    """[Parameter] of where the real one stops, what shakes it and of time, of one motion."""
+    real, sim, fits = logs.real, logs.sim, together.fits
+    cut = {(p.sensor, p.axis) for p in numbers if p.name == "range"}
+    more = [p for p in levelled_off.ranges(together.stops, real, sim)
+            if (p.sensor, p.axis) not in cut]
+    if len(fits) == 2 and not findings:
+        more += noise_and_registers.shaking(real, dead_zone.taken_off(sim, together.bands))
+    return more + timing.timing(together.late, together.late_sigma, fits, logs.aligned,
+                                {kind: logs.smoothing_s2(kind) for kind in fits})
 
 
 def numbers_of(real, sim, mended, own, fits, findings):

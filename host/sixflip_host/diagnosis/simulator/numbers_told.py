@@ -45,6 +45,19 @@ def told(sensor_fit, numbers, flicker):
                           hypotheses.SHAPE if h.shape_sd is None else h.shape_sd, SAME)))
 
 
+def gap(numbers, fits, unmended, real, sim):
+    """(The numbers, {sensor: told()}, {sensor: (before, after, noise alone)} of what they leave,
+    frozenset of the sensors of which that goes on for seconds) of two Traces of one motion, and of
+    the fits {sensor: SensorFit} with what the real one does not answer and unmended, without."""
+    left = {kind: remaining_gap.not_foretold(sensor_fit) for kind, sensor_fit in fits.items()}
+    attainable = remaining_gap.held_out(unmended, left, real, sim)
+    numbers, of_told = together(numbers, fits, attainable, remaining_gap.wandering(fits, left),
+                                real.flicker)
+    left = {kind: remaining_gap.not_foretold(fit) for kind, fit in of_told.items()}
+    return (numbers, of_told, remaining_gap.held_out(unmended, left, real, sim),
+            remaining_gap.wandering(fits, left))
+
+
 def together(numbers, fits, gaps, wanders, flicker):
     """(The numbers, {sensor: told()} by them): where those told leave more of the gap of a sensor
     than all of them do, the fewest of the others that close it differ as well, the rest taken for
