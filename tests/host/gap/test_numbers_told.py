@@ -88,3 +88,26 @@ def test_what_shakes_each_log_keeps_no_number_from_being_told():
     assert after > 2.0 * noise and after < 0.4 * before
     told = {p.axis[0] for p in found.differs if p.sensor == "accel"}
     assert told == {"x", "z"}
+
+
+def test_a_drift_of_what_stays_level_is_no_bias_of_many_times_its_size():
+    """30 mg that come and go, and nothing that tells a scale: it followed the drift, and gravity,
+    moved by it, made a bias of 220 mg of a gap of 14."""
+    t, force, rate = on_a_table(60.0)
+    drift = np.outer(np.sin(t / 8.0), [0.03, 0.0, 0.02])
+    found = compared(t, force, rate, force + drift, rate)
+    assert found.left == ["accel"]
+    apart = {p.axis: p for p in found.parameters if (p.name, p.sensor) == ("bias", "accel")}
+    for axis, own in zip("xyz", 1e3 * drift.mean(axis=0)):
+        assert not apart[axis].differs
+        assert apart[axis].difference == pytest.approx(own, abs=1.0)
+
+
+def test_where_what_is_left_goes_on_for_seconds_no_numbers_are_told_together():
+    """A gain that comes and goes by 8 %: no scale is its own, and what closes more of the gap by
+    chance is none."""
+    t, force, rate = tumbled(3, 80.0)
+    gain = np.interp(t, [0.0, 20.0, 40.0, 60.0, 80.0], [1.0, 0.9, 1.02, 0.93, 1.0])
+    found = compared(t, force, rate, force * gain[:, None], rate)
+    assert found.left == ["accel"]
+    assert not [p for p in found.differs if (p.sensor, p.axis) == ("accel", "y")]

@@ -12,6 +12,7 @@ from sixflip import STANDARD_G
 
 from .. import odds
 from . import convention_findings
+from .alignment import errors
 from .hypotheses import DEG, SHAPE
 
 # Some thirty numbers are compared: at this many standard errors one log pair in 500 shows a
@@ -120,7 +121,12 @@ def shapes(real, sim, fits, usable, rounded=None, beside=False):
             pair = (None, None) if fit is None else (shift[i] * scale,
                                                      bias_sigma[i] * scale / fit.unit)
             (a, sa), (b, sb) = [(v[0][i] * scale, v[1][i] * scale) for v in values]
-            if kind == "gyro" and fit is not None and not beside and np.isfinite(sa + sb):
+            if fit is not None and not told[i]:
+                # A matrix that follows what the simulator lacks moves gravity by any amount: what
+                # the two read on the average is known, and no better than a bias without it.
+                apart, sigma = means_apart(fits[kind], i, scale)
+                pair = apart, np.hypot(sigma, pair[1])
+            elif kind == "gyro" and fit is not None and not beside and np.isfinite(sa + sb):
                 # What is read at rest and what the motion leaves are two measurements of it.
                 pair = weighed(pair, (a - b, float(np.hypot(sa, sb))))
             # By less than it flickers a bias differs from itself.
@@ -144,6 +150,14 @@ def shapes(real, sim, fits, usable, rounded=None, beside=False):
                                         "%" if i == j else "°", a, sa, b, sb, *pair,
                                         least=size * coarse[j]))
     return numbers
+
+
+def means_apart(sensor_fit, axis, scale):
+    """(difference, standard error) of the mean of a real channel less that of the simulator's."""
+    fit, pair, kind = sensor_fit.fit, sensor_fit.pair, sensor_fit.kind
+    off = scale * (pair.real(kind) - pair.simulated(kind) @ fit.axes / fit.unit)[:, axis]
+    silent = 0.0 if fit.axes[:, axis].any() else np.inf
+    return float(off.mean()), float(errors(np.ones((len(off), 1)), off - off.mean())[0]) + silent
 
 
 def weighed(one, other):
