@@ -76,8 +76,6 @@ def candidates(hypothesis, measured, kind, live):
     free[~live] = 0.0
     tried = [(np.eye(3), unit) for unit in (units if hypothesis.name else units[:1])]
     if hypothesis.name:
-        size = np.linalg.norm(free, axis=1)
-        near = axis_order.nearest(free / np.maximum(size, 1e-9)[:, None])
         # Of a robot on a floor z is what x and y make of it by how crooked it stands, and noise:
         # what it answers to does not show.
         own = np.stack([left_of(y[:, i], np.delete(design, i, axis=1)) for i in range(3)], 1)
@@ -86,14 +84,37 @@ def candidates(hypothesis, measured, kind, live):
                                                                  1e-30))
         left = left_of(measured, design)
         heard = gain * own.std(axis=0) > HEARD * left.std(axis=0)
+        # What follows from next to nothing does so by any factor.
+        power = gain ** 2 * own.var(axis=0)
+        free = free * power / np.maximum(power + left.var(axis=0)[:, None], 1e-30)
+        size = np.linalg.norm(free, axis=1)
         # Of a channel that does not follow no axis can be told; a dead one follows from nothing.
         strays = left.var(axis=0) > NOTHING * measured.var(axis=0)
-        dead = live & heard & strays & (size < DEAD * gain)
-        near = np.where(dead[:, None], 0.0, np.where(strays[:, None], np.eye(3), near))
-        once = np.abs(near[live]).sum(axis=0).max() < 2
-        if once and not np.array_equal(near[live], np.eye(3)[live]):
-            tried += [(near, unit) for unit in units]
+        near = np.where(strays[:, None], 0.0, axis_order.nearest(
+            np.where(strays, 0.0, 1.0 / np.maximum(size, 1e-9))[:, None] * free))
+        dead = live & heard & strays & (size < DEAD * gain) & ~near.any(axis=0)
+        for own in with_strays(near, strays & ~dead, kind):
+            once = np.abs(own[live]).sum(axis=0).max() < 2
+            if once and not np.array_equal(own[live], np.eye(3)[live]):
+                tried += [(own, unit) for unit in units]
     return tried
+
+
+def with_strays(near, strays, kind):
+    """[S (3, 3)]: near (3, 3) with the rows of strays (3,), which follow nothing, answering to
+    axes that no other row does: each to its own where that is free. An accelerometer's sign
+    gravity tells; of a gyro a turn is likelier than a mirror."""
+    near, rows = near.copy(), np.flatnonzero(strays)
+    free = [int(j) for j in np.flatnonzero(~near.any(axis=0))]
+    for i in [*(i for i in rows if i in free), *(i for i in rows if i not in free)]:
+        if free:
+            near[i, free.pop(free.index(i) if i in free else 0)] = 1.0
+    moved = [i for i in rows if near[i].any() and not near[i, i]]
+    signed = [near]
+    for i in moved:
+        signed += [np.where(np.arange(3)[:, None] == i, -s, s) for s in signed]
+    signed.sort(key=np.linalg.det, reverse=True)
+    return signed if kind == "accel" else signed[:1]
 
 
 def left_of(values, design):

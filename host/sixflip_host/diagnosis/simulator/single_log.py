@@ -40,21 +40,27 @@ def live(trace):
 
 
 def dead(real, sim):
-    """{sensor: (3,) bool}: channels of the simulator that hardly change where the real ones do."""
+    """{sensor: (3,) bool}: channels of the simulator that hardly change where the real ones do,
+    and no other does in their place: of what turns about one axis another one may answer."""
     channels = {}
     for kind, name in (("accel", "force"), ("gyro", "rate")):
+        channels[kind] = np.zeros(3, bool)
         if getattr(real, name) is None or getattr(sim, name) is None:
-            channels[kind] = np.zeros(3, bool)
             continue
         still = [at_rest(x, getattr(x, name), x.quantum[kind == "gyro"]) for x in (real, sim)]
         ours, theirs = (getattr(x, name).var(axis=0) for x in (real, sim))
         # What the real one has at rest, too, is noise, which a simulator may lack.
-        moved = ours if still[0] is None else np.maximum(ours - still[0], 0.0)
+        moved, moves = ours, np.ones(3, bool)
+        if still[0] is not None:
+            moved, moves = np.maximum(ours - still[0], 0.0), ours > SAME * still[0]
         shares = [np.sqrt(x / max(x.max(), 1e-24)) for x in (moved, theirs)]
-        channels[kind] = (shares[1] < DEAD) & (shares[0] > ALIVE)
+        alive = moves & (shares[0] > ALIVE), shares[1] > ALIVE
+        if alive[0].sum() > alive[1].sum():
+            channels[kind] |= alive[0] & (shares[1] < DEAD)
         if still[0] is not None and still[1] is not None:
-            channels[kind] |= (theirs < SAME * still[1]) & (theirs.max() > MORE * still[1]) & (
-                ours > MORE * np.maximum(*still))
+            alive = ours > MORE * np.maximum(*still), theirs > MORE * still[1]
+            if alive[0].sum() > alive[1].sum():
+                channels[kind] |= alive[0] & (theirs < SAME * still[1]) & alive[1].any()
     return channels
 
 
@@ -62,8 +68,7 @@ def constant_channels(real, sim):
     """({sensor: (3,) bool} of the simulator's channels that change and answer, [Convention] of
     those that do not)."""
     answer, findings = live(sim), []
-    for kind, mask in dead(real, sim).items():
-        still = mask | ~answer[kind] & (kind == "accel" or sim.rate is not None)
+    for kind, still in dead(real, sim).items():
         if still.any():
             axes = [a for a, x in zip("xyz", still) if x]
             findings.append(convention_findings.finding(
@@ -134,6 +139,8 @@ def limit(x):
     size = np.abs(x)
     top = size.max()
     at = (size == top)
+    if at.all():
+        return None  # what never changes does not stop there
     runs = at[1:] & at[:-1] & (np.sign(x[1:]) == np.sign(x[:-1]))
     if runs.sum() < 5 or top <= 0:
         return None

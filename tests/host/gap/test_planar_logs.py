@@ -1,0 +1,78 @@
+"""What turns about one axis only, as all that drives on a floor does, beside its simulator: most
+channels read gravity or noise and nothing else, and are no reason to accuse it."""
+import numpy as np
+import pytest
+
+from sixflip_host.capture.capture import Capture
+from sixflip_host.diagnosis.simulator import comparison, single_log
+from tests.worlds.tumbled import META, RATE_HZ, read
+
+SWAPPED = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # y reads z, z reads -y
+
+
+def driven(seed=1, seconds=100.0):
+    """(t, specific force g, rate deg/s) of what drives on a level floor, with stops."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(0.0, seconds, 1.0 / RATE_HZ)
+    way = np.clip(np.minimum(t % 20.0 - 4.0, 19.5 - t % 20.0) / 1.5, 0.0, 1.0)
+    way = way ** 2 * (3.0 - 2.0 * way)
+    yaw = way * sum(size * np.sin(2.0 * np.pi * hz * t + rng.uniform(0.0, 6.0))
+                    for size, hz in ((40.0, 0.11), (30.0, 0.23)))
+    speed = (0.6 + 0.3 * np.sin(2.0 * np.pi * 0.17 * t)) * way
+    along, across = np.gradient(speed, t) / 9.81, speed * np.radians(yaw) / 9.81
+    return (t, np.stack([along, across, np.ones_like(t)], 1),
+            np.outer(yaw, [0.0, 0.0, 1.0]))
+
+
+def without_noise(t, force, rate):
+    return Capture(dict(META), np.rint(1e6 * t).astype(np.int64),
+                   np.rint(force * 8192).astype(np.int16), np.rint(rate * 65.5).astype(np.int16))
+
+
+def compared(simulated):
+    return comparison.compare([("real", read(*driven(), 1))], "sim", simulated)
+
+
+def named(found):
+    return {(c.name, c.sensor) for c in found.conventions}
+
+
+def closed(found):
+    return all(after < 1.2 * noise for _, after, noise in found.gap.values())
+
+
+def test_a_simulator_without_noise_that_stays_level_has_no_constant_channel():
+    """Gravity of 1 g throughout was the end of its range, and its channels said nothing."""
+    found = compared(without_noise(*driven()))
+    assert not found.conventions and not found.unseen
+    assert {p.name for p in found.differs} == {"noise_density"}
+    assert set(found.gap) == {"accel", "gyro"} and closed(found)
+
+
+@pytest.mark.parametrize("simulated", [without_noise, lambda *log: read(*log, 9)])
+def test_swapped_axes_of_what_turns_about_one_axis(simulated):
+    """The channel that reads no turn any more was constant."""
+    t, force, rate = driven()
+    found = compared(simulated(t, force @ SWAPPED.T, rate @ SWAPPED.T))
+    assert named(found) == {("both_axes", "device")}
+    (axes,) = found.conventions
+    assert axes.value == {"x": "x", "y": "z", "z": "-y"}
+    assert closed(found)
+
+
+def test_an_accelerometer_s_axes_swapped_alone():
+    t, force, rate = driven()
+    found = compared(read(t, force @ SWAPPED.T, rate, 9))
+    assert named(found) == {("accel_axes", "accel")} and closed(found)
+
+
+def test_a_channel_that_nothing_answers_in_place_of_is_constant():
+    t, force, rate = driven()
+    found = compared(without_noise(t, force * [1.0, 0.0, 1.0], rate))
+    assert named(found) == {("constant_channel", "accel")}
+    assert found.conventions[0].value == {"y": 0.0}
+
+
+def test_what_never_changes_does_not_stop_at_the_end_of_a_range():
+    assert single_log.limit(np.full(100, 8192.0)) is None
+    assert single_log.limit(np.clip(9000.0 * np.sin(np.arange(300) / 9.0), -8192, 8192)) == 8192.0
