@@ -121,7 +121,7 @@ def shapes(real, sim, fits, usable, rounded=None, beside=False):
             pair = (None, None) if fit is None else (shift[i] * scale,
                                                      bias_sigma[i] * scale / fit.unit)
             (a, sa), (b, sb) = [(v[0][i] * scale, v[1][i] * scale) for v in values]
-            if fit is not None and not told[i]:
+            if fit is not None and not (told[i] or across[i]):
                 # A matrix that follows what the simulator lacks moves gravity by any amount: what
                 # the two read on the average is known, and no better than a bias without it.
                 apart, sigma = means_apart(fits[kind], i, scale)
