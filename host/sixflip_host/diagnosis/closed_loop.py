@@ -6,7 +6,7 @@ and flicker, the twelve parameters fitted. What is compared are the contrasts, s
 nominal is in the difference but misalignments that are known beforehand, the same in both.
 """
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from sixflip_sim.effects.library import make as make_effect
 from sixflip_sim.sensor_model import SensorModel, Triad
 
 from ..capture.capture_file import Capture
-from ..experiment import attitude_fit, blocks, nominal_rows, session_terms
+from ..experiment import blocks, nominal_rows, session_terms
 from ..experiment.session_rows import body_to_table
 from ..simulation import replica
 from . import effect_estimates
@@ -236,4 +236,4 @@ def uncovered(gap, session, unit, nominal):
     for place in np.unique(session.placement):
         moved = felt[session.placement == place].mean(axis=0)
         up[place] = moved / np.linalg.norm(moved)
-    return attitude_fit.NominalSensor(nominal.matrix, nominal.offset, up)
+    return replace(nominal, up=up)

@@ -16,6 +16,10 @@ from .hypotheses import Form, domain
 
 BESIDE = 0  # the power of a column that is not the effect's own, see terms.Design
 RELATIVE = 0.5  # of an effect: how far a part's own form may be from the library's
+# In motion a quarter of an effect's size, squared: as much is of another form than the library's.
+# A name must gain so much of what a stranger gains beside it, and what has less than so much of
+# the power of the names beside it is theirs.
+MOVED = 0.06
 # Of the functions of one kind, rms: one that shows less of itself has no larger coefficient for
 # that, as a product of two axes where every pose is flat. Those of gravity's direction are as
 # large as one another in a box that may lie anyhow, those of a temperature as it happens to move.
@@ -187,3 +191,20 @@ def _shown(units, fits, columns):
     """(k,) chi2 that a unit of each of some columns adds, at the levels of the Fits."""
     return sum(unit.gram.at(int(fit.index[0]), columns).diagonal()
                for unit, fit in zip(units, fits) if not unit.between)
+
+
+def in_motion(fit, posterior):
+    """The Posterior of a moves_fit.MovesFit without the strangers that are of another form of the
+    names beside them: a head that turns within a tenth of a second pulls by 1 g at 18 cm, and a
+    rate that is smoothed, or a scale that is a percent off, makes of that what no name has."""
+    forms = posterior.best.forms
+    columns = np.concatenate([fit.nuisance, *(f.columns for f in forms)]).astype(int)
+    sizes = np.zeros(len(fit.prior))
+    sizes[columns] = fit.solved(columns)
+
+    def power(some):
+        own = np.concatenate([np.zeros(0), *(f.columns for f in some)]).astype(int)
+        return fit.rms([m.columns[:, :, own] @ sizes[own] for m in fit.moves]) ** 2
+    theirs = MOVED * power([f for f in forms if not f.generic])
+    kept = tuple(f for f in forms if not f.generic or power([f]) >= theirs)
+    return replace(posterior, best=replace(posterior.best, forms=kept))

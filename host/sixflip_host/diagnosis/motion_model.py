@@ -17,6 +17,7 @@ from ..planning import detectable
 from . import (
     between_sessions,
     cutoffs,
+    discrepancy,
     effect_estimates,
     holdout_gain,
     hypotheses,
@@ -31,8 +32,6 @@ from .detect.detection import Finding
 from .posterior import search_sets
 
 FEWEST_MOVES = 12  # three for each of the four sizes
-STRANGE_SHARE = 0.06  # of what a stranger gains, that a name must gain beside it: a quarter of
-# the stranger's size, squared, is of another form than the strangers of motion have
 FOLLOWS = {"speed": "size of the rate", "rates": "rate", "squares": "products of the rates",
            "changes": "change of the rate", "scale": "size of the rate and gravity"}
 KNOWN_CM = 5.0  # standard deviation beyond which a direction of the arm is not known
@@ -138,6 +137,7 @@ def judged(sessions, models, turned, chip, without=()):
     fit = moves_fit.fit(moves, chip)
     rounding = max(float(s.rounding_accel.max(initial=0.0)) for s in sessions)
     posterior, gains = _searched(fit, without, rounding)
+    posterior = discrepancy.in_motion(fit, posterior)
     chosen = tuple(f.effect for f in posterior.best.forms if not f.generic)
     return _told(MotionGap(chip, fit, posterior, posterior.gains, gains, chosen))
 
@@ -167,7 +167,7 @@ def _searched(fit, without, rounding=0.0):
     least = cutoffs.least_nats(len(forms))
     own = {form: max(nats, least) for form, nats in cutoffs.simulated_each(
         units, forms, moves_unit.NO_LEVELS, [0] * len(units)).items()}
-    posterior = search_sets(model, forms, cutoffs.Cutoffs(least, STRANGE_SHARE, own=own))
+    posterior = search_sets(model, forms, cutoffs.Cutoffs(least, discrepancy.MOVED, own=own))
     alone = model.scored(())
     return posterior, {f.effect: model.scored((f,)).score - alone.score for f in forms}
 

@@ -21,8 +21,7 @@ SINGLE_FOLDS = 2  # of one session: every other move is foretold by those betwee
 ROUNDS, FREEDOM = 4, 4.0  # of weighting; Student's t
 BENT, WANDERED = (0.03, 0.1, 0.3, 1.0), (0.1, 0.3, 1.0)  # of the widest priors
 EFFECTS = {"lever_arm": np.arange(3), "filter_lag": np.array([3])}  # their columns
-AT_A_TIME = 64  # moves left out together
-CENTRE = EFFECTS["lever_arm"]
+AT_A_TIME, CENTRE = 64, EFFECTS["lever_arm"]  # moves left out together
 # cm, tried: how far apart the points are that single moves turn about. A box on an axle, a hand
 # that rolls it over its edges, one that holds it in the air.
 CENTRES_CM = (0.0, 0.1, 0.3, 1.0, 3.0)
@@ -73,6 +72,11 @@ class MovesFit:
         spread[np.ix_(columns[effects], columns[effects])] = covariance[np.ix_(effects, effects)]
         return sizes, spread
 
+    def solved(self, columns):
+        """Sizes of these columns (k,) by all moves."""
+        gram, inner = self.gram.sum(axis=0), self.inner.sum(axis=0)
+        return solved(gram[np.ix_(columns, columns)], inner[columns], self.prior[columns])[0]
+
     def rms(self, left):
         """mg of what is left of each move, (n, 3) mg: quiet moves, directions and frequencies
         count more, as they do for the sizes."""
@@ -80,11 +84,10 @@ class MovesFit:
         return float(np.sqrt(total / sum(float(p.sum()) for p in self.precision)))
 
     def bare(self, columns, kept):
-        """[(n, 3)] mg of each move less what the columns of this set add, all but the effects
-        `kept` (4,) bool."""
+        """[(n, 3)] mg of each move less what these columns add, all but the effects kept (4,)
+        bool."""
         habits = np.zeros(len(self.prior))
-        habits[columns] = solved(self.gram.sum(axis=0)[np.ix_(columns, columns)],
-                                 self.inner.sum(axis=0)[columns], self.prior[columns])[0]
+        habits[columns] = self.solved(columns)
         habits[:4][kept] = 0.0
         return [m.y - m.table @ habits[self.own(m)] for m in self.moves]
 

@@ -5,8 +5,15 @@ import numpy as np
 
 from sixflip_sim.effects import typical
 
-from ..experiment import covariance, linear_model, noise_arrays, nominal_rows, terms, turns
-from ..experiment.projection import lateral_basis
+from ..experiment import (
+    attitude_fit,
+    covariance,
+    linear_model,
+    noise_arrays,
+    nominal_rows,
+    terms,
+    turns,
+)
 from ..planning.detectable import FLIP_DEG
 from . import between_sessions, stray_turns
 from .detect import saturation
@@ -82,9 +89,9 @@ class TurnModel(RestModel):
         groups = covariance.apart(bases, [np.eye(len(b)) / t.seconds
                                           for b, t in zip(bases, chosen)], by_hand)
         flips = FLIPS_DEG if any(t.flip for t in chosen) else (FLIP_DEG,)
-        nuisance = np.hstack([turns.nuisance(chosen), squareness(chosen)])
+        nuisance = np.hstack([turns.nuisance(chosen), attitude_fit.squareness(chosen)])
         rows = nominal_rows.Rows(y, groups, nuisance, (stray_turns.LEVELS_DEG, flips),
-                                 scale=(0, 4, 8))
+                                 common=attitude_fit.unknown(chosen, model), scale=(0, 4, 8))
         # Of a half only sizes are asked: its turns, all of their samples, need not stay.
         return linear_model.unit(
             rows, designs, wanted, turns=chosen if wanted is None else (),
@@ -222,24 +229,6 @@ def _of_rates(effect, variant, chosen, functions, prior):
             for k in range(number) for a in range(3)]
     return terms.Design(effect, variant, keys, [0, 1, 2] * number, np.vstack(parts),
                              np.full(3 * number, prior))
-
-
-def squareness(chosen):
-    """Columns (m, 3), deg: the angles xy, xz and yz between the accelerometer's axes, by which all
-    gravity of a session was read. Faces of a box that is not square are read as such angles, and
-    so are half turns that were not quite half on a table that leans, alike in each session; the
-    part that turns all axes together is the gyro's misalignment."""
-    parts = []
-    for turn in chosen:
-        first, second = lateral_basis(turn.before)
-        added = np.zeros((2 + turn.flip, 3))
-        for k, (a, b) in enumerate(((0, 1), (0, 2), (1, 2))):
-            skewed = np.zeros((3, 3))
-            skewed[a, b] = skewed[b, a] = 1.0
-            back = turn.end @ (skewed @ turn.after) - skewed @ turn.before
-            added[:2, k] = back @ first, back @ second
-        parts.append(added / turn.seconds)
-    return np.vstack(parts)
 
 
 def usable(session, nominal):

@@ -118,7 +118,9 @@ def following(session, sensor):
     if len(rests) < FEWEST_COMPARED:
         return best
     variables = {"time": np.array([session.t_s[first] for first, _ in rests])}
-    if session.capture.accel is not None:
+    # What is worn or driven stands in one pose where nothing shakes it, and in others where it
+    # goes on: only what somebody puts down is as still in all of them.
+    if session.capture.accel is not None and session.labelled:
         up = np.array([session.capture.accel[first:end].mean(axis=0) for first, end in rests])
         variables |= dict(zip("xyz", (up / session.capture.meta["accel_lsb_per_g"]).T))
     for axis in range(3):
