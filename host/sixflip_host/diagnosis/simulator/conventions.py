@@ -20,6 +20,7 @@ DELAY_ROUNDS = 4  # of two rows, to a hundredth of one
 # of their own have all of it, a log that was made of the other's samples next to none.
 SHARED = 0.5
 POSSIBLE = 0.02  # probability of a fit from which on its names are some that it may be
+ALIKE_S2 = 1e-9  # of a log that is as smooth as the other: a time constant of 0.04 ms
 LATE_SIGMA = 4.0  # standard errors from which on a delay is one: by chance in 1 of 16,000 (normal)
 
 
@@ -57,12 +58,8 @@ class SensorFit:
 def same_motion(real, sim, alignment, motion, live, fresh_hz):
     """{sensor: SensorFit} of two aligned Traces; live {sensor: (3,)}: channels that change, none
     of the gyro's where nothing turns."""
-    sensor_fits = {}
-    for kind in ("accel", "gyro"):
-        if live[kind].any():
-            sensor_fits[kind] = one_sensor(kind, real, sim, alignment, motion, live[kind],
-                                           fresh_hz[kind])
-    return sensor_fits
+    return {kind: one_sensor(kind, real, sim, alignment, motion, live[kind], fresh_hz[kind])
+            for kind in ("accel", "gyro") if live[kind].any()}
 
 
 def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
@@ -113,7 +110,19 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
         (own[0], sizes), live, rows, left=False, noise_bends=noise_bends).log)
     named, fit = posterior(kind, judged(inflation, rows), live)
     fit = whole(fit, inflation, rows)
-    return SensorFit(kind, named, fit, inflation, pair, fit.hypothesis, own, live, noise_bends)
+    return without_smoothing(SensorFit(kind, named, fit, inflation, pair, fit.hypothesis, own,
+                                       live, noise_bends), rows)
+
+
+def without_smoothing(sensor_fit, rows):
+    """The SensorFit as smooth as the real log, where it is not shown to be smoother: of a motion
+    of one frequency, as a pendulum's, what that takes off by chance a scale puts back."""
+    free, sigma = sensor_fit.fit.smooth_s2, sensor_fit.fit.smooth_sigma_s2
+    if (free / sigma) ** 2 - sensor_fit.smoothing_earns > LATE_SIGMA ** 2:
+        return sensor_fit
+    fixed = replace(sensor_fit, hypothesis=replace(sensor_fit.hypothesis, smooth_sd=ALIKE_S2))
+    fit = fixed.refitted(rows)
+    return replace(fixed, fit=replace(fit, smooth_s2=free, smooth_sigma_s2=sigma))
 
 
 def own_noise(values, measured, noise, theirs, band_hz):

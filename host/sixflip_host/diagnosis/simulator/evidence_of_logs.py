@@ -13,7 +13,7 @@ from sixflip import STANDARD_G
 
 from ..detect import axis_order
 from .channel_regression import MOST_ROWS, regression
-from .hypotheses import BIAS, DEAD, DEG, DELAY_S, FREE, SHAPE, SMOOTH_S2
+from .hypotheses import BIAS, DEAD, DEG, DELAY_S, FREE, SHAPE
 
 HEARD = 2.0  # times what is left of a channel, above which its own motion would show in it
 NOTHING = 0.5  # of a channel's power, from which on it says nothing of the motion
@@ -92,7 +92,9 @@ def candidates(hypothesis, measured, kind, live):
         strays = left.var(axis=0) > NOTHING * measured.var(axis=0)
         near = np.where(strays[:, None], 0.0, axis_order.nearest(
             np.where(strays, 0.0, 1.0 / np.maximum(size, 1e-9))[:, None] * free))
-        dead = live & heard & strays & (size < DEAD * gain) & ~near.any(axis=0)
+        # What is made of several readings has the noise of all, and none to be missed.
+        dead = live & heard & strays & (size < DEAD * gain) & ~near.any(axis=0) & (
+            hypothesis.name == "healthy")
         for own in with_strays(near, strays & ~dead, kind):
             once = np.abs(own[live]).sum(axis=0).max() < 2
             if once and not np.array_equal(own[live], np.eye(3)[live]):
@@ -138,7 +140,7 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
         columns = np.concatenate([shifted(turned, delay * grid_hz, every),
                                   slope[some, :, None], bend[some, :, None]], 2)
         mean = np.concatenate([h.mean, [-delay, 0.0]])
-        sd = np.concatenate([h.sd, [DELAY_S, SMOOTH_S2]])
+        sd = np.concatenate([h.sd, [DELAY_S, h.smooth_sd]])
         own = [signal[some], np.ones((len(columns), 1))]
         own_sd = [np.full(3, SHAPE) if h.shape_sd is None else h.shape_sd,
                   np.reshape(BIAS[kind] if h.bias_sd is None else h.bias_sd, (-1, 1))]

@@ -53,7 +53,7 @@ class Hypothesis:
     sd (k,); heading: S is a turn about the vertical; free (n, f): further columns of each channel
     with prior FREE; bias_sd: one, or (3,), None for BIAS; copies: the first so many triples of
     free, and (scaled) the first of columns, carry the signal's noise; shape_sd (3, 3): of E, None
-    for SHAPE."""
+    for SHAPE; smooth_sd: s2, of how much smoother it is, see Fit."""
 
     name: str
     signal: np.ndarray
@@ -66,6 +66,7 @@ class Hypothesis:
     copies: int = 0
     scaled: bool = False
     shape_sd: np.ndarray = None
+    smooth_sd: float = SMOOTH_S2
 
 
 def none(n):

@@ -60,8 +60,11 @@ def paired(real, sim, alignment, motion, band_hz=BANDS[0]):
         inside &= ~paused(log, at)
     t, there = t[inside], there[inside]
 
+    # Where the clocks go unlike, the same band of both is another one by each log's own.
+    own_hz = band_hz / (1.0 + alignment.drift)
+
     def onto(trace, values, at):
-        return at_times(trace, values, at, band_hz)
+        return at_times(trace, values, at, own_hz if trace is real else band_hz)
 
     # A simulator without a gyro is compared by its forces alone.
     sim_rate = np.zeros_like(sim.force) if sim.rate is None else sim.rate

@@ -20,9 +20,9 @@ from .. import odds
 # which what moves is cut at most, in search of a part that rests.
 PIECE_S, EDGE_S, LEAST_PIECE_S = 8.0, 1.0, 1.0
 PIECE_MEANS = 32  # means of a piece: of fewer rows a second it is longer
-# deg/s of a course, from what no gyro's bias does within seconds to what a hand's turn is; s for
-# which it goes one way, from a step of a walk to a ship's roll.
-COURSES_DPS, LASTS_S = (0.1, 0.3, 1.0, 3.0, 10.0, 30.0), (0.5, 1.0, 2.0, 4.0)
+# deg/s of a course, from what no gyro's bias does within seconds to what swings; s for which it
+# goes one way, from a step of a walk to a ship's roll.
+COURSES_DPS, LASTS_S = (0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0), (0.5, 1.0, 2.0, 4.0)
 # Of the flicker at rest, times what is usual of a chip (adequacy.usual): a gyro of which nobody
 # wrote a data sheet has more.
 FLICKERS = (1.0, 4.0, 16.0)

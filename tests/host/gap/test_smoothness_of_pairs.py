@@ -1,0 +1,46 @@
+"""How smooth two logs of one motion are: as smooth as each other, whatever their clocks and
+however narrow the band is that they move in."""
+from copy import copy
+
+import numpy as np
+import pytest
+from scipy.signal import butter, lfilter
+
+from sixflip_host.diagnosis.simulator import comparison
+from tests.worlds.tumbled import read, tumbled
+
+
+def compared(real, simulated):
+    return comparison.compare([("real", real)], "sim", simulated)
+
+
+def test_clocks_apart_make_no_log_the_smoother():
+    """Both were filtered for the same band, each by its own clock: "put a low-pass of 26 Hz behind
+    it" beside a clock of 2 %."""
+    t, force, rate = tumbled(4, 80.0)
+    real = read(t, force, rate, 1)
+    slow = copy(real)
+    slow.t_us = np.rint(0.98 * real.t_us).astype(np.int64)
+    found = compared(slow, read(t, force, rate, 2))
+    (clock,) = found.differs
+    assert clock.name == "clock" and clock.difference == pytest.approx(2.0, abs=0.05)
+
+
+def test_a_pendulum_s_noise_is_no_scale():
+    """Of a swing of one frequency a smoother log is one of less scale: what a fit took off a noisy
+    gyro by the one it put back by the other, 0.1 % of three times its standard error."""
+    t = np.arange(0.0, 300.0, 0.01)
+    goes = np.clip(np.minimum(t % 60.0 - 12.0, 58.0 - t % 60.0) / 2.0, 0.0, 1.0)
+    swing = np.radians(30.0) * np.sin(4.4 * t) * goes
+    turned = np.gradient(swing, t)
+    rate = np.outer(np.degrees(turned), [0.0, 1.0, 0.0])
+    # Along the string: of what swings freely gravity does not show across it.
+    force = np.outer(np.cos(swing) + turned ** 2 / 4.4 ** 2, [0.0, 0.0, 1.0])
+    logs = []
+    for seed in (3, 4):
+        noise = 0.03 * np.sqrt(50.0) * np.random.default_rng(100 + seed).standard_normal(
+            (len(t), 3))
+        logs.append(read(t, force, rate + lfilter(*butter(1, 42.0, fs=100.0), noise, axis=0),
+                         seed))
+    found = compared(*logs)
+    assert not found.differs and not found.conventions
