@@ -74,8 +74,8 @@ def trace_from_capture(name, capture):
         t = np.arange(len(t)) / float(meta["rate_hz"])
     measured = clock.sample_clock(capture)
     rate_hz = float(meta["rate_hz"]) if len(t) < 2 else (len(t) - 1) / t[-1]
-    if measured is not None and measured.pauses:
-        rate_hz = measured.rate_hz  # a pause is none of its time
+    if measured is not None and (measured.pauses or not measured.losses):
+        rate_hz = measured.rate_hz  # a pause is none of its time, nor are rows that came late
     quantum = (capture.g / meta["accel_lsb_per_g"],
                DPS / meta["gyro_lsb_per_dps"] if capture.gyro is not None else None)
     celsius = None
