@@ -1,4 +1,5 @@
 """Numbers of two logs side by side: ranges, and intervals that hold what stretches disagree on."""
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -17,8 +18,10 @@ from sixflip_host.diagnosis.simulator import (
     simulator_answer,
     single_log,
     timing,
+    traces,
 )
 from sixflip_host.export import put_back
+from tests.worlds import tumbled
 
 
 def swung(limit, size=3.0):
@@ -55,6 +58,16 @@ def test_a_coefficient_is_as_uncertain_as_stretches_of_the_log_disagree_on_it():
         np.ones(3, bool))
     sigma = result[5][:, 0]
     assert sigma == pytest.approx(slopes.std() / np.sqrt(20.0), rel=0.4)
+
+
+def test_a_density_is_one_with_rests_and_without():
+    """Without them it was 1.41 times as large, the one-sided one."""
+    made = traces.trace_from_capture("made", tumbled.read(*tumbled.tumbled(1), 1))
+    assert made.rests
+    values = 0.05 * np.random.default_rng(2).standard_normal((len(made.t), 3))
+    both = [single_log.noise(trace, values).density for trace in (made, replace(made, rests=()))]
+    for density in both:
+        assert density == pytest.approx(0.05 / np.sqrt(tumbled.RATE_HZ), rel=0.15)
 
 
 def test_what_has_no_field_to_set_has_words_to_copy():

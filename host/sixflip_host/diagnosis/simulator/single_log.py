@@ -24,8 +24,9 @@ DROWNED = 0.3  # of a count: noise below it hardly ever crosses one
 
 @dataclass(frozen=True)
 class Noise:
-    """Of each axis (3,): density (unit per root Hz) with its relative standard error, and
-    per_sample, the standard deviation of a sample."""
+    """Of each axis (3,): density (unit per root Hz; two-sided: white noise of a sample over the
+    root of the rate) with its relative standard error, and per_sample, the standard deviation of
+    a sample."""
 
     density: np.ndarray
     relative_sigma: float
@@ -118,7 +119,7 @@ def noise(trace, values):
     if len(squares) < 4:
         known = restless.white(values[~trace.put_in])
         return None if known is None else Noise(
-            known[0] * np.sqrt(2.0 / trace.rate_hz), known[1], known[0])
+            known[0] / np.sqrt(trace.rate_hz), known[1], known[0])
     # By the median: in a part of a rest one axis may still be moved.
     per_mean = np.median(squares, axis=0) / MEDIAN_OF_SQUARE / 2.0
     return Noise(np.sqrt(per_mean / (window ** 2).sum() / trace.rate_hz),
