@@ -6,7 +6,7 @@ import pytest
 
 from sixflip_host.capture import clock
 from sixflip_host.capture.capture import Capture
-from sixflip_host.diagnosis.simulator import comparison, row_times, traces
+from sixflip_host.diagnosis.simulator import alignment, comparison, row_times, timing, traces
 from tests.worlds.tumbled import META, RATE_HZ, read, tumbled
 
 
@@ -66,6 +66,15 @@ def test_rows_that_a_link_still_held_are_no_other_clock():
     assert np.abs(off - np.median(off)).max() < 2e-3
     found = comparison.compare([("real", real)], "sim", simulated)
     assert abs(found.alignment.drift) < 2e-4 and found.conventions == () and not found.differs
+
+
+def test_what_holds_rows_up_now_longer_and_now_shorter_is_no_other_clock():
+    n, rng = int(60.0 * RATE_HZ), np.random.default_rng(6)
+    stretches = np.repeat(rng.standard_normal(12) * 0.03, n // 12) / (n // 12)
+    real, simulated = stamped(late_by(n) + np.cumsum(stretches), False)
+    traced = [traces.trace_from_capture(*x) for x in (("real", real), ("sim", simulated))]
+    told = timing.timing(None, None, {}, alignment.align(*traced))[-1]
+    assert told.name == "clock" and not told.differs
 
 
 def test_over_many_rows_the_stamps_are_the_clock():

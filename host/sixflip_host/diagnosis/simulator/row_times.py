@@ -6,7 +6,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
 from scipy.ndimage import median_filter, uniform_filter1d
 
-from ...capture import stamp_envelope
+from ...capture import clock, stamp_envelope
 
 PUT_IN_S = 0.15  # of lost rows in one place: a period of the band that is compared
 # Of a period, by which a stamp is late that matters; rows that are, before it is asked what their
@@ -35,6 +35,15 @@ def as_read(trace, measured):
     bends = [sum(_bend(t, values, rows) for values in (trace.force, trace.rate)
                  if values is not None) for t in (trace.t, even)]
     return replace(trace, t=even - even[0]) if bends[1] < LESS * bends[0] else trace
+
+
+def pace_sigma(measured):
+    """Relative standard error of the pace of stamps some of which are late, by their SampleClock:
+    what holds up rows holds them up for longer, too, and the pace of stretches then differs."""
+    if measured is None or not measured.late:
+        return 0.0
+    low, high = measured.interval_hz
+    return float((high - low) / (2.0 * clock.NORMAL_95 * measured.rate_hz))
 
 
 def _along(t, even):
