@@ -81,6 +81,9 @@ def measure(t_us, recorder=(), lost=()):
     if n < FEWEST or t_us[-1] <= t_us[0]:
         return None
     known = np.union1d(np.asarray(recorder, int), np.asarray(lost, int))
+    held = 0 if len(known) else stamp_envelope.backlog(t_us)
+    if held:
+        return _after_a_backlog(measure(t_us[held:]), held, t_us)
     period, width, each = stamp_envelope.first_guess(t_us, known)
     resolution = stamp_envelope.resolution(t_us)
     if width == 1 and resolution <= stamp_envelope.COARSE * period:
@@ -113,6 +116,18 @@ def measure(t_us, recorder=(), lost=()):
         float(gaps.lift[pause].max(initial=0)) / 1e6,
         gaps.late, gaps.bursts, gaps.latest / 1e3, gaps.jitter / 1e3, resolution / 1e3,
         tuple(zip(gaps.places[missing > 0].tolist(), missing[missing > 0].tolist())))
+
+
+def _after_a_backlog(measured, held, t_us):
+    """The SampleClock of all rows, by that of those after the first `held`, which had been read
+    before they were handed over."""
+    if measured is None:
+        return None
+    late_ms = held * 1e3 / measured.rate_hz - float(t_us[held] - t_us[0]) / 1e3
+    return replace(measured, rows=measured.rows + held, late=measured.late + held,
+                   bursts=measured.bursts + 1,
+                   longest_late_ms=max(measured.longest_late_ms, late_ms),
+                   lost_after=tuple((row + held, k) for row, k in measured.lost_after))
 
 
 def within(measured, part):

@@ -242,7 +242,8 @@ def loop_line(kind, loop):
 def noise_lines(sensor, noise):
     """What a sensor reads at rest and how it is noisy, a line each."""
     unit = noise["unit"]
-    names = [("bias", "bias", unit), ("density", "noise density", unit + "/√Hz"),
+    names = [("bias", "bias", unit), ("density", "noise density N, of which a data sheet's "
+                                    "one-sided density is 1.41 times", unit + "/√Hz"),
              ("instability", "bias instability", unit), ("walk", "random walk", unit + "/s/√Hz")]
     lines = ["At rest, %s, %.3g s:" % (SENSOR[sensor], noise["seconds"])]
     for key, words, of in names:

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from sixflip_host.capture import capture_file, clock
+from sixflip_host.capture import capture_file, clock, stamp_envelope
 from sixflip_host.diagnosis.detect import sample_clock
 
 ROWS, PERIOD = 6000, 10050.0    # µs: 99.5025 Hz
@@ -281,3 +281,29 @@ def test_a_pause_of_seconds_in_a_slow_log_is_no_loss():
     t[1500:] += 1700000
     found = clock.measure(t)
     assert (found.losses, found.pauses) == (0, 1)
+
+
+def held_by_a_link(later_late):
+    """Stamps of 500 rows that came every 2.6 ms, then of rows in time but for some that are late
+    by 20 ms (later_late) and caught up at that pace."""
+    t, n = EVEN.copy(), 500
+    t[:n] = t[n] - 2600.0 * (n - np.arange(n))
+    if later_late:
+        for first in range(700, ROWS - 10, 40):
+            caught_up = EVEN[first] + 20_000.0 + 2600.0 * np.arange(3)
+            t[first:first + 3] = np.maximum(EVEN[first:first + 3], caught_up)
+    return np.rint(t - t[0]).astype(np.int64)
+
+
+def test_rows_that_a_link_still_held_at_the_start_came_late():
+    """They made the rate 6 % higher, and the first of them was late by what 64 rows are."""
+    found = clock.measure(held_by_a_link(True))
+    near(found)
+    assert found.rate_hz == pytest.approx(1e6 / PERIOD, rel=1e-4)
+    assert (found.rows, found.losses, found.pauses) == (ROWS, 0, 0) and found.late >= 500
+    assert found.longest_late_ms == pytest.approx(500 * (PERIOD - 2600.0) / 1e3, rel=1e-3)
+
+
+def test_a_sensor_that_was_faster_at_first_held_nothing():
+    assert stamp_envelope.backlog(held_by_a_link(False)) == 0
+    assert stamp_envelope.backlog(held_by_a_link(True)) == 500

@@ -56,7 +56,7 @@ def test_a_boat_that_never_rests_has_no_rest_and_the_noise_of_its_chip():
     trace = traces.trace_from_capture("boat", read(t, force, rate, 1, (-0.7, 1.8, 0.8)))
     assert not trace.rests
     for kind, unit, sd in (("gyro", np.radians(1.0), GYRO_DPS), ("accel", G, ACCEL_G)):
-        density = sd * np.sqrt(2.0 / trace.rate_hz)
+        density = sd / np.sqrt(trace.rate_hz)
         assert trace.noise[kind].density / unit == pytest.approx(density, rel=0.1)
     motion = traces.motion(trace)
     inside = slice(500, -500)

@@ -1,9 +1,12 @@
 """Rows whose stamps are late: read in time and handed over late, or late themselves."""
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from sixflip_host.capture import clock
 from sixflip_host.capture.capture import Capture
-from sixflip_host.diagnosis.simulator import comparison, row_times, traces
+from sixflip_host.diagnosis.simulator import alignment, comparison, row_times, timing, traces
 from tests.worlds.tumbled import META, RATE_HZ, read, tumbled
 
 
@@ -48,6 +51,42 @@ def test_late_stamps_are_nothing_that_a_simulator_lacks(read_late):
     assert found.conventions == () and not found.left and not found.shaken
     before, after, noise = found.gap["gyro"]
     assert after < 2.0 * noise
+
+
+def test_rows_that_a_link_still_held_are_no_other_clock():
+    """By the count of all rows a healthy log had 120 rows a second, and its clock was off by
+    percents."""
+    late = late_by(int(60.0 * RATE_HZ))
+    held = np.arange(800)
+    late[held] += 0.009 * (len(held) - held)
+    real, simulated = stamped(late, False)
+    trace = traces.trace_from_capture("real", real)
+    assert trace.rate_hz == pytest.approx(RATE_HZ, rel=2e-4)
+    off = trace.t - np.arange(len(late)) / RATE_HZ
+    assert np.abs(off - np.median(off)).max() < 2e-3
+    found = comparison.compare([("real", real)], "sim", simulated)
+    assert abs(found.alignment.drift) < 2e-4 and found.conventions == () and not found.differs
+
+
+def test_what_holds_rows_up_now_longer_and_now_shorter_is_no_other_clock():
+    n, rng = int(60.0 * RATE_HZ), np.random.default_rng(6)
+    stretches = np.repeat(rng.standard_normal(12) * 0.03, n // 12) / (n // 12)
+    real, simulated = stamped(late_by(n) + np.cumsum(stretches), False)
+    traced = [traces.trace_from_capture(*x) for x in (("real", real), ("sim", simulated))]
+    told = timing.timing(None, None, {}, alignment.align(*traced))[-1]
+    assert told.name == "clock" and not told.differs
+
+
+def test_over_many_rows_the_stamps_are_the_clock():
+    """The even clock of a rate that is known to a per cent was the time of all rows."""
+    late = late_by(int(60.0 * RATE_HZ))
+    real, _ = stamped(late, False)
+    trace = traces.trace_from_capture("real", real)
+    stamps = replace(trace, t=1e-6 * (real.t_us - real.t_us[0]))
+    measured = clock.measure(real.t_us)
+    again = row_times.as_read(stamps, replace(measured, rate_hz=1.002 * measured.rate_hz))
+    off = again.t - np.arange(len(late)) / RATE_HZ
+    assert again is not stamps and np.abs(off - np.median(off)).max() < 2e-3
 
 
 def test_stamps_that_are_in_time_stay_as_they_are():

@@ -1,4 +1,5 @@
 """Numbers of two logs side by side: ranges, and intervals that hold what stretches disagree on."""
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -17,8 +18,10 @@ from sixflip_host.diagnosis.simulator import (
     simulator_answer,
     single_log,
     timing,
+    traces,
 )
 from sixflip_host.export import put_back
+from tests.worlds import tumbled
 
 
 def swung(limit, size=3.0):
@@ -55,6 +58,54 @@ def test_a_coefficient_is_as_uncertain_as_stretches_of_the_log_disagree_on_it():
         np.ones(3, bool))
     sigma = result[5][:, 0]
     assert sigma == pytest.approx(slopes.std() / np.sqrt(20.0), rel=0.4)
+
+
+def test_a_density_is_one_with_rests_and_without():
+    """Without them it was 1.41 times as large, the one-sided one."""
+    made = traces.trace_from_capture("made", tumbled.read(*tumbled.tumbled(1), 1))
+    assert made.rests
+    values = 0.05 * np.random.default_rng(2).standard_normal((len(made.t), 3))
+    both = [single_log.noise(trace, values).density for trace in (made, replace(made, rests=()))]
+    for density in both:
+        assert density == pytest.approx(0.05 / np.sqrt(tumbled.RATE_HZ), rel=0.15)
+
+
+def made_of(values, rests):
+    trace = traces.trace_from_capture("made", tumbled.read(*tumbled.tumbled(1, 20.0), 1))
+    n = len(values)
+    return replace(trace, t=trace.t[:n], force=values, rate=0.01 * values, rests=rests,
+                   put_in=np.zeros(n, bool), quantum=(1e-4, 1e-6))
+
+
+def test_a_rest_of_a_second_tells_the_noise_and_not_what_shakes_the_way():
+    """Its noise was that of all of the log, ten times as large."""
+    values = np.random.default_rng(3).standard_normal((1500, 3))
+    values[20:110] *= 0.1
+    noise = single_log.noise(made_of(values, ((20, 110),)), values)
+    assert noise.density == pytest.approx(0.01, rel=1.0) and not noise.moving
+
+
+def test_the_noise_of_what_moves_is_an_upper_bound():
+    rng = np.random.default_rng(4)
+    still, shaken = (made_of(size * rng.standard_normal((1500, 3)), rests) for size, rests in (
+        (0.1, ((0, 1500),)), (1.0, ())))
+    for pair in ((still, shaken), (shaken, still)):
+        numbers, findings = noise_and_registers.noises(*pair)
+        assert findings == [] and numbers and not any(p.differs for p in numbers)
+    quiet = made_of(0.01 * rng.standard_normal((1500, 3)), ())
+    assert all(p.differs for p in noise_and_registers.noises(still, quiet)[0])
+
+
+@pytest.mark.parametrize("axes,both,said", [
+    ((1.0, 1.0, 1.0), True, ["device"]), ((1.0, 1.0, 1.0), False, []),
+    ((1.35, 1.0, 0.8), True, [])])
+def test_a_density_for_a_samples_noise_is_one_number_in_both_sensors(axes, both, said):
+    """Another chip that is some ten times as noisy took a density for a sample's noise."""
+    rng = np.random.default_rng(6)
+    real, sim = (made_of(0.1 * rng.standard_normal((1500, 3)), ((0, 1500),)) for _ in range(2))
+    sim = replace(sim, force=10.0 * np.array(axes) * sim.force,
+                  rate=(10.0 if both else 1.0) * np.array(axes) * sim.rate)
+    assert [c.sensor for c in noise_and_registers.noises(real, sim)[1]] == said
 
 
 def test_what_has_no_field_to_set_has_words_to_copy():

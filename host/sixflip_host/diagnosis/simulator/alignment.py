@@ -53,7 +53,14 @@ class Alignment:
 
 
 def align(real, sim):
-    """The Alignment of two Traces."""
+    """The Alignment of two Traces; its drift is known no better than the pace of their clocks."""
+    found = _by_turns_or_forces(real, sim)
+    return replace(found, drift_sigma=float(np.sqrt(
+        found.drift_sigma ** 2 + real.clock_sigma ** 2 + sim.clock_sigma ** 2)))
+
+
+def _by_turns_or_forces(real, sim):
+    """The Alignment of two Traces with times that are known."""
     none = Alignment(False, 0.0, 0.0, np.inf, 0.0, np.inf, 0.0)
     if min(real.seconds, sim.seconds) < LEAST_S:
         return none

@@ -17,6 +17,9 @@ LEVEL_S, FEWEST = 1.0, 8  # over which the noise is told: s, and samples, of a r
 # Times the noise of the quietest tenth up to which a log is calm; deg/s of a turn that is slower
 # than any robot's, and more than a gyro's bias changes by within a log (20 deg/s over 60 degC).
 LOUDER, SLOW_DPS = 2.5, 1.5
+# deg/s of a gyro's bias, standard deviation of what is known before (20 is the limit of an
+# MPU-6050, 40 that of an ITG-3200 in their data sheets), and times as much that none is.
+BIAS_DPS, NO_BIAS = 10.0, 5.0
 COUNT_VARIANCE = 0.25  # counts: a channel that toggles between two of them
 
 
@@ -34,13 +37,16 @@ def of_capture(capture, rate_hz):
         rests = inside(rest_finder.labelled(capture.pose))
         spans = tuple((run.first, run.end) for run in rests)
         return spans, tuple(_up(int(run.code)) for run in rests), spans
-    quiet = inside(calm(capture, rate_hz))
+    found = calm(capture, rate_hz)
+    quiet = inside(found)
     stops = still = [(run.first, run.end) for run in quiet]
     if capture.gyro is not None:
         lsb = capture.meta["gyro_lsb_per_dps"]
         still = rest_or_course.resting(capture.gyro / lsb, still, rate_hz, adequacy.usual(
             capture.meta["sensor"], "gyro"), 1.0 / lsb)
-        stops, still = (_unturned(capture, spans) for spans in (stops, still))
+        short = [(run.first, run.end) for run in found if run.end - run.first < least + 2 * edge]
+        usual = _level(capture.gyro / lsb, still + short)
+        stops, still = (_unturned(capture.gyro / lsb, spans, usual) for spans in (stops, still))
     return tuple(still), (None,) * len(still), tuple(stops) if still else ()
 
 
@@ -50,14 +56,25 @@ def _up(code):
     return faces.SIGN[face] * np.eye(3)[faces.AXIS[face]] if face >= 0 else None
 
 
-def _unturned(capture, spans):
-    """Those of the spans in which the gyro stands where it stands most often."""
+def _level(rate, spans):
+    """(3,) deg/s of the gyro's rate (n, 3) where it stands: what it comes back to for longest in
+    spans of calm samples, a stop between two moves as well, weighed by what a bias can be; a robot
+    that turns evenly is as calm as one that rests. None where no level can be a bias."""
     if not spans:
-        return []
-    usual = np.median(np.concatenate([capture.gyro[a:b] for a, b in spans]), axis=0)
-    slow = SLOW_DPS * capture.meta["gyro_lsb_per_dps"]
-    return [(a, b) for a, b in spans
-            if np.linalg.norm(capture.gyro[a:b].mean(axis=0) - usual) < slow]
+        return None
+    means, lasts = (np.array(x) for x in zip(*[(rate[a:b].mean(axis=0), b - a) for a, b in spans]))
+    alike = np.linalg.norm(means[:, None] - means, axis=2) < SLOW_DPS
+    off = np.linalg.norm(means, axis=1) / BIAS_DPS
+    best = int((np.log(alike @ lasts) - 0.5 * off ** 2).argmax())
+    level = np.median(np.concatenate([rate[a:b] for (a, b), near in zip(spans, alike[best])
+                                      if near]), axis=0)
+    return level if np.linalg.norm(level) < NO_BIAS * BIAS_DPS else None
+
+
+def _unturned(rate, spans, usual):
+    """Those of the spans in which the gyro's rate (n, 3) stands where it does at rest."""
+    return [] if usual is None else [
+        (a, b) for a, b in spans if np.linalg.norm(rate[a:b].mean(axis=0) - usual) < SLOW_DPS]
 
 
 def calm(capture, rate_hz):

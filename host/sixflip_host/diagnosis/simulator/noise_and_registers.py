@@ -16,6 +16,10 @@ from .parameters import DIFFERS, MG, Parameter, compared
 # data sheet, typical for the part's, is taken to be right to a fifth.
 SETTING = 0.2
 ANY = 2.0  # natural logarithm, of a noise that was set to anything: a factor of seven
+# Natural logarithm, by which the axes of one chip differ in noise (0.05 to 0.5 were seen), and by
+# which those differ that have one number, or each the real one's times one number: rounding, and
+# what a motor adds at rest.
+AXES, TYPED = 0.25, 0.05
 # Probability from which on a noise is said to be the density's number. Less than elsewhere
 # (convention_findings.CERTAIN), since it is said only where the densities differ anyhow.
 LIKELY = 0.95
@@ -55,32 +59,39 @@ def noises(real, sim):
                 continue  # in steps that coarse the real one's noise does not show
             da, db = a.density[i] * scale, 0.0 if silent else b.density[i] * scale
             # Noise is known to a share of itself: it is the ratio that can be told from one.
-            ratio = abs(np.log(max(da, 1e-12) / max(db, 1e-12)))
+            ratio = np.log(max(da, 1e-12) / max(db, 1e-12))
+            if a.moving != b.moving:  # of what moves it is known how much it is at most
+                ratio = min(ratio, 0.0) if a.moving else max(ratio, 0.0)
+            sigma = np.hypot(a.relative_sigma, b.relative_sigma)
             numbers.append(compared(
                 "noise_density", kind, axis, unit, da, da * a.relative_sigma, db,
-                db * b.relative_sigma, apart=ratio / np.hypot(a.relative_sigma, b.relative_sigma)))
-        if not silent and (a.per_sample > single_log.DROWNED * floor[0]).all() and (
-                b.density > 0).all():
+                db * b.relative_sigma, apart=abs(ratio) / sigma))
+        heard = (a.per_sample > single_log.DROWNED * floor[0]).all() and not silent
+        if heard and not (a.moving or b.moving) and (
+                np.minimum(b.density, b.per_sample) > 0).all():
             findings += density_convention(kind, a, b, sim.rate_hz)
     return numbers, merged_noise(findings)
 
 
 def density_convention(kind, real, sim, rate_hz):
     """Whether the ratio of the densities is that of a sample's noise to a density, hypothesis
-    against hypothesis, the nameless one wide."""
+    against hypothesis. The nameless one is wide, and as likely before: a noise set by hand, or
+    that of another chip, whose axes are none of one number."""
     ratio = float(np.mean(np.log(sim.density / np.maximum(real.density, 1e-300))))
     sigma = float(np.hypot(np.hypot(real.relative_sigma, sim.relative_sigma) / np.sqrt(3.0),
                            SETTING))
     half = 0.5 * np.log(rate_hz)
-    means = {"healthy": (0.0, sigma, conventions.PRIOR_HEALTHY),
-             "too small": (-half, sigma, conventions.PRIOR_EACH),
-             "too large": (half, sigma, conventions.PRIOR_EACH),
-             "another": (0.0, ANY, conventions.PRIOR_NAMELESS)}
-    logs = {n: np.log(p) - np.log(s) - 0.5 * ((ratio - m) / s) ** 2
-            for n, (m, s, p) in means.items()}
+    typed, chip = _axes_nats(real, sim)
+    any_axes = np.logaddexp(typed, chip) - np.log(2.0)
+    means = {"healthy": (0.0, sigma, conventions.PRIOR_HEALTHY, any_axes),
+             "too small": (-half, sigma, conventions.PRIOR_EACH, typed),
+             "too large": (half, sigma, conventions.PRIOR_EACH, typed),
+             "another": (0.0, ANY, conventions.PRIOR_EACH, any_axes)}
+    logs = {n: np.log(p) - np.log(s) - 0.5 * ((ratio - m) / s) ** 2 + axes
+            for n, (m, s, p, axes) in means.items()}
     shares = odds.shares(logs)
     probability = sum(shares.get(n, 0.0) for n in ("too small", "too large"))
-    if probability < LIKELY:
+    if probability < 0.5:
         return []
     factor, half_of_90 = float(np.exp(ratio)), odds.Z_90 * sigma
     return [convention_findings.finding(
@@ -89,15 +100,33 @@ def density_convention(kind, real, sim, rate_hz):
         interval_90={"factor": (factor * np.exp(-half_of_90), factor * np.exp(half_of_90))})]
 
 
+def _axes_nats(real, sim):
+    """(nats of how a simulator's axes differ in noise where one number was set for all of them, or
+    by which each is larger than the real one's; the same of any two chips)."""
+    own, beside = np.log(sim.per_sample), np.log(sim.per_sample / real.per_sample)
+    error2 = TYPED ** 2 + sim.sample_sigma ** 2
+
+    def nats(values, variance):  # of two differences between three axes
+        return -0.5 * ((values - values.mean()) ** 2).sum() / variance - np.log(variance)
+
+    both = error2 + real.sample_sigma ** 2
+    typed = np.logaddexp(nats(own, error2), nats(beside, both)) - np.log(2.0)
+    return typed, nats(beside, both + AXES ** 2)
+
+
 def merged_noise(findings):
-    """Both sensors at once are one finding, of the device."""
-    if len(findings) < 2:
-        return findings
-    first = findings[0]
-    return [convention_findings.finding(
-        "noise_per_sample", "device", min(c.probability for c in findings),
-        sum(c.nats for c in findings), value=first.value, unit="1",
-        interval_90=first.interval_90)]
+    """[Convention] of density_convention() of both sensors: at once they are one finding, of the
+    device, and one says it of the other; of whoever takes a density for a sample's noise every
+    second one is taken to do so in one of the sensors alone."""
+    each = [c.probability / max(1.0 - c.probability, 1e-300) for c in findings]
+    larger = [c.value["factor"] > 1.0 for c in findings]
+    if len(findings) == 2 and larger[0] == larger[1]:
+        first = findings[0]
+        findings, each = [convention_findings.finding(
+            "noise_per_sample", "device", 0.0, sum(c.nats for c in findings), value=first.value,
+            unit="1", interval_90=first.interval_90)], [2.0 * each[0] * each[1]]
+    told = [replace(c, probability=float(odd / (2.0 + odd))) for c, odd in zip(findings, each)]
+    return [c for c in told if c.probability >= LIKELY]
 
 
 def shaking(real, sim):

@@ -4,24 +4,28 @@ from dataclasses import replace
 
 import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
+from scipy.ndimage import median_filter, uniform_filter1d
+
+from ...capture import clock, stamp_envelope
 
 PUT_IN_S = 0.15  # of lost rows in one place: a period of the band that is compared
 # Of a period, by which a stamp is late that matters; rows that are, before it is asked what their
 # readings say of it; times as much as by the stamps, that these bend between the rows beside them
 # where they were read in time: noise alone bends as much by both.
 LATE, FEWEST, LESS = 0.3, 8, 0.8
+WIDE = 2 * stamp_envelope.REACH + 1  # rows, of which those of one late row are less than half
 SOME = 0.25  # of the intervals, at most, where stamps are told from a clock that is coarse
 
 
 def as_read(trace, measured):
     """The Trace with the times at which its rows were read, by its SampleClock: a row that was
     handed over late was read in time, or was itself late. Its readings, between those beside it,
-    say which."""
+    say which. Even is the clock from row to row; over more of them it goes with the stamps."""
     if measured is None or measured.pauses or not measured.late:
         return trace
     period = 1.0 / measured.rate_hz
-    even = period * (np.arange(len(trace.t)) + np.cumsum(_missing(len(trace.t), measured)))
-    even += np.median(trace.t - even)
+    even = _along(trace.t, period * (
+        np.arange(len(trace.t)) + np.cumsum(_missing(len(trace.t), measured))))
     late = np.abs(trace.t - even) > LATE * period
     late[:-1] |= late[1:]
     late[1:] |= late[:-1]
@@ -31,6 +35,25 @@ def as_read(trace, measured):
     bends = [sum(_bend(t, values, rows) for values in (trace.force, trace.rate)
                  if values is not None) for t in (trace.t, even)]
     return replace(trace, t=even - even[0]) if bends[1] < LESS * bends[0] else trace
+
+
+def pace_sigma(measured):
+    """Relative standard error of the pace of stamps some of which are late, by their SampleClock:
+    what holds up rows holds them up for longer, too, and the pace of stretches then differs."""
+    if measured is None or not measured.late:
+        return 0.0
+    low, high = measured.interval_hz
+    return float((high - low) / (2.0 * clock.NORMAL_95 * measured.rate_hz))
+
+
+def _along(t, even):
+    """(n,) times of an even clock that follows the stamps t (n,) over more rows than a late one
+    holds up: single rows that were lost among late ones, and a rate that is not known well, are
+    in them. Rows that a link still held at the start have no times of their own."""
+    held = stamp_envelope.backlog(1e6 * t)
+    slow = median_filter((t - even)[held:], WIDE, mode="nearest")
+    slow = uniform_filter1d(slow, WIDE, mode="nearest")
+    return even + np.concatenate([np.full(held, slow[0]), slow])
 
 
 def _missing(n, measured):

@@ -11,6 +11,7 @@ from . import convention_findings, restless
 # Standard error of a deviation taken from the median of squares of a standard normal, times the
 # root of the number [Rousseeuw, Croux, J. Am. Stat. Assoc. 88 (1993)].
 MEDIAN_SIGMA = 1.17
+NEIGHBOURS = 0.87  # the same of one taken from white differences of neighbours: half of 3^0.5
 SETTLING = 4.0  # times the usual power: five means of one noise differ by as much in 0.3 %
 # Share of the liveliest channel's standard deviation: a channel that says nothing varies by less
 # than DEAD, where the real one varies by more than ALIVE, five times as much.
@@ -19,17 +20,21 @@ DEAD, ALIVE = 0.03, 0.15
 # hundred independent samples errs by 14 %), and what moves a robot moves its other channels by
 # MORE.
 SAME, MORE = 1.3, 10.0
+SHORTEST_MEAN = 2  # samples
 DROWNED = 0.3  # of a count: noise below it hardly ever crosses one
 
 
 @dataclass(frozen=True)
 class Noise:
-    """Of each axis (3,): density (unit per root Hz) with its relative standard error, and
-    per_sample, the standard deviation of a sample."""
+    """Of each axis (3,): density (unit per root Hz; two-sided: white noise of a sample over the
+    root of the rate) and per_sample, the standard deviation of a sample, each with its relative
+    standard error; moving: of what moves, which may shake it, so that it is this at most."""
 
     density: np.ndarray
     relative_sigma: float
     per_sample: np.ndarray
+    sample_sigma: float
+    moving: bool = False
 
 
 def live(trace):
@@ -99,11 +104,27 @@ def turns(trace):
 def noise(trace, values):
     """Noise of values (n, 3) at the Trace's rests; where there is none that is long enough, of the
     quick end of their spectrum, or None where that does not show it."""
-    m = max(2, int(SUBMEAN_S * trace.rate_hz))
-    # A line leaks into plain means by as much as their noise, now more and now less.
-    window = np.hanning(m + 2)[1:-1]
-    window /= window.sum()
-    rests = []
+    for parts in (1, 2, 4):  # of shorter means where the rests are too short for four others
+        m = max(SHORTEST_MEAN, int(SUBMEAN_S * trace.rate_hz / parts))
+        # A line leaks into plain means by as much as their noise, now more and now less.
+        window = np.hanning(m + 2)[1:-1]
+        window /= window.sum()
+        squares, sample = _squares(trace, values, window)
+        if len(squares) >= 4:
+            # By the median: in a part of a rest one axis may still be moved.
+            per_mean = np.median(squares, axis=0) / MEDIAN_OF_SQUARE / 2.0
+            return Noise(np.sqrt(per_mean / (window ** 2).sum() / trace.rate_hz),
+                         float(MEDIAN_SIGMA / np.sqrt(len(squares) / 1.5)),
+                         np.sqrt(sample.mean(axis=0) / 2.0), NEIGHBOURS / np.sqrt(len(sample)))
+    known = restless.white(values[~trace.put_in])
+    return None if known is None else Noise(
+        known[0] / np.sqrt(trace.rate_hz), known[1], known[0], known[1], moving=True)
+
+
+def _squares(trace, values, window):
+    """((k, 3) squared differences of neighbouring means of values (n, 3) over a window, (j, 3) of
+    neighbouring samples) within the Trace's rests."""
+    rests, m = [], len(window)
     for a, b in trace.rests:
         x = values[a:b]
         k = len(x) // m
@@ -114,16 +135,7 @@ def noise(trace, values):
         # A rest in which the robot still settles says nothing of the sensor's noise.
         level = [means.mean(axis=0).sum() for means, _ in rests]
         rests = [r for r, own in zip(rests, level) if own <= SETTLING * np.median(level)]
-    squares, sample = (np.concatenate(x) for x in zip(*rests)) if rests else ([], [])
-    if len(squares) < 4:
-        known = restless.white(values[~trace.put_in])
-        return None if known is None else Noise(
-            known[0] * np.sqrt(2.0 / trace.rate_hz), known[1], known[0])
-    # By the median: in a part of a rest one axis may still be moved.
-    per_mean = np.median(squares, axis=0) / MEDIAN_OF_SQUARE / 2.0
-    return Noise(np.sqrt(per_mean / (window ** 2).sum() / trace.rate_hz),
-                 float(MEDIAN_SIGMA / np.sqrt(len(squares) / 1.5)),
-                 np.sqrt(sample.mean(axis=0) / 2.0))
+    return tuple(np.concatenate(x) for x in zip(*rests)) if rests else ([], [])
 
 
 def step(values, quantum):

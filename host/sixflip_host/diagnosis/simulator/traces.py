@@ -26,7 +26,8 @@ class Trace:
     of one count; flicker: {sensor: mg or deg/s}, the level of such a chip (adequacy.usual), by
     which its bias is another one the next time; railed (n,): a channel stands at the end of what
     it can say; put_in (n,): nobody read it, or what is beside it; calm: as rests, with
-    stretches in which it hardly moves, of a log that rests somewhere."""
+    stretches in which it hardly moves, of a log that rests somewhere; clock_sigma: the relative
+    standard error of the pace of t."""
 
     name: str
     t: np.ndarray
@@ -42,6 +43,7 @@ class Trace:
     railed: np.ndarray
     put_in: np.ndarray
     calm: tuple = ()
+    clock_sigma: float = 0.0
 
     @property
     def seconds(self):
@@ -74,8 +76,8 @@ def trace_from_capture(name, capture):
         t = np.arange(len(t)) / float(meta["rate_hz"])
     measured = clock.sample_clock(capture)
     rate_hz = float(meta["rate_hz"]) if len(t) < 2 else (len(t) - 1) / t[-1]
-    if measured is not None and measured.pauses:
-        rate_hz = measured.rate_hz  # a pause is none of its time
+    if measured is not None and (measured.pauses or not measured.losses):
+        rate_hz = measured.rate_hz  # a pause is none of its time, nor are rows that came late
     quantum = (capture.g / meta["accel_lsb_per_g"],
                DPS / meta["gyro_lsb_per_dps"] if capture.gyro is not None else None)
     celsius = None
@@ -89,7 +91,7 @@ def trace_from_capture(name, capture):
     trace = Trace(name, t, capture.accel * quantum[0],
                   None if capture.gyro is None else capture.gyro * quantum[1], celsius,
                   float(rate_hz), capture.g, rests, ups, quantum, flicker, railed,
-                  np.zeros(len(t), bool), calm)
+                  np.zeros(len(t), bool), calm, row_times.pace_sigma(measured))
     return row_times.evened(row_times.as_read(trace, measured), measured)
 
 
