@@ -90,36 +90,7 @@ def spacing(size, least):
     return float(np.median(np.diff(values))) if len(values) > 2 else float(least)
 
 
-FEWEST_NEAR, LEAST_NOISE = 50, 0.3  # samples beside 0; steps: with less noise 0 may be all
-WINDOW, FEWEST_WINDOWS, QUIET = 32, 8, 0.1  # samples; windows away from 0; share that is at rest
 FEWEST_ZEROS, FEWEST_MISSING = 20, 40  # readings of 0 that are a band; of the codes within it
-CROSSINGS = 4  # of 0 in a window that noise makes: what passes through has one
-
-
-def zeros_beyond_noise(column):
-    """(zeros, how many there would be by the codes beside 0 at most) of a column (n,) of counts
-    where noise takes it to both sides of 0, or None where that is not so often enough. Noise of a
-    standard deviation s makes a code more frequent than the two beside it by exp(1 / (2 s^2)) at
-    most, wherever its mean is; s is known where the column rests away from 0."""
-    x, step = column.astype(np.int64), int(steps(column[:, None])[0])
-    windows = x[:len(x) // WINDOW * WINDOW].reshape(-1, WINDOW)
-    away = windows[(np.abs(windows) > 2 * step).all(axis=1)]
-    about = windows[_crossings(windows) >= CROSSINGS]
-    beside = int(((about != 0) & (np.abs(about) <= 2 * step)).sum())
-    if beside < FEWEST_NEAR or len(away) < FEWEST_WINDOWS:
-        return None
-    noise = float(np.quantile(np.diff(away, axis=1).std(axis=1), QUIET)) / np.sqrt(2.0) / step
-    if noise < LEAST_NOISE:
-        return None
-    return int((about == 0).sum()), beside / 4.0 * float(np.exp(0.5 / noise ** 2))
-
-
-def _crossings(windows):
-    """(n,) how often the signs of the readings that are not 0 change, row by row."""
-    sign = np.sign(windows)
-    last = np.maximum.accumulate(np.where(sign != 0, np.arange(sign.shape[1]), 0), axis=1)
-    held = np.take_along_axis(sign, last, axis=1)
-    return (held[:, 1:] * held[:, :-1] < 0).sum(axis=1)
 
 
 def _holes(column, least, step):
@@ -130,18 +101,17 @@ def _holes(column, least, step):
                for side in (column, -column))
 
 
-def _flat(column):
-    """Half the width (counts) of a band that reads 0 and that what is beyond it begins at 0
-    again, so that no code is missing; 0 where 0 is as frequent as the codes beside it."""
-    told = zeros_beyond_noise(column)
-    if told is None or told[0] <= 3.0 * told[1]:  # one step to either side: rounding towards 0
-        return 0
-    return round(0.5 * (told[0] / told[1] - 1.0) * int(steps(column[:, None])[0]))
+def sign_changes(windows):
+    """(n,) how often the signs of the readings that are not 0 change, row by row."""
+    sign = np.sign(windows)
+    last = np.maximum.accumulate(np.where(sign != 0, np.arange(sign.shape[1]), 0), axis=1)
+    held = np.take_along_axis(sign, last, axis=1)
+    return (held[:, 1:] * held[:, :-1] < 0).sum(axis=1)
 
 
 def dead_band(counts):
     """(3,) counts up to which an axis reads 0: the smallest that is not 0, where many more near 0
-    were to be expected; or by how often 0 is read, where no code is missing."""
+    were to be expected; 0 where no code is missing."""
     bands = []
     for column in counts.T:
         small = np.abs(column.astype(np.int64))
@@ -155,7 +125,7 @@ def dead_band(counts):
         missing = 2.0 * (least / step - 1.0)  # codes, for which 0 is read, and for itself
         banded = missing >= 2.0 and missing * each > FEWEST_MISSING and zeros > max(
             FEWEST_ZEROS, 2.0 * each) and (missing > 2.0 or not _holes(column, least, step))
-        bands.append(least if banded else _flat(column))
+        bands.append(least if banded else 0)
     return np.array(bands)
 
 
