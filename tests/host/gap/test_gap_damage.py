@@ -1,6 +1,7 @@
 """What recordings suffer: bytes put together wrongly, values that are held, scales that are not
 the header's. One is put in and exactly that is found; the sound recording has none."""
 import copy
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -44,6 +45,22 @@ def changed(capture, sensor, axis, rule):
 
 def low_or(x):
     return np.where(x & 255 >= 128, (x & 255) - 256, x)
+
+
+def test_what_an_import_scaled_has_no_bytes():
+    """What a file of decimals in g becomes: counts that no register had. Jumps of 256 of them,
+    which a byte with a sign of its own made, are the sensor's."""
+    rng = np.random.default_rng(9)
+    level = np.round(6000.0 + 700.0 * np.sin(np.arange(900) / 25.0) + rng.normal(0.0, 9.0, 900))
+    true = np.column_stack([rng.normal(0.0, 9.0, (900, 2)), level]).astype(np.int64)
+    accel = np.where(true & 255 >= 128, true - 256, true).astype(np.int16)
+    told = {}
+    for kind in ("counts", "float"):
+        capture = SimpleNamespace(accel=accel, gyro=None, meta={"accel_values": kind})
+        (_, mended), = byte_faults.repaired([("one", capture)])[0]
+        told[kind] = [(d.kind, d.axes) for d in byte_faults.repaired([("one", capture)])[1]]
+        assert (mended.accel == accel).all() == (kind == "float")
+    assert told["float"] == [] and ("sign_extension", ("x", "y", "z")) in told["counts"]
 
 
 RULES = {
