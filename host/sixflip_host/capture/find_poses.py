@@ -11,6 +11,7 @@ from . import rests
 from .attitude import heading_change
 
 POSES, FOUND = "poses", "found"  # key and value of a capture's header: no person named its poses
+NO_GRAVITY = 0.05   # g: no part reads so little of it at rest; it has been taken out of the values
 HELD_BY_HAND = "held_by_hand"   # key of a capture's header: names of poses that were not at rest
 
 
@@ -55,6 +56,9 @@ def by_a_person(capture):
 def find_poses(capture):
     """Label every sample of a Capture; returns FoundPoses. Nothing is changed in the capture."""
     still = rests.find(capture, rests.POSES)
+    if all(np.linalg.norm(rest.mean) < NO_GRAVITY * capture.meta["accel_lsb_per_g"]
+           for rest in still.rests):
+        still = replace(still, rests=())
     named = _named(capture, still.rests, still.noise)
     pose = np.zeros(len(capture), np.int16)
     for rest in named:

@@ -243,6 +243,17 @@ def test_gravity_that_no_range_explains(sound):
     assert damaged(other)[0] == [("gravity", "accel", ())]
 
 
+def test_gravity_that_was_taken_off(sound):
+    """A phone's linear acceleration had a scale that was not the header's."""
+    other = copy.copy(sound)
+    session = blocks.session_of("one", other)
+    other.accel = np.array(sound.accel)
+    for _, first, end in session.runs:
+        other.accel[first:end] -= np.rint(sound.accel[first:end].mean(axis=0)).astype(np.int16)
+    found, = wrong_scale.findings([blocks.session_of("one", other)])
+    assert found.kind == "gravity" and "gravity has been taken off" in found.words
+
+
 def band_of(values):
     return registers.dead_band(np.repeat(np.rint(values)[:, None], 3, axis=1).astype(int))[0]
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from sixflip.poses import faces
 
+from ...capture.find_poses import NO_GRAVITY
 from ...capture.imports import gravity
 from .detection import Damage, present
 
@@ -21,6 +22,7 @@ RANGES = (0.0625, 0.125, 0.25, 0.5, 2.0, 4.0, 8.0, 16.0)
 # Any factor without a name lies within that and its inverse: degrees for radians (57.3), m/s2 for
 # g.
 WIDEST = 64.0
+SMALLEST = 1e-3  # a factor that is less is that: of gravity, what is left where it is taken off
 # Correlation of gravity's turning and the gyro's that tells a factor: with less a third of the
 # turning is something else, which draws the factor towards 0.
 ALIKE = 0.8
@@ -52,6 +54,9 @@ def accelerometer(sessions):
     if factor:
         words = ("the accelerometer reads %g times gravity: its full scale is not the one the "
                  "header states" % factor)
+    elif size < NO_GRAVITY:
+        words = ("|a| is %.2g g at rest: gravity has been taken off the accelerometer's readings, "
+                 "as off a phone's linear acceleration" % size)
     else:
         words = "|a| is %.3g g at rest: the accelerometer's scale is not that of the header" % size
     return Damage("full_scale" if factor else "gravity", "accel", (), "amplitude", words, nats,
@@ -71,7 +76,7 @@ def at_rest(session):
 def competed(factors, widths):
     """(the range that factors are off by, or None where none is likelier than any factor at all;
     nats of one of both over 1). factors, widths (n,): relative standard deviations."""
-    factors, widths = np.array(factors), np.array(widths)
+    factors, widths = np.maximum(factors, SMALLEST), np.array(widths)
 
     def log_density(times):
         return -float((0.5 * ((factors / times - 1.0) / widths) ** 2
@@ -79,7 +84,7 @@ def competed(factors, widths):
     sound = log_density(1.0)
     ranges = {times: log_density(times) - math.log(len(RANGES)) for times in RANGES}
     best = max(ranges, key=ranges.get)
-    middle = max(float(np.average(factors, weights=1.0 / widths ** 2)), 1e-3)
+    middle = float(np.average(factors, weights=1.0 / widths ** 2))
     narrow = math.log(math.sqrt(2.0 * math.pi) / math.sqrt(float((1.0 / widths ** 2).sum()))
                       / (2.0 * math.log(WIDEST)))
     nameless = log_density(middle) + narrow
