@@ -12,6 +12,7 @@ from .attitude import heading_change
 
 POSES, FOUND = "poses", "found"  # key and value of a capture's header: no person named its poses
 NO_GRAVITY = 0.05   # g: no part reads so little of it at rest; it has been taken out of the values
+HALF_TURN_S = 0.5   # of a box by hand, at least: what is shorter was a touch
 HELD_BY_HAND = "held_by_hand"   # key of a capture's header: names of poses that were not at rest
 
 
@@ -88,6 +89,8 @@ def _letter(capture, before, rest, noise):
         return a, ""
     last = seen[-1]
     if capture.gyro is None:
+        if before[-1] is last and rest.first - last.end <= HALF_TURN_S * capture.meta["rate_hz"]:
+            return last.code, ""
         if before[-1] is last or len({one.code for one in seen}) == 1:
             return 2 * a + 1 - last.code, "moved since %s, no gyro to tell" % pose_name(last.code)
         return 0, "on its face again, no gyro to tell a from b"
