@@ -11,6 +11,8 @@ from . import rests
 from .attitude import heading_change
 
 POSES, FOUND = "poses", "found"  # key and value of a capture's header: no person named its poses
+NO_GRAVITY = 0.05   # g: no part reads so little of it at rest; it has been taken out of the values
+HALF_TURN_S = 0.5   # of a box by hand, at least: what is shorter was a touch
 HELD_BY_HAND = "held_by_hand"   # key of a capture's header: names of poses that were not at rest
 
 
@@ -55,6 +57,9 @@ def by_a_person(capture):
 def find_poses(capture):
     """Label every sample of a Capture; returns FoundPoses. Nothing is changed in the capture."""
     still = rests.find(capture, rests.POSES)
+    if all(np.linalg.norm(rest.mean) < NO_GRAVITY * capture.meta["accel_lsb_per_g"]
+           for rest in still.rests):
+        still = replace(still, rests=())
     named = _named(capture, still.rests, still.noise)
     pose = np.zeros(len(capture), np.int16)
     for rest in named:
@@ -84,6 +89,8 @@ def _letter(capture, before, rest, noise):
         return a, ""
     last = seen[-1]
     if capture.gyro is None:
+        if before[-1] is last and rest.first - last.end <= HALF_TURN_S * capture.meta["rate_hz"]:
+            return last.code, ""
         if before[-1] is last or len({one.code for one in seen}) == 1:
             return 2 * a + 1 - last.code, "moved since %s, no gyro to tell" % pose_name(last.code)
         return 0, "on its face again, no gyro to tell a from b"

@@ -8,6 +8,7 @@ from . import closed_loop, detectability, rest_noise
 from .detect import detection, line_frequency, sample_clock
 from .simulator import simulator_answer
 
+OF_COUNTS = 5  # digits of a whole count of 16 bits; of other sizes four
 UNITS = {"accel": "mg", "gyro": "deg/s", "gyro_turns": "deg/s", "accel_motion": "mg"}
 
 
@@ -64,24 +65,24 @@ def held_out(diagnosis):
     return "each session by the others"
 
 
-def _sizes(values):
-    return {k: number(v) for k, v in values.items()}
+def _sizes(values, digits=4):
+    return {k: number(v, digits) for k, v in values.items()}
 
 
-def _intervals(intervals):
-    return {k: [number(a), number(b)] for k, (a, b) in intervals.items()}
+def _intervals(intervals, digits=4):
+    return {k: [number(end, digits) for end in ends] for k, ends in intervals.items()}
 
 
 def _entry(sensor, axes, probabilities, score, value, unit, interval, plausible, share):
     """probabilities: {name: probability} of the names of the class, the likeliest first."""
     names = list(probabilities)
-    single = len(names) == 1 and plausible
+    single, digits = len(names) == 1 and plausible, OF_COUNTS if unit == "counts" else 4
     return {"sensor": sensor, "axes": axes, "effect": names[0] if single else None,
             "class": names, "probability": number(min(sum(probabilities.values()), 1.0)),
             "class_probabilities": {k: number(p) for k, p in probabilities.items()},
-            "score_nats": number(score), "value": _sizes(value),
-            "unit": spelled(unit), "interval_90": _intervals(interval), "plausible": plausible,
-            "share": number(share)}
+            "score_nats": number(score), "value": _sizes(value, digits),
+            "unit": spelled(unit), "interval_90": _intervals(interval, digits),
+            "plausible": plausible, "share": number(share)}
 
 
 def _with_strangers(cause, diagnosis):

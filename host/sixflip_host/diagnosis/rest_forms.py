@@ -13,10 +13,11 @@ import numpy as np
 from ..experiment import session_terms, terms
 from ..experiment.terms import Design
 from ..experiment.thermometer import MOVES_C
-from . import strangers
+from . import closed_loop, odds, strangers
 
 DECAYS = (0.25, 0.5, 1.0, 2.0)  # of the rest's length: decays beside those of the library
 CORNERS, JUMPS, WALK = 8, 24, 16  # as session_strangers.py has them
+STRAIGHT = 4.0  # rests: a decay that lasts so many bends by a thirtieth of what it changes in one
 WAVES = 24  # half periods in a rest, at most; what is faster is looked for in the spectrum
 BEND = 0.5  # of the slope's own effect: standard deviation of its square and of its cube
 LASTS = 4.0  # times a lag: a shorter rest cannot show it
@@ -103,6 +104,33 @@ def _nameless(rest, sensor):
     turns = (np.arange(WALK) + 0.5) * np.pi
     add("drift", [np.sqrt(2.0) * np.sin(k * u) / k for k in turns], [tuple(range(WALK))], "walk")
     return designs
+
+
+def place(cause, model, forms, posterior, rest):
+    """{name: probability} of what stands where a cause (aliases.Cause) does; model: a
+    scored_sets.Model. Of a decay of which a rest shows so little that a straight line says as much
+    of it, to within what tells two names apart, nobody can tell whether it is a walk's course."""
+    known, name = posterior.places[cause.effect], cause.effect
+    if name != "warm_up":
+        return known
+    others = [form for form in posterior.best.forms if form.effect != name]
+
+    def change(form):
+        """Share of its size that a decay changes by in the rest."""
+        return -np.expm1(-rest.span_s / closed_loop.shape(form, 0.0)["tau_s"])
+    lines = [_as_large(form, change(cause.chosen[0]) / change(form)) for form in forms
+             if form.effect == name and change(form) < 1.0 / STRAIGHT]
+    lines = [model.scored((*others, line)).score for line in lines]
+    if max(lines, default=-np.inf) < posterior.best.score - odds.PRESENT:
+        return known
+    each = 0.5 * (known[name] + known.get("drift", 0.0))
+    return {**known, name: each, "drift": each}
+
+
+def _as_large(form, times):
+    """A form whose size is so many times as large, so that another course changes as much."""
+    return replace(form, variant=form.variant + " straight", shared=replace(
+        form.shared, prior=times * form.shared.prior))
 
 
 def limits(rest, sensor, name):

@@ -151,7 +151,8 @@ def _sensor(rest, kind, chip, settings, jumps):
                if f.generic and not _settled(f, units, fits, levels, rest, kind)]
     causes = [members.in_full(model, forms, posterior, cause)
               for cause in aliases.causes(posterior, units, forms)]
-    told = [_told(c, data, fits, chip, kind, chosen, posterior) for c in causes]
+    told = [_told(c, data, fits, chip, kind, chosen, rest_forms.place(
+        c, model, forms, posterior, rest)) for c in causes]
     beaten = [c for c, rest_cause in zip(causes, told) if _beaten(rest_cause, strange, posterior)]
     chosen = [f for f in chosen if not any(f in c.chosen for c in beaten)]
     told = [rest_cause for c, rest_cause in zip(causes, told) if c not in beaten]
@@ -184,13 +185,12 @@ def _settled(form, units, fits, levels, rest, kind):
         for u, k in zip(units, fits.index))
 
 
-def _told(cause, data, fits, chip, kind, chosen, posterior):
+def _told(cause, data, fits, chip, kind, chosen, place):
     """RestCause of an aliases.Cause; where the change from one rest to the next may be no more
     than that, what does it is among the names. Its share: what is lost without it."""
     cause = _with_bent(effect_estimates.sized(cause, data, list(fits.index), chip, kind), data,
                        list(fits.index))
     names = cause.names
-    place = posterior.places[cause.effect]
     if place.get("drift", 0.0) > 1.0 - HOLDS:
         names = [*names, "drift"]  # one walk in many goes the way of a warm-up
     if place.get(SETTLED, 0.0) > 1.0 - HOLDS:

@@ -185,13 +185,13 @@ def row(c):
         name += " (levels off)"
     if not c["plausible"]:
         name += " (numerically helpful, physically implausible)"
-    sizes = []
+    sizes, form = [], "%.5g" if c["unit"] == "counts" else "%.3g"  # of 16 bits every count
     for key, value in c["value"].items():
         low, high = c["interval_90"].get(key, [None, None])
-        span = "" if low is None or low == high else " (%.3g … %.3g)" % (low, high)
+        span = "" if low is None or low == high else " (%s … %s)" % (form % low, form % high)
         if c["effect"] == "dead_band" and span and high > UNKNOWN * low:
             span = " or more"
-        sizes.append("%s %s%s" % (key, "not determined" if value is None else "%.3g" % value,
+        sizes.append("%s %s%s" % (key, "not determined" if value is None else form % value,
                                   span))
     return (name, SENSOR[c["sensor"]], percent(c["probability"]),
             "-" if c["share"] is None else "%.0f %%" % (100 * c["share"]),

@@ -47,6 +47,19 @@ def test_poses_that_were_found_stay_a_guess_in_a_file(tmp_path):
     assert blocks.session_of("s", capture).labelled
 
 
+@pytest.mark.parametrize("seconds, letters", [(0.2, {"Z+a"}), (2.0, {"Z+a", "Z+b"})])
+def test_a_touch_turns_nothing_where_no_gyro_tells(seconds, letters):
+    """A fifth of a second that is no rest: nobody turns a box half round in it."""
+    rng = np.random.default_rng(5)
+    accel = [0.0, 0.0, 16384.0] + rng.normal(0.0, 40.0, (3000, 3))
+    touched = slice(1500, 1500 + int(100 * seconds))
+    accel[touched] += rng.normal(0.0, 900.0, accel[touched].shape)
+    capture = capture_file.Capture({"sensor": "adxl345", "rate_hz": 100, "accel_lsb_per_g": 16384},
+                                   np.arange(3000) * 10000, np.rint(accel).astype(np.int16))
+    found = find_poses(capture)
+    assert len(found.rests) == 2 and set(names(found)) == letters
+
+
 def test_a_and_b_by_the_gyro_whatever_came_between():
     found = find_poses(session_of((0, 10), (2, 0), (0, 195), (0, 15), (2, 5)))
     assert names(found) == ["Z+a", "X+a", "Z+b", "Z+a", "X+a"]

@@ -200,6 +200,24 @@ def test_printed_decimals_are_no_steps_of_the_sensor(tmp_path, capsys):
     assert np.abs(back - np.round(values, 3)).max() < 1e-6
 
 
+@pytest.mark.parametrize("step, form, told", [
+    (G / 1024, "%.3f", 1024), (G / 2048, "%.3f", 2048), (0.0177, "%.2f", None)])
+def test_steps_that_decimals_hide(tmp_path, capsys, step, form, told):
+    """A log at rest, whose steps are ten of its last decimals, was cut into 75 rests where one of
+    a quiet axis' steps was a shake; five tell one as well, and two none."""
+    rng = np.random.default_rng(14)
+    level = rng.normal([0.1, -3.1, 9.3], [0.3 * step, 2.0 * step, 1.5 * step], (4 * ROWS, 3))
+    level[ROWS:ROWS + 60] += np.linspace(0.0, 1.0, 60)[:, None] * step * 25
+    text = table(["%.2f" % (k / 100) for k in range(len(level))],
+                 accel=step * np.rint(level / step), form=form)
+    capture, said = imported(tmp_path, capsys, text)
+    if told:
+        assert "whole steps of 1/%d" % told in said
+        assert capture.meta["accel_lsb_per_g"] == pytest.approx(told, rel=1e-4)
+    else:
+        assert "whole steps" not in said and capture.meta["accel_values"] == "float"
+
+
 def test_a_gyro_alone_and_an_accelerometer_alone(tmp_path, capsys):
     rows = zip(["%.2f" % t for t in SECONDS], lines(GYRO / 131 * np.pi / 180, "%.9g"))
     text = "t,wx [rad/s],wy [rad/s],wz [rad/s]\n" + "".join("%s,%s\n" % pair for pair in rows)
@@ -254,6 +272,21 @@ def test_acceleration_without_gravity_asks_for_its_unit(tmp_path, capsys):
     assert "gravity has been taken out" in refused(tmp_path, capsys, text)
     found = open_recording.read(tmp_path / "in.csv", gravity=False)
     assert "m/s2: gravity does not tell" in " ".join(found.assumed)
+
+
+def test_acceleration_without_gravity_whose_unit_its_name_says(tmp_path, capsys):
+    """A phone's linear acceleration was taken for an accelerometer that lies on its faces."""
+    rng = np.random.default_rng(12)
+    values = rng.normal(0, 0.05, (ROWS, 3)) + [0.02, 0.0, 0.3]
+    names = ",".join("Linear Acceleration %s (m/s^2)" % axis for axis in "xyz")
+    text = table(["%.2f" % t for t in SECONDS], accel=values, form="%.9f").replace(
+        "ax,ay,az", names)
+    told = refused(tmp_path, capsys, text)
+    assert "gravity has been taken out" in told and "--units m/s2" in told
+    (tmp_path / "in.csv").write_text(text)
+    capture, said = imported(tmp_path, capsys, text, "--units", "m/s2")
+    assert "gravity has been taken out" in said
+    assert capture.pose is None or not capture.pose.any()
 
 
 @pytest.mark.parametrize("name, sensor, axis, unit", [

@@ -47,6 +47,24 @@ def test_quoted_cells_that_hold_the_delimiter(tmp_path, capsys):
     assert (capture.accel == COUNTS).all()
 
 
+@pytest.mark.parametrize("rows", [ROWS, 60 * ROWS])
+def test_quoted_cells_with_an_end_of_a_line_in_them(tmp_path, capsys, rows):
+    """A device's own line, kept whole behind the readings; a fault has the file's own line."""
+    body = ['%.2f,%s,"$IMU,%d\r\n"' % (k / 100, lines(COUNTS)[k % ROWS], k) for k in range(rows)]
+    text = "t,ax,ay,az,raw\r\n" + "\r\n".join(body) + "\r\n"
+    capture, _ = imported(tmp_path, capsys, text)
+    assert len(capture) == rows and (capture.accel[:ROWS] == COUNTS).all()
+    (tmp_path / "out.csv").unlink()
+    assert "line 8:" in refused(tmp_path, capsys, text.replace("0.03,", "0.03,x", 1))
+
+
+def test_a_quote_that_nothing_closes_is_a_letter(tmp_path, capsys):
+    rows = ['%.2f,%s,5" pipe' % pair for pair in zip(SECONDS, lines(COUNTS))]
+    rows[3] = rows[3].replace('5" pipe', '"5 pipe')
+    capture, _ = imported(tmp_path, capsys, "t,ax,ay,az,note\n" + "\n".join(rows) + "\n")
+    assert (capture.accel == COUNTS).all()
+
+
 def test_a_column_to_leave_out_may_come_first(tmp_path, capsys):
     text = "".join("x,%s\n" % row for row in lines(COUNTS))
     capture, _ = imported(tmp_path, capsys, text, "--columns", "-,ax,ay,az", "--rate", "100")

@@ -31,6 +31,8 @@ def test_matlabs_writetable_has_the_months_name_in_its_times(tmp_path, capsys):
     ("timestamp_ms", ["%d" % round(1e3 * t) for t in SECONDS]),
     ("header.stamp", ["%.2f" % (1.6e9 + t) for t in SECONDS]),
     ("Time (s)", ["%.4e" % t for t in SECONDS]),
+    ("ustime", ["%d" % round(2.3e9 + 1e6 * t) for t in SECONDS]),
+    ("timems", ["%d" % round(1e3 * t) for t in SECONDS]),
     ("micros", ["%d" % round(1e6 * t) for t in SECONDS])])
 def test_times_by_name_and_value(tmp_path, capsys, head, times):
     capture, said = imported(tmp_path, capsys, table(times, head))

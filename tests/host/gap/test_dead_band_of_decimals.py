@@ -59,6 +59,33 @@ def test_a_chips_steps_about_a_bias_that_was_taken_off_are_no_dead_band(tmp_path
     assert "dead_band" not in found_in(tmp_path, gyro=gyro)
 
 
+@pytest.mark.parametrize("decimals, step", [(False, 1.0), (True, 4.345)])
+def test_a_log_whose_bias_was_taken_off_and_that_shakes_as_it_turns_has_no_dead_band(decimals,
+                                                                                     step):
+    """An arm's: 0.7 steps of noise about 0 in each rest, three times as much in each turn; what
+    is quiet away from 0 is no rest, whose noise would tell how often one about 0 reads 0."""
+    rng = np.random.default_rng(11)
+    still = np.arange(ROWS) % 300 < 200
+    turn = np.where(still, 0.0, np.sign(np.sin(2 * np.pi * np.arange(ROWS) / 600.0)) * 40.0)
+    noise = rng.normal(0, 0.7, (ROWS, 3)) + rng.normal(0, 2.0, (ROWS, 3)) * ~still[:, None]
+    codes = np.rint(turn[:, None] * [1.0, -0.8, 1.2] + noise + [0.13, -0.05, 0.02])
+    counts = np.rint(step * codes + (0.4 if decimals else 0.0)).astype(np.int16)
+    assert dead_band.findings("gyro", [counts], [still], decimals=[decimals]) == []
+
+
+def test_steps_of_little_more_than_two_counts_are_no_dead_band():
+    """1/2048 rad/s beside a largest reading of 400 deg/s: of those next to 0 none is one count,
+    on the axis that turns most and on one that turns little."""
+    rng = np.random.default_rng(12)
+    t = np.arange(ROWS)
+    swing = np.sin(2 * np.pi * t / 160.0)[:, None] * [9.0, -7.0, 90.0]
+    codes = np.rint(swing + rng.normal(0, [0.8, 0.8, 2.0], (ROWS, 3)))
+    counts = np.rint(2.3946 * codes).astype(np.int16)
+    assert dead_band.findings("gyro", [counts], [t < 0], decimals=[True]) == []
+    assert [one.spacing for one in lattice.of_columns(counts.astype(int))] == pytest.approx(
+        [2.3946] * 3, rel=0.01)
+
+
 @pytest.mark.parametrize("noise", [8.0, 40.0])
 def test_an_axis_that_rounds_its_noise_towards_0_has_no_dead_band(noise):
     """0 is read twice as often as the codes beside it, on the quietest axis that rests there."""

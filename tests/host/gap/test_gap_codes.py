@@ -2,8 +2,10 @@
 import numpy as np
 import pytest
 
+from sixflip_host.capture import registers
 from sixflip_host.diagnosis import samples_judged
 from sixflip_host.diagnosis.detect import codes
+from sixflip_host.diagnosis.detect.detection import present
 from tests.worlds.still_session import at_rest, flicker
 
 
@@ -92,3 +94,17 @@ def test_single_codes_that_are_left_out_are_no_gap():
     """A recording of a sensor sold calibrated has them: a tenth of its samples are elsewhere."""
     x = noisy(40000, np.random.default_rng(7))
     assert codes.uneven_nats([np.where(x % 16 == 3, x + 1, x)]) == 0.0
+
+
+@pytest.mark.parametrize("codes_of, step", [
+    (lambda noise, command: 10 * np.rint(noise), 10), (lambda noise, command: np.rint(noise), 1),
+    (lambda noise, command: 500 * command, 1)])
+def test_wide_steps_of_which_a_quiet_axis_shows_few_are_steps(codes_of, step):
+    """Noise of one of them is all that it reads; what is told to go at one of five rates, without
+    noise, reads as few values."""
+    rng = np.random.default_rng(13)
+    x = codes_of(rng.normal(0.3, 1.1, 600), np.repeat(rng.integers(-2, 3, 24), 25)).astype(int)
+    assert len(np.unique(x)) < 10
+    counts = (x + 8200)[:, None]
+    assert registers.steps(counts).tolist() == [step]
+    assert present(codes.step_nats(counts)[0]) == (step > 1)

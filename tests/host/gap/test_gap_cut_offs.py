@@ -24,6 +24,14 @@ def imported(size, level, sensor="gyro", **meta):
                            at_rest=np.zeros(3000, bool))
 
 
+def test_counts_are_whole_numbers_in_the_answer():
+    """A stop at 32764 was "32760 [32760, 32760]", and 3.28e+04 in the table."""
+    session = imported(1.4 * 327.64, 327.64)
+    cause = answer.of_finding(saturation.saturation([session], "gyro", [session.capture.gyro])[0])
+    assert cause["value"] == {"x": 32764} and cause["interval_90"] == {"x": [32764, 32764]}
+    assert "x 32764 counts" in gap_words.row(cause)[-1]
+
+
 @pytest.mark.parametrize("sensor, level, meta, limit", [
     ("gyro", 249.98, {}, "range"), ("gyro", 250.13, {}, "range"), ("gyro", 245.0, {}, "range"),
     ("accel", 2.0, {"accel_lsb_per_g": 1000.0}, "range"), ("gyro", 180.0, {}, "level"),

@@ -1,12 +1,15 @@
 """What recordings suffer: bytes put together wrongly, values that are held, scales that are not
 the header's. One is put in and exactly that is found; the sound recording has none."""
 import copy
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from sixflip.poses import faces
 from sixflip_host.capture import registers
+from sixflip_host.capture.capture_file import Capture
 from sixflip_host.diagnosis import samples_judged, stray_turns
 from sixflip_host.diagnosis.detect import (
     byte_faults,
@@ -44,6 +47,22 @@ def changed(capture, sensor, axis, rule):
 
 def low_or(x):
     return np.where(x & 255 >= 128, (x & 255) - 256, x)
+
+
+def test_what_an_import_scaled_has_no_bytes():
+    """What a file of decimals in g becomes: counts that no register had. Jumps of 256 of them,
+    which a byte with a sign of its own made, are the sensor's."""
+    rng = np.random.default_rng(9)
+    level = np.round(6000.0 + 700.0 * np.sin(np.arange(900) / 25.0) + rng.normal(0.0, 9.0, 900))
+    true = np.column_stack([rng.normal(0.0, 9.0, (900, 2)), level]).astype(np.int64)
+    accel = np.where(true & 255 >= 128, true - 256, true).astype(np.int16)
+    told = {}
+    for kind in ("counts", "float"):
+        capture = SimpleNamespace(accel=accel, gyro=None, meta={"accel_values": kind})
+        (_, mended), = byte_faults.repaired([("one", capture)])[0]
+        told[kind] = [(d.kind, d.axes) for d in byte_faults.repaired([("one", capture)])[1]]
+        assert (mended.accel == accel).all() == (kind == "float")
+    assert told["float"] == [] and ("sign_extension", ("x", "y", "z")) in told["counts"]
 
 
 RULES = {
@@ -220,10 +239,71 @@ def test_flips_alone_tell_the_gyros_range(sound):
     assert damaged(two)[0] == [("full_scale", "gyro", ())]
 
 
+def unlabelled(attitudes, force, rate_hz=100.0, gyro=1.0, seed=3):
+    """Session of a log whose poses nobody named: force (n, 3) in g in the body, and the rates of
+    rotations (n,) of it, which the gyro reads so many times."""
+    rng, n = np.random.default_rng(seed), len(force)
+    rates = np.degrees((attitudes[:-1].inv() * attitudes[1:]).as_rotvec()) * rate_hz
+    rates = gyro * np.vstack([rates, rates[-1:]]) + rng.normal(0.0, 0.1, (n, 3))
+    meta = {"sensor": "other", "rate_hz": rate_hz, "accel_lsb_per_g": 8192.0,
+            "gyro_lsb_per_dps": 32.8}
+    return blocks.session_of("log", Capture(
+        meta, np.rint(np.arange(n) * 1e6 / rate_hz).astype(np.int64),
+        np.rint(8192.0 * (force + rng.normal(0.0, 0.004, (n, 3)))).astype(np.int16),
+        np.rint(32.8 * rates).astype(np.int16)))
+
+
+@pytest.mark.parametrize("gyro, said", [(1.0, []), (3.0, [("gravity tells", 3.0)])])
+def test_a_pendulums_string_is_no_gravity(gyro, said):
+    """Its force points along the string: 0.3 m of 0.45 m, so that a third of gravity's turning
+    shows, and the gyro turned three times as far."""
+    t, length, arm = np.arange(6000) / 100.0, 0.45, 0.30
+    hz = np.sqrt(9.80665 / length)
+    sway = np.column_stack([np.radians(32.0) * np.sin(hz * t), np.radians(21.0) * np.sin(
+        1.04 * hz * t + 0.8), 0.0 * t]) * np.exp(-t / 60.0)[:, None]
+    turned = Rotation.from_rotvec(sway)
+    at = turned.apply([0.0, 0.0, -arm])
+    pull = np.gradient(np.gradient(at, t, axis=0), t, axis=0) / 9.80665 + [0.0, 0.0, 1.0]
+    session = unlabelled(turned[50:-50], turned[50:-50].inv().apply(pull[50:-50]), gyro=gyro)
+    found = wrong_scale.findings([session])
+    assert [("gravity tells" if "gravity tells" in d.words else d.words, pytest.approx(
+        d.value["factor"], rel=0.15)) for d in found] == said
+
+
+@pytest.mark.parametrize("gyro, said", [(1.0, []), (0.45, [("full_scale", "gyro")])])
+def test_pauses_tell_the_gyros_scale_whatever_shakes_it_in_between(gyro, said):
+    """A hand turns it from one attitude to another, and jerks it on the way: 0.45 of the scale
+    was nothing that is said."""
+    rng, rotations = np.random.default_rng(7), [Rotation.identity()]
+    for _ in range(14):
+        axis = rng.normal(0.0, 1.0, 3)
+        turn = axis / np.linalg.norm(axis) * np.radians(rng.uniform(60.0, 150.0))
+        share = np.concatenate([0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 150)), np.ones(150)])
+        rotations += [rotations[-1] * Rotation.from_rotvec(part * turn) for part in share]
+    turned = Rotation.concatenate(rotations)
+    moves = (np.arange(len(turned)) - 1) % 300 < 150
+    jerks = rng.normal(0.0, 0.25, (len(turned), 3)) * moves[:, None]
+    session = unlabelled(turned, turned.inv().apply([0.0, 0.0, 1.0]) + jerks, gyro=gyro)
+    found = wrong_scale.findings([session])
+    assert [(d.kind, d.sensor) for d in found] == said
+    assert not found or found[0].value["factor"] == pytest.approx(gyro, rel=0.01)
+
+
 def test_gravity_that_no_range_explains(sound):
     other = copy.copy(sound)
     other.meta = dict(sound.meta, accel_lsb_per_g=sound.meta["accel_lsb_per_g"] / 1.5)
     assert damaged(other)[0] == [("gravity", "accel", ())]
+
+
+def test_gravity_that_was_taken_off(sound):
+    """A phone's linear acceleration had a scale that was not the header's."""
+    other = copy.copy(sound)
+    session = blocks.session_of("one", other)
+    other.accel = np.array(sound.accel)
+    for _, first, end in session.runs:
+        other.accel[first:end] -= np.rint(sound.accel[first:end].mean(axis=0)).astype(np.int16)
+    found, = wrong_scale.findings([blocks.session_of("one", other)])
+    assert found.kind == "gravity" and "gravity has been taken off" in found.words
 
 
 def band_of(values):

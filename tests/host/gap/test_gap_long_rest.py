@@ -74,6 +74,22 @@ def test_a_decay_is_a_warm_up_and_no_temperature():
     assert cause.letters == ["x"] and found.by_axis["x"].share > 0.9
 
 
+@pytest.mark.parametrize("course, names", [
+    (6.0 * (T - 8.0) / 16.0, ["drift", "warm_up"]), (8.0 * np.exp(-T / 3.0), ["warm_up"])])
+def test_a_straight_course_is_a_warm_up_or_a_walk(course, names):
+    """A quarter of a minute of a drone that stands was a warm-up by 91 %, of three times what is
+    seen to change; only a course that bends is one that decays."""
+    whole = rest((course, -0.6 * course, 0.0), noise=0.3)
+    few = int(16.0 * RATE)
+    capture = Capture(whole.capture.meta, *(column[:few] for column in (
+        whole.capture.t_us, whole.capture.accel, whole.capture.gyro)), None, None,
+        whole.capture.pose[:few])
+    cause, = accel(blocks.session_of("short", capture)).causes
+    assert sorted(cause.names) == names
+    told = list(cause.probabilities.values())
+    assert sum(told) > 0.9 and max(told) == pytest.approx(min(told))
+
+
 def test_a_jump_has_no_name_but_a_place():
     found = accel(rest((0.0, 0.0, np.where(T < 230.0, 0.0, 4.0)), SWEEP))
     assert found.nameless and not found.causes

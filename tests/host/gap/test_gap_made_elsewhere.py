@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from sixflip_host.capture import registers
 from sixflip_host.diagnosis import samples_judged, verdict, wandering
 from sixflip_host.diagnosis.detect import (
     dead_band,
@@ -90,8 +89,9 @@ def test_a_band_narrower_than_the_noise_shows_in_how_often_0_is_read():
     rests = np.repeat(np.concatenate([np.linspace(-40.0, 40.0, 20), [16000.0] * 10]), 500)
     true = rests + 60.0 * generator.standard_normal(len(rests))
     read = np.rint(np.sign(true) * np.maximum(np.abs(true) - 16.0, 0.0))
-    assert registers.dead_band(np.rint(true)[:, None])[0] == 0
-    assert registers.dead_band(read[:, None])[0] == pytest.approx(16, abs=3)
+    assert not present(dead_band.of_zeros(np.rint(true))[1])
+    band, nats = dead_band.of_zeros(read)
+    assert present(nats) and band == pytest.approx(16, abs=3)
 
 
 def test_a_gait_that_knocks_has_no_torn_reads():

@@ -9,6 +9,7 @@ from .column_vocabulary import (
     DEGREES,
     DERIVED,
     FILLERS,
+    FUSED_TIMES,
     GYRO,
     KINDS,
     MAG,
@@ -215,9 +216,9 @@ def times(names):
         words = _words(bare)
         if not words or set(words) & {"covariance", "diff", "delta", "dt", "zone"}:
             continue
-        if set(words) & TIMES:
-            rank = 0 if "stamp" in words and "header" in words else \
-                3 if set(words) & ARRIVALS else 4 if bare == "T" else 1
+        if set(words) & TIMES or words[-1] in FUSED_TIMES:
+            rank = 0 if {"stamp", "header"} <= set(words) else 3 if set(words) & ARRIVALS \
+                else 4 if bare == "T" else 1
             ranks.append((rank, name, unit_of_time(name)))
         elif len(words) == 1 and len(words[0]) > 1 \
                 and UNIT_OF_TIME.get(words[0]) in TIME_UNITS:
@@ -232,15 +233,14 @@ def times(names):
 def unit_of_time(name):
     """The unit that a column of times has by its name: in brackets, or its last word; or ""."""
     bare, unit = _without_unit(name)
-    last = _words(bare)[-1:]
-    return UNIT_OF_TIME.get(unit.lower()) or UNIT_OF_TIME.get("".join(last), "")
+    last = "".join(_words(bare)[-1:])
+    return UNIT_OF_TIME.get(unit.lower()) or (UNIT_OF_TIME | FUSED_TIMES).get(last, "")
 
 
 def _second_pairs(names):
     """[(seconds, nanoseconds)] of stamps that ROS keeps in two columns."""
     pairs = []
-    for name in names:
-        words = _words(name)
+    for name, words in zip(names, map(_words, names)):
         if words and words[-1] in ("sec", "secs", "s"):
             for other in names:
                 theirs = _words(other)

@@ -33,6 +33,10 @@ UNIT_OF_TIME = {"s": "s", "sec": "s", "secs": "s", "second": "s", "seconds": "s"
                 "usec": "us", "micros": "us", "microseconds": "us", "ns": "ns", "nsec": "ns",
                 "nanos": "ns", "nanoseconds": "ns", "min": "min", "mins": "min",
                 "minutes": "min", "h": "h", "hr": "h", "hrs": "h", "hours": "h"}
+# A time and its unit in one word, ustime or timems; a letter alone, as in times, is no unit.
+FUSED_TIMES = {word: unit for said, unit in UNIT_OF_TIME.items()
+               if unit in TIME_UNITS and len(said) > 1
+               for time in ("time", "timestamp", "stamp") for word in (said + time, time + said)}
 UNIT = {"m/s2": "m/s2", "m/s^2": "m/s2", "m/s²": "m/s2", "m/s/s": "m/s2", "ms-2": "m/s2",
         "m/(s^2)": "m/s2",
         "m/sec2": "m/s2", "m/sec^2": "m/s2", "mps2": "m/s2", "m_s2": "m/s2", "ms2": "m/s2",

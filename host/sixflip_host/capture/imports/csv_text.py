@@ -23,12 +23,47 @@ DELIMITERS = (",", ";", "\t", None)     # None: any run of blanks
 SEARCH = 200            # lines in which the column names must appear
 DECIMAL = re.compile(r"(?<=\d),(?=\d)")
 COMMENT = ("#", "//")
+# A cell in quotes, from where a cell begins to where one ends, and a line's end within it.
+QUOTED = re.compile(r'(?:(?<=[,;\t])|^) *"(?:[^"]|"")*"(?= *(?:[,;\t]|$))', re.MULTILINE)
+INSIDE = "\v"
 
 
 def texts(path, source, said=None, head=0):
-    """(number of the first line, text of whole lines), blocks of a file; said: a dictionary
-    whose keys become what nobody said of the bytes; head: lines that are no samples. BadFile
-    for bytes that are no text."""
+    """(number of the first line, text of whole lines), blocks of a file in which every row is one
+    line: a line's end within quotes is a blank, and the row has as many empty lines behind it, so
+    that numbers of lines stay. said: a dictionary whose keys become what nobody said of the bytes;
+    head: lines that are no samples. BadFile for bytes that are no text."""
+    held, first = "", 1
+    for line, text in _decoded(path, source, said, head):
+        if held:
+            line, text = first, held + text
+        if '"' not in text:
+            held = ""
+            yield line, text
+            continue
+        text = _rows_in_lines(text)
+        # A row whose quotes are still open ends in the next block, or they are no quotes.
+        start = text.rfind("\n", 0, text.rfind('"')) + 1
+        is_open = text.count('"', start) % 2 and not (held and not start)
+        end = start if is_open and len(text) - start < LONGEST_LINE else len(text)
+        held, first = text[end:], line + text.count("\n", 0, end)
+        if end:
+            yield line, text[:end]
+    if held:
+        yield first, held
+
+
+def _rows_in_lines(text):
+    """Text in which every row that has an end of a line within quotes is one line."""
+    if not any(line.count('"') % 2 for line in text.split("\n")):
+        return text
+    text = QUOTED.sub(lambda cell: cell[0].replace("\n", INSIDE), text)
+    return "\n".join(line.replace(INSIDE, " ") + "\n" * line.count(INSIDE)
+                     for line in text.split("\n"))
+
+
+def _decoded(path, source, said, head):
+    """(number of the first line, text of whole lines), blocks of a file as it is."""
     latin = False
     for line, block in whole_lines(path, _narrow(source.pieces(), said), 1, LONGEST_LINE,
                                    head):

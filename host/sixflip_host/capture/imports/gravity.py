@@ -18,6 +18,10 @@ QUIET = 0.05            # of |a|: scatter within a window that rests
 MOST_TURNS = 20_000     # twentieths of a second in which gravity is seen to turn: the first ones
 LAG = 4                 # of those, over which it is
 DISAGREES = 2.0         # factor from 1 g beyond which what was said of the unit is wrong
+# Of a scale of the gyro, where what moves the sensor is told along with it: degrees for radians
+# are 57; a fifth apart, then a fiftieth; twentieths of a second that are looked at; of |a|, what
+# knocks have more of.
+FACTORS, FINER, MOST_MOVED, KNOCKS = np.geomspace(1 / 64, 64, 47), 11, 5000, 0.3
 
 
 class Gravity(NamedTuple):
@@ -70,6 +74,50 @@ def unit(size, whole):
             if abs(size / lsb - 1) < ZERO_G:
                 return "counts", lsb
     return None
+
+
+def turn_about_a_point(accel, gyro, dps, rate_hz):
+    """The Turn of gravity as turn_factor has it, in a body whose forces come along with its
+    turning: a pendulum's points along its string, in which gravity does not show. All that a point
+    of a body which turns about a fixed one feels is gravity and w x (w x r) + dw/dt x r; r is told
+    for each scale that the gyro may have, and the scale by what is left."""
+    m = max(1, int(rate_hz / 20))
+    k = min(len(accel) // m, MOST_MOVED)
+    if k < 20:
+        return None
+    a = accel[:k * m].reshape(k, m, 3).mean(axis=1, dtype=float)
+    w = np.radians(gyro[:k * m].reshape(k, m, 3).mean(axis=1, dtype=float) * dps)
+    size = np.linalg.norm(a, axis=1)
+    usual = float(np.median(size))
+    good = np.abs(size[LAG:] / max(usual, 1e-9) - 1) < KNOCKS
+    good &= np.abs(size[:k - LAG] / max(usual, 1e-9) - 1) < KNOCKS
+    if good.sum() < 10:
+        return None
+
+    def left(factor):
+        """(what is left of the changes of the force, the part of the force that r makes)."""
+        forces, turned, middle = _of_an_arm(factor * w, m / rate_hz), factor * w, slice(
+            LAG // 2, LAG // 2 + k - LAG)
+        rate = np.stack([turned[j:j + k - LAG] for j in range(1, LAG + 1)]).mean(axis=0)[good]
+        change = (a[LAG:] - a[:-LAG])[good] + LAG * m / rate_hz * np.cross(rate, a[middle][good])
+        by_arm = (forces[LAG:] - forces[:-LAG])[good] + LAG * m / rate_hz * np.cross(
+            rate[:, :, None], forces[middle][good], axis=1)
+        flat = by_arm.reshape(-1, 3)
+        arm = np.linalg.lstsq(flat.T @ flat, flat.T @ change.ravel(), rcond=None)[0]
+        return float(((change.ravel() - flat @ arm) ** 2).sum()), forces @ arm
+
+    best = min(FACTORS, key=lambda factor: left(factor)[0])
+    near = best * np.geomspace(FACTORS[0] / FACTORS[1], FACTORS[1] / FACTORS[0], FINER)
+    best = min(near, key=lambda factor: left(factor)[0])
+    turn = turn_factor(a - left(best)[1], w, math.degrees(best), rate_hz / m)
+    return turn and Turn(best * turn.factor, turn.alike, turn.number)
+
+
+def _of_an_arm(w, dt):
+    """(n, 3, 3) that take an arm to what a body's turning at w (n, 3) rad/s makes felt at it."""
+    def cross(v):
+        return np.cross(v[:, None, :], np.eye(3)).transpose(0, 2, 1)
+    return cross(w) @ cross(w) + cross(np.gradient(w, dt, axis=0))
 
 
 def turn_factor(accel, gyro, dps, rate_hz):

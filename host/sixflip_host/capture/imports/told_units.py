@@ -10,6 +10,7 @@ from . import chip_steps, column_vocabulary, gravity, gyro_unit, units
 from .options import gyro_is_implied, said_units
 
 GRAVITY_FREE = 0.3              # of what gravity would be: it has been taken out
+NO_GRAVITY = 0.05               # g, in a known unit: no offset of a part leaves so little of it
 TURNS_ALIKE = 0.6               # correlation from which gyro and accelerometer turn together
 FEW_ROWS = 40                   # too few to contradict what was said of a unit
 
@@ -74,7 +75,13 @@ class ToldUnits:
             units.ACCEL_UNITS[unit]
         if not (options.gravity or said):
             return
-        if per_unit is None or seen is None or not seen.rests or self.rows < FEW_ROWS:
+        if per_unit is None or seen is None or self.rows < FEW_ROWS:
+            return
+        if told is None and unit != "counts" and seen.size * per_unit < (
+                NO_GRAVITY if seen.rests else GRAVITY_FREE):
+            self._gone(seen.size * per_unit, unit, said)
+            return
+        if not seen.rests:
             return
         if 1 / gravity.DISAGREES <= seen.size * per_unit <= gravity.DISAGREES:
             self._far_from_1_g(seen.size * per_unit)
@@ -85,6 +92,16 @@ class ToldUnits:
             told[0], " --accel-lsb %d" % told[1] if told[1] else "")
         raise BadFile("%s: %s makes |a| at rest %.4g g%s" % (
             self.path, what, seen.size * per_unit, looks or ", expected 1 g"))
+
+    def _gone(self, size, unit, said):
+        """BadFile for values without gravity, unless someone said their unit, who is told."""
+        words = "|a| is %.2g g: gravity has been taken out of it, and no scale, offset or face " \
+            "can be told from what is left" % size
+        if not said:
+            raise BadFile("%s: %s; expected the acceleration with gravity, which phones keep as "
+                          "another sensor, or --units %s to take it as it is" % (
+                              self.path, words, unit))
+        self.remarks.append(words)
 
     def _far_from_1_g(self, size):
         """Says so where rests read farther from 1 g than any part that is whole."""

@@ -19,6 +19,7 @@ LARGEST = 1e9           # in any unit: no sensor, and squares of more leave a fl
 MOST_DISTINCT = 1 << 17 # sizes of values in whole steps: 16 bits have a quarter of that
 MOST_ROUNDED = 40       # sizes of whole numbers that may be rounded ones: counts at rest have less
 ON_GRID = 0.02          # of a step: how far values may lie off whole steps to be called counts
+FEWEST_PRINTED, COARSER = 20, 3.0   # sizes; last decimals of a step: a third lie on it by chance
 ROOM = 32000            # counts that the largest of float values gets; the rest is headroom
 MOST_ON_RAIL = 1e-3     # share of samples one count beyond 16 bits that are taken as on the rail
 AT_A_TIME = 1 << 16     # rows; the first of them are new values
@@ -28,11 +29,9 @@ HELD_ROWS = 64
 
 
 def find_step(values):
-    """The step every value is a whole multiple of, or None when there is no such step.
-
-    values  float array of any shape. The smallest difference between two values is the first
-            guess; least squares over all values refines it.
-    """
+    """The step every value (float, of any shape) is a whole multiple of, or None when there is no
+    such step. The smallest difference between two values is the first guess; least squares over
+    all values refines it."""
     sizes = Sizes()
     sizes.add(values)
     return sizes.step()
@@ -59,22 +58,35 @@ class Sizes:
 
     def step(self):
         """What all of them are whole multiples of, or None."""
-        distinct = self._distinct
-        if distinct is None or not len(distinct):
-            return None
+        distinct = np.zeros(0) if self._distinct is None else self._distinct
         gaps = np.diff(np.concatenate(([0.0], distinct)))
-        gaps = gaps[gaps > 1e-9 * max(distinct[-1], 1e-300)]
+        gaps = gaps[gaps > 1e-9 * max(distinct.max(initial=0.0), 1e-300)]
         if not len(gaps):
             return None
-        step = float(gaps.min())
-        for near in (8, 50, 1000, np.inf):  # a rough step is good for small multiples only
-            multiples = np.rint(distinct / step)
-            few = (multiples <= near) & (multiples > 0)
-            if few.any():
-                step = float((distinct[few] * multiples[few]).sum()
-                             / (multiples[few] ** 2).sum())
-        off = np.abs(distinct / step - np.rint(distinct / step)).max()
-        return step if off < ON_GRID else None
+        step, off = _fitted(distinct, float(gaps.min()), (8, 50, 1000, np.inf))
+        return step if off < ON_GRID else _as_printed(distinct, gaps)
+
+
+def _fitted(distinct, step, nears):
+    """(step, how far the sizes lie off whole ones) by least squares from a rough step, which is
+    good for multiples up to each of nears only."""
+    for near in nears:
+        multiples = np.rint(distinct / step)
+        few = (multiples <= near) & (multiples > 0)
+        if few.any():
+            step = float((distinct[few] * multiples[few]).sum() / (multiples[few] ** 2).sum())
+    return step, float(np.abs(distinct / step - np.rint(distinct / step)).max())
+
+
+def _as_printed(distinct, gaps):
+    """The step that decimals hide: sizes lie off it by half of the last one, or None."""
+    printed = next((10.0 ** -k for k in range(1, 8) if np.abs(
+        distinct * 10.0 ** k - np.rint(distinct * 10.0 ** k)).max() < ON_GRID / 100), None)
+    if printed is None or len(distinct) < FEWEST_PRINTED:
+        return None
+    step, off = _fitted(distinct, float(gaps[gaps < gaps.min() + 1.5 * printed].mean()),
+                        (3, 8, 50, 1000, np.inf))
+    return step if step > COARSER * printed and off < ON_GRID + 0.5 * printed / step else None
 
 
 def _blocks(values):

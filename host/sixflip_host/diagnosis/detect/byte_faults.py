@@ -15,6 +15,7 @@ import numpy as np
 from scipy import ndimage
 
 from ... import side_by_side
+from ...capture import registers
 from ...capture.registers import RAIL, SENSORS
 from . import course_likelihood
 from .detection import Damage, present
@@ -182,7 +183,8 @@ def _mended(capture):
     mended, found = copy.copy(capture), []
     for sensor in ("accel", "gyro"):
         counts = getattr(capture, sensor)
-        for axis in range(3 if counts is not None else 0):
+        known = counts is not None and registers.own_counts(capture, sensor)
+        for axis in range(3 if known else 0):
             fault = column_fault(counts[:, axis].astype(np.int64))
             if fault is None:
                 continue

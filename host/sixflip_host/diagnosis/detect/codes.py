@@ -7,16 +7,7 @@ from dataclasses import replace
 import numpy as np
 from scipy import fft, ndimage, special
 
-from ...capture.registers import (
-    LOW_BITS,
-    RAIL,
-    SENSORS,
-    codes,
-    of_counts,
-    spacing,
-    steps,
-    zeros_beyond_noise,
-)
+from ...capture.registers import LOW_BITS, RAIL, SENSORS, codes, of_counts, spacing, steps
 from .detection import RANGE, odd_axes, present
 
 STEPS_TRIED = 1 << LOW_BITS
@@ -65,14 +56,14 @@ def zeros(counts):
 def band_nats(counts):
     """(3,) log likelihood ratio (nats) of readings near 0 being 0: how often the readings just
     outside of the band would have gone inside (Poisson), and how much more often 0 is read than
-    a code beside it; where no code is missing that alone. A run of samples counts once."""
+    a code beside it; nothing where no code is missing. A run of samples counts once."""
     nats = []
     for column in counts.T:
         size = np.abs(column.astype(np.int64))
         least = int(size[size > 0].min()) if size.any() else 0
         step = max(1, steps(column[:, None])[0], spacing(size, least)) if least else 1
         if least <= step:
-            nats.append(_flat_nats(column))
+            nats.append(0.0)
             continue
         beside = number_of_runs((size > 0) & (size < 2 * least))
         missed = beside * (1.0 - step / least)
@@ -80,16 +71,6 @@ def band_nats(counts):
         piled = zeros * math.log(max(zeros / expected, 1.0)) - max(zeros - expected, 0.0)
         nats.append(missed + piled - math.log(len(codes(size))) if zeros else 0.0)
     return np.array(nats)
-
-
-def _flat_nats(column):
-    """Nats of 0 being read more often than the codes beside it let noise do."""
-    told = zeros_beyond_noise(column)
-    if told is None or told[0] <= told[1]:
-        return 0.0
-    number, expected = told
-    return (number * math.log(number / expected) - (number - expected)) * number_of_runs(
-        column == 0) / number
 
 
 def uneven_nats(columns, held=1):

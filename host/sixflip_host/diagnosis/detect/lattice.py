@@ -13,13 +13,16 @@ import numpy as np
 from ...capture.registers import RAIL
 
 # Counts to either side of 0 that are looked at, and readings there: what is farther away tells
-# nothing of a dead band. Spacings that are looked for: below, the import's own rounding, of a
-# count at most, fills what lies between; above, too few values lie near.
-NEAR, FEWEST, LEAST, MOST = 512, 500, 2.5, 64.0
+# nothing of a dead band. Spacings that are looked for: at two counts each line has its mirror
+# image, and 2.39 of 1/2048 rad/s is the narrowest of a public log; above, too few values lie near.
+NEAR, FEWEST, LEAST, MOST = 512, 500, 2.1, 64.0
 FINER = 16  # values of a spectrum in the width of a line
 # Of all readings, in phase: rounding to counts leaves 0.64 of the line of 5 counts and more in
 # public logs with a chip's steps, and 0.45 is the most of one without.
 IN_PHASE = 0.55
+# The same where another axis of the sensor tells the spacing, so that no other is looked for, to
+# within what a calibration takes the scales of two axes apart.
+BESIDE, SCALED = 0.35, 0.03
 BROAD = 0.1  # below this the spectrum is no longer that of how far the readings reach
 COMMON = 0.75  # quantile of the counts that are read, of which no more counts: what rests at one
 
@@ -40,8 +43,17 @@ class Lattice:
 COUNTS = Lattice()
 
 
-def of_column(column):
-    """The Lattice of a column (n,) of whole numbers, COUNTS where it has no other."""
+def of_columns(counts):
+    """[Lattice] of each axis of counts (n, 3) of a sensor, whose axes share a converter."""
+    alone = [of_column(column) for column in counts.T]
+    told = [one.spacing for one in alone if one is not COUNTS]
+    return [of_column(column, told[0]) if told and one is COUNTS else one
+            for one, column in zip(alone, counts.T)]
+
+
+def of_column(column, about=None):
+    """The Lattice of a column (n,) of whole numbers, COUNTS where it has no other; about: the
+    spacing of another axis, near which this one's is, or None."""
     near = column[(column > -NEAR) & (column < NEAR)]
     if len(near) < FEWEST:
         return COUNTS
@@ -51,10 +63,12 @@ def of_column(column):
     size, per_count = np.abs(spectrum), np.arange(len(spectrum)) / (FINER * 2 * NEAR)
     beyond = int(np.argmax(size < BROAD))
     asked = (np.arange(len(size)) > beyond) & (per_count > 1.0 / MOST) & (per_count < 1.0 / LEAST)
+    if about:
+        asked &= np.abs(per_count * about - 1.0) < SCALED
     if size[beyond] >= BROAD or not asked.any():
         return COUNTS
     k = int(np.argmax(np.where(asked, size, 0.0)))
-    if size[k] < IN_PHASE:
+    if size[k] < (BESIDE if about else IN_PHASE):
         return COUNTS
     spacing = 1.0 / per_count[k]
     first = -np.angle(spectrum[k]) / (2.0 * np.pi) * spacing - NEAR

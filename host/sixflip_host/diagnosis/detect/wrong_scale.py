@@ -10,6 +10,8 @@ import numpy as np
 
 from sixflip.poses import faces
 
+from ...capture import registers
+from ...capture.find_poses import NO_GRAVITY
 from ...capture.imports import gravity
 from .detection import Damage, present
 
@@ -21,11 +23,21 @@ RANGES = (0.0625, 0.125, 0.25, 0.5, 2.0, 4.0, 8.0, 16.0)
 # Any factor without a name lies within that and its inverse: degrees for radians (57.3), m/s2 for
 # g.
 WIDEST = 64.0
+SMALLEST = 1e-3  # a factor that is less is that: of gravity, what is left where it is taken off
 # Correlation of gravity's turning and the gyro's that tells a factor: with less a third of the
 # turning is something else, which draws the factor towards 0.
 ALIKE = 0.8
 HAND_DEG = 12.0  # of a half turn by hand, at worst; with care 0.4 (METHOD section 2)
 MOST_HALVES = 5  # half circles of a flip: a box may have been turned once or twice more
+# Pauses: their length, g of noise within one, share of the fastest turning, which 2 % of all
+# windows have; s of a move; cosine of 20 deg that gravity turns; usual steps that a hole is.
+PAUSE_S, PAUSE_G, PAUSED, FASTEST = 0.5, 0.03, 0.05, 0.98
+LONGEST_S, TURNED, HOLE = 30.0, math.cos(math.radians(20.0)), 5.0
+# Moves that tell a factor, of which each half does so again, and are enough; rad by which a sound
+# gyro misses (2 deg in public logs), and chance that a move is none that it follows.
+FEWEST_MOVES, MOST_MOVES, PLACED, KNOCKED = 4, 40, 0.05, 0.1
+TRIED = np.linspace(-3.0, 3.0, 121)  # logarithms of factors: 20 and its inverse, 5 % apart
+TURNS_HZ = 50.0  # of the turns that are multiplied: a hand's are slower by far
 PARTS = 8  # of a recording, whose factors give the error of the whole, to a quarter
 
 
@@ -52,6 +64,9 @@ def accelerometer(sessions):
     if factor:
         words = ("the accelerometer reads %g times gravity: its full scale is not the one the "
                  "header states" % factor)
+    elif size < NO_GRAVITY:
+        words = ("|a| is %.2g g at rest: gravity has been taken off the accelerometer's readings, "
+                 "as off a phone's linear acceleration" % size)
     else:
         words = "|a| is %.3g g at rest: the accelerometer's scale is not that of the header" % size
     return Damage("full_scale" if factor else "gravity", "accel", (), "amplitude", words, nats,
@@ -71,7 +86,7 @@ def at_rest(session):
 def competed(factors, widths):
     """(the range that factors are off by, or None where none is likelier than any factor at all;
     nats of one of both over 1). factors, widths (n,): relative standard deviations."""
-    factors, widths = np.array(factors), np.array(widths)
+    factors, widths = np.maximum(factors, SMALLEST), np.array(widths)
 
     def log_density(times):
         return -float((0.5 * ((factors / times - 1.0) / widths) ** 2
@@ -79,7 +94,7 @@ def competed(factors, widths):
     sound = log_density(1.0)
     ranges = {times: log_density(times) - math.log(len(RANGES)) for times in RANGES}
     best = max(ranges, key=ranges.get)
-    middle = max(float(np.average(factors, weights=1.0 / widths ** 2)), 1e-3)
+    middle = float(np.average(factors, weights=1.0 / widths ** 2))
     narrow = math.log(math.sqrt(2.0 * math.pi) / math.sqrt(float((1.0 / widths ** 2).sum()))
                       / (2.0 * math.log(WIDEST)))
     nameless = log_density(middle) + narrow
@@ -110,21 +125,95 @@ def gyro(sessions):
 
 
 def _by_gravity(session):
-    """[(factor, relative width)] by which the gyro reads more than gravity turns."""
+    """[(factor, relative width)] by which the gyro reads more than gravity turns from one pause to
+    the next, where nothing moves the sensor, or else while it moves."""
+    moves = _between_pauses(session)
+    factor = _of_all(moves)
+    if factor:
+        apart = math.log((_of_all(moves[::2]) or factor) / (_of_all(moves[1::2]) or factor))
+        return [(factor, math.hypot(SOUND_GYRO, 0.5 * apart))]
     meta, capture = session.capture.meta, session.capture
     known = 1.0 / meta["gyro_lsb_per_dps"]
-    whole = gravity.turn_factor(capture.accel, capture.gyro, known, session.rate)
-    if whole is None or whole[1] < ALIKE or whole[0] <= 0.0:
+    whole = gravity.turn_about_a_point(capture.accel, capture.gyro, known, session.rate)
+    if whole is None or whole.alike < ALIKE or whole.factor <= 0.0:
         return []
     m, parts = len(capture.accel) // PARTS, []
     for k in range(PARTS):
-        part = gravity.turn_factor(capture.accel[k * m:(k + 1) * m],
-                                   capture.gyro[k * m:(k + 1) * m], known, session.rate)
-        if part is not None and part[1] >= ALIKE and part[0] > 0.0:
-            parts.append(1.0 / part[0])
-    size = float(np.median(parts)) if parts else 1.0 / whole[0]
+        part = gravity.turn_about_a_point(capture.accel[k * m:(k + 1) * m],
+                                          capture.gyro[k * m:(k + 1) * m], known, session.rate)
+        if part is not None and part.alike >= ALIKE and part.factor > 0.0:
+            parts.append(1.0 / part.factor)
+    size = float(np.median(parts)) if parts else 1.0 / whole.factor
     spread = float(np.std(parts)) / size / math.sqrt(len(parts)) if len(parts) > 2 else 0.0
     return [(size, math.hypot(MOVING * SOUND_GYRO, spread))]
+
+
+def _between_pauses(session):
+    """[(direction of gravity before, after (3,), turns (n, 3) rad by the gyro in between)] of the
+    moves that turn gravity from one pause to the next, MOST_MOVES of them, evenly."""
+    capture, m = session.capture, max(4, round(PAUSE_S * session.rate))
+    n = len(capture.accel) // m
+    if n < 3:
+        return []
+    a, w = (values[:n * m].reshape(n, m, 3) / capture.meta[lsb] for values, lsb in (
+        (capture.accel, "accel_lsb_per_g"), (capture.gyro, "gyro_lsb_per_dps")))
+    quiet = np.sqrt(a.var(axis=1).max(axis=1)) < PAUSE_G
+    if quiet.sum() < 2:
+        return []
+    bias = np.median(w[quiet].mean(axis=1), axis=0)
+    turning = np.sqrt(((w - bias) ** 2).sum(axis=2).mean(axis=1))
+    pauses = np.flatnonzero(quiet & (turning < PAUSED * np.quantile(turning, FASTEST)))
+    up = a.mean(axis=1)
+    up /= np.maximum(np.linalg.norm(up, axis=1), 1e-9)[:, None]
+    pairs = [(k, j) for k, j in zip(pauses, pauses[1:])
+             if 1 < j - k <= LONGEST_S / PAUSE_S and up[k] @ up[j] < TURNED]
+    moves = []
+    for k, j in pairs[::-(-max(len(pairs), 1) // MOST_MOVES)]:
+        first, end = k * m + m // 2, j * m + m // 2
+        dt = np.diff(session.t_s[first:end + 1])
+        if dt.max() > HOLE * np.median(dt) or registers.gyro_railed(capture, first, end):
+            continue
+        rates = capture.gyro[first:end] / capture.meta["gyro_lsb_per_dps"]
+        rates = rates - 0.5 * (w[k].mean(axis=0) + w[j].mean(axis=0))
+        few = np.arange(0, end - first, max(1, int(session.rate / TURNS_HZ)))
+        moves.append((up[k], up[j], np.add.reduceat(np.radians(rates) * dt[:, None], few)))
+    return moves
+
+
+def _of_all(moves):
+    """The factor by which the gyro's turns of all moves are too large, where that takes gravity to
+    where it is after each of them; None where none does."""
+    if len(moves) < FEWEST_MOVES // 2:
+        return None
+    best, cost = 1.0, math.log(len(TRIED))
+    for logs in (TRIED, TRIED[::6] / 60.0):  # then half a percent apart
+        tried = best * np.exp(logs)
+        left = np.array([_left(*move, tried) for move in moves])
+        core = 4.0 * PLACED ** 2 / (left ** 2 + PLACED ** 2) ** 2
+        nats = np.log((1.0 - KNOCKED) * core + KNOCKED).sum(axis=0) - cost
+        best = tried[int(nats.argmax())]
+    return 1.0 / best if present(nats.max()) else None
+
+
+def _left(before, after, turns, factors):
+    """(k,) rad between gravity before a move and where turns (n, 3) rad times factors (k,) take it
+    back to from after it."""
+    turns = turns[:, None, :] * factors[None, :, None]
+    angle = np.linalg.norm(turns, axis=2, keepdims=True)
+    way = np.concatenate([np.cos(angle / 2), 0.5 * turns * np.sinc(angle / 2 / np.pi)], axis=2)
+    while len(way) > 1:  # two by two
+        if len(way) % 2:
+            way = np.concatenate([way, np.tile([1.0, 0.0, 0.0, 0.0], (1, len(factors), 1))])
+        way = _product(way[::2], way[1::2])
+    there = _product(_product(way[0], np.append(0.0, after)[None]), way[0] * [1, -1, -1, -1])
+    return np.arccos(np.clip(there[:, 1:] @ before, -1.0, 1.0))
+
+
+def _product(p, q):
+    """The product of quaternions (..., 4), the real part first."""
+    real = p[..., :1] * q[..., :1] - (p[..., 1:] * q[..., 1:]).sum(axis=-1, keepdims=True)
+    return np.concatenate([real, p[..., :1] * q[..., 1:] + q[..., :1] * p[..., 1:] + np.cross(
+        p[..., 1:], q[..., 1:])], axis=-1)
 
 
 def _by_flips(session):
