@@ -17,6 +17,9 @@ LEVEL_S, FEWEST = 1.0, 8  # over which the noise is told: s, and samples, of a r
 # Times the noise of the quietest tenth up to which a log is calm; deg/s of a turn that is slower
 # than any robot's, and more than a gyro's bias changes by within a log (20 deg/s over 60 degC).
 LOUDER, SLOW_DPS = 2.5, 1.5
+# Times the power of the gyro's noise: more shows a turn. Where nothing turns the accelerometer's
+# courses tell what rests, a deg/s of a gyro's standing for so many mg: from 1 mg to 300.
+TURNS, MG_FOR_DPS = 1.3, 10.0
 COUNT_VARIANCE = 0.25  # counts: a channel that toggles between two of them
 
 
@@ -41,7 +44,24 @@ def of_capture(capture, rate_hz):
         still = rest_or_course.resting(capture.gyro / lsb, still, rate_hz, adequacy.usual(
             capture.meta["sensor"], "gyro"), 1.0 / lsb)
         stops, still = (_unturned(capture, spans) for spans in (stops, still))
+        if still and _drives_only(capture, quiet):
+            per_g = capture.meta["accel_lsb_per_g"] * MG_FOR_DPS / 1000.0
+            still = rest_or_course.resting(capture.accel / per_g, still, rate_hz, adequacy.usual(
+                capture.meta["sensor"], "accel") / MG_FOR_DPS, 1.0 / per_g)
     return tuple(still), (None,) * len(still), tuple(stops) if still else ()
+
+
+def _drives_only(capture, quiet):
+    """Whether the gyro reads no more where it is not calm, runs of which are given, than where it
+    is: it has no say in what rests. (Where all is calm nothing moves.)"""
+    inside = np.zeros(len(capture), bool)
+    for run in quiet:
+        inside[run.first:run.end] = True
+    gyro = capture.gyro.astype(float)
+    if min(inside.sum(), (~inside).sum()) < rests_by_variance.WINDOW:
+        return False
+    noise = np.maximum(gyro[inside].var(axis=0), COUNT_VARIANCE)
+    return bool((gyro[~inside].var(axis=0) < TURNS * noise).all())
 
 
 def _up(code):
