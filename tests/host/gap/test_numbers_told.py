@@ -3,7 +3,7 @@ numbers that a fit may have besides."""
 import numpy as np
 import pytest
 
-from sixflip_host.diagnosis.simulator import comparison
+from sixflip_host.diagnosis.simulator import comparison, numbers_told
 from tests.worlds.tumbled import RATE_HZ, read, tumbled
 
 
@@ -111,3 +111,15 @@ def test_where_what_is_left_goes_on_for_seconds_no_numbers_are_told_together():
     found = compared(t, force, rate, force * gain[:, None], rate)
     assert found.left == ["accel"]
     assert not [p for p in found.differs if (p.sensor, p.axis) == ("accel", "y")]
+
+
+def test_what_next_to_nothing_reads_has_no_number_of_many_times_its_size():
+    """A pendulum hardly turns about x, and z was told to have 194 degrees of it."""
+    t = np.arange(0.0, 25.0, 0.02)
+    left = 0.15 * np.sin(4.0 * t) + 0.1 * np.random.default_rng(5).standard_normal(len(t))
+    off = np.stack([0.0 * t, 0.0 * t, left], 1)
+    key = "misalignment", "zx"
+    columns = {key: (2, 0.03 * np.sin(4.0 * t + 0.5), 57.3, 0.04)}
+    _, sizes = numbers_told._regressed(off, columns, [], [key])
+    size, sigma = sizes[key]
+    assert abs(size) < 4.0 * 57.3 * 0.04 and sigma < 57.3 * 0.04
