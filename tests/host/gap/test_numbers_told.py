@@ -2,8 +2,9 @@
 numbers that a fit may have besides."""
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
-from sixflip_host.diagnosis.simulator import comparison
+from sixflip_host.diagnosis.simulator import comparison, numbers_told
 from tests.worlds.tumbled import RATE_HZ, read, tumbled
 
 
@@ -111,3 +112,43 @@ def test_where_what_is_left_goes_on_for_seconds_no_numbers_are_told_together():
     found = compared(t, force, rate, force * gain[:, None], rate)
     assert found.left == ["accel"]
     assert not [p for p in found.differs if (p.sensor, p.axis) == ("accel", "y")]
+
+
+def test_what_next_to_nothing_reads_has_no_number_of_many_times_its_size():
+    """A pendulum hardly turns about x, and z was told to have 194 degrees of it."""
+    t = np.arange(0.0, 25.0, 0.02)
+    left = 0.15 * np.sin(4.0 * t) + 0.1 * np.random.default_rng(5).standard_normal(len(t))
+    off = np.stack([0.0 * t, 0.0 * t, left], 1)
+    key = "misalignment", "zx"
+    columns = {key: (2, 0.03 * np.sin(4.0 * t + 0.5), 57.3, 0.04)}
+    _, sizes = numbers_told._regressed(off, columns, [], [key])
+    size, sigma = sizes[key]
+    assert abs(size) < 4.0 * 57.3 * 0.04 and sigma < 57.3 * 0.04
+
+
+def hovering(seed, seconds=80.0):
+    """(t, gravity's direction, what moves it in g, rate deg/s) of what leans by some degrees."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(0.0, seconds, 1.0 / RATE_HZ)
+    way = np.clip(np.minimum(t - 4.0, seconds - 4.0 - t) / 2.0, 0.0, 1.0)
+
+    def wave(size, *hz):
+        return way * sum(size * np.sin(2.0 * np.pi * f * t + rng.uniform(0.0, 6.28)) for f in hz)
+    angles = np.stack([wave(1.0, 0.03, 0.11), wave(0.06, 0.05, 0.23), wave(0.06, 0.07, 0.19)], 1)
+    turn = Rotation.from_euler("ZYX", angles).as_matrix()
+    step = np.einsum("nji,njk->nik", turn[:-1], turn[1:])
+    rate = np.degrees(Rotation.from_matrix(step).as_rotvec()) * RATE_HZ
+    moved = np.stack([wave(0.05, 0.31, 0.13), wave(0.05, 0.37, 0.17), wave(0.03, 0.29, 0.21)], 1)
+    return t, turn[:, 2, :], moved, np.vstack([rate, rate[-1:]])
+
+
+@pytest.mark.long
+def test_what_moves_two_axes_more_than_gravity_does_is_no_scale_of_the_third():
+    """Of a craft that hovers: 7 % of what moves it along x and y were a factor on all that moves
+    it and -8 % on z, and a bias of 50 mg there was one of 130."""
+    t, up, moved, rate = hovering(1)
+    found = compared(t, up + moved, rate, up + moved * [0.93, 0.93, 1.0] - [0.0, 0.0, 0.05], rate)
+    assert not found.conventions
+    told, = [p for p in found.differs if p.sensor == "accel"]
+    assert (told.name, told.axis) == ("bias", "z")
+    assert told.difference == pytest.approx(-50.0, abs=5.0)

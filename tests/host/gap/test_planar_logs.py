@@ -76,3 +76,10 @@ def test_a_channel_that_nothing_answers_in_place_of_is_constant():
 def test_what_never_changes_does_not_stop_at_the_end_of_a_range():
     assert single_log.limit(np.full(100, 8192.0)) is None
     assert single_log.limit(np.clip(9000.0 * np.sin(np.arange(300) / 9.0), -8192, 8192)) == 8192.0
+
+
+def test_what_drives_on_is_no_rest_of_a_log_whose_gyro_says_nothing():
+    """Slow accelerations were noise: the real one was said to have a sixth of it."""
+    t, force, rate = driven()
+    found = compared(read(t, force, 0.0 * rate, 9))
+    assert not [p for p in found.differs if p.name == "noise_density"]

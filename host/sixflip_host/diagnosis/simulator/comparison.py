@@ -8,7 +8,6 @@ from .. import verdict
 from . import (
     alignment,
     convention_findings,
-    conventions,
     dead_zone,
     gyro_or_motor,
     held_readings,
@@ -20,6 +19,7 @@ from . import (
     own_motion,
     parameters,
     remaining_gap,
+    single_log,
     timing,
     traces,
 )
@@ -206,6 +206,6 @@ def numbers_of(real, sim, mended, own, fits, findings):
     usable = {k: not any(c.sensor in (k, "device") for c in spoiled) for k in ("accel", "gyro")}
     densities, on_noise = noise_and_registers.noises(real, mended)
     rounded = {kind: sim.quantum[kind == "gyro"] / np.sqrt(12.0) for kind in fits
-               if conventions.silent(sim, kind)}
+               if single_log.silent(sim, kind)}
     return (parameters.shapes(*own, fits, usable, rounded) + densities
             + noise_and_registers.registers(real, sim), on_noise)

@@ -4,12 +4,23 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .. import verdict
 from . import alignment as align_by
-from . import convention_findings, evidence_of_logs, hypotheses, pairing, single_log
+from . import (
+    convention_findings,
+    evidence_of_logs,
+    hypotheses,
+    pairing,
+    remaining_gap,
+    single_log,
+)
 
 # Before looking: nine simulators in ten are right about each sensor, and every single thing that
 # public reports name is one in some fifty of them.
 PRIOR_HEALTHY, PRIOR_EACH, PRIOR_NAMELESS = 0.9, 0.02, 0.005
+# Of a gyro whose axes are swapped as its accelerometer's are: the two are one part more often than
+# not, and the half of it is left to a simulator that swaps one of them.
+PRIOR_SAME = 0.5
 # Of a factor from 1 that is a wrong time step: rates that are mistaken for each other, 50, 60, 100
 # and 120 Hz, are 1.2 apart and more; by less a scale is wrong, or gravity.
 LEAST_STEP = 0.1
@@ -20,8 +31,9 @@ DELAY_ROUNDS = 4  # of two rows, to a hundredth of one
 # of their own have all of it, a log that was made of the other's samples next to none.
 SHARED = 0.5
 POSSIBLE = 0.02  # probability of a fit from which on its names are some that it may be
-ALIKE_S2 = 1e-9  # of a log that is as smooth as the other: a time constant of 0.04 ms
-LATE_SIGMA = 4.0  # standard errors from which on a delay is one: by chance in 1 of 16,000 (normal)
+# Of a log that is as smooth as the other, s2: a time constant of 0.04 ms; and standard errors from
+# which on it is smoother, by chance in 1 of 16,000 (normal).
+ALIKE_S2, SMOOTHER = 1e-9, 4.0
 
 
 @dataclass(frozen=True)
@@ -58,19 +70,25 @@ class SensorFit:
 def same_motion(real, sim, alignment, motion, live, fresh_hz):
     """{sensor: SensorFit} of two aligned Traces; live {sensor: (3,)}: channels that change, none
     of the gyro's where nothing turns."""
-    return {kind: one_sensor(kind, real, sim, alignment, motion, live[kind], fresh_hz[kind])
-            for kind in ("accel", "gyro") if live[kind].any()}
+    sensor_fits, swapped = {}, None
+    for kind in ("accel", "gyro"):
+        if live[kind].any():
+            sensor_fits[kind] = one_sensor(kind, real, sim, alignment, motion, live[kind],
+                                           fresh_hz[kind], swapped)
+            if any(c.name == "accel_axes" for c in sensor_fits[kind].conventions):
+                swapped = sensor_fits[kind].fit.axes
+    return sensor_fits
 
 
-def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
-    """SensorFit of one sensor."""
+def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, swapped=None):
+    """SensorFit of one sensor; swapped (3, 3): the axes of the other one, where they are."""
     noise, theirs = (log.noise[kind] for log in (real, sim))
 
     def asked(pair):
         values, measured = pair.real(kind), pair.simulated(kind)
         share = own_noise(values, measured, noise, theirs, pair.band_hz)
-        if (share < 1.0).any() or silent(sim, kind):
-            measured = measured + rounding(kind, real, sim, pair)
+        if (share < 1.0).any() or single_log.silent(sim, kind):
+            measured = measured + single_log.rounding(kind, (real, sim), len(pair.t), pair.band_hz)
             pair = replace(pair, **{"sim_force" if kind == "accel" else "sim_rate": measured})
         made = hypotheses.accelerometer if kind == "accel" else hypotheses.gyro
         made = made if alignment.turning else hypotheses.along_one_line
@@ -108,17 +126,36 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz):
     own = sized(own, lambda sizes: evidence_of_logs.fit_one(
         first.hypothesis, measured, first.axes, first.unit, pairing.GRID_HZ, kind, inflation,
         (own[0], sizes), live, rows, left=False, noise_bends=noise_bends).log)
-    named, fit = posterior(kind, judged(inflation, rows), live)
-    fit = whole(fit, inflation, rows)
-    return without_smoothing(SensorFit(kind, named, fit, inflation, pair, fit.hypothesis, own,
-                                       live, noise_bends), rows)
+    fits = judged(inflation, rows)
+
+    def best_of(fits):
+        named, fit = posterior(kind, fits, live, swapped)
+        fit = whole(fit, inflation, rows)
+        return without_smoothing(SensorFit(kind, named, fit, inflation, pair, fit.hypothesis, own,
+                                           live, noise_bends), rows)
+    best = best_of(fits)
+    if best.fit.name:
+        return best
+    other = best_of([f for f in fits if f.name])
+    return other if _explains(other, best) else best
+
+
+def _explains(named, nameless):
+    """Whether a SensorFit with a name explains the gap as well as the nameless one, which is free
+    enough to follow what it has seen: it closes the gap but for a tenth, and foretells what it has
+    not seen better. What is left then has no name, and is none of the conventions."""
+    kind, live = named.kind, named.live
+    gap = (named.pair.simulated(kind) - named.pair.real(kind))[:, live]
+    left = [remaining_gap.not_foretold(fit)[:, live].std() for fit in (named, nameless)]
+    inside = (named.fit.left / named.fit.unit)[:, live]
+    return inside.std() < (1.0 - verdict.CLOSED) * gap.std() and left[0] < left[1]
 
 
 def without_smoothing(sensor_fit, rows):
     """The SensorFit as smooth as the real log, where it is not shown to be smoother: of a motion
     of one frequency, as a pendulum's, what that takes off by chance a scale puts back."""
     free, sigma = sensor_fit.fit.smooth_s2, sensor_fit.fit.smooth_sigma_s2
-    if (free / sigma) ** 2 - sensor_fit.smoothing_earns > LATE_SIGMA ** 2:
+    if (free / sigma) ** 2 - sensor_fit.smoothing_earns > SMOOTHER ** 2:
         return sensor_fit
     fixed = replace(sensor_fit, hypothesis=replace(sensor_fit.hypothesis, smooth_sd=ALIKE_S2))
     fit = fixed.refitted(rows)
@@ -148,22 +185,6 @@ def own_noise(values, measured, noise, theirs, band_hz):
     return np.where(share > SHARED, 1.0, share)
 
 
-def rounding(kind, real, sim, pair):
-    """(n, 3) of as much noise as the rounding of both logs leaves in the band: two that were made
-    of the same samples, and one that has no noise, which rounds what is slow the same way again
-    and again, do not say that they agree any better."""
-    power = sum((log.quantum[kind == "gyro"] or 0.0) ** 2 / 12.0 * (
-        1.0 if silent(log, kind) else min(1.0, 2.0 * pair.band_hz / log.rate_hz))
-        for log in (real, sim))
-    return np.sqrt(power) * np.random.default_rng(20200517).standard_normal((len(pair.t), 3))
-
-
-def silent(log, kind):
-    """Whether a sensor's noise in a log hardly ever crosses a count."""
-    noise, count = log.noise.get(kind), log.quantum[kind == "gyro"]
-    return noise is not None and bool((noise.per_sample < single_log.DROWNED * count).all())
-
-
 def sized(own, log):
     """own (columns, sizes) with the sizes that make the logs likeliest: most real sensors do far
     less of themselves than datasheets allow, and room that is not needed is room for noise."""
@@ -181,10 +202,12 @@ def local_noise(left):
     return level / np.sqrt((level ** 2).mean())
 
 
-def posterior(kind, fits, live):
-    """(Conventions, the best Fit)"""
+def posterior(kind, fits, live, swapped=None):
+    """(Conventions, the best Fit); swapped (3, 3): axes of the other sensor, None its own."""
+    # A factor that is no wrong time step would part what moves it from gravity: no scale does.
+    fits = [f for f in fits if f.name != "time_step" or abs(f.extra[0]) >= LEAST_STEP]
     named = [names(f, kind, live) for f in fits]
-    logs = np.array([f.log + sum(np.log(prior(n)) for n in each) + (
+    logs = np.array([f.log + sum(np.log(prior(n, f, swapped)) for n in each) + (
         np.log(PRIOR_HEALTHY) if not each else 0.0) for f, each in zip(fits, named)])
     top = int(logs.argmax())
     best = fits[top]
@@ -196,8 +219,10 @@ def posterior(kind, fits, live):
     return tuple(findings), best
 
 
-def prior(name):
+def prior(name, fit=None, swapped=None):
     """Probability of one thing that a simulator may do otherwise, before looking."""
+    if name == "gyro_axes" and swapped is not None and np.array_equal(fit.axes, swapped):
+        return PRIOR_SAME
     return PRIOR_NAMELESS if name == "unknown" else PRIOR_EACH
 
 
@@ -220,32 +245,3 @@ def names(fit, kind, live):
     if fit.unit != 1.0:
         deviations.append(kind + "_unit")
     return tuple(deviations)
-
-
-def delay(sensor_fits, row_s):
-    """(seconds by which the gyro is later than the accelerometer, more than the real sensor's;
-    standard error), and the Convention where it is a row or more."""
-    if len(sensor_fits) < 2:
-        return None, None, []
-    a, g = sensor_fits["accel"].fit, sensor_fits["gyro"].fit
-    late = g.delay_s - a.delay_s
-    sigma = float(np.hypot(a.delay_sigma_s, g.delay_sigma_s))
-    known = not any(c.name == "unknown" for f in sensor_fits.values() for c in f.conventions)
-    findings = [late_one(late, sigma)] if known and abs(late) > LATE_SIGMA * sigma and (
-        abs(late) >= row_s) else []
-    return late, sigma, findings
-
-
-def late_one(late, sigma):
-    """The Convention of a gyro that is late by so many seconds, or an accelerometer (negative)."""
-    kind = "gyro" if late > 0 else "accel"
-    ms = 1e3 * abs(late)
-    return convention_findings.finding(kind + "_delay", kind, 1.0 - 2.0 * _tail(abs(late) / sigma),
-                   0.5 * (late / sigma) ** 2, "take %.1f ms of delay out of it" % ms,
-                   value={"delay": ms}, unit="ms", interval_90={
-                       "delay": (ms - 1645.0 * sigma, ms + 1645.0 * sigma)})
-
-
-def _tail(z):
-    from math import erfc
-    return 0.5 * erfc(z / 2.0 ** 0.5)

@@ -131,7 +131,7 @@ def _of_axis(axis, sensor_fit, sim, noise, least, centres):
         return pairing.at_times(sim, rows, pair.t, pair.band_hz)
 
     # As the simulator's log has them, with no band as with any: what the Pair has may be drawn
-    # noise besides (conventions.rounding), and a band would earn what lacking that is worth.
+    # noise besides (single_log.rounding), and a band would earn what lacking that is worth.
     turns = compared(sim.rate)
     beside = np.column_stack([
         np.delete(turns, axis, axis=1), np.ones(len(turns)),

@@ -16,6 +16,8 @@ from .channel_regression import MOST_ROWS, regression
 from .hypotheses import BIAS, DEAD, DEG, DELAY_S, FREE, SHAPE
 
 HEARD = 2.0  # times what is left of a channel, above which its own motion would show in it
+# Nats that a heading costs, which may be any: 4 % of misalignment tell so many of them apart.
+HEADING = float(np.log(2.0 * np.pi / (np.sqrt(2.0 * np.pi) * SHAPE)))
 NOTHING = 0.5  # of a channel's power, from which on it says nothing of the motion
 POINTS = 6  # off by 1e-3 at the end of the widest band, eight rows a period
 
@@ -159,10 +161,10 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
         delay += float(np.clip(result[2][k], -0.05, 0.05))
     log, beta, shared, sigma, rest, beta_sigma = result
     # Of a channel that reads a part of the signal only, the smoothing is that of the part.
-    part = np.maximum(1.0 + np.diag(beta[:, :3]) + (shared[0] if h.scaled else 0.0), DEAD)
+    part = np.maximum(1.0 + np.diag(beta[:, :3]) + (shared[:k] if h.scaled else 0.0), DEAD)
     for weaker in (gains(h, beta, shared, unit), smoothed(shared[k + 1] / part, noise_bends)):
         log += 0.5 * n / inflation * np.minimum(0.0, np.log(weaker))[live].sum()
-    log -= live.sum() * n / inflation * np.log(unit)
+    log -= live.sum() * n / inflation * np.log(unit) + HEADING * h.heading
     return Fit(h, h.name, log, beta[:, 3] * unit, axes, unit, shared[:k], sigma[:k], delay,
                float(sigma[k]), float(shared[k + 1]), float(sigma[k + 1]), beta[:, :3],
                beta_sigma[:, :3], beta_sigma[:, 3] * unit, rest * unit if left else None)
@@ -175,7 +177,7 @@ def gains(h, beta, shared, unit):
     (1987), section 1.1], so the better fit is not believed."""
     whole = np.eye(3) + beta[:, :3]
     if h.scaled:
-        whole = whole + shared[0] * np.eye(3)
+        whole = whole + np.eye(3) * shared[:h.columns.shape[2]]
     if h.copies and h.name == "":
         whole = whole + beta[:, 4:7]
     turned = beta[:, 7:10] if h.copies > 1 else np.zeros((3, 3))

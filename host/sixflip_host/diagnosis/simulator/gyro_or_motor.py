@@ -6,7 +6,7 @@ import numpy as np
 
 from .. import odds
 from . import alignment as align_by
-from . import conventions, pairing, parameters, traces
+from . import pairing, parameters, single_log, traces
 from .evidence_of_logs import left_of
 
 GYRO = odds.PRESENT  # nats from which on it is the gyro: what turns a thing is as likely
@@ -46,7 +46,7 @@ def in_band(real, sim, kind, band_hz):
     """(3,): the noise of two Traces together, in the frequencies compared, m/s2 or rad/s; of one
     that has none, what rounding leaves while it moves, which it does not show at rest."""
     power = sum(2.0 * band_hz * log.noise[kind].density ** 2 + (
-        (log.quantum[kind == "gyro"] or 0.0) ** 2 / 12.0 if conventions.silent(log, kind) else 0.0)
+        (log.quantum[kind == "gyro"] or 0.0) ** 2 / 12.0 if single_log.silent(log, kind) else 0.0)
         for log in (real, sim))
     return np.sqrt(power)
 

@@ -87,6 +87,10 @@ def accelerometer(force, motion, g):
     level = up.mean(axis=0) + up - alignment.smooth(up, GRID_HZ, WANDERS_HZ)
     tried = [
         Hypothesis("healthy", force, *none(n)),
+        # What moves it in another proportion to gravity than a scale has, as of two logs one of
+        # which is smoother: no wrong time step, and no reason to tell a scale.
+        Hypothesis("healthy", force, moved[:, :, None] * np.eye(3), np.zeros(3),
+                   np.full(3, SHAPE), scaled=True),
         Hypothesis("no_gravity", moved, *none(n)),
         Hypothesis("no_gravity", force - level, *none(n)),
         Hypothesis("gravity_sign", moved - up, *none(n)),
@@ -110,7 +114,8 @@ def along_one_line(force, motion, g):
     off = force - force.mean(axis=0)
     line = np.abs(np.linalg.eigh(off.T @ off)[1][:, -1])
     return [replace(h, shape_sd=SHAPE * np.tile(np.maximum(line, LEAST_LINE), (3, 1)))
-            for h in accelerometer(force, motion, g) if h.name not in IN_TURNS]
+            for h in accelerometer(force, motion, g)
+            if h.name not in IN_TURNS and not h.scaled]  # what moves it is all that shows
 
 
 def gyro(rate, motion, g):

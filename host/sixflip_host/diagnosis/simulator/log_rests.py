@@ -20,6 +20,9 @@ LOUDER, SLOW_DPS = 2.5, 1.5
 # deg/s of a gyro's bias, standard deviation of what is known before (20 is the limit of an
 # MPU-6050, 40 that of an ITG-3200 in their data sheets), and times as much that none is.
 BIAS_DPS, NO_BIAS = 10.0, 5.0
+# Times the power of the gyro's noise: more shows a turn. Where nothing turns the accelerometer's
+# courses tell what rests, a deg/s of a gyro's standing for so many mg: from 1 mg to 300.
+TURNS, MG_FOR_DPS = 1.3, 10.0
 COUNT_VARIANCE = 0.25  # counts: a channel that toggles between two of them
 
 
@@ -47,7 +50,24 @@ def of_capture(capture, rate_hz):
         short = [(run.first, run.end) for run in found if run.end - run.first < least + 2 * edge]
         usual = _level(capture.gyro / lsb, still + short)
         stops, still = (_unturned(capture.gyro / lsb, spans, usual) for spans in (stops, still))
+        if still and _drives_only(capture, quiet):
+            per_g = capture.meta["accel_lsb_per_g"] * MG_FOR_DPS / 1000.0
+            still = rest_or_course.resting(capture.accel / per_g, still, rate_hz, adequacy.usual(
+                capture.meta["sensor"], "accel") / MG_FOR_DPS, 1.0 / per_g)
     return tuple(still), (None,) * len(still), tuple(stops) if still else ()
+
+
+def _drives_only(capture, quiet):
+    """Whether the gyro reads no more where it is not calm, runs of which are given, than where it
+    is: it has no say in what rests. (Where all is calm nothing moves.)"""
+    inside = np.zeros(len(capture), bool)
+    for run in quiet:
+        inside[run.first:run.end] = True
+    gyro = capture.gyro.astype(float)
+    if min(inside.sum(), (~inside).sum()) < rests_by_variance.WINDOW:
+        return False
+    noise = np.maximum(gyro[inside].var(axis=0), COUNT_VARIANCE)
+    return bool((gyro[~inside].var(axis=0) < TURNS * noise).all())
 
 
 def _up(code):

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
 from .. import odds
-from . import convention_findings, conventions, single_log
+from . import convention_findings, single_log
 from .alignment import BAND_HZ, independent
 from .hypotheses import DEG
 from .parameters import DIFFERS, MG, Parameter, compared
@@ -50,7 +50,7 @@ def noises(real, sim):
         scale = MG if kind == "accel" else DEG
         unit = "mg/√Hz" if kind == "accel" else "°/s/√Hz"
         floor = [x.quantum[0 if kind == "accel" else 1] for x in (real, sim)]
-        silent = conventions.silent(sim, kind)
+        silent = single_log.silent(sim, kind)
         for i, axis in enumerate("xyz"):
             if not np.ptp(values[1][:, i]):
                 continue  # a channel that says nothing is a convention
@@ -179,10 +179,13 @@ def _powers(trace, values, top):
     second = int(trace.rate_hz)
     whole = len(values) // second * second
     gap = np.diff(trace.t, append=trace.t[-1:]) * trace.rate_hz > GAP
-    # A filter rings for some of its periods beside what nobody read.
-    unread = np.convolve(gap | trace.put_in, np.ones(second // 2 * 2 + 1), "same") > 0.5
-    moves = ~(still | unread)[:whole].reshape(-1, second).any(axis=1)
-    each = fast[:whole].reshape(-1, second, 3).mean(axis=1)[moves]
+    # A filter rings for some of its periods beside what nobody read, and where a reading stops.
+    unread = np.convolve(gap | trace.put_in | trace.railed, np.ones(second // 2 * 2 + 1),
+                         "same") > 0.5
+    read = ~(still | unread)[:whole].reshape(-1, second)
+    moves = read.sum(axis=1) > second // 4
+    each = (fast[:whole].reshape(-1, second, 3) * read[:, :, None]).sum(axis=1)[moves]
+    each /= read.sum(axis=1)[moves, None]
     if len(each) < FEWEST_S or still.sum() < FEWEST_S * second // 2:
         return None
     error = np.sqrt(each.var(axis=0, ddof=1) / len(each) * independent(each - each.mean(axis=0)))

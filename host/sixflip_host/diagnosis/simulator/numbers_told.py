@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from .. import verdict
+from .. import odds, verdict
 from . import hypotheses, parameters, remaining_gap
-from .alignment import errors
+from .alignment import errors, independent
 from .hypotheses import DEG
 from .parameters import MG
 
@@ -91,10 +91,10 @@ def _closing(sensor_fit, numbers, enough, flicker):
     scale, ones = (MG if kind == "accel" else DEG), np.ones(len(off))
     columns = {}
     for i, row in enumerate("xyz"):
-        columns["bias", row] = i, ones, scale
+        columns["bias", row] = i, ones, scale, hypotheses.BIAS[kind]
         for j, column in enumerate("xyz"):
             key = ("scale", row) if i == j else ("misalignment", row + column)
-            columns[key] = i, simulated[:, j], 100.0 if i == j else DEG
+            columns[key] = i, simulated[:, j], 100.0 if i == j else DEG, hypotheses.SHAPE
     mine = {(p.name, p.axis): p for p in numbers if p.sensor == kind}
     given = [key for key in columns if key in mine and mine[key].differs]
 
@@ -111,7 +111,11 @@ def _closing(sensor_fit, numbers, enough, flicker):
         tried = [[*chosen, key] for key in columns if key in mine and key not in (*given, *chosen)]
         if len(chosen) == parameters.FEW or not tried:
             return {}
-        tried = [(keys, *_regressed(off, columns, given, keys)) for keys in tried]
+        # Beside other numbers one may be what it is by chance alone.
+        tried = [one for one in ((keys, *_regressed(off, columns, given, keys)) for keys in tried)
+                 if all(abs(x) > odds.Z_90 * sigma for x, sigma in map(one[2].get, one[0]))]
+        if not tried:
+            return {}
         least = min(float((one[1] ** 2).sum()) for one in tried)
         near = [one for one in tried if (one[1] ** 2).sum() < NEAR * least]
         # What turns about one axis only may differ by the scale of that, or by many times as much
@@ -122,15 +126,19 @@ def _closing(sensor_fit, numbers, enough, flicker):
 
 def _regressed(off, columns, given, keys):
     """((n, 3) what is left of off (n, 3) by these keys and those given, {key: (difference,
-    standard error)})."""
+    standard error)}): each with its size in data sheets for a prior, as what next to nothing
+    reads would be worth any number."""
     left, sizes = off.copy(), {}
     for i in range(3):
         mine = [key for key in (*given, *keys) if columns[key][0] == i]
         if mine:
             own = np.stack([columns[key][1] for key in mine], 1)
-            size = np.linalg.lstsq(own, off[:, i], rcond=None)[0]
+            known = np.array([columns[key][3] for key in mine]) ** -2.0
+            noise = off[:, i] - own @ np.linalg.lstsq(own, off[:, i], rcond=None)[0]
+            noise = max(noise.var() * independent(noise), 1e-30)
+            size = np.linalg.solve(own.T @ own / noise + np.diag(known), own.T @ off[:, i] / noise)
             left[:, i] -= own @ size
-            sigma = errors(own, left[:, i])
+            sigma = (np.maximum(errors(own, left[:, i]), 1e-15) ** -2.0 + known) ** -0.5
             for key, x, s in zip(mine, size, sigma):
                 sizes[key] = columns[key][2] * x, columns[key][2] * s
     return left, sizes

@@ -7,7 +7,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from . import alignment as align_by
-from . import conventions, hypotheses, own_calibration, own_consistency, row_times, traces
+from . import (
+    conventions,
+    hypotheses,
+    own_calibration,
+    own_consistency,
+    row_times,
+    timing,
+    traces,
+)
 from .channel_regression import regression
 from .pairing import GRID_HZ
 
@@ -96,7 +104,7 @@ def compared(real, sim, row_s):
     if abs(late) <= APART * sigma or abs(late) < row_s:
         return [], False
     itself = late_itself(sim, late)
-    return [conventions.late_one(late, sigma)] * itself, not itself
+    return [timing.late_one(late, sigma)] * itself, not itself
 
 
 def late_itself(sim, late):

@@ -21,6 +21,7 @@ DEAD, ALIVE = 0.03, 0.15
 # MORE.
 SAME, MORE = 1.3, 10.0
 SHORTEST_MEAN = 2  # samples
+FULL = 1.0 - 1.0 / 32767.0  # of a limit: 32767 counts are as far as -32768
 DROWNED = 0.3  # of a count: noise below it hardly ever crosses one
 
 
@@ -150,12 +151,27 @@ def limit(x):
     peak of a smooth motion cannot be it."""
     size = np.abs(x)
     top = size.max()
-    at = (size == top)
+    at = size >= FULL * top
     if at.all():
         return None  # what never changes does not stop there
     runs = at[1:] & at[:-1] & (np.sign(x[1:]) == np.sign(x[:-1]))
     if runs.sum() < 5 or top <= 0:
         return None
     # A log at rest repeats its largest reading by chance; then those next to it are as frequent.
-    near = ((size < top) & (size > 0.99 * top)).sum()
-    return float(top) if at.sum() > 3 * max(near, 1) else None
+    near = (~at & (size > 0.99 * top)).sum()
+    return float(size[at].min()) if at.sum() > 3 * max(near, 1) else None
+
+
+def rounding(kind, logs, number, band_hz):
+    """(number, 3) of as much noise as the rounding of both logs leaves in the band: two that were
+    made of the same samples, and one that has no noise, which rounds what is slow the same way
+    again and again, do not say that they agree any better."""
+    power = sum((log.quantum[kind == "gyro"] or 0.0) ** 2 / 12.0 * (
+        1.0 if silent(log, kind) else min(1.0, 2.0 * band_hz / log.rate_hz)) for log in logs)
+    return np.sqrt(power) * np.random.default_rng(20200517).standard_normal((number, 3))
+
+
+def silent(log, kind):
+    """Whether a sensor's noise in a log hardly ever crosses a count."""
+    noise, count = log.noise.get(kind), log.quantum[kind == "gyro"]
+    return noise is not None and bool((noise.per_sample < DROWNED * count).all())

@@ -2,10 +2,11 @@
 two logs of one motion give the differences.
 """
 from dataclasses import replace
+from math import erfc
 
 import numpy as np
 
-from . import parameters
+from . import convention_findings, parameters
 
 # An engine whose rates are half a physics step older than its forces (MuJoCo, Featherstone's
 # semi-implicit step) differs from itself by as much at two step sizes of 1 and 2 ms.
@@ -14,6 +15,7 @@ LEAST_SMOOTH_MS2 = 3.0  # half the square of a time constant of 2.4 ms
 # Quartz is within 50 ppm of its frequency (boards' crystals have 10 to 50 in their data sheets),
 # and two logs have one each: so much is no simulator's fault, and nothing to set.
 QUARTZ = 1e-4
+LATE_SIGMA = 4.0  # standard errors from which on a delay is one: by chance in 1 of 16,000 (normal)
 
 
 def timing(late, late_sigma, fits, alignment, freed=None):
@@ -65,3 +67,31 @@ def smoother(ms2):
 def faster(percent):
     """What to do about a clock that runs this much faster than the real one."""
     return "multiply its times by %.6g" % (1.0 - percent / 100.0)
+
+
+def delay(sensor_fits, row_s):
+    """(seconds by which the gyro is later than the accelerometer, more than the real sensor's;
+    standard error), and the Convention where it is a row or more."""
+    if len(sensor_fits) < 2:
+        return None, None, []
+    a, g = sensor_fits["accel"].fit, sensor_fits["gyro"].fit
+    late = g.delay_s - a.delay_s
+    sigma = float(np.hypot(a.delay_sigma_s, g.delay_sigma_s))
+    known = not any(c.name == "unknown" for f in sensor_fits.values() for c in f.conventions)
+    findings = [late_one(late, sigma)] if known and abs(late) > LATE_SIGMA * sigma and (
+        abs(late) >= row_s) else []
+    return late, sigma, findings
+
+
+def late_one(late, sigma):
+    """The Convention of a gyro that is late by so many seconds, or an accelerometer (negative)."""
+    kind = "gyro" if late > 0 else "accel"
+    ms = 1e3 * abs(late)
+    return convention_findings.finding(kind + "_delay", kind, 1.0 - 2.0 * _tail(abs(late) / sigma),
+                   0.5 * (late / sigma) ** 2, "take %.1f ms of delay out of it" % ms,
+                   value={"delay": ms}, unit="ms", interval_90={
+                       "delay": (ms - 1645.0 * sigma, ms + 1645.0 * sigma)})
+
+
+def _tail(z):
+    return 0.5 * erfc(z / 2.0 ** 0.5)
