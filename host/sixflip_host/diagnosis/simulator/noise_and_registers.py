@@ -7,7 +7,7 @@ import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
 from .. import odds
-from . import convention_findings, single_log
+from . import convention_findings, conventions, single_log
 from .alignment import BAND_HZ, independent
 from .hypotheses import DEG
 from .parameters import DIFFERS, MG, Parameter, compared
