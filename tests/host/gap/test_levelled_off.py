@@ -80,3 +80,16 @@ def test_a_motor_that_does_not_go_beyond_its_rate_is_no_stop():
     beyond = rate * (1.0 + 0.15 * (started > 0.0) * (np.abs(rate) >= 1.0))
     assert levelled_off.stop_of(rate, beyond) is None
     assert levelled_off.stop_of(rate, 4.0 * np.sin(0.6 * t)) == pytest.approx(1.0)
+
+
+def test_a_register_that_is_full_is_a_range_and_nothing_shakes():
+    """-32768 was not held for as far as 32767: half of the readings at the end were no end, and
+    what their edges have of fast power was shaking that the simulator lacked."""
+    t, force, rate = tumbled(1, 100.0)
+    real = read(t, force, 3.7 * rate, 1)
+    sim = read(t, force, 1.85 * rate, 2)
+    sim.meta = {**sim.meta, "gyro_lsb_per_dps": 32.75, "gyro_range_dps": 1000}
+    found = comparison.compare([("real", real)], "sim", sim)
+    assert {p.name for p in found.differs} - {"noise_density"} == {"range"}
+    assert all(p.real == pytest.approx(32767 / 65.5) for p in found.differs if p.name == "range")
+    assert found.gap["gyro"][1] < 2.0 * found.gap["gyro"][2]

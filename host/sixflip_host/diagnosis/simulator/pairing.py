@@ -73,10 +73,15 @@ def paired(real, sim, alignment, motion, band_hz=BANDS[0]):
     bad = np.zeros(len(t), bool)
     for log, at in ((real, there), (sim, t)):
         bad |= np.interp(at, log.t, (log.railed | log.put_in).astype(float)) > 0
-    wide = max(1, int(0.5 * GRID_HZ / band_hz))
-    bad = np.convolve(bad, np.ones(2 * wide + 1), "same") > 0
-    if bad.mean() > 0.5:
-        bad = np.zeros_like(bad)
+    # In a period of the band the low-pass has forgotten all but a hundredth of what was cut off,
+    # in half of one a tenth; of a log that is cut most of the time nothing better is known.
+    cut, bad = bad, np.zeros_like(bad)
+    for periods in (1.0, 0.5):
+        wide = max(1, int(periods * GRID_HZ / band_hz))
+        near = np.convolve(cut, np.ones(2 * wide + 1), "same") > 0
+        if near.mean() <= 0.5:
+            bad = near
+            break
     keep = ~bad
     return Pair(t[keep], onto(real, real.force, there)[keep], onto(real, real.rate, there)[keep],
                 None if real.celsius is None else np.interp(there, real.t, real.celsius)[keep],

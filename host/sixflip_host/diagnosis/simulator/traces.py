@@ -8,6 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
+from sixflip import RAIL
+
 from ...capture import clock
 from ...capture.attitude import carried, levelled, rotation_between, rotations
 from ...errors import BadFile
@@ -99,7 +101,7 @@ def _railed(counts):
     """(n,): samples at which a channel stands at the end of what it can say. By its readings
     alone: a simulator may stop elsewhere than at the range that its header states, by which
     detect.saturation goes."""
-    railed = np.zeros(len(counts), bool)
+    railed = (np.abs(counts.astype(int)) >= RAIL).any(axis=1)  # however short the peak
     for i in range(3):
         end = single_log.limit(counts[:, i].astype(float))
         if end is not None:
