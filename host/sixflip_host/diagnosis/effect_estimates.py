@@ -52,12 +52,12 @@ def _intervals(cause, gram, value, sigma):
                 continue
             place = list(theta).index(key)
             parts.append((p, theta[key], math.sqrt(covariance[place, place])))
-        low, high = _ends(*np.array(parts).T)
+        low, high = ends(*np.array(parts).T)
         intervals[key] = (min(low, size), max(high, size))
     return intervals
 
 
-def _ends(weights, means, spreads):
+def ends(weights, means, spreads):
     """(low, high) between which 90 % of a mixture of normal distributions lies."""
     spreads = np.maximum(spreads, 1e-12)
 

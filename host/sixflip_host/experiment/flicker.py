@@ -46,3 +46,39 @@ def differences(gap, block):
     own = 2.0 / x * (1.0 - (1.0 - np.exp(-x)) / x)
     both = ((1.0 - np.exp(-x)) / x) ** 2 * np.exp(-(gap - block)[None] / times)
     return 2.0 * (own - both).sum(axis=0)
+
+
+def log_likelihood(t, left, level):
+    """Log likelihood of what is left (n, 3) of a log at times t (n,), by flicker of a level and by
+    what the samples within each part of the log differ by: of its means over parts alone."""
+    parts, middle, seconds = _parts(t)
+    number = np.bincount(parts)
+    kernel, log = level ** 2 * flicker_kernel(middle, seconds), 0.0
+    for own in left.T:
+        mean = np.bincount(parts, own) / number
+        within = np.maximum(np.bincount(parts, own ** 2) / number - mean ** 2, 1e-12) / number
+        log -= 0.5 * float(mean @ np.linalg.solve(kernel + np.diag(within), mean))
+    return log
+
+
+def of_sizes(t, columns):
+    """(k,) standard deviation that unit flicker alone gives to the sizes of columns (n, 3, k) at
+    times t (n,): what wanders as slowly as a temperature passes for what follows it."""
+    parts, middle, seconds = _parts(t)
+    kernel, across, power = flicker_kernel(middle, seconds), 0.0, 0.0
+    for own in columns.transpose(1, 0, 2):
+        own = own - own.mean(axis=0)
+        sums = np.stack([np.bincount(parts, column) for column in own.T], 1)
+        across = across + ((kernel @ sums) * sums).sum(axis=0)
+        power = power + (own ** 2).sum(axis=0)
+    return np.sqrt(np.maximum(across, 0.0)) / np.maximum(power, 1e-12)
+
+
+def _parts(t):
+    """((n,) number of the part of a log in which a row at t (n,) lies, the middle of each part
+    that has rows, and how long each lasts, s)."""
+    seconds = max(float(np.ptp(t)) / FEW, 1e-9)
+    parts = np.unique(np.minimum(((t - t[0]) / seconds).astype(int), FEW - 1),
+                      return_inverse=True)[1]
+    number = np.bincount(parts)
+    return parts, np.bincount(parts, t) / number, np.full(len(number), seconds)

@@ -108,3 +108,26 @@ def test_wide_steps_of_which_a_quiet_axis_shows_few_are_steps(codes_of, step):
     counts = (x + 8200)[:, None]
     assert registers.steps(counts).tolist() == [step]
     assert present(codes.step_nats(counts)[0]) == (step > 1)
+
+
+@pytest.mark.parametrize("bits, missing, reads, noise", [
+    (4, (3,), 2, 1.5), (8, (7,), 6, 3.0), (16, (14, 15), 13, 46.0), (8, (3,), 4, 2.0)])
+def test_codes_that_a_wide_step_of_a_converter_holds_are_told_in_narrow_noise_too(
+        bits, missing, reads, noise):
+    """Of 18,176 rows none had 3 in the two low bits, and 2 was read twice as often: no gap."""
+    generator = np.random.default_rng(21)
+    rests = [np.rint(generator.normal(level, noise, 1500)).astype(np.int64)
+             for level in generator.uniform(-200.0, 200.0, 24)]
+    assert codes.uneven_nats(rests) == 0.0
+    held = [np.where(np.isin(rest % bits, missing), rest - rest % bits + reads, rest)
+            for rest in rests]
+    assert codes.uneven_nats(held) > 100.0
+
+
+@pytest.mark.parametrize("gain", [4.0 / 3.0, 8.0 / 7.0, 16.0 / 15.0, 1.05, 2.0])
+@pytest.mark.parametrize("noise", [1.0, 2.0, 3.0])
+def test_codes_that_a_gain_leaves_out_evenly_are_no_converters(gain, noise):
+    generator = np.random.default_rng(22)
+    rests = [np.floor(gain * np.rint(generator.normal(level, noise, 1500))).astype(np.int64)
+             for level in generator.uniform(-200.0, 200.0, 24)]
+    assert codes.uneven_nats(rests) == 0.0

@@ -3,9 +3,9 @@
 detection                          what is found: a sensor's effect, or a recording's damage
 codes, torn_reads (sample_neighbours), saturation, dead_band (lattice), axis_order, sample_clock,
 missing_rows                       registers and timing
-byte_faults (course_likelihood), held_values (stuck_axes), unread_rows, wrong_scale
-                                   damage: bytes, rows that repeat or that nobody read, full
-                                   scales
+byte_faults (course_likelihood), held_values (stuck_axes), unread_rows, row_order, wrong_scale
+                                   damage: bytes, rows that repeat, that nobody read or that are
+                                   out of order, full scales
 damage_taken_out                   captures without it
 spectral_lines (rest_spectra, line_frequency, line_across_rests, line_wander),
 noise_bursts (noise_windows), noise_shape, spikes, ringing, shake_detector, strides, hand_tremor

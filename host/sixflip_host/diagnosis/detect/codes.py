@@ -7,7 +7,16 @@ from dataclasses import replace
 import numpy as np
 from scipy import fft, ndimage, special
 
-from ...capture.registers import LOW_BITS, RAIL, SENSORS, codes, of_counts, spacing, steps
+from ...capture.registers import (
+    LOW_BITS,
+    RAIL,
+    SENSORS,
+    codes,
+    of_counts,
+    spacing,
+    steps,
+)
+from . import lattice
 from .detection import RANGE, odd_axes, present
 
 STEPS_TRIED = 1 << LOW_BITS
@@ -87,10 +96,12 @@ def uneven_nats(columns, held=1):
     noise = np.median(np.abs(np.concatenate([np.diff(c) for c in columns])))
     every = np.concatenate(columns)
     every = every[np.abs(every) < RAIL - 1]
-    if noise < FEWEST_AROUND or not len(every):
+    if noise < 1 or not len(every):
         return 0.0
-    nats = _of_single_codes(every, noise, held)
-    return nats if nats else _of_low_bits(every, int(noise), held)
+    nats = 0.0
+    if noise >= FEWEST_AROUND:
+        nats = _of_single_codes(every, noise, held) or _of_low_bits(every, int(noise), held)
+    return nats or lattice.swallowed_nats(every[np.abs(every) > held])
 
 
 def _of_single_codes(every, noise, held):

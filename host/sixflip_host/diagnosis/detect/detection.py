@@ -87,9 +87,9 @@ class Finding:
 
 @dataclass(frozen=True)
 class Damage:
-    """kind: sign_extension, byte_order, repeats, not read, full_scale, gravity; sensor: accel,
-    gyro or device; axes: letters, () for all three; domain and words (a sentence); score (nats);
-    value: {key: number} of what is known of its size."""
+    """kind: sign_extension, byte_order, repeats, not read, row order, full_scale, gravity;
+    sensor: accel, gyro or device; axes: letters, () for all three; domain and words (a sentence);
+    score (nats); value: {key: number} of what is known of its size."""
 
     kind: str
     sensor: str

@@ -120,34 +120,33 @@ def _of_blocks(rows, expected):
 def as_read(captures):
     """([(name, Capture)] without the rows in which neither sensor was read anew, [Damage]). The
     captures given are not changed."""
-    captures_as_read, nats, number = [], 0.0, 0
-    for name, capture in captures:
-        more, rows = _not_read(capture)
-        captures_as_read.append((name, without_rows(capture, rows) if len(rows) else capture))
-        nats, number = nats + more, number + len(rows)
+    found = [_not_read(capture) for _, capture in captures]
+    captures_as_read = [(name, without_rows(capture, rows) if len(rows) else capture)
+                        for (name, capture), (_, rows, _) in zip(captures, found)]
+    number = sum(len(rows) for _, rows, _ in found)
     if not number:
         return captures_as_read, []
-    share = 100.0 * number / sum(len(capture) for _, capture in captures)
-    return captures_as_read, [Damage(
-        NOT_READ, "device", (), "timing", "%d rows (%.2g %%) are the row before once more, of "
-        "both sensors: samples that were not read" % (number, share), nats, {"rows": number})]
+    every = sum(len(capture) for _, capture in captures) / number
+    said = "%d rows (%.2g %%) are the row before once more, of both sensors: %s" % (
+        number, 100.0 / every, "one in %.1f: read faster than they measure" % every if all(
+            even for _, rows, even in found if len(rows)) else "samples that were not read")
+    return captures_as_read, [Damage(NOT_READ, "device", (), "timing", said,
+                                     sum(nats for nats, *_ in found), {"rows": number})]
 
 
 def _not_read(capture):
-    """(nats, (k,) rows that are the one before once more), none where that happens by chance, or
-    at regular times."""
-    none = 0.0, np.zeros(0, dtype=int)
+    """(nats, (k,) rows that are the one before once more, whether at regular times), none where
+    that happens by chance, or at regular times in so many that findings() tells a rate of them."""
+    none = 0.0, np.zeros(0, dtype=int), False
     if capture.accel is None or capture.gyro is None or len(capture) < FEWEST:
         return none
     counts = np.hstack([capture.accel, capture.gyro])
     nats, held = (sum(v) for v in zip(repeats(counts)[:2], _frozen(counts)))
     rows = np.flatnonzero((counts[1:] == counts[:-1]).all(axis=1)) + 1
-    spacing = np.diff(rows)
+    even = len(rows) > 2 and bool(np.diff(rows).std() < AT_RANDOM * np.diff(rows).mean())
     # As many as are held repeat: where some do by chance, nobody knows which.
-    if not present(nats) or held < 0.9 * len(rows) or len(rows) < 3 or (
-            spacing.std() < AT_RANDOM * spacing.mean()):
-        return none
-    return nats, rows
+    odd = held < 0.9 * len(rows) or len(rows) < 3 or even and held >= HELD * len(counts)
+    return (nats, rows, even) if present(nats) and not odd else none
 
 
 def _frozen(counts):

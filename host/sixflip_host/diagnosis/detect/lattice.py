@@ -5,7 +5,10 @@ everywhere then, and a dead band is one only by the values that the column has.
 
 How often each count is read has a line in its spectrum at one over the spacing, whose phase says
 where the values lie. Columns that lie on whole counts, or on none, have no such line.
+
+A converter whose steps differ leaves codes of the same low bits out, which its wide steps hold.
 """
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +28,14 @@ IN_PHASE = 0.55
 BESIDE, SCALED = 0.35, 0.03
 BROAD = 0.1  # below this the spectrum is no longer that of how far the readings reach
 COMMON = 0.75  # quantile of the counts that are read, of which no more counts: what rests at one
+
+# Of a converter's missing codes: the longest period of low bits, in codes; how often a code is
+# read that says anything, and how seldom a missing one, of it; places where they are missing, of
+# which a gain or chance leaves out one or two; and times as often as those around it, that a code
+# is read which has another's part as well; codes beyond that may be as seldom, at the foot of
+# narrow noise (of steps of two counts all are); and the share of the samples that is elsewhere,
+# which is less in a recording of a sensor that is sold calibrated (codes.MANY).
+LONGEST, READ, SELDOM, PLACES, SWALLOWS, AWAY, MISSING = 16, 20.0, 0.1, 4, 1.4, 0.4, 0.1
 
 
 @dataclass(frozen=True)
@@ -73,3 +84,36 @@ def of_column(column, about=None):
     spacing = 1.0 / per_count[k]
     first = -np.angle(spectrum[k]) / (2.0 * np.pi) * spacing - NEAR
     return Lattice(spacing, float(first - spacing * np.rint(first / spacing)))
+
+
+def swallowed_nats(every):
+    """Log likelihood ratio (nats) of codes of one run of low bits that (n,) hardly ever reads
+    because the step beside them is so wide that it holds them: a converter's missing codes. They
+    are fewer than SELDOM of the rarer of both codes beside them wherever those are read, and the
+    codes beyond are there; a gain leaves codes out, too, but evenly and with no code beside them
+    that is read oftener."""
+    if not len(every):
+        return 0.0
+    least = int(every.min()) - 2 * LONGEST
+    times = np.bincount(every - least, minlength=int(every.max()) - least + 2 * LONGEST)
+    codes_read, best = np.arange(len(times)) + least, 0.0
+    for bits in range(2, LONGEST.bit_length()):
+        for wide in range(1, (1 << bits) // 4 + 1):
+            for low in range(1 << bits):
+                first = np.flatnonzero((codes_read & ((1 << bits) - 1)) == low)
+                first = first[(first > 2) & (first < len(times) - wide - 2)]
+                beside = times[[first - 1, first + wide]]
+                usual = beside.min(axis=0)
+                own = times[first[:, None] + np.arange(wide)]
+                seen = usual >= READ
+                if seen.sum() < PLACES or wide * usual.sum() < MISSING * len(every) or (
+                        own[seen] > SELDOM * usual[seen, None]).any():
+                    continue
+                beyond = times[[first - 2, first + wide + 1]]
+                if (beyond[:, seen] <= SELDOM * beside[:, seen]).mean() > AWAY or (
+                        beside.sum(axis=1) < SWALLOWS * 0.5 * (beyond + beside[::-1]).sum(
+                            axis=1)).all():
+                    continue
+                best = max(best, float(wide * usual[seen].sum() - own[seen].sum()
+                                       ) - math.log(len(times)))
+    return best

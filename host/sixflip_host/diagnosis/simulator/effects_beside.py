@@ -1,7 +1,7 @@
 """Layers two and three of one motion together: what an effect adds to the readings is neither a
 bias nor a scale. Both logs are fitted once more with the effects found as columns, so that the
 simulator's parameters are those it has beside them; of names that the rests do not tell apart,
-the one is put in whose form both logs bear out best.
+and of the variants of one, that is put in whose form both logs bear out best.
 """
 from dataclasses import dataclass, replace
 from itertools import islice, product
@@ -12,14 +12,17 @@ from sixflip import STANDARD_G
 from sixflip.poses import faces
 from sixflip_sim.effects.library import EFFECTS
 
-from ...experiment import noise_arrays, terms
-from .. import closed_loop, odds
+from ...experiment import flicker, noise_arrays, session_terms, terms
+from .. import closed_loop, effect_estimates, members
 from ..detect.detection import Finding
 from ..hypotheses import Form
 from . import conventions, hypotheses, numbers_told, pairing, parameters, remaining_gap
+from .parameters import MG
 
 FLAT, RESTS_DPS = 0.966, 2.0  # cosine of 15 deg, as the simulator has a face; slower is a rest
 MOST_SETS = 16  # of names that classes may stand for, tried: each takes a fit of the whole log
+SCALE = {"accel": MG, "gyro": hypotheses.DEG}  # mg to a m/s2, deg/s to a rad/s
+SELDOM = 0.01  # probability below which a form changes no interval
 WARMING_S = 10.0  # over which the temperature's rate is taken: a thermometer has steps
 
 
@@ -51,12 +54,14 @@ def _compared(comparison, diagnosis):
         mine += [f for f in diagnosis.findings if f.sensor == kind and f.plausible]
         names = _likeliest(kind, sensor_fit, mine, diagnosis)
         if names:
-            comparison = _beside(comparison, kind, names, diagnosis)
+            names, others = _variants(kind, sensor_fit, names, comparison.real, diagnosis)
+            comparison = _beside(comparison, kind, names, others, diagnosis)
     return comparison
 
 
-def _beside(comparison, kind, names, diagnosis):
-    """The Comparison with the effects names ([(name, Cause)]) of one sensor, and its bias, scale
+def _beside(comparison, kind, names, others, diagnosis):
+    """The Comparison with the effects names ([(name, Cause)]) of one sensor, others (_variants())
+    of them that are as likely, and its bias, scale
     and misalignment, and what is left of the gap, beside them. A scale that does not differ is the
     same in both when the sizes are taken: a cubic is much like one."""
     sensor_fit = comparison.fits[kind]
@@ -79,7 +84,8 @@ def _beside(comparison, kind, names, diagnosis):
     wanders = remaining_gap.wandering({kind: sensor_fit}, {kind: left})
     turned = {c.sensor for c in parameters.bias_sign(numbers)}
     return replace(
-        comparison, effects=comparison.effects + _sizes(kind, fit, designs, names, diagnosis),
+        comparison, effects=comparison.effects + _sizes(
+            kind, same, fit, designs, names, others, comparison.real, diagnosis),
         conventions=tuple(c for c in comparison.conventions
                           if (c.name, c.sensor) != ("bias_sign", kind) or kind in turned),
         gap={**comparison.gap, kind: (before, min(after, remaining_gap.size(kind, left)), noise)},
@@ -103,13 +109,40 @@ def _likeliest(kind, sensor_fit, causes, diagnosis):
         design(kind, *named, sensor_fit.pair, diagnosis) for named in names]).log)
 
 
+def _variants(kind, sensor_fit, names, real, diagnosis):
+    """(names ([(name, Cause)]), each Cause in the likeliest variant by the rests and both logs,
+    [[(probability, Cause), ...]] of each in the others). Lag and size are one where a temperature
+    fades as an exponential does: a lag, one of several, is as likely beforehand as none, which is
+    said where it does as well."""
+    names, others = list(names), [[] for _ in names]
+    for place, (name, cause) in enumerate(names):
+        variants = getattr(cause, "variants", ())
+        if name != cause.effect or len(variants) < 2:
+            continue
+        forms = [replace(variant, variant=variant.chosen[0].variant, shape=variant.chosen[0].shape)
+                 for _, variant in variants]
+        logs = []
+        for (p, _), form in zip(variants, forms):
+            names[place] = name, form
+            fit, _ = _fitted(kind, sensor_fit, names, real, diagnosis)
+            lags = len(session_terms.LAGS_S) - 1 if form.variant.startswith("lag") else 1
+            logs.append(np.log(p / lags) + flicker.log_likelihood(
+                sensor_fit.pair.t, SCALE[kind] * fit.left / fit.unit, real.flicker[kind]))
+        best = int(np.argmax(np.array(logs) + [
+            0.0 if form.variant else members.AS_WELL for form in forms]))
+        weights = np.exp(np.array(logs) - max(logs))
+        names[place] = name, forms[best]
+        others[place] = [(float(w), form) for k, (w, form) in enumerate(zip(
+            weights / weights.sum(), forms)) if k != best and w > SELDOM]
+    return names, others
+
+
 def _fitted(kind, sensor_fit, names, own, diagnosis):
     """(Fit, designs) of effects beside the parameters. An effect is a function of what acts,
     which the real readings are once it is taken off, and the forces once their OwnSensor's bias
     and scale are: the square of a reading with a bias is a scale besides."""
-    acting = replace(sensor_fit.pair,
-                     force=(sensor_fit.pair.force - own.bias) @ own.accel.T)
-    pair = acting
+    pair = acting = replace(sensor_fit.pair,
+                            force=(sensor_fit.pair.force - own.bias) @ own.accel.T)
     for _ in range(2):
         designs = [design(kind, *named, pair, diagnosis) for named in names]
         fit = fit_with(sensor_fit, designs)
@@ -128,8 +161,8 @@ def _less(kind, pair, designs, fit):
 
 def _columns(kind, pair, designs):
     """(n, 3, k): what the designs add, m/s2 or rad/s for a unit of each size."""
-    size = STANDARD_G / 1000.0 if kind == "accel" else np.pi / 180.0
-    return size * np.concatenate([d.columns.reshape(len(pair.t), 3, -1) for d in designs], axis=2)
+    return np.concatenate([d.columns.reshape(len(pair.t), 3, -1) for d in designs],
+                          axis=2) / SCALE[kind]
 
 
 def _shape(name, cause, diagnosis):
@@ -173,8 +206,8 @@ def moment(pair):
 def fit_with(sensor_fit, designs):
     """Fit of the sensor's own hypothesis with the designs' columns beside it; what the real
     sensor may do besides is left out, since it would take their place."""
-    rows = conventions.local_noise(sensor_fit.fit.left[:, sensor_fit.live])
-    return replace(wide(sensor_fit, designs), own=None).refitted(rows)
+    return replace(wide(sensor_fit, designs), own=None).refitted(
+        conventions.local_noise(sensor_fit.fit.left[:, sensor_fit.live]))
 
 
 def wide(sensor_fit, designs):
@@ -189,16 +222,28 @@ def wide(sensor_fit, designs):
         sd=np.concatenate([h.sd, *(d.prior for d in designs)])))
 
 
-def _sizes(kind, fit, designs, names, diagnosis):
-    """Effects of a Fit."""
-    effects, start = [], len(fit.extra) - sum(len(d.keys) for d in designs)
-    for one, (name, cause) in zip(designs, names):
-        part = slice(start, start + len(one.keys))
-        start = part.stop
-        value = dict(zip(one.keys, fit.extra[part].tolist()))
-        half = dict(zip(one.keys, (odds.Z_90 * fit.extra_sigma[part]).tolist()))
+def _sizes(kind, sensor_fit, fit, designs, names, others, own, diagnosis):
+    """Effects of a Fit; of each an interval over its form and the others that stay as likely."""
+    effects = []
+    for place, (one, (name, cause)) in enumerate(zip(designs, names)):
+        parts = [(1.0 - sum(p for p, _ in others[place]), fit, designs), *((p, *_fitted(
+            kind, sensor_fit, [*names[:place], (name, form), *names[place + 1:]], own, diagnosis))
+            for p, form in others[place])]
+        sizes = np.array([_of_fit(*part[1:], place, own.flicker[kind], sensor_fit.pair.t)
+                          for part in parts])
+        interval = {key: effect_estimates.ends(np.array([p for p, _, _ in parts]),
+                                               *sizes[:, :, k].T)
+                    for k, key in enumerate(one.keys)}
         effects.append(Beside(
-            name, kind, value, {k: (v - half[k], v + half[k]) for k, v in value.items()},
+            name, kind, dict(zip(one.keys, sizes[0, 0].tolist())), interval,
             EFFECTS[name].units[kind], _shape(name, cause, diagnosis),
             tuple(cause.probabilities)))
     return tuple(effects)
+
+
+def _of_fit(fit, designs, place, level, t):
+    """((k,) sizes, (k,) standard deviations with flicker) of one of a Fit's designs."""
+    after = sum(len(design.keys) for design in designs[place:])
+    part = slice(len(fit.extra) - after, len(fit.extra) - after + len(designs[place].keys))
+    wander = level * flicker.of_sizes(t, designs[place].columns.reshape(len(t), 3, -1))
+    return fit.extra[part], np.hypot(fit.extra_sigma[part], wander)

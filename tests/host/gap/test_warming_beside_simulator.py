@@ -1,0 +1,77 @@
+"""A gyro that follows its temperature beside a simulator of the same motion: which lag it is, and
+what flicker makes of the other axes."""
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from sixflip_host.diagnosis.aliases import Cause
+from sixflip_host.diagnosis.hypotheses import Form
+from sixflip_host.diagnosis.simulator import comparison, effects_beside
+from sixflip_host.experiment import flicker
+from tests.worlds.tumbled import read, tumbled
+
+TRUE = 0.06  # deg/s/degC
+CLASS = {"thermal_bias": 0.97}
+LAGGED = Form("thermal_bias", "lag -30 s", keys=tuple("xyz"))
+
+
+def logs(seed=4):
+    """(capture, simulated) of a thing that warms up by 10 degC within minutes; its z axis wanders
+    by a few thousandths of a deg/s."""
+    t, force, rate = tumbled(seed, 140.0)
+    celsius = 35.0 - 10.0 * np.exp(-t / 100.0)
+    generator = np.random.default_rng(seed)
+    own = np.zeros((len(t), 3))
+    own[:, 1] = TRUE * (celsius - celsius.mean())
+    own[:, 2] = 0.003 * (1.0 - 2.0 * np.exp(-t / 60.0))
+    captures = []
+    for number, added in enumerate((own, 0.0)):
+        capture = read(t, force, rate + added, seed + 50 * number)
+        capture.meta.update(temp_lsb_per_c=340, temp_offset_c=36.53)
+        capture.temp = np.rint((celsius - 36.53) * 340 + generator.normal(0.0, 8.0, len(t))
+                               ).astype(np.int16)
+        captures.append(capture)
+    return captures
+
+
+@pytest.fixture(scope="module")
+def beside():
+    """The effect that both logs show of a cause whose lag the rests do not tell from none."""
+    real, simulated = logs()
+    compared = comparison.compare([("real", real)], "sim", simulated)
+    plain = Form("thermal_bias", "", keys=tuple("xyz"))
+    causes = [Cause("thermal_bias", (form,), 200.0, CLASS) for form in (LAGGED, plain)]
+    cause = SimpleNamespace(
+        effect="thermal_bias", plausible=True, probabilities=CLASS, variant="lag -30 s", shape=(),
+        variants=((0.6, causes[0]), (0.4, causes[1])))
+    diagnosis = SimpleNamespace(
+        causes=[("gyro", cause)], findings=(), comparisons=(compared,),
+        conditions=SimpleNamespace(reference_c=30.0), sessions=[SimpleNamespace(capture=real)])
+    effect, = effects_beside._compared(compared, diagnosis).effects
+    return effect
+
+
+def test_a_lag_that_nothing_needs_is_none(beside):
+    """0.0692 (0.0688 ... 0.0695) deg/s/degC were 0.06: an exponential that is later is larger."""
+    low, high = beside.interval["y"]
+    assert "lag_s" not in beside.shape
+    assert beside.value["y"] == pytest.approx(TRUE, abs=0.002) and low < TRUE < high
+
+
+def test_what_flicker_makes_of_an_axis_is_no_effect_of_it(beside):
+    low, high = beside.interval["z"]
+    assert low < 0.0 < high and high - low < 0.01
+
+
+def test_flicker_gives_sizes_the_spread_that_it_is_said_to_give():
+    generator = np.random.default_rng(6)
+    t = np.arange(0.0, 400.0, 0.5)
+    column = np.exp(-t / 150.0) - np.exp(-t / 150.0).mean()
+    columns = np.zeros((len(t), 3, 1))
+    columns[:, 1, 0] = column
+    kernel = sum(np.exp(-np.abs(t[:, None] - t) / tau) for tau in flicker.ALL_TIMES_S)
+    wandering = np.linalg.cholesky(kernel + 1e-6 * np.eye(len(t))) @ generator.normal(
+        size=(len(t), 400))
+    sizes = column @ (wandering - wandering.mean(axis=0)) / (column @ column)
+    assert flicker.of_sizes(t, columns)[0] == pytest.approx(sizes.std(), rel=0.15)
