@@ -304,6 +304,12 @@ def test_rows_that_a_link_still_held_at_the_start_came_late():
     assert found.longest_late_ms == pytest.approx(500 * (PERIOD - 2600.0) / 1e3, rel=1e-3)
 
 
+def test_rows_that_share_the_stamps_of_a_coarse_clock_are_not_late():
+    """Whole seconds at 100 rows a second: 99 rows came 990 ms late."""
+    t_us = (np.floor(np.arange(20000) / 100.0) * 1e6).astype(np.int64)
+    assert clock.measure(t_us).late == 0
+
+
 def test_a_sensor_that_was_faster_at_first_held_nothing():
     assert stamp_envelope.backlog(held_by_a_link(False)) == 0
     assert stamp_envelope.backlog(held_by_a_link(True)) == 500

@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture.capture import Capture
-from sixflip_host.diagnosis.simulator import comparison, single_log
+from sixflip_host.diagnosis.simulator import (
+    comparison,
+    convention_findings,
+    log_rests,
+    noise_and_registers,
+    single_log,
+)
 from tests.worlds.tumbled import META, RATE_HZ, read
 
 SWAPPED = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # y reads z, z reads -y
@@ -83,3 +89,22 @@ def test_what_drives_on_is_no_rest_of_a_log_whose_gyro_says_nothing():
     t, force, rate = driven()
     found = compared(read(t, force, 0.0 * rate, 9))
     assert not [p for p in found.differs if p.name == "noise_density"]
+
+
+def test_what_drives_on_is_no_rest_of_a_log_without_a_gyro():
+    """92 of its 100 s were."""
+    t, force, rate = driven()
+    capture = read(t, force, rate, 9)
+    capture.gyro = None
+    rests, _, _ = log_rests.of_capture(capture, RATE_HZ)
+    assert rests and sum(end - first for first, end in rests) < 0.4 * len(t)
+    still = np.abs(rate[:, 2]) < 0.1
+    assert all(still[first:end].mean() > 0.8 for first, end in rests)
+
+
+@pytest.mark.parametrize("asked, told", [(1, True), (2, False)])
+def test_a_noise_by_the_root_of_the_rate_is_asked_of_the_sensors_that_there_are(asked, told):
+    """Of a log without a gyro, too, every second one was taken to have it in one sensor alone."""
+    found = convention_findings.finding("noise_per_sample", "accel", 0.97, 4.0,
+                                        value={"factor": 10.0}, unit="1")
+    assert bool(noise_and_registers.merged_noise([found], asked)) is told

@@ -128,9 +128,10 @@ def _by_gravity(session):
     """[(factor, relative width)] by which the gyro reads more than gravity turns from one pause to
     the next, where nothing moves the sensor, or else while it moves."""
     moves = _between_pauses(session)
-    factor = _of_all(moves)
+    halves = [_of_all(part) for part in (moves[::2], moves[1::2])]
+    factor = _of_all(moves) if len(moves) >= FEWEST_MOVES and all(halves) else None
     if factor:
-        apart = math.log((_of_all(moves[::2]) or factor) / (_of_all(moves[1::2]) or factor))
+        apart = math.log(halves[0] / halves[1])
         return [(factor, math.hypot(SOUND_GYRO, 0.5 * apart))]
     meta, capture = session.capture.meta, session.capture
     known = 1.0 / meta["gyro_lsb_per_dps"]

@@ -23,6 +23,7 @@ BIAS_DPS, NO_BIAS = 10.0, 5.0
 # Times the power of the gyro's noise: more shows a turn. Where nothing turns the accelerometer's
 # courses tell what rests, a deg/s of a gyro's standing for so many mg: from 1 mg to 300.
 TURNS, MG_FOR_DPS = 1.3, 10.0
+MOST_SPANS = 1000  # of which the gyro's level is told: each is held against each
 COUNT_VARIANCE = 0.25  # counts: a channel that toggles between two of them
 
 
@@ -50,10 +51,10 @@ def of_capture(capture, rate_hz):
         short = [(run.first, run.end) for run in found if run.end - run.first < least + 2 * edge]
         usual = _level(capture.gyro / lsb, still + short)
         stops, still = (_unturned(capture.gyro / lsb, spans, usual) for spans in (stops, still))
-        if still and _drives_only(capture, quiet):
-            per_g = capture.meta["accel_lsb_per_g"] * MG_FOR_DPS / 1000.0
-            still = rest_or_course.resting(capture.accel / per_g, still, rate_hz, adequacy.usual(
-                capture.meta["sensor"], "accel") / MG_FOR_DPS, 1.0 / per_g)
+    if still and (capture.gyro is None or _drives_only(capture, quiet)):
+        per_g = capture.meta["accel_lsb_per_g"] * MG_FOR_DPS / 1000.0
+        still = rest_or_course.resting(capture.accel / per_g, still, rate_hz, adequacy.usual(
+            capture.meta["sensor"], "accel") / MG_FOR_DPS, 1.0 / per_g)
     return tuple(still), (None,) * len(still), tuple(stops) if still else ()
 
 
@@ -82,6 +83,7 @@ def _level(rate, spans):
     that turns evenly is as calm as one that rests. None where no level can be a bias."""
     if not spans:
         return None
+    spans = [spans[k] for k in np.unique(np.linspace(0, len(spans) - 1, MOST_SPANS).astype(int))]
     means, lasts = (np.array(x) for x in zip(*[(rate[a:b].mean(axis=0), b - a) for a, b in spans]))
     alike = np.linalg.norm(means[:, None] - means, axis=2) < SLOW_DPS
     off = np.linalg.norm(means, axis=1) / BIAS_DPS

@@ -38,7 +38,7 @@ PEAK = 5.0  # standard deviations of noise, that one in two million samples is f
 
 def noises(real, sim):
     """(Parameters of the noise densities, Conventions on the noise)."""
-    numbers, findings = [], []
+    numbers, findings, asked = [], [], 0
     for kind in ("accel", "gyro"):
         name = "force" if kind == "accel" else "rate"
         values = [getattr(x, name) for x in (real, sim)]
@@ -70,7 +70,8 @@ def noises(real, sim):
         if heard and not (a.moving or b.moving) and (
                 np.minimum(b.density, b.per_sample) > 0).all():
             findings += density_convention(kind, a, b, sim.rate_hz)
-    return numbers, merged_noise(findings)
+            asked += 1
+    return numbers, merged_noise(findings, asked)
 
 
 def density_convention(kind, real, sim, rate_hz):
@@ -114,10 +115,10 @@ def _axes_nats(real, sim):
     return typed, nats(beside, both + AXES ** 2)
 
 
-def merged_noise(findings):
-    """[Convention] of density_convention() of both sensors: at once they are one finding, of the
-    device, and one says it of the other; of whoever takes a density for a sample's noise every
-    second one is taken to do so in one of the sensors alone."""
+def merged_noise(findings, asked):
+    """[Convention] of density_convention() of the sensors asked: at once they are one finding, of
+    the device, and one says it of the other; of whoever takes a density for a sample's noise every
+    second one is taken to do so in one of two sensors alone."""
     each = [c.probability / max(1.0 - c.probability, 1e-300) for c in findings]
     larger = [c.value["factor"] > 1.0 for c in findings]
     if len(findings) == 2 and larger[0] == larger[1]:
@@ -125,7 +126,8 @@ def merged_noise(findings):
         findings, each = [convention_findings.finding(
             "noise_per_sample", "device", 0.0, sum(c.nats for c in findings), value=first.value,
             unit="1", interval_90=first.interval_90)], [2.0 * each[0] * each[1]]
-    told = [replace(c, probability=float(odd / (2.0 + odd))) for c, odd in zip(findings, each)]
+    told = [replace(c, probability=float(odd / ((2.0 if asked == 2 else 1.0) + odd)))
+            for c, odd in zip(findings, each)]
     return [c for c in told if c.probability >= LIKELY]
 
 

@@ -21,7 +21,7 @@ DEAD, ALIVE = 0.03, 0.15
 # MORE.
 SAME, MORE = 1.3, 10.0
 SHORTEST_MEAN = 2  # samples
-FULL = 1.0 - 1.0 / 32767.0  # of a limit: 32767 counts are as far as -32768
+FULL = 32767.0 / 32768.0  # of a limit: 32767 counts are as far as -32768
 DROWNED = 0.3  # of a count: noise below it hardly ever crosses one
 
 
