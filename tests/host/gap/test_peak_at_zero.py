@@ -28,10 +28,10 @@ def test_a_rest_between_shakes_is_no_dead_band(noise, wide, decays):
 
 
 def test_shakes_of_what_has_no_noise_are_no_dead_band():
-    """Two rows in five of these shake, for five rows each."""
+    """Two fifths of the time they shake, for five rows each."""
     rng = np.random.default_rng(3)
     shakes = np.repeat(rng.random(4000) < 0.4, 5)[:, None]
-    counts = np.rint(shakes * rng.normal(0.0, 20.0, (20000, 3))).astype(np.int16)
+    counts = np.rint(shakes * rng.normal(0.0, 6.0, (20000, 3))).astype(np.int16)
     assert dead_band.findings("gyro", [counts], [np.zeros(len(counts), bool)]) == []
 
 
