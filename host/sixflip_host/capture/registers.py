@@ -54,7 +54,8 @@ def steps(counts):
 
 def _told_by_few(column, number, step):
     """Whether so few values of a column (n,) tell a step."""
-    return (number - 1) * math.log(max(step, 1)) > FEW_NATS and np.count_nonzero(
+    paid = 1 <= step <= 1 << LOW_BITS  # three levels that lie evenly apart are no steps
+    return paid and (number - 1) * math.log(step) > FEW_NATS and np.count_nonzero(
         column[1:] != column[:-1]) > RESTLESS * len(column)
 
 

@@ -17,6 +17,7 @@ from ...capture.registers import RAIL, steps
 from ..odds import Z_90
 from . import codes, lattice
 from .detection import Finding, agreed_by_axis, present
+from .peak_at_zero import LEAST_NOISE, WINDOW, of_zeros
 
 FASTER = 3.0  # than the noise, from a sample to the next: its sign is that of the motion
 LONGEST = 8  # samples at 0 while something passes; more is a pause
@@ -30,13 +31,7 @@ FEWEST = 20  # passages, whose median is known to a fifth of their scatter
 OF_MEDIAN, OF_SIZES = 1.2533, 1.4826
 SILENT = 0.05  # counts of noise: one sample in four hundred is another code
 QUIETER = 2.0  # times that an axis' noise is below the others' at most: Z of a MEMS gyro, 1.5
-WINDOW, QUIET = 32, 0.1  # samples; share of the windows that is at rest
-FEWEST_NEAR, LEAST_NOISE = 50, 0.3  # samples beside 0; steps: with less noise 0 may be all
-CROSSINGS, MOST_WINDOWS = 4, 400  # of 0 in a window, what passes through has one; to save time
-# Steps: none, rounding towards 0, and bands a quarter wider each, as well as a width is known.
-NONE, BANDS = (0.0, 0.5), np.unique(np.rint(1.25 ** np.arange(20)))
-LEVELS_NEAR, WIDTHS_NEAR = 25, 24  # of the mean and the noise in a window: both to a fifth
-ODD = 0.1  # chance that a window does not keep still: 0 piles up in it and thins out anyhow
+QUIET = 0.1  # share of the windows that is at rest
 
 
 @dataclass(frozen=True)
@@ -113,47 +108,6 @@ def of_codes(counts):
     missing, nats = registers.dead_band(counts), codes.band_nats(counts)
     flat = np.array([of_zeros(column) for column in counts.T])
     return tuple(np.where((missing > 0) | (nats > flat[:, 1]), (missing, nats), flat.T))
-
-
-def of_zeros(column):
-    """(half the width (counts) of a band that reads 0 and that what is beyond it begins at 0
-    again, nats) of a column (n,), where no code is missing. About a mean of its own near 0 each
-    window has noise of its own; that through a band competes with the noise alone, and with what
-    is rounded towards 0. A sensor whose bias was taken off reads 0 most often by its noise."""
-    x, step = column.astype(np.int64), max(1, int(steps(column[:, None])[0]))
-    windows = x[:len(x) // WINDOW * WINDOW].reshape(-1, WINDOW) / step
-    windows = windows[registers.sign_changes(windows) >= CROSSINGS]
-    windows = windows[::-(-max(len(windows), 1) // MOST_WINDOWS)]
-    if np.count_nonzero(windows) < FEWEST_NEAR:
-        return 0.0, 0.0
-    plain, banded = ([_log_of_band(windows, band).sum() for band in bands]
-                     for bands in (NONE, BANDS))
-    nats = np.array(banded) - max(plain) - np.log(len(BANDS))
-    best, zero = int(nats.argmax()), (windows == 0).ravel()
-    runs = codes.number_of_runs(zero) / max(zero.sum(), 1)  # which slow noise makes: one counts
-    return (BANDS[best] * step, nats[best] * runs) if nats[best] > 0.0 else (0.0, 0.0)
-
-
-def _log_of_band(windows, band):
-    """(n,) log likelihood of windows (n, WINDOW) of steps through a band, over all means and
-    noises that each may have."""
-    size, zeros = np.abs(windows), (windows == 0).sum(axis=1)
-    number = windows.shape[1] - zeros
-    noise = np.geomspace(LEAST_NOISE, max(1.0, float(size.max())), WIDTHS_NEAR)[:, None]
-    mean = np.linspace(-1.0, 1.0, LEVELS_NEAR) * (band + 2.0 * noise)
-    at_zero = np.subtract(*(special.ndtr((end - mean) / noise) for end in (band + .5, -band - .5)))
-    width = np.sqrt(noise ** 2 + 1.0 / 12.0)  # of whole steps [Sheppard's correction]
-    true = windows + band * np.sign(windows)
-    logs = (np.multiply.outer(zeros, np.log(np.maximum(at_zero, 1e-300)))
-            - np.multiply.outer(number, np.log(width * np.sqrt(2.0 * np.pi)) + 0.0 * mean)
-            - 0.5 * ((true ** 2).sum(axis=1)[:, None, None]
-                     - 2.0 * np.multiply.outer(true.sum(axis=1), mean)
-                     + np.multiply.outer(number, mean ** 2)) / width ** 2)
-    held = special.logsumexp(logs, axis=(1, 2)) - np.log(mean.size)
-    # Zeros of any share, and flanks that are exponential, as wide as they are.
-    reach = np.maximum(size.sum(axis=1) / np.maximum(number, 1), 1.0)
-    odd = special.betaln(zeros + 1, number + 1) - number * (1.0 + np.log(2.0 * reach))
-    return np.logaddexp(np.log(1.0 - ODD) + held, np.log(ODD) + odd)
 
 
 def nats_of_rests(columns, at_rest, least=0.0, lattices=None):
