@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture.capture_file import Capture
-from sixflip_host.diagnosis.detect import damage_taken_out
+from sixflip_host.diagnosis.detect import damage_taken_out, held_values, row_order
 
 RATE = 200.0
 META = {"sensor": "mpu6050", "rate_hz": RATE, "accel_lsb_per_g": 8192.0,
@@ -77,3 +77,67 @@ def test_what_is_in_order_stays_so(what):
     if what == "repeated rows":
         rows = np.sort(np.append(n, n[generator.random(len(x)) < 0.04]))
     assert [one.kind for one in said(x, rows)[1] if one.kind == "row order"] == []
+
+
+def disordered(x):
+    """Where rows are said to be out of order."""
+    return [one for one in said(x)[1] if one.kind == "row order"]
+
+
+@pytest.mark.parametrize("turns, rests", [(25, 25), (10, 40), (30, 30)])
+def test_a_machine_that_does_the_same_again_is_in_order(turns, rests):
+    """A run that is reversed from a leap to the next of its kind ends as it began."""
+    n = np.arange(6000)
+    x = np.random.default_rng(0).normal(0.0, [30.0] * 3 + [5.0] * 3, (len(n), 6))
+    x[:, 5] += 2000.0 * (n % (turns + rests) < turns)
+    x[:, 0] += 8.0 * np.gradient(x[:, 5]) / 65.5
+    assert disordered(x) == []
+
+
+def test_a_buffer_that_was_handed_over_twice_is_not_reversed():
+    """Reversed, its last row stands beside itself; it is told as what it is."""
+    x = readings()
+    for start in range(100, len(x) - 100, 173):
+        x[start + 8:start + 16] = x[start:start + 8]
+    ordered, damages = said(x)
+    assert damages == [] and (ordered.gyro == capture(x).gyro).all()
+    nats, later, _ = held_values.again_later([ordered.gyro])
+    assert nats > 100.0 and later == 8
+
+
+def test_rows_that_are_read_twice_and_reversed_are_put_right():
+    """A log that is read twice as fast as it measures has a row beside itself everywhere."""
+    x = np.repeat(readings(), 2, axis=0)[1:-7]
+    damage, = disordered(x[out_of_order(len(x), 4, "reversed", 0.1)])
+    assert damage.value["block"] == 8 and "reversed" in damage.words
+
+
+def test_all_captures_are_told_of():
+    whole = [capture(readings(seed, 240.0)) for seed in (3, 4)]
+    swapped = [capture(readings(seed), out_of_order(24000, 8, "exchanged", share))
+               for seed, share in ((3, 0.1), (4, 0.2))]
+    each = [row_order.as_read([("", one)])[1][0] for one in swapped]
+    both, = row_order.as_read(list(enumerate([whole[0], *swapped, whole[1]])))[1]
+    assert both.score == pytest.approx(sum(one.score for one in each))
+    assert both.value["rows"] == sum(one.value["rows"] for one in each)
+    assert both.value["share"] == pytest.approx(sum(
+        one.value["share"] for one in each) / 6.0, rel=0.01)
+
+
+def test_all_of_a_long_log_is_put_right_and_what_is_read_with_it(monkeypatch):
+    """A habit of the first rows is that of the others, also where a block begins in one piece and
+    ends in the next; the temperature comes out of the same buffer."""
+    rows = out_of_order(24000, 8, "exchanged", 0.2)
+    rows[9992:10008] = np.append(np.arange(10000, 10008), np.arange(9992, 10000))
+    x, log = readings(), capture(readings(), rows)
+    log.temp = log.mag = rows.astype(np.int16)
+    monkeypatch.setattr(row_order, "ROWS", 10_000)
+    (_, ordered), = row_order.as_read([("", log)])[0]
+    right = (np.hstack([ordered.accel, ordered.gyro]) == np.hstack(
+        [capture(x).accel, capture(x).gyro])).all(axis=1)
+    out = rows != np.arange(len(x))
+    assert right[~out].mean() > 0.99 and right[9992:10008].all()
+    for piece in (slice(0, 10000), slice(10000, 20000), slice(20000, 24000)):
+        assert right[piece][out[piece]].mean() > 0.2  # the others lie at rest
+    assert (ordered.temp[right] == np.flatnonzero(right)).all()
+    assert (ordered.mag == ordered.temp).all() and (ordered.t_us == log.t_us).all()
