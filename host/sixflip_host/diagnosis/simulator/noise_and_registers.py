@@ -140,7 +140,10 @@ def shaking(real, sim):
         values = [getattr(x, name) for x in (real, sim)]
         if top < 1.5 * FASTER_HZ or any(v is None for v in values):
             continue
-        powers = [_powers(x, v, top) for x, v in zip((real, sim), values)]
+        # What one of them cuts off is left out of both: it is where they are shaken most.
+        ends = np.array([[single_log.limit(x) or np.inf for x in v.T] for v in values]).min(axis=0)
+        powers = [_powers(x, v, top, (np.abs(v) >= ends).any(axis=1))
+                  for x, v in zip((real, sim), values)]
         if any(p is None for p in powers):
             continue
         scale = MG if kind == "accel" else DEG
@@ -170,9 +173,10 @@ def shaken_so(real, simulated, top):
         simulated)
 
 
-def _powers(trace, values, top):
-    """((3,) mean power of values (n, 3) between FASTER_HZ and top outside the rests, (3,) its
-    standard error, (3,) power within the rests), or None where there is too little of either."""
+def _powers(trace, values, top, cut):
+    """((3,) mean power of values (n, 3) between FASTER_HZ and top outside the rests and away from
+    what is cut off (n,), (3,) its standard error, (3,) power within the rests), or None where
+    there is too little of either."""
     band = butter(4, (FASTER_HZ, top), "bandpass", fs=trace.rate_hz, output="sos")
     fast = sosfiltfilt(band, values, axis=0) ** 2
     still = np.zeros(len(values), bool)
@@ -182,7 +186,7 @@ def _powers(trace, values, top):
     whole = len(values) // second * second
     gap = np.diff(trace.t, append=trace.t[-1:]) * trace.rate_hz > GAP
     # A filter rings for some of its periods beside what nobody read, and where a reading stops.
-    unread = np.convolve(gap | trace.put_in | trace.railed, np.ones(second // 2 * 2 + 1),
+    unread = np.convolve(gap | trace.put_in | cut, np.ones(second // 2 * 2 + 1),
                          "same") > 0.5
     read = ~(still | unread)[:whole].reshape(-1, second)
     moves = read.sum(axis=1) > second // 4
