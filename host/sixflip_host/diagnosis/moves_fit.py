@@ -21,7 +21,8 @@ SINGLE_FOLDS = 2  # of one session: every other move is foretold by those betwee
 ROUNDS, FREEDOM = 4, 4.0  # of weighting; Student's t
 BENT, WANDERED = (0.03, 0.1, 0.3, 1.0), (0.1, 0.3, 1.0)  # of the widest priors
 EFFECTS = {"lever_arm": np.arange(3), "filter_lag": np.array([3])}  # their columns
-AT_A_TIME, CENTRE = 64, EFFECTS["lever_arm"]  # moves left out together
+AT_A_TIME = 64  # moves left out together
+CENTRE = EFFECTS["lever_arm"]
 # cm, tried: how far apart the points are that single moves turn about. A box on an axle, a hand
 # that rolls it over its edges, one that holds it in the air.
 CENTRES_CM = (0.0, 0.1, 0.3, 1.0, 3.0)

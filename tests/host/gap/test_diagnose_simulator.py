@@ -1,7 +1,6 @@
 """`sixflip diagnose --sim` with logs that are not as they should be: what can be said is said."""
 import json
 import struct
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +10,7 @@ import sixflip_host
 from sixflip_host import cli
 from sixflip_host.capture import capture_file
 from sixflip_host.diagnosis.diagnose import diagnose
-from sixflip_host.diagnosis.simulator import comparison, conventions, parameters
+from sixflip_host.diagnosis.simulator import comparison, parameters
 
 G = 9.80665
 
@@ -399,21 +398,3 @@ def test_a_log_of_a_few_rows_is_refused(tmp_path, capsys, rows, short):
     said = capsys.readouterr().err
     assert said.count("\n") == 1 and "%s.csv: it has %d row" % (short, rows) in said
     assert "expected 8 and more" in said
-
-
-def test_what_closes_the_gap_and_foretells_better_is_no_unknown():
-    """Swapped axes of another full scale left 1 of 36 deg/s, and what has no name, which left as
-    little of what it had seen and 27 of what it had not, was said instead."""
-    t = np.arange(0.0, 20.0, 0.02)
-    real = np.stack([np.sin(t), np.sin(1.7 * t), np.sin(0.6 * t)], 1)
-    simulated = real @ np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]).T / 1.13
-    pair = SimpleNamespace(t=t, simulated=lambda kind: simulated, real=lambda kind: real)
-
-    def fitted(seen, unseen):
-        left = SimpleNamespace(left=unseen * np.cos(9.0 * real), unit=1.0)
-        return SimpleNamespace(kind="gyro", live=np.ones(3, bool), pair=pair, fit=SimpleNamespace(
-            left=seen * np.cos(9.0 * real), unit=1.0), refitted=lambda rows: left)
-    nameless = fitted(0.02, 0.5)
-    assert conventions._explains(fitted(0.03, 0.1), nameless)
-    assert not conventions._explains(fitted(0.03, 0.6), nameless)
-    assert not conventions._explains(fitted(0.3, 0.35), nameless)

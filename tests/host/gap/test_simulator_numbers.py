@@ -277,3 +277,18 @@ def test_what_motors_shake_on_the_way_is_compared_by_its_power(real, simulated, 
     assert z.real == pytest.approx(real, rel=0.1, abs=1.0)
     assert z.simulated == pytest.approx(simulated, rel=0.1, abs=1.0)
     assert z.set_to is None and bool(z.how) is bool(differs)
+
+
+@pytest.mark.parametrize("soft, differs", [(0.3, []), (1.2, ["x"])])
+def test_where_one_log_is_cut_off_neither_tells_how_hard_it_shakes(soft, differs):
+    """The seconds in which it shakes most were left out of the one that is cut, and no other."""
+    logs = []
+    for seed, softly in ((3, 0.3), (4, soft)):
+        log = moving(0.0, seed)
+        drives, strong = (log.t % 10.0) > 4.0, (log.t % 20.0) > 10.0
+        log.force[:, 0] += drives * np.where(strong, 9.0, softly) * np.sin(232.5 * log.t)
+        logs.append(log)
+    logs[0].force[:, 0] = np.clip(logs[0].force[:, 0], -3.0, 3.0)
+    numbers = noise_and_registers.shaking(*logs)
+    assert [p.axis for p in numbers if p.differs] == differs
+    assert numbers[0].real == pytest.approx(0.3 * np.sqrt(0.5) * parameters.MG, rel=0.2)

@@ -1,12 +1,13 @@
-"""How smooth two logs of one motion are: as smooth as each other, whatever their clocks and
-however narrow the band is that they move in."""
+"""What the best fit of two logs of one motion is: as smooth as each other, whatever their clocks
+and however narrow the band is that they move in, and one with a name where that says as much."""
 from copy import copy
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.signal import butter, lfilter
 
-from sixflip_host.diagnosis.simulator import comparison
+from sixflip_host.diagnosis.simulator import comparison, conventions
 from tests.worlds.tumbled import read, tumbled
 
 
@@ -44,3 +45,21 @@ def test_a_pendulum_s_noise_is_no_scale():
                          seed))
     found = compared(*logs)
     assert not found.differs and not found.conventions
+
+
+def test_what_closes_the_gap_and_foretells_better_is_no_unknown():
+    """Swapped axes of another full scale left 1 of 36 deg/s, and what has no name, which left as
+    little of what it had seen and 27 of what it had not, was said instead."""
+    t = np.arange(0.0, 20.0, 0.02)
+    real = np.stack([np.sin(t), np.sin(1.7 * t), np.sin(0.6 * t)], 1)
+    simulated = real @ np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]).T / 1.13
+    pair = SimpleNamespace(t=t, simulated=lambda kind: simulated, real=lambda kind: real)
+
+    def fitted(seen, unseen):
+        left = SimpleNamespace(left=unseen * np.cos(9.0 * real), unit=1.0)
+        return SimpleNamespace(kind="gyro", live=np.ones(3, bool), pair=pair, fit=SimpleNamespace(
+            left=seen * np.cos(9.0 * real), unit=1.0), refitted=lambda rows: left)
+    nameless = fitted(0.02, 0.5)
+    assert conventions._explains(fitted(0.03, 0.1), nameless)
+    assert not conventions._explains(fitted(0.03, 0.6), nameless)
+    assert not conventions._explains(fitted(0.3, 0.35), nameless)
