@@ -52,19 +52,21 @@ def _intervals(cause, gram, value, sigma):
                 continue
             place = list(theta).index(key)
             parts.append((p, theta[key], math.sqrt(covariance[place, place])))
-        low, high = ends(*np.array(parts).T)
-        intervals[key] = (min(low, size), max(high, size))
+        intervals[key] = ends(*np.array(parts).T)
     return intervals
 
 
 def ends(weights, means, spreads):
-    """(low, high) between which 90 % of a mixture of normal distributions lies."""
+    """(low, high) between which 90 % of a mixture of normal distributions lies, and the mean of
+    the first of them, which is the size that is told: of the likeliest variant, or of a simpler
+    one that does as well."""
     spreads = np.maximum(spreads, 1e-12)
 
     def above(size, part):
         return float(weights @ special.ndtr((size - means) / spreads)) - part
     reach = (means - 10.0 * spreads).min(), (means + 10.0 * spreads).max()
-    return tuple(optimize.brentq(above, *reach, args=(part,)) for part in odds.ENDS_90)
+    low, high = (optimize.brentq(above, *reach, args=(part,)) for part in odds.ENDS_90)
+    return min(low, float(means[0])), max(high, float(means[0]))
 
 
 def effective(cause, gram):

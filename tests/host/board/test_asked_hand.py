@@ -21,7 +21,8 @@ def board(micropython, tmp_path):
     with VirtualBoard(WORLD, tmp_path / "flash.img", micropython=micropython, speed=20.0,
                       hand=AskedHand()) as board:
         with MpremoteLink(board.port) as link:
-            firmware_update.copy(link, {"sensor": "mpu6050", "pose_samples": 100})
+            # Of poses of 100 samples noise alone may be a zero that drifted, and is doubtful.
+            firmware_update.copy(link, {"sensor": "mpu6050"})
         yield board
 
 

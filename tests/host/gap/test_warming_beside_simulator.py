@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from sixflip_host.diagnosis import effect_estimates
 from sixflip_host.diagnosis.aliases import Cause
 from sixflip_host.diagnosis.hypotheses import Form
 from sixflip_host.diagnosis.simulator import comparison, effects_beside
@@ -75,3 +76,10 @@ def test_flicker_gives_sizes_the_spread_that_it_is_said_to_give():
         size=(len(t), 400))
     sizes = column @ (wandering - wandering.mean(axis=0)) / (column @ column)
     assert flicker.of_sizes(t, columns)[0] == pytest.approx(sizes.std(), rel=0.15)
+
+
+def test_the_size_that_is_told_lies_within_its_interval():
+    """Of a form without a lag that does as well as one with, and has a twentieth of the weight."""
+    low, high = effect_estimates.ends(
+        np.array([0.05, 0.95]), np.array([0.060, 0.069]), np.array([0.0002, 0.0002]))
+    assert low == 0.060 and 0.069 < high < 0.070

@@ -231,11 +231,9 @@ def _sizes(kind, sensor_fit, fit, designs, names, others, own, diagnosis):
             for p, form in others[place])]
         sizes = np.array([_of_fit(*part[1:], place, own.flicker[kind], sensor_fit.pair.t)
                           for part in parts])
-        ends = [effect_estimates.ends(np.array([p for p, _, _ in parts]), *sizes[:, :, k].T)
-                for k in range(len(one.keys))]
-        # The size is the likeliest form's, or that of a simpler one that does as well.
-        interval = {key: (min(low, size), max(high, size))
-                    for key, (low, high), size in zip(one.keys, ends, sizes[0, 0].tolist())}
+        interval = {key: effect_estimates.ends(np.array([p for p, _, _ in parts]),
+                                               *sizes[:, :, k].T)
+                    for k, key in enumerate(one.keys)}
         effects.append(Beside(
             name, kind, dict(zip(one.keys, sizes[0, 0].tolist())), interval,
             EFFECTS[name].units[kind], _shape(name, cause, diagnosis),
