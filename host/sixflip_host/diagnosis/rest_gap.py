@@ -20,6 +20,7 @@ from . import (
     effect_estimates,
     excess,
     hypotheses,
+    leaps,
     members,
     odds,
     rest_forms,
@@ -127,7 +128,7 @@ def _jumps(sessions, kind, tones):
                   / s.rate)
     first, end = long_rest.longest(session)
     rest = long_rest.scaled(session, kind)[first:end]
-    return [1.0 if (kind, axis) in tones else wandering.jumps([x], session.rate)
+    return [1.0 if (kind, axis) in tones else leaps.jumps([x], session.rate)
             for axis, x in zip("xyz", rest.T)]
 
 

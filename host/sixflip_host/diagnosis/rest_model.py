@@ -16,6 +16,7 @@ from . import (
     evidence,
     holdout_gain,
     hypotheses,
+    leaps,
     members,
     scored_sets,
     session_strangers,
@@ -62,24 +63,21 @@ class RestModel:
         fitted = adequacy.goodness_of_fit(
             units, data.statistics, best, noise, self.conditions.shaken.get(self.kind, ()),
             self.kind == "accel")
-        if "drift" in best.names and not fitted.odd:
-            ways = {"leaps": wandering.in_leaps(self.kind, [session for session, _ in parts]),
-                    "across gravity alone": wandering.across_gravity(self.kind, parts)}
-            odd = min(ways, key=ways.get)
-            if ways[odd] < adequacy.DOUBTFUL_P:
-                fitted = replace(fitted, ok=False, odd=odd, p=min(ways[odd], fitted.p))
+        chosen = [f for f in best.forms if not f.generic and len(f.shared)]
+        drift = wandering.drift(self.kind, [session for session, _ in parts], units, data, noise,
+                                posterior, fitted, chosen)
+        odd, p = leaps.no_drift(self.kind, parts, drift) if drift else ("", 1.0)
+        if p < adequacy.DOUBTFUL_P:
+            drift, fitted = None, replace(fitted, ok=False, odd=odd, p=min(p, fitted.p))
         nameless = [f for f in best.forms if f.generic]
         doubted = any(posterior.stranger_share(c.effect) > DOUBT for c in causes)
         crooked = [box_tilt_test.squareness(*part) for part in parts
                    if self.kind == "accel"]
-        chosen = [f for f in best.forms if not f.generic and len(f.shared)]
         gap = SensorGap(
             self, parts, units, data, options, forms, noise, cost, posterior,
             chosen, nameless, causes, fitted,
             {f.effect: members.axes_of(model, posterior, f) for f in nameless},
-            wandering.drift(self.kind, [session for session, _ in parts], units, data, noise,
-                            posterior, fitted, chosen),
-            not fitted.ok or bool(nameless) or doubted, crooked)
+            drift, not fitted.ok or bool(nameless) or doubted, crooked)
         gap = replace(gap, causes=gap.sized(causes, data)).without_parts(model)
         gap = self.shrunk(gap)
         held = gap.refuted(model)

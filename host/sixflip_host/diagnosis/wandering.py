@@ -8,18 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..experiment import long_rest, nominal_rows
+from ..experiment import nominal_rows
 from ..experiment.flicker import differences
 from ..experiment.noise_spectrum import HALF_OF_90
 from . import adequacy, evidence, excess, hypotheses, strangers
 from .elimination import NONE
 
-# s of the short means whose steps are looked at; steps that their tails are known from; steps that
-# may be knocks.
-STEP_S, FEWEST_STEPS, KNOCKS = (0.5, 1.0, 2.0, 4.0, 8.0), 60, 3
-# Of gravity along an axis: a box on a face, 18 degrees off at most; differences within the rests
-# that it is upright in, of an axis.
-ON_FACE, FEWEST_OF_AXIS = 0.95, 6
 # Nats that a drift has for it at most from what it does within the rests: beyond doubt (odds.COST
 # and twice what a choice costs).
 MOVES = 10.0
@@ -187,51 +181,3 @@ def walks_within_rests(part, kind, chip, explained):
     by_choice.update({("drift", hypotheses.ONE_AXIS, k): float(v)
                       for k, v in enumerate(nats.T.ravel())})
     return {key: min(value, MOVES) for key, value in by_choice.items()}
-
-
-def jumps(rests, rate):
-    """Probability of such heavy tails in the noise of rests, list of (n,) samples, that wanders:
-    a walk's steps from a short mean to the next are normal, those of what jumps between levels
-    are mostly none. The KNOCKS largest are left out: a knock is no way of wandering."""
-    best = 1.0
-    for seconds in STEP_S:
-        m = max(1, int(seconds * rate))
-        step = np.concatenate([np.diff(x[:len(x) // m * m].reshape(-1, m).mean(axis=1))
-                               for x in rests])
-        if len(step) < FEWEST_STEPS:
-            break
-        step = step[np.argsort(np.abs(step))[:-KNOCKS]]
-        best = min(best, len(STEP_S) * adequacy.tails(step))
-    return best
-
-
-def across_gravity(kind, parts):
-    """Probability of the accelerometer, as parts, [(Session, NominalSensor)], have it, wandering
-    within its rests across gravity by so much more than along it: what leans under the box, or
-    a hand that holds it, is felt there alone. Each axis is held against itself."""
-    if kind != "accel":
-        return 1.0
-    changed, share = [], []
-    for session, nominal in parts:
-        same = np.flatnonzero(np.diff(session.placement) == 0)
-        over = np.sqrt(1.0 / session.seconds[same] + 1.0 / session.seconds[same + 1])[:, None]
-        changed.append(np.diff(session.accel, axis=0)[same] / over)
-        share.append(np.abs(nominal.up[session.placement[same]]))
-    along, across = [np.zeros(0)], [np.zeros(0)]
-    for x, up in zip(np.concatenate(changed).T, np.concatenate(share).T):
-        upright, level = x[up > ON_FACE], x[up < np.sqrt(1.0 - ON_FACE ** 2)]
-        if len(upright) >= FEWEST_OF_AXIS and upright.any():
-            size = np.sqrt((upright ** 2).mean())
-            along.append(upright / size)
-            across.append(level / size)
-    along, across = map(np.concatenate, (along, across))
-    enough = min(len(along), len(across)) >= adequacy.FEWEST
-    return adequacy.louder(across, along) if enough else 1.0
-
-
-def in_leaps(kind, sessions):
-    """The least probability of that of all axes of the rests of sessions, as many as there are."""
-    p = min((jumps([values[run.first:run.end, axis] for run in session.runs], session.rate)
-             for session in sessions for values in [long_rest.scaled(session, kind)]
-             for axis in range(3)), default=1.0)
-    return min(3.0 * len(sessions) * p, 1.0)

@@ -1,14 +1,17 @@
 """Drift: a random walk of every axis, or of one. What sways, jumps or moves them together, or
 moves with the poses only, is none."""
 import copy
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy import signal
 
 from sixflip_host.diagnosis import (
     answer,
     diagnosis,
     hypotheses,
+    leaps,
     localisation,
     rest_model,
     session_strangers,
@@ -278,9 +281,9 @@ def test_what_leans_under_the_box_is_no_drift_of_its_accelerometer(captures):
             one = copy.copy(capture)
             one.accel = np.rint(capture.accel + added * 16.384).astype(np.int16)
             parts.append((blocks.session_of(str(number), one), nominal))
-    assert wandering.across_gravity("accel", leaning) < 1e-9
-    assert wandering.across_gravity("accel", wanders) == 1.0
-    assert wandering.across_gravity("gyro", leaning) == 1.0
+    assert leaps.across_gravity("accel", leaning) < 1e-9
+    assert leaps.across_gravity("accel", wanders) == 1.0
+    assert leaps.across_gravity("gyro", leaning) == 1.0
     # Of axes that are unlike one is upright more often than the others.
     unlike = []
     for session, nominal in wanders:
@@ -288,6 +291,28 @@ def test_what_leans_under_the_box_is_no_drift_of_its_accelerometer(captures):
         one = copy.copy(session.capture)
         one.accel = np.rint(one.accel * [4.0, 4.0, 1.0]).astype(np.int16)
         unlike.append((session.reading(one).part(upright), nominal))
-    assert wandering.across_gravity("accel", unlike) > 0.01
+    assert leaps.across_gravity("accel", unlike) > 0.01
     found = diagnosis.diagnose_sessions([s for s, _ in leaning], diagnosis.Settings(jobs=1))
     assert found.verdict == "unexplained" and found.gaps["accel"].drift is None
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_what_leaps_between_the_rests_is_still_within_them(seed):
+    """20 rests of 2 to 10 s, of which the telegraph leaps in two or three: too few for tails."""
+    generator = np.random.default_rng(seed)
+    length = generator.uniform(2.0, 10.0, 20)
+    begin = np.cumsum(length + 12.0) - length
+    t = np.arange(int(100 * (begin[-1] + 10.0))) / 100.0
+    session = SimpleNamespace(rate=100.0, t=begin + 0.5 * length, seconds=length)
+    courses = {
+        "leaps": 0.6 * (np.searchsorted(np.cumsum(generator.exponential(25.0, 99)), t) % 2),
+        "walk": 0.3 * generator.standard_normal(len(t)).cumsum() / np.sqrt(len(t)),
+        "slow": signal.lfilter(*signal.butter(1, 0.002, fs=100.0),
+                               generator.standard_normal(len(t))) * 120.0}
+    noise = 0.05 * generator.standard_normal(len(t))
+    p = {}
+    for name, course in courses.items():
+        rests = [(course + noise)[int(100 * b):int(100 * (b + l))] for b, l in zip(begin, length)]
+        spread = np.std([x.mean() for x in rests])
+        p[name] = leaps._still(rests, session, 0.5 * spread)
+    assert p["leaps"] < 1e-6 and min(p["walk"], p["slow"]) > 0.05

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from sixflip_host.diagnosis import samples_judged, verdict, wandering
+from sixflip_host.diagnosis import leaps, samples_judged, verdict
 from sixflip_host.diagnosis.detect import (
     dead_band,
     held_values,
@@ -130,8 +130,8 @@ def test_what_leaps_between_levels_is_no_walk():
     noise = 4.0 * generator.standard_normal(90000)
     walk = noise + 0.02 * np.cumsum(generator.standard_normal(90000))
     telegraph = noise + 3.0 * (np.cumsum(generator.random(90000) < 1.0 / 6000.0) % 2)
-    assert wandering.jumps([walk], 100.0) == 1.0
-    assert wandering.jumps([telegraph], 100.0) < 1e-6
+    assert leaps.jumps([walk], 100.0) == 1.0
+    assert leaps.jumps([telegraph], 100.0) < 1e-6
 
 
 def test_a_gap_that_hardly_closes_is_not_explained():
