@@ -7,7 +7,7 @@ from sixflip.poses.faces import AXIS, FACES, LEANING, SIGN, pose_name
 from sixflip.poses.noise_floor import NoiseFloor
 from sixflip.poses.pose_label import CROOKED_DEG, HALF_TURN_DEG, SAME_DEG
 
-from . import rests
+from . import rests, shaken_rests
 from .attitude import heading_change
 
 POSES, FOUND = "poses", "found"  # key and value of a capture's header: no person named its poses
@@ -56,7 +56,7 @@ def by_a_person(capture):
 
 def find_poses(capture):
     """Label every sample of a Capture; returns FoundPoses. Nothing is changed in the capture."""
-    still = rests.find(capture, rests.POSES)
+    still = shaken_rests.or_rippled(capture, rests.find(capture, rests.POSES))
     if all(np.linalg.norm(rest.mean) < NO_GRAVITY * capture.meta["accel_lsb_per_g"]
            for rest in still.rests):
         still = replace(still, rests=())

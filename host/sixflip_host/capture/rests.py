@@ -165,10 +165,10 @@ def find(capture, stillness=POSES):
                          stillness.hand_s, True)
         rests += [rest for rest in by_hand if rest.face not in faces
                   and not taken[rest.first:rest.end].any()]
-    return Found(tuple(_at_one_rate(capture, sorted(rests, key=lambda rest: rest.first))), noise)
+    return Found(tuple(at_one_rate(capture, sorted(rests, key=lambda rest: rest.first))), noise)
 
 
-def _at_one_rate(capture, rests):
+def at_one_rate(capture, rests):
     """Those of the rests, in time order, in which the gyro reads about the same: the most time. A
     rest that follows at once is the same one, whatever the gyro reads."""
     if capture.gyro is None or len(rests) < 2:

@@ -7,9 +7,16 @@ alike from the first whole second to the last, the thing stood still, and what s
 judged as in every other rest. So it is where the force is alike but another one than at rest, for
 long: a lift that starts has such a force for some seconds, but what it gains in speed it loses
 again. What nothing makes up for is no speed.
+
+Where the accelerometer sees a ripple all the time, no two windows of it read alike, and only the
+gyro is as still as ever.
 """
+import math
+from dataclasses import replace
+
 import numpy as np
 
+from . import rests, still_windows
 from .rests import Run
 
 SECOND_S = 1.0  # whose means are held together: a vehicle comes up to its speed in one or more
@@ -24,6 +31,10 @@ ROUNDING = 0.5  # counts, of a mean
 # By how much a mean changes besides: an accelerometer's by less, mg, than what comes up to 2.5
 # cm/s within a second; a gyro's, deg/s, as where it warms by a third of a degree (typical.SIZES).
 WANDERS = {"accel": 2.5, "gyro": 0.1}
+# m/s from the slowest to the fastest, of what the accelerometer reads on a floor, on a table that
+# somebody leans on, or of a supply, at most; s within which what drives has more.
+SPEED, WITHIN_S = 0.07, 10.0
+PIECES = 0.5  # of the time at rest, at most, that pieces make up
 SCALES = {"accel": ("accel_lsb_per_g", 1000.0), "gyro": ("gyro_lsb_per_dps", 1.0)}
 
 
@@ -80,3 +91,36 @@ def _gained(capture, before, after):
                 return None
             gained = (there - at_rest) * unit / capture.meta[scale] * number * SECOND_S
     return gained
+
+
+def or_rippled(capture, found):
+    """The rests.Found of a capture, or with the rests that the gyro alone tells where those found
+    are so much less: they are the pieces that a ripple left of them."""
+    if capture.gyro is None or found.noise is None:
+        return found
+    windows, sd = still_windows.cut_into_windows(capture), np.array(found.noise.sd)
+    # Of the accelerometer's windows the last word is that of the speed.
+    alike = [np.hstack([np.full((len(windows), 3), value), each[:, 3:]]) for value, each in (
+        (0.0, windows.mean), (sd[:3] ** 2, windows.variance))]
+    still, _ = still_windows.still(
+        replace(windows, mean=alike[0], variance=alike[1]), found.noise)
+    whole = [rests.rest(capture, first * windows.length, end * windows.length)
+             for first, end in rests.stretches(still)
+             if (end - first) * windows.length >= FEWEST * SECOND_S * capture.meta["rate_hz"]
+             and _stands(windows.mean[first:end, :3] / capture.meta["accel_lsb_per_g"],
+                         windows.length / capture.meta["rate_hz"], capture.g)]
+    seconds = [sum(rest.end - rest.first for rest in each if not rest.by_hand)
+               for each in (found.rests, whole)]
+    if seconds[0] >= PIECES * seconds[1]:
+        return found
+    return replace(found, rests=tuple(rests.at_one_rate(capture, whole)))
+
+
+def _stands(force, each_s, g):
+    """Whether what reads force (n, 3) g, means over each_s s, comes up to no speed, and leans no
+    more from one part to the next than it does where it wanders."""
+    parts = np.array_split(force, math.ceil(len(force) * each_s / WITHIN_S))
+    speed = max(float(np.ptp(np.cumsum(part - part.mean(axis=0), axis=0), axis=0).max())
+                for part in parts)
+    apart = np.abs(np.diff([part.mean(axis=0) for part in parts], axis=0))
+    return speed * each_s * g < SPEED and not (apart > 2e-3 * WANDERS["accel"]).any()

@@ -312,7 +312,8 @@ def test_what_leaps_between_the_rests_is_still_within_them(seed):
     noise = 0.05 * generator.standard_normal(len(t))
     p = {}
     for name, course in courses.items():
-        rests = [(course + noise)[int(100 * b):int(100 * (b + l))] for b, l in zip(begin, length)]
+        rests = [(course + noise)[int(100 * s):int(100 * (s + long))]
+                 for s, long in zip(begin, length)]
         spread = np.std([x.mean() for x in rests])
         p[name] = leaps._still(rests, session, 0.5 * spread)
     assert p["leaps"] < 1e-6 and min(p["walk"], p["slow"]) > 0.05
