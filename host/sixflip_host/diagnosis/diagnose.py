@@ -44,6 +44,10 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
             traces.check_rows(*each)
         progress.doing("conventions and parameters of the simulator")
         comparisons = [comparison.compare(captures, *log) for log in simulator]
+        # The rests of one motion are those of both logs, which each finds in the same way.
+        apart = not any(compared.motion_judged for compared in comparisons)
+        if apart:
+            sessions = [blocks.with_whole_rests(session) for session in sessions]
         # What a log with another convention reads is no effect of a sensor.
         mended = [(name, convention_findings.capture_put_right(log, compared.conventions))
                   for (name, log), compared in zip(simulator, comparisons)]
@@ -51,7 +55,7 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
         if sound:
             names, simulated = zip(*sound)
             progress.doing("the simulator's own captures")
-            own = against_simulator.read(list(simulated), list(names), settings)
+            own = against_simulator.read(list(simulated), list(names), settings, apart)
             settings = replace(settings, simulated=against_simulator.not_compared(
                 own.known, comparisons))
     result = diagnosis.diagnose_sessions(sessions, settings, own, comparisons, damages)

@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 from sixflip_host.capture import shaken_rests
 from sixflip_host.capture.capture_file import Capture
 from sixflip_host.capture.rests import Run
-from sixflip_host.diagnosis import diagnosis
+from sixflip_host.diagnosis import answer, diagnose, diagnosis
 from sixflip_host.experiment import blocks
 
 RATE, SECONDS = 100.0, 300.0
@@ -49,6 +49,20 @@ def test_a_machine_nearby_cuts_no_rest(shift_mg):
     found, = [f for f in said.findings if f.effect == "vibration"]
     assert "z" in found.axes and found.value["z"] == pytest.approx(15.0 * 0.57 ** 0.5, rel=0.2)
     assert said.verdict == ("partly explained" if shift_mg else "explained")
+
+
+@pytest.mark.parametrize("shift_mg, said", [(0.0, "no gap"), (8.0, "unexplained")])
+def test_a_machine_beside_both_logs_of_a_rest_is_no_gap_and_what_it_shifts_is_one(shift_mg, said):
+    """The pieces between which it ran were alike, and its run was in the simulator alone."""
+    logs = [standing(np.where(ON, SHAKES + shift, 0.0), seed=seed).capture
+            for shift, seed in ((shift_mg, 13), (0.0, 14))]
+    for log in logs:
+        log.pose = None
+    told = answer.as_dict(diagnose.diagnose([("real", logs[0])], [("simulated", logs[1])]))
+    assert told["verdict"] == said
+    assert any((where["sensor"], where["axis"], where["domain"]) == ("accel", "z", "time")
+               for where in told["where"]) == bool(shift_mg)
+    assert not any("the simulator has" in remark for remark in told["remarks"])
 
 
 def test_another_force_for_long_that_nothing_makes_up_for_is_no_speed():

@@ -83,10 +83,12 @@ def _size(finding, key):
     return value, RAW * max(abs(v) for v in finding.value.values())
 
 
-def read(captures, paths, settings):
-    """Simulator from captures."""
-    diagnosis = stages.diagnose_sessions(
-        [blocks.session_of(p, c) for p, c in zip(paths, captures)], settings, beside=True)
+def read(captures, paths, settings, apart=False):
+    """Simulator from captures; apart: of another motion than the real ones."""
+    sessions = [blocks.session_of(p, c) for p, c in zip(paths, captures)]
+    if apart:
+        sessions = [blocks.with_whole_rests(session) for session in sessions]
+    diagnosis = stages.diagnose_sessions(sessions, settings, beside=True)
     known = {kind: _known(gap) for kind, gap in diagnosis.gaps.items() if gap.chosen}
     return Simulator(diagnosis, known, tuple(_remarks(diagnosis)))
 
