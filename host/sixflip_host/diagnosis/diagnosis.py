@@ -14,7 +14,6 @@ from . import (
     rest_noise,
     rests_judged,
     samples_judged,
-    usable_rests,
     verdict,
 )
 from .detect import sample_clock, shake_detector
@@ -158,7 +157,7 @@ def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), d
     sessions = samples.sessions
     remarks += [*stuck, *samples.remarks]
     findings, nameless = list(samples.findings), list(samples.nameless)
-    rests = usable_rests.select(sessions, findings, stuck, samples.scaled)
+    rests = rests_judged.usable(sessions, findings, stuck, samples.scaled)
     remarks += rests.remarks
     conditions = samples.conditions(rests.reference_c)
     gaps, rest, turns, motion, noise = {}, {}, None, None, {}

@@ -7,7 +7,7 @@ import pytest
 
 from sixflip_host.calibrate import solution, solution_json
 from sixflip_host.capture import capture_file
-from sixflip_host.diagnosis import rest_model, settings, usable_rests
+from sixflip_host.diagnosis import rest_model, rests_judged, settings
 from sixflip_host.diagnosis.detect import damage_taken_out
 from sixflip_host.errors import BadFile
 from sixflip_host.experiment import attitude_fit, blocks, session_terms
@@ -76,7 +76,7 @@ def test_the_kept_one_is_read_while_the_capture_is_the_same(captured, monkeypatc
 
 def test_the_effect_of_the_capture_is_in_its_information(captured):
     _, _, one = captured
-    found, _ = effects.information(usable_rests.select([one.session()], [], []), "mpu6050")
+    found, _ = effects.information(rests_judged.usable([one.session()], [], []), "mpu6050")
     k = effects.NAMES["accel"].index("accel.thermal_bias.z")
     precision, score = found["accel"].precision, found["accel"].score
     sigma = 1.0 / np.sqrt(precision[k, k])
