@@ -20,7 +20,6 @@ from . import (
     parameters,
     remaining_gap,
     single_log,
-    timing,
     traces,
 )
 
@@ -193,7 +192,7 @@ def _of_range_and_time(logs, together, numbers, findings):
             if (p.sensor, p.axis) not in cut]
     if len(fits) == 2 and not findings:
         more += noise_and_registers.shaking(real, dead_zone.taken_off(sim, together.bands))
-    return more + timing.timing(together.late, together.late_sigma, fits, logs.aligned,
+    return more + own_motion.timing(together.late, together.late_sigma, fits, logs.aligned,
                                 {kind: logs.smoothing_s2(kind) for kind in fits})
 
 

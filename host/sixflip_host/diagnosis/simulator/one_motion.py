@@ -16,7 +16,6 @@ from . import (
     own_motion,
     pairing,
     single_log,
-    timing,
     traces,
 )
 
@@ -114,7 +113,7 @@ def beside(logs):
         fits = fitted(real, dead_zone.taken_off(sim, bands))
         of_gyro = gyro_or_motor.nats_of_gyro(
             replace(real, force=logs.own_real.applied(real).force), sim, logs.aligned, fits)
-    late, late_sigma, delays = timing.delay(fits, logs.row_s)
+    late, late_sigma, delays = own_motion.delay(fits, logs.row_s)
     shown = [c for f in fits.values() for c in f.conventions if not (
         logs.constant and c.name == "constant_channel")]
     shown += [held_readings.beside(c, sim.rate_hz, logs.holds["sim"]) for c in delays
