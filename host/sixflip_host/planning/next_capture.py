@@ -5,9 +5,9 @@ import numpy as np
 from sixflip.poses import faces
 
 from ..experiment import projection
-from ..experiment.session_rows import rows_of
 from . import alias, protocols
 from .plan_findings import SAME_CLASS
+from .protocols import rows_of
 
 MOST_MINUTES = 10.0  # of a capture that somebody is asked for, by hand (GAP stage 7)
 WORDS = {
