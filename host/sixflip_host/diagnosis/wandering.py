@@ -10,7 +10,7 @@ import numpy as np
 
 from ..experiment import long_rest, nominal_rows
 from ..experiment.flicker import differences
-from ..experiment.noise_spectrum import HALF_OF_90
+from ..experiment.signal_measures import HALF_OF_90
 from . import adequacy, evidence, excess, hypotheses, strangers
 from .elimination import NONE
 
