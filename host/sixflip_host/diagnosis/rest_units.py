@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..experiment import covariance, linear_model, long_rest, nominal_rows
-from ..experiment.flicker import flicker_kernel
+from ..experiment.noise_arrays import flicker_kernel
 from . import adequacy, between_sessions, evidence, gap_share, rest_forms, sway
 
 # Levels tried: of the offset from one rest to the next from what it is where nothing was moved

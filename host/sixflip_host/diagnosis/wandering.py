@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..experiment import long_rest, nominal_rows
-from ..experiment.flicker import differences
+from ..experiment.noise_arrays import flicker_differences
 from ..experiment.signal_measures import HALF_OF_90
 from . import adequacy, evidence, excess, hypotheses, strangers
 from .elimination import NONE
@@ -163,7 +163,7 @@ def within_rests(part, kind, explained, size, flicker):
         return np.zeros(3)
     difference, gap = np.diff(values, axis=0)[same], np.diff(part.t)[same]
     over = noise[None] ** 2 * (1.0 / part.seconds[same] + 1.0 / part.seconds[same + 1])[:, None]
-    over = over + flicker ** 2 * differences(gap, gap)[:, None]
+    over = over + flicker ** 2 * flicker_differences(gap, gap)[:, None]
     # Two neighbouring means over g seconds of a walk of rate q differ by 2/3 q g.
     more = (size ** 2 / max(float(np.ptp(part.t)), 1.0) * gap * 2.0 / 3.0)[:, None] + over
     # What is smooth in time changes alike in one rest and the next, and is in the slow terms.
