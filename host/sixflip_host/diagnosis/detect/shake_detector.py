@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import special
 
-from . import line_frequency, rest_spectra, saturation, spectral_lines, strides
+from . import line_frequency, line_wander, rest_spectra, saturation, spectral_lines
 from .detection import Finding
 
 # A filter that lets a thousandth of the power through of what hands, legs and wheels do
@@ -49,7 +49,7 @@ def steady(sessions):
         return []
     lines = [line_frequency.refined(line, moves, "accel") for line in (
         spectral_lines.strongest(moves, "accel", axis) for axis in range(3)) if line]
-    lines = strides.without([line for line in lines if line.steady], moves)
+    lines = line_wander.without_strides([line for line in lines if line.steady], moves)
     return [spectral_lines.told(lines, "accel", moves[0].rate)] if lines else []
 
 

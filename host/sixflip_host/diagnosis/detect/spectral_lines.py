@@ -11,7 +11,7 @@ import numpy as np
 from scipy import ndimage, special
 
 from .. import odds, verdict
-from . import line_across_rests, line_frequency, line_wander, ringing, strides
+from . import line_across_rests, line_frequency, line_wander, ringing
 from .detection import Finding
 from .line_frequency import Line
 from .rest_spectra import (
@@ -78,7 +78,7 @@ def line_of_axis(sessions, sensor, axis):
     resting = any(s.runs for s in sessions)
     lines = [line for line in lines if line and (
         resting or line.steady or line.hz > MOTION_HZ)]
-    lines = lines if resting else strides.without(lines, sessions)
+    lines = lines if resting else line_wander.without_strides(lines, sessions)
     if lines:
         return max(lines, key=lambda line: line.nats)
     slow = line_frequency.slow(sessions, sensor, axis)
