@@ -16,7 +16,6 @@ from .detect import (
     axis_order,
     codes,
     dead_band,
-    hand_tremor,
     held_values,
     line_across_rests,
     missing_rows,
@@ -26,6 +25,7 @@ from .detect import (
     ringing,
     sample_clock,
     saturation,
+    shake_detector,
     spectral_lines,
     spikes,
     stuck_axes,
@@ -170,7 +170,7 @@ def _of_spectra(sessions):
         sessions, sensor)]
     lines = spectral_lines.findings(sessions, *([found[:2] for found in of]
                                                 for of in (rings, tones)))
-    return rings, tones, *hand_tremor.without(lines, sessions)
+    return rings, tones, *shake_detector.without_tremor(lines, sessions)
 
 
 def _of_whole_axes(sessions):
