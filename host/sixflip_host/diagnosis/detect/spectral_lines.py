@@ -10,7 +10,7 @@ import math
 import numpy as np
 from scipy import ndimage, special
 
-from .. import odds, verdict
+from .. import odds
 from . import line_across_rests, line_frequency, line_wander, ringing
 from .detection import Finding
 from .line_frequency import Line
@@ -110,7 +110,7 @@ def told(lines, sensor, rate):
         words = "it is shaken at about %.3g Hz, at no steady frequency" % top.hz
     share = float(np.average([line.power / line.excess for line in lines],
                              weights=[line.amplitude ** 2 for line in lines]))
-    if share < verdict.CLOSED:
+    if share < odds.CLOSED:
         other = max(lines, key=lambda line: line.excess - line.power)
         words += "; %.0f %% of what stands out of the noise does so elsewhere, most at %.3g Hz" % (
             100.0 * (1.0 - share), other.left_hz)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .. import verdict
+from .. import odds
 from . import (
     alignment,
     convention_findings,
@@ -106,7 +106,7 @@ def _open(gap, times):
     before, after, noise = gap
     after = min(before, after)
     above = after > times * noise > 0.0 if times else True
-    return above and before - after < verdict.CLOSED * (before - noise)
+    return above and before - after < odds.CLOSED * (before - noise)
 
 
 def compare(real_logs, name, capture):
