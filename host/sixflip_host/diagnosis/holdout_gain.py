@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..experiment import linear_model, nominal_rows
-from . import adequacy, between_sessions, coefficient_fits, excess, hypotheses, moves_fit
+from . import adequacy, between_sessions, coefficient_fits, gap_share, hypotheses, moves_fit
 from .gap_share import NOTHING, Shrinkage, Sums, spread
 
 DRAWN = 400  # of noise: their variance is known to 7 %, an interval's length to 4 %
@@ -39,7 +39,7 @@ def shrinkage(data, chosen, index, usual, wanders=False, private=None):
     shared = hypotheses.columns_of(chosen)
     fits = coefficient_fits.fits(data, shared)
     largest = usual.flicker * (math.inf if wanders else adequacy.TIMES_TYPICAL)
-    metrics = excess.usual_levels(data.units, index, usual.flicker)
+    metrics = gap_share.usual_levels(data.units, index, usual.flicker)
     total, generator = NOTHING, np.random.default_rng(20190919)
     drawn = DRAWN if chosen else DRAWN_FLOOR
     for held, (unit, point, metric) in enumerate(zip(data.units, index, metrics)):
@@ -105,7 +105,7 @@ def _drawn(unit, fit, point, largest, generator, drawn):
     nats = fit.course[points, 0]
     likely = np.exp(nats - nats.max())
     numbers = generator.multinomial(drawn, likely / likely.sum())
-    levels = excess.usual_levels([unit] * len(points), points, largest)
+    levels = gap_share.usual_levels([unit] * len(points), points, largest)
     return np.hstack([unit.draw(level, generator, number)
                       for level, number in zip(levels, numbers) if number])
 

@@ -18,7 +18,7 @@ from . import (
     coefficient_fits,
     cutoffs,
     effect_estimates,
-    excess,
+    gap_share,
     hypotheses,
     members,
     odds,
@@ -196,7 +196,7 @@ def _told(cause, data, fits, chip, kind, chosen, place):
     if place.get(SETTLED, 0.0) > 1.0 - HOLDS:
         names = [*names, "drift", *(["table_tilt"] if kind == "accel" else [])]
     rest = [form for form in chosen if form not in cause.chosen]
-    share = excess.share(data.units, data.statistics, fits.index, (rest, fits.index),
+    share = gap_share.excess_share(data.units, data.statistics, fits.index, (rest, fits.index),
                          (chosen, fits.index))
     return RestCause(tuple(dict.fromkeys(names)), dict(place), cause.score, cause.value,
                      cause.interval, cause.unit, cause.plausible, share,
@@ -245,6 +245,6 @@ def _drift(posterior, units, data, levels, kind, chosen, index, leaps):
             interval[key] = (low * FLOOR_OF_KERNEL, high * FLOOR_OF_KERNEL)
     if not value:
         return []
-    share = excess.share_of_drift(units, data.statistics, posterior.best, chosen, index, levels)
+    share = gap_share.drift_share(units, data.statistics, posterior.best, chosen, index, levels)
     return [RestCause(("drift",), dict(posterior.places["drift"]), posterior.gains["drift"], value,
                       interval, "mg" if kind == "accel" else "deg/s", True, share, "time")]

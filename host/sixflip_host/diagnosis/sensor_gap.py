@@ -7,7 +7,7 @@ from . import (
     coefficient_fits,
     effect_estimates,
     evidence,
-    excess,
+    gap_share,
     holdout_gain,
     hypotheses,
     members,
@@ -130,7 +130,7 @@ class SensorGap:
                                  if f not in self.chosen)]
         for cause in causes:
             rest = [form for form in every if form not in cause.chosen]
-            share = excess.share(data.units, data.statistics, index, (rest, index),
+            share = gap_share.excess_share(data.units, data.statistics, index, (rest, index),
                                  (every, index))
             sized.append(effect_estimates.sized(cause, data, index, self.chip, self.kind, share))
         return sized

@@ -16,7 +16,7 @@ import numpy as np
 from sixflip_host.diagnosis import (
     coefficient_fits,
     discrepancy,
-    excess,
+    gap_share,
     holdout_gain,
     hypotheses,
     posterior,
@@ -85,7 +85,7 @@ def case(seed):
     chosen = list(set_.forms)
     index = [int(fit.index[0]) for fit in set_.fits]
     shrinkage = holdout_gain.shrinkage(data, chosen, index, model.usual())
-    index = excess.usual_levels(whole, index, model.usual().flicker)
+    index = gap_share.usual_levels(whole, index, model.usual().flicker)
     times = SIZES[seed // len(EFFECTS) % len(SIZES)]
     if shrinkage.interval is None:
         return name, kind, times, shrinkage, None, None
