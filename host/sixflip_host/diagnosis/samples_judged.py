@@ -21,8 +21,8 @@ from .detect import (
     missing_rows,
     noise_bursts,
     noise_shape,
+    rest_parts,
     rest_spectra,
-    ringing,
     sample_clock,
     saturation,
     shake_detector,
@@ -165,7 +165,7 @@ def _without_lines(session, findings):
 def _of_spectra(sessions):
     """(what rings after it was put down, tones that wander, Findings of lines beside that, what is
     said of a hand)."""
-    rings = ringing.ringing_axes(sessions)
+    rings = rest_parts.ringing_axes(sessions)
     tones = [(sensor, *tone) for sensor in SENSOR for tone in rest_spectra.wandering_tones(
         sessions, sensor)]
     lines = spectral_lines.findings(sessions, *([found[:2] for found in of]

@@ -16,7 +16,7 @@ WINDOW_S = 0.5  # a touch or a step on the floor rings for less
 # Of the rests before and after, by which what is read at rest is known: eight times the half
 # second that is held against it, so that its own error counts little.
 NEAR_S = 4.0
-SETTLES_S = 1.0  # of a box that was put down, twice as long as a touch rings (ringing.py)
+SETTLES_S = 1.0  # of a box that was put down, twice as long as a touch rings (rest_parts.py)
 LIFTS_S = 0.5  # of a box that is taken up: a hand is on it before it moves
 PART_S = 1.5  # of a rest, early and late
 FEWEST = 12  # rests: the scatter of what they say is known to a fifth
