@@ -11,7 +11,6 @@ from . import (
     dead_zone,
     gyro_or_motor,
     held_readings,
-    levelled_off,
     noise_and_registers,
     numbers_told,
     one_motion,
@@ -188,7 +187,7 @@ def _of_range_and_time(logs, together, numbers, findings):
     """[Parameter] of where the real one stops, what shakes it and of time, of one motion."""
     real, sim, fits = logs.real, logs.sim, together.fits
     cut = {(p.sensor, p.axis) for p in numbers if p.name == "range"}
-    more = [p for p in levelled_off.ranges(together.stops, real, sim)
+    more = [p for p in one_motion.ranges(together.stops, real, sim)
             if (p.sensor, p.axis) not in cut]
     if len(fits) == 2 and not findings:
         more += noise_and_registers.shaking(real, dead_zone.taken_off(sim, together.bands))
