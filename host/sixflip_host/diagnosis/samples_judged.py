@@ -14,6 +14,7 @@ from ..capture import registers
 from . import localisation, odds
 from .detect import (
     axis_order,
+    byte_faults,
     codes,
     dead_band,
     held_values,
@@ -23,6 +24,7 @@ from .detect import (
     noise_shape,
     rest_parts,
     rest_spectra,
+    row_order,
     sample_clock,
     saturation,
     shake_detector,
@@ -30,6 +32,7 @@ from .detect import (
     spikes,
     stuck_axes,
     torn_reads,
+    unread_rows,
     wrong_scale,
 )
 from .detect.detection import agreed_by_axis, present
@@ -43,6 +46,16 @@ SLOW_HZ = 1.0  # of a line that the means of rests have something of
 SCALES = ("full_scale", "gravity")  # damages that every reading of a sensor has
 SENSOR = registers.SENSORS
 ALONE = Settings()
+
+
+def without_damage(captures, processors=1):
+    """([(name, Capture)] without their damage, [Damage]). The captures given are not changed;
+    processors: that captures share."""
+    captures, disordered = row_order.as_read(captures)
+    captures, unread = unread_rows.as_read(captures)
+    captures, held = held_values.as_read(captures)
+    captures, bytes_mended = byte_faults.repaired(captures, processors)
+    return captures, [*disordered, *unread, *held, *bytes_mended]
 
 
 @dataclass(frozen=True, eq=False)
