@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..experiment import linear_model, nominal_rows
-from . import adequacy, between_sessions, coefficient_fits, gap_share, hypotheses, moves_fit
+from . import adequacy, between_sessions, gap_share, hypotheses, moves_fit
 from .gap_share import NOTHING, Shrinkage, Sums, spread
 
 DRAWN = 400  # of noise: their variance is known to 7 %, an interval's length to 4 %
@@ -37,7 +37,7 @@ def shrinkage(data, chosen, index, usual, wanders=False, private=None):
     Columns that each unit may have of its own beside the chosen ones, those without a name; None:
     it is not asked whether what was held out lies further off."""
     shared = hypotheses.columns_of(chosen)
-    fits = coefficient_fits.fits(data, shared)
+    fits = gap_share.fits(data, shared)
     largest = usual.flicker * (math.inf if wanders else adequacy.TIMES_TYPICAL)
     metrics = gap_share.usual_levels(data.units, index, usual.flicker)
     total, generator = NOTHING, np.random.default_rng(20190919)
@@ -65,7 +65,7 @@ def _nothing_closed(units, fits, metrics, shared, private, left):
         if unit.between:
             continue
         others = fits[:held] + fits[held + 1:] or fits
-        (theta,), (covariance,) = coefficient_fits.coefficients(others, shared)
+        (theta,), (covariance,) = gap_share.coefficients(others, shared)
         columns, k = unit.columns[:, np.concatenate([shared.index, own.index])], len(shared)
         products = unit.products(np.column_stack([columns, unit.z]), metric)
         untold += float((products[:k, :k] * covariance).sum())
@@ -78,10 +78,10 @@ def _nothing_closed(units, fits, metrics, shared, private, left):
 
 
 def _foretold(unit, others, shared):
-    """(m,) contrasts by what other coefficient_fits.Fits say of the shared columns."""
+    """(m,) contrasts by what other gap_share.Fits say of the shared columns."""
     if not len(shared):
         return np.zeros(len(unit.z))
-    return unit.columns[:, shared.index] @ coefficient_fits.coefficients(others, shared)[0][0]
+    return unit.columns[:, shared.index] @ gap_share.coefficients(others, shared)[0][0]
 
 
 def _between(units, fits, index, shared):
@@ -93,7 +93,7 @@ def _between(units, fits, index, shared):
     for session in range(len(within) if len(within) > 2 else 0):
         apart = [(*between_sessions.held_out(unit, session), point) for unit, point in between]
         others = within[:session] + within[session + 1:] + [
-            coefficient_fits.fit(rest, rest.statistics(), shared) for _, rest, _ in apart]
+            gap_share.fit(rest, rest.statistics(), shared) for _, rest, _ in apart]
         for own, _, point in apart:
             yield own, point, others
 

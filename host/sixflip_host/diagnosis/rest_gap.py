@@ -15,7 +15,6 @@ from . import (
     adequacy,
     aliases,
     between_sessions,
-    coefficient_fits,
     cutoffs,
     effect_estimates,
     gap_share,
@@ -135,7 +134,7 @@ def _sensor(rest, kind, chip, settings, jumps):
     """RestGap: posterior, classes, adequacy, held-out figures."""
     progress.doing("the %s at rest" % ("gyro" if kind == "gyro" else "accelerometer"))
     units = rest_units.axis_units(rest, kind, chip, settings)
-    data = coefficient_fits.data_of(units)
+    data = gap_share.data_of(units)
     flicker, reference = adequacy.usual(chip, kind), settings.reference.get(kind)
     levels = rest_units.levels(rest, kind, flicker if reference is None else max(
         reference, flicker / 4.0), reference is not None)

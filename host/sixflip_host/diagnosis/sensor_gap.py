@@ -4,7 +4,6 @@ from functools import cached_property
 
 from . import (
     adequacy,
-    coefficient_fits,
     effect_estimates,
     evidence,
     gap_share,
@@ -89,8 +88,8 @@ class SensorGap:
 
     @cached_property
     def fits(self):
-        """[coefficient_fits.Fit] of the chosen Forms' columns in each unit."""
-        return coefficient_fits.fits(self.data, self.shared)
+        """[gap_share.Fit] of the chosen Forms' columns in each unit."""
+        return gap_share.fits(self.data, self.shared)
 
     @property
     def shared(self):
@@ -100,7 +99,7 @@ class SensorGap:
     def coefficients(self, held=None):
         """(k,) of the chosen Forms' columns, by all units or by those but one that is held out."""
         others = self.fits if held is None else self.fits[:held] + self.fits[held + 1:]
-        return coefficient_fits.coefficients(others or self.fits, self.shared)[0][0]
+        return gap_share.coefficients(others or self.fits, self.shared)[0][0]
 
     @property
     def wanders(self):
@@ -115,7 +114,7 @@ class SensorGap:
         """Index into each unit's grid: levels that the data shows with all that was found."""
         if data is None or data is self.data:
             return list(self.adequacy.index)
-        fits = coefficient_fits.fits(data, NONE)
+        fits = gap_share.fits(data, NONE)
         return [int(f.index[0]) for f in fits]
 
     def halved_levels(self, data):

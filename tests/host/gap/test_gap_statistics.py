@@ -5,13 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from sixflip_host.diagnosis import (
-    adequacy,
-    coefficient_fits,
-    gap_share,
-    holdout_gain,
-    localisation,
-)
+from sixflip_host.diagnosis import adequacy, gap_share, holdout_gain, localisation
 from sixflip_host.diagnosis.elimination import Columns
 from sixflip_host.experiment import thermometer
 
@@ -58,7 +52,7 @@ def test_what_a_session_has_of_its_own_is_no_witness_against_a_name(named, nothi
     units = [unit(1.0, 0.0), unit(named, -4.0)]
     shared = Columns(np.array([0]), np.array([10.0]))
     gram = 1e4 * (columns[:, 0] @ columns[:, 0])
-    fits = [coefficient_fits.Fit(np.zeros(1, int), np.zeros((1, 1)), np.full((1, 1), gram * size),
+    fits = [gap_share.Fit(np.zeros(1, int), np.zeros((1, 1)), np.full((1, 1), gram * size),
                                  np.full((1, 1, 1), gram)) for size in (1.0, named)]
     assert columns[:, 0] @ units[1].z < 0.0  # it closes nothing, were the course not there
     assert holdout_gain._nothing_closed(
