@@ -13,7 +13,7 @@ from . import (
     box_tilt_test,
     cutoffs,
     evidence,
-    gap_share,
+    gap_figures,
     holdout_gain,
     hypotheses,
     members,
@@ -91,7 +91,7 @@ class RestModel:
         the set that was found at other poses."""
         units = [self.unit(*part, self.settings.certified) for part in parts]
         units += self.between(units, parts)
-        data = gap_share.data_of(units)
+        data = gap_figures.data_of(units)
         options = hypotheses.by_fleet(
             hypotheses.forms_of(units, self.settings.without, self.drifts), self.kind,
             self.settings.prior)
@@ -171,7 +171,7 @@ class RestModel:
             parts = holdout_gain.halves(self.kind, *gap.parts[0], certified)
             if parts:
                 wanted = hypotheses.columns_of(gap.chosen).index
-                data = gap_share.data_of([self.unit(*part, certified, wanted)
+                data = gap_figures.data_of([self.unit(*part, certified, wanted)
                                               for part in parts])
                 index, private = gap.halved_levels(data), None
         return replace(gap, shrinkage=holdout_gain.shrinkage(

@@ -11,7 +11,7 @@ import numpy as np
 from ..experiment import long_rest, nominal_rows
 from ..experiment.noise_arrays import flicker_differences
 from ..experiment.signal_measures import HALF_OF_90
-from . import adequacy, evidence, gap_share, hypotheses, strangers
+from . import adequacy, evidence, gap_figures, hypotheses, strangers
 from .elimination import NONE
 
 # s of the short means whose steps are looked at; steps that their tails are known from; steps that
@@ -56,7 +56,7 @@ def drift(kind, sessions, units, data, noise, posterior, fitted, chosen):
         spread, whole = (3.0 / len(axes)) ** 0.5, level
         level = _level_of(axes, left, levels) * _share_of(axes, kind, sessions)
         low, high = (level * (end / whole) ** spread for end in (low, high))
-    share = gap_share.drift_share(units, data.statistics, posterior.best, chosen, fitted.index,
+    share = gap_figures.drift_share(units, data.statistics, posterior.best, chosen, fitted.index,
                                   noise)
     return Drift(level, low, high, posterior.gains["drift"], share,
                  tuple("xyz"[k] for k in axes))
