@@ -14,7 +14,7 @@ from ...capture import clock
 from ...capture.attitude import carried, levelled, rotation_between, rotations
 from ...errors import BadFile
 from .. import adequacy
-from . import log_rests, restless, row_times, single_log
+from . import log_rests, row_times, single_log
 
 DPS = np.pi / 180.0
 UP = np.array([0.0, 0.0, 1.0])  # of the world
@@ -159,7 +159,7 @@ def motion(trace):
 
 def _restless_motion(trace):
     """The Motion of a Trace without a rest, or None where nothing in it shows the vertical."""
-    levelled = restless.levelled(trace.t, trace.force, trace.rate, trace.rate_hz, trace.g)
+    levelled = log_rests.levelled(trace.t, trace.force, trace.rate, trace.rate_hz, trace.g)
     if levelled is None:
         return None
     turn, bias, speed = levelled
