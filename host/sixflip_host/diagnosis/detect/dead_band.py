@@ -146,7 +146,7 @@ def nats_of_rests(columns, at_rest, least=0.0, lattices=None):
             each = share * np.log(share / chance) + (1.0 - share) * np.log(
                 (1.0 - share) / (1.0 - chance))
             # What is held says one thing a window.
-            nats[axis] += each * max(codes.number_of_runs(zero) / share, len(x) / WINDOW)
+            nats[axis] += each * max(registers.number_of_runs(zero) / share, len(x) / WINDOW)
             widths[axis] = min(widths[axis], usual * special.ndtri(0.5 + 0.5 * share))
     return nats, widths
 

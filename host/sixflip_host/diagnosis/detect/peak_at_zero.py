@@ -10,7 +10,6 @@ import numpy as np
 from scipy import special
 
 from ...capture import registers
-from . import codes
 
 WINDOW = 32  # samples
 FEWEST_NEAR, LEAST_NOISE = 50, 0.3  # samples beside 0; steps: with less noise 0 may be all
@@ -42,7 +41,7 @@ def of_zeros(column):
                      for bands in (NONE, BANDS))
     nats = np.array(banded) - max(plain) - np.log(len(BANDS))
     best, zero = int(nats.argmax()), (windows == 0).ravel()
-    runs = codes.number_of_runs(zero) / max(zero.sum(), 1)  # which slow noise makes: one counts
+    runs = registers.number_of_runs(zero) / max(zero.sum(), 1)  # which slow noise makes: one counts
     return (BANDS[best] * step, nats[best] * runs) if nats[best] > 0.0 else (0.0, 0.0)
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..detect.codes import number_of_runs
+from ...capture.registers import number_of_runs
 from . import (
     alignment,
     conventions,
