@@ -17,7 +17,7 @@ from ...capture.registers import RAIL, steps
 from ..odds import Z_90
 from . import codes, lattice
 from .detection import Finding, agreed_by_axis, present
-from .peak_at_zero import LEAST_NOISE, WINDOW, of_zeros
+from .lattice import LEAST_NOISE, WINDOW, of_zeros
 
 FASTER = 3.0  # than the noise, from a sample to the next: its sign is that of the motion
 LONGEST = 8  # samples at 0 while something passes; more is a pause
