@@ -9,7 +9,6 @@ from . import (
     alignment,
     convention_findings,
     dead_zone,
-    gyro_or_motor,
     held_readings,
     noise_and_registers,
     numbers_told,
@@ -88,7 +87,7 @@ class Comparison:
         return [kind for kind, gap in self.gap.items()
                 if not gap[2] and _open(gap, 0.0)
                 or kind not in self.wanders and gap[1] > shakes[kind] and _open(gap, FAR_ABOVE)
-                or kind == "gyro" and self.bands and self.of_gyro < gyro_or_motor.GYRO]
+                or kind == "gyro" and self.bands and self.of_gyro < dead_zone.GYRO]
 
     @property
     def left(self):
@@ -147,7 +146,7 @@ def compare_traces(real, sim, aligned):
     task, why_not = remaining_gap.tried(logs.real_free, mended, *own, {
         kind: replace(fit, fit=fit.refitted(None)) for kind, fit in of_told.items()})
     remarks = (*alignment.said_of(real, sim, logs.aligned),
-               *gyro_or_motor.said_of(together.bands, together.of_gyro), *why_not)
+               *dead_zone.said_of(together.bands, together.of_gyro), *why_not)
     return Comparison(sim.name, real.name, logs.aligned, tuple(findings), tuple(numbers), task,
                       gap, fits, *own, remarks, tuple(unseen),
                       judged or convention_findings.only_in_motion(findings),
