@@ -85,7 +85,7 @@ class Diagnosis:
 
     def _claims(self):
         claims = [odds.Claim(f.named, told([f.effect, *f.rivals], f.share) and self._sized(f),
-                                f.nameless) for f in self.findings if f.plausible]
+                             f.nameless) for f in self.findings if f.plausible]
         claims += [odds.Claim(sum(c.probabilities.values()), told(c.names, c.share) and bool(
             c.effect == "drift" or gap.shrinkage.interval), c.nameless)
             for gap in [*self.judged, *self.rest.values()] for c in gap.causes if c.plausible]

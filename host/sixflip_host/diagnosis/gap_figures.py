@@ -182,12 +182,13 @@ def excess_share(units, statistics, index, without, including):
 
 
 def drift_share(units, statistics, scored, chosen, index, levels):
-    """share() of noise that wanders more than usual, beside the Forms chosen: of the excess over
-    noise with no more flicker than evidence.Levels say, what goes with more of it and with the
-    walk that a Scored set has."""
+    """excess_share() of noise that wanders more than usual, beside the Forms chosen: of the
+    excess over noise with no more flicker than evidence.Levels say, what goes with more of it and
+    with the walk that a Scored set has."""
     quiet = usual_levels(units, index, levels.flicker)
     total = excess_at(units, statistics, [], quiet)
-    by_level = excess_at(units, statistics, chosen, quiet) - excess_at(units, statistics, chosen, index)
+    usual, found = (excess_at(units, statistics, chosen, points) for points in (quiet, index))
+    by_level = usual - found
     walked = sum(_walked(*unit, choice.columns) for *unit, choices in zip(
         units, statistics, index, scored.chosen) for choice in choices
         if choice.form.effect == "drift")

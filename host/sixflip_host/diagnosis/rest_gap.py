@@ -196,7 +196,7 @@ def _told(cause, data, fits, chip, kind, chosen, place):
         names = [*names, "drift", *(["table_tilt"] if kind == "accel" else [])]
     rest = [form for form in chosen if form not in cause.chosen]
     share = gap_figures.excess_share(data.units, data.statistics, fits.index, (rest, fits.index),
-                         (chosen, fits.index))
+                                     (chosen, fits.index))
     return RestCause(tuple(dict.fromkeys(names)), dict(place), cause.score, cause.value,
                      cause.interval, cause.unit, cause.plausible, share,
                      terms.DOMAIN[cause.effect], cause.variant, cause.shape)

@@ -172,7 +172,7 @@ class RestModel:
             if parts:
                 wanted = hypotheses.columns_of(gap.chosen).index
                 data = gap_figures.data_of([self.unit(*part, certified, wanted)
-                                              for part in parts])
+                                            for part in parts])
                 index, private = gap.halved_levels(data), None
         return replace(gap, shrinkage=holdout_gain.shrinkage(
             data, gap.chosen, index, gap.noise, gap.wanders, private))

@@ -130,7 +130,7 @@ class SensorGap:
         for cause in causes:
             rest = [form for form in every if form not in cause.chosen]
             share = gap_figures.excess_share(data.units, data.statistics, index, (rest, index),
-                                 (every, index))
+                                             (every, index))
             sized.append(effect_estimates.sized(cause, data, index, self.chip, self.kind, share))
         return sized
 

@@ -57,7 +57,7 @@ def drift(kind, sessions, units, data, noise, posterior, fitted, chosen):
         level = _level_of(axes, left, levels) * _share_of(axes, kind, sessions)
         low, high = (level * (end / whole) ** spread for end in (low, high))
     share = gap_figures.drift_share(units, data.statistics, posterior.best, chosen, fitted.index,
-                                  noise)
+                                    noise)
     return Drift(level, low, high, posterior.gains["drift"], share,
                  tuple("xyz"[k] for k in axes))
 

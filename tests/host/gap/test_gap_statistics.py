@@ -53,7 +53,7 @@ def test_what_a_session_has_of_its_own_is_no_witness_against_a_name(named, nothi
     shared = Columns(np.array([0]), np.array([10.0]))
     gram = 1e4 * (columns[:, 0] @ columns[:, 0])
     fits = [gap_figures.Fit(np.zeros(1, int), np.zeros((1, 1)), np.full((1, 1), gram * size),
-                                 np.full((1, 1, 1), gram)) for size in (1.0, named)]
+                            np.full((1, 1, 1), gram)) for size in (1.0, named)]
     assert columns[:, 0] @ units[1].z < 0.0  # it closes nothing, were the course not there
     assert holdout_gain._nothing_closed(
         units, fits, [0, 0], shared, [course, course], 1e6) is nothing

@@ -28,7 +28,7 @@ def test_where_it_stops_is_a_range_and_no_scale(change, monkeypatch):
     found = compared(change)
     ranges = {p.axis: p.real for p in found.differs if p.name == "range"}
     assert ranges and all(level == pytest.approx(80.0, rel=0.04) for level in ranges.values())
-    monkeypatch.setattr(one_motion, "stops", lambda fits: {})
+    monkeypatch.setattr(one_motion, "stops_of", lambda fits: {})
     without = compared(change)
     assert scale(found) < 0.6 < 1.5 < scale(without)
     assert found.gap["gyro"][1] < 0.2 * without.gap["gyro"][1]

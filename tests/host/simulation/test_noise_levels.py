@@ -58,8 +58,8 @@ def test_six_hours_give_the_walk_back_within_three_percent_as_allantools_has_it(
 def test_the_intervals_hold_the_truth_as_often_as_they_say():
     held = [0, 0]
     for seed in range(40):
-        density, _, walk = signal_measures.noise_levels([readings(600.0, walk=2e-3, seed=seed)], RATE,
-                                                 True)
+        density, _, walk = signal_measures.noise_levels(
+            [readings(600.0, walk=2e-3, seed=seed)], RATE, True)
         held[0] += density.low <= N <= density.high
         held[1] += walk.low <= 2e-3 <= walk.high
     assert 31 <= held[0] <= 40 and 31 <= held[1] <= 40  # 90 %: all but one run in a thousand
@@ -79,9 +79,9 @@ def test_flicker_has_the_bias_instability_that_allantools_shows_as_its_floor():
 
 def test_a_rest_that_reads_one_value_says_nothing_of_the_noise():
     x = readings(60.0, walk=0.0)
-    assert signal_measures.noise_levels([np.ones(6000), x], RATE, False) == signal_measures.noise_levels(
-        [x], RATE, False)
-    assert signal_measures.noise_levels([np.ones(6000)], RATE, True) == (None, None, None)
+    levels = signal_measures.noise_levels
+    assert levels([np.ones(6000), x], RATE, False) == levels([x], RATE, False)
+    assert levels([np.ones(6000)], RATE, True) == (None, None, None)
 
 
 def test_a_line_is_no_noise():

@@ -149,7 +149,8 @@ def of_zeros(column):
                      for bands in (NONE, BANDS))
     nats = np.array(banded) - max(plain) - np.log(len(BANDS))
     best, zero = int(nats.argmax()), (windows == 0).ravel()
-    runs = registers.number_of_runs(zero) / max(zero.sum(), 1)  # which slow noise makes: one counts
+    # Of zeros in a row, as slow noise makes them, one counts.
+    runs = registers.number_of_runs(zero) / max(zero.sum(), 1)
     return (BANDS[best] * step, nats[best] * runs) if nats[best] > 0.0 else (0.0, 0.0)
 
 

@@ -60,8 +60,9 @@ def findings(sessions, rings=(), tones=()):
             continue
         lines = line_wander.together([line for line in (
             line_of_axis(sessions, sensor, i) for i in range(3)) if line])
-        lines = [line for line in lines if not ((sensor, line.letter) in rings and rest_parts.fades(
-            sessions, sensor, line.axis, line.hz))]
+        lines = [line for line in lines if not (
+            (sensor, line.letter) in rings
+            and rest_parts.fades(sessions, sensor, line.axis, line.hz))]
         lines = [line for line in lines if line.steady or (sensor, line.letter) not in tones
                  or line.power > MOST * line.excess]
         if lines:
@@ -168,7 +169,8 @@ def strongest(sessions, sensor, axis):
     nats = -(log_beyond(ratio[k] * number / doubt, number) + math.log(3.0 * len(band)))
     if nats < -math.log(CHANCE):
         return None
-    if resting and n < BRIEF_S * rate and rest_parts.fades_within(stretches, axis, (first + k) / n):
+    if resting and n < BRIEF_S * rate and rest_parts.fades_within(
+            stretches, axis, (first + k) / n):
         return None
     whole = plain[first:-1]
     below = np.median(whole[max(0, k - width // 2):k + width // 2 + 1]) / median_of_mean

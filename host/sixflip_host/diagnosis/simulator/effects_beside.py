@@ -245,5 +245,6 @@ def _of_fit(fit, designs, place, level, t):
     """((k,) sizes, (k,) standard deviations with flicker) of one of a Fit's designs."""
     after = sum(len(design.keys) for design in designs[place:])
     part = slice(len(fit.extra) - after, len(fit.extra) - after + len(designs[place].keys))
-    wander = level * noise_arrays.flicker_of_sizes(t, designs[place].columns.reshape(len(t), 3, -1))
+    wander = level * noise_arrays.flicker_of_sizes(
+        t, designs[place].columns.reshape(len(t), 3, -1))
     return fit.extra[part], np.hypot(fit.extra_sigma[part], wander)
