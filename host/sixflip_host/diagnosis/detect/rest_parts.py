@@ -1,4 +1,11 @@
-"""What rings out after each move: power in the first seconds of the rests that the last ones lack.
+"""The parts of rests: the half seconds by which a sensor's noise is told, and the first and the
+last seconds, which say what rings out after each move.
+
+What nobody labelled ends as a rest where either sensor is louder, so that noise in bursts, or
+noise that grows for a while, is cut out of the rests that would show it. A hand, a knock or a
+motor shakes both sensors; where one alone is louder the other one is as quiet as in the rests
+before and after and reads the same, the louder one is white noise about what it reads there, and
+nothing moves.
 
 A box that was just put down shakes for a moment, so the first second of a rest says nothing. What
 goes on beyond it and fades, rest for rest, is no vibration, which runs on: it is said by the
@@ -7,8 +14,11 @@ domain time_since_move, with the frequency where it has one.
 import numpy as np
 from scipy import special
 
+from sixflip.poses.still_window import window_length
+
+from ...capture import still_windows
 from ...capture.registers import SENSORS
-from ...capture.rests import LOUDER_ONLY, ROUNDING, WHITE, joined
+from ...capture.rests import Run
 from .. import odds
 from .detection import present
 
@@ -16,7 +26,11 @@ WINDOW_S = 0.5  # a touch or a step on the floor rings for less
 # Of the rests before and after, by which what is read at rest is known: eight times the half
 # second that is held against it, so that its own error counts little.
 NEAR_S = 4.0
-SETTLES_S = 1.0  # of a box that was put down, twice as long as a touch rings (rest_parts.py)
+# Standard errors of a window's mean, in which nothing moved; its variance by that of white noise
+# with the same steps from sample to sample, of which a tremor of 12 Hz has four times as much at
+# 100 Hz; counts of a mean, and of a variance, that rounding makes.
+LOUDER_ONLY, WHITE, ROUNDING = 5.0, 2.0, 0.5
+SETTLES_S = 1.0  # of a box that was put down, twice as long as a touch rings
 LIFTS_S = 0.5  # of a box that is taken up: a hand is on it before it moves
 PART_S = 1.5  # of a rest, early and late
 FEWEST = 12  # rests: the scatter of what they say is known to a fifth
@@ -53,6 +67,39 @@ def windows(session, sensor):
     x = np.diff(counts[alone[:, :1] + np.arange(m + 1)].astype(float), axis=1)
     return (np.concatenate([*power, (x ** 2).mean(axis=1)]),
             np.concatenate([*place, alone[:, 1]]), np.concatenate([*begins, alone[:, 0]]))
+
+
+def joined(capture, runs):
+    """The Runs that nobody labelled, made one where nothing moved between two of them: all that is
+    read there is white noise about the mean of what is read at its two ends. So it is only louder
+    than a rest is taken to be. Without a gyro a turn about the vertical would look like that."""
+    whole, last = [], None
+    for run in runs:
+        if whole and _louder_only(capture, last, run):
+            last, run = run, Run(run.code, whole.pop().first, run.end)
+        else:
+            last = run
+        whole.append(run)
+    return whole
+
+
+def _louder_only(capture, before, after):
+    """Whether nothing moves between two Runs, by every window as long as the board's."""
+    length = window_length(capture.meta["rate_hz"], still_windows.POSE_SAMPLES)
+    if capture.accel is None or capture.gyro is None or after.first - before.end < length:
+        return False
+    first, end = max(before.first, before.end - length), min(after.end, after.first + length)
+    counts = np.hstack([s[first:end].astype(float) for s in (capture.accel, capture.gyro)])
+    before, after = before.end - first, after.first - first
+    near = np.vstack([counts[:before], counts[after:]])
+    for start in [*range(before, after - length + 1, length), after - length]:
+        window = counts[start:start + length]
+        white, quiet = ((np.diff(x, axis=0) ** 2).mean(axis=0) / 2.0 for x in (window, near))
+        error = np.sqrt(white / length + quiet / len(near))
+        moved = np.abs(window.mean(axis=0) - near.mean(axis=0)) > LOUDER_ONLY * error + ROUNDING
+        if (moved | (window.var(axis=0) > WHITE * white + ROUNDING)).any():
+            return False
+    return True
 
 
 def _louder_alone(session, runs, sensor, length):
