@@ -5,16 +5,8 @@ from functools import cached_property
 from .. import progress
 from ..capture import registers
 from ..experiment import blocks, terms
-from . import (
-    detectability,
-    localisation,
-    mimicry,
-    odds,
-    rest_gap,
-    rest_noise,
-    rests_judged,
-    samples_judged,
-)
+from ..planning import detectable
+from . import localisation, mimicry, odds, rest_gap, rest_noise, rests_judged, samples_judged
 from .detect import sample_clock, shake_detector
 from .settings import Conditions, Settings
 from .simulator import simulator_answer
@@ -135,7 +127,7 @@ class Diagnosis:
         """True when the capture would have shown most of what it is asked about."""
         if not self.gaps:
             return any(s.runs and s.t_s[-1] >= LEAST_S for s in self.sessions)
-        return detectability.visible_share(self) > 0.5
+        return detectable.visible_share(self) > 0.5
 
 
 def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), damages=(),

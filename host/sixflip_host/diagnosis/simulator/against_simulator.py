@@ -12,8 +12,9 @@ import numpy as np
 from scipy import ndimage, special
 
 from ...experiment import blocks, terms
-from .. import detectability, odds
+from ...planning import detectable
 from .. import diagnosis as stages
+from .. import odds
 from ..detect import rest_spectra
 from ..hypotheses import columns_of
 from . import hypotheses
@@ -112,7 +113,7 @@ def _remarks(diagnosis):
     if names:
         remarks.append("the simulator already has: " + ", ".join(names))
     remarks += ["the simulator's log: " + said for said in diagnosis.remarks]
-    silent = sorted({u["effect"] for u in detectability.listed(diagnosis)})
+    silent = sorted({u["effect"] for u in detectable.listed(diagnosis)})
     if silent and diagnosis.gaps:
         remarks.append("effects that the simulator's log cannot show: " + ", ".join(silent))
     return remarks

@@ -128,11 +128,10 @@ def described(name, kind, fit, probability, nats, live):
     """The Convention with its size and what to set."""
     spread = 1.645 * fit.extra_sigma
     if name == "time_step":
-        k = 1.0 + fit.extra[0]
+        k, half = float(1.0 + fit.extra[0]), float(spread[0])
         return finding(name, kind, probability, nats, "divide what moves it by %.3g: its velocity "
-                       "difference spans another time than it is divided by" % k,
-                       value={"factor": float(k)}, unit="1",
-                       interval_90={"factor": (float(k - spread[0]), float(k + spread[0]))})
+                       "difference spans another time than it is divided by" % k, unit="1",
+                       value={"factor": k}, interval_90={"factor": (k - half, k + half)})
     if name == "lever_arm_missing":
         value = {a: float(100.0 * v) for a, v in zip("xyz", fit.extra)}
         return finding(name, kind, probability, nats, "%s, r = (%.1f, %.1f, %.1f) cm" % (
