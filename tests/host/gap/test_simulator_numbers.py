@@ -7,7 +7,6 @@ import pytest
 
 from sixflip_host.diagnosis.simulator import (
     alignment,
-    channel_regression,
     evidence_of_logs,
     hypotheses,
     noise_and_registers,
@@ -19,6 +18,7 @@ from sixflip_host.diagnosis.simulator import (
     single_log,
     traces,
 )
+from sixflip_host.experiment import projection
 from sixflip_host.export import put_back
 from tests.worlds import tumbled
 
@@ -52,7 +52,7 @@ def test_a_coefficient_is_as_uncertain_as_stretches_of_the_log_disagree_on_it():
     slopes = rng.normal(0.0, 0.1, 20)
     x = rng.normal(size=(2000, 1))
     y = np.repeat((x * np.repeat(slopes, 100)[:, None]), 3, 1) + 0.01 * rng.normal(size=(2000, 3))
-    result = channel_regression.regression(
+    result = projection.regression(
         y, x, np.array([10.0]), np.zeros((2000, 3, 0)), np.zeros(0), np.zeros(0), 1.0,
         np.ones(3, bool))
     sigma = result[5][:, 0]

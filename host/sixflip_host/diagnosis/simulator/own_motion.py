@@ -7,6 +7,7 @@ from math import erfc
 
 import numpy as np
 
+from ...experiment.projection import regression
 from . import alignment as align_by
 from . import (
     convention_findings,
@@ -18,7 +19,6 @@ from . import (
     row_times,
     traces,
 )
-from .channel_regression import regression
 from .pairing import GRID_HZ
 
 ARM_M = 0.3  # prior of a lever arm in a log: of the sensor, and of the point it is turned about
