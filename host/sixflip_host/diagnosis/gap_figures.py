@@ -1,9 +1,15 @@
-"""How far a gap shrinks: its figures before, after and of noise alone, and the share of it that
-is closed.
+"""The figures of a gap: what is estimated of effects session by session, how far the gap shrinks
+by them, and which share of it goes with a cause.
 
-The share is that of squares, (before^2 - after^2) / (before^2 - floor^2). Both are sums whose
-variances are known, so their ratio has a Fieller interval [Fieller, JRSS B 16 (1954) 175];
-unbounded means that the gap is too small to measure.
+The coefficients of an effect are estimated on the other sessions by generalised least squares.
+Levels of placement and flicker are those of the session itself, by restricted maximum likelihood
+with the effects in [Patterson & Thompson, Biometrika 58 (1971) 545]. These functions take R data
+sets at once, R = 1 for the real one.
+
+The share closed is that of squares, (before^2 - after^2) / (before^2 - floor^2). Both are sums
+whose variances are known, so their ratio has a Fieller interval [Fieller, JRSS B 16 (1954) 175];
+unbounded means that the gap is too small to measure. The excess is chi2 of what is read beyond
+its degrees of freedom.
 """
 import math
 from dataclasses import dataclass

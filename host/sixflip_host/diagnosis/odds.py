@@ -1,8 +1,16 @@
-"""From log likelihoods to probabilities: the same few lines for every hypothesis, whether it is
-made of columns, of a level of noise or of a likelihood over samples.
+"""From log likelihoods to probabilities, the same few lines for every hypothesis, whether it is
+made of columns, of a level of noise or of a likelihood over samples; and from those to the
+verdict.
 
 Hypotheses for one place stand beside "", that nothing is there. Each but that one costs its prior
 odds: how rare it is that chance alone gains so much in a search (cutoffs.py).
+
+The verdict is a table of four rows on three probabilities, and what holds in none of them:
+
+named      that at least one effect with a name is there
+nameless   that something is there which no name of the library stands for
+told       of what is named: whether it is known where it comes from; of nothing: whether the
+           capture could have shown most of what it is asked about
 """
 import math
 from dataclasses import dataclass

@@ -1,4 +1,7 @@
-"""The third stage: what the rests, the turns between them and the moves say of both sensors."""
+"""The second stage, which sessions have rests in known poses that can be judged, and what had to
+be left out of them; and the third, what the rests, the turns between them and the moves say of
+both sensors.
+"""
 import math
 from dataclasses import dataclass
 

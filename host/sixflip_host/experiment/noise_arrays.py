@@ -1,5 +1,8 @@
-"""The deviates of sixflip_sim/noise.py for whole arrays of sample numbers: the same bit for bit,
-and a hundred times as fast; and the moment of the effects that is as many moments at once."""
+"""Noise of many samples at once: the deviates of sixflip_sim/noise.py for whole arrays of sample
+numbers, the same bit for bit and a hundred times as fast, with the moment of the effects that is
+as many moments; and slow noise, flicker as the covariance of means over stretches of time, a
+random walk as the first terms of its expansion.
+"""
 import numpy as np
 
 from sixflip_sim import noise

@@ -1,9 +1,14 @@
-"""Columns of functions, and what some columns leave of others: projection, ranks, alias index.
+"""Least squares on columns: what some columns leave of others (projection, ranks, alias index),
+and the regression of a sensor's three channels at once.
 
 The signature of an effect is its columns (one a coefficient) after the nominal parameters have
 been projected out; an effect without anything left is silent. The alias index A(a|b) =
 |P_b S_a|^2 / |S_a|^2 is the share of a's signature that b can reproduce, averaged over a's
 coefficients with equal weight.
+
+The regression has coefficients of each channel's own and coefficients that they share, with
+priors, and the noise of each channel by maximum likelihood [Bishop, Pattern Recognition and
+Machine Learning (2006), section 3.5].
 """
 import numpy as np
 

@@ -1,7 +1,16 @@
 """What recordings of one sensor are compared by: white noise, Allan deviation, amplitude spectrum,
-steps of the counts, the strongest line.
+steps of the counts, the strongest line; and the levels of its noise at rest, with intervals.
 
 x is (n, k), n samples of k channels, in any unit, which the results are in as well.
+
+The two-sided density of a reading at rest is S(f) = N^2 + B^2 / (2 pi f) + K^2 / (2 pi f)^2
+[IEEE Std 952-1997, annex C]: N the noise density (unit/sqrt(Hz)), B the bias instability, whose
+Allan deviation is flat at 0.664 B, K the rate random walk. Every rest's spectrum is the mean over
+a few sine tapers [Riedel & Sidorenko, IEEE Trans. Signal Processing 43 (1995) 188], which do not
+leak from the walk into the white noise. The three squares are the likeliest ones that are not
+negative [Whittle, J. Royal Stat. Soc. B 15 (1953) 125]; their intervals are those of the profile
+of the likelihood. A line of the curve of the Allan deviation read off at one time, as is usual,
+takes what the other two add there for its own.
 """
 from dataclasses import dataclass
 

@@ -1,4 +1,5 @@
-"""The smallest size of each effect that a planned capture would show, at 80 % power.
+"""The smallest size of each effect that a planned capture would show, at 80 % power; and what the
+captures at hand of a diagnosis could not show, effect by effect, and why.
 
 Generalised least squares with the covariance that the diagnosis has (experiment/covariance.py), of
 known variances: white noise over the samples of a row, the scatter of a placement by hand (two

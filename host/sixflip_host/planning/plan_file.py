@@ -1,4 +1,5 @@
-"""The plan file: written by `sixflip plan --save FILE`, led through by `calibrate --plan FILE`.
+"""The plan file: written by `sixflip plan --save FILE`, led through by `calibrate --plan FILE`;
+and what a board is asked for by a plan, as the request the firmware reads and in words.
 
     {"sixflip_plan": 1, "name": "recommended", "sessions": [
         {"state": "warming", "start_c": 22, "change_c": 9, "tau_s": 300, "rest_s": 30,

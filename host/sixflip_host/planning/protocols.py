@@ -1,8 +1,9 @@
 """The sessions that a person can be asked to capture: which pose, how long, how warm, in which
-order.
+order; and their moments at which the sensor's answer counts, as arrays.
 
 Their numbers are those that GAP's figures are given for: rests of 5 s, moves of 10 s, a change of
-temperature of 8-9 degC with a time constant of 300 s.
+temperature of 8-9 degC with a time constant of 300 s. Nothing is measured here: attitude, time and
+temperature are what the plan says.
 """
 import math
 import random

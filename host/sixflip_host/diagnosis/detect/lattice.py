@@ -1,12 +1,18 @@
-"""The values that a column of a file of decimals lies on, where a chip's steps are wider than the
-file's own counts: an import scales those to its largest reading, so that steps of 0.061 deg/s
-become 5.35 counts and 0 may be no value at all. A code that is missing near 0 is missing
-everywhere then, and a dead band is one only by the values that the column has.
+"""The values that a column lies on, and how often the one at 0 is read.
 
-How often each count is read has a line in its spectrum at one over the spacing, whose phase says
-where the values lie. Columns that lie on whole counts, or on none, have no such line.
+Of a file of decimals a chip's steps are wider than the file's own counts: an import scales those
+to its largest reading, so that steps of 0.061 deg/s become 5.35 counts and 0 may be no value at
+all. A code that is missing near 0 is missing everywhere then, and a dead band is one only by the
+values that the column has. How often each count is read has a line in its spectrum at one over
+the spacing, whose phase says where the values lie. Columns that lie on whole counts, or on none,
+have no such line. A converter whose steps differ leaves codes of the same low bits out, which its
+wide steps hold.
 
-A converter whose steps differ leaves codes of the same low bits out, which its wide steps hold.
+Where no code is missing, 0 is read often by a band that reads 0 and beyond which readings begin
+at 0 again, or by the noise alone. About a mean of its own each window has noise of its own; noise
+through a band competes with noise through none, and with what is rounded towards 0. Where a
+window rests in one part and shakes in another its zeros are many and its flanks wide, too: so the
+width of the noise may change on the way, with a band and without one.
 """
 import math
 from dataclasses import dataclass

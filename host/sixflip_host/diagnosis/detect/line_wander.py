@@ -1,5 +1,8 @@
-"""Whether a line keeps its frequency from rest to rest: what a motor or a fan does runs on evenly
-through a rest, and a little faster or slower in the next."""
+"""Which lines are steady and a sensor's own: whether a line keeps its frequency from rest to rest,
+since what a motor or a fan does runs on evenly through a rest, and a little faster or slower in
+the next; and whether it is a multiple of strides, since what goes on legs does so steadily, and
+its steps and knocks are lines that no sensor is shaken at.
+"""
 import math
 from dataclasses import dataclass, replace
 

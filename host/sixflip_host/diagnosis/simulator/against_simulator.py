@@ -4,7 +4,9 @@ The simulator's log is diagnosed like a real capture. What it models is taken of
 at their own poses, times and temperatures, so that the scenes need not be the same; what both have
 in their registers, timing or spectrum is no gap. What the simulator has and the real sensor lacks
 is a gap as well. Where both logs are of one motion, their difference says which of the effects
-that each shows by itself are in both, and so no gap between them.
+that each shows by itself are in both, and so no gap between them. Whether what shakes the real
+sensor at rest shakes the simulator's as much is told by the power of both logs in one band of
+frequencies: that depends neither on their rates nor on what each log by itself makes of a bump.
 """
 from dataclasses import dataclass, replace
 

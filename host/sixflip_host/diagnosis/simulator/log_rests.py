@@ -1,4 +1,10 @@
-"""The rests of a log: as its labels have them, or where it is calm and its gyro follows no course.
+"""The rests of a log: as its labels have them, or where it is calm and its gyro follows no course;
+and what a log that never rests says its sensor went through, and its noise.
+
+Of that the gyro carries the attitude, and the vertical is where the specific force lies over some
+twenty seconds, in the frame that it carries: what moves a thing averages out, since it does not go
+ever faster [Mahony et al., IEEE Trans. Autom. Control 53 (2008), 1203, whose filter this is
+without its delay: past and future alike]. The noise is that of the quick end of the spectrum.
 """
 import numpy as np
 

@@ -3,7 +3,8 @@ fitted with the convention, the stops of the real one and its dead bands that su
 
 A stop is a level that the real sensor does not go beyond, within its noise or softly, while the
 simulator of the same motion goes on: a front end that saturates before the converter does. A log
-by itself does not tell it from a motor that comes to one rate again and again.
+by itself does not tell it from a motor that comes to one rate again and again. Nor does it tell
+whether a dead band is the gyro's or that of what turns the thing: its forces may.
 """
 from dataclasses import dataclass, replace
 

@@ -1,6 +1,9 @@
-"""Logs of different motions side by side; and how late one sensor of a log is behind the other, by
-the log's own motion: what the force is beside the gravity that the gyro carries along, against how
-the sensor turns. What the hand or the wheels do besides is noise.
+"""Logs of different motions side by side, and layer two of what is in time: the delay between the
+sensors, the smoothness of each, and the clock.
+
+Two logs of one motion give their differences. Of a log by itself it is its own motion that says
+how late one sensor is behind the other: what the force is beside the gravity that the gyro carries
+along, against how the sensor turns. What the hand or the wheels do besides is noise.
 """
 from dataclasses import dataclass, replace
 from math import erfc
