@@ -1,6 +1,6 @@
 """The nominal model of a planned capture, and what it leaves of each effect: its signature.
 
-Everything is linear algebra on the rows of a plan (experiment/protocols.py). Signatures, silent
+Everything is linear algebra on the rows of a plan (protocols.py). Signatures, silent
 effects and the alias index between two signatures are defined in experiment/projection.py.
 """
 from dataclasses import dataclass

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from ...experiment.block_measures import EDGE_S
 from .. import odds
 
 FEWEST = 3  # rests of a file that tell the frequency: two apart may as well be two lines
@@ -17,7 +18,6 @@ TOLD = 0.12  # of a rest's own bin, to which it tells the frequency of more than
 # error there is that a frequency under a Hann window has, by simulation, as the halves say it.
 HALVES, WINDOWED = 4.0, 1.6
 MEDIAN = 0.6745  # of the sizes of normal numbers
-EDGE_S = 0.1  # of either end of a rest, which may be the move's yet
 # What runs on legs has strides of a frequency in between, and is shaken at multiples of it: so
 # many are tried, each off by this share at most.
 SLOWEST_HZ, STRIDES_HZ, MULTIPLES, MULTIPLE = 0.7, 5.0, 12, 0.005

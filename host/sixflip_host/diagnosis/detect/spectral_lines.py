@@ -42,7 +42,6 @@ LEAST_STEPS, DITHERED = 0.5, 0.5
 BESIDE, NARROW = 10, 0.6
 MULTIPLES = 5  # of a frequency: what a motor's imbalance, blades and bearings shake at
 SWEPT, FALLS = 2, 0.5  # the lowest bins hold the straight line taken off; of a line's power
-LEAST_SHARE = 0.25  # of the standard deviation of the noise: smaller is no matter
 # A bench or a table sways at its own frequencies, by chance: from stretch to stretch the power
 # there scatters as much as its mean (noise through a resonance is exponential). Something that
 # runs is steadier. Only what is steady, or strong, is named.
@@ -182,7 +181,7 @@ def strongest(sessions, sensor, axis):
     spread = np.mean([s[:, axis].std() for s in stretches])
     counted = step(sessions, sensor, axis)
     noise = math.sqrt(float(np.median(floor)))
-    if amplitude < LEAST_SHARE * spread or (
+    if amplitude < rest_parts.LEAST_SHARE * spread or (
             noise < DITHERED * counted and amplitude < LEAST_STEPS * counted):
         return None
     scattered = scatter(stretches, axis, first + k)
