@@ -6,7 +6,7 @@ def said(axes, hz):
     cause = {"sensor": "accel", "effect": "vibration", "class": ["vibration"], "axes": axes,
              "hz": hz, "value": dict.fromkeys(axes, 1.5), "unit": "mg", "plausible": True}
     return gap_sentence.sentence({"damage": [], "verdict": "explained", "causes": [cause],
-                               "gap": {}, "unseen": [], "where": []})
+                                  "gap": {}, "unseen": [], "where": []})
 
 
 def test_a_frequency_is_said_of_the_axes_that_have_it():

@@ -60,7 +60,7 @@ def test_what_a_capture_cannot_tell_is_said_of_what_it_names():
 
     def said(*causes, gap=None):
         return gap_sentence.sentence({**GAP, "verdict": "cannot tell", "causes": list(causes),
-                                   "gap": gap or {}})
+                                      "gap": gap or {}})
     assert said(named).endswith("This capture cannot tell how much of the gap goes with that.")
     assert "cannot tell which" in said(named, either)
     assert "cannot tell whether that is so. Adding" in said(named, gap=closed)
