@@ -148,7 +148,7 @@ def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), d
     sessions = samples.sessions
     remarks += [*stuck, *samples.remarks]
     findings, nameless = list(samples.findings), list(samples.nameless)
-    rests = rests_judged.usable(sessions, findings, stuck, samples.scaled)
+    rests = rests_judged.usable_rests(sessions, findings, stuck, samples.scaled)
     remarks += rests.remarks
     conditions = samples.conditions(rests.reference_c)
     gaps, rest, turns, motion, noise = {}, {}, None, None, {}

@@ -35,7 +35,7 @@ class UsableRests:
     remarks: tuple = ()
 
 
-def usable(sessions, findings, stuck, scaled=False):
+def usable_rests(sessions, findings, stuck, scaled=False):
     """UsableRests of sessions; findings: of their samples; stuck: a column never changes; scaled:
     the accelerometer's full scale is not the one stated."""
     usable = _enough(sessions)

@@ -157,7 +157,7 @@ def _judged(kept, remarks, options=None):
         answered, rests, gaps = diagnosed.diagnose_board(kept, sessions)
         columns["gap"] = json.dumps(answered, allow_nan=False)
     if not gaps:
-        rests = rests_judged.usable(sessions, [], [])
+        rests = rests_judged.usable_rests(sessions, [], [])
     told, said = effects.information(rests, chip, gaps)
     for sensor, told_of in told.items():
         upper = np.triu_indices(len(told_of.score))

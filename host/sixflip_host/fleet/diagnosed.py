@@ -25,7 +25,7 @@ def diagnose_board(kept, sessions, settings=None):
     scaled = any(one.about["samples"]["scaled"] for one in kept)
     # Rests on a rail were left out when the summaries were made.
     sound = [f for f in findings if f.effect != "saturation"]
-    rests = rests_judged.usable(sessions, sound, [], scaled)
+    rests = rests_judged.usable_rests(sessions, sound, [], scaled)
     conditions = Conditions(rests.reference_c, any(
         f.sensor == "accel" and f.effect in samples_judged.COARSE for f in findings), {
         f.sensor: ["xyz".index(a) for a in f.axes] for f in findings if f.effect == "vibration"})

@@ -75,7 +75,7 @@ def test_the_kept_one_is_read_while_the_capture_is_the_same(captured, monkeypatc
 
 def test_the_effect_of_the_capture_is_in_its_information(captured):
     _, _, one = captured
-    found, _ = effects.information(rests_judged.usable([one.session()], [], []), "mpu6050")
+    found, _ = effects.information(rests_judged.usable_rests([one.session()], [], []), "mpu6050")
     k = effects.NAMES["accel"].index("accel.thermal_bias.z")
     precision, score = found["accel"].precision, found["accel"].score
     sigma = 1.0 / np.sqrt(precision[k, k])

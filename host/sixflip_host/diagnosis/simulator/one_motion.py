@@ -75,9 +75,9 @@ class Logs:
 @dataclass(frozen=True)
 class OneMotion:
     """fits {sensor: conventions.SensorFit}, with the simulator as its bands have it; unmended: the
-    same without; stops (stops_of); bands (dead_zone.Band, ...); of_gyro: nats by which
-    it is the gyro that has them; late, late_sigma: s of the simulator's gyro, or None;
-    conventions: [Convention] that the pair shows."""
+    same without; stops (stops_of); bands (dead_zone.Band, ...); of_gyro: nats by which it is the
+    gyro that has them; late, late_sigma: s of the simulator's gyro, or None; conventions:
+    [Convention] that the pair shows."""
 
     fits: dict
     unmended: dict
