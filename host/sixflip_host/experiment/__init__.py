@@ -7,9 +7,7 @@ turns, inertial_fit       how the gyro turned in a move, and what the accelerome
 long_rest                 rests in one attitude
 nominal_rows, covariance
                           rest readings as rows: what is unknown in them, and how they err
-terms, session_terms, fleet_prior
-                          the columns of every effect, its variants that rests can show, and what a
-                          fleet knows of their sizes
+terms, session_terms      the columns of every effect, and its variants that rests can show
 linear_model (gram, factored_gram)
                           rows and columns reduced to what all later questions need
 projection, signal_measures, noise_arrays
