@@ -63,8 +63,8 @@ class Diagnosis:
     json: dict
 
     def __str__(self):
-        from .present import gap_words
-        return gap_words.sentence(self.json)
+        from .present import gap_sentence
+        return gap_sentence.sentence(self.json)
 
 
 @dataclass(frozen=True)

@@ -30,8 +30,7 @@ from sixflip_host.board.recording import Recording
 from sixflip_host.calibrate import solution, solution_json
 from sixflip_host.capture import capture_binary, capture_file, open_recording
 from sixflip_host.errors import SixflipError
-from sixflip_host.experiment import fleet_prior
-from sixflip_host.fleet import manifest, summary_file
+from sixflip_host.fleet import fleet_prior, manifest, summary_file
 from sixflip_host.planning import plan_file
 from sixflip_host.simulation import scenario
 

@@ -115,6 +115,11 @@ def _holes(column, least, step):
                for side in (column, -column))
 
 
+def number_of_runs(mask):
+    """Number of unbroken runs of True."""
+    return int(mask[0]) + int((mask[1:] & ~mask[:-1]).sum())
+
+
 def sign_changes(windows):
     """(n,) how often the signs of the readings that are not 0 change, row by row."""
     sign = np.sign(windows)

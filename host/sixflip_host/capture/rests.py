@@ -14,7 +14,6 @@ import numpy as np
 from sixflip.poses.faces import FACES, nearest_face
 from sixflip.poses.noise_floor import WINDOWS, NoiseFloor
 from sixflip.poses.pose_label import CROOKED_DEG
-from sixflip.poses.still_window import window_length
 
 from . import still_windows
 
@@ -93,10 +92,6 @@ class LongestRest:
 # jumped is between the two levels for no longer than a low pass of 5 Hz takes, the slowest of an
 # MPU-6050 [register map rev 4.2, register 26]: 0.07 s from a tenth to nine tenths of a step.
 TURNS_DPS, AT_ONCE_S, ACROSS_S, ACROSS = 5.0, 1.5, 0.15, (0.25, 0.75)
-# Standard errors of a window's mean, in which nothing moved; its variance by that of white noise
-# with the same steps from sample to sample, of which a tremor of 12 Hz has four times as much at
-# 100 Hz; counts of a mean, and of a variance, that rounding makes.
-LOUDER_ONLY, WHITE, ROUNDING = 5.0, 2.0, 0.5
 MOSTLY = 0.5  # of a recording at rest: a shorter one is a pause of something that moves
 
 
@@ -112,39 +107,6 @@ def labelled(pose, shortest=1, without=()):
     return [Run(int(pose[start]), start, end) for start, end in zip(starts, ends)
             if end > start and pose[start] and end - start >= shortest
             and pose[start] not in without]
-
-
-def joined(capture, runs):
-    """The Runs that nobody labelled, made one where nothing moved between two of them: all that is
-    read there is white noise about the mean of what is read at its two ends. So it is only louder
-    than a rest is taken to be. Without a gyro a turn about the vertical would look like that."""
-    whole, last = [], None
-    for run in runs:
-        if whole and _louder_only(capture, last, run):
-            last, run = run, Run(run.code, whole.pop().first, run.end)
-        else:
-            last = run
-        whole.append(run)
-    return whole
-
-
-def _louder_only(capture, before, after):
-    """Whether nothing moves between two Runs, by every window as long as the board's."""
-    length = window_length(capture.meta["rate_hz"], still_windows.POSE_SAMPLES)
-    if capture.accel is None or capture.gyro is None or after.first - before.end < length:
-        return False
-    first, end = max(before.first, before.end - length), min(after.end, after.first + length)
-    counts = np.hstack([s[first:end].astype(float) for s in (capture.accel, capture.gyro)])
-    before, after = before.end - first, after.first - first
-    near = np.vstack([counts[:before], counts[after:]])
-    for start in [*range(before, after - length + 1, length), after - length]:
-        window = counts[start:start + length]
-        white, quiet = ((np.diff(x, axis=0) ** 2).mean(axis=0) / 2.0 for x in (window, near))
-        error = np.sqrt(white / length + quiet / len(near))
-        moved = np.abs(window.mean(axis=0) - near.mean(axis=0)) > LOUDER_ONLY * error + ROUNDING
-        if (moved | (window.var(axis=0) > WHITE * white + ROUNDING)).any():
-            return False
-    return True
 
 
 def find(capture, stillness=POSES):

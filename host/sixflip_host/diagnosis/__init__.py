@@ -2,7 +2,7 @@
 
 diagnose, settings, diagnosis     the way in, what is asked for, the stages in their order
 samples_judged (detect)           first stage: registers, clock and spectra
-usable_rests, rests_judged        second and third: rests, turns and moves, by these models:
+rests_judged                      second and third: rests, turns and moves, by these models:
 rest_model, sensor_gap (box_tilt_test, between_sessions, wandering)
                                   a sensor at rest in its poses
 turn_model (stray_turns)          the gyro in the turns between them
@@ -12,14 +12,14 @@ rest_gap (rest_units, rest_forms, sway), rest_noise
                                   one attitude only, or no poses
 hypotheses (strangers, session_strangers, discrepancy)
                                   what competes: effects, what has no name, other forms
-evidence, coefficient_fits (elimination, forms_at_once), scored_sets, posterior
+evidence (elimination, forms_at_once), scored_sets, posterior
                                   how likely sets of them are, and the likeliest
-odds, cutoffs (mimicry)           probabilities, and what a member costs
+odds, cutoffs (mimicry)           probabilities, the verdict, and what a member costs
 members, aliases, effect_estimates
                                   of each member: axes, variants, names that do as well, size
-adequacy, excess, localisation    what is left, which share goes with what, where it lies
-holdout_gain, gap_share           what is closed on what was held out
-detectability, verdict, answer    what could have shown, the verdict, the JSON
+adequacy, localisation            what is left, and where it lies
+holdout_gain, gap_figures         what is closed on what was held out, and by what
+answer                            the JSON
 closed_loop, closed_loops         the simulator run again with what was found
 correction_terms, term_gain       what was found as terms of a board's record
 simulator                         the user's own simulator beside the sensor

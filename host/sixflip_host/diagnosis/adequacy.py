@@ -12,7 +12,7 @@ from scipy import special
 from sixflip_sim.effects import typical
 from sixflip_sim.effects.drift import FLOOR_OF_KERNEL
 
-from . import between_sessions, evidence, excess, odds
+from . import between_sessions, evidence, gap_figures, odds
 from .evidence import Levels
 
 PLACEMENT = {"accel": 0.87, "gyro": 0.003}  # 0.05 deg across gravity, mg; the Earth's rate
@@ -69,7 +69,7 @@ def goodness_of_fit(units, statistics, scored, usual_noise, shaken=(), by_hand=F
             fit = _usual_change(unit, sums, shared, private, usual_noise)
         point = int(fit.index[0])
         chi2 = _between_levels(unit, sums, shared, private, theta, fit)
-        freedom = unit.freedom - excess.taken(unit, point, private)
+        freedom = unit.freedom - gap_figures.freedom_taken(unit, point, private)
         if not unit.between:
             freedom -= len(shared) / within
         parts.append((chi2, max(freedom, 1.0)))

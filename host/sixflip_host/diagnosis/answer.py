@@ -3,8 +3,8 @@ from sixflip_sim.effects.drift import FLOOR_OF_KERNEL
 
 from ..capture import registers
 from ..json_numbers import number, spelled
-from ..planning import next_capture
-from . import closed_loop, detectability, rest_noise
+from ..planning import detectable, next_capture
+from . import closed_loop, rest_noise
 from .detect import detection, line_frequency, sample_clock
 from .simulator import simulator_answer
 
@@ -20,7 +20,7 @@ def as_dict(diagnosis):
                    "share": number(p.share), "p": number(p.p, 2)}
                   for p in diagnosis.where],
         "gap": {kind: _gap(kind, gap) for kind, gap in gaps(diagnosis).items()},
-        "unseen": detectability.listed(diagnosis), "next": next_capture.proposed(diagnosis),
+        "unseen": detectable.listed(diagnosis), "next": next_capture.proposed(diagnosis),
         "clock": sample_clock.answer(diagnosis.sessions, diagnosis.clocks),
         "held_out": held_out(diagnosis), "damage": detection.damages(diagnosis.damages),
         "noise": rest_noise.answer(diagnosis.noise),

@@ -18,7 +18,7 @@ from sixflip.poses import faces
 from sixflip_sim.effects import typical
 
 from ..experiment import linear_model, nominal_rows, projection
-from . import aliases, coefficient_fits, cutoffs, hypotheses, odds, scored_sets
+from . import aliases, cutoffs, gap_figures, hypotheses, odds, scored_sets
 from .posterior import Posterior
 
 # Standard deviation of the faces of any box.
@@ -108,7 +108,7 @@ def _usual(units):
 def _scored(gap, units):
     """(Data, (Scored without a crooked box, the best with one)); None instead of the two where no
     box can be told from the rest."""
-    data = coefficient_fits.data_of(units)
+    data = gap_figures.data_of(units)
     forms = hypotheses.forms_of(units, gap.settings.without)
     mine = [f for f in forms if f.effect == "box_tilt"]
     if not mine:

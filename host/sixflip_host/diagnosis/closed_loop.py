@@ -19,7 +19,7 @@ from sixflip_sim.sensor_model import SensorModel, Triad
 
 from ..capture.capture_file import Capture
 from ..experiment import blocks, nominal_rows, session_terms
-from ..experiment.session_rows import body_to_table
+from ..planning.protocols import body_to_table
 from ..simulation import replica
 from . import effect_estimates
 

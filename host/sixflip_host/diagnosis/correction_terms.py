@@ -16,7 +16,7 @@ from sixflip.record.record import following
 from .. import record_terms
 from ..calibrate import term_words
 from ..errors import CheckFailed
-from . import coefficient_fits, hypotheses, term_gain
+from . import gap_figures, hypotheses, term_gain
 
 TERMS = {("accel", "thermal_bias"): "accel_thermal_bias",
          ("gyro", "thermal_bias"): "gyro_thermal_bias",
@@ -182,7 +182,7 @@ class Fit:
 
 
 def fitted(gap, terms, data, diagnosis):
-    """Fit of the Terms of a gap, those held out being the units of a coefficient_fits.Data."""
+    """Fit of the Terms of a gap, those held out being the units of a gap_figures.Data."""
     candidates = {term: plain(gap, term.cause) for term in terms}
     named = {id(c) for term in terms for c in term.cause.chosen}
     chosen = [c for term in terms for c in candidates[term]]
@@ -191,14 +191,14 @@ def fitted(gap, terms, data, diagnosis):
         if id(candidate) not in named and not np.isin(candidate.columns, taken).any():
             chosen.append(candidate)
     shared = hypotheses.columns_of(chosen)
-    theta, covariance = coefficient_fits.coefficients(
-        coefficient_fits.fits(gap.data, shared), shared)
-    fits = coefficient_fits.fits(data, shared)
+    theta, covariance = gap_figures.coefficients(
+        gap_figures.fits(gap.data, shared), shared)
+    fits = gap_figures.fits(data, shared)
     between, held = [bool(u.between) for u in data.units], []
     for place in range(between.count(False)):
         # What lies between the sessions knows of the one held out.
         others = [f for k, f in enumerate(fits) if k != place and not between[k]]
-        held.append(coefficient_fits.coefficients(others, shared)[0][0])
+        held.append(gap_figures.coefficients(others, shared)[0][0])
     return Fit(gap, diagnosis, candidates, shared.index, theta[0],
                np.sqrt(np.diag(covariance[0])), held)
 

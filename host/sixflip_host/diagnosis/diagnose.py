@@ -8,8 +8,7 @@ from ..capture import capture_file
 from ..errors import BadFile
 from ..experiment import blocks, long_rest
 from ..experiment.signal_measures import allan
-from . import diagnosis
-from .detect import damage_taken_out
+from . import diagnosis, samples_judged
 from .settings import Settings
 
 MOST_ROUNDS = 3  # times that what is in both logs is taken off
@@ -35,7 +34,7 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
     for name, capture in reference:
         noise = flicker_levels(capture, name)
     settings = Settings(certified_box, tuple(without), noise, jobs, prior=prior)
-    captures, damages = damage_taken_out.taken_out(captures, settings.processors)
+    captures, damages = samples_judged.without_damage(captures, settings.processors)
     sessions = [blocks.session_of(name, capture) for name, capture in captures]
     own, comparisons = None, []
     if simulator:

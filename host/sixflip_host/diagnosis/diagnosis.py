@@ -5,18 +5,8 @@ from functools import cached_property
 from .. import progress
 from ..capture import registers
 from ..experiment import blocks, terms
-from . import (
-    detectability,
-    localisation,
-    mimicry,
-    odds,
-    rest_gap,
-    rest_noise,
-    rests_judged,
-    samples_judged,
-    usable_rests,
-    verdict,
-)
+from ..planning import detectable
+from . import localisation, mimicry, odds, rest_gap, rest_noise, rests_judged, samples_judged
 from .detect import sample_clock, shake_detector
 from .settings import Conditions, Settings
 from .simulator import simulator_answer
@@ -81,23 +71,23 @@ class Diagnosis:
     def verdict(self):
         """One of the verdict's rows, on what was found in rests, turns, moves and samples."""
         claims = self._claims()
-        row = verdict.decide(claims, [*self._nameless(), float(self.broken)], self.sees())
-        return simulator_answer.verdict(row, self.comparisons, verdict.any_of(
-            [c.probability for c in claims]) > verdict.LIKELY) if self.comparisons else row
+        row = odds.decide(claims, [*self._nameless(), float(self.broken)], self.sees())
+        return simulator_answer.verdict(row, self.comparisons, odds.any_of(
+            [c.probability for c in claims]) > odds.LIKELY) if self.comparisons else row
 
     def _claims(self):
-        claims = [verdict.Claim(f.named, told([f.effect, *f.rivals], f.share) and self._sized(f),
-                                f.nameless) for f in self.findings if f.plausible]
-        claims += [verdict.Claim(sum(c.probabilities.values()), told(c.names, c.share) and bool(
+        claims = [odds.Claim(f.named, told([f.effect, *f.rivals], f.share) and self._sized(f),
+                             f.nameless) for f in self.findings if f.plausible]
+        claims += [odds.Claim(sum(c.probabilities.values()), told(c.names, c.share) and bool(
             c.effect == "drift" or gap.shrinkage.interval), c.nameless)
             for gap in [*self.judged, *self.rest.values()] for c in gap.causes if c.plausible]
-        return claims + [verdict.Claim(g.posterior.places["drift"]["drift"], True)
+        return claims + [odds.Claim(g.posterior.places["drift"]["drift"], True)
                          for g in self.gaps.values() if g.drift]
 
     @cached_property
     def outside(self):
         """Probability that something is there which no name of the library stands for."""
-        return verdict.any_of(self._nameless())
+        return odds.any_of(self._nameless())
 
     def of_name(self, sensor, probability, names, share):
         """Probability of a cause of a sensor, found among all hypotheses to explain this share,
@@ -115,8 +105,8 @@ class Diagnosis:
     def _nameless(self):
         """Probabilities that something without a name is there."""
         gaps = [*self.judged, *self.rest.values()]
-        probabilities = [p for g in self.judged for p in verdict.of_gap(g)]
-        probabilities += [verdict.not_closed(g.shrinkage and g.shrinkage.interval) for g in gaps]
+        probabilities = [p for g in self.judged for p in odds.of_gap(g)]
+        probabilities += [odds.not_closed(g.shrinkage and g.shrinkage.interval) for g in gaps]
         probabilities += [p for gap in self.rest.values() for p in gap.nameless]
         probabilities += [1.0 - place.p for place in [*self.nameless, *self._left]]
         # A size that no part has is a name for something else.
@@ -128,7 +118,7 @@ class Diagnosis:
     def _left(self):
         """[Place] of what departs in the samples beside what a Finding accounts for; in motion it
         is the moves' own."""
-        left = [(f, verdict.not_closed(f.share_interval)) for f in self.findings
+        left = [(f, odds.not_closed(f.share_interval)) for f in self.findings
                 if f.domain != "motion"]
         return [localisation.Place(f.sensor, None, f.domain, 1.0 - f.share, 1.0 - probability)
                 for f, probability in left if probability]
@@ -137,7 +127,7 @@ class Diagnosis:
         """True when the capture would have shown most of what it is asked about."""
         if not self.gaps:
             return any(s.runs and s.t_s[-1] >= LEAST_S for s in self.sessions)
-        return detectability.visible_share(self) > 0.5
+        return detectable.visible_share(self) > 0.5
 
 
 def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), damages=(),
@@ -158,7 +148,7 @@ def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), d
     sessions = samples.sessions
     remarks += [*stuck, *samples.remarks]
     findings, nameless = list(samples.findings), list(samples.nameless)
-    rests = usable_rests.select(sessions, findings, stuck, samples.scaled)
+    rests = rests_judged.usable_rests(sessions, findings, stuck, samples.scaled)
     remarks += rests.remarks
     conditions = samples.conditions(rests.reference_c)
     gaps, rest, turns, motion, noise = {}, {}, None, None, {}

@@ -4,7 +4,7 @@ Of the contrasts z = mu + noise of the session held out and the prediction d of 
 coefficients come from the other sessions, all figures are weighted root mean squares: before^2 =
 z'Qz / tr Q, after^2 = (z - d)'Q(z - d) / tr Q and floor^2, the same of noise alone. The weights Q
 are those of the fit with flicker as it usually is: a contrast that a hand scatters counts little.
-The share is that of these figures (gap_share.py): what is closed, 2 d'Qz - d'Qd, of the gap. The
+The share is that of these figures (gap_figures.py): what is closed, 2 d'Qz - d'Qd, of the gap. The
 variances of both follow from noise drawn at the levels that the contrasts show, each as often as
 it is likely. Noise that wanders more than any part's counts as noise only where it is named: else
 what a session has beyond the prediction would be taken for it. What lies between three sessions
@@ -20,8 +20,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..experiment import linear_model, nominal_rows
-from . import adequacy, between_sessions, coefficient_fits, excess, hypotheses, moves_fit
-from .gap_share import NOTHING, Shrinkage, Sums, spread
+from . import adequacy, between_sessions, gap_figures, hypotheses, moves_fit
+from .gap_figures import NOTHING, Shrinkage, Sums, spread
 
 DRAWN = 400  # of noise: their variance is known to 7 %, an interval's length to 4 %
 DRAWN_FLOOR = 100  # where its mean alone is asked for: a floor of 100 contrasts to half a percent
@@ -37,9 +37,9 @@ def shrinkage(data, chosen, index, usual, wanders=False, private=None):
     Columns that each unit may have of its own beside the chosen ones, those without a name; None:
     it is not asked whether what was held out lies further off."""
     shared = hypotheses.columns_of(chosen)
-    fits = coefficient_fits.fits(data, shared)
+    fits = gap_figures.fits(data, shared)
     largest = usual.flicker * (math.inf if wanders else adequacy.TIMES_TYPICAL)
-    metrics = excess.usual_levels(data.units, index, usual.flicker)
+    metrics = gap_figures.usual_levels(data.units, index, usual.flicker)
     total, generator = NOTHING, np.random.default_rng(20190919)
     drawn = DRAWN if chosen else DRAWN_FLOOR
     for held, (unit, point, metric) in enumerate(zip(data.units, index, metrics)):
@@ -65,7 +65,7 @@ def _nothing_closed(units, fits, metrics, shared, private, left):
         if unit.between:
             continue
         others = fits[:held] + fits[held + 1:] or fits
-        (theta,), (covariance,) = coefficient_fits.coefficients(others, shared)
+        (theta,), (covariance,) = gap_figures.coefficients(others, shared)
         columns, k = unit.columns[:, np.concatenate([shared.index, own.index])], len(shared)
         products = unit.products(np.column_stack([columns, unit.z]), metric)
         untold += float((products[:k, :k] * covariance).sum())
@@ -78,10 +78,10 @@ def _nothing_closed(units, fits, metrics, shared, private, left):
 
 
 def _foretold(unit, others, shared):
-    """(m,) contrasts by what other coefficient_fits.Fits say of the shared columns."""
+    """(m,) contrasts by what other gap_figures.Fits say of the shared columns."""
     if not len(shared):
         return np.zeros(len(unit.z))
-    return unit.columns[:, shared.index] @ coefficient_fits.coefficients(others, shared)[0][0]
+    return unit.columns[:, shared.index] @ gap_figures.coefficients(others, shared)[0][0]
 
 
 def _between(units, fits, index, shared):
@@ -93,7 +93,7 @@ def _between(units, fits, index, shared):
     for session in range(len(within) if len(within) > 2 else 0):
         apart = [(*between_sessions.held_out(unit, session), point) for unit, point in between]
         others = within[:session] + within[session + 1:] + [
-            coefficient_fits.fit(rest, rest.statistics(), shared) for _, rest, _ in apart]
+            gap_figures.fit(rest, rest.statistics(), shared) for _, rest, _ in apart]
         for own, _, point in apart:
             yield own, point, others
 
@@ -105,7 +105,7 @@ def _drawn(unit, fit, point, largest, generator, drawn):
     nats = fit.course[points, 0]
     likely = np.exp(nats - nats.max())
     numbers = generator.multinomial(drawn, likely / likely.sum())
-    levels = excess.usual_levels([unit] * len(points), points, largest)
+    levels = gap_figures.usual_levels([unit] * len(points), points, largest)
     return np.hstack([unit.draw(level, generator, number)
                       for level, number in zip(levels, numbers) if number])
 

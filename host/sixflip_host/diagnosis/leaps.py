@@ -7,7 +7,7 @@ import numpy as np
 from scipy import special
 
 from ..experiment import long_rest
-from ..experiment.flicker import flicker_kernel
+from ..experiment.noise_arrays import flicker_kernel
 from . import adequacy
 
 # s of the short means whose steps are looked at; steps that their tails are known from; steps that

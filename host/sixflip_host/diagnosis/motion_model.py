@@ -71,7 +71,7 @@ class MotionGap:
 
     @property
     def shrinkage(self):
-        """gap_share.Shrinkage, or None where nothing is found."""
+        """gap_figures.Shrinkage, or None where nothing is found."""
         return self.held and self.held.shrinkage
 
     def with_effect(self, name):

@@ -8,6 +8,7 @@ spectrum for each kind of move of each session, along each direction, from the m
 (moves_unit.spectra).
 """
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -161,8 +162,7 @@ def _apart(gram, inner, theta, hands):
         nats.append(0.5 * (gained - np.linalg.slogdet(inside)[1]))
     apart = np.zeros(len(hands))
     for kind in (hands, ~hands):
-        if kind.any():
-            apart[kind] = CENTRES_CM[int(np.sum(np.array(nats)[:, kind], axis=1).argmax())]
+        apart[kind] = CENTRES_CM[int(np.sum(np.array(nats)[:, kind], axis=1).argmax())]
     return apart
 
 
@@ -206,13 +206,11 @@ def _settled(gram, inner, wide, shared, sessions):
     bends = np.arange(shared - inertial_fit.BENDS, shared)
     courses = shared + np.flatnonzero(np.tile(np.arange(local) >= 3, sessions))
     tried = []
-    for bent in BENT:
-        for wandered in WANDERED:
-            prior = wide.copy()
-            prior[bends] *= bent
-            prior[courses] *= wandered
-            tried.append((_evidence(gram, inner, prior), -len(tried), prior))
-    return max(tried, key=lambda candidate: candidate[:2])[2]
+    for bent, wandered in product(BENT, WANDERED):
+        tried.append(wide.copy())
+        tried[-1][bends] *= bent
+        tried[-1][courses] *= wandered
+    return max(tried, key=lambda prior: _evidence(gram, inner, prior))
 
 
 def solved(gram, inner, prior):
@@ -236,15 +234,13 @@ def without_each(gram, inner, prior):
 
 def _weighted(gram, inner, theta):
     """(weights (moves,), mean excess): how well each move's effects agree with all others'."""
-    part = gram[:, :4, :4]
     left = inner[:, :4] - gram[:, :4] @ theta
-    values, vectors = np.linalg.eigh(part)
+    values, vectors = np.linalg.eigh(gram[:, :4, :4])
     keep = values > 1e-9 * np.maximum(values[:, -1:], 1e-30)
     turned = np.einsum("jab,ja->jb", vectors, left)
     q = (np.where(keep, turned ** 2 / np.where(keep, values, 1.0), 0.0)).sum(axis=1)
-    rank = keep.sum(axis=1)
-    weights = (FREEDOM + rank) / (FREEDOM + q)
-    return weights, max(float((weights * q).sum() / rank.sum()), 1.0)
+    weights = (FREEDOM + keep.sum(axis=1)) / (FREEDOM + q)
+    return weights, max(float((weights * q).sum() / keep.sum()), 1.0)
 
 
 def _evidence(gram, inner, prior):

@@ -1,10 +1,19 @@
-"""From log likelihoods to probabilities: the same few lines for every hypothesis, whether it is
-made of columns, of a level of noise or of a likelihood over samples.
+"""From log likelihoods to probabilities, the same few lines for every hypothesis, whether it is
+made of columns, of a level of noise or of a likelihood over samples; and from those to the
+verdict.
 
 Hypotheses for one place stand beside "", that nothing is there. Each but that one costs its prior
 odds: how rare it is that chance alone gains so much in a search (cutoffs.py).
+
+The verdict is a table of four rows on three probabilities, and what holds in none of them:
+
+named      that at least one effect with a name is there
+nameless   that something is there which no name of the library stands for
+told       of what is named: whether it is known where it comes from; of nothing: whether the
+           capture could have shown most of what it is asked about
 """
 import math
+from dataclasses import dataclass
 from statistics import NormalDist
 
 from ..experiment.terms import is_stranger
@@ -19,6 +28,14 @@ BESIDE = 2.0  # readings with one cause for one with two: less can be told by wh
 ENDS_90 = 0.05, 0.95  # quantiles between which 90 % lies
 Z_90 = NormalDist().inv_cdf(0.95)  # standard deviations to either end of a 90 % interval
 SMALLEST = 1e-300  # of a probability: what a float holds
+LIKELY = 0.5  # likelier than not
+CLOSED, UPPER_END = 0.9, 0.95  # share of a gap that is all of it; of a 90 % interval, one-sided
+ROWS = (  # named, nameless, told: verdict
+    (False, True, None, "unexplained"),
+    (True, True, None, "partly explained"),
+    (True, False, True, "explained"),
+    (False, False, True, "no gap"))
+OTHERWISE = "cannot tell"
 
 
 def shares(scores):
@@ -55,3 +72,46 @@ def chance(nats):
     mean of one without an effect, so it exceeds exp(nats) with probability exp(-nats) at most
     [Markov's inequality; Royall, Statistical Evidence (1997), section 1.4]."""
     return max(math.exp(-max(nats, 0.0)), SMALLEST)
+
+
+@dataclass(frozen=True)
+class Claim:
+    """probability that one of a class of names is there; told: they all show themselves in one
+    domain, and the share of the gap that goes with them is known; nameless: probability that what
+    stands in its place has no name."""
+
+    probability: float
+    told: bool
+    nameless: float = 0.0
+
+
+def decide(claims, nameless, seen):
+    """The verdict. claims: list of Claim; nameless: probabilities of strangers, of residuals
+    beyond noise and of all else without a name; seen: whether a gap could have been seen."""
+    named = any_of([c.probability for c in claims])
+    strange = any_of([*nameless, *(c.nameless for c in claims)])
+    told = any(c.told for c in claims) if named > LIKELY else seen
+    for row_named, row_strange, row_told, verdict in ROWS:
+        if (row_named, row_strange) == (named > LIKELY, strange > LIKELY) \
+                and row_told in (None, told):
+            return verdict
+    return OTHERWISE
+
+
+def any_of(probabilities):
+    """Largest probability: the tests look at the same samples, and are not independent."""
+    return max(probabilities, default=0.0)
+
+
+def not_closed(interval):
+    """Probability that a tenth of the gap and more stays where what was named is taken off: that
+    of the upper end of the share's interval, where that lies below (GAP's targets: at least 0.90
+    of the explainable gap is closed). interval: (low, high) of the share, or None."""
+    return UPPER_END if interval and interval[1] < CLOSED else 0.0
+
+
+def of_gap(gap):
+    """[probability] of what has no name in a sensor_gap.SensorGap: the strangers of the likeliest
+    set, each in its place; and what is left, where it is more than noise."""
+    strange = [1.0 - gap.posterior.places[form.effect].get("", 0.0) for form in gap.strangers]
+    return strange + ([] if gap.adequacy.ok else [1.0 - gap.adequacy.p])

@@ -15,10 +15,9 @@ from . import (
     adequacy,
     aliases,
     between_sessions,
-    coefficient_fits,
     cutoffs,
     effect_estimates,
-    excess,
+    gap_figures,
     hypotheses,
     leaps,
     members,
@@ -78,7 +77,7 @@ class RestCause:
 @dataclass(frozen=True)
 class RestGap:
     """One sensor: kind, rest (LongRest), causes (tuple of RestCause), places (tuple of Place),
-    nameless (probabilities that something without a name is there), sums (one gap_share.Sums
+    nameless (probabilities that something without a name is there), sums (one gap_figures.Sums
     an axis), looked_at (names of effects)."""
 
     kind: str
@@ -91,12 +90,12 @@ class RestGap:
 
     @property
     def shrinkage(self):
-        """gap_share.Shrinkage of the three axes together."""
+        """gap_figures.Shrinkage of the three axes together."""
         return sum(self.sums[1:], self.sums[0]).shrinkage(self._named)
 
     @property
     def by_axis(self):
-        """{"x": gap_share.Shrinkage, ...}"""
+        """{"x": gap_figures.Shrinkage, ...}"""
         return {k: sums.shrinkage(self._named) for k, sums in zip("xyz", self.sums)}
 
     @property
@@ -136,7 +135,7 @@ def _sensor(rest, kind, chip, settings, jumps):
     """RestGap: posterior, classes, adequacy, held-out figures."""
     progress.doing("the %s at rest" % ("gyro" if kind == "gyro" else "accelerometer"))
     units = rest_units.axis_units(rest, kind, chip, settings)
-    data = coefficient_fits.data_of(units)
+    data = gap_figures.data_of(units)
     flicker, reference = adequacy.usual(chip, kind), settings.reference.get(kind)
     levels = rest_units.levels(rest, kind, flicker if reference is None else max(
         reference, flicker / 4.0), reference is not None)
@@ -197,8 +196,8 @@ def _told(cause, data, fits, chip, kind, chosen, place):
     if place.get(SETTLED, 0.0) > 1.0 - HOLDS:
         names = [*names, "drift", *(["table_tilt"] if kind == "accel" else [])]
     rest = [form for form in chosen if form not in cause.chosen]
-    share = excess.share(data.units, data.statistics, fits.index, (rest, fits.index),
-                         (chosen, fits.index))
+    share = gap_figures.excess_share(data.units, data.statistics, fits.index, (rest, fits.index),
+                                     (chosen, fits.index))
     return RestCause(tuple(dict.fromkeys(names)), dict(place), cause.score, cause.value,
                      cause.interval, cause.unit, cause.plausible, share,
                      terms.DOMAIN[cause.effect], cause.variant, cause.shape)
@@ -246,6 +245,6 @@ def _drift(posterior, units, data, levels, kind, chosen, index, leaps):
             interval[key] = (low * FLOOR_OF_KERNEL, high * FLOOR_OF_KERNEL)
     if not value:
         return []
-    share = excess.share_of_drift(units, data.statistics, posterior.best, chosen, index, levels)
+    share = gap_figures.drift_share(units, data.statistics, posterior.best, chosen, index, levels)
     return [RestCause(("drift",), dict(posterior.places["drift"]), posterior.gains["drift"], value,
                       interval, "mg" if kind == "accel" else "deg/s", True, share, "time")]

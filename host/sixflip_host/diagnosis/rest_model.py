@@ -11,9 +11,9 @@ from . import (
     aliases,
     between_sessions,
     box_tilt_test,
-    coefficient_fits,
     cutoffs,
     evidence,
+    gap_figures,
     holdout_gain,
     hypotheses,
     leaps,
@@ -89,7 +89,7 @@ class RestModel:
         the set that was found at other poses."""
         units = [self.unit(*part, self.settings.certified) for part in parts]
         units += self.between(units, parts)
-        data = coefficient_fits.data_of(units)
+        data = gap_figures.data_of(units)
         options = hypotheses.by_fleet(
             hypotheses.forms_of(units, self.settings.without, self.drifts), self.kind,
             self.settings.prior)
@@ -169,8 +169,8 @@ class RestModel:
             parts = holdout_gain.halves(self.kind, *gap.parts[0], certified)
             if parts:
                 wanted = hypotheses.columns_of(gap.chosen).index
-                data = coefficient_fits.data_of([self.unit(*part, certified, wanted)
-                                              for part in parts])
+                data = gap_figures.data_of([self.unit(*part, certified, wanted)
+                                            for part in parts])
                 index, private = gap.halved_levels(data), None
         return replace(gap, shrinkage=holdout_gain.shrinkage(
             data, gap.chosen, index, gap.noise, gap.wanders, private))

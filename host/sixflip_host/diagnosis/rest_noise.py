@@ -1,14 +1,14 @@
 """What a sensor reads at rest and how it is noisy: bias, N, B, K and the Allan deviation.
 
 For recordings of rests without poses, a gyro's alone among them. N, B and K are those of
-experiment/noise_spectrum.py; a drift with temperature that is found beside them is in B and K.
+experiment/signal_measures.py; a drift with temperature that is found beside them is in B and K.
 """
 from dataclasses import dataclass
 
 import numpy as np
 
 from .. import progress
-from ..experiment import long_rest, noise_spectrum, signal_measures
+from ..experiment import long_rest, signal_measures
 from ..json_numbers import number, spelled
 from . import odds
 
@@ -50,7 +50,7 @@ def noise_by_sensor(sessions):
         progress.doing("the noise of the %s" % sensor)
         longest = max(rests, key=len)
         walks = len(longest) >= WALK_S * rate
-        each = [noise_spectrum.levels([x[:, axis] for x in rests], rate, walks)
+        each = [signal_measures.noise_levels([x[:, axis] for x in rests], rate, walks)
                 for axis in range(3)]
         levels = {name: tuple(of_axis[k] for of_axis in each) for k, name in enumerate(NAMES)
                   if all(of_axis[k] is not None for of_axis in each)}

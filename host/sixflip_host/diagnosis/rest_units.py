@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..experiment import covariance, linear_model, long_rest, nominal_rows
-from ..experiment.flicker import flicker_kernel
-from . import adequacy, between_sessions, evidence, gap_share, rest_forms, sway
+from ..experiment.noise_arrays import flicker_kernel
+from . import adequacy, between_sessions, evidence, gap_figures, rest_forms, sway
 
 # Levels tried: of the offset from one rest to the next from what it is where nothing was moved
 # up, about half a decade apart: beyond flicker that is the Allan floor of the parts
@@ -109,7 +109,7 @@ def _switched_on(rest, kind):
 
 
 def held_out(rest, unit, chosen, index, levels):
-    """gap_share.Sums of one axis over the folds: pieces of the rests, every FOLDS-th of them
+    """gap_figures.Sums of one axis over the folds: pieces of the rests, every FOLDS-th of them
     foretold by the others, all means with one weight. The floor is that of noise that wanders no
     more than a chip may, in rests that lie as they may; what wanders more is a gap that nothing
     foretells."""
@@ -123,7 +123,7 @@ def held_out(rest, unit, chosen, index, levels):
     x = unit.raw(columns)
     # How a box lies is each rest's own. So is a session's bias, where it changes by more than is
     # usual, or where its other rests tell it.
-    pieces, total = _pieces(rest.rest), gap_share.NOTHING
+    pieces, total = _pieces(rest.rest), gap_figures.NOTHING
     own = rest.session * (placement > offset or _several(rest))
     if offset > unit.grid[0][0] and len(np.unique(pieces)) > len(np.unique(rest.rest)):
         own = rest.rest
@@ -136,9 +136,9 @@ def held_out(rest, unit, chosen, index, levels):
         z = plain @ y
         d = z - _foretelling(constants, x, prior, noise, train, held) @ y
         scatter = plain @ noise @ plain.T
-        total = total + gap_share.Sums(
+        total = total + gap_figures.Sums(
             float(z @ z), float((z - d) @ (z - d)), float(np.trace(plain @ quiet @ plain.T)),
-            float(held.sum()), gap_share.spread(
+            float(held.sum()), gap_figures.spread(
                 2.0 * float((scatter ** 2).sum()), float(z @ scatter @ z),
                 float(d @ scatter @ z), float(d @ scatter @ d)))
     return total

@@ -14,22 +14,25 @@ from ..capture import registers
 from . import localisation, odds
 from .detect import (
     axis_order,
+    byte_faults,
     codes,
     dead_band,
-    hand_tremor,
     held_values,
     line_across_rests,
     missing_rows,
     noise_bursts,
     noise_shape,
+    rest_parts,
     rest_spectra,
-    ringing,
+    row_order,
     sample_clock,
     saturation,
+    shake_detector,
     spectral_lines,
     spikes,
     stuck_axes,
     torn_reads,
+    unread_rows,
     wrong_scale,
 )
 from .detect.detection import agreed_by_axis, present
@@ -43,6 +46,16 @@ SLOW_HZ = 1.0  # of a line that the means of rests have something of
 SCALES = ("full_scale", "gravity")  # damages that every reading of a sensor has
 SENSOR = registers.SENSORS
 ALONE = Settings()
+
+
+def without_damage(captures, processors=1):
+    """([(name, Capture)] without their damage, [Damage]). The captures given are not changed;
+    processors: that captures share."""
+    captures, disordered = row_order.as_read(captures)
+    captures, unread = unread_rows.as_read(captures)
+    captures, held = held_values.as_read(captures)
+    captures, bytes_mended = byte_faults.repaired(captures, processors)
+    return captures, [*disordered, *unread, *held, *bytes_mended]
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,12 +178,12 @@ def _without_lines(session, findings):
 def _of_spectra(sessions):
     """(what rings after it was put down, tones that wander, Findings of lines beside that, what is
     said of a hand)."""
-    rings = ringing.ringing_axes(sessions)
+    rings = rest_parts.ringing_axes(sessions)
     tones = [(sensor, *tone) for sensor in SENSOR for tone in rest_spectra.wandering_tones(
         sessions, sensor)]
     lines = spectral_lines.findings(sessions, *([found[:2] for found in of]
                                                 for of in (rings, tones)))
-    return rings, tones, *hand_tremor.without(lines, sessions)
+    return rings, tones, *shake_detector.without_tremor(lines, sessions)
 
 
 def _of_whole_axes(sessions):

@@ -4,10 +4,9 @@ from functools import cached_property
 
 from . import (
     adequacy,
-    coefficient_fits,
     effect_estimates,
     evidence,
-    excess,
+    gap_figures,
     holdout_gain,
     hypotheses,
     members,
@@ -89,8 +88,8 @@ class SensorGap:
 
     @cached_property
     def fits(self):
-        """[coefficient_fits.Fit] of the chosen Forms' columns in each unit."""
-        return coefficient_fits.fits(self.data, self.shared)
+        """[gap_figures.Fit] of the chosen Forms' columns in each unit."""
+        return gap_figures.fits(self.data, self.shared)
 
     @property
     def shared(self):
@@ -100,7 +99,7 @@ class SensorGap:
     def coefficients(self, held=None):
         """(k,) of the chosen Forms' columns, by all units or by those but one that is held out."""
         others = self.fits if held is None else self.fits[:held] + self.fits[held + 1:]
-        return coefficient_fits.coefficients(others or self.fits, self.shared)[0][0]
+        return gap_figures.coefficients(others or self.fits, self.shared)[0][0]
 
     @property
     def wanders(self):
@@ -115,7 +114,7 @@ class SensorGap:
         """Index into each unit's grid: levels that the data shows with all that was found."""
         if data is None or data is self.data:
             return list(self.adequacy.index)
-        fits = coefficient_fits.fits(data, NONE)
+        fits = gap_figures.fits(data, NONE)
         return [int(f.index[0]) for f in fits]
 
     def halved_levels(self, data):
@@ -130,8 +129,8 @@ class SensorGap:
                                  if f not in self.chosen)]
         for cause in causes:
             rest = [form for form in every if form not in cause.chosen]
-            share = excess.share(data.units, data.statistics, index, (rest, index),
-                                 (every, index))
+            share = gap_figures.excess_share(data.units, data.statistics, index, (rest, index),
+                                             (every, index))
             sized.append(effect_estimates.sized(cause, data, index, self.chip, self.kind, share))
         return sized
 

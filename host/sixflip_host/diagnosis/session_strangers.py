@@ -3,7 +3,7 @@ periodic, a course in time, or of a scale in time.
 """
 import numpy as np
 
-from ..experiment import flicker
+from ..experiment import noise_arrays
 from ..experiment.terms import Design
 from .strangers import SCALE, hats, smooth
 
@@ -157,5 +157,5 @@ def roughness(variant):
 def walk(session, scale):
     """Design of the library's drift as a random walk of each axis, which ends `scale` off on
     average. A session of its own choice."""
-    return smooth("drift", flicker.walk(session.t, WALK), session.n, scale, "walk",
+    return smooth("drift", noise_arrays.walk(session.t, WALK), session.n, scale, "walk",
                    [tuple(range(3 * WALK))])

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import linalg
 
-from ..experiment.flicker import flicker_kernel
+from ..experiment.noise_arrays import flicker_kernel
 from ..experiment.projection import lateral_basis
 from . import odds
 

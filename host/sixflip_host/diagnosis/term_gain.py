@@ -10,7 +10,7 @@ from sixflip.record.correction import correction_of
 from .. import record_terms
 from ..experiment import attitude_fit, nominal_rows
 from ..export.corrected_rows import corrected_rows
-from . import coefficient_fits, holdout_gain, turn_model
+from . import gap_figures, holdout_gain, turn_model
 
 
 def corrected(session, record):
@@ -30,7 +30,7 @@ def corrected(session, record):
 @dataclass(frozen=True, eq=False)
 class Gains:
     """What is left of the parts held out: gap, record; parts [(whole Session, its placements or
-    None for all)], none where there is nothing to hold out; data (coefficient_fits.Data) with one
+    None for all)], none where there is nothing to hold out; data (gap_figures.Data) with one
     unit for each; floor: RMS a contrast of noise alone, mg or deg/s."""
 
     gap: object
@@ -75,7 +75,7 @@ def gains(gap, record, certified):
         if not halves:
             return Gains(gap, record, certified, [], data, 0.0)
         parts = [(session, set(p.placement.tolist())) for p, _ in halves]
-        data = coefficient_fits.data_of([gap.unit(p, m, certified) for p, m in halves])
+        data = gap_figures.data_of([gap.unit(p, m, certified) for p, m in halves])
         index = gap.halved_levels(data)
     held = Gains(gap, record, certified, parts, data, 0.0)
     energy = sum(u.noise_energy(*u.grid[k]) for u, k in zip(held.units, index))

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..experiment import nominal_rows
-from ..experiment.flicker import differences
-from ..experiment.noise_spectrum import HALF_OF_90
-from . import adequacy, evidence, excess, hypotheses, strangers
+from ..experiment.noise_arrays import flicker_differences
+from ..experiment.signal_measures import HALF_OF_90
+from . import adequacy, evidence, gap_figures, hypotheses, strangers
 from .elimination import NONE
 
 # Nats that a drift has for it at most from what it does within the rests: beyond doubt (odds.COST
@@ -50,8 +50,8 @@ def drift(kind, sessions, units, data, noise, posterior, fitted, chosen):
         spread, whole = (3.0 / len(axes)) ** 0.5, level
         level = _level_of(axes, left, levels) * _share_of(axes, kind, sessions)
         low, high = (level * (end / whole) ** spread for end in (low, high))
-    share = excess.share_of_drift(units, data.statistics, posterior.best, chosen, fitted.index,
-                                  noise)
+    share = gap_figures.drift_share(units, data.statistics, posterior.best, chosen, fitted.index,
+                                    noise)
     return Drift(level, low, high, posterior.gains["drift"], share,
                  tuple("xyz"[k] for k in axes))
 
@@ -157,7 +157,7 @@ def within_rests(part, kind, explained, size, flicker):
         return np.zeros(3)
     difference, gap = np.diff(values, axis=0)[same], np.diff(part.t)[same]
     over = noise[None] ** 2 * (1.0 / part.seconds[same] + 1.0 / part.seconds[same + 1])[:, None]
-    over = over + flicker ** 2 * differences(gap, gap)[:, None]
+    over = over + flicker ** 2 * flicker_differences(gap, gap)[:, None]
     # Two neighbouring means over g seconds of a walk of rate q differ by 2/3 q g.
     more = (size ** 2 / max(float(np.ptp(part.t)), 1.0) * gap * 2.0 / 3.0)[:, None] + over
     # What is smooth in time changes alike in one rest and the next, and is in the slow terms.

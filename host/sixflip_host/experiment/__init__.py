@@ -4,15 +4,12 @@ blocks, session (block_measures, thermometer, way_memory)
                           a capture cut into rests and moves; what is measured of each part
 attitude_fit              which way each placement lay
 turns, inertial_fit       how the gyro turned in a move, and what the accelerometer read in it
-long_rest, noise_spectrum rests in one attitude, and the noise in them
-session_rows              the moments of a session that is only planned
-nominal_rows, covariance (flicker)
+long_rest                 rests in one attitude
+nominal_rows, covariance
                           rest readings as rows: what is unknown in them, and how they err
-terms, session_terms, fleet_prior
-                          the columns of every effect, its variants that rests can show, and what a
-                          fleet knows of their sizes
+terms, session_terms      the columns of every effect, and its variants that rests can show
 linear_model (gram, factored_gram)
                           rows and columns reduced to what all later questions need
 projection, signal_measures, noise_arrays
-                          the arithmetic of columns, of recordings and of noise
+                          least squares on columns, measures of recordings, and noise
 """

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import lapack
 
-from .flicker import ALL_TIMES_S, flicker_kernel
+from .noise_arrays import ALL_TIMES_S, flicker_kernel
 
 AT_A_TIME = 512  # whitened rows that are there at once: memory, not time
 # Time alone decides these two (python -m tests.studies.bench.diagnose_cost --cores 1).

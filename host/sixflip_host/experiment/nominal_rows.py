@@ -13,7 +13,7 @@ import numpy as np
 
 from sixflip_sim.effects import typical
 
-from . import block_measures, covariance, flicker
+from . import block_measures, covariance, noise_arrays
 from .attitude_fit import face_axes
 from .projection import across_blocks, lateral_basis
 
@@ -221,7 +221,7 @@ def _walk(session):
     1."""
     chip = typical.chip_of(session.capture.meta["sensor"], "gyro")
     size = typical.WALK[chip] * np.sqrt(np.ptp(session.t))
-    return size * np.kron(np.stack(flicker.walk(session.t, WALK_TERMS), 1), np.eye(3))
+    return size * np.kron(np.stack(noise_arrays.walk(session.t, WALK_TERMS), 1), np.eye(3))
 
 
 def _gyro_rows(session, nominal):

@@ -1,15 +1,26 @@
-"""Columns of functions, and what some columns leave of others: projection, ranks, alias index.
+"""Least squares on columns: what some columns leave of others (projection, ranks, alias index),
+and the regression of a sensor's three channels at once.
 
 The signature of an effect is its columns (one a coefficient) after the nominal parameters have
 been projected out; an effect without anything left is silent. The alias index A(a|b) =
 |P_b S_a|^2 / |S_a|^2 is the share of a's signature that b can reproduce, averaged over a's
 coefficients with equal weight.
+
+The regression has coefficients of each channel's own and coefficients that they share, with
+priors, and the noise of each channel by maximum likelihood [Bishop, Pattern Recognition and
+Machine Learning (2006), section 3.5].
 """
 import numpy as np
 
 # Of the largest singular value, or of the energy before projection: rounding leaves 1e-29 of the
 # energy of an effect that is silent, the weakest signature in any of the named protocols 5e-4.
 NEGLIGIBLE = 1e-9
+ROUNDS = 4  # of the noise of each channel: more change the evidence by some thousandths of a nat
+LEAST_LEFT = 1e-9  # of a variance, (m/s2)2 or (rad/s)2: a simulator without noise has none
+MOST_ROWS = 4000  # of a log that a fit looks at; each stands for those around it
+# Stretches of a log, each of them one observation of what its coefficients are worth: a standard
+# error by twenty is known to a sixth, and of a minute's log each holds about one move.
+STRETCHES = 20
 
 
 def lateral_basis(axis):
@@ -87,3 +98,88 @@ def alias_matrix(signatures):
     table = np.array([[((spaces[b].T @ signatures[a]) ** 2).sum() / (signatures[a] ** 2).sum()
                        for b in names] for a in names])
     return names, table.reshape(len(names), len(names))
+
+
+def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,
+               covariance=False, residuals=True, every=1):
+    """Linear regression of y (n, 3) = own (n, p) · beta of each channel + columns (n, 3, k) ·
+    shared, with priors own_sd (p,) or (3, p) about 0 and sd (k,) about mean (k,). every: of how
+    many rows each of the n is one.
+
+    Returns (log evidence, own coefficients (3, p), shared (k,), its sigma (k,), residuals (n, 3),
+    sigma of the own coefficients (3, p)); with covariance also that of the shared ones (k, k).
+    Without residuals these are None, and what they cost on every row is saved.
+    """
+    n, p = own.shape
+    k = columns.shape[2]
+    weight = np.ones(n) if rows is None else 1.0 / rows
+    raw, fewer = (y, own, columns), max(1, n // MOST_ROWS) if every == 1 else 1
+    weight, y, own, columns = (x[::fewer] for x in (weight, y, own, columns))
+    n, k_rows = n * every, every * fewer
+    y = y - columns @ mean
+    y, own, columns = y * weight[:, None], own * weight[:, None], columns * weight[:, None, None]
+    columns = np.ascontiguousarray(columns.transpose(1, 0, 2))  # of each channel: products' speed
+    size = 3 * p + k
+    prior = np.concatenate([np.broadcast_to(own_sd, (3, p)).ravel(), sd])
+    variance = np.maximum((y - y.mean(axis=0)).var(axis=0), LEAST_LEFT)
+    gram_own = own.T @ own * k_rows
+    cross = [own.T @ channel * k_rows for channel in columns]
+    gram_shared = [channel.T @ channel * k_rows for channel in columns]
+    right_own = (own.T @ y * k_rows).T
+    right_shared = [channel.T @ y[:, c] * k_rows for c, channel in enumerate(columns)]
+    power, looked = (y ** 2).sum(axis=0) * k_rows, len(y) * k_rows
+    for _ in range(ROUNDS):
+        gram, right = np.diag(1.0 / prior ** 2), np.zeros(size)
+        for c in range(3):
+            if not live[c]:
+                continue
+            w = 1.0 / (variance[c] * inflation)
+            a = slice(c * p, (c + 1) * p)
+            gram[a, a] += w * gram_own
+            gram[a, 3 * p:] += w * cross[c]
+            gram[3 * p:, a] += w * cross[c].T
+            gram[3 * p:, 3 * p:] += w * gram_shared[c]
+            right[a] += w * right_own[c]
+            right[3 * p:] += w * right_shared[c]
+        scale = np.sqrt(np.diag(gram))
+        solved = np.linalg.solve(gram / np.outer(scale, scale), right / scale) / scale
+        beta, shared = solved[:3 * p].reshape(3, p), solved[3 * p:]
+        # What is left, from the products: the rows themselves are gone through once, at the end.
+        explained = [b @ (2.0 * own_c - gram_own @ b - 2.0 * cross_c @ shared)
+                     + shared @ (2.0 * right_c - gram_c @ shared)
+                     for b, own_c, cross_c, right_c, gram_c in zip(
+                         beta, right_own, cross, right_shared, gram_shared)]
+        variance = np.maximum((power - explained) / looked, LEAST_LEFT)
+    left = y - own @ beta.T - (columns @ shared).T
+    variance = np.maximum((left ** 2).mean(axis=0), LEAST_LEFT)
+    effective = n / inflation
+    log = -0.5 * effective * np.log(variance[live]).sum()
+    log -= 0.5 * ((solved / prior) ** 2).sum()
+    log -= 0.5 * np.linalg.slogdet(gram * np.outer(prior, prior))[1]
+    inverse = np.linalg.inv(gram)
+    sigma = np.sqrt(np.maximum(np.diag(inverse), 0.0))
+    shared = shared + mean
+    if residuals:
+        sigma = np.maximum(sigma, scattered(inverse, left, own, columns, k_rows / (
+            variance * inflation), live))
+        y, own, columns = raw
+        left = y - own @ beta.T - columns @ shared
+    result = (log, beta, shared, sigma[3 * p:], left if residuals else None,
+              sigma[:3 * p].reshape(3, p))
+    return result + (inverse[3 * p:, 3 * p:],) if covariance else result
+
+
+def scattered(inverse, left, own, columns, weights, live):
+    """Standard errors (3 p + k,) of the coefficients by how much stretches of the log disagree on
+    them: what a robot does besides is another thing in each of its moves, of no steady size
+    [Liang & Zeger, Biometrika 73 (1986), 13, equation 8]. weights (3,): of a channel's samples."""
+    n, p = own.shape
+    edges = np.linspace(0, n, STRETCHES, endpoint=False).astype(int)
+    parts = []
+    shared = 0.0
+    for c in range(3):
+        score = weights[c] * left[:, c:c + 1] * live[c]
+        parts.append(np.add.reduceat(own * score, edges, axis=0))
+        shared = shared + np.add.reduceat(columns[c] * score, edges, axis=0)
+    pulls = np.concatenate([*parts, shared], 1) @ inverse
+    return np.sqrt(STRETCHES / (STRETCHES - 1.0) * (pulls ** 2).sum(axis=0))

@@ -1,7 +1,7 @@
 """Noise, bias and step of a sensor out of one capture, in SI units.
 
 All from rests, so that the hand is not in it. N, B and K, each with a 90 % interval, are the
-likeliest in the spectra of the rests (experiment/noise_spectrum.py); the random walk from a
+likeliest in the spectra of the rests (experiment/signal_measures.py); the random walk from a
 rest of a minute or more. A capture that calibrates the board says what it reads when nothing
 acts; a log of one long rest says that of the gyro, and of the accelerometer how it is noisy and
 no more.
@@ -90,8 +90,8 @@ def _triad(capture, counts, still, lsb, unit, matrix, bias):
     rate = capture.meta["rate_hz"]
     parts = [counts[a:b] / lsb for a, b in still]
     longest = max(len(x) for x in parts) / rate
-    from ..experiment import noise_spectrum  # scipy takes its time
-    of_axes = [noise_spectrum.levels([x[:, axis] for x in parts], rate, longest >= WALK_S)
+      # scipy takes its time
+    of_axes = [signal_measures.noise_levels([x[:, axis] for x in parts], rate, longest >= WALK_S)
                for axis in range(3)]
     constant = ["xyz"[axis] for axis, one in enumerate(of_axes) if one[0] is None]
     if constant:

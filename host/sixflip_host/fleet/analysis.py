@@ -16,7 +16,7 @@ from sixflip import __version__
 
 from ..calibrate import verification, verify_files
 from ..capture.registers import SENSORS
-from ..diagnosis import usable_rests
+from ..diagnosis import rests_judged
 from ..errors import BadFile, SixflipError, internal_error
 from ..value_kinds import LONGEST_TEXT
 from . import diagnosed, effects, parameters, sources, summary_file
@@ -157,7 +157,7 @@ def _judged(kept, remarks, options=None):
         answered, rests, gaps = diagnosed.diagnose_board(kept, sessions)
         columns["gap"] = json.dumps(answered, allow_nan=False)
     if not gaps:
-        rests = usable_rests.select(sessions, [], [])
+        rests = rests_judged.usable_rests(sessions, [], [])
     told, said = effects.information(rests, chip, gaps)
     for sensor, told_of in told.items():
         upper = np.triu_indices(len(told_of.score))

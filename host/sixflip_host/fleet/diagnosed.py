@@ -5,7 +5,7 @@ Turns and motion need the samples of the moves, so they are not looked at, and t
 of the rests.
 """
 from ..capture.registers import SENSORS
-from ..diagnosis import answer, diagnosis, localisation, samples_judged, usable_rests
+from ..diagnosis import answer, diagnosis, localisation, rests_judged, samples_judged
 from ..diagnosis.detect.detection import Finding
 from ..diagnosis.rest_model import RestModel
 from ..diagnosis.settings import Conditions, Settings
@@ -25,7 +25,7 @@ def diagnose_board(kept, sessions, settings=None):
     scaled = any(one.about["samples"]["scaled"] for one in kept)
     # Rests on a rail were left out when the summaries were made.
     sound = [f for f in findings if f.effect != "saturation"]
-    rests = usable_rests.select(sessions, sound, [], scaled)
+    rests = rests_judged.usable_rests(sessions, sound, [], scaled)
     conditions = Conditions(rests.reference_c, any(
         f.sensor == "accel" and f.effect in samples_judged.COARSE for f in findings), {
         f.sensor: ["xyz".index(a) for a in f.axes] for f in findings if f.effect == "vibration"})

@@ -16,7 +16,7 @@ from ..capture import rests
 from ..capture.capture_file import Capture
 from ..capture.find_poses import find_poses
 from ..diagnosis import samples_judged
-from ..diagnosis.detect import damage_taken_out, saturation
+from ..diagnosis.detect import saturation
 from ..experiment import blocks, thermometer
 from ..experiment.session import OF_BLOCKS, Session, fading
 
@@ -139,7 +139,7 @@ class Summary:
 
 def summarise(name, capture):
     """Summary of a capture with samples, less its damage; the capture itself is not changed."""
-    ((_, capture),), damages = damage_taken_out.taken_out([(name, capture)])
+    ((_, capture),), damages = samples_judged.without_damage([(name, capture)])
     solved = solution.solve(copy.copy(capture))
     labelled = capture.pose is not None
     placed = capture if labelled else _with_poses(capture)

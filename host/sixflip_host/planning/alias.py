@@ -1,6 +1,6 @@
 """The nominal model of a planned capture, and what it leaves of each effect: its signature.
 
-Everything is linear algebra on the rows of a plan (experiment/session_rows.py). Signatures, silent
+Everything is linear algebra on the rows of a plan (protocols.py). Signatures, silent
 effects and the alias index between two signatures are defined in experiment/projection.py.
 """
 from dataclasses import dataclass
@@ -13,8 +13,8 @@ from sixflip_sim.effects.library import EFFECTS
 
 from ..experiment import terms
 from ..experiment.projection import NEGLIGIBLE, basis, by_axis, rank, without
-from ..experiment.session_rows import Rows
 from . import protocols
+from .protocols import Rows
 
 # Which effects have a signature in rests and turns; the order is that of the printed table.
 ACCEL = ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic",
@@ -26,12 +26,12 @@ GYRO = ("thermal_bias", "thermal_scale", "warm_up", "thermal_rate", "quadratic",
 # below the 1 g that a face reads, a vibration. A signature does not depend on their sizes.
 SHAPES = {"supply": {"volts": 3.4}, "saturation": {"level": 0.95},
           "vibration_rectification": {"vibration_mg": protocols.SHAKE_MG}}
-GYRO_SHAPES = {"saturation": {"level": 50.0}}  # deg/s, below session_rows.FLIP_DPS
+GYRO_SHAPES = {"saturation": {"level": 50.0}}  # deg/s, below protocols.FLIP_DPS
 
 
 @dataclass(frozen=True, eq=False)
 class PlannedModel:
-    """Nominal columns of one sensor for the rows (session_rows.Rows) of a plan, and the signatures
+    """Nominal columns of one sensor for the rows (protocols.Rows) of a plan, and the signatures
     of the effects beside them.
 
     sensor "accel": a 3x3 matrix common to all sessions; a bias, the table's tilt (unless tilt is

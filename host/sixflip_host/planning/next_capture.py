@@ -5,9 +5,9 @@ import numpy as np
 from sixflip.poses import faces
 
 from ..experiment import projection
-from ..experiment.session_rows import rows_of
 from . import alias, protocols
 from .plan_findings import SAME_CLASS
+from .protocols import rows_of
 
 MOST_MINUTES = 10.0  # of a capture that somebody is asked for, by hand (GAP stage 7)
 WORDS = {
@@ -38,7 +38,7 @@ def present(diagnosis):
     sessions = []
     for session in next(iter(diagnosis.gaps.values())).sessions:
         codes = [run[0] for run in session.runs]
-        leaning = sum(f < 0 for f in _faces(codes))
+        leaning = sum(f < 0 for f in map(faces.face_of_code, codes))
         on_face = [c for c in codes if 1 <= c <= 12]
         state = "warming"
         if session.temperature is not None:
@@ -49,10 +49,6 @@ def present(diagnosis):
                                        dwell_s=float(np.clip(dwell, 1.0, 120.0)))
         sessions.append(plan)
     return protocols.Protocol("present", sessions)
-
-
-def _faces(codes):
-    return [faces.face_of_code(c) for c in codes]
 
 
 def pairs(diagnosis):

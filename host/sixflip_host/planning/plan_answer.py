@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from sixflip_sim.effects import typical
 
 from .. import progress
-from ..experiment.session_rows import rows_of
 from . import alias, protocols
 from .plan_findings import findings_of, kinds_of
+from .protocols import rows_of
 
 FREE_MINUTES = 0.25  # an addition that takes no time still takes a thought
 LEANING = 12  # as many as there are poses on faces

@@ -7,8 +7,8 @@ from sixflip_sim.effects.library import EFFECTS, NAMES
 
 from ..board import events_seen
 from ..experiment import projection
-from ..experiment.session_rows import rows_of
 from . import alias, detectable
+from .protocols import rows_of
 
 SAME_CLASS = 0.9  # alias index above which two effects get one name (GAP stage 4)
 # Rests of a protocol up to which each is cut into three blocks, of more into two: the design's

@@ -6,7 +6,7 @@ from xml.sax.saxutils import quoteattr
 from .. import atomic_write
 from ..capture.registers import SENSORS
 from ..errors import UsageError
-from . import gap_pictures, gap_words, simulator_report
+from . import gap_pictures, gap_sentence, gap_words, simulator_report
 from .page import Page
 
 PAGE = "index.html"
@@ -56,7 +56,7 @@ def draw(folder, diagnosis, loops):
 
 def page(answer, drawn):
     """The HTML, pictures included."""
-    html = Page("Gap", gap_words.sentence(answer))
+    html = Page("Gap", gap_sentence.sentence(answer))
     sections(html, answer, [(caption, path.read_bytes()) for caption, path in drawn])
     return html.html()
 
@@ -86,7 +86,8 @@ def sections(page, answer, drawn):
     if answer["unseen"]:
         page.heading("What could not be seen")
         page.table(("effect", "sensor", "why"), [
-            (u["effect"], gap_words.SENSOR[u["sensor"]], u["reason"]) for u in answer["unseen"]])
+            (u["effect"], gap_sentence.SENSOR[u["sensor"]], u["reason"])
+            for u in answer["unseen"]])
 
 
 def write_junit(path, checks):

@@ -139,7 +139,7 @@ def gap(page, folder, paths):
     from ..capture import capture_file
     from ..diagnosis import answer, closed_loops
     from ..diagnosis.diagnose import diagnose
-    from . import gap_report, gap_words
+    from . import gap_report, gap_sentence
     diagnosed = diagnose([(path, capture_file.read_samples(path)) for path in paths],
                          jobs=0)
     closed = closed_loops.close_all(diagnosed)
@@ -147,6 +147,6 @@ def gap(page, folder, paths):
     if closed:
         result["simulated"] = {kind: answer.of_loop(kind, one) for kind, one in closed.items()}
     page.heading("The gap to a nominal simulator")
-    page.paragraph(gap_words.sentence(result))
+    page.paragraph(gap_sentence.sentence(result))
     drawn = gap_report.draw(folder, diagnosed, closed)
     gap_report.sections(page, result, [(caption, path.read_bytes()) for caption, path in drawn])

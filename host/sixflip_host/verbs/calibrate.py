@@ -11,7 +11,7 @@ from ..board.session_end import Ending, SessionDeadline
 from ..errors import Interrupted, UsageError
 from ..file_arguments import add_input, add_output
 from ..history import logbook
-from ..planning import board_plan
+from ..planning import plan_file
 from ..terminal import plain
 
 EXAMPLE = ("sixflip calibrate\n         sixflip calibrate --replay capture.bin --speed 5\n"
@@ -124,7 +124,7 @@ def start(link, args, session, recorded=False):
         return calibration_request.ask_for_calibration(link, {"continue": True})
     if session:
         return calibration_request.ask_for_calibration(
-            link, dict(board_plan.request(session, calibration_request.rate_of(link)), **record))
+            link, dict(plan_file.request(session, calibration_request.rate_of(link)), **record))
     return calibration_request.ask_for_calibration(link, record)
 
 
@@ -135,7 +135,7 @@ def checked(args):
     elif isinstance(args.port, list) and len(args.port) > 1:
         raise UsageError("--port %s: expected one, or --all for several boards in one jig"
                          % " --port ".join(args.port))
-    session = board_plan.session_of(args.plan, args.session) if args.plan else None
+    session = plan_file.session_of(args.plan, args.session) if args.plan else None
     if session is None and args.session != 1:
         raise UsageError("--session %d: only with --plan" % args.session)
     if args.replay and (args.plan or getattr(args, "redo", None) or getattr(args, "go_on", None)):
@@ -208,7 +208,7 @@ def run(args):
     if args.tray:
         from ..tray import tray_guide
         return tray_guide.run(args.port, {"continue": True} if args.go_on else None, guided)
-    step = (lambda at: board_plan.step(session, at)) if session else None
+    step = (lambda at: plan_file.what_to_do(session, at)) if session else None
     recording = recording_of(args, session)
     with link_of(args, guided) as link:
         board = start(link, args, session, recording is not None)

@@ -120,7 +120,7 @@ def answered(args, without, record):
 
 def fleet_of(path, captures):
     """FleetPrior of the captures' chip, None where no fleet was given."""
-    from ..experiment import fleet_prior
+    from ..fleet import fleet_prior
     return fleet_prior.read(path, captures[0][1].meta["sensor"]) if path else None
 
 

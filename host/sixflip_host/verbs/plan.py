@@ -8,8 +8,8 @@ from .. import file_kinds, progress
 from ..board import board_settings
 from ..did_you_mean import instead
 from ..errors import UsageError
-from ..experiment import fleet_prior
 from ..file_arguments import add_input, add_output
+from ..fleet import fleet_prior
 from ..planning import plan_file, protocols
 from ..terminal import plain
 

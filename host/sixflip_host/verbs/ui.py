@@ -13,7 +13,7 @@ from ..board import calibration_request
 from ..board.ports import open_link
 from ..errors import SixflipError, UsageError
 from ..file_arguments import add_input, add_output
-from ..planning import board_plan
+from ..planning import plan_file
 from ..terminal import plain
 from . import calibrate
 
@@ -85,8 +85,8 @@ def board_bench(args, session):
     from ..ui.bench import Bench
     link = board_of(args)
     more = {} if session is None else {
-        "request": lambda link: board_plan.request(session, calibration_request.rate_of(link)),
-        "step": lambda at: board_plan.step(session, at)}
+        "request": lambda link: plan_file.request(session, calibration_request.rate_of(link)),
+        "step": lambda at: plan_file.what_to_do(session, at)}
     return lambda told: Bench(link, args.output, told, keep=not args.replay,
                               capture=args.replay, **more)
 

@@ -16,7 +16,7 @@ from sixflip_host.board import console, event_words, firmware_update, typed_line
 from sixflip_host.board.local_link import LocalLink
 from sixflip_host.capture import capture_file
 from sixflip_host.errors import UsageError
-from sixflip_host.planning import board_plan
+from sixflip_host.planning import plan_file
 from sixflip_host.planning.plan_file import from_plan
 from sixflip_host.simulation import simulator
 from sixflip_host.verbs import calibrate, virtual_board_verb
@@ -206,12 +206,12 @@ class Said:
 
 def test_the_request_of_a_plan_fits_the_board():
     session = from_plan(PLAN).sessions[0]
-    asked = board_plan.request(session, 100)
+    asked = plan_file.request(session, 100)
     assert asked == {"poses": " ".join(NAMES), "samples": 150, "rest_s": 6}
-    recommended = board_plan.session_of("recommended", 2)
-    assert len(json.dumps(board_plan.request(recommended, 100))) < board_plan.MOST_TEXT
-    assert board_plan.request(recommended, 100)["samples"] == 400
-    assert len(board_plan.session_of("paper", 1).rests) == 12
+    recommended = plan_file.session_of("recommended", 2)
+    assert len(json.dumps(plan_file.request(recommended, 100))) < plan_file.MOST_TEXT
+    assert plan_file.request(recommended, 100)["samples"] == 400
+    assert len(plan_file.session_of("paper", 1).rests) == 12
 
 
 @pytest.mark.parametrize("argv, line", [
@@ -234,7 +234,7 @@ def board_folder(tmp_path):
 
 def test_too_many_placements():
     with pytest.raises(UsageError, match="200 is the most"):
-        board_plan.request(from_plan(["Z+a", "X+a"] * 101).sessions[0], 100)
+        plan_file.request(from_plan(["Z+a", "X+a"] * 101).sessions[0], 100)
 
 
 def test_typed_lines():

@@ -5,6 +5,7 @@ import pytest
 from sixflip.poses.still_window import StillWindow
 from sixflip_host.capture import rests, still_windows
 from sixflip_host.capture.capture_file import Capture
+from sixflip_host.diagnosis.detect import rest_parts
 
 META = {"sensor": "mpu6050", "rate_hz": 100.0, "accel_lsb_per_g": 16384.0,
         "gyro_lsb_per_dps": 131.0, "accel_range_g": 2.0}
@@ -53,10 +54,10 @@ def test_two_rests_are_one_where_it_is_only_louder_between_them(turned_dps, trem
     capture = Capture(dict(META), 10000 * np.arange(900), np.rint(accel).astype(np.int16),
                       np.rint(rates).astype(np.int16) if gyro else None)
     runs = [rests.Run(1, 0, 300), rests.Run(1, 600, 900)]
-    joined = rests.joined(capture, runs)
+    joined = rest_parts.joined(capture, runs)
     assert len(joined) == number and (joined[0].first, joined[-1].end) == (0, 900)
     side_by_side = [rests.Run(1, 0, 300), rests.Run(2, 300, 900)]
-    assert rests.joined(capture, side_by_side) == side_by_side
+    assert rest_parts.joined(capture, side_by_side) == side_by_side
 
 
 @pytest.mark.parametrize("gyro", [True, False])

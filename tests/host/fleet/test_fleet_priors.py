@@ -10,8 +10,7 @@ from sixflip_host import cli
 from sixflip_host.diagnosis import hypotheses
 from sixflip_host.diagnosis.elimination import Columns
 from sixflip_host.errors import BadFile
-from sixflip_host.experiment import fleet_prior
-from sixflip_host.fleet import answer, judgement, members, randomisation
+from sixflip_host.fleet import answer, fleet_prior, judgement, members, randomisation
 from sixflip_host.planning import plan_answer, protocols
 
 SPREAD = {"accel_scale": 0.01, "accel_misalignment": 0.5, "accel_bias": 20.0, "accel_noise": 0.01,

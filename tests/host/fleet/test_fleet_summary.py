@@ -7,8 +7,7 @@ import pytest
 
 from sixflip_host.calibrate import solution, solution_json
 from sixflip_host.capture import capture_file
-from sixflip_host.diagnosis import rest_model, settings, usable_rests
-from sixflip_host.diagnosis.detect import damage_taken_out
+from sixflip_host.diagnosis import rest_model, rests_judged, samples_judged, settings
 from sixflip_host.errors import BadFile
 from sixflip_host.experiment import attitude_fit, blocks, session_terms
 from sixflip_host.experiment.session import OF_BLOCKS
@@ -76,7 +75,7 @@ def test_the_kept_one_is_read_while_the_capture_is_the_same(captured, monkeypatc
 
 def test_the_effect_of_the_capture_is_in_its_information(captured):
     _, _, one = captured
-    found, _ = effects.information(usable_rests.select([one.session()], [], []), "mpu6050")
+    found, _ = effects.information(rests_judged.usable_rests([one.session()], [], []), "mpu6050")
     k = effects.NAMES["accel"].index("accel.thermal_bias.z")
     precision, score = found["accel"].precision, found["accel"].score
     sigma = 1.0 / np.sqrt(precision[k, k])
@@ -178,7 +177,7 @@ def test_a_capture_is_summarised_without_what_nobody_read(captured):
     gap, whole = (diagnosed.diagnose_board([each], [each.session()])[0] for each in (made, one))
     assert gap["verdict"] == whole["verdict"]
     assert [c["effect"] for c in gap["causes"]] == [c["effect"] for c in whole["causes"]]
-    read, (damage,) = damage_taken_out.taken_out([("s", spoilt)])
+    read, (damage,) = samples_judged.without_damage([("s", spoilt)])
     assert damage.value == {"rows": 200} and damage.words in made.solved().remarks
     assert solution_json.to_json(made.solved())["accel"] == solution_json.to_json(
         solution.solve(read[0][1]))["accel"]

@@ -50,7 +50,7 @@ def test_a_log_that_shows_nothing_of_what_acts_in_motion_is_not_said_to_lack_it(
 
 
 def test_the_simulators_remarks_and_silent_effects_are_passed_on(monkeypatch):
-    monkeypatch.setattr(against_simulator.detectability, "listed", lambda found: [
+    monkeypatch.setattr(against_simulator.detectable, "listed", lambda found: [
         {"effect": "cubic"}, {"effect": "creep"}])
     found = SimpleNamespace(gaps={"accel": None}, remarks=["its clock stands still"], causes=[
         ("accel", SimpleNamespace(effect="thermal_bias"))])

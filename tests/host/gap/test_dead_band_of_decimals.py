@@ -10,7 +10,7 @@ from sixflip_host.diagnosis import answer, samples_judged
 from sixflip_host.diagnosis.detect import dead_band, lattice
 from sixflip_host.diagnosis.detect.detection import Finding, present
 from sixflip_host.experiment import blocks
-from sixflip_host.present import gap_words
+from sixflip_host.present import gap_sentence, gap_words
 from tests.worlds.imported_text import table
 
 ROWS = 6000
@@ -120,7 +120,7 @@ def test_a_band_in_a_file_of_decimals_has_a_width_in_units(tmp_path):
             counts * np.abs(gyro).max() / 32000, rel=0.01)
         assert 0.3 < cause["value_in"][axis] < 0.8
     said = {"verdict": "explained", "causes": [cause], "damage": [], "gap": {}}
-    assert gap_words.sentence(said).endswith("°/s.")
+    assert gap_sentence.sentence(said).endswith("°/s.")
     assert gap_words.row(cause)[-1].endswith("°/s)")
 
 

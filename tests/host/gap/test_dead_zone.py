@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 from sixflip_host.capture.capture import Capture
 from sixflip_host.diagnosis import answer
 from sixflip_host.diagnosis.diagnose import diagnose
-from sixflip_host.diagnosis.simulator import comparison, dead_zone, gyro_or_motor, traces
+from sixflip_host.diagnosis.simulator import comparison, dead_zone, traces
 from tests.worlds.tumbled import META, RATE_HZ, read, tumbled
 
 TRUE = 3.0  # deg/s
@@ -49,7 +49,7 @@ def scale(found):
 def test_its_width_and_form_are_found_and_no_scale_is_wrong(change, monkeypatch):
     """The scales were some percent less, and most of the gap was left."""
     found = compared(change)
-    assert [band.axis for band in found.bands] == [0, 1, 2] and found.of_gyro > gyro_or_motor.GYRO
+    assert [band.axis for band in found.bands] == [0, 1, 2] and found.of_gyro > dead_zone.GYRO
     for band in found.bands:
         assert band.form == change.__name__
         assert np.degrees(band.rate) == pytest.approx(TRUE, rel=0.05)
@@ -176,7 +176,7 @@ def test_rounding_is_noise_of_what_has_none():
     t, force, rate = tumbled(1, 20.0)
     loud, silent = (traces.trace_from_capture("one", capture) for capture in (
         read(t, force, rate, 1), simulated_without_noise(t, force, rate, 0.01)))
-    noise = gyro_or_motor.in_band(silent, silent, "gyro", 4.0)
+    noise = dead_zone.in_band(silent, silent, "gyro", 4.0)
     assert np.degrees(noise) == pytest.approx(np.sqrt(2.0 / 12.0) / 32.8, rel=0.01)
-    noise = gyro_or_motor.in_band(loud, loud, "gyro", 4.0)
+    noise = dead_zone.in_band(loud, loud, "gyro", 4.0)
     assert np.degrees(noise) == pytest.approx(0.05 * np.sqrt(2.0 * 2.0 * 4.0 / 100.0), rel=0.6)

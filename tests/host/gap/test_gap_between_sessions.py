@@ -9,7 +9,6 @@ from sixflip_host.diagnosis import (
     adequacy,
     answer,
     between_sessions,
-    detectability,
     diagnosis,
     hypotheses,
     localisation,
@@ -18,6 +17,7 @@ from sixflip_host.diagnosis import (
     turn_model,
 )
 from sixflip_host.experiment import attitude_fit, blocks, covariance, session_terms, terms
+from sixflip_host.planning import detectable
 from sixflip_host.simulation import scenario, simulated_session
 
 
@@ -61,9 +61,9 @@ def test_what_the_two_poses_of_a_face_read_differently_is_no_misalignment(strain
     found = diagnosis.diagnose_sessions([blocks.session_of("s", capture)], diagnosis.Settings())
     assert not found.causes
     if not strain_mg:
-        seen = detectability.visible_share(found)
+        seen = detectable.visible_share(found)
         assert found.verdict == ("no gap" if seen > 0.5 else "cannot tell")
-        monkeypatch.setattr(detectability, "visible_share", lambda found: 0.5)
+        monkeypatch.setattr(detectable, "visible_share", lambda found: 0.5)
         assert not found.sees()  # half of the effects are not most of them
         return
     assert found.verdict == "unexplained"

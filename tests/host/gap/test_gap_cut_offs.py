@@ -9,7 +9,7 @@ from sixflip_host.capture.capture_file import Capture
 from sixflip_host.diagnosis import answer
 from sixflip_host.diagnosis.detect import saturation
 from sixflip_host.diagnosis.detect.detection import present
-from sixflip_host.present import gap_words
+from sixflip_host.present import gap_sentence, gap_words
 
 
 def imported(size, level, sensor="gyro", **meta):
@@ -55,7 +55,7 @@ def test_an_imported_log_levels_off_at_a_value_with_its_unit():
     assert cause["cut_off_at"] == {"x": "level"}
     assert (cause["cut_off_level"], cause["cut_off_unit"]) == ({"x": 180.0}, "°/s")
     said = {"verdict": "explained", "causes": [cause], "damage": [], "gap": {}}
-    assert gap_words.sentence(said) == "The X gyro levels off at 180 °/s."
+    assert gap_sentence.sentence(said) == "The X gyro levels off at 180 °/s."
     assert gap_words.row(cause)[0] == "saturation (levels off)"
 
 

@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 from sixflip_host.capture import clock
-from sixflip_host.diagnosis import aliases, odds, samples_judged, verdict
+from sixflip_host.diagnosis import aliases, odds, samples_judged
 from sixflip_host.diagnosis.detect import (
     axis_order,
     codes,
@@ -205,12 +205,12 @@ def test_an_order_of_axes_is_held_against_the_plain_one_and_against_any_matrix()
     (0.99, 0.1, True, True, "explained"), (0.99, 0.1, False, True, "cannot tell"),
     (0.99, 0.9, True, True, "partly explained"), (0.3, 0.9, False, True, "unexplained")])
 def test_the_verdict_is_a_table(named, nameless, told, seen, said):
-    assert verdict.decide([verdict.Claim(named, told)], [nameless], seen) == said
+    assert odds.decide([odds.Claim(named, told)], [nameless], seen) == said
 
 
 def test_what_stands_in_a_names_place_without_one_makes_it_doubtful():
-    assert verdict.decide([verdict.Claim(0.4, True, 0.6)], [], True) == "unexplained"
-    assert verdict.decide([], [], False) == "cannot tell"
+    assert odds.decide([odds.Claim(0.4, True, 0.6)], [], True) == "unexplained"
+    assert odds.decide([], [], False) == "cannot tell"
 
 
 def test_probabilities_of_a_place_add_up_and_chance_bounds_them():

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture.capture_file import Capture
-from sixflip_host.diagnosis import coefficient_fits, rest_gap, rest_units, scored_sets
+from sixflip_host.diagnosis import gap_figures, rest_gap, rest_units, scored_sets
 from sixflip_host.diagnosis.detect import spectral_lines
 from sixflip_host.diagnosis.diagnosis import Settings
 from sixflip_host.experiment import blocks, long_rest
@@ -139,7 +139,7 @@ def test_a_bias_that_switching_on_changes_needs_no_cause():
         stops = long_rest.in_one_attitude(switched_on(change_dps), ())
         units = rest_units.axis_units(stops, "gyro", "mpu6050", Settings())
         levels = rest_units.levels(stops, "gyro", 0.003, False)
-        data = coefficient_fits.data_of(units)
+        data = gap_figures.data_of(units)
         return scored_sets.Model(units, data.statistics, levels).scored(()).score
     assert nats(0.0) - nats(0.1) < 5.0
     assert nats(0.0) - nats(1.0) > 20.0  # ten times as much is not usual

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from sixflip_host.diagnosis import leaps, samples_judged, verdict
+from sixflip_host.diagnosis import leaps, odds, samples_judged
 from sixflip_host.diagnosis.detect import (
     dead_band,
     held_values,
@@ -136,10 +136,10 @@ def test_what_leaps_between_levels_is_no_walk():
 
 def test_a_gap_that_hardly_closes_is_not_explained():
     """A tenth of what the readings showed went with what was named, and all was explained."""
-    named = [verdict.Claim(0.99, True)]
+    named = [odds.Claim(0.99, True)]
     for interval, said in (((0.1, 0.25), "partly explained"), ((0.7, 1.0), "explained")):
-        left = verdict.not_closed(interval)
-        assert verdict.decide(named, [left], True) == said
+        left = odds.not_closed(interval)
+        assert odds.decide(named, [left], True) == said
 
 
 def test_a_spike_cuts_no_rest_in_two():

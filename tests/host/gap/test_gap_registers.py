@@ -17,7 +17,7 @@ from sixflip_host.diagnosis.detect import (
 )
 from sixflip_host.diagnosis.detect.detection import present
 from sixflip_host.experiment import block_measures, blocks
-from sixflip_host.present import gap_words
+from sixflip_host.present import gap_sentence
 from sixflip_host.simulation import scenario, simulated_session
 from tests.worlds.still_session import resting
 
@@ -61,7 +61,7 @@ def test_rests_cut_off_at_a_rail_tell_of_the_rail_only():
     cause, = said["causes"]
     assert cause["effect"] == "saturation"  # the library's name of any level that cuts off
     assert cause["cut_off_at"] == dict.fromkeys(cause["axes"], "below_range")
-    assert "is cut off below its range" in gap_words.sentence(said)
+    assert "is cut off below its range" in gap_sentence.sentence(said)
 
 
 @pytest.mark.parametrize("clipped", [False, True])

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture.capture_file import Capture
-from sixflip_host.diagnosis.detect import shake_detector, spectral_lines, strides
+from sixflip_host.diagnosis.detect import line_wander, shake_detector, spectral_lines
 from sixflip_host.experiment import blocks
 from tests.worlds.still_session import at_rest, flicker
 
@@ -35,8 +35,8 @@ def test_what_goes_on_legs_has_strides_and_no_vibration():
     """A trot's strides, and its knocks at a multiple of them, were a vibration of 25 mg."""
     assert shake_detector.steady([shaken(4.3, moving=False)]) == []
     lines = [SimpleNamespace(hz=hz) for hz in (4.3, 12.9, 18.1)]
-    assert [line.hz for line in strides.without(lines, [])] == [18.1]
-    assert strides.without(lines[1:], []) == lines[1:]
+    assert [line.hz for line in line_wander.without_strides(lines, [])] == [18.1]
+    assert line_wander.without_strides(lines[1:], []) == lines[1:]
 
 
 @pytest.mark.parametrize("motor", [0.0, 24.2])

@@ -5,13 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from sixflip_host.diagnosis import (
-    adequacy,
-    coefficient_fits,
-    gap_share,
-    holdout_gain,
-    localisation,
-)
+from sixflip_host.diagnosis import adequacy, gap_figures, holdout_gain, localisation
 from sixflip_host.diagnosis.elimination import Columns
 from sixflip_host.experiment import thermometer
 
@@ -24,7 +18,7 @@ def test_fieller_covers_the_true_share_and_owns_up_to_too_small_a_gap():
         predicted = 0.8 * mean + 0.1 * generator.standard_normal(200)
         z = mean + generator.standard_normal(200)
         true = (2 * predicted @ mean - predicted @ predicted) / (mean @ mean)
-        share, interval = gap_share.fieller(
+        share, interval = gap_figures.fieller(
             z @ z - 200, 2 * predicted @ z - predicted @ predicted,
             2 * 200 + 4 * (z @ z - 200), 4 * predicted @ predicted, 4 * predicted @ z)
         if interval:
@@ -32,12 +26,12 @@ def test_fieller_covers_the_true_share_and_owns_up_to_too_small_a_gap():
             covered += interval[0] <= true <= interval[1]
     assert number > 550
     assert 0.84 <= covered / number <= 0.97
-    assert gap_share.fieller(3.0, 2.0, 412.0, 4.0, 6.0) == (None, None)
+    assert gap_figures.fieller(3.0, 2.0, 412.0, 4.0, 6.0) == (None, None)
 
 
 @pytest.mark.parametrize("closed, further", [(-20.0, True), (-3.0, False), (20.0, False)])
 def test_what_lies_surely_further_off_than_nothing_is_known(closed, further):
-    sums = gap_share.Sums(40.0, 40.0 - closed, 10.0, 10.0, (4.0, 9.0, 0.0))
+    sums = gap_figures.Sums(40.0, 40.0 - closed, 10.0, 10.0, (4.0, 9.0, 0.0))
     found = sums.shrinkage(True)
     assert found.further is further and (found.share is None) is (closed < 0.0)
     assert not sums.shrinkage(False).further
@@ -58,8 +52,8 @@ def test_what_a_session_has_of_its_own_is_no_witness_against_a_name(named, nothi
     units = [unit(1.0, 0.0), unit(named, -4.0)]
     shared = Columns(np.array([0]), np.array([10.0]))
     gram = 1e4 * (columns[:, 0] @ columns[:, 0])
-    fits = [coefficient_fits.Fit(np.zeros(1, int), np.zeros((1, 1)), np.full((1, 1), gram * size),
-                                 np.full((1, 1, 1), gram)) for size in (1.0, named)]
+    fits = [gap_figures.Fit(np.zeros(1, int), np.zeros((1, 1)), np.full((1, 1), gram * size),
+                            np.full((1, 1, 1), gram)) for size in (1.0, named)]
     assert columns[:, 0] @ units[1].z < 0.0  # it closes nothing, were the course not there
     assert holdout_gain._nothing_closed(
         units, fits, [0, 0], shared, [course, course], 1e6) is nothing

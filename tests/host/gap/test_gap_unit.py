@@ -15,7 +15,7 @@ from sixflip_host.experiment import (
     linear_model,
     nominal_rows,
 )
-from sixflip_host.experiment.flicker import flicker_kernel
+from sixflip_host.experiment.noise_arrays import flicker_kernel
 from sixflip_host.experiment.nominal_rows import Rows
 from sixflip_host.experiment.projection import across_blocks, lateral_basis
 from sixflip_host.experiment.terms import Design

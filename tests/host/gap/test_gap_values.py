@@ -10,7 +10,7 @@ from sixflip_host.diagnosis import (
     answer,
     closed_loops,
     diagnosis,
-    gap_share,
+    gap_figures,
     rest_model,
     scored_sets,
     turn_model,
@@ -158,7 +158,7 @@ def test_adding_an_effect_changes_nothing_that_was_found(found):
     assert gap.with_effect("thermal_bias") is gap
     closed_loops.close_all(found, ["creep"])
     assert json.dumps(answer.as_dict(found)) == before
-    assert isinstance(more.shrinkage, gap_share.Shrinkage)
+    assert isinstance(more.shrinkage, gap_figures.Shrinkage)
 
 
 def test_a_cause_that_takes_what_is_held_out_further_off_has_no_name(found):
@@ -166,7 +166,7 @@ def test_a_cause_that_takes_what_is_held_out_further_off_has_no_name(found):
     gap = found.gaps["accel"]
     model = scored_sets.Model(gap.units, gap.data.statistics, gap.noise)
     assert gap.refuted(model) is gap and [c.effect for c in gap.causes] == ["thermal_bias"]
-    further = gap_share.Shrinkage(1.0, 1.25, 0.3, None, None, True)
+    further = gap_figures.Shrinkage(1.0, 1.25, 0.3, None, None, True)
     held = dataclasses.replace(gap, shrinkage=further).refuted(model)
     assert held.causes == [] and held.chosen == [] and held.unexplained
     assert [f.effect for f in held.strangers] == ["thermal_bias"]

@@ -4,7 +4,7 @@ import pytest
 
 from sixflip_host.capture.capture_file import Capture
 from sixflip_host.capture.rests import Run
-from sixflip_host.diagnosis.detect import hand_tremor, spectral_lines
+from sixflip_host.diagnosis.detect import shake_detector, spectral_lines
 from sixflip_host.experiment import blocks
 
 RATE, REST, NUMBER = 100.0, 450, 16
@@ -41,7 +41,7 @@ HELD = np.arange(NUMBER) % 3 == 1
 def told(session):
     """(findings before, findings after, sentences)."""
     lines = spectral_lines.findings([session])
-    return (lines, *hand_tremor.without(lines, [session]))
+    return (lines, *shake_detector.without_tremor(lines, [session]))
 
 
 def test_a_hand_that_trembles_in_some_of_the_rests_is_no_effect_of_the_gyro():

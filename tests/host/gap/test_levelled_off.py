@@ -3,7 +3,7 @@ or softly, where the simulator's goes on."""
 import numpy as np
 import pytest
 
-from sixflip_host.diagnosis.simulator import comparison, levelled_off
+from sixflip_host.diagnosis.simulator import comparison, one_motion
 from tests.worlds.tumbled import read, tumbled
 
 
@@ -28,7 +28,7 @@ def test_where_it_stops_is_a_range_and_no_scale(change, monkeypatch):
     found = compared(change)
     ranges = {p.axis: p.real for p in found.differs if p.name == "range"}
     assert ranges and all(level == pytest.approx(80.0, rel=0.04) for level in ranges.values())
-    monkeypatch.setattr(levelled_off, "stops", lambda fits: {})
+    monkeypatch.setattr(one_motion, "stops_of", lambda fits: {})
     without = compared(change)
     assert scale(found) < 0.6 < 1.5 < scale(without)
     assert found.gap["gyro"][1] < 0.2 * without.gap["gyro"][1]
@@ -69,7 +69,7 @@ def test_what_only_makes_less_of_its_peaks_has_no_other_range(change):
 def test_few_readings_beyond_say_nothing():
     real, simulated = np.sin(np.linspace(0.0, 60.0, 3000)), np.sin(np.linspace(0.0, 60.0, 3000))
     simulated[70:80] = 1.5
-    assert levelled_off.stop_of(real, simulated) is None
+    assert one_motion.stop_of(real, simulated) is None
 
 
 def test_a_motor_that_does_not_go_beyond_its_rate_is_no_stop():
@@ -78,8 +78,8 @@ def test_a_motor_that_does_not_go_beyond_its_rate_is_no_stop():
     rate = np.clip(4.0 * np.sin(0.6 * t), -1.0, 1.0)
     started = np.convolve(np.abs(np.diff(rate, prepend=0.0)) > 0.0, np.ones(16), "full")[:len(t)]
     beyond = rate * (1.0 + 0.15 * (started > 0.0) * (np.abs(rate) >= 1.0))
-    assert levelled_off.stop_of(rate, beyond) is None
-    assert levelled_off.stop_of(rate, 4.0 * np.sin(0.6 * t)) == pytest.approx(1.0)
+    assert one_motion.stop_of(rate, beyond) is None
+    assert one_motion.stop_of(rate, 4.0 * np.sin(0.6 * t)) == pytest.approx(1.0)
 
 
 def test_a_register_that_is_full_is_a_range_and_nothing_shakes():

@@ -9,8 +9,8 @@ from scipy.spatial.transform import Rotation
 from sixflip_host.capture.capture import Capture
 from sixflip_host.diagnosis.simulator import (
     comparison,
+    log_rests,
     rest_or_course,
-    restless,
     simulator_answer,
     traces,
 )
@@ -139,11 +139,11 @@ def test_a_rest_whose_ends_move_is_cut_and_a_rest_between_moves_is_kept():
 def test_noise_that_has_a_colour_or_is_drowned_is_not_told():
     rng = np.random.default_rng(5)
     white = rng.standard_normal((6000, 3))
-    sd, relative = restless.white(white + 50.0 * np.sin(0.1 * np.arange(6000))[:, None])
+    sd, relative = log_rests.white(white + 50.0 * np.sin(0.1 * np.arange(6000))[:, None])
     assert sd == pytest.approx(np.ones(3), rel=0.05) and relative < 0.2
     smooth = np.stack([np.convolve(x, np.ones(4) / 4.0, "same") for x in white.T], 1)
-    assert restless.white(smooth) is None
-    assert restless.white(white + 5.0 * np.sin(1.2 * np.arange(6000))[:, None]) is None
+    assert log_rests.white(smooth) is None
+    assert log_rests.white(white + 5.0 * np.sin(1.2 * np.arange(6000))[:, None]) is None
 
 
 def test_what_two_restless_logs_differ_by_is_told_and_an_unknown_floor_closes_no_gap():

@@ -3,7 +3,8 @@ import numpy as np
 import pytest
 
 from sixflip_host.capture.capture_file import Capture
-from sixflip_host.diagnosis.detect import damage_taken_out, held_values, row_order
+from sixflip_host.diagnosis import samples_judged
+from sixflip_host.diagnosis.detect import held_values, row_order
 
 RATE = 200.0
 META = {"sensor": "mpu6050", "rate_hz": RATE, "accel_lsb_per_g": 8192.0,
@@ -39,7 +40,7 @@ def out_of_order(number, length, way, share, seed=5):
 
 
 def said(x, rows=None):
-    captures, damages = damage_taken_out.taken_out([("log", capture(x, rows))])
+    captures, damages = samples_judged.without_damage([("log", capture(x, rows))])
     return captures[0][1], damages
 
 

@@ -9,7 +9,7 @@ from scipy.signal import lfilter
 
 from sixflip_host.capture.capture import Capture
 from sixflip_host.diagnosis import localisation
-from sixflip_host.diagnosis.simulator import against_simulator, shaken_alike
+from sixflip_host.diagnosis.simulator import against_simulator
 from sixflip_host.experiment import blocks
 from tests.worlds.tumbled import META
 
@@ -45,7 +45,7 @@ def test_a_hand_that_trembles_in_both_is_no_gap(rates, shaken):
     """At 50 rows a second it had half the size that it had at 100, and was on two axes."""
     real = session(trembling(1, (1.0, 0.9, 1.1)), rates[0], 1)
     simulated = session(trembling(2, (1.0, 0.9, 1.1)), rates[1], 2, noise=0.15)
-    assert shaken_alike.alike(real, simulated, "gyro", shaken)
+    assert against_simulator.alike(real, simulated, "gyro", shaken)
 
 
 @pytest.mark.parametrize("size, hz", [((0.0, 0.0, 0.0), 9.5), ((1.0, 0.0, 0.0), 9.5), (
@@ -54,13 +54,13 @@ def test_what_the_simulator_lacks_or_has_otherwise_is_one(size, hz):
     real = session(trembling(1, 1.0), 50.0, 1)
     simulated = session(trembling(2, size, hz) if any(size) else np.zeros(
         (int(SECONDS * FINE_HZ), 3)), 100.0, 2)
-    assert not shaken_alike.alike(real, simulated, "gyro", {"x": 9.5, "y": 9.5})
+    assert not against_simulator.alike(real, simulated, "gyro", {"x": 9.5, "y": 9.5})
 
 
 def test_a_power_is_the_same_by_any_rate():
     course = trembling(1, (1.0, 0.5, 2.0))
     for rate_hz in (50.0, 100.0, 200.0):
-        own = shaken_alike.spectra(session(course, rate_hz, 1), "gyro")
+        own = against_simulator.spectra(session(course, rate_hz, 1), "gyro")
         for axis, size in enumerate((1.0, 0.5, 2.0)):
             power, sigma = own.within(axis, 3.0, 17.0)
             assert np.sqrt(power) == pytest.approx(size, rel=0.1) and sigma < 0.2 * power
@@ -69,8 +69,8 @@ def test_a_power_is_the_same_by_any_rate():
 def test_without_a_rest_in_one_of_them_nothing_is_alike():
     real = session(trembling(1, 1.0), 50.0, 1)
     moving = [replace(session(trembling(1, 1.0), 50.0, 1)[0], runs=[])]
-    assert not shaken_alike.alike(real, moving, "gyro", {"x": None})
-    assert not shaken_alike.alike(real, real, "gyro", {})
+    assert not against_simulator.alike(real, moving, "gyro", {"x": None})
+    assert not against_simulator.alike(real, real, "gyro", {})
 
 
 def test_neither_a_vibration_nor_a_tone_without_a_name_is_new_that_both_logs_have():

@@ -7,7 +7,6 @@ import pytest
 
 from sixflip_host.diagnosis.simulator import (
     alignment,
-    channel_regression,
     evidence_of_logs,
     hypotheses,
     noise_and_registers,
@@ -17,9 +16,9 @@ from sixflip_host.diagnosis.simulator import (
     parameters,
     simulator_answer,
     single_log,
-    timing,
     traces,
 )
+from sixflip_host.experiment import projection
 from sixflip_host.export import put_back
 from tests.worlds import tumbled
 
@@ -53,7 +52,7 @@ def test_a_coefficient_is_as_uncertain_as_stretches_of_the_log_disagree_on_it():
     slopes = rng.normal(0.0, 0.1, 20)
     x = rng.normal(size=(2000, 1))
     y = np.repeat((x * np.repeat(slopes, 100)[:, None]), 3, 1) + 0.01 * rng.normal(size=(2000, 3))
-    result = channel_regression.regression(
+    result = projection.regression(
         y, x, np.array([10.0]), np.zeros((2000, 3, 0)), np.zeros(0), np.zeros(0), 1.0,
         np.ones(3, bool))
     sigma = result[5][:, 0]
@@ -113,7 +112,7 @@ def test_what_has_no_field_to_set_has_words_to_copy():
     tau = 1.0 / (2.0 * np.pi * 20.0)
     fits = {"gyro": SimpleNamespace(conventions=(), smoothing_earns=0.0, fit=SimpleNamespace(
         smooth_s2=-0.5 * tau ** 2, smooth_sigma_s2=1e-8))}
-    said = {p.name: p.how for p in timing.timing(-0.04, 1e-4, fits, SimpleNamespace(
+    said = {p.name: p.how for p in own_motion.timing(-0.04, 1e-4, fits, SimpleNamespace(
         same=True, drift=0.0, drift_sigma=1e-5))}
     assert said == {"delay": "output the gyro 40 ms later", "clock": "",
                     "smoothness": "put a low-pass of first order at 20 Hz (time constant 7.96 ms) "
@@ -125,13 +124,13 @@ def test_what_noise_alone_earns_is_no_smoothness(earned, differs):
     """A rover's simulator was "smoother than the sensor", whose force was noise beyond 2 Hz."""
     fits = {"accel": SimpleNamespace(conventions=(), smoothing_earns=earned, fit=SimpleNamespace(
         smooth_s2=5e-4, smooth_sigma_s2=5e-5))}
-    smoothness, = timing.timing(None, None, fits, SimpleNamespace(same=False))
+    smoothness, = own_motion.timing(None, None, fits, SimpleNamespace(same=False))
     assert smoothness.differs == differs
 
 
 @pytest.mark.parametrize("drift, differs", [(8e-5, False), (-8e-5, False), (3e-4, True)])
 def test_two_quartzes_that_differ_as_quartzes_do_are_no_gap(drift, differs):
-    clock, = timing.timing(None, None, {}, SimpleNamespace(
+    clock, = own_motion.timing(None, None, {}, SimpleNamespace(
         same=True, drift=drift, drift_sigma=1e-6))
     assert clock.name == "clock" and clock.differs == differs
 

@@ -8,7 +8,7 @@ from sixflip_host.capture.capture_file import Capture
 from sixflip_host.diagnosis import answer
 from sixflip_host.diagnosis.detect import held_values, unread_rows
 from sixflip_host.diagnosis.diagnose import diagnose
-from sixflip_host.present import gap_words
+from sixflip_host.present import gap_sentence
 from tests.worlds.tumbled import read, tumbled
 
 
@@ -77,7 +77,7 @@ def test_zeros_that_a_log_is_filled_up_with_are_no_effect():
     damage, = said["damage"]
     assert damage["kind"] == "not read" and damage["value"] == {"rows": 239}
     assert said["verdict"] == "no gap"
-    assert "239 rows" in gap_words.sentence(said)
+    assert "239 rows" in gap_sentence.sentence(said)
 
 
 def coarse(rate):
@@ -157,7 +157,8 @@ def test_rows_that_nobody_read_hide_none_that_are_lost(sound):
     assert cause["value"]["chance"] == pytest.approx(100.0 * len(lost) / len(sound), rel=0.02)
     damage, = said["damage"]
     assert damage["value"] == {"rows": len(unread)}
-    assert "300 rows" in gap_words.sentence(said) and "loses samples" in gap_words.sentence(said)
+    sentence = gap_sentence.sentence(said)
+    assert "300 rows" in sentence and "loses samples" in sentence
 
 
 @pytest.mark.parametrize("sensor, rows, code", [
@@ -167,8 +168,8 @@ def test_what_is_taken_out_leaves_no_gap_behind(sound, sensor, rows, code):
     as_it_is = answer.as_dict(diagnose([("one", sound)]))
     said = answer.as_dict(diagnose([("one", spoilt(sound, sensor, rows, code))]))
     assert said["verdict"] == as_it_is["verdict"] and said["where"] == []
-    assert "%d rows" % len(rows) in gap_words.sentence(said)
-    assert "nothing in the library" not in gap_words.sentence(said)
+    assert "%d rows" % len(rows) in gap_sentence.sentence(said)
+    assert "nothing in the library" not in gap_sentence.sentence(said)
 
 
 @pytest.mark.parametrize("noise, unread", [(1.0, 0), (2.0, 0), (3.0, 1), (4.0, 1)])

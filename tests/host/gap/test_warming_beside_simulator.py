@@ -9,7 +9,7 @@ from sixflip_host.diagnosis import effect_estimates
 from sixflip_host.diagnosis.aliases import Cause
 from sixflip_host.diagnosis.hypotheses import Form
 from sixflip_host.diagnosis.simulator import comparison, effects_beside
-from sixflip_host.experiment import flicker
+from sixflip_host.experiment import noise_arrays
 from tests.worlds.tumbled import read, tumbled
 
 TRUE = 0.06  # deg/s/degC
@@ -71,11 +71,11 @@ def test_flicker_gives_sizes_the_spread_that_it_is_said_to_give():
     column = np.exp(-t / 150.0) - np.exp(-t / 150.0).mean()
     columns = np.zeros((len(t), 3, 1))
     columns[:, 1, 0] = column
-    kernel = sum(np.exp(-np.abs(t[:, None] - t) / tau) for tau in flicker.ALL_TIMES_S)
+    kernel = sum(np.exp(-np.abs(t[:, None] - t) / tau) for tau in noise_arrays.ALL_TIMES_S)
     wandering = np.linalg.cholesky(kernel + 1e-6 * np.eye(len(t))) @ generator.normal(
         size=(len(t), 400))
     sizes = column @ (wandering - wandering.mean(axis=0)) / (column @ column)
-    assert flicker.of_sizes(t, columns)[0] == pytest.approx(sizes.std(), rel=0.15)
+    assert noise_arrays.flicker_of_sizes(t, columns)[0] == pytest.approx(sizes.std(), rel=0.15)
 
 
 def test_the_size_that_is_told_lies_within_its_interval():

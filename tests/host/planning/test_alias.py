@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from sixflip_host.experiment.projection import alias_index, alias_matrix, rank
-from sixflip_host.experiment.session_rows import rows_of
 from sixflip_host.planning import protocols
 from sixflip_host.planning.alias import ACCEL, PlannedModel, even_contrasts
+from sixflip_host.planning.protocols import rows_of
 
 
 def design(protocol, blocks=1, certified_box=True, **options):

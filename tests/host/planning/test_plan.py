@@ -5,10 +5,10 @@ import pytest
 
 from sixflip_host.cli import Parser, main
 from sixflip_host.errors import BadFile, UsageError
-from sixflip_host.experiment.session_rows import rows_of
 from sixflip_host.planning import detectable, plan_answer, plan_file, protocols
 from sixflip_host.planning.alias import PlannedModel
 from sixflip_host.planning.plan_findings import findings_of
+from sixflip_host.planning.protocols import rows_of
 from sixflip_host.verbs import plan
 from sixflip_sim.effects.library import NAMES
 

@@ -5,7 +5,7 @@ import io
 from sixflip.poses.faces import FACES
 from sixflip_host import terminal
 from sixflip_host.board.console import Console
-from sixflip_host.present import gap_words
+from sixflip_host.present import gap_sentence, gap_words
 
 GAP = {
     "verdict": "explained", "remarks": [], "damage": [], "noise": {},
@@ -59,8 +59,8 @@ def test_what_a_capture_cannot_tell_is_said_of_what_it_names():
     closed = {"gyro": {"unit": "deg/s", "explained_share": 0.6}}
 
     def said(*causes, gap=None):
-        return gap_words.sentence({**GAP, "verdict": "cannot tell", "causes": list(causes),
-                                   "gap": gap or {}})
+        return gap_sentence.sentence({**GAP, "verdict": "cannot tell", "causes": list(causes),
+                                      "gap": gap or {}})
     assert said(named).endswith("This capture cannot tell how much of the gap goes with that.")
     assert "cannot tell which" in said(named, either)
     assert "cannot tell whether that is so. Adding" in said(named, gap=closed)

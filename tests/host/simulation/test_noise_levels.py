@@ -6,7 +6,7 @@ import yaml
 
 from sixflip_host.capture import capture_file
 from sixflip_host.capture.capture_file import Capture
-from sixflip_host.experiment import noise_spectrum, signal_measures
+from sixflip_host.experiment import signal_measures
 from sixflip_host.export import other_simulators
 from sixflip_host.export.noise_model import measure
 
@@ -31,7 +31,7 @@ def test_our_allan_deviation_is_allantools_overlapping_one():
 def test_an_hour_gives_noise_density_and_walk_back_within_three_percent_and_their_interval():
     errors = []
     for seed in range(6):
-        density, _, walk = noise_spectrum.levels([readings(3600.0, seed=seed)], RATE, True)
+        density, _, walk = signal_measures.noise_levels([readings(3600.0, seed=seed)], RATE, True)
         errors.append(density.value / N - 1.0)
         assert density.low < density.value < density.high and density.high < 1.02 * density.low
         assert 0.5 * K < walk.high and walk.low < 1.5 * K
@@ -44,7 +44,7 @@ def test_six_hours_give_the_walk_back_within_three_percent_as_allantools_has_it(
         rng, n = np.random.default_rng(seed), int(6 * 3600 * rate)
         x = rng.normal(0.0, N * np.sqrt(rate), n) + np.cumsum(
             rng.normal(0.0, walk / np.sqrt(rate), n))
-        found = noise_spectrum.levels([x], rate, True)[2]
+        found = signal_measures.noise_levels([x], rate, True)[2]
         assert found.value == pytest.approx(walk, rel=0.03)
         assert 0.95 * found.low < walk < 1.05 * found.high
         errors.append(found.value / walk - 1.0)
@@ -58,8 +58,8 @@ def test_six_hours_give_the_walk_back_within_three_percent_as_allantools_has_it(
 def test_the_intervals_hold_the_truth_as_often_as_they_say():
     held = [0, 0]
     for seed in range(40):
-        density, _, walk = noise_spectrum.levels([readings(600.0, walk=2e-3, seed=seed)], RATE,
-                                                 True)
+        density, _, walk = signal_measures.noise_levels(
+            [readings(600.0, walk=2e-3, seed=seed)], RATE, True)
         held[0] += density.low <= N <= density.high
         held[1] += walk.low <= 2e-3 <= walk.high
     assert 31 <= held[0] <= 40 and 31 <= held[1] <= 40  # 90 %: all but one run in a thousand
@@ -70,7 +70,7 @@ def test_flicker_has_the_bias_instability_that_allantools_shows_as_its_floor():
     f = np.fft.rfftfreq(2 * n, 1.0 / RATE)[1:]
     size = np.concatenate([[0.0], np.sqrt(instability ** 2 / (2.0 * np.pi * f) * RATE * n)])
     x = np.fft.irfft(size * (rng.normal(size=n + 1) + 1j * rng.normal(size=n + 1)))[:n]
-    _, floor, _ = noise_spectrum.levels([x], RATE, True)
+    _, floor, _ = signal_measures.noise_levels([x], RATE, True)
     _, deviation, _, _ = allantools.oadev(x, rate=RATE, data_type="freq",
                                           taus=[2.0, 5.0, 10.0, 20.0])
     assert floor.value == pytest.approx(np.median(deviation) / 0.664, rel=0.05)
@@ -79,15 +79,15 @@ def test_flicker_has_the_bias_instability_that_allantools_shows_as_its_floor():
 
 def test_a_rest_that_reads_one_value_says_nothing_of_the_noise():
     x = readings(60.0, walk=0.0)
-    assert noise_spectrum.levels([np.ones(6000), x], RATE, False) == noise_spectrum.levels(
-        [x], RATE, False)
-    assert noise_spectrum.levels([np.ones(6000)], RATE, True) == (None, None, None)
+    levels = signal_measures.noise_levels
+    assert levels([np.ones(6000), x], RATE, False) == levels([x], RATE, False)
+    assert levels([np.ones(6000)], RATE, True) == (None, None, None)
 
 
 def test_a_line_is_no_noise():
     x = readings(600.0, walk=0.0)
     wave = 5e-3 * np.sin(2.0 * np.pi * 1.7 * np.arange(len(x)) / RATE)
-    plain, shaken = (noise_spectrum.levels([y], RATE, True)[0] for y in (x, x + wave))
+    plain, shaken = (signal_measures.noise_levels([y], RATE, True)[0] for y in (x, x + wave))
     assert shaken.value == pytest.approx(plain.value, rel=0.01)
 
 

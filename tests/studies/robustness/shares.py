@@ -14,9 +14,8 @@ import argparse
 import numpy as np
 
 from sixflip_host.diagnosis import (
-    coefficient_fits,
     discrepancy,
-    excess,
+    gap_figures,
     holdout_gain,
     hypotheses,
     posterior,
@@ -73,7 +72,7 @@ def case(seed):
     name, kind = effects[0]["effect"], effects[0]["sensor"]
     model = RestModel(kind, CHIP, Settings(jobs=1))
     whole, without = units(model, seed, effects, scatter), units(model, seed, [{}, {}], scatter)
-    data = coefficient_fits.data_of(whole)
+    data = gap_figures.data_of(whole)
     forms = hypotheses.forms_of(whole, (), True)
     scores = scored_sets.Model(whole, data.statistics, model.usual())
     form = max((f for f in forms if f.effect == name and f.axis is None and not f.record),
@@ -85,7 +84,7 @@ def case(seed):
     chosen = list(set_.forms)
     index = [int(fit.index[0]) for fit in set_.fits]
     shrinkage = holdout_gain.shrinkage(data, chosen, index, model.usual())
-    index = excess.usual_levels(whole, index, model.usual().flicker)
+    index = gap_figures.usual_levels(whole, index, model.usual().flicker)
     times = SIZES[seed // len(EFFECTS) % len(SIZES)]
     if shrinkage.interval is None:
         return name, kind, times, shrinkage, None, None
@@ -95,13 +94,13 @@ def case(seed):
 def true(data, chosen, index, without, shrinkage):
     """(share of the gap itself, share by the true floor)."""
     shared = hypotheses.columns_of(chosen)
-    fits = coefficient_fits.fits(data, shared)
+    fits = gap_figures.fits(data, shared)
     gap = left = floor = weight = 0.0
     for held, (unit, plain, point) in enumerate(zip(data.units, without, index)):
         if unit.between:
             continue
         others = fits[:held] + fits[held + 1:]
-        theta = coefficient_fits.coefficients(others, shared)[0][0]
+        theta = gap_figures.coefficients(others, shared)[0][0]
         added = unit.z - plain.z
         gap += unit.chi2(added, point)
         left += unit.chi2(added - unit.columns[:, shared.index] @ theta, point)

@@ -23,6 +23,8 @@ from . import (
 from .options import with_the_file
 from .told_units import ToldUnits
 
+WHAT = {ACCEL: "accelerometer", GYRO: "gyro", MAG: "magnetometer"}
+
 
 @dataclass(frozen=True)
 class Imported:
@@ -117,7 +119,7 @@ class Conversion:
     def _of_a_sensor(self, group, values):
         if group != "temp" and len(values) and not np.abs(values).max() < units.LARGEST:
             raise BadFile("%s: the %s reaches %g, expected less than %g" % (
-                self.table.path, _what(group), np.abs(values).max(), units.LARGEST))
+                self.table.path, WHAT[group], np.abs(values).max(), units.LARGEST))
         return values
 
     def _forwards(self, times):
@@ -196,7 +198,7 @@ class Conversion:
             signed = units.give_sign(block) if block is not None else ""
             if signed:
                 self.assumed.append("%s counts have no sign: taken as %s" % (
-                    _what(group), signed))
+                    WHAT[group], signed))
         told = ToldUnits(path, options, self.named_units, self.rows, self._sizes,
                          self.assumed, self.remarks)
         accel_unit, accel_lsb = told.of_accelerometer(accel)
@@ -245,7 +247,3 @@ class Conversion:
         check_sensor(meta, capture.columns(), lambda found, expected: BadFile(
             "%s: %s, expected %s" % (path, found, expected)))
         return capture
-
-
-def _what(group):
-    return {ACCEL: "accelerometer", GYRO: "gyro", MAG: "magnetometer"}[group]

@@ -6,9 +6,8 @@ missing_rows                       registers and timing
 byte_faults (course_likelihood), held_values (stuck_axes), unread_rows, row_order, wrong_scale
                                    damage: bytes, rows that repeat, that nobody read or that are
                                    out of order, full scales
-damage_taken_out                   captures without it
 spectral_lines (rest_spectra, line_frequency, line_across_rests, line_wander),
-noise_bursts (noise_windows), noise_shape, spikes, ringing, shake_detector, strides, hand_tremor
+noise_bursts, noise_shape, spikes (rest_parts), shake_detector
                                    lines of a spectrum, noise that changes, is shared or is not
                                    normal, single samples far off, what rings out after a move,
                                    hands, legs and vehicles

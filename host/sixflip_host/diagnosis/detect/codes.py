@@ -12,6 +12,7 @@ from ...capture.registers import (
     RAIL,
     SENSORS,
     codes,
+    number_of_runs,
     of_counts,
     spacing,
     steps,
@@ -229,8 +230,3 @@ def resting(column):
     k = int(times.argmax())
     held = times[k] > ALONE * max(others, SELDOM * len(column)) and abs(values[k]) < RAIL - 1
     return int(values[k]) if held else 0
-
-
-def number_of_runs(mask):
-    """Number of unbroken runs of True."""
-    return int(mask[0]) + int((mask[1:] & ~mask[:-1]).sum())

@@ -17,7 +17,7 @@ from ...capture.registers import RAIL, steps
 from ..odds import Z_90
 from . import codes, lattice
 from .detection import Finding, agreed_by_axis, present
-from .peak_at_zero import LEAST_NOISE, WINDOW, of_zeros
+from .lattice import LEAST_NOISE, WINDOW, of_zeros
 
 FASTER = 3.0  # than the noise, from a sample to the next: its sign is that of the motion
 LONGEST = 8  # samples at 0 while something passes; more is a pause
@@ -146,7 +146,7 @@ def nats_of_rests(columns, at_rest, least=0.0, lattices=None):
             each = share * np.log(share / chance) + (1.0 - share) * np.log(
                 (1.0 - share) / (1.0 - chance))
             # What is held says one thing a window.
-            nats[axis] += each * max(codes.number_of_runs(zero) / share, len(x) / WINDOW)
+            nats[axis] += each * max(registers.number_of_runs(zero) / share, len(x) / WINDOW)
             widths[axis] = min(widths[axis], usual * special.ndtri(0.5 + 0.5 * share))
     return nats, widths
 

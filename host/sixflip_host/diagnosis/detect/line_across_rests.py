@@ -29,7 +29,6 @@ OVER = 4  # frequencies for each that rests so far apart can tell
 FINER = 8  # of their distance, that a line's is told to
 SEEN_AT = 48  # frequencies: between two of them a rest has a twentieth of a period more
 WIDTH = 41  # frequencies of the floor's running median: ten lobes of a line
-SMALLEST = 1e-300  # of a power: what a float holds
 BESIDE = 64  # on either side, of the mean that a peak is held against, but for its own lobe
 
 
@@ -81,7 +80,8 @@ def _highest(t, x, rest, weight, slowest, fastest):
         _, floor = _spectrum(t, _for_itself(t, weight ** 2 * left, rest), slowest, fastest)
         beside = np.concatenate([floor[max(k - BESIDE, 0):max(k - OVER, 0)],
                                  floor[k + OVER + 1:k + BESIDE + 1]])
-        looked.append((float(power[k] / max(beside.mean(), SMALLEST)), float(hz[k]), len(beside)))
+        ratio = float(power[k] / max(beside.mean(), odds.SMALLEST))
+        looked.append((ratio, float(hz[k]), len(beside)))
     ratio, near, beside = max(looked)
     return ratio, near, len(by) * len(hz), beside
 
@@ -163,7 +163,7 @@ def _for_itself(t, x, rest):
 def _floor(power):
     """(k,) mean of the power of noise, where it is a spectrum's."""
     return np.maximum(ndimage.median_filter(power, WIDTH, mode="reflect") / math.log(2.0),
-                      SMALLEST)
+                      odds.SMALLEST)
 
 
 def _passed(t, rest, weight, hz):

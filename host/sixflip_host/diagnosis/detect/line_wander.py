@@ -1,11 +1,15 @@
-"""Whether a line keeps its frequency from rest to rest: what a motor or a fan does runs on evenly
-through a rest, and a little faster or slower in the next."""
+"""Which lines are steady and a sensor's own: whether a line keeps its frequency from rest to rest,
+since what a motor or a fan does runs on evenly through a rest, and a little faster or slower in
+the next; and whether it is a multiple of strides, since what goes on legs does so steadily, and
+its steps and knocks are lines that no sensor is shaken at.
+"""
 import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from ...experiment.block_measures import EDGE_S
 from .. import odds
 
 FEWEST = 3  # rests of a file that tell the frequency: two apart may as well be two lines
@@ -14,7 +18,12 @@ TOLD = 0.12  # of a rest's own bin, to which it tells the frequency of more than
 # error there is that a frequency under a Hann window has, by simulation, as the halves say it.
 HALVES, WINDOWED = 4.0, 1.6
 MEDIAN = 0.6745  # of the sizes of normal numbers
-EDGE_S = 0.1  # of either end of a rest, which may be the move's yet
+# What runs on legs has strides of a frequency in between, and is shaken at multiples of it: so
+# many are tried, each off by this share at most.
+SLOWEST_HZ, STRIDES_HZ, MULTIPLES, MULTIPLE = 0.7, 5.0, 12, 0.005
+# A stride stands that far out of the power around it, from two thirds of its frequency to one and
+# a half times, but for its own lobe: noise of one axis does so once in a million bins.
+STANDS, AROUND, LOBE = 20.0, 1.5, 4
 
 
 @dataclass(frozen=True)
@@ -101,3 +110,38 @@ def _log_likelihood(files, spread):
         off = file[:, 0] - _mean(file, spread)[0]
         total -= 0.5 * float((off ** 2 / variance + np.log(variance)).sum())
     return total
+
+
+def without_strides(lines, moves):
+    """Those of the lines of what moves that are no strides, nor multiples of one; moves: Sessions,
+    or stretches of them, of which the accelerometer tells strides that are no line."""
+    strides = [line.hz for line in lines if line.hz < STRIDES_HZ]
+    return [line for line in lines if not any(_multiple(line.hz, hz) for hz in strides)
+            and not _of_a_stride(line.hz, moves)]
+
+
+def _multiple(hz, stride):
+    times = hz / stride
+    return round(times) >= 1 and abs(times - round(times)) < MULTIPLE * times
+
+
+def _of_a_stride(hz, moves):
+    """Whether something stands out at a part of a frequency, as nothing does of what is shaken by
+    itself: its multiples are above it."""
+    spectra = [_spectrum(move) for move in moves if move.capture.accel is not None]
+    return any(_stands(*spectrum, hz / times) for spectrum in spectra
+               for times in range(2, MULTIPLES + 1) if SLOWEST_HZ <= hz / times < STRIDES_HZ)
+
+
+def _spectrum(move):
+    """(Hz (k,), power (k,) of all axes) of the accelerometer of all of a move."""
+    x = move.capture.accel - move.capture.accel.mean(axis=0)
+    power = np.abs(np.fft.rfft(x * np.hanning(len(x))[:, None], axis=0)) ** 2
+    return np.fft.rfftfreq(len(x), 1.0 / move.rate), power.sum(axis=1)
+
+
+def _stands(hz, power, stride):
+    near = np.abs(hz - stride) <= max(MULTIPLE * stride, hz[1])
+    around = (hz > stride / AROUND) & (hz < stride * AROUND)
+    around &= np.abs(hz - stride) > MULTIPLE * stride + LOBE * hz[1]
+    return near.any() and around.any() and power[near].max() > STANDS * np.median(power[around])

@@ -14,7 +14,7 @@ from scipy import special
 from ...capture import registers
 from .. import odds
 from .detection import present
-from .noise_windows import WINDOW_S, window, windows
+from .rest_parts import WINDOW_S, window, windows
 
 LOUD = 9.0  # times the usual variance: three times as loud, which no touch is mistaken for
 ROUNDING = 1.0 / 6.0  # steps²: of differences of readings that nothing but rounding moves

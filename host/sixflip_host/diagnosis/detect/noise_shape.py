@@ -17,8 +17,7 @@ from ...capture import registers
 from .. import odds
 from . import spectral_lines
 from .detection import odd_axes, present
-from .noise_windows import WINDOW_S, window
-from .ringing import LIFTS_S, SETTLES_S
+from .rest_parts import LIFTS_S, SETTLES_S, WINDOW_S, window
 
 PIECE_S, LEAST_S = 8.0, 2.0  # of a rest: a slow pulse is in each
 SAMPLES = 40  # of a piece, at least: of ten, normal noise has 1.14 times what its middle half says

@@ -11,6 +11,7 @@ import numpy as np
 from scipy import special
 
 from ...capture.registers import steps, unit_of_count
+from ...experiment.block_measures import EDGE_S
 
 # Of a stretch, without the edges: a rest of the paper's protocol (5 s), shorter ones (4 s, 2 s),
 # a short one, one on the way.
@@ -19,7 +20,6 @@ FEWEST, SHORTEST = 4, 8  # stretches, samples of one: a log of one row a second 
 # Of what the shortest stretches hold of the rests, that longer ones must hold: a few long rests
 # say nothing of what is there while the box is handled.
 HELD = 0.5
-EDGE_S = 0.1  # of either end of a rest, which may be the move's yet
 # Of slow noise: bins of its corner beyond the first, levels there over the largest power of all.
 CORNERS = np.array([1.0, 3.0, 10.0, 30.0])
 LEVELS = tuple(2.0 ** -k for k in range(16))

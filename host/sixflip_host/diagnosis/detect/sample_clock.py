@@ -17,7 +17,7 @@ FEWEST = 200  # samples: two seconds at 100 Hz, over which stamps late by 0.5 ms
 # Standard deviations of a clock that is as it says, alike in all sessions and in each of them. The
 # first is what does not matter: half a turn counted by a clock as far off ends 0.05 deg off, which
 # no hand turns to (between two logs, neither of which is turned by hand, less does: QUARTZ in
-# simulator/timing.py); the second is a crystal's and its driver's.
+# simulator/own_motion.py); the second is a crystal's and its driver's.
 STATED, DRIVER = 3e-4, 2e-4
 OSCILLATOR = 0.02  # and of a sensor's own oscillator [ITG-3205 PS rev 1.0, table 3.1: 2 %]
 # Share of its error that an oscillator changes by from session to session, as it follows the

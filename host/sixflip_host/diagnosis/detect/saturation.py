@@ -10,8 +10,7 @@ import numpy as np
 from scipy import ndimage, special
 
 from ...capture import chip_scales, registers
-from ...capture.registers import FEWEST_VALUES, RAIL, RAIL_CODES, fixed_bits, steps
-from .codes import number_of_runs
+from ...capture.registers import FEWEST_VALUES, RAIL, RAIL_CODES, fixed_bits, number_of_runs, steps
 from .detection import BELOW, LEVEL, RANGE, Finding, present
 
 # s of a peak's flanks that are looked at, and samples at least: judged, a hand turns a box half

@@ -10,8 +10,8 @@ import math
 import numpy as np
 from scipy import ndimage, special
 
-from .. import odds, verdict
-from . import line_across_rests, line_frequency, line_wander, ringing, strides
+from .. import odds
+from . import line_across_rests, line_frequency, line_wander, rest_parts
 from .detection import Finding
 from .line_frequency import Line
 from .rest_spectra import (
@@ -42,7 +42,6 @@ LEAST_STEPS, DITHERED = 0.5, 0.5
 BESIDE, NARROW = 10, 0.6
 MULTIPLES = 5  # of a frequency: what a motor's imbalance, blades and bearings shake at
 SWEPT, FALLS = 2, 0.5  # the lowest bins hold the straight line taken off; of a line's power
-LEAST_SHARE = 0.25  # of the standard deviation of the noise: smaller is no matter
 # A bench or a table sways at its own frequencies, by chance: from stretch to stretch the power
 # there scatters as much as its mean (noise through a resonance is exponential). Something that
 # runs is steadier. Only what is steady, or strong, is named.
@@ -60,8 +59,9 @@ def findings(sessions, rings=(), tones=()):
             continue
         lines = line_wander.together([line for line in (
             line_of_axis(sessions, sensor, i) for i in range(3)) if line])
-        lines = [line for line in lines if not ((sensor, line.letter) in rings and ringing.fades(
-            sessions, sensor, line.axis, line.hz))]
+        lines = [line for line in lines if not (
+            (sensor, line.letter) in rings
+            and rest_parts.fades(sessions, sensor, line.axis, line.hz))]
         lines = [line for line in lines if line.steady or (sensor, line.letter) not in tones
                  or line.power > MOST * line.excess]
         if lines:
@@ -78,7 +78,7 @@ def line_of_axis(sessions, sensor, axis):
     resting = any(s.runs for s in sessions)
     lines = [line for line in lines if line and (
         resting or line.steady or line.hz > MOTION_HZ)]
-    lines = lines if resting else strides.without(lines, sessions)
+    lines = lines if resting else line_wander.without_strides(lines, sessions)
     if lines:
         return max(lines, key=lambda line: line.nats)
     slow = line_frequency.slow(sessions, sensor, axis)
@@ -110,7 +110,7 @@ def told(lines, sensor, rate):
         words = "it is shaken at about %.3g Hz, at no steady frequency" % top.hz
     share = float(np.average([line.power / line.excess for line in lines],
                              weights=[line.amplitude ** 2 for line in lines]))
-    if share < verdict.CLOSED:
+    if share < odds.CLOSED:
         other = max(lines, key=lambda line: line.excess - line.power)
         words += "; %.0f %% of what stands out of the noise does so elsewhere, most at %.3g Hz" % (
             100.0 * (1.0 - share), other.left_hz)
@@ -168,7 +168,8 @@ def strongest(sessions, sensor, axis):
     nats = -(log_beyond(ratio[k] * number / doubt, number) + math.log(3.0 * len(band)))
     if nats < -math.log(CHANCE):
         return None
-    if resting and n < BRIEF_S * rate and ringing.fades_within(stretches, axis, (first + k) / n):
+    if resting and n < BRIEF_S * rate and rest_parts.fades_within(
+            stretches, axis, (first + k) / n):
         return None
     whole = plain[first:-1]
     below = np.median(whole[max(0, k - width // 2):k + width // 2 + 1]) / median_of_mean
@@ -180,7 +181,7 @@ def strongest(sessions, sensor, axis):
     spread = np.mean([s[:, axis].std() for s in stretches])
     counted = step(sessions, sensor, axis)
     noise = math.sqrt(float(np.median(floor)))
-    if amplitude < LEAST_SHARE * spread or (
+    if amplitude < rest_parts.LEAST_SHARE * spread or (
             noise < DITHERED * counted and amplitude < LEAST_STEPS * counted):
         return None
     scattered = scatter(stretches, axis, first + k)

@@ -11,7 +11,7 @@ import numpy as np
 from ...capture import registers
 from .. import odds
 from .detection import present
-from .ringing import LIFTS_S
+from .rest_parts import LIFTS_S
 from .sample_neighbours import student
 
 SPIKE = 4.5  # standard deviations of a sample off its neighbours, which agree

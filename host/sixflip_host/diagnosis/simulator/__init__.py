@@ -1,15 +1,15 @@
 """The user's own simulator beside the real sensor: which conventions, numbers and effects differ.
 
-traces, log_rests, rest_or_course, restless, row_times, single_log, held_readings
+traces, log_rests, rest_or_course, row_times, single_log, held_readings
                                    what one log says of itself
 alignment, pairing                 two logs of one motion on one clock and one grid
-one_motion, hypotheses, evidence_of_logs, channel_regression, conventions, convention_findings
+one_motion, hypotheses, evidence_of_logs, conventions, convention_findings
                                    layer 1: what the simulator's numbers mean, by the same motion
 own_calibration, own_motion, own_consistency, gravity_directions
                                    layer 1 where the motions differ: each log by its own rests
-parameters, levelled_off, timing, noise_and_registers, numbers_told
+parameters, noise_and_registers, numbers_told
                                    layer 2: the numbers to set, and what they close of the gap
-against_simulator, shaken_alike, dead_zone, gyro_or_motor, lacking_effects, effects_beside
+against_simulator, dead_zone, lacking_effects, effects_beside
                                    layer 3: the effects that one has and the other lacks
 remaining_gap                      layer 4: what is left of the gap, and what it does to a robot
 comparison, simulator_answer       all layers in their order, and the JSON of them

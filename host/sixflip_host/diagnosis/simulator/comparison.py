@@ -4,14 +4,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .. import verdict
+from .. import odds
 from . import (
     alignment,
     convention_findings,
     dead_zone,
-    gyro_or_motor,
     held_readings,
-    levelled_off,
     noise_and_registers,
     numbers_told,
     one_motion,
@@ -20,7 +18,6 @@ from . import (
     parameters,
     remaining_gap,
     single_log,
-    timing,
     traces,
 )
 
@@ -90,7 +87,7 @@ class Comparison:
         return [kind for kind, gap in self.gap.items()
                 if not gap[2] and _open(gap, 0.0)
                 or kind not in self.wanders and gap[1] > shakes[kind] and _open(gap, FAR_ABOVE)
-                or kind == "gyro" and self.bands and self.of_gyro < gyro_or_motor.GYRO]
+                or kind == "gyro" and self.bands and self.of_gyro < dead_zone.GYRO]
 
     @property
     def left(self):
@@ -107,7 +104,7 @@ def _open(gap, times):
     before, after, noise = gap
     after = min(before, after)
     above = after > times * noise > 0.0 if times else True
-    return above and before - after < verdict.CLOSED * (before - noise)
+    return above and before - after < odds.CLOSED * (before - noise)
 
 
 def compare(real_logs, name, capture):
@@ -149,7 +146,7 @@ def compare_traces(real, sim, aligned):
     task, why_not = remaining_gap.tried(logs.real_free, mended, *own, {
         kind: replace(fit, fit=fit.refitted(None)) for kind, fit in of_told.items()})
     remarks = (*alignment.said_of(real, sim, logs.aligned),
-               *gyro_or_motor.said_of(together.bands, together.of_gyro), *why_not)
+               *dead_zone.said_of(together.bands, together.of_gyro), *why_not)
     return Comparison(sim.name, real.name, logs.aligned, tuple(findings), tuple(numbers), task,
                       gap, fits, *own, remarks, tuple(unseen),
                       judged or convention_findings.only_in_motion(findings),
@@ -189,11 +186,11 @@ def _of_range_and_time(logs, together, numbers, findings):
     """[Parameter] of where the real one stops, what shakes it and of time, of one motion."""
     real, sim, fits = logs.real, logs.sim, together.fits
     cut = {(p.sensor, p.axis) for p in numbers if p.name == "range"}
-    more = [p for p in levelled_off.ranges(together.stops, real, sim)
+    more = [p for p in one_motion.ranges(together.stops, real, sim)
             if (p.sensor, p.axis) not in cut]
     if len(fits) == 2 and not findings:
         more += noise_and_registers.shaking(real, dead_zone.taken_off(sim, together.bands))
-    return more + timing.timing(together.late, together.late_sigma, fits, logs.aligned,
+    return more + own_motion.timing(together.late, together.late_sigma, fits, logs.aligned,
                                 {kind: logs.smoothing_s2(kind) for kind in fits})
 
 

@@ -128,11 +128,10 @@ def described(name, kind, fit, probability, nats, live):
     """The Convention with its size and what to set."""
     spread = 1.645 * fit.extra_sigma
     if name == "time_step":
-        k = 1.0 + fit.extra[0]
+        k, half = float(1.0 + fit.extra[0]), float(spread[0])
         return finding(name, kind, probability, nats, "divide what moves it by %.3g: its velocity "
-                       "difference spans another time than it is divided by" % k,
-                       value={"factor": float(k)}, unit="1",
-                       interval_90={"factor": (float(k - spread[0]), float(k + spread[0]))})
+                       "difference spans another time than it is divided by" % k, unit="1",
+                       value={"factor": k}, interval_90={"factor": (k - half, k + half)})
     if name == "lever_arm_missing":
         value = {a: float(100.0 * v) for a, v in zip("xyz", fit.extra)}
         return finding(name, kind, probability, nats, "%s, r = (%.1f, %.1f, %.1f) cm" % (
@@ -186,10 +185,9 @@ def merged(findings):
     if len(axes) == 2 and axes["accel"].value == axes["gyro"].value:
         accel = axes["accel"]
         findings = [c for c in findings if c not in axes.values()]
-        findings.append(Convention(
+        findings.append(finding(
             "both_axes", "device", min(c.probability for c in axes.values()),
-            sum(c.nats for c in axes.values()), "the simulator " + WORDS["both_axes"],
-            accel.set_to, accel.value, accel.unit))
+            sum(c.nats for c in axes.values()), accel.set_to, value=accel.value, unit=accel.unit))
     return list(findings)
 
 
@@ -206,12 +204,12 @@ def capture_put_right(log, findings):
     if any(c.name in SPOILED for c in findings):
         return None
     put_right = copy.copy(log)
+    put_right.meta = dict(log.meta)
     put_right.accel = _counts(log.accel, _matrix(findings, "accel"))
-    put_right.meta = {**log.meta, "accel_lsb_per_g": log.meta["accel_lsb_per_g"]
-                      * _unit(findings, "accel")}
+    put_right.meta["accel_lsb_per_g"] *= _unit(findings, "accel")
     if log.gyro is not None:
         put_right.gyro = _counts(log.gyro, _matrix(findings, "gyro"))
-        put_right.meta["gyro_lsb_per_dps"] = log.meta["gyro_lsb_per_dps"] * _unit(findings, "gyro")
+        put_right.meta["gyro_lsb_per_dps"] *= _unit(findings, "gyro")
     return put_right
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .. import verdict
+from .. import odds
 from . import alignment as align_by
 from . import (
     convention_findings,
@@ -148,7 +148,7 @@ def _explains(named, nameless):
     gap = (named.pair.simulated(kind) - named.pair.real(kind))[:, live]
     left = [remaining_gap.not_foretold(fit)[:, live].std() for fit in (named, nameless)]
     inside = (named.fit.left / named.fit.unit)[:, live]
-    return inside.std() < (1.0 - verdict.CLOSED) * gap.std() and left[0] < left[1]
+    return inside.std() < (1.0 - odds.CLOSED) * gap.std() and left[0] < left[1]
 
 
 def without_smoothing(sensor_fit, rows):

@@ -17,7 +17,6 @@ from ..detect.detection import Finding
 from . import alignment as align_by
 from . import (
     conventions,
-    gyro_or_motor,
     hypotheses,
     lacking_effects,
     pairing,
@@ -41,6 +40,7 @@ SPOILT = 10.0  # times what no band leaves, of one beside which the scale is non
 # Times the noise of both from which on a band is none of their shaking at rest. Nor is one below a
 # step of the real one's codes any other than those.
 OF_NOISE = 5.0
+GYRO = odds.PRESENT  # nats from which on it is the gyro: what turns a thing is as likely
 GAIN = 0.1  # that its scale may be off beside the band: more than a part's is (ITG-3205 PS, 6 %)
 
 
@@ -74,7 +74,7 @@ def found(fits, real, sim):
     fit = sensor_fit.fit
     if fit.unit != 1.0 or not np.array_equal(fit.axes, np.eye(3)):
         return ()
-    noise = gyro_or_motor.in_band(real, sim, "gyro", sensor_fit.pair.band_hz)
+    noise = in_band(real, sim, "gyro", sensor_fit.pair.band_hz)
     least = np.maximum(OF_NOISE * noise,
                        single_log.step(real.rate[~real.put_in], real.quantum[1]))
     still = sim.rest_means(sim.rate).mean(axis=0)
@@ -102,7 +102,7 @@ def added(diagnosis):
         return diagnosis
     best = {}
     for band in (band for comparison in diagnosis.comparisons
-                 if comparison.of_gyro >= gyro_or_motor.GYRO for band in comparison.bands):
+                 if comparison.of_gyro >= GYRO for band in comparison.bands):
         if band.axis not in best or band.nats > best[band.axis].nats:
             best[band.axis] = band
     if not best:
@@ -209,3 +209,23 @@ def _earned(t, noise, fitted):
     size = np.bincount(block)
     before, after = (np.bincount(block, each ** 2)[size > 0] for each in left)
     return lacking_effects.earned([(before, after, size[size > 0])], [noise])
+
+
+def in_band(real, sim, kind, band_hz):
+    """(3,): the noise of two Traces together, in the frequencies compared, m/s2 or rad/s; of one
+    that has none, what rounding leaves while it moves, which it does not show at rest."""
+    power = sum(2.0 * band_hz * log.noise[kind].density ** 2 + (
+        (log.quantum[kind == "gyro"] or 0.0) ** 2 / 12.0 if single_log.silent(log, kind) else 0.0)
+        for log in (real, sim))
+    return np.sqrt(power)
+
+
+def said_of(bands, of_gyro):
+    """[sentence] on Bands that the gyro need not be the cause of."""
+    if not bands or of_gyro >= GYRO:
+        return []
+    who = "what turns it does not answer, as its forces say" if of_gyro <= -GYRO else \
+        "its gyro does not answer, or what turns it does not: its forces do not tell which"
+    return ["the real log lacks turns slower than %s deg/s, which the simulator's has: %s" % (
+        ", ".join("%.3g about %s" % (np.degrees(band.rate), "xyz"[band.axis]) for band in bands),
+        who)]

@@ -12,7 +12,7 @@ from sixflip import STANDARD_G
 from sixflip.poses import faces
 from sixflip_sim.effects.library import EFFECTS
 
-from ...experiment import flicker, noise_arrays, session_terms, terms
+from ...experiment import noise_arrays, session_terms, terms
 from .. import closed_loop, effect_estimates, members
 from ..detect.detection import Finding
 from ..hypotheses import Form
@@ -126,7 +126,7 @@ def _variants(kind, sensor_fit, names, real, diagnosis):
             names[place] = name, form
             fit, _ = _fitted(kind, sensor_fit, names, real, diagnosis)
             lags = len(session_terms.LAGS_S) - 1 if form.variant.startswith("lag") else 1
-            logs.append(np.log(p / lags) + flicker.log_likelihood(
+            logs.append(np.log(p / lags) + noise_arrays.flicker_log_likelihood(
                 sensor_fit.pair.t, SCALE[kind] * fit.left / fit.unit, real.flicker[kind]))
         best = int(np.argmax(np.array(logs) + [
             0.0 if form.variant else members.AS_WELL for form in forms]))
@@ -245,5 +245,6 @@ def _of_fit(fit, designs, place, level, t):
     """((k,) sizes, (k,) standard deviations with flicker) of one of a Fit's designs."""
     after = sum(len(design.keys) for design in designs[place:])
     part = slice(len(fit.extra) - after, len(fit.extra) - after + len(designs[place].keys))
-    wander = level * flicker.of_sizes(t, designs[place].columns.reshape(len(t), 3, -1))
+    wander = level * noise_arrays.flicker_of_sizes(
+        t, designs[place].columns.reshape(len(t), 3, -1))
     return fit.extra[part], np.hypot(fit.extra_sigma[part], wander)

@@ -11,8 +11,8 @@ import numpy as np
 
 from sixflip import STANDARD_G
 
+from ...experiment.projection import MOST_ROWS, regression
 from ..detect import axis_order
-from .channel_regression import MOST_ROWS, regression
 from .hypotheses import BIAS, DEAD, DEG, DELAY_S, FREE, SHAPE
 
 HEARD = 2.0  # times what is left of a channel, above which its own motion would show in it

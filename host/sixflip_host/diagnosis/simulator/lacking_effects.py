@@ -15,7 +15,7 @@ from sixflip import STANDARD_G
 from sixflip_sim.effects.library import EFFECTS
 
 from ...experiment import terms
-from .. import odds, verdict
+from .. import odds
 from ..detect.detection import Finding
 from ..effect_estimates import believable
 from ..hypotheses import Form
@@ -120,7 +120,7 @@ def open_without(sensor_fit, noise):
     where nothing that the real sensor does of itself is beside the convention."""
     fit = replace(sensor_fit, own=None).refitted(None)
     left = remaining_gap.size(sensor_fit.kind, fit.left[:, sensor_fit.live] / fit.unit)
-    return left ** 2 * verdict.CLOSED > noise ** 2
+    return left ** 2 * odds.CLOSED > noise ** 2
 
 
 def judged(kind, sensor_fit, held, names, diagnosis):

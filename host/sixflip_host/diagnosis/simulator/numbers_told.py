@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .. import odds, verdict
+from .. import odds
 from . import hypotheses, parameters, remaining_gap
 from .alignment import errors, independent
 from .hypotheses import DEG
@@ -70,7 +70,7 @@ def together(numbers, fits, gaps, wanders, flicker):
         before, after, noise = gaps[kind]
         enough = parameters.TOGETHER * noise
         if kind not in wanders:  # bumps shake each log: as far as all numbers close it
-            enough = max(enough, before - verdict.CLOSED * (before - after))
+            enough = max(enough, before - odds.CLOSED * (before - after))
         left = remaining_gap.size(kind, remaining_gap.not_foretold(of_told[kind]))
         if sensor_fit.conventions or not after < enough < left:
             continue

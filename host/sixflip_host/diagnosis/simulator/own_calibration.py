@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...capture.attitude import carried, rotations
-from . import restless, traces
+from . import log_rests, traces
 from .hypotheses import BIAS, SHAPE
 
 ROUNDS = 8  # Gauss-Newton steps of the moves' fit: after five the next change a matrix by 1e-9
@@ -60,7 +60,7 @@ def fitted(trace):
     if trace.rate is None:
         return None
     if not trace.rests:
-        levelled = restless.levelled(trace.t, trace.force, trace.rate, trace.rate_hz, trace.g)
+        levelled = log_rests.levelled(trace.t, trace.force, trace.rate, trace.rate_hz, trace.g)
         bias = trace.rate.mean(axis=0) if levelled is None else levelled[1]
         unknown = np.full((3, 3), SHAPE)
         return OwnSensor(np.eye(3), np.zeros(3), np.eye(3), unknown, np.full(3, BIAS["accel"]),

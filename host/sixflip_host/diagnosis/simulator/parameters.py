@@ -1,5 +1,5 @@
 """Layer two: the numbers to set. Bias, scale and misalignment of the simulator and of the real
-sensor side by side, each with its interval (delay, smoothness and clock: timing.py).
+sensor side by side, each with its interval (delay, smoothness and clock: own_motion.py).
 
 Two logs of one motion give the difference directly; logs of different motions give each sensor by
 its own rests and moves, and the difference with the sum of both covariances.

@@ -13,7 +13,7 @@ import numpy as np
 from scipy import linalg
 
 from ...experiment.block_measures import SUBMEAN_S
-from ...experiment.flicker import flicker_kernel
+from ...experiment.noise_arrays import flicker_kernel
 from .. import odds
 
 # s that are judged at once; which may be begun or ended by a move that was cut too late; and to

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...experiment.block_measures import SUBMEAN_S
 from ...experiment.signal_measures import MEDIAN_OF_SQUARE
-from . import convention_findings, restless
+from . import convention_findings, log_rests
 
 # Standard error of a deviation taken from the median of squares of a standard normal, times the
 # root of the number [Rousseeuw, Croux, J. Am. Stat. Assoc. 88 (1993)].
@@ -117,7 +117,7 @@ def noise(trace, values):
             return Noise(np.sqrt(per_mean / (window ** 2).sum() / trace.rate_hz),
                          float(MEDIAN_SIGMA / np.sqrt(len(squares) / 1.5)),
                          np.sqrt(sample.mean(axis=0) / 2.0), NEIGHBOURS / np.sqrt(len(sample)))
-    known = restless.white(values[~trace.put_in])
+    known = log_rests.white(values[~trace.put_in])
     return None if known is None else Noise(
         known[0] / np.sqrt(trace.rate_hz), known[1], known[0], known[1], moving=True)
 

@@ -14,10 +14,9 @@ from ...capture import clock
 from ...capture.attitude import carried, levelled, rotation_between, rotations
 from ...errors import BadFile
 from .. import adequacy
-from . import log_rests, restless, row_times, single_log
+from . import log_rests, row_times, single_log
 
 DPS = np.pi / 180.0
-UP = np.array([0.0, 0.0, 1.0])  # of the world
 
 
 @dataclass(frozen=True)
@@ -139,7 +138,7 @@ def motion(trace):
     turn = np.empty((n, 3, 3))
     first, end = trace.rests[0]
     # The first rest says where the world's vertical is; before it time runs backwards.
-    start = rotation_between(ups[0], UP)
+    start = rotation_between(ups[0], log_rests.UP)
     turn[first:end] = start
     if first:
         turn[:first + 1] = (start @ carried(np.swapaxes(steps[:first], 1, 2)[::-1]))[::-1]
@@ -149,7 +148,7 @@ def motion(trace):
         turn[first:end] = turn[first]
         way = turn[end - 1] @ carried(steps[end - 1:last])
         if k + 1 < len(trace.rests):
-            way = levelled(way, ups[k + 1], UP, _share_turned(middle[end - 1:last]))
+            way = levelled(way, ups[k + 1], log_rests.UP, _share_turned(middle[end - 1:last]))
         turn[end - 1:last + 1] = way
     up = turn[:, 2, :]
     moved = trace.force - trace.g * up
@@ -159,7 +158,7 @@ def motion(trace):
 
 def _restless_motion(trace):
     """The Motion of a Trace without a rest, or None where nothing in it shows the vertical."""
-    levelled = restless.levelled(trace.t, trace.force, trace.rate, trace.rate_hz, trace.g)
+    levelled = log_rests.levelled(trace.t, trace.force, trace.rate, trace.rate_hz, trace.g)
     if levelled is None:
         return None
     turn, bias, speed = levelled
