@@ -45,16 +45,16 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
         comparisons = [comparison.compare(captures, *log) for log in simulator]
         # The rests of one motion are those of both logs, which each finds in the same way.
         apart = not any(compared.motion_judged for compared in comparisons)
-        if apart:
-            sessions = [blocks.with_whole_rests(session) for session in sessions]
+        rested = blocks.with_whole_rests if apart else lambda session: session
+        sessions = [rested(session) for session in sessions]
         # What a log with another convention reads is no effect of a sensor.
         mended = [(name, convention_findings.capture_put_right(log, compared.conventions))
                   for (name, log), compared in zip(simulator, comparisons)]
         sound = [log for log in mended if log[1] is not None]
         if sound:
-            names, simulated = zip(*sound)
             progress.doing("the simulator's own captures")
-            own = against_simulator.read(list(simulated), list(names), settings, apart)
+            own = against_simulator.read(
+                [rested(blocks.session_of(*log)) for log in sound], settings)
             settings = replace(settings, simulated=against_simulator.not_compared(
                 own.known, comparisons))
     result = diagnosis.diagnose_sessions(sessions, settings, own, comparisons, damages)

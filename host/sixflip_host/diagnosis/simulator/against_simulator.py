@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import ndimage, special
 
-from ...experiment import blocks, terms
+from ...experiment import terms
 from ...planning import detectable
 from .. import diagnosis as stages
 from .. import odds
@@ -93,11 +93,9 @@ def _size(finding, key):
     return value, RAW * max(abs(v) for v in finding.value.values())
 
 
-def read(captures, paths, settings, apart=False):
-    """Simulator from captures; apart: of another motion than the real ones."""
-    sessions = [blocks.session_of(p, c) for p, c in zip(paths, captures)]
-    diagnosis = stages.diagnose_sessions(
-        [blocks.with_whole_rests(s) for s in sessions] if apart else sessions, settings, beside=True)
+def read(sessions, settings):
+    """Simulator from its Sessions."""
+    diagnosis = stages.diagnose_sessions(sessions, settings, beside=True)
     known = {kind: _known(gap) for kind, gap in diagnosis.gaps.items() if gap.chosen}
     return Simulator(diagnosis, known, tuple(_remarks(diagnosis)))
 
