@@ -15,7 +15,6 @@ takes what the other two add there for its own.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import optimize
 
 MEDIAN_OF_SQUARE = 0.4549  # of a standard normal
 TAPERS = 4  # eight degrees of freedom a frequency; more of them blur it
@@ -204,6 +203,7 @@ def _likeliest(columns, power, shape, held=None):
     """(squares, log likelihood); held: (index, value) of a square that is given. Fisher scoring:
     weighted least squares whose weights are those of the density found [McCullagh & Nelder,
     Generalized Linear Models (1989), section 8.3]."""
+    from scipy import optimize  # it takes its time, which verbs without arithmetic do not have
     scale = np.median(power) / columns.mean(axis=0)
     free = [k for k in range(columns.shape[1]) if held is None or k != held[0]]
     fixed = np.zeros(len(power)) if held is None else held[1] * columns[:, held[0]]
@@ -230,6 +230,7 @@ def _likeliest(columns, power, shape, held=None):
 
 def _level(columns, power, shape, squares, top, k):
     """Level of one of the squares by the profile of the likelihood."""
+    from scipy import optimize
     def below(value):
         return top - _likeliest(columns, power, shape, (k, value))[1] - HALF_OF_90
     square = float(squares[k])
