@@ -3,7 +3,10 @@ rests have them, and from each rest to the next, as the gyro carries them."""
 import numpy as np
 
 from ...capture.attitude import carried, rotation_between, rotations
+from .. import odds
+from ..detect.wrong_scale import RANGES
 from . import traces
+from .convention_findings import CERTAIN
 
 SIGMA = np.radians(4.0)  # of a direction: bias of 60 mg, scale of the gyro 3 % of a half turn
 # Share of moves and rests that follow nothing at all: a log of fifty moves may have one in which
@@ -47,6 +50,17 @@ def carried_log(body, ways, gyro):
         turn = carried(rotations(steps @ matrix.T))[-1]
         total += closeness(body[after], turn.T @ body[before])
     return float(total)
+
+
+def full_scale(trace, ups):
+    """How many times too large the gyro reads by the directions of gravity ups (k, 3) at the rests
+    of a Trace, where its full scale is not the one that its log states; 1 where they do not show
+    another, or where there is none."""
+    ways = moves(trace)
+    chances = odds.shares({times: carried_log(ups, ways, times * np.eye(3)) + np.log(
+        CERTAIN if times == 1.0 else 1.0 - CERTAIN) for times in (1.0, *RANGES)})
+    likeliest = max(chances, key=chances.get)
+    return likeliest if chances[likeliest] > CERTAIN else 1.0
 
 
 def world_log(body, ways):

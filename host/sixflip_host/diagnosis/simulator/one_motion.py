@@ -119,7 +119,8 @@ def beside(logs):
     fresh = {k: logs.sim.rate_hz / v.rows for k, v in logs.holds["sim"].items()}
 
     def fitted(real, sim):
-        return conventions.same_motion(real, sim, logs.aligned, logs.motion, logs.live, fresh)
+        return conventions.same_motion(real, sim, logs.aligned, logs.motion, logs.live, fresh,
+                                       logs.own_real.gains)
     real, sim = logs.real_free, logs.sim_free
     fits = fitted(real, sim)
     stops = stops_of(fits)

@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...capture.attitude import carried, rotations
-from . import log_rests, traces
-from .hypotheses import BIAS, SHAPE
+from . import gravity_directions, log_rests, traces
+from .hypotheses import BIAS, DEAD, SHAPE
 
 ROUNDS = 8  # Gauss-Newton steps of the moves' fit: after five the next change a matrix by 1e-9
 STEPS, SMALL = 60, 1e-6  # of the rests' fit at most; standard errors that ends it
@@ -47,6 +47,12 @@ class OwnSensor:
     gyro_bias_sigma: np.ndarray
     flicker: dict
 
+    @property
+    def gains(self):
+        """{sensor: (3,)}: times what it reads that each axis went through."""
+        return {kind: np.maximum(np.diag(matrix), DEAD) for kind, matrix in (
+            ("accel", self.accel), ("gyro", self.gyro))}
+
     def applied(self, trace):
         """The Trace as this sensor's true force and rate."""
         line = traces.rest_line(trace, trace.rate) if trace.rests else self.gyro_bias
@@ -76,7 +82,9 @@ def fitted(trace):
     ups /= np.maximum(np.linalg.norm(ups, axis=1), 1e-9)[:, None]
     gyro, gyro_sigma = np.eye(3), np.full((3, 3), SHAPE)
     if np.all(norms > 0.3 * trace.g):
-        gyro, gyro_sigma = by_carry(trace, rate, ups, bias_sigma / trace.g)
+        times = gravity_directions.full_scale(trace, ups)
+        gyro, gyro_sigma = (x / times for x in by_carry(
+            trace, rate / times, ups, bias_sigma / trace.g))
     biases = trace.rest_means(trace.rate)
     spread = biases.std(axis=0, ddof=1) / np.sqrt(len(biases)) if len(biases) > 2 else \
         np.full(3, 0.001)
