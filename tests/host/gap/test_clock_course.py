@@ -5,7 +5,7 @@ from scipy import ndimage
 
 from sixflip_host.capture.capture import Capture
 from sixflip_host.diagnosis.diagnose import diagnose
-from sixflip_host.diagnosis.simulator import alignment, clock_course, traces
+from sixflip_host.diagnosis.simulator import alignment, clock_course, lag_path, traces
 from tests.worlds.tumbled import META, RATE_HZ, read, tumbled
 
 SECONDS = 90.0
@@ -127,3 +127,12 @@ def test_what_a_lossy_log_lacks_is_a_cause_with_its_share():
         100.0 * sum(RUNS) / (SECONDS * RATE_HZ), rel=0.05)
     assert found.verdict == "explained"
     assert [p.name for p in found.comparisons[0].differs] == ["lost_rows"]
+
+
+def test_jumps_that_touch_stay_as_they_are():
+    """There was no row between them to place either by: a traceback."""
+    logs = lag_path.Turns(*traced(*pair(11)))
+    line = lag_path.Line(0.0, 0.0, np.array([30.0, 30.0, 60.0]), np.array([0.1, -0.1, 0.0]),
+                         np.zeros(0))
+    right = clock_course.placed(logs, lag_path.fitted(logs, line))
+    assert len(right.times) == 3 and (np.diff(right.times) >= 0.0).all()

@@ -95,6 +95,9 @@ def placed(logs, one):
         lacks = max(-size, 0.0)
         t = np.arange(max(time - NEAR_S - lacks, 0.5 * (ends[k] + time)),
                       min(time + NEAR_S, 0.5 * (ends[k + 2] + time)), 1.0 / GRID_HZ)
+        if len(t) < 2:  # two jumps that the path has from block to block
+            times, sizes = [*times, time], [*sizes, size]
+            continue
         before = line.of_simulator(t) - np.where(t >= time, size, 0.0)
         off = []
         steps = np.linspace(0.0, abs(size), 1 + max(int(abs(size) * GRID_HZ + 0.5), 1))
@@ -107,7 +110,8 @@ def placed(logs, one):
             cuts, (middle / (len(steps) - 1), 1.0)[-len(cuts):])]
         parts = np.array([middle, len(steps) - 1 - middle][-len(cuts):])
         sizes += list(size * parts / parts.sum())
-    return replace(line, times=np.array(times), sizes=np.array(sizes))
+    order = np.argsort(times)
+    return replace(line, times=np.array(times)[order], sizes=np.array(sizes)[order])
 
 
 def _cuts(off):
