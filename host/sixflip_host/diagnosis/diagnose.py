@@ -35,18 +35,24 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
         noise = flicker_levels(capture, name)
     settings = Settings(certified_box, tuple(without), noise, jobs, prior=prior)
     captures, damages = samples_judged.without_damage(captures, settings.processors)
-    sessions = [blocks.session_of(name, capture) for name, capture in captures]
-    own, comparisons = None, []
+    own, comparisons, rested = None, [], lambda session: session
     if simulator:
         from .simulator import against_simulator, comparison, convention_findings, traces
         for each in (*captures, *simulator):
             traces.check_rows(*each)
         progress.doing("conventions and parameters of the simulator")
-        comparisons = [comparison.compare(captures, *log) for log in simulator]
+        simulator = list(simulator)
+        for k, (name, log) in enumerate(simulator):
+            compared = comparison.compare(captures, name, log)
+            comparisons.append(compared)
+            right = compared.put_right
+            if right is not None:  # what else is said is said of the right times
+                captures = [(real, right.real if real == compared.against else capture)
+                            for real, capture in captures]
+                simulator[k] = name, right.sim
         # The rests of one motion are those of both logs, which each finds in the same way.
-        apart = not any(compared.motion_judged for compared in comparisons)
-        rested = blocks.with_whole_rests if apart else lambda session: session
-        sessions = [rested(session) for session in sessions]
+        if not any(compared.motion_judged for compared in comparisons):
+            rested = blocks.with_whole_rests
         # What a log with another convention reads is no effect of a sensor.
         mended = [(name, convention_findings.capture_put_right(log, compared.conventions))
                   for (name, log), compared in zip(simulator, comparisons)]
@@ -57,6 +63,7 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
                 [rested(blocks.session_of(*log)) for log in sound], settings)
             settings = replace(settings, simulated=against_simulator.not_compared(
                 own.known, comparisons))
+    sessions = [rested(blocks.session_of(name, capture)) for name, capture in captures]
     result = diagnosis.diagnose_sessions(sessions, settings, own, comparisons, damages)
     return _beyond(result, own, sessions, damages) if comparisons else result
 

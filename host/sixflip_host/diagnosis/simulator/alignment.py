@@ -27,6 +27,7 @@ AS_FAST = 0.98
 # period of the band.
 DRIFTS = np.linspace(-0.03, 0.03, 61)
 THINNED = 4  # of so many steps one will do for that: four a period of the band
+MOST_ROWS = 3.0  # periods between two rows, from which on some are missing or came very late
 FADED = 2.0  # periods of the band's end in which what lies beyond the ends has faded to 1e-4
 LEAST_S = 8.0  # of a log: its turn rate has a hundred independent values in BAND_HZ
 
@@ -76,7 +77,7 @@ def _by_turns_or_forces(real, sim):
 
 
 def _aligned(a, b):
-    """Alignment of two courses on their grids, (times, values) each."""
+    """Alignment of two courses on their grids, (times, values, unread) each."""
     if a[1].std() <= 0 or b[1].std() <= 0:
         return Alignment(False, 0.0, 0.0, np.inf, 0.0, np.inf, 0.0)
     best = coarse(a, b, 0.0) + (0.0,)
@@ -87,28 +88,34 @@ def _aligned(a, b):
 
 
 def turn_rate(trace):
-    """(times of a grid, turn rate in rad/s, smooth)."""
+    """(times of a grid, turn rate in rad/s, smooth, where rows are missing within a period of the
+    band)."""
     size = np.linalg.norm(trace.rate - np.median(trace.rate, axis=0)
                           if not trace.rests else trace.rate - trace.rest_means(
                               trace.rate).mean(axis=0), axis=1)
-    t = np.arange(0.0, trace.seconds, 1.0 / GRID_HZ)
-    return t, smooth(np.interp(t, trace.t, size), GRID_HZ)
+    return _on_grid(trace, size)
 
 
 def force_off(trace):
-    """(times of a grid, how far the specific force is from its median, smooth): where no turn rate
-    is there to go by."""
-    t = np.arange(0.0, trace.seconds, 1.0 / GRID_HZ)
-    size = np.linalg.norm(trace.force - np.median(trace.force, axis=0), axis=1)
-    return t, smooth(np.interp(t, trace.t, size), GRID_HZ)
+    """As turn_rate(), of how far the specific force is from its median: where no turn rate is
+    there to go by."""
+    return _on_grid(trace, np.linalg.norm(trace.force - np.median(trace.force, axis=0), axis=1))
 
 
 def force_size(trace):
-    """(times of a grid, the specific force's size less its median, smooth): of what drives along
-    gravity up and down are then two."""
-    t = np.arange(0.0, trace.seconds, 1.0 / GRID_HZ)
+    """As turn_rate(), of the specific force's size less its median: of what drives along gravity
+    up and down are then two."""
     size = np.linalg.norm(trace.force, axis=1)
-    return t, smooth(np.interp(t, trace.t, size - np.median(size)), GRID_HZ)
+    return _on_grid(trace, size - np.median(size))
+
+
+def _on_grid(trace, size):
+    t = np.arange(0.0, trace.seconds, 1.0 / GRID_HZ)
+    row = np.minimum(np.searchsorted(trace.t, t, "right"), len(trace.t) - 1)
+    unread = trace.put_in[row] | trace.put_in[row - 1] | (
+        trace.t[row] - trace.t[row - 1] > MOST_ROWS / trace.rate_hz)
+    near = np.convolve(unread, np.ones(2 * int(GRID_HZ / BAND_HZ) + 1), "same") > 0.0
+    return t, smooth(np.interp(t, trace.t, size), GRID_HZ), near
 
 
 def smooth(x, rate_hz, band_hz=BAND_HZ):
@@ -131,7 +138,7 @@ def coarse(a, b, drift):
     """(correlation, offset in s) of the best whole step."""
     step = a[0][1] - a[0][0]
     t = np.arange(0.0, b[0][-1] * (1.0 + drift), step)
-    y = np.interp(t / (1.0 + drift), *b)
+    y = np.interp(t / (1.0 + drift), b[0], b[1])
     x = a[1] - a[1].mean()
     y = y - y.mean()
     n = len(x) + len(y)
@@ -157,9 +164,11 @@ def refined(a, b, offset, drift):
     for _ in range(6):
         t = offset + (1.0 + drift) * b[0]
         inside = (t >= 0.0) & (t <= a[0][-1])
+        known = inside & ~b[2] & (np.interp(t, a[0], a[2]) < 0.5)
+        inside = known if known.sum() > 0.5 * inside.sum() else inside
         if inside.sum() < LEAST_S * GRID_HZ:
             return Alignment(False, 0.0, offset, np.inf, drift, np.inf, inside.sum() / GRID_HZ)
-        x = np.interp(t[inside], *a)
+        x = np.interp(t[inside], a[0], a[1])
         slope = np.interp(t[inside], a[0], np.gradient(a[1], a[0]))
         y = b[1][inside]
         gain = np.polyfit(y, x, 1)

@@ -7,6 +7,7 @@ import numpy as np
 from .. import odds
 from . import (
     alignment,
+    clock_course,
     convention_findings,
     dead_zone,
     held_readings,
@@ -42,7 +43,8 @@ class Comparison:
     between its sensors that the simulator's does not; bands (dead_zone.Band, ...): of slow turns
     that the real log lacks, and with which the fits have the simulator's; of_gyro: nats by which
     it is the gyro that does not answer them, and not what turns it; otherwise: of two motions, at
-    rest they differ by a bias or by how the sensor lies."""
+    rest they differ by a bias or by how the sensor lies; put_right (clock_course.PutRight): both
+    captures with their times put right, where those do not go alike, or None."""
 
     log: str
     against: str
@@ -64,6 +66,7 @@ class Comparison:
     bands: tuple = ()
     of_gyro: float = 0.0
     otherwise: bool = False
+    put_right: clock_course.PutRight = None
 
     @property
     def differs(self):
@@ -116,7 +119,16 @@ def compare(real_logs, name, capture):
     candidates = [traces.trace_from_capture(n, c) for n, c in real_logs]
     aligned = [alignment.align(real, sim) for real in candidates]
     best = max(range(len(candidates)), key=lambda k: aligned[k].correlation)
-    return compare_traces(candidates[best], sim, aligned[best])
+    real = candidates[best]
+    course = clock_course.found(real, sim, aligned[best])
+    if course is None:
+        return compare_traces(real, sim, aligned[best])
+    right = clock_course.put_right(course, real, sim, (real_logs[best][1], capture))
+    real, sim = (traces.trace_from_capture(log.name, captured) for log, captured in (
+        (real, right.real), (sim, right.sim)))
+    result = compare_traces(real, sim, alignment.align(real, sim))
+    return replace(result, parameters=(*result.parameters, *right.parameters),
+                   remarks=(*right.remarks, *result.remarks), put_right=right)
 
 
 def compare_traces(real, sim, aligned):

@@ -68,8 +68,8 @@ class SensorFit:
 
 
 def same_motion(real, sim, alignment, motion, live, fresh_hz, own_gain):
-    """{sensor: SensorFit} of two aligned Traces; own_gain {sensor: (3,)} of the real one; live {sensor: (3,)}: channels that change, none
-    of the gyro's where nothing turns."""
+    """{sensor: SensorFit} of two aligned Traces; own_gain {sensor: (3,)} of the real one; live
+    {sensor: (3,)}: channels that change, none of the gyro's where nothing turns."""
     sensor_fits, swapped = {}, None
     for kind in ("accel", "gyro"):
         if live[kind].any():

@@ -1,5 +1,6 @@
 """When the rows of a log were read, and those that nobody read: what is smoothed, turned and put
 on another log's times from row to row needs even rows, at the times that they belong to."""
+import copy
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +15,10 @@ PUT_IN_S = 0.15  # of lost rows in one place: a period of the band that is compa
 # where they were read in time: noise alone bends as much by both.
 LATE, FEWEST, LESS = 0.3, 8, 0.8
 WIDE = 2 * stamp_envelope.REACH + 1  # rows, of which those of one late row are less than half
+# Of a row, that a run of lost ones is no whole number of them in what is fitted, standard
+# deviation; share of the runs that something else spoils, as another one within a second.
+WHOLE, SPOILT = 0.05, 0.1
+APART = 3.0  # nats by which it is one of two, lost rows or a clock that was set [GAP stage 4]
 SOME = 0.25  # of the intervals, at most, where stamps are told from a clock that is coarse
 
 
@@ -128,3 +133,48 @@ def increasing(t, values):
     """(t, values) without rows whose time does not grow."""
     keep = np.concatenate([[True], np.diff(np.maximum.accumulate(t)) > 0])
     return t[keep], values[keep]
+
+
+def gap_near(t, span, size, off):
+    """The first of stamps t (n,) s after a gap that is longer than a period by size, to so much
+    off, where it is the longest in a span of times; or None."""
+    first, end = np.searchsorted(t, span)
+    first = max(first - 1, 0)
+    apart = np.diff(t[first:end + 1])
+    if not len(apart):
+        return None
+    longest = int(apart.argmax())
+    fits = abs(apart[longest] - np.median(np.diff(t)) - size) < off
+    return float(t[first + longest + 1]) if fits else None
+
+
+def whole_nats(rate_hz, runs):
+    """Nats by which runs [(s, size in s, its standard error)] of a log are whole numbers of rows,
+    as lost ones are, over sizes of any kind."""
+    rows, sigma = rate_hz * np.array(runs)[:, 1:].T
+    width = np.hypot(sigma, WHOLE)
+    near = np.exp(-0.5 * ((rows - np.rint(rows)) / width) ** 2) / (width * np.sqrt(2.0 * np.pi))
+    return float(np.log(SPOILT + (1.0 - SPOILT) * np.where(width < LATE, near, 1.0)).sum())
+
+
+def whole_runs(rate_hz, runs):
+    """[(from s on, by s)] of such runs, in whole rows where they may be lost ones."""
+    sizes = np.array([rate_hz * size for _, size, _ in runs])
+    if whole_nats(rate_hz, runs) > -APART:
+        sizes = np.maximum(np.rint(sizes), 1.0)
+    return [(run[0], size / rate_hz) for run, size in zip(runs, sizes)]
+
+
+def with_times(capture, later):
+    """The Capture with stamps later by so many s as a function says of times (n,) s from its first
+    row on."""
+    def right(t_us):
+        moved = np.rint(1e6 * later(1e-6 * (t_us - capture.t_us[0]))).astype(t_us.dtype)
+        return np.maximum.accumulate(t_us + moved)
+    if not np.any(right(capture.t_us) != capture.t_us):
+        return capture
+    put = copy.copy(capture)
+    put.t_us = right(capture.t_us)
+    if put.recorded is not None:
+        put.recorded = right(put.recorded[0]), put.recorded[1]
+    return put
