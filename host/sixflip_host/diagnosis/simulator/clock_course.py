@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .. import verdict
+from .. import odds
 from . import alignment, own_motion, row_times
 from .lag_path import (
     BLURRED_S,
@@ -57,7 +57,7 @@ def found(real, sim, aligned):
         return -0.5 * number * np.log(one.power) - one.cost
     best = max(tried, key=log, default=base)
     likelier = log(best) - log(base) > PRESENT
-    return best if likelier and best.power < (1.0 - verdict.CLOSED) * base.power else None
+    return best if likelier and best.power < (1.0 - odds.CLOSED) * base.power else None
 
 
 def _straight(drift, lags, block_s):
