@@ -11,6 +11,7 @@ from sixflip_sim.effects import typical
 
 from .. import side_by_side
 from ..capture import registers
+from ..capture.imports import gyro_unit
 from . import localisation, odds
 from .detect import (
     axis_order,
@@ -118,6 +119,8 @@ def judge(sessions, settings=ALONE, damages=()):
     unsteady += [(sensor, noise_shape.words(sensor, axis, *measures), odds.chance(nats))
                  for sensor, axis, nats, *measures in shaped]
     remarks = [damage.words for damage in damages]
+    if not any(d.sensor == "gyro" and d.kind == "full_scale" for d in damages):
+        remarks += gyro_unit.doubt([s.capture for s in sessions])
     remarks += ["bit %d of the %s axis of the %s always reads %d"
                % (bit, axis, SENSOR[sensor], value) for sensor, axis, bit, value, _ in bits]
     remarks += [*(words for _, _, words, _ in rings), *held_by_hand]

@@ -193,11 +193,17 @@ class ToldUnits:
 
     def _likelier(self, unit, evidence):
         """The likelier unit of a gyro that was assumed to be in one, by the Evidence."""
-        odds = gyro_unit.BY_ITS_STEP if self.by_step[GYRO] else \
-            gyro_unit.GOES_WITH if self.options.gravity else gyro_unit.OF_A_SIMULATOR
         other = "rad/s" if unit == "dps" else "dps"
-        nats = evidence.nats if other == "dps" else -evidence.nats
-        if nats <= math.log(odds):
-            return unit
-        self.assumed[self._assumed_gyro] = "the gyro is in %s: %s" % (other, evidence.why(other))
-        return other
+        odds = gyro_unit.BY_ITS_STEP if self.by_step[GYRO] else gyro_unit.OF_A_SIMULATOR \
+            if not self.options.gravity else gyro_unit.GOES_WITH[
+                "g" if other == "rad/s" else "m/s2"]
+        nats = (evidence.nats if other == "dps" else -evidence.nats) - math.log(odds)
+        if nats > 0.0:
+            unit, other = other, unit
+            self.assumed[self._assumed_gyro] = "the gyro is in %s: %s" % (
+                unit, evidence.why(unit))
+        chance = 1.0 / (1.0 + math.exp(min(abs(nats), 500.0)))
+        if chance > gyro_unit.DOUBT:
+            self.assumed[self._assumed_gyro] += " (%s with a chance of %.0f %%: --units ,%s " \
+                "takes it so)" % (other, 100.0 * chance, other)
+        return unit

@@ -2,7 +2,8 @@
 not turn as far as gravity does, or as far as a flip of half a circle.
 
 Three hypotheses about one factor: a sound part, whose scale and offset err by a few percent; a
-range that is off by a power of two; and any factor at all, which has no name.
+range that is off by a power of two; and any factor at all, which has no name. That a gyro is in
+rad/s where the header says deg/s shows as it does at import.
 """
 import math
 
@@ -12,7 +13,7 @@ from sixflip.poses import faces
 
 from ...capture import registers
 from ...capture.find_poses import NO_GRAVITY
-from ...capture.imports import gravity
+from ...capture.imports import gravity, gyro_unit
 from .detection import Damage, present
 
 SOUND_ACCEL = 0.1  # of |a|: ±80 mg of offset and 3 % of scale [MPU-6000 PS rev 3.4, table 6.2]
@@ -112,11 +113,11 @@ def gyro(sessions):
         for factor, width in (*_by_gravity(session), *_by_flips(session)):
             factors.append(factor)
             widths.append(width)
-    if not factors:
-        return None
-    factor, nats = competed(factors, widths)
+    factor, nats = competed(factors, widths) if factors else (None, 0.0)
     if not present(nats):
-        return None
+        nats, words = gyro_unit.of_captures([s.capture for s in sessions])
+        return Damage("full_scale", "gyro", (), "amplitude", words, nats, {
+            "factor": round(math.radians(1.0), 4)}) if present(nats) else None
     size = float(np.average(factors, weights=1.0 / np.square(widths)))
     words = "the gyro turns %.3g times as far as %s" % (
         size, "gravity and half a circle tell: its full scale is not the one the header states"
