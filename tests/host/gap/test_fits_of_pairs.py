@@ -63,3 +63,23 @@ def test_what_closes_the_gap_and_foretells_better_is_no_unknown():
     assert conventions._explains(fitted(0.03, 0.1), nameless)
     assert not conventions._explains(fitted(0.03, 0.6), nameless)
     assert not conventions._explains(fitted(0.3, 0.35), nameless)
+
+
+def test_a_gyro_with_a_wrong_range_accuses_no_simulator_of_a_time_step():
+    """A time step of half the right one, with a probability of 1."""
+    t, force, rate = tumbled(1, 60.0)
+    found = comparison.compare([("real", read(t, force, 2.0 * rate, 1))], "sim",
+                               read(t, force, rate, 101))
+    assert found.conventions == () and all(
+        p.difference == pytest.approx(100.0, abs=1.0) for p in found.parameters
+        if (p.name, p.sensor) == ("scale", "gyro"))
+
+
+def test_an_accelerometer_with_a_wrong_range_accuses_no_simulator_of_a_unit():
+    """Another unit, with a probability of 1, and scales that differ by 390 %."""
+    t, force, rate = tumbled(1, 60.0)
+    found = comparison.compare([("real", read(t, 0.5 * force, rate, 1))], "sim",
+                               read(t, force, rate, 101))
+    assert found.conventions == () and all(
+        p.difference == pytest.approx(-50.0, abs=1.0) for p in found.parameters
+        if (p.name, p.sensor) == ("scale", "accel"))
