@@ -63,3 +63,41 @@ def test_what_closes_the_gap_and_foretells_better_is_no_unknown():
     assert conventions._explains(fitted(0.03, 0.1), nameless)
     assert not conventions._explains(fitted(0.03, 0.6), nameless)
     assert not conventions._explains(fitted(0.3, 0.35), nameless)
+
+
+def test_a_gyro_with_a_wrong_range_accuses_no_simulator_of_a_time_step():
+    """A time step of half the right one, with a probability of 1."""
+    t, force, rate = tumbled(1, 60.0)
+    found = compared(read(t, force, 2.0 * rate, 1), read(t, force, rate, 101))
+    assert found.conventions == () and all(
+        p.difference == pytest.approx(100.0, abs=1.0) for p in found.parameters
+        if (p.name, p.sensor) == ("scale", "gyro"))
+
+
+def test_an_accelerometer_with_a_wrong_range_accuses_no_simulator():
+    """Gravity with its sign turned, or of a thing that is driven another unit."""
+    t, force, rate = tumbled(1, 60.0)
+    found = compared(read(t, 0.5 * force, rate, 1), read(t, force, rate, 101))
+    assert found.conventions == () and all(
+        p.difference == pytest.approx(-50.0, abs=1.0) for p in found.parameters
+        if (p.name, p.sensor) == ("scale", "accel"))
+
+
+def test_a_gyro_with_a_resonance_makes_no_unit_and_no_delay():
+    """Another unit, with a probability of 1, and scales that differ by 5600 %; then a gyro that
+    is 16 ms early, where it is 3 ms late."""
+    t, force, rate = tumbled(1, 60.0)
+    shaking = np.random.default_rng(5).standard_normal(rate.shape)
+    shaking = lfilter(*butter(2, [6.0, 9.0], "band", fs=100.0), shaking, axis=0)
+    rate = rate + 40.0 * shaking * (np.abs(rate).max(axis=1) > 1.0)[:, None]
+    fine = np.repeat(rate, 10, axis=0)  # at 1 kHz
+    low, high = 2.0 * np.pi * 11.0, 2000.0
+    mass = high ** 2 + high * low / 5.0 + low ** 2
+    rung = lfilter(np.array([1.0, 2.0, 1.0]) * low ** 2 / mass,
+                   [1.0, 2.0 * (low ** 2 - high ** 2) / mass,
+                    (high ** 2 - high * low / 5.0 + low ** 2) / mass], fine, axis=0)[9::10]
+    found = compared(read(t, force, rung, 1), read(t, force, rate, 101))
+    assert not any(c.name.endswith("_unit") for c in found.conventions)
+    assert all(abs(p.difference) < 10.0 for p in found.parameters if p.name == "scale")
+    assert not any(p.differs and p.difference < -6.0 for p in found.parameters
+                   if p.name == "delay")

@@ -67,20 +67,20 @@ class SensorFit:
         return float(len(self.pair.t) / self.inflation * self.live.sum() * -np.log(weaker))
 
 
-def same_motion(real, sim, alignment, motion, live, fresh_hz, own_gain):
-    """{sensor: SensorFit} of two aligned Traces; own_gain {sensor: (3,)} of the real one; live
+def same_motion(real, sim, alignment, motion, live, fresh_hz, full_scale):
+    """{sensor: SensorFit} of two aligned Traces; full_scale of the real one's OwnSensor; live
     {sensor: (3,)}: channels that change, none of the gyro's where nothing turns."""
     sensor_fits, swapped = {}, None
     for kind in ("accel", "gyro"):
         if live[kind].any():
             sensor_fits[kind] = one_sensor(kind, real, sim, alignment, motion, live[kind],
-                                           fresh_hz[kind], own_gain[kind], swapped)
+                                           fresh_hz[kind], full_scale[kind], swapped)
             if any(c.name == "accel_axes" for c in sensor_fits[kind].conventions):
                 swapped = sensor_fits[kind].fit.axes
     return sensor_fits
 
 
-def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, own_gain, swapped=None):
+def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, full_scale, swapped=None):
     """SensorFit of one sensor; swapped (3, 3): the axes of the other one, where they are."""
     noise, theirs = (log.noise[kind] for log in (real, sim))
 
@@ -98,7 +98,8 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, own_gain, swa
         density = 0.0 if noise is None else noise.density
         values = pairing.reliable(values, np.maximum(np.sqrt(2.0 * pair.band_hz * share) * density,
                                                      pairing.shaken(left, heard, values)))
-        tried = [replace(h, own_gain=own_gain) for h in made(values, pair.motion, real.g)]
+        tried = [replace(h, full_scale=full_scale)
+                 for h in made(values / full_scale, pair.motion, real.g)]
         return pair, measured, tried, evidence_of_logs.bends(left, pairing.GRID_HZ)
 
     pair, measured, tried, noise_bends = asked(pairing.paired(real, sim, alignment, motion))

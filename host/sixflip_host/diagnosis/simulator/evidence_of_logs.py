@@ -167,21 +167,21 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
         log += 0.5 * n / inflation * np.minimum(0.0, np.log(weaker))[live].sum()
     log -= live.sum() * n / inflation * np.log(unit) + HEADING * h.heading
     if h.name:
-        log += of_factors(h, np.diag(beta[:, :3])[live], np.diag(widths[:, :3])[live], axes[live])
+        log += of_factors(np.diag(beta[:, :3])[live], np.diag(widths[:, :3])[live])
     return Fit(h, h.name, log, beta[:, 3] * unit, axes, unit, shared[:k], sigma[:k], delay,
-               float(sigma[k]), float(shared[k + 1]), float(sigma[k + 1]), beta[:, :3],
-               beta_sigma[:, :3], beta_sigma[:, 3] * unit, rest * unit if left else None)
+               float(sigma[k]), float(shared[k + 1]), float(sigma[k + 1]),
+               (np.eye(3) + beta[:, :3]) / h.full_scale - np.eye(3),
+               beta_sigma[:, :3] / h.full_scale, beta_sigma[:, 3] * unit,
+               rest * unit if left else None)
 
 
-def of_factors(h, scale, width, axes):
+def of_factors(scale, width):
     """Nats by which the prior of scales (k,), off from 1 as fitted, is other than that of a sum of
     such widths (k,): a scale is a factor, and half is as far from 1 as twice is. A unit or a wrong
     time step that the scale takes back would lie within some widths of it otherwise, whatever the
-    factor. A real part may also read as its own rests and moves say."""
+    factor."""
     factor = np.log(np.maximum(np.abs(1.0 + scale), LEAST_FACTOR))
-    own = np.log(np.abs(axes) @ h.own_gain)
-    likely = -0.5 * (((factor - [[0.0], [1.0]] * own) / width) ** 2).sum(axis=1)
-    return float(np.logaddexp(*likely) - np.log(2.0) + 0.5 * ((scale / width) ** 2).sum())
+    return 0.5 * float(((scale / width) ** 2 - (factor / width) ** 2).sum())
 
 
 def gains(h, beta, shared, unit):

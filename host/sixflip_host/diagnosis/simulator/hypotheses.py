@@ -5,7 +5,7 @@ what the real sensor went through. S is a signed permutation times a unit, or a 
 vertical; E, the bias and c have priors of their physical size. The nameless one is the sensor's
 own reading with every signal beside it, each with free coefficients.
 """
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -53,8 +53,8 @@ class Hypothesis:
     sd (k,); heading: S is a turn about the vertical; free (n, f): further columns of each channel
     with prior FREE; bias_sd: one, or (3,), None for BIAS; copies: the first so many triples of
     free, and (scaled) the first of columns, carry the signal's noise; shape_sd (3, 3): of E, None
-    for SHAPE; smooth_sd: s2, of how much smoother it is, see Fit; own_gain (3,): times what it
-    reads, by its own rests and moves, that each axis of the real one went through."""
+    for SHAPE; smooth_sd: s2, of how much smoother it is, see Fit;
+    full_scale: how many times the signal the real one reads by a full scale that is not stated."""
 
     name: str
     signal: np.ndarray
@@ -68,7 +68,7 @@ class Hypothesis:
     scaled: bool = False
     shape_sd: np.ndarray = None
     smooth_sd: float = SMOOTH_S2
-    own_gain: np.ndarray = field(default_factory=lambda: np.ones(3))
+    full_scale: float = 1.0
 
 
 def none(n):

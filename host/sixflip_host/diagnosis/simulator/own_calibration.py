@@ -5,13 +5,14 @@ Maximum a posteriori with priors of datasheet size, so that a log with two rests
 honestly as one with twenty: what it cannot see keeps its prior's interval. So does a sensor that
 the priors find impossible: windows of a flying drone that look still are no rests.
 """
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ...capture.attitude import carried, rotations
+from ..detect.wrong_scale import RANGES, SOUND_ACCEL
 from . import gravity_directions, log_rests, traces
-from .hypotheses import BIAS, DEAD, SHAPE
+from .hypotheses import BIAS, SHAPE
 
 ROUNDS = 8  # Gauss-Newton steps of the moves' fit: after five the next change a matrix by 1e-9
 STEPS, SMALL = 60, 1e-6  # of the rests' fit at most; standard errors that ends it
@@ -35,7 +36,8 @@ IMPOSSIBLE = 20.0
 class OwnSensor:
     """true force = accel (force - bias), accel (3, 3) symmetric (its turn cannot be seen); true
     rate = gyro (rate - bias at rest); sigmas of accel (3, 3), bias (3,), gyro (3, 3); gyro_bias
-    (3,) rad/s with its sigma (infinite without a rest); flicker: that of its Trace."""
+    (3,) rad/s with its sigma (infinite without a rest); flicker: that of its Trace; full_scale
+    {sensor: how many times too large it reads by a full scale that its log does not state}."""
 
     accel: np.ndarray
     bias: np.ndarray
@@ -46,12 +48,7 @@ class OwnSensor:
     gyro_bias: np.ndarray
     gyro_bias_sigma: np.ndarray
     flicker: dict
-
-    @property
-    def gains(self):
-        """{sensor: (3,)}: times what it reads that each axis went through."""
-        return {kind: np.maximum(np.diag(matrix), DEAD) for kind, matrix in (
-            ("accel", self.accel), ("gyro", self.gyro))}
+    full_scale: dict = field(default_factory=lambda: {"accel": 1.0, "gyro": 1.0})
 
     def applied(self, trace):
         """The Trace as this sensor's true force and rate."""
@@ -75,21 +72,26 @@ def fitted(trace):
     norms = np.linalg.norm(means, axis=1)
     accel, bias = np.eye(3), np.zeros(3)
     accel_sigma, bias_sigma = np.full((3, 3), SHAPE), np.full(3, BIAS["accel"])
-    if np.all((norms > 0.7 * trace.g) & (norms < 1.3 * trace.g)):
-        accel, bias, accel_sigma, bias_sigma = by_norm(means, trace.g)
+    full_scale = {"accel": 1.0, "gyro": 1.0}
+    for times, near in ((1.0, 0.3), *((k, SOUND_ACCEL) for k in RANGES)):
+        if np.all(np.abs(norms / times / trace.g - 1.0) < near):
+            accel, bias, accel_sigma, bias_sigma = by_norm(means / times, trace.g)
+            accel, accel_sigma = accel / times, accel_sigma / times
+            bias, bias_sigma, full_scale["accel"] = bias * times, bias_sigma * times, times
     rate = trace.rate - traces.rest_line(trace, trace.rate)
     ups = (means - bias) @ accel.T
     ups /= np.maximum(np.linalg.norm(ups, axis=1), 1e-9)[:, None]
     gyro, gyro_sigma = np.eye(3), np.full((3, 3), SHAPE)
     if np.all(norms > 0.3 * trace.g):
-        times = gravity_directions.full_scale(trace, ups)
+        times = full_scale["gyro"] = gravity_directions.full_scale(trace, ups)
         gyro, gyro_sigma = (x / times for x in by_carry(
-            trace, rate / times, ups, bias_sigma / trace.g))
+            trace, rate / times, ups, bias_sigma / full_scale["accel"] / trace.g))
     biases = trace.rest_means(trace.rate)
     spread = biases.std(axis=0, ddof=1) / np.sqrt(len(biases)) if len(biases) > 2 else \
         np.full(3, 0.001)
     return OwnSensor(accel, bias, gyro, accel_sigma, bias_sigma, gyro_sigma, biases.mean(axis=0),
-                     np.maximum(spread, trace.quantum[1] / np.sqrt(12.0)), trace.flicker)
+                     np.maximum(spread, trace.quantum[1] / np.sqrt(12.0)), trace.flicker,
+                     full_scale)
 
 
 def lies_otherwise(real, sim, own_real, own_sim):

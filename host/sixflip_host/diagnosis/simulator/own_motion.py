@@ -207,13 +207,14 @@ def faster(percent):
 def delay(sensor_fits, row_s):
     """(seconds by which the gyro is later than the accelerometer, more than the real sensor's;
     standard error), and the Convention where it is a row or more."""
-    if len(sensor_fits) < 2:
+    # A fit without a name has the signal's derivatives beside it, which take any delay for theirs.
+    if len(sensor_fits) < 2 or any(
+            c.name == "unknown" for f in sensor_fits.values() for c in f.conventions):
         return None, None, []
     a, g = sensor_fits["accel"].fit, sensor_fits["gyro"].fit
     late = g.delay_s - a.delay_s
     sigma = float(np.hypot(a.delay_sigma_s, g.delay_sigma_s))
-    known = not any(c.name == "unknown" for f in sensor_fits.values() for c in f.conventions)
-    findings = [late_one(late, sigma)] if known and abs(late) > LATE_SIGMA * sigma and (
+    findings = [late_one(late, sigma)] if abs(late) > LATE_SIGMA * sigma and (
         abs(late) >= row_s) else []
     return late, sigma, findings
 
