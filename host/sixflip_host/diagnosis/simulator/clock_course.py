@@ -27,6 +27,9 @@ from .lag_path import (
 from .parameters import Parameter
 
 FINER = 2  # times that the path is looked for with what is known of the turns, and jumps placed
+# Of the power that a line leaves, before jumps are placed to the row: 0.03 at most was seen of
+# times that jump or wander.
+HALF = 0.5
 NEAR_S = 2.0  # in which a jump that the path found is placed to the row: rests say nothing of it
 SET = "nothing: a clock was set"
 
@@ -49,7 +52,8 @@ def found(real, sim, aligned):
     if None in straight:
         return None
     base = min(straight, key=lambda one: one.power)
-    tried = [one for one in (_along(logs, path, wanders) for wanders in (False, True)) if one]
+    tried = [one for one in (
+        _along(logs, path, wanders, base.power) for wanders in (False, True)) if one]
     # What is left of the line is alike for longer than what is left of the right times.
     number = base.left.size / max(alignment.independent(one.left) for one in (base, *tried))
 
@@ -67,15 +71,16 @@ def _straight(drift, lags, block_s):
     return Line(offset, drift + pace, *np.zeros((3, 0)))
 
 
-def _along(logs, path, wanders):
+def _along(logs, path, wanders, power):
     """The Fitted whose jumps a path (drift, lags, s of a block) has, in finer blocks and placed to
-    the row; None where too little of both logs is there."""
+    the row; None where too little of both logs is there, or where they close less than HALF of a
+    power: those of another motion, of which each is costly to place."""
     best, t = None, FINE_S * (np.arange(int(len(logs.sim) / GRID_HZ / FINE_S)) + 0.5)
     for _ in range(FINER):
         line = fine_path(logs, *path, wanders)
         for _ in range(FINER):
             one = line and fitted(logs, line, wanders)
-            if one is None:
+            if one is None or best is None and one.power > HALF * power:
                 return best
             if best is None or one.power < best.power:
                 best = one
