@@ -7,7 +7,13 @@ import numpy as np
 import pytest
 from scipy.signal import butter, lfilter
 
-from sixflip_host.diagnosis.simulator import comparison, conventions
+from sixflip_host.diagnosis import answer, diagnose
+from sixflip_host.diagnosis.simulator import (
+    comparison,
+    conventions,
+    evidence_of_logs,
+    hypotheses,
+)
 from tests.worlds.tumbled import read, tumbled
 
 
@@ -101,3 +107,27 @@ def test_a_gyro_with_a_resonance_makes_no_unit_and_no_delay():
     assert all(abs(p.difference) < 10.0 for p in found.parameters if p.name == "scale")
     assert not any(p.differs and p.difference < -6.0 for p in found.parameters
                    if p.name == "delay")
+
+
+def test_a_fit_in_proportion_to_what_moves_may_have_an_effect_beside_it():
+    """A factor of each axis and one effect more: three numbers were added to four, and all
+    stopped."""
+    rng = np.random.default_rng(2)
+    force, effect = rng.standard_normal((400, 3)), rng.standard_normal((400, 3, 1))
+    factors = np.concatenate([force[:, :, None] * np.eye(3), effect], 2)
+    beside = hypotheses.Hypothesis("healthy", force, factors, np.zeros(4),
+                                   np.array([0.04, 0.04, 0.04, 1.0]), scaled=3)
+    fit = evidence_of_logs.fit_one(
+        beside, force + 0.3 * effect[:, :, 0], np.eye(3), 1.0, 50.0, "accel", 1.0, None,
+        np.ones(3, bool), None)
+    assert fit.extra[3] == pytest.approx(0.3, abs=0.01)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", [1, 3])
+def test_a_gyro_that_levels_off_softly_in_a_hand_is_answered(seed):
+    t, force, rate = tumbled(seed, 80.0)
+    real = read(t, force, 200.0 * np.tanh(rate / 200.0), seed)
+    told = answer.as_dict(diagnose.diagnose(
+        [("real", real)], [("sim", read(t, force, rate, 100 + seed))], jobs=1))
+    assert told["verdict"] not in ("no gap", "cannot tell")

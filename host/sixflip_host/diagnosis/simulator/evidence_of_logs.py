@@ -162,7 +162,7 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
         delay += float(np.clip(result[2][k], -0.05, 0.05))
     log, beta, shared, sigma, rest, beta_sigma = result
     # Of a channel that reads a part of the signal only, the smoothing is that of the part.
-    part = np.maximum(1.0 + np.diag(beta[:, :3]) + (shared[:k] if h.scaled else 0.0), DEAD)
+    part = np.maximum(1.0 + np.diag(beta[:, :3]) + (shared[:h.scaled] if h.scaled else 0.0), DEAD)
     for weaker in (gains(h, beta, shared, unit), smoothed(shared[k + 1] / part, noise_bends)):
         log += 0.5 * n / inflation * np.minimum(0.0, np.log(weaker))[live].sum()
     log -= live.sum() * n / inflation * np.log(unit) + HEADING * h.heading
@@ -191,7 +191,7 @@ def gains(h, beta, shared, unit):
     (1987), section 1.1], so the better fit is not believed."""
     whole = np.eye(3) + beta[:, :3]
     if h.scaled:
-        whole = whole + np.eye(3) * shared[:h.columns.shape[2]]
+        whole = whole + np.eye(3) * shared[:h.scaled]
     if h.copies and h.name == "":
         whole = whole + beta[:, 4:7]
     turned = beta[:, 7:10] if h.copies > 1 else np.zeros((3, 3))

@@ -52,7 +52,7 @@ class Hypothesis:
     """name ("": the nameless one); signal (n, 3); columns (n, 3, k) with prior sizes mean (k,) and
     sd (k,); heading: S is a turn about the vertical; free (n, f): further columns of each channel
     with prior FREE; bias_sd: one, or (3,), None for BIAS; copies: the first so many triples of
-    free, and (scaled) the first of columns, carry the signal's noise; shape_sd (3, 3): of E, None
+    free, and the first scaled of columns, carry the signal's noise; shape_sd (3, 3): of E, None
     for SHAPE; smooth_sd: s2, of how much smoother it is, see Fit;
     full_scale: how many times the signal the real one reads by a full scale that is not stated."""
 
@@ -65,7 +65,7 @@ class Hypothesis:
     free: np.ndarray = None
     bias_sd: np.ndarray = None
     copies: int = 0
-    scaled: bool = False
+    scaled: int = 0
     shape_sd: np.ndarray = None
     smooth_sd: float = SMOOTH_S2
     full_scale: float = 1.0
@@ -92,7 +92,7 @@ def accelerometer(force, motion, g):
         # What moves it in another proportion to gravity than a scale has, as of two logs one of
         # which is smoother: no wrong time step, and no reason to tell a scale.
         Hypothesis("healthy", force, moved[:, :, None] * np.eye(3), np.zeros(3),
-                   np.full(3, SHAPE), scaled=True),
+                   np.full(3, SHAPE), scaled=3),
         Hypothesis("no_gravity", moved, *none(n)),
         Hypothesis("no_gravity", force - level, *none(n)),
         Hypothesis("gravity_sign", moved - up, *none(n)),
@@ -104,7 +104,7 @@ def accelerometer(force, motion, g):
         Hypothesis("lever_arm_missing", force, -lever, *arm),
     ]
     tried += [Hypothesis("time_step", force, moved[:, :, None], np.array([k - 1.0]),
-                         np.array([TIMES_SPREAD * k]), scaled=True) for k in TIMES]
+                         np.array([TIMES_SPREAD * k]), scaled=1) for k in TIMES]
     everything = np.concatenate([moved, world, up, transport[:, :, 0], motion.rate,
                                  motion.rate_dot, pairs(motion.rate)], axis=1)
     return tried + [nameless(force, everything, 2)]
@@ -128,7 +128,7 @@ def gyro(rate, motion, g):
              Hypothesis("world_frame_rates", world, *none(n), heading=True),
              Hypothesis("euler_angle_rates", angle_rates(rate - at_rest, motion.up), *none(n))]
     tried += [Hypothesis("time_step", rate, rate[:, :, None], np.array([k - 1.0]),
-                         np.array([TIMES_SPREAD * k]), scaled=True) for k in TIMES]
+                         np.array([TIMES_SPREAD * k]), scaled=1) for k in TIMES]
     everything = np.concatenate([world, motion.rate_dot * 0.1, pairs(rate), motion.up,
                                  motion.moved / g], axis=1)
     return tried + [nameless(rate, everything, 1)]
