@@ -9,6 +9,7 @@ from . import alignment as align_by
 from . import (
     convention_findings,
     evidence_of_logs,
+    gravity_directions,
     hypotheses,
     pairing,
     remaining_gap,
@@ -127,7 +128,7 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, full_scale, s
     own = sized(own, lambda sizes: evidence_of_logs.fit_one(
         first.hypothesis, measured, first.axes, first.unit, pairing.GRID_HZ, kind, inflation,
         (own[0], sizes), live, rows, left=False, noise_bends=noise_bends).log)
-    fits = judged(inflation, rows)
+    fits = [gravity_directions.beside(kind, fit, real, sim) for fit in judged(inflation, rows)]
 
     def best_of(fits):
         named, fit = posterior(kind, fits, live, swapped)

@@ -13,6 +13,7 @@ from sixflip import STANDARD_G
 
 from ...experiment.projection import MOST_ROWS, regression
 from ..detect import axis_order
+from ..detect.wrong_scale import WIDEST
 from .hypotheses import BIAS, DEAD, DEG, DELAY_S, FREE, SHAPE
 
 HEARD = 2.0  # times what is left of a channel, above which its own motion would show in it
@@ -20,6 +21,7 @@ HEARD = 2.0  # times what is left of a channel, above which its own motion would
 HEADING = float(np.log(2.0 * np.pi / (np.sqrt(2.0 * np.pi) * SHAPE)))
 NOTHING = 0.5  # of a channel's power, from which on it says nothing of the motion
 LEAST_FACTOR = 1e-3  # of a channel: it reads nothing, with whatever sign
+ODD = 0.01  # share of the logs whose header says another full scale than the part has, or none
 POINTS = 6  # off by 1e-3 at the end of the widest band, eight rows a period
 
 
@@ -167,7 +169,8 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
         log += 0.5 * n / inflation * np.minimum(0.0, np.log(weaker))[live].sum()
     log -= live.sum() * n / inflation * np.log(unit) + HEADING * h.heading
     if h.name:
-        log += of_factors(np.diag(beta[:, :3])[live], np.diag(widths[:, :3])[live])
+        log += of_factors(np.diag(beta[:, :3])[live], np.diag(widths[:, :3])[live],
+                          h.name == "healthy" and unit == 1.0)
     return Fit(h, h.name, log, beta[:, 3] * unit, axes, unit, shared[:k], sigma[:k], delay,
                float(sigma[k]), float(shared[k + 1]), float(sigma[k + 1]),
                (np.eye(3) + beta[:, :3]) / h.full_scale - np.eye(3),
@@ -175,13 +178,20 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
                rest * unit if left else None)
 
 
-def of_factors(scale, width):
+def of_factors(scale, width, odd):
     """Nats by which the prior of scales (k,), off from 1 as fitted, is other than that of a sum of
     such widths (k,): a scale is a factor, and half is as far from 1 as twice is. A unit or a wrong
     time step that the scale takes back would lie within some widths of it otherwise, whatever the
-    factor."""
+    factor. odd: the part may read any factor of all that it went through, as one whose full scale
+    or header is wrong does, where nothing of the simulator's is."""
     factor = np.log(np.maximum(np.abs(1.0 + scale), LEAST_FACTOR))
-    return 0.5 * float(((scale / width) ** 2 - (factor / width) ** 2).sum())
+    known = width ** -2.0
+    sound, common = -0.5 * float(factor ** 2 @ known), float(factor @ known) / known.sum()
+    if odd:
+        wide = np.sqrt(2.0 * np.pi / known.sum()) / (2.0 * np.log(WIDEST))
+        sound = float(np.logaddexp(np.log(1.0 - ODD) + sound, np.log(ODD * wide) - 0.5 * float(
+            (factor - common) ** 2 @ known)))
+    return sound + 0.5 * float(scale ** 2 @ known)
 
 
 def gains(h, beta, shared, unit):

@@ -1,5 +1,7 @@
 """How likely one log's directions of gravity are: at its rests, as labels or the real robot's own
 rests have them, and from each rest to the next, as the gyro carries them."""
+from dataclasses import replace
+
 import numpy as np
 
 from ...capture.attitude import carried, rotation_between, rotations
@@ -7,6 +9,7 @@ from .. import odds
 from ..detect.wrong_scale import RANGES
 from . import traces
 from .convention_findings import CERTAIN
+from .hypotheses import DEAD
 
 SIGMA = np.radians(4.0)  # of a direction: bias of 60 mg, scale of the gyro 3 % of a half turn
 # Share of moves and rests that follow nothing at all: a log of fifty moves may have one in which
@@ -61,6 +64,22 @@ def full_scale(trace, ups):
         CERTAIN if times == 1.0 else 1.0 - CERTAIN) for times in (1.0, *RANGES)})
     likeliest = max(chances, key=chances.get)
     return likeliest if chances[likeliest] > CERTAIN else 1.0
+
+
+def beside(kind, fit, real, sim):
+    """The Fit of a gyro with what the rests of each Trace by itself say of it: one that turns as
+    far as its gravity does has no wrong time step, or reads no part of what it went through."""
+    if kind != "gyro" or fit.name not in ("healthy", "time_step"):
+        return fit
+    trace, times = (sim, 1.0 + fit.extra[0]) if fit.name == "time_step" else (
+        real, 1.0 / max(1.0 + float(np.diag(fit.shape).mean()), DEAD))
+    ups = trace.rest_means(trace.force)
+    if len(ups) < 2:
+        return fit
+    ups = ups / np.maximum(np.linalg.norm(ups, axis=1), 1e-9)[:, None]
+    ways = moves(trace)
+    return replace(fit, log=fit.log + carried_log(ups, ways, times * np.eye(3))
+                   - carried_log(ups, ways, np.eye(3)))
 
 
 def world_log(body, ways):
