@@ -74,6 +74,11 @@ def flicker_kernel(t, seconds):
     return kernel
 
 
+def flicker_of_mean(seconds):
+    """Standard deviation of the mean of a log of so many seconds, of unit flicker."""
+    return float(np.sqrt(flicker_kernel(np.zeros(1), np.full(1, seconds))[0, 0]))
+
+
 def walk(t, number):
     """[(n,)] number functions of times t (n,) s whose coefficients, independent of each other with
     a standard deviation of 1, make a random walk that ends 1 off on average [Karhunen-Loeve;

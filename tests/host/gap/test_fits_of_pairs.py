@@ -148,3 +148,28 @@ def test_a_gyro_that_levels_off_early_in_a_hand_is_answered():
     told = answer.as_dict(diagnose.diagnose(
         [("real", real)], [("sim", read(t, force, rate, 101))], jobs=1))
     assert told["verdict"] not in ("no gap", "cannot tell", "explained")
+
+
+def wandering(seed, size, n):
+    """(n, 3) of a sensor that wanders slowly, by so much, root mean square, in hours."""
+    x = np.random.default_rng(seed).standard_normal((20000, 3))
+    x = lfilter([1.0], [1.0, -0.99], x, axis=0)  # of a second each
+    x = size * x[10000:] / x.std(axis=0)
+    return np.stack([np.interp(np.arange(n) / 100.0, np.arange(len(x)), own) for own in x.T], 1)
+
+
+@pytest.mark.parametrize("seed", [2, 6, 7])
+def test_numbers_within_the_flicker_of_two_logs_are_no_difference(seed):
+    """Of two logs that wander by 5 mdeg/s and 0.2 mg, each by itself, biases of 0.015 deg/s and
+    0.7 mg were one."""
+    t, force, rate = tumbled(seed, 160.0)
+    logs = [read(t, force + wandering(k, 2e-4, len(t)), rate + wandering(k + 1, 5e-3, len(t)), k)
+            for k in (10 * seed, 1000 * seed)]
+    assert not [(p.name, p.sensor, p.axis) for p in compared(*logs).differs
+                if p.name in ("bias", "scale", "misalignment")]
+
+
+def test_a_bias_beyond_the_flicker_of_two_logs_is_told():
+    t, force, rate = tumbled(2, 80.0)
+    found = compared(read(t, force, rate + [0.0, 0.1, 0.0], 1), read(t, force, rate, 101))
+    assert [(p.name, p.sensor, p.axis) for p in found.differs] == [("bias", "gyro", "y")]

@@ -10,6 +10,7 @@ import numpy as np
 
 from sixflip import STANDARD_G
 
+from ...experiment.noise_arrays import flicker_of_mean, flicker_of_sizes
 from .. import odds
 from . import convention_findings
 from .alignment import errors
@@ -24,6 +25,7 @@ TOGETHER, FEW = 1.5, 4
 # Cosine between an axis and the one line that what does not turn moves along, which then tells
 # the scale of the axis: what is across it is no more than twice what is along.
 ALONG = 0.45
+BRIEF_S = 1.0  # of rests of any length: what flickers faster fades within the shortest of them
 FOLLOWS = 0.5  # of the power of a channel, that may be left where its scale is told
 MG = 1000.0 / STANDARD_G
 
@@ -117,6 +119,10 @@ def shapes(real, sim, fits, usable, rounded=None, beside=False):
             across = _across(fits[kind].hypothesis)
             told, coarse = _follows(fits[kind]), (rounded or {}).get(kind, 0.0) / np.maximum(
                 fits[kind].pair.simulated(kind).std(axis=0) @ turn, 1e-12)
+            # What wanders in either log has a part of any reading's course in it.
+            shape_sigma = np.hypot(shape_sigma, np.hypot(
+                real.flicker[kind], sim.flicker[kind]) * flicker_of_sizes(
+                    fits[kind].pair.t, scale * fits[kind].pair.real(kind)[:, None]))
         for i, axis in enumerate("xyz"):
             pair = (None, None) if fit is None else (shift[i] * scale,
                                                      bias_sigma[i] * scale / fit.unit)
@@ -129,9 +135,8 @@ def shapes(real, sim, fits, usable, rounded=None, beside=False):
             elif kind == "gyro" and fit is not None and not beside and np.isfinite(sa + sb):
                 # What is read at rest and what the motion leaves are two measurements of it.
                 pair = weighed(pair, (a - b, float(np.hypot(sa, sb))))
-            # By less than it flickers a bias differs from itself.
             numbers.append(compared("bias", kind, axis, unit, a, sa, b, sb, *pair,
-                                    least=real.flicker[kind]))
+                                    least=flickers(real, sim, kind, fit and fits[kind].pair)))
         if fit is None and not usable.get("accel"):
             continue  # by its own moves a gyro is known by where the accelerometer finds gravity
         for i in range(3):
@@ -150,6 +155,14 @@ def shapes(real, sim, fits, usable, rounded=None, beside=False):
                                         "%" if i == j else "°", a, sa, b, sb, *pair,
                                         least=size * coarse[j]))
     return numbers
+
+
+def flickers(real, sim, kind, pair=None):
+    """By how much, mg or deg/s (standard deviation), the biases of two OwnSensors differ although
+    they are of one part: each log has flicker of its own. Of those of one motion, a Pair, it is
+    that of their means; of others of whatever rests they have."""
+    seconds = BRIEF_S if pair is None else float(np.ptp(pair.t))
+    return float(np.hypot(real.flicker[kind], sim.flicker[kind])) * flicker_of_mean(seconds)
 
 
 def means_apart(sensor_fit, axis, scale):
