@@ -16,6 +16,7 @@ import numpy as np
 # energy of an effect that is silent, the weakest signature in any of the named protocols 5e-4.
 NEGLIGIBLE = 1e-9
 ROUNDS = 4  # of the noise of each channel: more change the evidence by some thousandths of a nat
+ROUNDED = 1e-12  # of a sum of 1e5 products: columns that differ by less have their priors alone
 LEAST_LEFT = 1e-9  # of a variance, (m/s2)2 or (rad/s)2: a simulator without noise has none
 MOST_ROWS = 4000  # of a log that a fit looks at; each stands for those around it
 # Stretches of a log, each of them one observation of what its coefficients are worth: a standard
@@ -141,6 +142,7 @@ def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,
             gram[3 * p:, 3 * p:] += w * gram_shared[c]
             right[a] += w * right_own[c]
             right[3 * p:] += w * right_shared[c]
+        gram[np.diag_indices(size)] *= 1.0 + ROUNDED
         scale = np.sqrt(np.diag(gram))
         solved = np.linalg.solve(gram / np.outer(scale, scale), right / scale) / scale
         beta, shared = solved[:3 * p].reshape(3, p), solved[3 * p:]

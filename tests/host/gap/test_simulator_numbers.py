@@ -59,6 +59,15 @@ def test_a_coefficient_is_as_uncertain_as_stretches_of_the_log_disagree_on_it():
     assert sigma == pytest.approx(slopes.std() / np.sqrt(20.0), rel=0.4)
 
 
+def test_columns_that_are_one_share_what_they_explain():
+    """Of a gyro with a gate what it turns by and what turns it were one, and nothing was solved."""
+    x = np.rint(4.0 * np.random.default_rng(1).standard_normal((4096, 1)))
+    result = projection.regression(
+        np.repeat(0.5 * x, 3, 1), np.repeat(x, 3, 1), np.full(3, 1e6), np.zeros((4096, 3, 0)),
+        np.zeros(0), np.zeros(0), 1.0, np.ones(3, bool))
+    assert result[1].sum(axis=1) == pytest.approx(0.5)
+
+
 def test_a_density_is_one_with_rests_and_without():
     """Without them it was 1.41 times as large, the one-sided one."""
     made = traces.trace_from_capture("made", tumbled.read(*tumbled.tumbled(1), 1))
