@@ -60,7 +60,7 @@ def test_a_coefficient_is_as_uncertain_as_stretches_of_the_log_disagree_on_it():
 
 
 def test_columns_that_are_one_share_what_they_explain():
-    """Of a gyro with a gate what it turns by and what turns it were one, and nothing was solved."""
+    """Of a gyro with a gate the turn and what turns it were one, and nothing was solved."""
     x = np.rint(4.0 * np.random.default_rng(1).standard_normal((4096, 1)))
     result = projection.regression(
         np.repeat(0.5 * x, 3, 1), np.repeat(x, 3, 1), np.full(3, 1e6), np.zeros((4096, 3, 0)),
