@@ -8,7 +8,7 @@ one_motion, hypotheses, evidence_of_logs, conventions, convention_findings
                                    layer 1: what the simulator's numbers mean, by the same motion
 own_calibration, own_motion, own_consistency, gravity_directions
                                    layer 1 where the motions differ: each log by its own rests
-parameters, noise_and_registers, numbers_told
+parameters, noise_and_registers, shaking, numbers_told
                                    layer 2: the numbers to set, and what they close of the gap
 against_simulator, dead_zone, lacking_effects, effects_beside
                                    layer 3: the effects that one has and the other lacks

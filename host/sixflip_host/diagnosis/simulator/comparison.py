@@ -18,6 +18,7 @@ from . import (
     own_motion,
     parameters,
     remaining_gap,
+    shaking,
     single_log,
     traces,
 )
@@ -201,7 +202,7 @@ def _of_range_and_time(logs, together, numbers, findings):
     more = [p for p in one_motion.ranges(together.stops, real, sim)
             if (p.sensor, p.axis) not in cut]
     if len(fits) == 2 and not findings:
-        more += noise_and_registers.shaking(real, dead_zone.taken_off(sim, together.bands))
+        more += shaking.shaking(real, dead_zone.taken_off(sim, together.bands), logs.aligned)
     return more + own_motion.timing(together.late, together.late_sigma, fits, logs.aligned,
                                 {kind: logs.smoothing_s2(kind) for kind in fits})
 

@@ -1,16 +1,14 @@
 """Layer two, what each log shows by itself: noise at rest, step, range and rate of the simulator
-and of the real sensor side by side, and how hard each shakes where it moves; and whether a sample
-was given the number of a density (or the reverse)."""
+and of the real sensor side by side; and whether a sample was given the number of a density (or the
+reverse)."""
 from dataclasses import replace
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
 
 from .. import odds
 from . import convention_findings, conventions, single_log
-from .alignment import BAND_HZ, independent
 from .hypotheses import DEG
-from .parameters import DIFFERS, MG, Parameter, compared
+from .parameters import MG, Parameter, compared
 
 # How far a noise that was set by hand may be off, natural logarithm: whoever reads a density off a
 # data sheet, typical for the part's, is taken to be right to a fifth.
@@ -27,11 +25,6 @@ LIKELY = 0.95
 # samples are then mostly 0 or a whole step.
 COARSE = 1.5
 COARSER = 1.5  # times the other's step: registers differ by factors of two
-FASTER_HZ = 2.0 * BAND_HZ  # where what the logs are compared by has faded
-SHOWS = 0.4  # of the rows a second: what a log of them shows undistorted
-SHAKES = 3.0  # times as hard: two runs over one floor differ by less (`make zoo`)
-GAP = 1.5  # rows: a step at a place where some are missing shakes nothing
-FEWEST_S = 8  # of moving, and half of that of rest
 RANGE_APART = 1.01  # times the other's: a range that differs; full scales are twofold apart
 PEAK = 5.0  # standard deviations of noise, that one in two million samples is from its mean
 
@@ -129,73 +122,6 @@ def merged_noise(findings, asked):
     told = [replace(c, probability=float(odd / ((2.0 if asked == 2 else 1.0) + odd)))
             for c, odd in zip(findings, each)]
     return [c for c in told if c.probability >= LIKELY]
-
-
-def shaking(real, sim):
-    """Parameters of how hard each log of one motion shakes while it moves, faster than a body is
-    steered and slower than either log's rows show: what motors, propellers and the ground do.
-    Nobody simulates their phases, so it is the power that is compared, second by second."""
-    numbers, top = [], SHOWS * min(real.rate_hz, sim.rate_hz)
-    for kind, name in (("accel", "force"), ("gyro", "rate")):
-        values = [getattr(x, name) for x in (real, sim)]
-        if top < 1.5 * FASTER_HZ or any(v is None for v in values):
-            continue
-        # What one of them cuts off is left out of both: it is where they are shaken most.
-        ends = np.array([[single_log.limit(x) or np.inf for x in v.T] for v in values]).min(axis=0)
-        powers = [_powers(x, v, top, (np.abs(v) >= ends).any(axis=1))
-                  for x, v in zip((real, sim), values)]
-        if any(p is None for p in powers):
-            continue
-        scale = MG if kind == "accel" else DEG
-        for i, axis in enumerate("xyz"):
-            # What noise has in the band is compared by itself.
-            moving, error, still = (np.array([p[k][i] for p in powers]) for k in range(3))
-            floor = max(still.max(), 1e-300)
-            level = np.maximum(moving - still, 0.0)
-            ratio = abs(np.log((level[0] + floor) / (level[1] + floor)))
-            relative = error / (level + floor)
-            sizes = scale * np.sqrt(level)
-            errors = 0.5 * scale * error / np.sqrt(np.maximum(level, floor))
-            differs = ratio > np.log(SHAKES ** 2) and ratio > DIFFERS * np.hypot(*relative)
-            parameter = compared("shaking", kind, axis, "mg" if kind == "accel" else "°/s",
-                                 sizes[0], errors[0], sizes[1], errors[1],
-                                 apart=np.inf if differs else 0.0)
-            numbers.append(replace(parameter, set_to=None, how=shaken_so(*sizes, top))
-                           if differs else parameter)
-    return numbers
-
-
-def shaken_so(real, simulated, top):
-    """What to do about a simulator that shakes less, or more, than the real one: root mean
-    squares."""
-    return "%s between %.0f and %.0f Hz while it moves: %.3g instead of %.3g" % (
-        "let it shake" if real > simulated else "it shakes too much", FASTER_HZ, top, real,
-        simulated)
-
-
-def _powers(trace, values, top, cut):
-    """((3,) mean power of values (n, 3) between FASTER_HZ and top outside the rests and away from
-    what is cut off (n,), (3,) its standard error, (3,) power within the rests), or None where
-    there is too little of either."""
-    band = butter(4, (FASTER_HZ, top), "bandpass", fs=trace.rate_hz, output="sos")
-    fast = sosfiltfilt(band, values, axis=0) ** 2
-    still = np.zeros(len(values), bool)
-    for first, end in trace.rests:
-        still[first:end] = True
-    second = int(trace.rate_hz)
-    whole = len(values) // second * second
-    gap = np.diff(trace.t, append=trace.t[-1:]) * trace.rate_hz > GAP
-    # A filter rings for some of its periods beside what nobody read, and where a reading stops.
-    unread = np.convolve(gap | trace.put_in | cut, np.ones(second // 2 * 2 + 1),
-                         "same") > 0.5
-    read = ~(still | unread)[:whole].reshape(-1, second)
-    moves = read.sum(axis=1) > second // 4
-    each = (fast[:whole].reshape(-1, second, 3) * read[:, :, None]).sum(axis=1)[moves]
-    each /= read.sum(axis=1)[moves, None]
-    if len(each) < FEWEST_S or still.sum() < FEWEST_S * second // 2:
-        return None
-    error = np.sqrt(each.var(axis=0, ddof=1) / len(each) * independent(each - each.mean(axis=0)))
-    return each.mean(axis=0), error, fast[still].mean(axis=0)
 
 
 def registers(real, sim):
