@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from sixflip_host.diagnosis.simulator import own_calibration, remaining_gap
+from sixflip_host.capture.attitude import carried, rotations
+from sixflip_host.diagnosis.simulator import (
+    gravity_directions,
+    own_calibration,
+    remaining_gap,
+)
 from sixflip_host.present import simulator_words
 
 G = 9.80665
@@ -112,3 +117,26 @@ def test_a_heading_is_no_further_off_than_half_a_turn():
     once = np.degrees(2.5 * (t[-1] - t[t > remaining_gap.SETTLE_S][0])) % 360.0
     assert task.heading["before"] == pytest.approx(min(once, 360.0 - once), abs=1e-6)
     assert task.heading["after"] == pytest.approx(179.0)
+
+
+@pytest.mark.parametrize("way", ["half a turn", "there and back", "a flight of seven turns"])
+def test_a_gyro_carries_gravity_as_well_as_its_matrix_is_known(way):
+    """After a flight of 2600 degrees gravity was to be within 4 of where the gyro had it, and one
+    that read 8 % too little had "twice the range"."""
+    t = np.arange(0.0, 20.0, 0.04)
+    steps = np.zeros((len(t), 3))
+    if way == "half a turn":
+        steps[:, 0] = np.pi / len(t)
+    elif way == "there and back":
+        steps[:, 0] = 0.1 * np.cos(2.0 * np.pi * t / 20.0)
+    else:
+        steps = np.radians(3.0) * np.stack([np.sin(f * t + f) for f in (1.3, 2.1, 3.4)], 1)
+    up = np.array([0.0, 0.6, 0.8])
+    there = carried(rotations(steps))[-1].T @ up
+    generator, off = np.random.default_rng(1), []
+    for _ in range(200):
+        matrix = np.eye(3) + gravity_directions.GYRO * generator.standard_normal((3, 3))
+        off.append(np.linalg.norm(carried(rotations(steps @ matrix.T))[-1].T @ up - there))
+    told = gravity_directions.carries(steps, carried(rotations(steps)), up)
+    gyro = np.sqrt(max(told ** 2 - gravity_directions.SIGMA ** 2, 0.0))
+    assert gyro == pytest.approx(np.sqrt(np.mean(np.square(off)) / 2.0), rel=0.2, abs=0.002)

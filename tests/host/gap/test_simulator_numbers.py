@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 from scipy.signal import butter, lfilter
 
 from sixflip_host.diagnosis.simulator import (
@@ -68,6 +69,28 @@ def test_columns_that_are_one_share_what_they_explain():
         np.repeat(0.5 * x, 3, 1), np.repeat(x, 3, 1), np.full(3, 1e6), np.zeros((4096, 3, 0)),
         np.zeros(0), np.zeros(0), 1.0, np.ones(3, bool))
     assert result[1].sum(axis=1) == pytest.approx(0.5)
+
+
+def test_a_coefficient_far_beyond_its_prior_has_the_evidence_of_noise_that_has_settled():
+    """A gyro that read half was 57 nats likelier by itself than by the time step that is half:
+    its noise had not come down from that of no fit at all."""
+    generator = np.random.default_rng(2)
+    x = generator.standard_normal((4000, 1))
+    y = 0.5 * x + 0.001 * generator.standard_normal((4000, 3))
+    prior, alike = 0.04, 25.0  # of so many neighbouring samples one is independent
+
+    def said(log_noise):
+        weight = np.exp(-2.0 * log_noise) / alike
+        precision = weight * x[:, 0] @ x[:, 0] + prior ** -2
+        beta = weight * x[:, 0] @ y[:, 0] / precision
+        return beta, precision, y[:, 0] - beta * x[:, 0]
+    settled = brentq(lambda s: s - 0.5 * np.log((said(s)[2] ** 2).mean()), -12.0, 0.0)
+    beta, precision, left = said(settled)
+    wanted = -0.5 * (len(x) / alike * 2.0 * settled + (beta / prior) ** 2
+                     + np.log(precision * prior ** 2))
+    log = projection.regression(y, x, np.array([prior]), np.zeros((4000, 3, 0)), np.zeros(0),
+                                np.zeros(0), alike, np.array([True, False, False]))[0]
+    assert log == pytest.approx(wanted, abs=0.05)
 
 
 def test_a_density_is_one_with_rests_and_without():

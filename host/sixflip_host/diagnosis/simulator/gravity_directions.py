@@ -11,7 +11,9 @@ from . import traces
 from .convention_findings import CERTAIN
 from .hypotheses import DEAD
 
-SIGMA = np.radians(4.0)  # of a direction: bias of 60 mg, scale of the gyro 3 % of a half turn
+SIGMA = np.radians(4.0)  # of a direction: bias of 60 mg at both ends of a way
+# Of scale and misalignment, as data sheets have them (MPU-6050 PS, section 6.1: 3 % and 2 %).
+GYRO = 0.03
 # Share of moves and rests that follow nothing at all: a log of fifty moves may have one in which
 # the gyro was cut off or the robot slid, which then costs a hypothesis no more than ln 50 nats.
 ASTRAY = 0.02
@@ -50,9 +52,21 @@ def carried_log(body, ways, gyro):
     total = 0.0
     matrix = np.linalg.inv(gyro)
     for before, after, steps in ways:
-        turn = carried(rotations(steps @ matrix.T))[-1]
-        total += closeness(body[after], turn.T @ body[before])
+        steps = steps @ matrix.T
+        turns = carried(rotations(steps))
+        total += closeness(body[after], turns[-1].T @ body[before],
+                           carries(steps, turns, body[before]))
     return float(total)
+
+
+def carries(steps, turns, up):
+    """rad: how well steps (k, 3) rad, whose turns (k + 1, 3, 3) they make, carry a direction up
+    (3,). Each entry of the gyro's matrix, GYRO off, turns it by the sum of the steps that it is
+    off by, as they lie where the way begins: of a way there and back that is next to nothing, of a
+    flight of many turns so much that where it ends says nothing of the gyro."""
+    off = np.einsum("kai,kj->aij", turns[:-1], steps)
+    spread = GYRO ** 2 * np.einsum("aij,bij->ab", off, off)
+    return float(np.sqrt(SIGMA ** 2 + max(np.trace(spread) - up @ spread @ up, 0.0) / 2.0))
 
 
 def full_scale(trace, ups):
