@@ -340,3 +340,21 @@ def test_p_q_r_are_the_rates_of_roll_pitch_and_yaw(tmp_path, capsys, names):
     other = "t,Ax,Ay,Az,p,q,s\n" + rows + "\n"
     (tmp_path / "out.csv").unlink()
     assert imported(tmp_path, capsys, other)[0].gyro is None
+
+
+@pytest.mark.parametrize("scale, unit", [(1.0, "g"), (9.80665, "m/s2")])
+@pytest.mark.parametrize("named", [False, True])
+def test_free_flight_is_not_taken_for_gravity(tmp_path, capsys, scale, unit, named):
+    """A rocket lies on its pad, burns, coasts and comes down under a parachute: while it coasts
+    it is stiller than on the pad."""
+    rng = np.random.default_rng(5)
+    pad = rng.normal([0.1, 0.0, 1.0], 0.008, (1000, 3))
+    burn = rng.normal([0.5, 0.0, 9.0], 1.0, (300, 3))
+    coast = rng.normal([0.1, 0.0, 0.1], 0.002, (1100, 3))
+    chute = rng.normal([0.0, 0.0, 1.0], 0.5, (2000, 3))
+    accel = scale * np.vstack([pad, burn, coast, chute])
+    text = table(np.arange(len(accel)) / 100, accel=accel, form="%.7f")
+    capture, said = imported(tmp_path, capsys, text, *(["--units", unit + ","] if named else []))
+    size = np.linalg.norm(capture.accel[:1000].mean(axis=0)) / capture.meta["accel_lsb_per_g"]
+    assert abs(size - 1.0) < 0.02
+    assert named or "the accelerometer is in %s: |a| is" % unit in said

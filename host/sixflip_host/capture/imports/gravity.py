@@ -11,9 +11,11 @@ from ..capture_header import STANDARD_G
 # Counts per g of the chips in use: ±2, 4, 8, 16 g of 16 bits (MPU-6000 register map 4.17), 1024
 # of 12 bits, 256 of an ADXL345.
 USUAL_LSB = (16384, 8192, 4096, 2048, 1024, 256)
+USUAL = (1.0, STANDARD_G, 1000.0, *USUAL_LSB)   # what 1 g is in a unit
 ZERO_G = 0.2            # offset and scale of a part at rest: MPU-6000 has ±80 mg and 3 %
 WINDOW = 20             # rows that are averaged to see gravity
 MOST_WINDOWS = 2000     # that gravity is looked for in, evenly over the file
+AS_LONG = 0.3           # of the windows of the stillest level, from which another one competes
 QUIET = 0.05            # of |a|: scatter within a window that rests
 MOST_TURNS = 20_000     # twentieths of a second in which gravity is seen to turn: the first ones
 LAG = 4                 # of those, over which it is
@@ -40,10 +42,13 @@ class Turn(NamedTuple):
     number: int
 
 
-def seen(values):
-    """Gravity in accelerometer values (n, 3), or None in fewer than two windows of rows.
+def seen(values, usual=USUAL):
+    """Gravity in accelerometer values (n, 3), or None in fewer than two windows of rows; usual:
+    what 1 g may be in their unit.
 
-    Where nothing rests it is the median of the means of windows, in which vibration is gone.
+    Where nothing rests it is the median of the means of windows, in which vibration is gone. What
+    is still for longest is gravity, unless it is none in any unit and something is that is still
+    for about as long: what flies freely is stiller than what stands on a launch pad.
     """
     number = len(values) // WINDOW
     if number < 2:
@@ -54,9 +59,20 @@ def seen(values):
     scatter = np.sqrt(windows.var(axis=1).sum(axis=1))
     quiet = scatter < QUIET * size
     if quiet.mean() >= 0.02:
-        quietest = quiet & (scatter <= np.quantile(scatter[quiet], 0.5))
-        return Gravity(float(np.median(size[quietest])), True)
+        stillest = _stillest(size, scatter, quiet)
+        near = {g: quiet & (np.abs(size / g - 1.0) < ZERO_G) for g in (stillest, *usual)}
+        best = max(usual, key=lambda g: near[g].sum())
+        if not any(abs(stillest / g - 1.0) < ZERO_G for g in usual) and (
+                near[best].sum() >= AS_LONG * near[stillest].sum()):
+            stillest = _stillest(size, scatter, near[best])
+        return Gravity(stillest, True)
     return Gravity(float(np.median(size)), False)
+
+
+def _stillest(size, scatter, some):
+    """The median |a| of the stiller half of some windows."""
+    half = some & (scatter <= np.quantile(scatter[some], 0.5))
+    return float(np.median(size[half]))
 
 
 def unit(size, whole):

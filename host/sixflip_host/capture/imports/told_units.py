@@ -38,8 +38,9 @@ class ToldUnits:
         said = said_units(options.units)[0]
         named = self.named_units.get(column_vocabulary.ACCEL)
         unit = said or named
-        seen = gravity.seen(values)
         whole = units.are_whole(values)
+        per_unit = units.ACCEL_UNITS[unit] if unit else None
+        seen = gravity.seen(values, (1.0 / per_unit,) if per_unit else gravity.USUAL)
         if unit is None and options.accel_lsb is not None and whole:
             unit = "counts"
         told = gravity.unit(seen.size, whole) if seen else None
