@@ -15,7 +15,9 @@ from sixflip.poses.still_window import SAME, SPAN, window_length
 from ..progress import steps
 
 POSE_SAMPLES = 400  # sets the length of a window as on the board, a quarter of a second
-WEIGHS = 2.0  # times 1 g, or its inverse: within both it is gravity, whatever the scale
+# Times 1 g, or its inverse: within both it is gravity. A range that is told wrong makes it 2 or 4
+# times 1 g, and an offset is added, so that the middle of those two parts no rests of one sensor.
+WEIGHS = 8.0 ** 0.5
 # A gyro that hangs is stiller than it ever is at rest, and the accelerometer is not, by more than
 # HANGS; it reads LEVEL_DPS or more, farther off than most zero-rate levels.
 HANGS, LEVEL_DPS = 2.0, 5.0

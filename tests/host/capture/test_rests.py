@@ -220,3 +220,14 @@ def test_free_flight_is_no_rest_where_something_reads_gravity():
     coast = 0.1 * (coast[0] - [0, 0, 1000]) + [100.0, 0.0, 110.0], coast[1]
     found = rests.find(recorded([pad, moving(400, rng), coast, moving(300, rng)])).rests
     assert found and all(rest.end <= 420 for rest in found)
+
+
+def test_a_sensor_in_the_wrong_range_reads_half_a_g_and_rests_all_the_same():
+    """With its offset some faces read less than half of 1 g and others more."""
+    rng = np.random.default_rng(14)
+    parts = []
+    for face in np.array([[0, 0, 1], [0, 0, -1], [1, 0, 0], [0, -1, 0]]):
+        accel, gyro = lying(300, rng)
+        parts += [(0.5 * (accel - [0, 0, 1000]) + 500.0 * face + [0, 0, 25.0], gyro),
+                  moving(200, rng)]
+    assert len(rests.find(recorded(parts)).rests) == 4

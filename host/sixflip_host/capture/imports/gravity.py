@@ -15,8 +15,8 @@ USUAL = (1.0, STANDARD_G, 1000.0, *USUAL_LSB)   # what 1 g is in a unit
 ZERO_G = 0.2            # offset and scale of a part at rest: MPU-6000 has ±80 mg and 3 %
 WINDOW = 20             # rows that are averaged to see gravity
 MOST_WINDOWS = 2000     # that gravity is looked for in, evenly over the file
-AS_LONG = 0.3           # of the windows of the stillest level, from which another one competes
 QUIET = 0.05            # of |a|: scatter within a window that rests
+RESTS = 0.02            # of the windows, that rest where anything does
 MOST_TURNS = 20_000     # twentieths of a second in which gravity is seen to turn: the first ones
 LAG = 4                 # of those, over which it is
 DISAGREES = 2.0         # factor from 1 g beyond which what was said of the unit is wrong
@@ -47,8 +47,9 @@ def seen(values, usual=USUAL):
     what 1 g may be in their unit.
 
     Where nothing rests it is the median of the means of windows, in which vibration is gone. What
-    is still for longest is gravity, unless it is none in any unit and something is that is still
-    for about as long: what flies freely is stiller than what stands on a launch pad.
+    flies freely is stiller than what stands on a launch pad, but nothing does so for most of a
+    recording, and while it does it reads less: where the median is 1 g and what rests reads less
+    than half of it, gravity is what rests as the median has it, or else the median.
     """
     number = len(values) // WINDOW
     if number < 2:
@@ -57,16 +58,14 @@ def seen(values, usual=USUAL):
     windows = values[:number * WINDOW].reshape(number, WINDOW, 3)[::step].astype(float)
     size = np.linalg.norm(windows.mean(axis=1), axis=1)
     scatter = np.sqrt(windows.var(axis=1).sum(axis=1))
+    usually = float(np.median(size))
     quiet = scatter < QUIET * size
-    if quiet.mean() >= 0.02:
-        stillest = _stillest(size, scatter, quiet)
-        near = {g: quiet & (np.abs(size / g - 1.0) < ZERO_G) for g in (stillest, *usual)}
-        best = max(usual, key=lambda g: near[g].sum())
-        if not any(abs(stillest / g - 1.0) < ZERO_G for g in usual) and (
-                near[best].sum() >= AS_LONG * near[stillest].sum()):
-            stillest = _stillest(size, scatter, near[best])
-        return Gravity(stillest, True)
-    return Gravity(float(np.median(size)), False)
+    if quiet.mean() >= RESTS and DISAGREES * _stillest(size, scatter, quiet) < usually and any(
+            abs(usually / g - 1.0) < ZERO_G for g in usual):
+        quiet &= np.abs(size / usually - 1.0) < ZERO_G
+    if quiet.mean() >= RESTS:
+        return Gravity(_stillest(size, scatter, quiet), True)
+    return Gravity(usually, False)
 
 
 def _stillest(size, scatter, some):
