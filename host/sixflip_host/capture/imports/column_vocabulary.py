@@ -25,7 +25,8 @@ TIMES = {"t", "ts", "time", "times", "timestamp", "timestamps", "stamp", "second
          "micros", "tick", "ticks", "clock", "datetime", "date", "utc"}
 # What a row's time of arrival is called: a board's own is better, and a T alone, which is as often
 # a temperature, is worse.
-ARRIVALS = {"date", "server", "host", "pc", "arrival", "arrived", "received", "recv", "rx"}
+ARRIVALS = {"date", "server", "host", "pc", "system", "arrival", "arrived", "received", "recv",
+            "rx"}
 TIME_UNITS = {"ns": 1e-3, "us": 1.0, "ms": 1e3, "s": 1e6}     # microseconds
 LONG_UNITS = {"min": 6e7, "h": 3.6e9}       # of times whose name says so, and of no others
 UNIT_OF_TIME = {"s": "s", "sec": "s", "secs": "s", "second": "s", "seconds": "s", "ms": "ms",
