@@ -358,3 +358,19 @@ def test_free_flight_is_not_taken_for_gravity(tmp_path, capsys, scale, unit, nam
     size = np.linalg.norm(capture.accel[:1000].mean(axis=0)) / capture.meta["accel_lsb_per_g"]
     assert abs(size - 1.0) < 0.02
     assert named or "the accelerometer is in %s: |a| is" % unit in said
+
+
+@pytest.mark.parametrize("names, scale, units, unit", [
+    ("#time,accel_x,accel_y,accel_z", 9806.65, [], "mm/s2"),       # as Klipper writes it
+    ("#time,accel_x,accel_y,accel_z", 9806.65, ["--units", "mm/s2"], None),
+    ("t,acce_x,acce_y,acce_z", 9.80665, [], "m/s2"),               # as RIDI and RoNIN do
+    ("t,x (in G's),y (in G's),z (in G's)", 1.0, [], None)])        # as MetaWear's app does
+def test_columns_as_loggers_of_accelerometers_name_them(tmp_path, capsys, names, scale, units,
+                                                        unit):
+    accel = np.random.default_rng(6).normal([0.02, 0.0, 1.0], 0.003, (1000, 3))
+    text = table(np.arange(1000) / 100, accel=scale * accel, form="%.6f")
+    text = "\n".join([names, *text.splitlines()[1:]]) + "\n"
+    capture, said = imported(tmp_path, capsys, text, *units)
+    size = np.linalg.norm(capture.accel.mean(axis=0)) / capture.meta["accel_lsb_per_g"]
+    assert size == pytest.approx(np.linalg.norm(accel.mean(axis=0)), abs=1e-3)
+    assert unit is None or "the accelerometer is in %s: |a| is" % unit in said

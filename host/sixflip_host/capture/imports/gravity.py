@@ -11,7 +11,7 @@ from ..capture_header import STANDARD_G
 # Counts per g of the chips in use: ±2, 4, 8, 16 g of 16 bits (MPU-6000 register map 4.17), 1024
 # of 12 bits, 256 of an ADXL345.
 USUAL_LSB = (16384, 8192, 4096, 2048, 1024, 256)
-USUAL = (1.0, STANDARD_G, 1000.0, *USUAL_LSB)   # what 1 g is in a unit
+USUAL = (1.0, STANDARD_G, 1000.0, 1e3 * STANDARD_G, *USUAL_LSB)   # what 1 g is in a unit
 ZERO_G = 0.2            # offset and scale of a part at rest: MPU-6000 has ±80 mg and 3 %
 WINDOW = 20             # rows that are averaged to see gravity
 MOST_WINDOWS = 2000     # that gravity is looked for in, evenly over the file
@@ -81,6 +81,8 @@ def unit(size, whole):
         return "g", None
     if abs(size / STANDARD_G - 1) < ZERO_G and not whole:
         return "m/s2", None
+    if abs(size / STANDARD_G / 1000 - 1) < ZERO_G and not whole:
+        return "mm/s2", None
     if abs(size / 1000 - 1) < ZERO_G and (not whole or abs(size / 1000 - 1)
                                           < abs(size / 1024 - 1)):
         return "mg", None
