@@ -125,14 +125,15 @@ def nats_of_rests(columns, at_rest, least=0.0, lattices=None):
         if not together.any():
             continue
         change = np.diff(x, axis=0)[together]
-        # Jumps are no noise of an axis; where most samples repeat their median says nothing.
-        middle = OF_SIZES * np.median(np.abs(change), axis=0)
-        noise = np.where(middle > 0.0, np.minimum(middle, change.std(axis=0)),
-                         change.std(axis=0)) / np.sqrt(2.0)
+        # Jumps are no noise of an axis. Where most samples repeat their median says nothing, and
+        # jolts are none, either: it has as much as in motion at most.
+        middle, moving = OF_SIZES * np.median(np.abs(change), axis=0), in_motion(counts)
+        noise = np.minimum(np.where(middle > 0.0, middle, np.sqrt(2.0) * moving),
+                           change.std(axis=0)) / np.sqrt(2.0)
         for axis in range(3):
             usual = float(np.median(np.delete(noise, axis)))
             if max(noise) < SILENT:
-                usual = max(usual, min(least, in_motion(counts)))
+                usual = max(usual, min(least, moving))
             zero = ones[axis].numbers(x[:, axis]) == 0
             # What never leaves 0 is stuck, and what leaves it to one side has its end there.
             moves = counts[:, axis].min() < 0 < counts[:, axis].max() and counts[
