@@ -20,19 +20,14 @@ import numpy as np
 
 from . import capture_binary, stamp_envelope
 from .board_extras import EXTRAS
+from .stamp_envelope import PAUSE_ROWS, PAUSE_S
 
 # Of a period, by which a gap lifts the envelope at least where most intervals are whole periods:
 # less than a row has to be late (stamp_envelope.PART), for the last stamp before a gap is a late
 # one as often as an early one; and a loss that is not seen makes the period longer, which hides
 # more of them.
 LIFTED = 0.6
-PAUSE_S, PAUSE_ROWS = 1.0, 10   # a gap that is longer than both is a pause whatever its phase
 FEWEST_PHASES = 4
-STANDS = 0.1  # of the gaps of a recorder that loses samples, at most, in which it stood still
-LATE = 0.001  # periods, at least: how exactly a stamp tells the time of a sample, 10 us at 100 Hz
-# Times as exactly, tried: stamps have other tails than normal ones. By up to three of them a gap
-# is shorter: it begins with a row as late as any, while the clock goes by the earliest ones.
-WIDER, SHORTER = (1.0, 4.0, 16.0), (0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0)
 BLOCKS = 10             # parts whose rates give the interval of the whole
 FEWEST = 2
 ROUNDS = 4              # until the period is settled to a millionth
@@ -46,7 +41,8 @@ class SampleClock:
     those of them that a link is known to have lost, loss_periods how long each other gap is,
     lost_after ((row, samples), ...) the last row before each and what it lacks;
     pauses, pause_s and longest_pause_s; late, bursts and longest_late_ms (rows, groups of them);
-    jitter_ms; resolution_ms of the stamps; expected: rows and losses together."""
+    jitter_ms; resolution_ms of the stamps; paces ((first row, Hz), ...) of parts that have a rate
+    each, where it changed on the way; expected: rows and losses together."""
 
     rows: int
     rate_hz: float
@@ -65,6 +61,7 @@ class SampleClock:
     jitter_ms: float
     resolution_ms: float
     lost_after: tuple = ()
+    paces: tuple = ()
 
     @property
     def expected(self):
@@ -77,28 +74,30 @@ def measure(t_us, recorder=(), lost=()):
     recorder    indices of the intervals that are known to be the recorder's pauses
     lost        indices of the intervals in which samples are known to be missing
     """
-    n = len(t_us)
+    n, stamps = len(t_us), t_us
     if n < FEWEST or t_us[-1] <= t_us[0]:
         return None
     known = np.union1d(np.asarray(recorder, int), np.asarray(lost, int))
     held = 0 if len(known) else stamp_envelope.backlog(t_us)
     if held:
-        return _after_a_backlog(measure(t_us[held:]), held, t_us)
+        later = measure(t_us[held:])
+        if later is None or stamp_envelope.hurries(t_us, held, 1e6 / later.rate_hz):
+            return _after_a_backlog(later, held, t_us)
     period, width, each = stamp_envelope.first_guess(t_us, known)
     resolution = stamp_envelope.resolution(t_us)
     if width == 1 and resolution <= stamp_envelope.COARSE * period:
-        t_us = stamp_envelope.renewed(t_us, period)
+        stamps = stamp_envelope.renewed(t_us, period)
     least = LIFTED * period if each and resolution < LIFTED * period else None
     anew = False
     for _ in range(ROUNDS):
-        gaps = stamp_envelope.Gaps(t_us, period, width, resolution, known, least)
+        gaps = stamp_envelope.Gaps(stamps, period, width, resolution, known, least)
         was = anew
         pause, missing, anew = _sorted_out(gaps, period, np.asarray(recorder, int),
                                            np.asarray(lost, int), anew)
         if anew and not was:  # it may have stood still for less than a sample, too
             least = stamp_envelope.NOISE * gaps.jitter
             continue
-        running = float(t_us[-1] - t_us[0]) - gaps.lift[pause].sum()
+        running = float(stamps[-1] - stamps[0]) - gaps.lift[pause].sum()
         refined = running / (n - 1 + int(missing.sum()))
         if not refined > 0:
             return None
@@ -106,8 +105,8 @@ def measure(t_us, recorder=(), lost=()):
         if close:
             break
     is_known = np.isin(gaps.places, lost)
-    return SampleClock(
-        n, 1e6 / period, _interval(t_us, period, gaps, missing, pause),
+    measured = SampleClock(
+        n, 1e6 / period, _interval(stamps, period, gaps, missing, pause),
         int(missing.sum()), int((missing > 0).sum()),
         float(gaps.lift[missing > 0].max(initial=0)) / 1e3,
         int(missing[is_known].sum()),
@@ -116,6 +115,36 @@ def measure(t_us, recorder=(), lost=()):
         float(gaps.lift[pause].max(initial=0)) / 1e6,
         gaps.late, gaps.bursts, gaps.latest / 1e3, gaps.jitter / 1e3, resolution / 1e3,
         tuple(zip(gaps.places[missing > 0].tolist(), missing[missing > 0].tolist())))
+    # A recorder that was late catches up within REACH rows.
+    if len(known) or pause.any() or measured.late <= stamp_envelope.REACH * measured.bursts:
+        return measured
+    return _with_paces(measured, t_us)
+
+
+def _with_paces(measured, t_us):
+    """The SampleClock of rows whose rate changed on the way, by those before and after the place
+    that is furthest from one rate; as it was where they have one, or come as late with two."""
+    beyond = (t_us - t_us[0]) - np.arange(len(t_us)) * (t_us[-1] - t_us[0]) / (len(t_us) - 1)
+    k = int(np.abs(beyond).argmax())
+    if min(k, len(t_us) - 1 - k) < stamp_envelope.REACH:
+        return measured
+    first, second = measure(t_us[:k + 1]), measure(t_us[k:])
+    apart = max(first.interval_hz[0], second.interval_hz[0]) > min(
+        first.interval_hz[1], second.interval_hz[1])
+    late = first.late + second.late
+    if not apart or late > measured.late / 2 or first.pauses or second.pauses:
+        return measured
+    paces = (first.paces or ((0, first.rate_hz),)) + tuple(
+        (row + k, rate) for row, rate in second.paces or ((0, second.rate_hz),))
+    return replace(
+        measured, late=late, bursts=first.bursts + second.bursts, paces=paces,
+        longest_late_ms=max(first.longest_late_ms, second.longest_late_ms),
+        losses=first.losses + second.losses, loss_gaps=first.loss_gaps + second.loss_gaps,
+        longest_loss_ms=max(first.longest_loss_ms, second.longest_loss_ms),
+        loss_periods=first.loss_periods + second.loss_periods,
+        jitter_ms=math.sqrt((first.rows * first.jitter_ms ** 2 + second.rows
+                             * second.jitter_ms ** 2) / (first.rows + second.rows)),
+        lost_after=first.lost_after + tuple((row + k, n) for row, n in second.lost_after))
 
 
 def _after_a_backlog(measured, held, t_us):
@@ -195,27 +224,12 @@ def _sorted_out(gaps, period, recorder, lost, anew=False):
     is_lost = np.isin(gaps.places, lost)
     open_ = ~pause & ~is_lost
     if open_.sum() >= FEWEST_PHASES:
-        anew = anew or loss_nats(gaps.lift[open_] / period, gaps.jitter / period) < 0.0
+        anew = anew or stamp_envelope.loss_nats(
+            gaps.lift[open_] / period, gaps.jitter / period) < 0.0
     if anew:                        # it stood still as well
         pause |= open_
     pause &= ~is_lost
     return pause, np.where(pause, 0, samples), anew
-
-
-def loss_nats(late, jitter):
-    """Log likelihood ratio of gaps, late (n,) periods beyond one, if they are lost samples: a
-    whole number each, as exactly as stamps tell that scatter by jitter periods; against a recorder
-    that stands still, as often and as long, at any phase: a loop that does something else now and
-    then."""
-    nats = []
-    for width in np.multiply(max(jitter, LATE), WIDER):
-        nearest = math.erf(0.5 / (width * math.sqrt(2.0)))  # to which whole number it is
-        for shorter in np.multiply(width, SHORTER):
-            whole = late + shorter
-            off = (whole - np.maximum(np.rint(whole), 1.0)) / width
-            lost = np.exp(-0.5 * off ** 2) / (width * math.sqrt(2.0 * math.pi) * nearest)
-            nats.append(float(np.log(STANDS + (1.0 - STANDS) * lost).sum()))
-    return float(np.logaddexp.reduce(nats)) - math.log(len(nats))
 
 
 def _interval(t_us, period, gaps, missing, pause):

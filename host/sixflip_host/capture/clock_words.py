@@ -1,5 +1,5 @@
-"""A recording's clock in words and for --json: the rate first, then losses, pauses, late rows and
-jitter, each with its number."""
+"""A recording's clock in words and for --json: the rate first, then losses, pauses, late rows,
+changes of the rate and jitter, each with its number."""
 
 
 def as_json(measured):
@@ -13,6 +13,7 @@ def as_json(measured):
                        "longest_s": measured.longest_pause_s},
             "late": {"rows": measured.late, "bursts": measured.bursts,
                      "longest_ms": measured.longest_late_ms},
+            "paces": [{"from_row": row + 1, "rate_hz": rate} for row, rate in measured.paces],
             "jitter_ms": measured.jitter_ms, "resolution_ms": measured.resolution_ms}
 
 
@@ -22,7 +23,8 @@ def words(measured):
              % (measured.rate_hz, *measured.interval_hz, measured.rows, measured.losses,
                 measured.expected)]
     return lines + [line for line in (loss_words(measured), pause_words(measured),
-                                      burst_words(measured), jitter_words(measured)) if line]
+                                      burst_words(measured), pace_words(measured),
+                                     jitter_words(measured)) if line]
 
 
 def loss_words(measured):
@@ -50,6 +52,14 @@ def burst_words(measured):
     return "bursts: %s came late and %s caught up, in %s, %.3g ms at most; none is lost" % (
         _number(measured.late, "row"), "was" if measured.late == 1 else "were",
         _number(measured.bursts, "burst"), measured.longest_late_ms)
+
+
+def pace_words(measured):
+    """A sentence on a rate that changed on the way, or ""."""
+    if not measured.paces:
+        return ""
+    return "the rate changed on the way: %s" % ", ".join(
+        "%.4g Hz from row %d on" % (rate, row + 1) for row, rate in measured.paces)
 
 
 def jitter_words(measured):

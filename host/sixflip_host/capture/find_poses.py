@@ -11,7 +11,11 @@ from . import rests, shaken_rests
 from .attitude import heading_change
 
 POSES, FOUND = "poses", "found"  # key and value of a capture's header: no person named its poses
-NO_GRAVITY = 0.05   # g: no part reads so little of it at rest; it has been taken out of the values
+NO_GRAVITY = 0.05   # g: no part reads so little of it at rest: it has been taken out
+# Degrees, without a gyro, between gravity in two rests on a face: as likely of a box that was put
+# back where it was, to 0.1 degrees, as of one that was turned by half on a table which leans by a
+# degree or so (the odds of two such normal distances in a plane are even there).
+PUT_BACK_DEG = 0.46
 HALF_TURN_S = 0.5   # of a box by hand, at least: what is shorter was a touch
 HELD_BY_HAND = "held_by_hand"   # key of a capture's header: names of poses that were not at rest
 
@@ -70,10 +74,12 @@ def find_poses(capture):
 def _named(capture, still_rests, noise):
     """Every rest with its pose: face from gravity, a or b from the gyro, leaning otherwise."""
     leaning, named = 0, []
+    # Who sets it on all six faces calibrates it, and turns it on each as he is asked to.
+    asked = len({rest.face for rest in still_rests if rest.off_deg <= CROOKED_DEG}) == len(FACES)
     for rest in still_rests:
         code, why = 0, "leaning"
         if rest.off_deg <= CROOKED_DEG:
-            code, why = _letter(capture, named, rest, noise)
+            code, why = _letter(capture, named, rest, noise, asked)
         if not code:
             leaning += 1
             code = LEANING + leaning
@@ -81,14 +87,18 @@ def _named(capture, still_rests, noise):
     return named
 
 
-def _letter(capture, before, rest, noise):
-    """a or b of a rest on a face, and why; code 0 when the gyro cannot say."""
+def _letter(capture, before, rest, noise, asked):
+    """a or b of a rest on a face, and why; code 0 when the gyro cannot say. asked: without a gyro
+    half a turn is likely, though it lies as it did before."""
     a = 1 + 2 * rest.face
     seen = [one for one in before if one.code in (a, a + 1)]
     if not seen:
         return a, ""
     last = seen[-1]
     if capture.gyro is None:
+        nearest = min(seen, key=lambda one: _apart_deg(one, rest))
+        if not asked and _apart_deg(nearest, rest) < PUT_BACK_DEG:
+            return nearest.code, "it lies as %s did, no gyro to tell" % pose_name(nearest.code)
         if before[-1] is last and rest.first - last.end <= HALF_TURN_S * capture.meta["rate_hz"]:
             return last.code, ""
         if before[-1] is last or len({one.code for one in seen}) == 1:
@@ -104,3 +114,9 @@ def _letter(capture, before, rest, noise):
     if abs(turned) >= HALF_TURN_DEG:
         return 2 * a + 1 - last.code, why
     return 0, why + ", neither a half turn nor none"
+
+
+def _apart_deg(one, other):
+    """Degrees between gravity in two Rests."""
+    a, b = (np.array(rest.mean) / np.linalg.norm(rest.mean) for rest in (one, other))
+    return float(np.degrees(2.0 * np.arcsin(0.5 * np.linalg.norm(a - b))))

@@ -113,11 +113,12 @@ def find(capture, stillness=POSES):
     """Found: every rest of a capture, against the noise of its quietest second. Unlike the
     board, which must learn that from what comes first, the whole recording is there."""
     windows = still_windows.cut_into_windows(capture)
-    noise = still_windows.quietest(windows)
-    if noise is None:
+    tried = [(sum(rest.end - rest.first for rest in found), found, noise) for noise, found in (
+        (noise, _rests(capture, some, still_windows.still(some, noise)[0], stillness.shortest_s))
+        for noise, some in still_windows.floors(windows))]
+    if not tried:
         return Found((), None)
-    still, _ = still_windows.still(windows, noise)
-    rests = _rests(capture, windows, still, stillness.shortest_s)
+    _, rests, noise = max(tried, key=lambda one: one[0])
     faces = {rest.face for rest in rests if rest.off_deg <= CROOKED_DEG}
     if stillness.hand_s is not None and len(faces) < len(FACES):
         taken = np.zeros(len(capture), bool)
@@ -127,6 +128,8 @@ def find(capture, stillness=POSES):
                          stillness.hand_s, True)
         rests += [rest for rest in by_hand if rest.face not in faces
                   and not taken[rest.first:rest.end].any()]
+    # What reads less flies freely, and what reads more is pushed, where others read gravity.
+    rests = [rest for rest in rests if windows.heavy(np.array([rest.mean]))[0]] or rests
     return Found(tuple(at_one_rate(capture, sorted(rests, key=lambda rest: rest.first))), noise)
 
 

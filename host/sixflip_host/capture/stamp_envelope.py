@@ -19,8 +19,14 @@ EVEN = 0.1              # scatter of spans, of their length, that are beyond the
 PART = 0.7              # of a period: less is no sample
 MOST_WHOLE = 2.0        # periods a row on the mean: with more the usual interval is a burst's
 COARSE = 1.5            # periods that a step of the stamps has where rows share a stamp
+PAUSE_S, PAUSE_ROWS = 1.0, 10   # a gap that is longer than both is a pause whatever its phase
 NOISE = 6.0             # times the envelope's own scatter: gaps below are none
 COUNTED = 1 << 16       # rows at a time
+STANDS = 0.1  # of the gaps of a recorder that loses samples, at most, in which it stood still
+LATE = 0.001  # periods, at least: how exactly a stamp tells the time of a sample, 10 us at 100 Hz
+# Times as exactly, tried: stamps have other tails than normal ones. By up to three of them a gap
+# is shorter: it begins with a row as late as any, while the clock goes by the earliest ones.
+WIDER, SHORTER = (1.0, 4.0, 16.0), (0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0)
 # Of the later pace, what rows that a link still held when the recording began take at most; times
 # their interval, up to which a later row that catches up comes as fast; and how many of those
 # there are at least. Seen: 0.25, 1.1 to 1.2 and a tenth of the rows; a recorder whose rate was
@@ -43,7 +49,8 @@ def first_guess(t_us, known):
     if usual > 0:
         whole = np.rint(gaps / usual)
         near = (whole >= 1) & (np.abs(gaps / usual - whole) < ON_GRID)
-        if near.mean() >= MOSTLY and whole.mean() < MOST_WHOLE:
+        if near.mean() >= MOSTLY and (whole.mean() < MOST_WHOLE
+                                      or step < ON_GRID * usual and _loses_rows(gaps, whole)):
             return _pace(gaps, whole == 1), 1, True
     times = np.concatenate([[0.0], np.cumsum(gaps)])
     for rows in SPANS:
@@ -54,6 +61,19 @@ def first_guess(t_us, known):
         if middle > 0 and 1.4826 * np.median(np.abs(spans - middle)) < EVEN * middle:
             return middle / rows, rows, False
     return float(t_us[-1] - t_us[0]) / (len(t_us) - 1), max(1, len(t_us) // 8), False
+
+
+def _loses_rows(gaps, whole):
+    """True where a tenth of the intervals, gaps (n,) µs, are several periods, whole (n,), long,
+    which those within a burst are not, and it is the recorder's pauses that make their mean long:
+    what comes in bursts whose ends are so far apart has a row a period on the mean of each."""
+    usual = float(np.median(gaps))
+    pause = (gaps > PAUSE_S * 1e6) & (gaps > PAUSE_ROWS * usual)
+    shorter, ends = whole[~pause], np.flatnonzero(pause) + 1
+    if not len(shorter) or shorter.mean() >= MOST_WHOLE or (shorter > 1).mean() < 1.0 - MOSTLY:
+        return False
+    paces = np.diff(np.cumsum(gaps)[ends - 1]) / np.diff(ends)
+    return len(paces) < 2 or bool(np.ptp(paces) > EVEN * np.median(paces))
 
 
 def _pace(gaps, usual):
@@ -104,10 +124,16 @@ def backlog(t_us):
     middle = (k + n) // 2
     halves = (t_us[middle] - t_us[k]) / (middle - k), (t_us[-1] - t_us[middle]) / (n - 1 - middle)
     steady = abs(halves[1] - halves[0]) < EVEN * later
-    hurried = quick < HURRIED * later and (t_us[k] - t_us[0]) / k < HURRIED * later
+    hurried = quick < HURRIED * later and hurries(t_us, k, later)
     catches_up = (gaps[k:] <= AS_FAST * quick).mean() > CATCH_UP
     # Rows that share a stamp have the step of a coarse clock, which tells no pace.
     return k if quick and steady and hurried and catches_up else 0
+
+
+def hurries(t_us, rows, period):
+    """True where the first rows come as fast as a link's that were held, by the period of those
+    behind them, µs."""
+    return (t_us[rows] - t_us[0]) / rows < HURRIED * period
 
 
 def resolution(t_us):
@@ -164,3 +190,19 @@ def _lowest_ahead(values, reach):
         np.minimum(least[:-step], least[step:], out=least[:-step])
         span += step
     return least
+
+
+def loss_nats(late, jitter):
+    """Log likelihood ratio of gaps, late (n,) periods beyond one, if they are lost samples: a
+    whole number each, as exactly as stamps tell that scatter by jitter periods; against a recorder
+    that stands still, as often and as long, at any phase: a loop that does something else now and
+    then."""
+    nats = []
+    for width in np.multiply(max(jitter, LATE), WIDER):
+        nearest = math.erf(0.5 / (width * math.sqrt(2.0)))  # to which whole number it is
+        for shorter in np.multiply(width, SHORTER):
+            whole = late + shorter
+            off = (whole - np.maximum(np.rint(whole), 1.0)) / width
+            lost = np.exp(-0.5 * off ** 2) / (width * math.sqrt(2.0 * math.pi) * nearest)
+            nats.append(float(np.log(STANDS + (1.0 - STANDS) * lost).sum()))
+    return float(np.logaddexp.reduce(nats)) - math.log(len(nats))

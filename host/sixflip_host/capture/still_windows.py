@@ -3,7 +3,7 @@
 The same whole numbers as sixflip.poses.still_window adds up one sample after another, so that what
 the host finds is what the board would have found; the tests compare the two bit by bit.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -15,6 +15,12 @@ from sixflip.poses.still_window import SAME, SPAN, window_length
 from ..progress import steps
 
 POSE_SAMPLES = 400  # sets the length of a window as on the board, a quarter of a second
+# Times 1 g, or its inverse: within both it is gravity. A range that is told wrong makes it 2 or 4
+# times 1 g, and an offset is added, so that the middle of those two parts no rests of one sensor.
+WEIGHS = 8.0 ** 0.5
+# A gyro that hangs is stiller than it ever is at rest, and the accelerometer is not, by more than
+# HANGS; it reads LEVEL_DPS or more, farther off than most zero-rate levels.
+HANGS, LEVEL_DPS = 2.0, 5.0
 AT_A_TIME = 400  # windows whose samples are there as wide integers at once
 
 
@@ -46,6 +52,11 @@ class StillWindows:
     def unusual(self):
         """Which of the windows cannot be a rest's, whatever their noise; bool (n,)."""
         return self.saturated.any(axis=1) | self.stale | self.jumped
+
+    def heavy(self, means):
+        """bool (n,): which of means (n, 3 or more) counts read about 1 g."""
+        size = np.linalg.norm(means[:, :3], axis=1) / self.lsb[0]
+        return (size > 1.0 / WEIGHS) & (size < WEIGHS)
 
     def one(self, index):
         """A window as NoiseFloor asks a StillWindow."""
@@ -134,14 +145,16 @@ class _Triad:
         return same >= SAME
 
 
-def quietest(windows):
-    """A NoiseFloor that knows the quietest second, or None when there is none."""
+def quietest(windows, among=None):
+    """A NoiseFloor that knows the quietest second, or None when there is none; among: bool (n,),
+    the windows that may be in it."""
     axes = windows.mean.shape[1]
     if len(windows) < WINDOWS:
         return None
     step = np.repeat(windows.step, 3, axis=1)[:, :axes]
+    wrong = windows.unusual() if among is None else windows.unusual() | ~among
     spread, means, unusual = (sliding_window_view(each, WINDOWS, axis=0) for each in (
-        np.maximum(windows.variance, step ** 2 / 12), windows.mean, windows.unusual()))
+        np.maximum(windows.variance, step ** 2 / 12), windows.mean, wrong))
     scale = np.repeat([windows.lsb[0] / 1e3, windows.lsb[1]], 3)[:axes]
     total = ((spread.mean(axis=-1) + means.var(axis=-1, ddof=1)) / scale ** 2
              / np.repeat(CAP, 3)[:axes] ** 2)
@@ -155,6 +168,24 @@ def quietest(windows):
         noise.sd[axis] = float(np.sqrt(spread[best, axis].mean()))
     noise.bias = means[best].mean(axis=-1)[3:].tolist() or [0.0] * 3
     return noise
+
+
+def floors(windows):
+    """[(NoiseFloor, StillWindows that it judges)]: of the quietest second, of those that read
+    about 1 g where there are any; and where a gyro may hang in it, of the quietest one in which it
+    reads half as much at most, and of such windows alone."""
+    heavy = windows.heavy(windows.mean)
+    first = quietest(windows, heavy) or quietest(windows)
+    if first is None:
+        return []
+    level = np.linalg.norm(first.bias)
+    if not windows.lsb[1] or level < LEVEL_DPS * windows.lsb[1]:
+        return [(first, windows)]
+    slow = replace(windows, jumped=windows.jumped | (
+        2.0 * np.linalg.norm(windows.mean[:, 3:], axis=1) > level))
+    other = quietest(slow, heavy)
+    alike = other is not None and all(b < HANGS * a for a, b in zip(first.sd[:3], other.sd))
+    return [(first, windows), (other, slow)] if alike else [(first, windows)]
 
 
 def learnt(windows):

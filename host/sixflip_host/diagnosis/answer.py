@@ -4,7 +4,7 @@ from sixflip_sim.effects.drift import FLOOR_OF_KERNEL
 from ..capture import registers
 from ..json_numbers import number, spelled
 from ..planning import detectable, next_capture
-from . import closed_loop, rest_noise
+from . import closed_loop, odds, rest_noise
 from .detect import detection, line_frequency, sample_clock
 from .simulator import simulator_answer
 
@@ -21,6 +21,7 @@ def as_dict(diagnosis):
                   for p in diagnosis.where],
         "gap": {kind: _gap(kind, gap) for kind, gap in gaps(diagnosis).items()},
         "unseen": detectable.listed(diagnosis), "next": next_capture.proposed(diagnosis),
+        "untold": next_capture.untold(diagnosis) if diagnosis.verdict == odds.OTHERWISE else None,
         "clock": sample_clock.answer(diagnosis.sessions, diagnosis.clocks),
         "held_out": held_out(diagnosis), "damage": detection.damages(diagnosis.damages),
         "noise": rest_noise.answer(diagnosis.noise),

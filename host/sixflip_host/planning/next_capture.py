@@ -1,11 +1,13 @@
 """What to capture next: of the captures that can be made by hand within ten minutes, those that
-tell the most unresolved pairs of effects apart per minute (GAP stage 7)."""
+tell the most unresolved pairs of effects apart per minute (GAP stage 7); and why a capture cannot
+tell, with what to record to find out."""
 import numpy as np
 
 from sixflip.poses import faces
 
+from ..capture import registers
 from ..experiment import projection
-from . import alias, protocols
+from . import alias, detectable, protocols
 from .plan_findings import SAME_CLASS
 from .protocols import rows_of
 
@@ -123,3 +125,58 @@ def _unseen_help(diagnosis):
         return []
     return [{"capture": WORDS["leaning"], "minutes": round(candidates()["leaning"].minutes, 1),
              "resolves": [["cubic", "thermal_scale"], ["quadratic", "box_tilt"]]}]
+
+
+def untold(diagnosis):
+    """{why, record} of a diagnosis whose verdict is that it cannot tell: clauses for people."""
+    why, record = _beside_simulators(diagnosis) or _of_causes(diagnosis) or _of_nothing(diagnosis)
+    return {"why": why, "record": record}
+
+
+def _beside_simulators(diagnosis):
+    """(why, what to record) where it is the logs of a simulator that cannot tell, or None."""
+    for x in diagnosis.comparisons:
+        between = "between %s and %s" % (x.against, x.log)
+        for one in x.conventions:
+            if one.one_of:
+                return "%s, %s" % (one.words, between), (
+                    "both in one motion that turns them about every axis, with rests between")
+        if x.shaken:
+            return "more of the %s is left %s than noise, and it may be a motion that only one " \
+                "of them had" % (" and ".join(registers.SENSORS[k] for k in x.shaken), between), (
+                    "both in one motion, the real one with its motors off or on softer ground")
+    if diagnosis.comparisons and not any(x.alignment.same for x in diagnosis.comparisons):
+        return "the two logs are of different motions, and what each shows by itself is not " \
+            "enough", "the simulator in the motion of the real log, with rests of some seconds"
+    return None
+
+
+def _of_causes(diagnosis):
+    """(why, what to record) where causes were named and that was not enough, or None."""
+    names = sorted({name.replace("_", " ") for _, cause in diagnosis.causes
+                    for name in cause.names} | {f.effect.replace("_", " ")
+                                                for f in diagnosis.findings})
+    if not names:
+        return None
+    wanted = [entry["capture"] for entry in proposed(diagnosis)[:1]]
+    why = "%s would look alike in it" % " and ".join(names) if len(names) > 1 else \
+        "how much of the gap %s makes is within its noise" % names[0]
+    return why, (wanted or ["the same for longer, with more rests"])[0]
+
+
+def _of_nothing(diagnosis):
+    """(why, what to record) where nothing was found and little would have shown."""
+    if not any(session.runs for session in diagnosis.sessions):
+        return "it holds no rest, in which a bias, noise or drift would show", (
+            "half a minute at rest before and after the motion")
+    if not diagnosis.gaps:
+        return "its rests are too short, or all in one pose", "rests of some seconds in 12 poses"
+    asked = [one for one in detectable.listed(diagnosis) if one["sensor"] in diagnosis.gaps]
+    kinds = [one["reason"].split(":")[0] for one in asked]
+    kind = max(kinds, key=kinds.count, default="")
+    few = sum(len(session.runs) for session in diagnosis.sessions)
+    hidden = list(dict.fromkeys(one["effect"].replace("_", " ") for one, mine in zip(
+        asked, kinds) if mine == kind))
+    why = "its %d rests would not show most effects at the size they usually have (%s: %s%s)" % (
+        few, kind, ", ".join(hidden[:3]), " and %d more" % (len(hidden) - 3) if hidden[3:] else "")
+    return why, "two sessions of 12 poses and 12 leaning ones, one of them as it warms up"

@@ -45,17 +45,23 @@ def _of_effects(answer):
     if verdict == "unexplained":
         return "There is a gap, but nothing in the library explains it%s." % _place(answer)
     if verdict == "cannot tell" and not causes:
-        return ("This capture cannot tell: it shows no gap, but most effects would not show in "
-                "it either.")
+        return "This capture cannot tell: %s.%s" % (answer["untold"]["why"], to_record(answer))
     first = " ".join(_clause(c) for c in causes[:2])
     closed = _closed(answer)
     if verdict == "cannot tell":
         unknown = "which" if any(len(c["class"]) > 1 for c in causes[:2]) else \
             "whether that is so" if closed else "how much of the gap goes with that"
-        return ("%s This capture cannot tell %s. %s" % (first, unknown, closed)).strip()
+        return ("%s This capture cannot tell %s. %s" % (first, unknown, closed)).strip() + (
+            to_record(answer))
     if verdict == "partly explained":
         return first + " " + closed + " Something else is left that the library does not explain."
     return (first + " " + closed).strip()
+
+
+def to_record(answer):
+    """What to record to find out, a sentence behind others, or "" of a verdict that tells."""
+    untold = answer.get("untold")
+    return " To find out, record %s." % untold["record"] if untold else ""
 
 
 def _place(answer):

@@ -31,6 +31,8 @@ def sentence(answer, effects):
             ", ".join(names[:4]), " and %d more" % (len(names) - 4) if len(names) > 4 else ""))
     if answer["verdict"] in ("unexplained", "partly explained"):
         parts.append("Something else is left that nothing here explains.")
+    if answer.get("untold"):
+        parts.append("To find out, record %s." % answer["untold"]["record"])
     return " ".join(parts)
 
 

@@ -47,11 +47,14 @@ def test_poses_that_were_found_stay_a_guess_in_a_file(tmp_path):
     assert blocks.session_of("s", capture).labelled
 
 
-@pytest.mark.parametrize("seconds, letters", [(0.2, {"Z+a"}), (2.0, {"Z+a", "Z+b"})])
-def test_a_touch_turns_nothing_where_no_gyro_tells(seconds, letters):
-    """A fifth of a second that is no rest: nobody turns a box half round in it."""
+@pytest.mark.parametrize("seconds, leans, letters", [
+    (0.2, 0.6, {"Z+a"}), (2.0, 0.6, {"Z+a", "Z+b"}), (2.0, 0.0, {"Z+a"})])
+def test_a_touch_turns_nothing_where_no_gyro_tells(seconds, leans, letters):
+    """A fifth of a second that is no rest: nobody turns a box half round in it, nor where it lies
+    as before on a table that leans."""
     rng = np.random.default_rng(5)
-    accel = [0.0, 0.0, 16384.0] + rng.normal(0.0, 40.0, (3000, 3))
+    accel = [900.0, 0.0, 16384.0] + rng.normal(0.0, 40.0, (3000, 3))
+    accel[1500:, 0] += np.radians(leans) * 16384.0
     touched = slice(1500, 1500 + int(100 * seconds))
     accel[touched] += rng.normal(0.0, 900.0, accel[touched].shape)
     capture = capture_file.Capture({"sensor": "adxl345", "rate_hz": 100, "accel_lsb_per_g": 16384},
@@ -77,8 +80,20 @@ def test_leaning_is_leaning():
 
 
 def test_without_a_gyro_only_what_can_be_known_is_named():
-    found = find_poses(session_of((0, 0), (0, 180), (2, 0), (0, 0), gyro=False))
-    assert names(found) == ["Z+a", "Z+b", "X+a", "L1"]
+    """A table that is level tells nothing; who sets a box on all of its faces turns it."""
+    places = [(0, 0), (0, 180), (2, 0), (0, 0)]
+    every = session_of(*places, (1, 0), (3, 0), (4, 0), (5, 0), gyro=False)
+    assert names(find_poses(every)) == ["Z+a", "Z+b", "X+a", "L1", "Z-a", "X-a", "Y+a", "Y-a"]
+    assert names(find_poses(session_of(*places, gyro=False))) == ["Z+a", "Z+a", "X+a", "Z+a"]
+
+
+def test_a_table_that_leans_tells_a_from_b_without_a_gyro():
+    """By a degree: turned by half it leans the other way in the box."""
+    table = Rotation.from_euler("xy", [1.0, 0.3], degrees=True)
+    poses = [("L%d" % (k + 1), face_attitude(face, np.radians(heading), table)) for k, (
+        face, heading) in enumerate([(0, 0), (0, 180), (2, 0), (0, 180), (0, 0)])]
+    capture = session(Sensor(4), poses, 4, labels=False, gyro=False, wobble_deg=5)
+    assert names(find_poses(capture)) == ["Z+a", "Z+b", "X+a", "Z+b", "Z+a"]
 
 
 def test_noise_comes_from_the_quietest_part_not_the_first():

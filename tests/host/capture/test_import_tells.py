@@ -340,3 +340,37 @@ def test_p_q_r_are_the_rates_of_roll_pitch_and_yaw(tmp_path, capsys, names):
     other = "t,Ax,Ay,Az,p,q,s\n" + rows + "\n"
     (tmp_path / "out.csv").unlink()
     assert imported(tmp_path, capsys, other)[0].gyro is None
+
+
+@pytest.mark.parametrize("scale, unit", [(1.0, "g"), (9.80665, "m/s2")])
+@pytest.mark.parametrize("named", [False, True])
+def test_free_flight_is_not_taken_for_gravity(tmp_path, capsys, scale, unit, named):
+    """A rocket lies on its pad, burns, coasts and comes down under a parachute: while it coasts
+    it is stiller than on the pad."""
+    rng = np.random.default_rng(5)
+    pad = rng.normal([0.1, 0.0, 1.0], 0.008, (1000, 3))
+    burn = rng.normal([0.5, 0.0, 9.0], 1.0, (300, 3))
+    coast = rng.normal([0.1, 0.0, 0.1], 0.002, (1100, 3))
+    chute = rng.normal([0.0, 0.0, 1.0], 0.5, (2000, 3))
+    accel = scale * np.vstack([pad, burn, coast, chute])
+    text = table(np.arange(len(accel)) / 100, accel=accel, form="%.7f")
+    capture, said = imported(tmp_path, capsys, text, *(["--units", unit + ","] if named else []))
+    size = np.linalg.norm(capture.accel[:1000].mean(axis=0)) / capture.meta["accel_lsb_per_g"]
+    assert abs(size - 1.0) < 0.02
+    assert named or "the accelerometer is in %s: |a| is" % unit in said
+
+
+@pytest.mark.parametrize("names, scale, units, unit", [
+    ("#time,accel_x,accel_y,accel_z", 9806.65, [], "mm/s2"),       # as Klipper writes it
+    ("#time,accel_x,accel_y,accel_z", 9806.65, ["--units", "mm/s2"], None),
+    ("t,acce_x,acce_y,acce_z", 9.80665, [], "m/s2"),               # as RIDI and RoNIN do
+    ("t,x (in G's),y (in G's),z (in G's)", 1.0, [], None)])        # as MetaWear's app does
+def test_columns_as_loggers_of_accelerometers_name_them(tmp_path, capsys, names, scale, units,
+                                                        unit):
+    accel = np.random.default_rng(6).normal([0.02, 0.0, 1.0], 0.003, (1000, 3))
+    text = table(np.arange(1000) / 100, accel=scale * accel, form="%.6f")
+    text = "\n".join([names, *text.splitlines()[1:]]) + "\n"
+    capture, said = imported(tmp_path, capsys, text, *units)
+    size = np.linalg.norm(capture.accel.mean(axis=0)) / capture.meta["accel_lsb_per_g"]
+    assert size == pytest.approx(np.linalg.norm(accel.mean(axis=0)), abs=1e-3)
+    assert unit is None or "the accelerometer is in %s: |a| is" % unit in said

@@ -185,6 +185,16 @@ def test_the_devices_own_clock_is_better_than_when_its_rows_came(tmp_path, capsy
     assert (np.diff(capture.t_us) == 10_000).all()
 
 
+def test_the_sensors_own_time_is_better_than_the_systems(tmp_path, capsys):
+    """Rows of an app come as late as it has something else to do."""
+    late = np.maximum.accumulate(SECONDS + np.random.default_rng(25).exponential(0.008, ROWS))
+    times = ["%.3f,%.3f" % each for each in zip(late, SECONDS)]
+    capture, said = imported(tmp_path, capsys, table(
+        times, "elapsed-time-system,elapsed-time-sensor"))
+    assert "times are in the column elapsed-time-sensor" in said
+    assert (np.diff(capture.t_us) == 10_000).all()
+
+
 def test_a_finer_clock_is_better_than_whole_seconds(tmp_path, capsys):
     times = ["%s,%.0f" % (clock(t, "%Y-%m-%d %H:%M:%S"), 1e3 * t) for t in SECONDS]
     capture, said = imported(tmp_path, capsys, table(times, "Timestamp,Milliseconds"))

@@ -176,3 +176,58 @@ def test_what_a_vehicle_does_on_its_way_is_no_rest_held_by_hand():
     turned = on_its_way(np.zeros(2600), tilts)
     turned.accel[600:1000] = turned.accel[600:1000, [2, 1, 0]]
     assert [rest.by_hand for rest in rests.find(turned).rests] == [False, True, False, False]
+
+
+def lying(n, rng, level=(3.4, 5.2, -0.4), gyro_noise=0.6):
+    """(accel mg, gyro deg/s) at rest."""
+    return (rng.normal([0.0, 0.0, 1000.0], 3.0, (n, 3)),
+            rng.normal(level, gyro_noise, (n, 3)))
+
+
+def moving(n, rng):
+    t = np.arange(n)[:, None] / 100.0
+    return (rng.normal([0.0, 0.0, 1000.0], 3.0, (n, 3)) + 300.0 * np.sin(t * [3.0, 4.0, 5.0]),
+            80.0 * np.sin(t * [3.3, 4.1, 5.7]) + rng.normal(0, 0.6, (n, 3)))
+
+
+def recorded(parts):
+    accel, gyro = (np.vstack(each) for each in zip(*parts))
+    return Capture(dict(META), 10000 * np.arange(len(accel)), np.rint(
+        accel * 16.384).astype(np.int16), np.rint(gyro * 131.0).astype(np.int16))
+
+
+def test_a_gyro_that_hangs_is_no_rest_where_it_rests_elsewhere():
+    rng = np.random.default_rng(11)
+    found = rests.find(recorded([lying(500, rng), moving(600, rng), lying(
+        200, rng, (13.0, 14.0, 12.0), 0.1), moving(300, rng), lying(400, rng)])).rests
+    assert [rest.first < 100 or rest.first >= 1600 for rest in found] == [True, True]
+    assert sum(rest.end - rest.first for rest in found) > 750
+
+
+@pytest.mark.parametrize("gyro_noise", [0.6, 0.1])
+def test_what_rests_for_a_short_while_beside_a_turntable_is_still_the_rest(gyro_noise):
+    """A gyro that reads more in the longer stretch does not rest there."""
+    rng = np.random.default_rng(12)
+    found = rests.find(recorded([moving(300, rng), lying(600, rng, (0.0, 1.0, 0.0), gyro_noise),
+                                 moving(300, rng), lying(300, rng, (0.0, 0.0, 45.0), 0.3)])).rests
+    assert [(290 < rest.first, rest.end < 910) for rest in found] == [(True, True)]
+
+
+def test_free_flight_is_no_rest_where_something_reads_gravity():
+    rng = np.random.default_rng(13)
+    pad, coast = lying(400, rng), lying(500, rng)
+    pad = 3.0 * (pad[0] - [0, 0, 1000]) + [0, 0, 1000], pad[1]
+    coast = 0.1 * (coast[0] - [0, 0, 1000]) + [100.0, 0.0, 110.0], coast[1]
+    found = rests.find(recorded([pad, moving(400, rng), coast, moving(300, rng)])).rests
+    assert found and all(rest.end <= 420 for rest in found)
+
+
+def test_a_sensor_in_the_wrong_range_reads_half_a_g_and_rests_all_the_same():
+    """With its offset some faces read less than half of 1 g and others more."""
+    rng = np.random.default_rng(14)
+    parts = []
+    for face in np.array([[0, 0, 1], [0, 0, -1], [1, 0, 0], [0, -1, 0]]):
+        accel, gyro = lying(300, rng)
+        parts += [(0.5 * (accel - [0, 0, 1000]) + 500.0 * face + [0, 0, 25.0], gyro),
+                  moving(200, rng)]
+    assert len(rests.find(recorded(parts)).rests) == 4

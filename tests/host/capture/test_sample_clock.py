@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from sixflip_host.capture import capture_file, clock, stamp_envelope
+from sixflip_host.capture import capture_file, clock, clock_words, stamp_envelope
 from sixflip_host.diagnosis.detect import sample_clock
 
 ROWS, PERIOD = 6000, 10050.0    # µs: 99.5025 Hz
@@ -313,3 +313,38 @@ def test_rows_that_share_the_stamps_of_a_coarse_clock_are_not_late():
 def test_a_sensor_that_was_faster_at_first_held_nothing():
     assert stamp_envelope.backlog(held_by_a_link(False)) == 0
     assert stamp_envelope.backlog(held_by_a_link(True)) == 500
+
+
+def test_rows_that_are_lost_on_the_way_are_told_though_the_recorder_paused_for_long():
+    """A third of them, from a wrist, and ten minutes in which nobody wore it: the mean interval is
+    that of the pause, and the stamps are no bursts'."""
+    generator = np.random.default_rng(21)
+    t = 107_000.0 * np.flatnonzero(generator.random(18000) > 0.35)
+    t = np.rint(t / 1000.0 + generator.normal(0.0, 3.0, len(t))) * 1000.0
+    t[4000:] += 826e6
+    t[9000:] += 2e6
+    lost = 18000 - len(t)
+    found = measured(np.maximum.accumulate(t))
+    near(found, 1e6 / 107_000.0)
+    assert found.losses == pytest.approx(lost, rel=0.01) and found.late < 0.01 * ROWS
+
+
+def test_what_pauses_every_second_had_no_rows_ready_when_it_began():
+    """As fast at first as ever: nothing came late."""
+    t = np.cumsum(np.random.default_rng(23).normal(2541.0, 8.0, 3960))
+    t += (np.arange(3960) // 360 + 0.01 * (np.arange(3960) > 359)) * 1.65e6
+    found = measured(t)
+    near(found, 1e6 / 2541.0)
+    assert (found.late, found.pauses) == (0, 10)
+
+
+def test_a_rate_that_changes_on_the_way_makes_no_row_late():
+    generator = np.random.default_rng(24)
+    t = np.cumsum(np.repeat([41_400.0, 49_000.0], [330, 290]))
+    t = np.rint((t + generator.normal(0.0, 1000.0, len(t))) / 1000.0) * 1000.0
+    found = measured(t)
+    assert (found.late, found.losses) == (0, 0)
+    (first, quick), (row, slow) = found.paces
+    assert first == 0 and abs(row - 330) < 15
+    assert (quick, slow) == pytest.approx((1e6 / 41_400, 1e6 / 49_000), rel=0.01)
+    assert "the rate changed on the way: 24." in " ".join(clock_words.words(found))

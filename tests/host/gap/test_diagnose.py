@@ -130,6 +130,7 @@ def test_twelve_poses_name_nothing_that_they_cannot_tell(tmp_path, capsys):
         paths = captures(tmp_path, "paper", effects, seed=5)
         answer = diagnosed(capsys, *paths)
         assert answer["verdict"] == "cannot tell"
+        assert "rests would not show most effects" in answer["untold"]["why"]
         assert answer["causes"] == []
         assert answer["held_out"] == "same session"
         silent = {u["effect"] for u in answer["unseen"] if u["sensor"] == "accel"}

@@ -51,6 +51,20 @@ def test_low_bits_that_are_left_out_are_told_where_each_code_is_read_a_few_times
     assert codes.uneven_nats(left_out) > 500.0
 
 
+@pytest.mark.parametrize("period, left", [(16, (15, 0)), (64, range(20, 28))])
+def test_runs_of_codes_that_are_left_out_in_narrow_noise_are_told(period, left):
+    """An eighth of all, in rests whose noise, of 10 counts, does not fill their period."""
+    generator = np.random.default_rng(13)
+    rests = [np.rint(generator.normal(level, 10.0, 1000)).astype(np.int64)
+             for level in (-16400.0, 16380.0, *generator.uniform(-300.0, 300.0, 22))]
+    assert codes.uneven_nats(rests) == 0.0
+    read = np.array([code for code in range(-17000, 17000) if code % period not in left])
+    left_out = [read[np.searchsorted(read, rest)] for rest in rests]
+    assert codes.uneven_nats(left_out) > 500.0
+    single = np.array([code for code in range(-17000, 17000) if code % period != 5])
+    assert codes.uneven_nats([single[np.searchsorted(single, rest)] for rest in rests]) == 0.0
+
+
 @pytest.mark.parametrize("step", [2.3, 4.0, 5.333, 7.6, 10.0, 13.1, 14.0, 15.9, 20.0, 22.0, 28.0])
 @pytest.mark.parametrize("rows", [500, 6000])
 @pytest.mark.parametrize("levels", [50.0, 300.0])

@@ -218,3 +218,18 @@ def test_a_chip_read_a_little_faster_than_it_measures_repeats_rows_at_regular_ti
     assert "one in %.1f" % (20000 / repeated) in damage.words
     assert len(read) == 20000 - repeated
     assert held_values.findings([SimpleNamespace(capture=read)]) == []
+
+
+def test_a_sensor_is_read_so_many_times_as_fast_as_the_file_has_rows():
+    """Read at 600 Hz, of which a gyro measures every second and an accelerometer every fourth:
+    the rows that neither was read in are told, and the accelerometer's were 2 times of what is
+    left of them then."""
+    generator = np.random.default_rng(9)
+    accel, gyro = (np.repeat(np.rint(generator.normal(0.0, 40.0, (16000 // times, 3))), times,
+                             axis=0).astype(np.int16) for times in (4, 2))
+    meta = {"sensor": "other", "rate_hz": 600.0, "accel_lsb_per_g": 8192.0,
+            "gyro_lsb_per_dps": 65.5}
+    capture = Capture(meta, 1667 * np.arange(16000), accel, gyro)
+    capture = held_values.without_rows(capture, np.arange(1, 16000, 2))
+    damage, = held_values.findings([SimpleNamespace(capture=capture)])
+    assert damage.sensor == "accel" and "each value four times" in damage.words

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from sixflip_host.capture import clock
+from sixflip_host.capture import stamp_envelope
 from sixflip_host.diagnosis import aliases, odds, samples_judged
 from sixflip_host.diagnosis.detect import (
     axis_order,
@@ -149,10 +149,10 @@ def test_a_clock_is_the_likelier_off_the_more_it_is_and_sessions_must_agree():
 
 
 def test_gaps_that_are_no_whole_number_of_samples_are_less_likely_lost_samples():
-    whole, half = (clock.loss_nats(np.full(6, late), 0.03) for late in (3.0, 3.4))
+    whole, half = (stamp_envelope.loss_nats(np.full(6, late), 0.03) for late in (3.0, 3.4))
     assert present(whole) and not present(half)
     mixed = np.array([1.0] * 30 + [1.4, 2.5, 0.7])  # and three times it stood still
-    assert present(clock.loss_nats(mixed, 0.0))
+    assert present(stamp_envelope.loss_nats(mixed, 0.0))
 
 
 def restamped(capture, generator, phase):

@@ -58,3 +58,33 @@ def test_steps_of_which_few_are_read_have_no_band():
 def test_three_levels_are_no_steps_wider_than_any_that_is_paid_for():
     levels = np.random.default_rng(4).integers(-1, 2, (2000, 3))
     assert registers.steps(600 * levels).tolist() == [1, 1, 1]
+
+
+def turning_at_times(noise):
+    """((6000, 3) deg/s of what stands still and turns by turns, as a simulated rover does: its
+    rates come and go gently; bool (6000,) where it stands still)."""
+    rng = np.random.default_rng(8)
+    asked = np.repeat(rng.choice([0.0, 0.0, -40.0, 25.0, 3.0], 30), 200)
+    rates = np.zeros((6000, 3))
+    for k in range(1, 6000):
+        rates[k] = rates[k - 1] + 0.08 * (asked[k] * np.array([1.0, -0.6, 0.8]) - rates[k - 1])
+    still = (np.abs(rates) < 1e-4).all(axis=1)
+    return np.where(still[:, None], 0.0, rates) + rng.normal(0.0, noise, (6000, 3)), still
+
+
+@pytest.mark.parametrize("jolts", [0.0, 0.3])
+def test_a_simulator_that_stands_still_has_no_dead_band(jolts):
+    """It has no noise in motion either: any sensor's least noise, 9 counts, says nothing, and what
+    jolts it where it stands, for a row in forty, is none."""
+    rates, still = turning_at_times(0.0)
+    rng = np.random.default_rng(9)
+    rates += jolts * still[:, None] * (rng.random((6000, 1)) < 0.025) * rng.normal(size=(6000, 3))
+    counts = np.rint(360.0 * rates).astype(np.int16)
+    assert dead_band.findings("gyro", [counts], [still], 9.0) == []
+
+
+def test_a_band_that_takes_the_noise_of_all_three_axes_is_told_by_their_noise_in_motion():
+    rates, still = turning_at_times(0.025)
+    counts = np.rint(360.0 * np.sign(rates) * np.maximum(np.abs(rates) - 0.15, 0.0))
+    said, = dead_band.findings("gyro", [counts.astype(np.int16)], [still], 9.0)
+    assert said.axes == ["x", "y", "z"]

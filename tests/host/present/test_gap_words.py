@@ -1,4 +1,14 @@
 """The first line of a diagnosis says of each axis what is so of it."""
+import json
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from sixflip_host.capture.capture_file import Capture
+from sixflip_host.diagnosis import answer
+from sixflip_host.diagnosis.diagnose import diagnose
+from sixflip_host.planning import next_capture
 from sixflip_host.present import gap_sentence
 
 
@@ -25,3 +35,41 @@ def test_a_frequency_is_said_with_the_digits_that_it_is_known_to():
     assert "frequency, 30.30 Hz, 1.5 mg" in gap_sentence.sentence(
         {"damage": [], "verdict": "explained", "causes": [cause], "gap": {}, "unseen": [],
          "where": []})
+
+
+def moving(seconds, rests):
+    """A Capture that swings all the time, or rests for two seconds now and then, in one pose."""
+    t = np.arange(int(100 * seconds)) / 100.0
+    swing = np.stack([np.sin(2.3 * t), np.sin(3.1 * t + 1.0), np.sin(1.7 * t + 2.0)], axis=1)
+    swing *= (t % 10.0 > 2.0)[:, None] if rests else 1.0
+    rng = np.random.default_rng(3)
+    accel = [0.0, 0.0, 16384.0] + 4000.0 * swing + rng.normal(0.0, 50.0, swing.shape)
+    gyro = 5000.0 * swing + rng.normal(0.0, 8.0, swing.shape)
+    meta = {"sensor": "mpu6050", "rate_hz": 100.0, "accel_lsb_per_g": 16384.0,
+            "gyro_lsb_per_dps": 131.0}
+    return Capture(meta, np.rint(1e6 * t).astype(np.int64), np.rint(accel).astype(np.int16),
+                   np.rint(gyro).astype(np.int16))
+
+
+def test_a_verdict_that_cannot_tell_says_why_and_what_to_record():
+    """It said of every such capture that most effects would not show in it."""
+    told = answer.as_dict(diagnose([("log", moving(20.0, False))]))
+    assert told["verdict"] == "cannot tell"
+    said = gap_sentence.sentence(told)
+    assert "cannot tell: it holds no rest" in said
+    assert "To find out, record half a minute at rest before and after the motion." in said
+    json.dumps(told)
+
+
+@pytest.mark.parametrize("one_of, shaken, same, why, record", [
+    (("axes", "gyro_unit"), (), True, "cannot tell which, between log and sim", "every axis"),
+    ((), ("gyro",), True, "more of the gyro is left between log and sim", "one motion"),
+    ((), (), False, "different motions", "the simulator in the motion of the real log")])
+def test_two_logs_that_cannot_tell_say_why(one_of, shaken, same, why, record):
+    beside = SimpleNamespace(
+        against="log", log="sim", shaken=shaken, alignment=SimpleNamespace(same=same),
+        conventions=[SimpleNamespace(one_of=one_of, words="it shows one of: axes, gyro_unit; these"
+                                     " logs cannot tell which")])
+    untold = next_capture.untold(SimpleNamespace(
+        comparisons=[beside], causes=[], findings=[], sessions=[], gaps={}))
+    assert why in untold["why"] and record in untold["record"]

@@ -29,7 +29,8 @@ def _chips(name):
 
 
 SIZES = {ACCEL: ("g", _chips("ACCEL_RANGES")), GYRO: ("deg/s", _chips("GYRO_RANGES"))}
-PER_UNIT = {ACCEL: [("g", 1.0), ("mg", 1e-3), *(("m/s2", 1 / g) for g in LOGGERS_G)],
+PER_UNIT = {ACCEL: [("g", 1.0), ("mg", 1e-3), *(("m/s2", 1 / g) for g in LOGGERS_G),
+                    ("mm/s2", 1e-3 / STANDARD_G)],
             GYRO: [(unit, units.GYRO_UNITS[unit]) for unit in ("dps", "rad/s", "mdps")]}
 
 

@@ -52,8 +52,8 @@ def column(name):
 
 
 def _without_unit(name):
-    """A name without a unit in brackets, and the unit; an index in brackets stays."""
-    match = re.search(r"[\[(]\s*([^\])]*?)\s*[\])]\s*\Z", name)
+    """A name without a unit in brackets, or in g in them, and the unit; an index there stays."""
+    match = re.search(r"[\[(]\s*(?:in\s+)?([^\])]*?)\s*[\])]\s*\Z", name)
     if not match or match.group(1).isdigit():
         return name, ""
     return name[:match.start()], match.group(1).replace("\\", "")

@@ -2,8 +2,8 @@
 
 ACCEL, GYRO, MAG, TEMP = "a", "g", "m", "t"
 WORDS = {
-    ACCEL: {"a", "f", "acc", "accel", "accelerometer", "acceleration", "accelerations", "accels",
-            "accelerometers", "linacc"},
+    ACCEL: {"a", "f", "acc", "acce", "accel", "accelerometer", "acceleration", "accelerations",
+            "accels", "accelerometers", "linacc"},
     GYRO: {"g", "w", "gyr", "gyro", "gyros", "gyroscope", "gyroscopes", "omega", "angvel",
            "rotationrate", "angrate"},
     MAG: {"m", "mag", "magnetometer", "magnetic"},
@@ -25,7 +25,8 @@ TIMES = {"t", "ts", "time", "times", "timestamp", "timestamps", "stamp", "second
          "micros", "tick", "ticks", "clock", "datetime", "date", "utc"}
 # What a row's time of arrival is called: a board's own is better, and a T alone, which is as often
 # a temperature, is worse.
-ARRIVALS = {"date", "server", "host", "pc", "arrival", "arrived", "received", "recv", "rx"}
+ARRIVALS = {"date", "server", "host", "pc", "system", "arrival", "arrived", "received", "recv",
+            "rx"}
 TIME_UNITS = {"ns": 1e-3, "us": 1.0, "ms": 1e3, "s": 1e6}     # microseconds
 LONG_UNITS = {"min": 6e7, "h": 3.6e9}       # of times whose name says so, and of no others
 UNIT_OF_TIME = {"s": "s", "sec": "s", "secs": "s", "second": "s", "seconds": "s", "ms": "ms",
@@ -40,11 +41,12 @@ FUSED_TIMES = {word: unit for said, unit in UNIT_OF_TIME.items()
 UNIT = {"m/s2": "m/s2", "m/s^2": "m/s2", "m/s²": "m/s2", "m/s/s": "m/s2", "ms-2": "m/s2",
         "m/(s^2)": "m/s2",
         "m/sec2": "m/s2", "m/sec^2": "m/s2", "mps2": "m/s2", "m_s2": "m/s2", "ms2": "m/s2",
-        "g": "g", "mg": "mg", "rad/s": "rad/s", "rad/sec": "rad/s", "rads": "rad/s",
+        "mm/s2": "mm/s2", "mm/s^2": "mm/s2", "mm/s²": "mm/s2", "mm/sec^2": "mm/s2",
+        "g": "g", "g's": "g", "mg": "mg", "rad/s": "rad/s", "rad/sec": "rad/s", "rads": "rad/s",
         "rad": "rad/s", "deg/s": "dps", "°/s": "dps", "deg/sec": "dps", "dps": "dps",
         "rad s^-1": "rad/s", "m s^-2": "m/s2", "mdps": "mdps",
         "radps": "rad/s", "m/s 2": "m/s2",
         "lsb": "counts", "counts": "counts", "raw": "counts"}
 DEGREES = {"c": ("c", "°c", "degc", "deg c", "celsius", "centigrade"),
            "f": ("f", "°f", "degf", "deg f", "fahrenheit"), "k": ("k", "kelvin")}
-KINDS = {ACCEL: ("g", "mg", "m/s2", "counts"), GYRO: ("rad/s", "dps", "mdps", "counts")}
+KINDS = {ACCEL: ("g", "mg", "m/s2", "mm/s2", "counts"), GYRO: ("rad/s", "dps", "mdps", "counts")}

@@ -207,7 +207,7 @@ class Conversion:
             gyro_unit = told.turned(accel, gyro, gyro_unit, gyro_lsb, meta["rate_hz"])
         counts = {}
         if accel is not None:
-            per_unit = {"si": 1 / options.g, "m/s2": 1 / options.g}.get(
+            per_unit = {"si": 1 / options.g, "m/s2": 1 / options.g, "mm/s2": 1e-3 / options.g}.get(
                 accel_unit, units.ACCEL_UNITS[accel_unit])
             counts[ACCEL] = units.counts_of(path, "accelerometer", accel, accel_unit,
                                             accel_lsb, per_unit, self._sizes[ACCEL].step())

@@ -11,10 +11,12 @@ from ..capture_header import STANDARD_G
 # Counts per g of the chips in use: ±2, 4, 8, 16 g of 16 bits (MPU-6000 register map 4.17), 1024
 # of 12 bits, 256 of an ADXL345.
 USUAL_LSB = (16384, 8192, 4096, 2048, 1024, 256)
+USUAL = (1.0, STANDARD_G, 1000.0, 1e3 * STANDARD_G, *USUAL_LSB)   # what 1 g is in a unit
 ZERO_G = 0.2            # offset and scale of a part at rest: MPU-6000 has ±80 mg and 3 %
 WINDOW = 20             # rows that are averaged to see gravity
 MOST_WINDOWS = 2000     # that gravity is looked for in, evenly over the file
 QUIET = 0.05            # of |a|: scatter within a window that rests
+RESTS = 0.02            # of the windows, that rest where anything does
 MOST_TURNS = 20_000     # twentieths of a second in which gravity is seen to turn: the first ones
 LAG = 4                 # of those, over which it is
 DISAGREES = 2.0         # factor from 1 g beyond which what was said of the unit is wrong
@@ -40,10 +42,14 @@ class Turn(NamedTuple):
     number: int
 
 
-def seen(values):
-    """Gravity in accelerometer values (n, 3), or None in fewer than two windows of rows.
+def seen(values, usual=USUAL):
+    """Gravity in accelerometer values (n, 3), or None in fewer than two windows of rows; usual:
+    what 1 g may be in their unit.
 
-    Where nothing rests it is the median of the means of windows, in which vibration is gone.
+    Where nothing rests it is the median of the means of windows, in which vibration is gone. What
+    flies freely is stiller than what stands on a launch pad, but nothing does so for most of a
+    recording, and while it does it reads less: where the median is 1 g and what rests reads less
+    than half of it, gravity is what rests as the median has it, or else the median.
     """
     number = len(values) // WINDOW
     if number < 2:
@@ -52,11 +58,20 @@ def seen(values):
     windows = values[:number * WINDOW].reshape(number, WINDOW, 3)[::step].astype(float)
     size = np.linalg.norm(windows.mean(axis=1), axis=1)
     scatter = np.sqrt(windows.var(axis=1).sum(axis=1))
+    usually = float(np.median(size))
     quiet = scatter < QUIET * size
-    if quiet.mean() >= 0.02:
-        quietest = quiet & (scatter <= np.quantile(scatter[quiet], 0.5))
-        return Gravity(float(np.median(size[quietest])), True)
-    return Gravity(float(np.median(size)), False)
+    if quiet.mean() >= RESTS and DISAGREES * _stillest(size, scatter, quiet) < usually and any(
+            abs(usually / g - 1.0) < ZERO_G for g in usual):
+        quiet &= np.abs(size / usually - 1.0) < ZERO_G
+    if quiet.mean() >= RESTS:
+        return Gravity(_stillest(size, scatter, quiet), True)
+    return Gravity(usually, False)
+
+
+def _stillest(size, scatter, some):
+    """The median |a| of the stiller half of some windows."""
+    half = some & (scatter <= np.quantile(scatter[some], 0.5))
+    return float(np.median(size[half]))
 
 
 def unit(size, whole):
@@ -66,6 +81,8 @@ def unit(size, whole):
         return "g", None
     if abs(size / STANDARD_G - 1) < ZERO_G and not whole:
         return "m/s2", None
+    if abs(size / STANDARD_G / 1000 - 1) < ZERO_G and not whole:
+        return "mm/s2", None
     if abs(size / 1000 - 1) < ZERO_G and (not whole or abs(size / 1000 - 1)
                                           < abs(size / 1024 - 1)):
         return "mg", None

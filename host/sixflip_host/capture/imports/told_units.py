@@ -38,8 +38,9 @@ class ToldUnits:
         said = said_units(options.units)[0]
         named = self.named_units.get(column_vocabulary.ACCEL)
         unit = said or named
-        seen = gravity.seen(values)
         whole = units.are_whole(values)
+        per_unit = units.ACCEL_UNITS[unit] if unit else None
+        seen = gravity.seen(values, (1.0 / per_unit,) if per_unit else gravity.USUAL)
         if unit is None and options.accel_lsb is not None and whole:
             unit = "counts"
         told = gravity.unit(seen.size, whole) if seen else None
@@ -122,8 +123,8 @@ class ToldUnits:
         if seen and seen.size < GRAVITY_FREE and not whole:
             raise BadFile("%s: |a| is %s: gravity has been taken out of it, expected the "
                           "acceleration with gravity, or --units with its unit" % (path, size))
-        raise BadFile("%s: |a| is %s, which is no gravity in g, m/s2, mg or counts: expected "
-                      "--units, such as g,dps" % (path, size))
+        raise BadFile("%s: |a| is %s, which is no gravity in g, m/s2, mm/s2, mg or counts: "
+                      "expected --units, such as g,dps" % (path, size))
 
     def of_gyro(self, values, accel_unit):
         """(unit, counts per deg/s or None) of the gyro: said, in its name, by its values or by the
@@ -153,7 +154,8 @@ class ToldUnits:
             raise BadFile("%s: no accelerometer was recognised, which would tell the gyro's unit, "
                           "expected --map ax=NAME,ay=NAME,az=NAME, or --units ,dps or ,rad/s or "
                           ",counts" % self.path)
-        unit = {"si": "rad/s", "m/s2": "rad/s", "g": "dps", "mg": "dps"}.get(accel_unit)
+        unit = {"si": "rad/s", "m/s2": "rad/s", "mm/s2": "rad/s", "g": "dps",
+                "mg": "dps"}.get(accel_unit)
         if unit is None:
             raise BadFile("%s: the gyro's unit is not told by anything, expected --units ,dps "
                           "or ,rad/s or ,counts" % self.path)

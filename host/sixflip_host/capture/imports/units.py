@@ -12,7 +12,7 @@ from ..capture_header import STANDARD_G
 
 # how many g, or deg/s, one of the unit is; None: counts already
 ACCEL_UNITS = {"counts": None, "si": 1 / STANDARD_G, "m/s2": 1 / STANDARD_G, "g": 1.0,
-               "mg": 1e-3}
+               "mg": 1e-3, "mm/s2": 1e-3 / STANDARD_G}
 GYRO_UNITS = {"counts": None, "si": 180 / math.pi, "rad/s": 180 / math.pi, "dps": 1.0,
               "deg/s": 1.0, "mdps": 1e-3}
 LARGEST = 1e9           # in any unit: no sensor, and squares of more leave a float

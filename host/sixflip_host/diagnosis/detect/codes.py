@@ -1,6 +1,5 @@
 """Which codes a sensor gives, how likely that would be if it gave all of them, and the findings
-that give way where it leaves some out.
-"""
+that give way where it leaves some out."""
 import math
 from dataclasses import replace
 
@@ -101,7 +100,8 @@ def uneven_nats(columns, held=1):
         return 0.0
     nats = 0.0
     if noise >= FEWEST_AROUND:
-        nats = _of_single_codes(every, noise, held) or _of_low_bits(every, int(noise), held)
+        nats = (_of_single_codes(every, noise, held) or _of_low_bits(every, int(noise), held)
+                or _of_runs(every, noise, held))
     return nats or lattice.swallowed_nats(every[np.abs(every) > held])
 
 
@@ -147,6 +147,24 @@ def _of_low_bits(every, noise, held):
     # A rest of a few hundred codes makes each line wider than all codes that are read would.
     slowest += int(np.argmax(spectrum[slowest:slowest + lines // FLANK]))
     return 0.0 if slowest % lines else _poisson(times, usual, seldom)
+
+
+def _of_runs(every, noise, held):
+    """Nats of uneven_nats() by runs of two low bits and more that every (n,) never reads, by those
+    around: what scales readings leaves single codes out, and in no power of two."""
+    codes_read, most = np.arange(every.min(), every.max() + 1), 1 << LOW_BITS
+    times = np.bincount(every - codes_read[0]).astype(float)
+    usual = (np.abs(codes_read) > held) * ndimage.median_filter(
+        times, 2 * min(int(noise), MOST_AROUND) + 1, mode="constant")
+    read, asked = (np.bincount(codes_read & (most - 1), np.where(usual > 0.0, number, 0.0), most)
+                   for number in (times, usual))
+    scores = [0.0]
+    for bits in range(2, LOW_BITS + 1):
+        have, want = (number.reshape(-1, 1 << bits).sum(axis=0) for number in (read, asked))
+        seldom = (want >= EXPECTED) & (have <= RARE * want)
+        seldom &= np.roll(seldom, 1) | np.roll(seldom, -1)
+        scores.append(_poisson(have, want, seldom) - math.log(LOW_BITS))
+    return max(scores)
 
 
 def _poisson(times, usual, odd):

@@ -1,7 +1,8 @@
 """A dead band without a code that is missing, by two things that it does.
 
 At rest an axis within it reads 0 with no noise, or with less than its sensor's others let it have;
-where all of them do, with less than any such part has.
+where all of them do, with less than any such part has, as far as it has that in motion: what has
+no noise there either is a simulator's, or smoothed, and reads 0 because it stands still.
 What passes through it, where readings begin at 0 at its edges, stays at 0 for as long as the band
 takes: each time a column goes through 0 its rate before and after says how far it has come, and
 the readings say how far it seems to have come. What is missing is twice the band. Only what moves
@@ -124,14 +125,15 @@ def nats_of_rests(columns, at_rest, least=0.0, lattices=None):
         if not together.any():
             continue
         change = np.diff(x, axis=0)[together]
-        # Jumps are no noise of an axis; where most samples repeat their median says nothing.
-        middle = OF_SIZES * np.median(np.abs(change), axis=0)
-        noise = np.where(middle > 0.0, np.minimum(middle, change.std(axis=0)),
-                         change.std(axis=0)) / np.sqrt(2.0)
+        # Jumps are no noise of an axis. Where most samples repeat their median says nothing, and
+        # jolts are none, either: it has as much as in motion at most.
+        middle, moving = OF_SIZES * np.median(np.abs(change), axis=0), in_motion(counts)
+        noise = np.minimum(np.where(middle > 0.0, middle, np.sqrt(2.0) * moving),
+                           change.std(axis=0)) / np.sqrt(2.0)
         for axis in range(3):
             usual = float(np.median(np.delete(noise, axis)))
             if max(noise) < SILENT:
-                usual = max(usual, least)
+                usual = max(usual, min(least, moving))
             zero = ones[axis].numbers(x[:, axis]) == 0
             # What never leaves 0 is stuck, and what leaves it to one side has its end there.
             moves = counts[:, axis].min() < 0 < counts[:, axis].max() and counts[
@@ -149,6 +151,14 @@ def nats_of_rests(columns, at_rest, least=0.0, lattices=None):
             nats[axis] += each * max(registers.number_of_runs(zero) / share, len(x) / WINDOW)
             widths[axis] = min(widths[axis], usual * special.ndtri(0.5 + 0.5 * share))
     return nats, widths
+
+
+def in_motion(counts):
+    """Counts of noise that readings (n, 3) have from one to the next where they are not 0: in the
+    window in which an axis changes least, if at all; inf where there is no such window."""
+    windows = counts[:len(counts) // WINDOW * WINDOW].astype(np.int64).reshape(-1, WINDOW, 3)
+    change = np.diff(windows, axis=1).std(axis=1) / np.sqrt(2.0)
+    return float(np.min(change[(windows != 0).all(axis=1) & (change > 0.0)], initial=np.inf))
 
 
 def band_of_columns(columns):

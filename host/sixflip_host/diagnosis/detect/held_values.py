@@ -54,17 +54,17 @@ def findings(sessions):
             damages += _blocks_again(sensor, columns)
             continue
         if share < HELD:
-            said = "about %.0f rows of the %s are the row before once more: read again" % (
-                held, words)
-            damages.append(Damage("repeats", sensor, (), "timing", said, nats,
-                                  {"rows": round(held)}))
-            continue
-        times = 1.0 / (1.0 - min(share, 0.999))
-        whole = TIMES.get(round(times)) if abs(times - round(times)) < 0.1 else None
-        said = "each value %s" % whole if whole else "each value %.3g times on the mean" % times
-        damages.append(Damage(
-            "repeats", sensor, (), "timing", "the %s gives %s: it is read faster than it measures,"
-            " or rows were filled in" % (words, said), nats, {"times": round(times, 3)}))
+            said, value = "about %.0f rows of the %s are the row before once more: read again" % (
+                held, words), {"rows": round(held)}
+        else:  # of the rows of the file, of which those that neither sensor was read in are gone
+            every = sum(len((getattr(s.capture, "recorded", None) or [c])[0])
+                        for s, c in zip(sessions, columns))
+            times = every / sum(map(len, columns)) / (1.0 - min(share, 0.999))
+            whole = TIMES.get(round(times)) if abs(times - round(times)) < 0.1 else None
+            said = "the %s gives each value %s: it is read faster than it measures, or rows were" \
+                " filled in" % (words, whole or "%.3g times on the mean" % times)
+            value = {"times": round(times, 3)}
+        damages.append(Damage("repeats", sensor, (), "timing", said, nats, value))
     return damages
 
 

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from ...capture import clock, clock_words
+from ...capture import clock, clock_words, stamp_envelope
 from .axis_order import explained
 from .detection import Finding, present
 
@@ -78,8 +78,9 @@ def drops(clocks):
     samples, which gaps without a name need not be."""
     clocks = [timing for timing in clocks if timing is not None and timing.rows >= FEWEST]
     lost = sum(timing.losses - timing.losses_known for timing in clocks)
-    score = sum(clock.loss_nats(np.array(timing.loss_periods),
-                                timing.jitter_ms * timing.rate_hz / 1e3) for timing in clocks)
+    score = sum(stamp_envelope.loss_nats(np.array(timing.loss_periods),
+                                          timing.jitter_ms * timing.rate_hz / 1e3)
+                for timing in clocks)
     if not lost or not present(score):
         return []
     expected = sum(timing.expected for timing in clocks)
@@ -94,7 +95,8 @@ def drops(clocks):
 
 
 def remarks(sessions, clocks):
-    """Sentences on what is not the sensor's: pauses, the link, bursts, jitter."""
+    """Sentences on what is not the sensor's: pauses, the link, bursts, changes of the rate and
+    jitter."""
     said = []
     for session, timing in zip(sessions, clocks):
         if timing is None:
@@ -109,7 +111,8 @@ def remarks(sessions, clocks):
                              timing.pauses, 1e3 * timing.longest_pause_s))
         elif timing.pauses:
             lines.append(clock_words.pause_words(timing))
-        lines += [clock_words.burst_words(timing), clock_words.jitter_words(timing)]
+        lines += [clock_words.burst_words(timing), clock_words.pace_words(timing),
+                  clock_words.jitter_words(timing)]
         said += ["%s: %s" % (session.name, line) for line in lines if line]
     return said
 

@@ -80,7 +80,7 @@ def at_rest(session):
     if session.runs:
         return float(np.median([np.linalg.norm(session.capture.accel[a:b].mean(axis=0))
                                 for _, a, b in session.runs])) / lsb, True
-    seen = gravity.seen(session.capture.accel)
+    seen = gravity.seen(session.capture.accel, (lsb,))
     return (seen.size / lsb, seen.rests) if seen else None
 
 
