@@ -6,7 +6,16 @@ from .. import progress
 from ..capture import registers
 from ..experiment import blocks, terms
 from ..planning import detectable
-from . import localisation, mimicry, odds, rest_gap, rest_noise, rests_judged, samples_judged
+from . import (
+    localisation,
+    mimicry,
+    odds,
+    rest_gap,
+    rest_noise,
+    rests_judged,
+    samples_judged,
+    stray_turns,
+)
 from .detect import sample_clock, shake_detector
 from .settings import Conditions, Settings
 from .simulator import simulator_answer
@@ -173,6 +182,8 @@ def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), d
         if moving and not rest:
             remarks.append("no rest of %g s: a robot that settles is not told from sensors that "
                            "drift" % rest_gap.SETTLES_S)
+        if not (beside or comparisons or "axis_swap" in settings.without):
+            findings += stray_turns.swapped_on_the_way(sessions)
         if not any(s.runs for s in sessions):
             remarks.append("no rest found: only what shows in motion can be judged")
         if not moving and not any(

@@ -2,7 +2,7 @@
 
 traces, log_rests, rest_or_course, row_times, single_log, held_readings
                                    what one log says of itself
-alignment, lag_path, clock_course, pairing
+alignment, motion_match, lag_path, clock_course, pairing
                                     two logs of one motion on one clock and one grid
 one_motion, hypotheses, evidence_of_logs, conventions, convention_findings
                                    layer 1: what the simulator's numbers mean, by the same motion

@@ -36,7 +36,8 @@ LEAST_S = 8.0  # of a log: its turn rate has a hundred independent values in BAN
 class Alignment:
     """same: one motion; correlation of the turn rates; time of the real log = offset_s + (1 +
     drift) · time of the simulator's; offset_sigma_s, drift_sigma: standard errors; overlap_s; by:
-    "turn rates" or "forces", which it is told by; turning: whether either log turns."""
+    "turn rates" or "forces", which it is told by; turning: whether either log turns; nats: that
+    the directions of what is read tell of it (motion_match)."""
 
     same: bool
     correlation: float
@@ -47,6 +48,7 @@ class Alignment:
     overlap_s: float
     by: str = "turn rates"
     turning: bool = True
+    nats: float = 0.0
 
     def of_simulator(self, t):
         """Times of the real log at times of the simulator's."""
@@ -241,8 +243,7 @@ def said_of(real, sim, aligned):
             sentences.append("no rest in %s: gravity and the gyro's bias are known in it on "
                              "average alone, and its noise by the quick end of its spectrum%s" % (
                                  trace.name, _drowned(trace)))
-        if trace.rate is None:
-            sentences.append("no gyro in %s" % trace.name)
+        sentences += ["no gyro in %s" % trace.name] * (trace.rate is None)
     if abs(real.rate_hz / sim.rate_hz - 1.0) > 0.02:
         sentences.append("%s has %.4g rows a second, %s %.4g: compared on one grid" % (
             sim.name, sim.rate_hz, real.name, real.rate_hz))

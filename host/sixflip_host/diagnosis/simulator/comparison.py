@@ -11,6 +11,7 @@ from . import (
     convention_findings,
     dead_zone,
     held_readings,
+    motion_match,
     noise_and_registers,
     numbers_told,
     one_motion,
@@ -118,7 +119,7 @@ def compare(real_logs, name, capture):
     """
     sim = traces.trace_from_capture(name, capture)
     candidates = [traces.trace_from_capture(n, c) for n, c in real_logs]
-    aligned = [alignment.align(real, sim) for real in candidates]
+    aligned = [motion_match.aligned(real, sim) for real in candidates]
     best = max(range(len(candidates)), key=lambda k: aligned[k].correlation)
     real = candidates[best]
     course = clock_course.found(real, sim, aligned[best])
@@ -127,7 +128,7 @@ def compare(real_logs, name, capture):
     right = clock_course.put_right(course, real, sim, (real_logs[best][1], capture))
     real, sim = (traces.trace_from_capture(log.name, captured) for log, captured in (
         (real, right.real), (sim, right.sim)))
-    result = compare_traces(real, sim, alignment.align(real, sim))
+    result = compare_traces(real, sim, motion_match.aligned(real, sim))
     return replace(result, parameters=(*result.parameters, *right.parameters),
                    remarks=(*right.remarks, *result.remarks), put_right=right)
 

@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .. import odds
 from . import alignment as align_by
 from . import (
     convention_findings,
@@ -130,27 +129,25 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, full_scale, s
         (own[0], sizes), live, rows, left=False, noise_bends=noise_bends).log)
     fits = [gravity_directions.beside(kind, fit, real, sim) for fit in judged(inflation, rows)]
 
-    def best_of(fits):
-        named, fit = posterior(kind, fits, live, swapped)
+    def kept(named, fit):
         fit = whole(fit, inflation, rows)
         return without_smoothing(SensorFit(kind, named, fit, inflation, pair, fit.hypothesis, own,
                                            live, noise_bends), rows)
+
+    def best_of(fits):
+        return kept(*posterior(kind, fits, live, swapped))
     best = best_of(fits)
+    if best.fit.name and best.conventions:
+        known = 0.0 if None in (noise, theirs) else 2.0 * pair.band_hz * (
+            noise.density ** 2 + theirs.density ** 2)
+        if not remaining_gap.closes(best, known):
+            first = best.conventions[0]
+            return kept((convention_findings.one_of(kind, (), first.probability, first.nats),),
+                        max((f for f in fits if not f.name), key=lambda f: f.log))
     if best.fit.name:
         return best
     other = best_of([f for f in fits if f.name])
-    return other if _explains(other, best) else best
-
-
-def _explains(named, nameless):
-    """Whether a SensorFit with a name explains the gap as well as the nameless one, which is free
-    enough to follow what it has seen: it closes the gap but for a tenth, and foretells what it has
-    not seen better. What is left then has no name, and is none of the conventions."""
-    kind, live = named.kind, named.live
-    gap = (named.pair.simulated(kind) - named.pair.real(kind))[:, live]
-    left = [remaining_gap.not_foretold(fit)[:, live].std() for fit in (named, nameless)]
-    inside = (named.fit.left / named.fit.unit)[:, live]
-    return inside.std() < (1.0 - odds.CLOSED) * gap.std() and left[0] < left[1]
+    return other if remaining_gap.explains(other, best) else best
 
 
 def without_smoothing(sensor_fit, rows):

@@ -17,6 +17,7 @@ GYRO = 0.03
 # Share of moves and rests that follow nothing at all: a log of fifty moves may have one in which
 # the gyro was cut off or the robot slid, which then costs a hypothesis no more than ln 50 nats.
 ASTRAY = 0.02
+AGAIN = 0.5  # of those after which it lies as it did before
 POSE = np.radians(15.0)  # how alike the rests of two runs of one robot are: ramps and slopes
 POSES_COUNT = 4  # runs of one robot stand alike: that many of its rests say something new
 STEPS_HZ = 25.0  # a robot turns below 5 Hz: five steps a period
@@ -39,12 +40,17 @@ def moves(trace):
     return ways
 
 
-def closeness(a, b, sigma=SIGMA):
+def closeness(a, b, sigma=SIGMA, before=None):
     """log density of direction a given b, each (…, 3), up to a constant; nothing at all is
-    always possible [Fisher, Proc. R. Soc. A 217 (1953), 295]. sigma: rad, of a direction."""
-    kappa = 1.0 / sigma ** 2
-    near = kappa / (2.0 * np.pi) * np.exp(kappa * ((a * b).sum(axis=-1) - 1.0))
-    return np.log((1 - ASTRAY) * near + ASTRAY / (4.0 * np.pi))
+    always possible [Fisher, Proc. R. Soc. A 217 (1953), 295]. sigma: rad, of a direction.
+    before (3,): that of the rest before, in which a thing is laid down again as often as not
+    wherever its gyro takes it: that it was is no sign of anything else."""
+    def near(b, sigma):
+        return np.exp(((a * b).sum(axis=-1) - 1.0) / sigma ** 2) / (2.0 * np.pi * sigma ** 2)
+    anywhere = 1.0 / (4.0 * np.pi)
+    if before is not None:
+        anywhere = (1.0 - AGAIN) * anywhere + AGAIN * near(before, SIGMA)
+    return np.log((1 - ASTRAY) * near(b, sigma) + ASTRAY * anywhere)
 
 
 def carried_log(body, ways, gyro):
@@ -55,7 +61,7 @@ def carried_log(body, ways, gyro):
         steps = steps @ matrix.T
         turns = carried(rotations(steps))
         total += closeness(body[after], turns[-1].T @ body[before],
-                           carries(steps, turns, body[before]))
+                           carries(steps, turns, body[before]), before=body[before])
     return float(total)
 
 
@@ -106,13 +112,13 @@ def world_log(body, ways):
         c, s = np.cos(psi), np.sin(psi)
         attitude = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]) @ rotation_between(body[0], z)
         total = 0.0
-        for _, after, steps in ways:
+        for before, after, steps in ways:
             turns = rotations(steps)
             whole = np.eye(3)
             for turn in turns:
                 whole = turn @ whole
             attitude = whole @ attitude
-            total += closeness(body[after], attitude[2])
+            total += closeness(body[after], attitude[2], before=body[before])
             attitude = rotation_between(attitude @ body[after], z) @ attitude
         best.append(total)
     top = max(best)

@@ -17,6 +17,7 @@ from . import (
     dead_zone,
     held_readings,
     hypotheses,
+    motion_match,
     own_calibration,
     own_motion,
     pairing,
@@ -108,7 +109,7 @@ def logs_of(real, sim, aligned):
     if aligned.same and own_real is not None:
         motion = traces.motion(own_real.applied(real_free))
     if motion is not None:
-        same = pairing.one_motion(real_free, sim_free, aligned, motion, live)
+        same = motion_match.one_motion(real_free, sim_free, aligned, motion, live)
         aligned, motion = replace(aligned, same=same), motion if same else None
     return Logs(real, sim, real_free, sim_free, holds, aligned, live, constant, own_real, motion,
                 unseen)

@@ -20,9 +20,6 @@ EDGE_S = 0.4  # left out at both ends, where the low-pass (alignment.smooth) has
 COHERENT = 0.9  # of a frequency that is used: noise is then a tenth of the power there at most
 BANDS = (align_by.BAND_HZ, 4.0, 2.5, 1.6, 1.0, 0.7)  # Hz, each two thirds of the one before
 SEGMENT_S = 6.0  # of which the coherence is a mean: four periods of the narrowest band
-# Share of the variance that follows from the other log in one motion: two runs of one schedule
-# agree in when they turn, and not about which axes.
-ONE_MOTION = 0.8
 FORETOLD = 0.5  # of what a simulator reads is not, where it does something else than the sensor
 
 
@@ -104,25 +101,6 @@ def at_times(trace, values, at, band_hz):
     t, flat = row_times.on_even_times(trace.t, values.reshape(len(values), -1), trace.rate_hz)
     resampled = CubicSpline(*increasing(t, align_by.smooth(flat, trace.rate_hz, band_hz)))(at)
     return resampled.reshape((len(at),) + values.shape[1:])
-
-
-def one_motion(real, sim, alignment, motion, live):
-    """Whether the logs turn about the same axes as well: two runs of one schedule turn equally
-    fast at the same times. Some linear map has to give the simulator's rates out of the real
-    ones, in the body or in the world (forces, where a gyro says nothing)."""
-    pair = paired(real, sim, alignment, motion, BANDS[2])
-    kinds = [(pair.sim_rate, (pair.rate, np.einsum("nij,nj->ni", pair.motion.turn, pair.rate)),
-              live["gyro"]), (pair.sim_force, (pair.force, pair.motion.moved), live["accel"])]
-    measured, signals, channels = kinds[0] if live["gyro"].any() else kinds[1]
-    if len(measured) < 4 * GRID_HZ or not channels.any():
-        return False
-    y = measured[:, channels] - measured[:, channels].mean(axis=0)
-    shares = []
-    for signal in signals:
-        design = signal - signal.mean(axis=0)
-        left = y - design @ np.linalg.lstsq(design, y, rcond=None)[0]
-        shares.append(1.0 - (left ** 2).sum() / max((y ** 2).sum(), 1e-30))
-    return bool(max(shares) >= ONE_MOTION)
 
 
 def coherent_band(measured, signals):

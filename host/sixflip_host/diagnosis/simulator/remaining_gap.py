@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .. import odds
 from . import pairing
 from .hypotheses import DEG
 from .parameters import MG
@@ -31,6 +32,26 @@ def not_foretold(sensor_fit):
         fit = sensor_fit.refitted(np.where(fold == k, UNSEEN, 1.0))
         left[fold == k] = fit.left[fold == k] / fit.unit
     return left
+
+
+def explains(named, nameless):
+    """Whether a SensorFit with a name explains the gap as well as the nameless one, which is free
+    enough to follow what it has seen: it closes the gap but for a tenth, and foretells what it has
+    not seen better. What is left then has no name, and is none of the conventions."""
+    live = named.live
+    gap = (named.pair.simulated(named.kind) - named.pair.real(named.kind))[:, live]
+    left = [not_foretold(fit)[:, live].std() for fit in (named, nameless)]
+    inside = (named.fit.left / named.fit.unit)[:, live]
+    return inside.std() < (1.0 - odds.CLOSED) * gap.std() and left[0] < left[1]
+
+
+def closes(sensor_fit, noise2):
+    """Whether a SensorFit closes half of the gap that is above noise of a power noise2 (3,): of
+    conventions none of which fits one is the likeliest all the same, whatever it says."""
+    live = sensor_fit.live
+    gap = (sensor_fit.pair.simulated(sensor_fit.kind) - sensor_fit.pair.real(sensor_fit.kind))
+    gap2, left2 = (float(x[:, live].var(axis=0).sum()) for x in (gap, sensor_fit.fit.left))
+    return gap2 - left2 >= pairing.FORETOLD * (gap2 - np.broadcast_to(noise2, 3)[live].sum())
 
 
 def slow(left, band_hz):

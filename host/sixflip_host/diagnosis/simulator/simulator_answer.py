@@ -110,6 +110,6 @@ def verdict(effects, comparisons, named_effects=False):
     if effects == "cannot tell" and not named_effects and all(
             x.alignment.same and x.motion_judged for x in comparisons):
         return "no gap"
-    if effects == "no gap" and not any(x.alignment.same or _known(x) for x in comparisons):
-        return "cannot tell"  # neither of one motion, nor is what each sensor is known by itself
+    if effects == "no gap" and not any(x.fits or _known(x) for x in comparisons):
+        return "cannot tell"  # neither compared, nor is what each sensor is known by itself
     return effects
