@@ -3,7 +3,7 @@ or softly, where the simulator's goes on."""
 import numpy as np
 import pytest
 
-from sixflip_host.diagnosis.simulator import comparison, one_motion
+from sixflip_host.diagnosis.simulator import comparison, one_motion, single_log
 from tests.worlds.tumbled import read, tumbled
 
 
@@ -93,3 +93,11 @@ def test_a_register_that_is_full_is_a_range_and_nothing_shakes():
     assert {p.name for p in found.differs} - {"noise_density"} == {"range"}
     assert all(p.real == pytest.approx(32767 / 65.5) for p in found.differs if p.name == "range")
     assert found.gap["gyro"][1] < 2.0 * found.gap["gyro"][2]
+
+
+def test_a_stop_beside_a_rate_that_is_held_is_one():
+    """Rates that are held just below a stop were as many as a third of those at it: no stop."""
+    rng, t = np.random.default_rng(3), np.arange(0.0, 140.0, 0.01)
+    spin = (199.0 + 2.0 * np.sin(0.5 * t) + 0.05 * rng.standard_normal(len(t))) * (t % 70.0 < 40.0)
+    assert single_log.limit(np.round(100.0 * np.clip(spin, -200.0, 200.0))) == 20000.0
+    assert single_log.limit(np.round(100.0 * spin)) is None

@@ -22,6 +22,9 @@ DEAD, ALIVE = 0.03, 0.15
 SAME, MORE = 1.3, 10.0
 SHORTEST_MEAN = 2  # samples
 FULL = 32767.0 / 32768.0  # of a limit: 32767 counts are as far as -32768
+# Times as often as any value next to a limit a channel reads the limit: a sine, which slows down
+# at its peaks, reads them 2.4 times as often (the roots of 1 and of 2 less 1).
+OFTEN = 10
 DROWNED = 0.3  # of a count: noise below it hardly ever crosses one
 
 
@@ -158,8 +161,10 @@ def limit(x):
     if runs.sum() < 5 or top <= 0:
         return None
     # A log at rest repeats its largest reading by chance; then those next to it are as frequent.
-    near = (~at & (size > 0.99 * top)).sum()
-    return float(size[at].min()) if at.sum() > 3 * max(near, 1) else None
+    below = top - size[~at & (size > 0.99 * top)]
+    next_to_it = np.bincount((below / ((1.0 - FULL) * top)).astype(int), minlength=1).max()
+    stops = at.sum() > 3 * max(len(below), 1) or at.sum() > OFTEN * max(next_to_it, 1)
+    return float(size[at].min()) if stops else None
 
 
 def rounding(kind, logs, number, band_hz):
