@@ -2,7 +2,8 @@
 from ..terminal import plain, table
 
 CONVENTIONS = ("convention", "sensor", "sure", "what to set")
-PARAMETERS = ("parameter", "real", "simulator", "real less simulator (90 %)", "set to")
+PARAMETERS = ("parameter", "real by itself", "simulator by itself",
+              "real less simulator, of both logs (90 %)", "set to")
 EFFECTS = ("effect that it lacks", "sensor", "real less simulator (90 %)", "may as well be")
 # Times the interval of the difference, from which on a log by itself says nothing of a number: two
 # that are as sure as each other are 1.4 times as sure as their difference.
@@ -125,14 +126,25 @@ def settings(simulator):
 
 
 def owned(value, interval, parameter):
-    """What one log says by itself, or - where that is nothing: an interval about zero that is far
-    wider than that of the difference of both logs, as of a bias in one attitude."""
+    """What one log says by itself, or - where that is nothing: an interval that is far wider than
+    that of the difference of both logs and about zero, as of a bias in one attitude, or that is
+    refuted by it, as where an effect passes for a scale in one log."""
     apart = parameter["difference_interval_90"]
     if value is not None and interval is not None and apart is not None and (
-            interval[0] < 0.0 < interval[1]
-            and interval[1] - interval[0] > SAYS_NOTHING * (apart[1] - apart[0])):
+            interval[0] < 0.0 < interval[1] or refuted(parameter)) and (
+            interval[1] - interval[0] > SAYS_NOTHING * (apart[1] - apart[0])):
         return "-"
     return valued(value, interval, "")
+
+
+def refuted(parameter):
+    """Whether what each log says by itself differs otherwise than both logs together do."""
+    ends = [parameter[key] for key in ("real_interval_90", "simulator_interval_90")]
+    if None in ends:
+        return False
+    (a, b), (c, d) = ends
+    off = (a + b) / 2.0 - (c + d) / 2.0 - parameter["difference"]
+    return abs(off) > ((b - a) ** 2 + (d - c) ** 2) ** 0.5 / 2.0
 
 
 def valued(value, interval, unit):

@@ -1,9 +1,11 @@
 """A front end that saturates before the converter does: the real log levels off within its noise,
 or softly, where the simulator's goes on."""
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from sixflip_host.diagnosis.simulator import comparison, one_motion
+from sixflip_host.diagnosis.simulator import comparison, one_motion, single_log
 from tests.worlds.tumbled import read, tumbled
 
 
@@ -93,3 +95,28 @@ def test_a_register_that_is_full_is_a_range_and_nothing_shakes():
     assert {p.name for p in found.differs} - {"noise_density"} == {"range"}
     assert all(p.real == pytest.approx(32767 / 65.5) for p in found.differs if p.name == "range")
     assert found.gap["gyro"][1] < 2.0 * found.gap["gyro"][2]
+
+
+def test_a_steady_rate_of_another_size_is_no_range():
+    """What little an axis reads of a table's rates rose with nothing but its noise: 1.4 deg/s."""
+    rng, t = np.random.default_rng(1), np.arange(0.0, 60.0, 0.02)
+    rate = np.clip(0.08 * np.sin(0.6 * t), -0.025, 0.025)
+    real, simulated = (scale * rate + 1e-4 * rng.standard_normal(len(t)) for scale in (1.0, 1.15))
+    assert one_motion.stop_of(real, simulated) is None
+
+
+@pytest.mark.parametrize("after, left", [(3.8, ["gyro"]), (0.02, [])])
+def test_a_range_accounts_for_no_more_than_it_cuts_off(after, left):
+    """Hundreds of times the noise were explained by a range that cut off a third of a deg/s."""
+    cut = SimpleNamespace(name="range", sensor="gyro", difference=-0.3)
+    pair = SimpleNamespace(differs=[cut], parameters=[SimpleNamespace(**vars(cut), differs=True)],
+                           gap={"gyro": (3.9, after, 0.011)}, wanders=frozenset({"gyro"}))
+    assert comparison.Comparison.left.fget(pair) == left
+
+
+def test_a_stop_beside_a_rate_that_is_held_is_one():
+    """Rates that are held just below a stop were as many as a third of those at it: no stop."""
+    rng, t = np.random.default_rng(3), np.arange(0.0, 140.0, 0.01)
+    spin = (199.0 + 2.0 * np.sin(0.5 * t) + 0.05 * rng.standard_normal(len(t))) * (t % 70.0 < 40.0)
+    assert single_log.limit(np.round(100.0 * np.clip(spin, -200.0, 200.0))) == 20000.0
+    assert single_log.limit(np.round(100.0 * spin)) is None

@@ -97,10 +97,12 @@ class Comparison:
     @property
     def left(self):
         """Sensors of which more is left than noise, and than a tenth of the gap of two logs of
-        one motion, and wanders. Where a range differs the readings at its end are left."""
-        cut = {p.sensor for p in self.parameters if p.name == "range" and p.differs}
-        return [kind for kind, gap in self.gap.items()
-                if kind in self.wanders - cut and _open(gap, ABOVE)]
+        one motion, and wanders. Where a range differs the readings at its end are left: a tenth
+        of what it cuts off, and no more."""
+        cut = {kind: max((abs(p.difference) for p in self.differs if (
+            p.name, p.sensor) == ("range", kind)), default=0.0) for kind in self.gap}
+        return [kind for kind, gap in self.gap.items() if kind in self.wanders
+                and gap[1] > (1.0 - odds.CLOSED) * cut[kind] and _open(gap, ABOVE)]
 
 
 def _open(gap, times):

@@ -31,8 +31,9 @@ from .pairing import GRID_HZ
 from .parameters import MG, Parameter
 
 # Times the largest reading, that the simulator goes beyond it: more than a gyro's scale is off
-# (6 %, ITG-3205 PS). Share of the simulator's rise there that the readings may have: a filter
-# takes the same part of all of a peak.
+# (6 %, ITG-3205 PS). Share of the simulator's rise there that the readings may have, and of its
+# spread (a quarter of it was measured at stops, hard and soft): a filter takes the same part of
+# all of a peak.
 BEYOND, RISES = 1.08, 0.5
 NEAR = 0.85  # of the largest reading: what is read there, not what two kinds of shaking leave
 AT = 0.95  # of a stop: by as much the band that is compared rounds it off
@@ -170,7 +171,9 @@ def stop_of(real, simulated):
     there = np.abs(real) > AT * level
     if (np.abs(simulated[there]) > level).mean() < OVER:
         return None
-    return level if level > NEAR * top and rises[0, 1] < RISES * rises[1, 1] else None
+    # At a steady rate both vary by their noise alone, which rises with nothing.
+    still = np.sqrt(rises[0, 0]) < RISES * np.sqrt(rises[1, 1])
+    return level if level > NEAR * top and still and rises[0, 1] < RISES * rises[1, 1] else None
 
 
 def marked(trace, found):

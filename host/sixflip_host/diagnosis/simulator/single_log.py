@@ -22,6 +22,12 @@ DEAD, ALIVE = 0.03, 0.15
 SAME, MORE = 1.3, 10.0
 SHORTEST_MEAN = 2  # samples
 FULL = 32767.0 / 32768.0  # of a limit: 32767 counts are as far as -32768
+# Times as often as any value next to a limit a channel reads the limit: a sine, which slows down
+# at its peaks, reads them 2.4 times as often (the roots of 1 and of 2 less 1).
+OFTEN = 10
+# Chance of noise to have a line in one channel of a rest; hertz below which what warms up or what
+# settles has as much: of a rest of ten seconds the first four ordinates.
+NO_LINE, SLOWEST_LINE_HZ = 1e-4, 0.5
 DROWNED = 0.3  # of a count: noise below it hardly ever crosses one
 
 
@@ -130,13 +136,39 @@ def _squares(trace, values, window):
         x = values[a:b]
         k = len(x) // m
         if k >= 2:
-            means = np.einsum("kmi,m->ki", x[:k * m].reshape(k, m, 3), window)
+            quiet = without_line(x, trace.rate_hz)
+            means = np.einsum("kmi,m->ki", quiet[:k * m].reshape(k, m, 3), window)
             rests.append((np.diff(means, axis=0) ** 2, np.diff(x, axis=0) ** 2))
     if len(rests) > 2:
         # A rest in which the robot still settles says nothing of the sensor's noise.
         level = [means.mean(axis=0).sum() for means, _ in rests]
         rests = [r for r, own in zip(rests, level) if own <= SETTLING * np.median(level)]
     return tuple(np.concatenate(x) for x in zip(*rests)) if rests else ([], [])
+
+
+def without_line(x, rate_hz):
+    """x (n, 3) of a rest without the line that a channel has: what swings steadily is no noise,
+    and means of a quarter of a second have what is slower. A line is told by the largest ordinate
+    of the spectrum beside the sum of all of them [Fisher, Proc. R. Soc. A 125 (1929) 54]."""
+    t, x = np.arange(len(x)) / rate_hz, x - x.mean(axis=0)
+    first = int(np.ceil(SLOWEST_LINE_HZ * len(x) / rate_hz))  # below, it may wander
+    power = np.abs(np.fft.rfft(x, axis=0)[first:(len(x) + 1) // 2]) ** 2
+    if len(power) < 2:
+        return x
+    share = 1.0 - (NO_LINE / len(power)) ** (1.0 / (len(power) - 1))
+    for i in np.flatnonzero(power.max(axis=0) > share * power.sum(axis=0)):
+        middle = (first + power[:, i].argmax()) * rate_hz / len(x)
+        swings = [np.exp(2j * np.pi * hz * t) for hz in middle + np.linspace(
+            -1.0, 1.0, 21) * rate_hz / len(x)]  # a line lies between two ordinates
+        left = [left_of_swing(x[:, i], swing) for swing in swings]
+        x[:, i] = min(left, key=lambda rest: float((rest ** 2).sum()))
+    return x
+
+
+def left_of_swing(x, swing):
+    """x (n,) without what it has of the real and imaginary parts of swing (n,)."""
+    both = np.stack([swing.real, swing.imag, np.ones(len(x))], 1)
+    return x - both @ np.linalg.lstsq(both, x, rcond=None)[0]
 
 
 def step(values, quantum):
@@ -158,8 +190,10 @@ def limit(x):
     if runs.sum() < 5 or top <= 0:
         return None
     # A log at rest repeats its largest reading by chance; then those next to it are as frequent.
-    near = (~at & (size > 0.99 * top)).sum()
-    return float(size[at].min()) if at.sum() > 3 * max(near, 1) else None
+    below = top - size[~at & (size > 0.99 * top)]
+    next_to_it = np.bincount((below / ((1.0 - FULL) * top)).astype(int), minlength=1).max()
+    stops = at.sum() > 3 * max(len(below), 1) or at.sum() > OFTEN * max(next_to_it, 1)
+    return float(size[at].min()) if stops else None
 
 
 def rounding(kind, logs, number, band_hz):
