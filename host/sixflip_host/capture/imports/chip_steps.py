@@ -59,8 +59,8 @@ def gyro_lsb(sensor):
 
 def of_header(sensor, counts):
     """({key: value} of a capture's header, sentences) on the units.Counts of a sensor: whether
-    they are the file's own; and the chip's step where it is a multiple of theirs, as where somebody
-    took an offset off that is none of the chip's counts."""
+    they are the file's own; and the chip's step where it is a multiple of theirs, as where an
+    offset that is none of the chip's counts was taken off."""
     name = {ACCEL: "accel", GYRO: "gyro"}[sensor]
     if counts.kind == "float":
         return {name + "_values": "float"}, []
