@@ -206,7 +206,9 @@ def _of_registers(sensor, sessions):
     band = dead_band.findings(sensor, columns, [s.at_rest for s in sessions], min(
         noise) / QUIETEST / registers.unit_of_count(meta, sensor), [
             s.capture.meta.get(sensor + "_values") == "float" for s in sessions])
-    return (agreed_by_axis("quantisation", sensor, [registers.steps(c) for c in columns],
+    steps = [np.where(found > s.capture.meta.get(sensor + "_own_step", 1), found, 1)
+             for s, found in zip(sessions, map(registers.steps, columns))]
+    return (agreed_by_axis("quantisation", sensor, steps,
                            [codes.step_nats(c) for c in columns], "counts come in steps",
                            [codes.distinct(c) for c in columns])
             + _in_units(band, sessions[0].capture.meta, sensor)

@@ -6,6 +6,8 @@ import pytest
 from sixflip_host.capture import capture_file, open_recording
 from sixflip_host.capture.imports import column_names
 from sixflip_host.cli import main
+from sixflip_host.diagnosis import samples_judged
+from sixflip_host.experiment import blocks
 from tests.worlds.imported_text import (
     COUNTS,
     GYRO,
@@ -374,3 +376,22 @@ def test_columns_as_loggers_of_accelerometers_name_them(tmp_path, capsys, names,
     size = np.linalg.norm(capture.accel.mean(axis=0)) / capture.meta["accel_lsb_per_g"]
     assert size == pytest.approx(np.linalg.norm(accel.mean(axis=0)), abs=1e-3)
     assert unit is None or "the accelerometer is in %s: |a| is" % unit in said
+
+
+def test_a_chips_steps_that_an_offset_was_taken_off_are_no_coarser_ones(tmp_path, capsys):
+    """Of 1/16.384 deg/s, less an offset of so many 64ths of one on each axis."""
+    rng = np.random.default_rng(7)
+    steps = np.rint(rng.normal([30.0, -12.0, 5.0], 40.0, (6000, 3)))
+    gyro = (steps - np.array([20, 44, 21]) / 64) / 16.384
+    accel = rng.normal([0.0, 0.0, 1.0], 0.01, (6000, 3))
+    capture, said = imported(tmp_path, capsys, table(
+        ["%.2f" % (k / 100) for k in range(6000)], accel=accel, gyro=gyro, form="%.9f"),
+        "--units", "g,dps")
+    assert "its own step is 1/16.384 deg/s, and an offset was taken off" in said
+    mean = capture.gyro.mean(axis=0) / capture.meta["gyro_lsb_per_dps"]
+    assert mean == pytest.approx(gyro.mean(axis=0), abs=1e-6)
+    session = blocks.session_of("out.csv", open_recording.read_samples(tmp_path / "out.csv"))
+    found = [f for found_by in samples_judged.FOUND_BY[:2] for f in found_by([session])]
+    assert [f.effect for f in found if f.effect == "quantisation"] == []
+    del session.capture.meta["gyro_own_step"]
+    assert "quantisation" in {f.effect for f in samples_judged.FOUND_BY[1]([session])}

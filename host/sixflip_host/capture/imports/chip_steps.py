@@ -3,6 +3,8 @@ of the few numbers that chips have for a count, in the unit it multiplied them t
 
 from typing import NamedTuple
 
+import numpy as np
+
 from sixflip.chips import catalogue
 
 from ..capture_header import ACCEL, GYRO, STANDARD_G
@@ -53,3 +55,21 @@ def gyro_lsb(sensor):
     if sensor not in catalogue.SENSORS:
         return ()
     return tuple(sorted({row[1] for row in catalogue.driver(sensor).GYRO_RANGES}, reverse=True))
+
+
+def of_header(sensor, counts):
+    """({key: value} of a capture's header, sentences) on the units.Counts of a sensor: whether
+    they are the file's own; and the chip's step where it is a multiple of theirs, as where an
+    offset that is none of the chip's counts was taken off."""
+    name = {ACCEL: "accel", GYRO: "gyro"}[sensor]
+    if counts.kind == "float":
+        return {name + "_values": "float"}, []
+    own = int(np.gcd.reduce(np.diff(np.sort(counts.counts.astype(np.int64), axis=0), axis=0),
+                            axis=None))
+    of, sizes = SIZES[sensor]
+    if own < 2 or not (counts.counts % own).any() or not any(
+            abs(own / counts.lsb / size - 1) < TELLS for size in sizes):
+        return {}, []
+    return {name + "_own_step": own}, [
+        "all %s counts of an axis are multiples of %d apart: its own step is 1/%.6g %s, and an "
+        "offset was taken off" % (name, own, counts.lsb / own, of)]

@@ -11,6 +11,7 @@ from ..capture_file import Capture, check_times
 from ..capture_header import ACCEL, GYRO, MAG, check_sensor
 from ..growing import Growing
 from . import (
+    chip_steps,
     column_vocabulary,
     copied_rows,
     csv_mapping,
@@ -228,11 +229,11 @@ class Conversion:
             counts[MAG] = units.counts_of(path, "magnetometer", values[MAG], "counts",
                                           options.mag_lsb, None)
             meta["mag_lsb_per_ut"] = options.mag_lsb
-        for group, key in ((ACCEL, "accel_values"), (GYRO, "gyro_values")):
+        for group in (ACCEL, GYRO):
             if group in counts:
-                self.remarks += counts[group].remarks
-                if counts[group].kind == "float":
-                    meta[key] = "float"
+                more, words = chip_steps.of_header(group, counts[group])
+                self.remarks += counts[group].remarks + words
+                meta.update(more)
         temp = None
         if "temp" in values:
             told = temperature.counts(path, options, self.columns["temp"], values["temp"][:, 0])
