@@ -10,6 +10,7 @@ from . import (
     evidence_of_logs,
     gravity_directions,
     hypotheses,
+    motion_match,
     pairing,
     remaining_gap,
     single_log,
@@ -73,8 +74,10 @@ def same_motion(real, sim, alignment, motion, live, fresh_hz, full_scale):
     sensor_fits, swapped = {}, None
     for kind in ("accel", "gyro"):
         if live[kind].any():
-            sensor_fits[kind] = one_sensor(kind, real, sim, alignment, motion, live[kind],
-                                           fresh_hz[kind], full_scale[kind], swapped)
+            rest = motion, live[kind], fresh_hz[kind], full_scale[kind], swapped
+            sensor_fits[kind] = motion_match.in_step(
+                lambda aligned, kind=kind, rest=rest: one_sensor(kind, real, sim, aligned, *rest),
+                kind, real, sim, alignment)
             if any(c.name == "accel_axes" for c in sensor_fits[kind].conventions):
                 swapped = sensor_fits[kind].fit.axes
     return sensor_fits

@@ -11,6 +11,7 @@ import numpy as np
 
 from . import alignment
 from .pairing import GRID_HZ
+from .traces import spinning
 
 # Prior standard deviations. Scale and misalignment: MPU-6050 PS rev 3.4, tables 6.1 and 6.2 (3 %
 # scale, 2 % cross-axis) and ITG-3205 PS (6 % scale). Zero level: 80 mg and 20 deg/s, the same.
@@ -44,6 +45,7 @@ DEG = 180.0 / np.pi
 # What shows where the thing turns only: along one line of forces a wrong time step is a scale and
 # a bias, and the world's axes are the body's.
 LEAST_LINE = 1e-5  # of an axis across it: none, but for a prior that has a width
+UPPER = [0, 1, 2, 4, 5, 8]  # of a symmetric (3, 3), row by row
 IN_TURNS = ("time_step", "no_centripetal_term", "lever_arm_missing", "world_frame_forces")
 
 
@@ -80,7 +82,7 @@ def accelerometer(force, motion, g):
     """Hypotheses of the accelerometer; force (n, 3) and the fields of Motion on one grid."""
     n = len(force)
     up, moved = g * motion.up, motion.moved
-    spin, lever = spinning(motion.rate), lever_columns(motion)
+    spin, lever = spun(motion), lever_columns(motion)
     arm = np.zeros(3), np.full(3, LEVER_M)
     transport = -np.cross(motion.rate, motion.speed)[:, :, None]
     world = np.einsum("nij,nj->ni", motion.turn, force)
@@ -101,7 +103,9 @@ def accelerometer(force, motion, g):
         Hypothesis("world_frame_forces", world, *none(n), heading=True),
         Hypothesis("no_centripetal_term", force, transport, np.ones(1), np.full(1, 0.1)),
         Hypothesis("no_centripetal_term", force, -spin, *arm),
-        Hypothesis("lever_arm_missing", force, -lever, *arm),
+        Hypothesis("lever_arm_missing", force, np.concatenate([-lever, crooked_arm(motion)], 2),
+                   *(np.concatenate([x, np.zeros(27) + sd]) for x, sd in zip(
+                       arm, (0.0, LEVER_M * SHAPE)))),
     ]
     tried += [Hypothesis("time_step", force, moved[:, :, None], np.array([k - 1.0]),
                          np.array([TIMES_SPREAD * k]), scaled=1) for k in TIMES]
@@ -183,19 +187,29 @@ def of_motion(kind, force, rate, g):
     return np.stack(columns, 1), np.array(sizes)
 
 
-def spinning(rate):
-    """(n, 3, 3): what multiplies r in w x (w x r)."""
-    return rate[:, :, None] * rate[:, None, :] - (rate ** 2).sum(axis=1)[:, None, None] * np.eye(3)
+def spun(motion):
+    """(n, 3, 3): what multiplies r in w x (w x r) of a Motion."""
+    return spinning(motion.rate) if motion.spin is None else motion.spin
 
 
 def lever_columns(motion):
     """(n, 3, 3): what multiplies r in dw/dt x r + w x (w x r)."""
-    columns = spinning(motion.rate)
+    columns = spun(motion).copy()
     x, y, z = motion.rate_dot.T
     for (i, j), value in {(0, 1): -z, (0, 2): y, (1, 0): z, (1, 2): -x, (2, 0): -y,
                           (2, 1): x}.items():
         columns[:, i, j] += value
     return columns
+
+
+def crooked_arm(motion):
+    """(n, 3, 27): what an arm makes of dw/dt and of the products of w where the gyro's scales and
+    axes are off by some percent, as no rest shows them: any of them in any axis."""
+    spin = spun(motion)  # w w' - |w|2
+    square = -0.5 * np.trace(spin, axis1=1, axis2=2)
+    products = (spin + square[:, None, None] * np.eye(3)).reshape(-1, 9)[:, UPPER]
+    parts = np.concatenate([motion.rate_dot, products], 1)
+    return (np.eye(3)[:, :, None] * parts[:, None, None, :]).reshape(len(parts), 3, -1)
 
 
 def pairs(x):

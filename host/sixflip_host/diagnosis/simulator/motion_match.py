@@ -29,6 +29,7 @@ LAGS_HZ = 25.0  # grid on which a lag is looked for: four steps in a period of t
 WIDE_HZ, SLOWEST_HZ, LEAST_DIRECTION, FADE_S, PEAK_S = 0.4, 0.1, 1e-3, 1.0, 3.0
 AGREE_S = 0.5  # two lags that are one: half of what the size of a turn is alike for
 NEAR = 0.1, 0.01  # s of a lag that was found on its grid; relative, of the pace of chips' clocks
+IN_STEP_S = 5e-4  # of a sensor's lag that is none: the least that a delay has to be
 ROUNDS = 6  # of Gauss and Newton, from a step of the lags' grid
 
 
@@ -46,7 +47,7 @@ def aligned(real, sim):
         return replace(found, nats=nats)
     # A drift, too, takes the lag elsewhere at the ends.
     starts = [replace(found, offset_s=lag, drift=0.0)] + [found] * (not one_clock)
-    tried = [(_moved_on(real, sim, replace(start, by=by, nats=nats)), start) for start in starts
+    tried = [(moved_on(real, sim, replace(start, by=by, nats=nats)), start) for start in starts
              for by in ("turn rates", "forces")]
     best, start = min(tried, key=lambda one: one[0].offset_sigma_s)
     if not best.same or start is found and found.same:
@@ -142,7 +143,7 @@ def _white(trace, values, number, band_hz):
     return np.einsum("fij,fj->fi", ways, white) * inside[:, None]
 
 
-def _moved_on(real, sim, start):
+def moved_on(real, sim, start):
     """The Alignment at which a linear map of how what the real Trace reads changes foretells most
     of how the simulator's does, by Gauss-Newton from one that is near: the course of gravity is
     alike for seconds, the change of it is not."""
@@ -174,6 +175,21 @@ def _moved_on(real, sim, start):
                    correlation=float(np.sqrt(max(share, 0.0))), overlap_s=len(t) / pairing.GRID_HZ,
                    drift_sigma=float(np.linalg.norm([sigma[1], real.clock_sigma,
                                                      sim.clock_sigma])))
+
+
+def in_step(fitted, kind, real, sim, alignment):
+    """The conventions.SensorFit of a kind that fitted(Alignment) makes, with the real log moved by
+    the sensor's own lag where its pair has holes: beside one, where rows were left out, a delay
+    has no row to take what was there before from, and two hundred holes halved one of 12.5 ms."""
+    found = fitted(alignment)
+    if not (np.diff(found.pair.t) > 1.5 / pairing.GRID_HZ).any():
+        return found
+    own = moved_on(real, sim, replace(alignment, by="forces" if kind == "accel" else "turn rates"))
+    late = float(alignment.of_simulator(0.5 * sim.seconds) - own.of_simulator(0.5 * sim.seconds))
+    if not own.same or abs(late) < IN_STEP_S:
+        return found
+    found = fitted(replace(alignment, offset_s=alignment.offset_s - late))
+    return replace(found, fit=replace(found.fit, delay_s=found.fit.delay_s + late))
 
 
 def _foretold(signal, measured):

@@ -13,7 +13,7 @@ from scipy.signal import coherence
 from . import alignment as align_by
 from . import row_times
 from .row_times import increasing
-from .traces import Motion
+from .traces import Motion, spinning
 
 GRID_HZ = 50.0  # eight points in a period of the widest band
 EDGE_S = 0.4  # left out at both ends, where the low-pass (alignment.smooth) has one side only
@@ -60,13 +60,17 @@ def paired(real, sim, alignment, motion, band_hz=BANDS[0]):
     # Where the clocks go unlike, the same band of both is another one by each log's own.
     own_hz = band_hz / (1.0 + alignment.drift)
 
-    def onto(trace, values, at):
-        return at_times(trace, values, at, own_hz if trace is real else band_hz)
+    def onto(trace, values, at, slope=False):
+        return at_times(trace, values, at, own_hz if trace is real else band_hz, slope)
 
     # A simulator without a gyro is compared by its forces alone.
     sim_rate = np.zeros_like(sim.force) if sim.rate is None else sim.rate
     fields = {name: onto(real, getattr(motion, name), there)
-              for name in ("turn", "up", "rate", "rate_dot", "moved", "speed")}
+              for name in ("turn", "up", "rate", "moved", "speed")}
+    # The slope of what the band leaves of it: from row to row that of a hand's tremor is a few
+    # percent too small, which an arm makes a force of. Its square has what is beyond the band.
+    fields["rate_dot"] = onto(real, motion.rate, there, slope=True)
+    fields["spin"] = onto(real, spinning(motion.rate), there)
     bad = np.zeros(len(t), bool)
     for log, at in ((real, there), (sim, t)):
         bad |= np.interp(at, log.t, (log.railed | log.put_in).astype(float)) > 0
@@ -95,12 +99,12 @@ def paused(trace, at):
     return out
 
 
-def at_times(trace, values, at, band_hz):
+def at_times(trace, values, at, band_hz, slope=False):
     """(m, …) of values (n, …), one a row of a Trace, what is slower than the band at times at (m,)
-    s of its clock."""
+    s of its clock, or its slope."""
     t, flat = row_times.on_even_times(trace.t, values.reshape(len(values), -1), trace.rate_hz)
-    resampled = CubicSpline(*increasing(t, align_by.smooth(flat, trace.rate_hz, band_hz)))(at)
-    return resampled.reshape((len(at),) + values.shape[1:])
+    course = CubicSpline(*increasing(t, align_by.smooth(flat, trace.rate_hz, band_hz)))
+    return course(at, int(slope)).reshape((len(at),) + values.shape[1:])
 
 
 def coherent_band(measured, signals):

@@ -113,7 +113,8 @@ class Motion:
     """What a Trace says its sensor went through, arrays over its samples: turn (n, 3, 3) body to
     world (heading 0 at the start); up (n, 3) unit vector against gravity in the body; rate
     (n, 3) rad/s less its bias at rest; rate_dot (n, 3); moved (n, 3) m/s2: specific force less
-    gravity; speed (n, 3) m/s in the body, zero at each rest (without one: on average)."""
+    gravity; speed (n, 3) m/s in the body, zero at each rest (without one: on average); spin
+    (n, 3, 3): what multiplies r in w x (w x r), None for that of the rate."""
 
     turn: np.ndarray
     up: np.ndarray
@@ -121,6 +122,12 @@ class Motion:
     rate_dot: np.ndarray
     moved: np.ndarray
     speed: np.ndarray
+    spin: np.ndarray = None
+
+
+def spinning(rate):
+    """(n, 3, 3): what multiplies r in w x (w x r)."""
+    return rate[:, :, None] * rate[:, None, :] - (rate ** 2).sum(axis=1)[:, None, None] * np.eye(3)
 
 
 def motion(trace):
