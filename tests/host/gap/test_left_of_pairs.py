@@ -7,7 +7,7 @@ import pytest
 
 from sixflip_host.diagnosis import answer
 from sixflip_host.diagnosis.diagnose import diagnose
-from sixflip_host.diagnosis.simulator import single_log
+from sixflip_host.diagnosis.simulator import comparison, single_log
 from sixflip_host.present import simulator_words
 from tests.worlds.tumbled import RATE_HZ, read, tumbled
 
@@ -38,6 +38,29 @@ def test_an_asymmetry_of_the_axis_that_is_turned_has_its_name_beside_a_bias():
     assert (cause["effect"], cause["sensor"]) == ("asymmetry", "gyro")
     assert cause["value"]["x"] == pytest.approx(3.0, rel=0.05)
     assert found["verdict"] == "explained"
+
+
+def squared(rate):
+    """Rates with 2 deg/s more at 100 deg/s of each axis, whichever way it turns."""
+    return rate + 2e-4 * rate ** 2
+
+
+def test_a_square_of_the_rate_is_no_unknown_convention():
+    """What a sensor does of itself was given the size that suits what has no name best: none."""
+    t, force, rate = tumbled(1, 80.0)
+    found = comparison.compare([("real", read(t, force, squared(rate), 1))], "sim",
+                               read(t, force, rate, 101))
+    assert not found.conventions
+
+
+@pytest.mark.long
+def test_a_square_of_the_rate_is_one_effect():
+    """The square of what was read with it in had a cube in it: of what acts it has none."""
+    t, force, rate = tumbled(1)
+    found = answered(t, (force, rate), (force, squared(rate)))
+    cause, = found["causes"]
+    assert (cause["effect"], cause["sensor"]) == ("quadratic", "gyro")
+    assert list(cause["value"].values()) == pytest.approx([2.0, 2.0, 2.0], rel=0.05)
 
 
 @pytest.mark.long
