@@ -12,6 +12,7 @@ from sixflip_host.diagnosis.simulator import (
     evidence_of_logs,
     hypotheses,
     lacking_effects,
+    remaining_gap,
 )
 from tests.worlds.tumbled import RATE_HZ, read, tumbled
 
@@ -119,6 +120,7 @@ def test_a_real_log_counts_once_whatever_is_held_against_it(monkeypatch):
     monkeypatch.setattr(lacking_effects, "open_without", lambda fit, noise: True)
     monkeypatch.setattr(lacking_effects, "found", lambda kind, logs, diagnosis: asked.extend(
         fit.log for fit, _ in logs) or [])
+    monkeypatch.setattr(lacking_effects, "without_name", lambda *args: [])
     lacking_effects.added(SimpleNamespace(causes=(), findings=(), comparisons=(
         comparison("a", "real 1", 0.98), comparison("b", "real 1", 0.99),
         comparison("c", "real 1", 0.97), comparison("d", "real 2", 0.9))))
@@ -135,14 +137,14 @@ def test_an_effect_that_is_left_out_is_not_looked_for():
 
 def test_a_share_is_that_of_what_is_beyond_the_noise():
     before, after, size = np.full(20, 5.0), np.full(20, 1.1), np.full(20, 1.0)
-    share, blocks = lacking_effects.earned([(before * size, after * size, size)], [1.0])
+    share, blocks = remaining_gap.earned([(before * size, after * size, size)], [1.0])
     assert (share, blocks) == (pytest.approx(3.9 / 4.0), 20)
 
 
 def test_what_one_block_alone_bears_out_earns_nothing():
     before, after = np.ones(20), np.ones(20)
     before[3] = 1000.0
-    assert lacking_effects.earned([(before, after, np.ones(20))], [0.0]) == (0.0, 0)
+    assert remaining_gap.earned([(before, after, np.ones(20))], [0.0]) == (0.0, 0)
 
 
 def made(effect, is_in, monkeypatch):

@@ -1,12 +1,78 @@
-"""What two logs of one motion leave unexplained: it is the noise of neither, and refutes what a
-log says by itself."""
+"""What two logs of one motion leave unexplained decides the verdict: products of readings that are
+less than the noise, effects of one axis, and what a log says by itself that both refute."""
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from sixflip_host.diagnosis.simulator import single_log
+from sixflip_host.diagnosis import answer
+from sixflip_host.diagnosis.diagnose import diagnose
+from sixflip_host.diagnosis.simulator import comparison, single_log
 from sixflip_host.present import simulator_words
+from tests.worlds.tumbled import RATE_HZ, read, tumbled
+
+
+def answered(t, sim, real, seed=1):
+    """The answer to a real log and the simulator's, (force g, rate deg/s) each."""
+    return answer.as_dict(diagnose([("real", read(t, *real, seed))],
+                                   [("sim", read(t, *sim, 100 + seed))], jobs=1))
+
+
+def on_a_table(seconds=80.0, size=120.0):
+    """(t, specific force g, rate deg/s) of a table that turns about x, which lies level."""
+    t = np.arange(0.0, seconds, 1.0 / RATE_HZ)
+    way = np.clip(np.minimum(t % 20.0 - 3.0, 19.5 - t % 20.0) / 1.5, 0.0, 1.0)
+    spin = size * np.sin(0.7 * t) * way
+    turned = np.radians(np.cumsum(spin) / RATE_HZ)
+    force = np.stack([0.0 * t, np.sin(turned), np.cos(turned)], 1)
+    return t, force, np.stack([spin, 0.01 * spin, -0.005 * spin], 1)
+
+
+@pytest.mark.long
+def test_an_asymmetry_of_the_axis_that_is_turned_has_its_name_beside_a_bias():
+    """The bend was looked for where the reading is zero, and not the rate: no name at all."""
+    t, force, rate = on_a_table()
+    found = answered(t, (force, rate + [8.0, 0.0, 0.0]), (
+        force, rate + [8.0, 0.0, 0.0] + np.abs(rate) * [0.03, 0.0, 0.0]))
+    cause, = found["causes"]
+    assert (cause["effect"], cause["sensor"]) == ("asymmetry", "gyro")
+    assert cause["value"]["x"] == pytest.approx(3.0, rel=0.05)
+    assert found["verdict"] == "explained"
+
+
+def squared(rate):
+    """Rates with 2 deg/s more at 100 deg/s of each axis, whichever way it turns."""
+    return rate + 2e-4 * rate ** 2
+
+
+def test_a_square_of_the_rate_is_no_unknown_convention():
+    """What a sensor does of itself was given the size that suits what has no name best: none."""
+    t, force, rate = tumbled(1, 80.0)
+    found = comparison.compare([("real", read(t, force, squared(rate), 1))], "sim",
+                               read(t, force, rate, 101))
+    assert not found.conventions
+
+
+@pytest.mark.long
+def test_a_square_of_the_rate_is_one_effect():
+    """The square of what was read with it in had a cube in it: of what acts it has none."""
+    t, force, rate = tumbled(1)
+    found = answered(t, (force, rate), (force, squared(rate)))
+    cause, = found["causes"]
+    assert (cause["effect"], cause["sensor"]) == ("quadratic", "gyro")
+    assert list(cause["value"].values()) == pytest.approx([2.0, 2.0, 2.0], rel=0.05)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("size_mg, verdict", [(0.0, "no gap"), (6.0, "unexplained")])
+def test_a_product_of_readings_that_is_less_than_the_noise_is_no_lack_of_a_gap(size_mg, verdict):
+    """Two logs left it in their difference, and it was no gap, or a bias explained it."""
+    t, force, rate = tumbled(1)
+    product = 1e-3 * size_mg * force[:, :1] * rate[:, 2:] / 50.0 * [0.0, 1.0, 0.0]
+    found = answered(t, (force, rate), (force + product, rate))
+    assert found["verdict"] == verdict
+    assert [(p["sensor"], p["domain"]) for p in found["where"]] == (
+        [("accel", "motion")] if size_mg else [])
 
 
 def test_what_a_log_says_of_itself_is_not_printed_where_both_refute_it():

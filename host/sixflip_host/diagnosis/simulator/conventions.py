@@ -113,24 +113,22 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, full_scale, s
         pair, measured, tried, noise_bends = asked(
             pairing.paired(real, sim, alignment, motion, band))
 
-    own = hypotheses.own_effects(kind, pair.t, pair.celsius, pair.force, pair.motion.rate, real.g)
+    own = effects = hypotheses.own_effects(
+        kind, pair.t, pair.celsius, pair.force, pair.motion.rate, real.g)
 
     def judged(inflation, rows=None):
         return [f for h in tried for f in evidence_of_logs.fits(
             h, measured, kind, pairing.GRID_HZ, inflation, own, live, rows, noise_bends)]
 
-    def whole(fit, inflation, rows=None):
-        return evidence_of_logs.fit_one(fit.hypothesis, measured, fit.axes, fit.unit,
-                                        pairing.GRID_HZ, kind, inflation, own, live, rows,
-                                        noise_bends=noise_bends)
+    def whole(fit, inflation, rows=None, sizes=None, left=True):
+        return evidence_of_logs.fit_one(
+            fit.hypothesis, measured, fit.axes, fit.unit, pairing.GRID_HZ, kind, inflation,
+            own if sizes is None else (own[0], sizes), live, rows, left, noise_bends)
 
-    first = whole(max(judged(1.0), key=lambda f: f.log), 1.0)
+    every = sorted(judged(1.0), key=lambda f: -f.log)
+    first = whole(every[0], 1.0)
     rows = local_noise(first.left[:, live])
     inflation = align_by.independent(first.left[:, live] / rows[:, None])
-    own = sized(own, lambda sizes: evidence_of_logs.fit_one(
-        first.hypothesis, measured, first.axes, first.unit, pairing.GRID_HZ, kind, inflation,
-        (own[0], sizes), live, rows, left=False, noise_bends=noise_bends).log)
-    fits = [gravity_directions.beside(kind, fit, real, sim) for fit in judged(inflation, rows)]
 
     def kept(named, fit):
         fit = whole(fit, inflation, rows)
@@ -139,16 +137,21 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, full_scale, s
 
     def best_of(fits):
         return kept(*posterior(kind, fits, live, swapped))
-    best = best_of(fits)
-    if best.fit.name and best.conventions:
-        known = 0.0 if None in (noise, theirs) else 2.0 * pair.band_hz * (
-            noise.density ** 2 + theirs.density ** 2)
-        if not remaining_gap.closes(best, known):
-            first = best.conventions[0]
-            return kept((convention_findings.one_of(kind, (), first.probability, first.nats),),
+
+    known = 0.0 if None in (noise, theirs) else 2.0 * pair.band_hz * (
+        noise.density ** 2 + theirs.density ** 2)
+    # What has no name has what the sensor does of itself among its own columns: the sizes that
+    # suit it leave the others none, so they are asked by their own before it is believed.
+    for likely in every[:1] if first.name else [first, next(f for f in every if f.name)]:
+        own = sized(effects, lambda s, f=likely: whole(f, inflation, rows, s, left=False).log)
+        fits = [gravity_directions.beside(kind, fit, real, sim) for fit in judged(inflation, rows)]
+        best = best_of(fits)
+        if best.fit.name and best.conventions and not remaining_gap.closes(best, known):
+            named = best.conventions[0]
+            return kept((convention_findings.one_of(kind, (), named.probability, named.nats),),
                         max((f for f in fits if not f.name), key=lambda f: f.log))
-    if best.fit.name:
-        return best
+        if best.fit.name:
+            return best
     other = best_of([f for f in fits if f.name])
     return other if remaining_gap.explains(other, best) else best
 
@@ -160,8 +163,7 @@ def without_smoothing(sensor_fit, rows):
     if (free / sigma) ** 2 - sensor_fit.smoothing_earns > SMOOTHER ** 2:
         return sensor_fit
     fixed = replace(sensor_fit, hypothesis=replace(sensor_fit.hypothesis, smooth_sd=ALIKE_S2))
-    fit = fixed.refitted(rows)
-    return replace(fixed, fit=replace(fit, smooth_s2=free, smooth_sigma_s2=sigma))
+    return replace(fixed, fit=replace(fixed.refitted(rows), smooth_s2=free, smooth_sigma_s2=sigma))
 
 
 def own_noise(values, measured, noise, theirs, band_hz):
@@ -236,10 +238,9 @@ def names(fit, kind, live):
     elif fit.name != "healthy" and not (fit.name == "time_step"
                                         and abs(fit.extra[0]) < LEAST_STEP):
         deviations.append(fit.name)
-    dead = live & ~fit.axes.any(axis=1)
-    if dead.any():
+    answers = live & fit.axes.any(axis=1)
+    if (live & ~answers).any():
         deviations.append("constant_channel")
-    answers = live & ~dead
     turned = not np.array_equal(fit.axes[answers], np.eye(3)[answers])
     if turned and fit.name not in ("world_frame_rates", "world_frame_forces"):
         minus = kind == "accel" and live.all() and np.array_equal(fit.axes, -np.eye(3))

@@ -171,7 +171,7 @@ def _of_axis(axis, sensor_fit, sim, noise, least, centres):
     least_power, form, centre, rate = min(likeliest)
     rest = left(banded(form, centre, rate))[0]
     number = len(rest) / align_by.independent(rest)
-    knots = lacking_effects.bent(own[:, None])[0]
+    knots = hypotheses.bent(own[:, None])[0]
     bent = (left(own, more=(knots,))[0] ** 2).mean()
     # What is fitted besides costs half the logarithm of what fits it [Schwarz, Annals of
     # Statistics 6 (1978) 461].
@@ -196,7 +196,7 @@ def _of_axis(axis, sensor_fit, sim, noise, least, centres):
 
 
 def _earned(t, noise, fitted):
-    """(share, blocks) by lacking_effects.earned(); fitted(rows): what is left without and with a
+    """(share, blocks) by remaining_gap.earned(); fitted(rows): what is left without and with a
     band by fits to those rows."""
     seconds = max(remaining_gap.FOLD_S, 1.001 * np.ptp(t) / lacking_effects.BLOCKS)
     block = ((t - t[0]) / seconds).astype(int)
@@ -208,7 +208,7 @@ def _earned(t, noise, fitted):
         left[:, hidden] = np.stack(fitted(~hidden))[:, hidden]
     size = np.bincount(block)
     before, after = (np.bincount(block, each ** 2)[size > 0] for each in left)
-    return lacking_effects.earned([(before, after, size[size > 0])], [noise])
+    return remaining_gap.earned([(before, after, size[size > 0])], [noise])
 
 
 def in_band(real, sim, kind, band_hz):

@@ -146,11 +146,11 @@ def _fitted(kind, sensor_fit, names, own, diagnosis):
     for _ in range(2):
         designs = [design(kind, *named, pair, diagnosis) for named in names]
         fit = fit_with(sensor_fit, designs)
-        pair = _less(kind, acting, designs, fit)
+        pair = less(kind, acting, designs, fit)
     return fit, designs
 
 
-def _less(kind, pair, designs, fit):
+def less(kind, pair, designs, fit):
     """The Pair whose real log has not what a Fit says of the designs."""
     columns = _columns(kind, pair, designs)
     added = columns @ fit.extra[len(fit.extra) - columns.shape[2]:]
@@ -183,15 +183,15 @@ def design(kind, name, cause, pair, diagnosis):
 
 
 def moment(pair):
-    """Moment of arrays: what the real log of a Pair says."""
+    """Moment of arrays: what the real log of a Pair says, rates without the bias at its stills."""
     m = noise_arrays.moment()
-    m.t = pair.t
-    m.f = tuple(pair.force.T / STANDARD_G)
+    m.t, m.f = pair.t, tuple(pair.force.T / STANDARD_G)
     m.up = tuple(pair.motion.up.T)
-    resting = np.linalg.norm(pair.rate, axis=1) < np.radians(RESTS_DPS)
+    resting = np.linalg.norm(pair.motion.rate, axis=1) < np.radians(RESTS_DPS)
     m.face = -1 + sum((face + 1) * (resting & (sign * m.up[axis] > FLAT))
                       for face, (axis, sign) in enumerate(zip(faces.AXIS, faces.SIGN)))
-    m.w = tuple(np.degrees(pair.rate).T)
+    bias = (pair.rate - pair.motion.rate)[resting if resting.any() else slice(None)].mean(axis=0)
+    m.w = tuple(np.degrees(pair.rate - bias).T)
     if pair.celsius is None:
         m.temperature, m.temperature_rate = np.full(len(pair.t), 25.0), np.zeros(len(pair.t))
     else:
@@ -229,7 +229,7 @@ def _sizes(kind, sensor_fit, fit, designs, names, others, own, diagnosis):
         parts = [(1.0 - sum(p for p, _ in others[place]), fit, designs), *((p, *_fitted(
             kind, sensor_fit, [*names[:place], (name, form), *names[place + 1:]], own, diagnosis))
             for p, form in others[place])]
-        sizes = np.array([_of_fit(*part[1:], place, own.flicker[kind], sensor_fit.pair.t)
+        sizes = np.array([of_fit(*part[1:], place, own.flicker[kind], sensor_fit.pair.t)
                           for part in parts])
         interval = {key: effect_estimates.ends(np.array([p for p, _, _ in parts]),
                                                *sizes[:, :, k].T)
@@ -241,7 +241,7 @@ def _sizes(kind, sensor_fit, fit, designs, names, others, own, diagnosis):
     return tuple(effects)
 
 
-def _of_fit(fit, designs, place, level, t):
+def of_fit(fit, designs, place, level, t):
     """((k,) sizes, (k,) standard deviations with flicker) of one of a Fit's designs."""
     after = sum(len(design.keys) for design in designs[place:])
     part = slice(len(fit.extra) - after, len(fit.extra) - after + len(designs[place].keys))

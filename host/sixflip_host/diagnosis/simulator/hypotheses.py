@@ -38,6 +38,8 @@ FADES_S = (30.0, 120.0)  # time constants of what fades: of a minute's log, and 
 # Slower than that a gyro's tilt between two rests is its own: a cross axis of 1 % of a robot that
 # turns to one side, or a tenth of a deg/s of bias, make a degree in ten seconds.
 WANDERS_HZ = 0.05
+KNOTS = 8  # of the bent line of an axis: four a side, a front end that levels off has one or two
+BENT = 0.03  # of a reading, by which such a line may be off: a bend of 3 % (SHAPE)
 UPRIGHT = 0.05  # cosine of the pitch from which on roll and yaw are one: 87 degrees
 DEG = 180.0 / np.pi
 
@@ -192,6 +194,25 @@ def spun(motion):
     return spinning(motion.rate) if motion.spin is None else motion.spin
 
 
+def bent(readings):
+    """(columns (n, 3 KNOTS), sizes): of readings (n, 3) any line of each axis that bends at
+    knots evenly apart, by hats."""
+    columns, sizes = [], []
+    for own in readings.T:
+        knots = np.linspace(own.min(), own.max(), KNOTS)
+        hats = np.stack([np.interp(own, knots, hat) for hat in np.eye(KNOTS)], 1)
+        columns.append(hats - hats.mean(axis=0))
+        sizes += [BENT * float(np.abs(own).max())] * KNOTS
+    return np.concatenate(columns, 1), np.array(sizes)
+
+
+def of_products(kind, force, rate, g):
+    """(columns (n, 21), sizes): the products of two of all readings, g and rad/s, in each channel
+    as large as what drifts."""
+    columns = pairs(np.concatenate([force / g, rate], 1))
+    return columns - columns.mean(axis=0), np.full(columns.shape[1], OWN[kind]["line"])
+
+
 def lever_columns(motion):
     """(n, 3, 3): what multiplies r in dw/dt x r + w x (w x r)."""
     columns = spun(motion).copy()
@@ -213,5 +234,6 @@ def crooked_arm(motion):
 
 
 def pairs(x):
-    """(n, 6): the products of two axes."""
-    return np.stack([x[:, i] * x[:, j] for i in range(3) for j in range(i, 3)], 1)
+    """(n, k (k + 1) / 2): the products of two of the columns of x (n, k)."""
+    k = x.shape[1]
+    return np.stack([x[:, i] * x[:, j] for i in range(k) for j in range(i, k)], 1)

@@ -1,7 +1,7 @@
 """Layer three of one motion: what the real sensor does of itself as it moves, and the simulator
 lacks. The best convention is fitted once more with the columns of each effect beside it; names
 compete with each other, with nothing, and with what has no name: products, signs and forces in
-every channel, and any bent line of each axis of the sensor's own.
+every channel, and any bent line of each axis of the sensor's own. What has none is told as well.
 
 What goes with time alone (warming up, a thermometer's, what fades) is beside all of them: two logs
 tell it from a bias that wanders no better than one does (rest_gap).
@@ -9,13 +9,12 @@ tell it from a bias that wanders no better than one does (rest_gap).
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import special
 
 from sixflip import STANDARD_G
 from sixflip_sim.effects.library import EFFECTS
 
 from ...experiment import terms
-from .. import odds
+from .. import adequacy, localisation, odds
 from ..detect.detection import Finding
 from ..effect_estimates import believable
 from ..hypotheses import Form
@@ -33,15 +32,12 @@ EVEN = ("quadratic", "asymmetry")
 # as of what has no name (conventions.sized).
 WIDTHS = (1.0, 0.1, 0.01)
 MOST = 2  # names of one sensor that are looked for: GAP.md's pairs
-KNOTS = 8  # of the bent line of an axis: four a side, a front end that levels off has one or two
-BENT = 0.03  # of a reading, by which such a line may be off: a bend of 3 % (hypotheses.SHAPE)
 # That a log is cut into, half of them to be foretold from the others: each is as long as a rest
 # with its move or longer, in which a box that lies otherwise than planned lies so all the time.
 BLOCKS = 16
-# Chance of blocks of noise alone to be foretold as well as those a name is believed by [Student's
-# t, one side]; and the share of what is beyond the noise that it has to account for: what leaves
-# most of the gap is like the cause, and not it.
-CHANCE, MOST_OF_IT = 0.001, 0.5
+# Share of what is beyond the noise that a name has to account for: what leaves most of the gap is
+# like the cause, and not it.
+MOST_OF_IT = 0.5
 
 
 @dataclass(frozen=True)
@@ -66,17 +62,22 @@ def log_posterior(rivals):
 
 def added(diagnosis):
     """The Diagnosis with a Finding of each effect that logs of one motion show and its rests have
-    no name for."""
-    findings = []
+    no name for, and a Place where what has no name either is in their difference."""
+    findings, nameless = [], []
     for kind in ("accel", "gyro"):
         # Of several logs against one real one, whose noise and misfits they share, the nearest.
         by_real = {c.against: (c.fits[kind], c.gap[kind][2]) for c in sorted(
             diagnosis.comparisons, key=lambda c: c.alignment.correlation)
             if kind in c.fits and c.fits[kind].hypothesis.name}
         logs = list(by_real.values())
-        if not _explained(kind, diagnosis) and any(open_without(*log) for log in logs):
-            findings += found(kind, logs, diagnosis)
-    return replace(diagnosis, findings=(*diagnosis.findings, *findings)) if findings else diagnosis
+        named = _explained(kind, diagnosis)
+        if not named and any(open_without(*log) for log in logs):
+            found_here = found(kind, logs, diagnosis)
+            findings, named = findings + found_here, bool(found_here)
+        if logs and not named:
+            nameless += without_name(kind, logs, diagnosis)
+    return replace(diagnosis, findings=(*diagnosis.findings, *findings), nameless=(
+        *diagnosis.nameless, *nameless)) if findings or nameless else diagnosis
 
 
 def _explained(kind, diagnosis):
@@ -90,7 +91,7 @@ def found(kind, logs, diagnosis):
     names = [name for name in OF_MOTION if name in terms.of_the_moment(kind)
              and name not in diagnosis.settings.without
              and (name != "thermal_scale" or all(f.pair.celsius is not None for f, _ in logs))]
-    findings, held = [], ()
+    findings, held, pairs = [], (), [sensor_fit.pair for sensor_fit, _ in logs]
     while len(held) < MOST:
         weighed = [judged(kind, sensor_fit, held, names, diagnosis) for sensor_fit, _ in logs]
         hypotheses_of_all = list(zip(*(rivals for rivals, _, _ in weighed)))
@@ -102,22 +103,41 @@ def found(kind, logs, diagnosis):
         if sum(w for w, _ in told) < odds.HOLDS:
             break
         best, nothing = told[0][1], hypotheses_of_all[0]
-        share, blocks = earned([blocks_of(fit, rows, a, b) for (_, fit, rows), a, b in zip(
-            weighed, nothing, best)], [noise for _, noise in logs])
+        share, blocks = remaining_gap.earned(
+            [blocks_of(fit, rows, a, b) for (_, fit, rows), a, b in zip(weighed, nothing, best)],
+            [noise for _, noise in logs])
         if share < MOST_OF_IT:
             break
         held = best[0].names
         finding = _finding(kind, best, nothing, {r[0].names[-1]: w for w, r in told}, share,
-                           blocks, diagnosis)
+                           blocks, logs, diagnosis)
         if not finding.axes:
             break
         findings.append(finding)
+        # An effect is a function of what acts, which is what is read without the effect.
+        logs = [(replace(sensor_fit, pair=effects_beside.less(kind, whole, r.designs, r.fit)), n)
+                for r, (sensor_fit, n), whole in zip(best, logs, pairs)]
     return findings
 
 
+def without_name(kind, logs, diagnosis):
+    """[Place] of a sensor, logs as in found(): where what has no name, be it less than the noise,
+    foretells a tenth of the power of what is left of blocks that its fit has not seen."""
+    weighed = [judged(kind, sensor_fit, (), (), diagnosis) for sensor_fit, _ in logs]
+    nothing, *others = zip(*(rivals for rivals, _, _ in weighed))
+    best = max(others, key=log_posterior)
+    nats = log_posterior(best) - log_posterior(nothing)
+    if nats < odds.COST:
+        return []
+    blocks = [blocks_of(fit, rows, a, b) for (_, fit, rows), a, b in zip(weighed, nothing, best)]
+    share, _ = remaining_gap.earned(blocks, [noise for _, noise in logs])
+    before, after = (np.concatenate([x[k] for x in blocks]).sum() for k in (0, 1))
+    return [localisation.Place(kind, None, "motion", share, odds.chance(nats))] \
+        if share and after < odds.CLOSED * before else []
+
+
 def open_without(sensor_fit, noise):
-    """Whether more than the noise (mg, deg/s), by a tenth of its power, is left of a SensorFit
-    where nothing that the real sensor does of itself is beside the convention."""
+    """Whether more than the noise (mg, deg/s), by a tenth of its power, is left of a SensorFit."""
     fit = replace(sensor_fit, own=None).refitted(None)
     left = remaining_gap.size(sensor_fit.kind, fit.left[:, sensor_fit.live] / fit.unit)
     return left ** 2 * odds.CLOSED > noise ** 2
@@ -151,7 +171,8 @@ def _rivals(kind, sensor_fit, held, names, diagnosis, rows):
                  np.concatenate([nuisance[1], sizes * width])) for width in widths]
 
     def of_other_form(name, nuisance):
-        return widened(nuisance, bent(np.abs(readings)), WIDTHS[1:]) if name in EVEN else []
+        return widened(nuisance, hypotheses.bent(np.abs(readings)),
+                       WIDTHS[1:]) if name in EVEN else []
 
     readings = pair.real(kind)
     none = np.zeros((len(pair.t), 0)), np.zeros(0)
@@ -164,25 +185,14 @@ def _rivals(kind, sensor_fit, held, names, diagnosis, rows):
             rivals.append(likeliest((*held, name), (_design(kind, name, pair, diagnosis),),
                                     [common, *of_other_form(name, common)]))
     for nameless in (hypotheses.of_motion(kind, pair.force, pair.motion.rate, STANDARD_G),
-                     bent(readings)):
+                     hypotheses.of_products(kind, pair.force, pair.motion.rate, STANDARD_G),
+                     hypotheses.bent(readings)):
         rivals.append(likeliest((*held, ""), (), widened(common, nameless, WIDTHS)))
     return rivals
 
 
 def _design(kind, name, pair, diagnosis):
     return effects_beside.design(kind, name, Form(name), pair, diagnosis)
-
-
-def bent(readings):
-    """(columns (n, 3 KNOTS), sizes): of readings (n, 3) any line of each axis that bends at
-    knots evenly apart, by hats."""
-    columns, sizes = [], []
-    for own in readings.T:
-        knots = np.linspace(own.min(), own.max(), KNOTS)
-        hats = np.stack([np.interp(own, knots, hat) for hat in np.eye(KNOTS)], 1)
-        columns.append(hats - hats.mean(axis=0))
-        sizes += [BENT * float(np.abs(own).max())] * KNOTS
-    return np.concatenate(columns, 1), np.array(sizes)
 
 
 def _fitted(sensor_fit, designs, nuisance, rows, left=True):
@@ -208,26 +218,17 @@ def blocks_of(sensor_fit, rows, nothing, best):
     return power[0][size > 0], power[1][size > 0], size[size > 0]
 
 
-def earned(blocks, noises):
-    """(share, blocks): the share of what nothing leaves beyond the noise that the best Rival
-    foretells in blocks that its fit has not seen (blocks_of() of each log), and how many of them;
-    (0, 0) where they do not bear it out."""
-    before, after, size = (np.concatenate(each) for each in zip(*blocks))
-    nats = np.log(np.maximum(before, 1e-30) / np.maximum(after, 1e-30))
-    if len(nats) < 2 or nats.mean() * np.sqrt(len(nats)) < nats.std(ddof=1) * special.stdtrit(
-            len(nats) - 1, 1.0 - CHANCE):
-        return 0.0, 0
-    floor = min(sum(noise ** 2 * s.sum() for noise, (_, _, s) in zip(noises, blocks)), after.sum())
-    gain = float((before - after).sum())
-    return float(np.clip(gain / max(before.sum() - floor, 1e-30), 0.0, 1.0)), len(nats)
-
-
-def _finding(kind, best, nothing, chances, share, blocks, diagnosis):
+def _finding(kind, best, nothing, chances, share, blocks, logs, diagnosis):
     """Finding of the last name of a hypothesis by its Rivals of all logs; chances {name:
     probability} of those in its place."""
     name, keys = best[0].names[-1], best[0].designs[-1].keys
-    weights = np.array([r.fit.extra_sigma[-len(keys):] ** -2.0 for r in best])
-    mean = (weights * [r.fit.extra[-len(keys):] for r in best]).sum(axis=0) / weights.sum(axis=0)
+    chip = diagnosis.sessions[0].capture.meta["sensor"]
+    level = np.sqrt(2.0) * adequacy.usual(chip, kind)  # by which both logs wander
+    sizes, sigmas = np.swapaxes([effects_beside.of_fit(
+        r.fit, r.designs, -1, level, sensor_fit.pair.t)
+        for r, (sensor_fit, _) in zip(best, logs)], 0, 1)
+    weights = sigmas ** -2.0
+    mean = (weights * sizes).sum(axis=0) / weights.sum(axis=0)
     value = dict(zip(keys, mean.tolist()))
     sigma = dict(zip(keys, (weights.sum(axis=0) ** -0.5).tolist()))
     interval = {k: (v - odds.Z_90 * sigma[k], v + odds.Z_90 * sigma[k]) for k, v in value.items()}
@@ -236,7 +237,6 @@ def _finding(kind, best, nothing, chances, share, blocks, diagnosis):
     for other, chance in chances.items():
         if total < odds.HOLDS:
             kept[other], total = chance, total + chance
-    chip = diagnosis.sessions[0].capture.meta["sensor"]
     return Finding(
         name, kind, axes, value, EFFECTS[name].units[kind],
         sum(a.fit.log - b.fit.log for a, b in zip(best, nothing)), terms.DOMAIN[name],

@@ -6,6 +6,7 @@ the simulator's and on the simulator's put right.
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy import special
 
 from .. import odds
 from . import pairing
@@ -19,6 +20,9 @@ UNSEEN = 1e6  # noise of a sample that a fit must not see, in units of the avera
 # Times slow() of noise, of what is left of two logs of one motion and is no shaking: bumps that
 # shake a rover otherwise in each leave 1.1 to 1.8 (`make zoo`).
 SLOW = 3.0
+# Chance of blocks of noise alone to be foretold as well as those that an effect is believed by
+# [Student's t, one side].
+CHANCE = 0.001
 SETTLE_S = 3.0  # the filter's own start-up ramp
 
 
@@ -91,6 +95,20 @@ def wandering(fits, not_explained):
     """frozenset of the sensors of which what is left goes on for seconds."""
     return frozenset(kind for kind, sensor_fit in fits.items()
                      if slow(not_explained[kind], sensor_fit.pair.band_hz) > SLOW)
+
+
+def earned(blocks, noises):
+    """(share, blocks): the share of what nothing leaves beyond the noise that the best
+    hypothesis foretells in blocks that its fit has not seen (lacking_effects.blocks_of() of each
+    log), and how many of them; (0, 0) where they do not bear it out."""
+    before, after, size = (np.concatenate(each) for each in zip(*blocks))
+    nats = np.log(np.maximum(before, 1e-30) / np.maximum(after, 1e-30))
+    if len(nats) < 2 or nats.mean() * np.sqrt(len(nats)) < nats.std(ddof=1) * special.stdtrit(
+            len(nats) - 1, 1.0 - CHANCE):
+        return 0.0, 0
+    floor = min(sum(noise ** 2 * s.sum() for noise, (_, _, s) in zip(noises, blocks)), after.sum())
+    gain = float((before - after).sum())
+    return float(np.clip(gain / max(before.sum() - floor, 1e-30), 0.0, 1.0)), len(nats)
 
 
 @dataclass(frozen=True)
