@@ -10,9 +10,9 @@ from scipy.signal import butter, lfilter
 from sixflip_host.diagnosis import answer, diagnose
 from sixflip_host.diagnosis.simulator import (
     comparison,
-    conventions,
     evidence_of_logs,
     hypotheses,
+    remaining_gap,
 )
 from tests.worlds.tumbled import read, tumbled
 
@@ -66,9 +66,9 @@ def test_what_closes_the_gap_and_foretells_better_is_no_unknown():
         return SimpleNamespace(kind="gyro", live=np.ones(3, bool), pair=pair, fit=SimpleNamespace(
             left=seen * np.cos(9.0 * real), unit=1.0), refitted=lambda rows: left)
     nameless = fitted(0.02, 0.5)
-    assert conventions._explains(fitted(0.03, 0.1), nameless)
-    assert not conventions._explains(fitted(0.03, 0.6), nameless)
-    assert not conventions._explains(fitted(0.3, 0.35), nameless)
+    assert remaining_gap.explains(fitted(0.03, 0.1), nameless)
+    assert not remaining_gap.explains(fitted(0.03, 0.6), nameless)
+    assert not remaining_gap.explains(fitted(0.3, 0.35), nameless)
 
 
 def test_a_gyro_with_a_wrong_range_accuses_no_simulator_of_a_time_step():

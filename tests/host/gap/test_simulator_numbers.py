@@ -199,14 +199,15 @@ def test_a_step_is_told_so_exactly_that_its_multiples_are_the_chips():
     assert found["real"] == found["set"] == 7.8125
 
 
-@pytest.mark.parametrize("same,simulated,otherwise,said", [
-    (False, None, False, "cannot tell"), (False, "known", False, "no gap"),
-    (True, None, False, "no gap"), (False, "known", True, "cannot tell")])
-def test_logs_of_two_motions_and_no_rest_are_not_no_gap(same, simulated, otherwise, said):
+@pytest.mark.parametrize("fits,simulated,otherwise,said", [
+    ({}, None, False, "cannot tell"), ({}, "known", False, "no gap"),
+    ({"gyro": "a fit"}, None, False, "no gap"), ({}, "known", True, "cannot tell")])
+def test_logs_that_were_not_compared_and_have_no_rest_are_not_no_gap(fits, simulated, otherwise,
+                                                                     said):
     """Nor are those that read otherwise at rest, by a bias or by how the sensor lies."""
     logs = [SimpleNamespace(unexplained=False, conventions=(), differs=[], motion_judged=False,
-                            shaken=[], alignment=SimpleNamespace(same=same), real="known",
-                            simulated=simulated, otherwise=otherwise)]
+                            shaken=[], fits=fits, real="known", simulated=simulated,
+                            otherwise=otherwise)]
     assert simulator_answer.verdict("no gap", logs) == said
 
 
