@@ -29,9 +29,10 @@ TAILS = (FREEDOM, 1e6)  # degrees of freedom of turns that are alike; so many ar
 ROUNDS = 8  # of weighting turns by how far they are off
 WRONG_DEG = 25.0  # of a turn's end: as of a label that gravity contradicts (session.FAR_OFF_DEG)
 # Of what moves all the while: band and grid of its course, and the share of what the force does
-# that is explained by the right order, and not by a wrong one: 0.84 to 1.00 and 0.11 to 0.46 of
-# logs of hands, gimbals and turntables.
-SLOW_HZ, COURSE_HZ, EXPLAINED = 1.0, 20.0, 0.5
+# that a wrong order leaves unexplained and that the right one explains: 0.11 to 0.46 and 0.84 to
+# 1.00 of logs of hands, gimbals and turntables. Who walks sways as he leans, so that a wrong order
+# explains 0.50 to 0.75 of three gaits and a stair, where the right one explains 0.1 to 0.4.
+SLOW_HZ, COURSE_HZ, WRONG, RIGHT = 1.0, 20.0, 0.5, 0.8
 OFF_DEG = 6.0  # of a turn's end by a gyro not yet calibrated: a few percent of a half turn
 
 
@@ -170,12 +171,12 @@ def swapped_on_the_way(sessions):
         return []
     still, sound = (sum(_left(*log, order)[1] for log in logs) for order in (
         np.zeros((3, 3)), np.eye(3)))
-    if not still > 0.0 or sound < (1.0 - EXPLAINED) * still:
+    if not still > 0.0 or sound < (1.0 - WRONG) * still:
         return []
     each = [[_left(*log, order) for log in logs] for order in axis_order.SIGNED]
     power = np.array([sum(squares for _, squares in own) for own in each])
     best = int(power.argmin())
-    if power[best] > 0.5 * min(sound, 2.0 * EXPLAINED * still):
+    if power[best] > min(0.5 * sound, (1.0 - RIGHT) * still):
         return []
     number = sum(left.size / alignment.independent(left) for left, _ in each[best])
     nats = -0.5 * number * np.log(power / still)

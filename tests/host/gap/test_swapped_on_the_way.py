@@ -67,6 +67,20 @@ def test_sound_axes_are_no_others(logged):
     assert found(*logged) == []
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_who_walks_has_no_other_order_of_axes(seed):
+    """A gyro whose z was turned over explained 73 % of what the force did by a hip's sway."""
+    rng, t = np.random.default_rng(seed), np.arange(0.0, 60.0, 1.0 / RATE)
+    step = 2.0 * np.pi * np.cumsum(0.9 * (1.0 + 0.02 * rng.normal(0.0, 1.0, len(t)))) / RATE
+    lean = np.radians([2.0, 3.0, 6.0]) * np.stack([
+        np.sin(step), np.sin(2.0 * step + 0.5), np.sin(step + 0.4)], 1)
+    rate = np.gradient(lean, axis=0) * RATE
+    sway = np.stack([0.02 * np.sin(2.0 * step), 0.06 * np.sin(step), 0.03 * np.cos(2.0 * step)],
+                    1)
+    push = np.gradient(np.gradient(sway, axis=0), axis=0) * RATE ** 2
+    assert found(carried(rate, [0.0, 0.0, 0.0], push), rate) == []
+
+
 def test_what_shakes_without_turning_has_no_order_of_axes():
     force, rate = of_a_hand(3)
     assert found(force[::-1], rate) == []
