@@ -110,6 +110,19 @@ def made_of(values, rests):
                    put_in=np.zeros(n, bool), quantum=(1e-4, 1e-6))
 
 
+def test_a_noise_to_set_is_that_of_the_real_log_however_little_is_known_of_the_other():
+    """A density of -0.48 deg/s/rtHz was to be set, by what is nothing but for its error."""
+    rng, logs = np.random.default_rng(1), []
+    for density in (0.1, 0.9):
+        mg = np.full(3, density / parameters.MG)
+        level = single_log.Noise(mg, 0.3, 10.0 * mg, 0.3)
+        logs.append(SimpleNamespace(
+            force=rng.standard_normal((400, 3)), rate=None, noise={"accel": level, "gyro": None},
+            quantum=(1e-6, 1e-6), rate_hz=100.0, put_in=np.zeros(400, bool)))
+    numbers, _ = noise_and_registers.noises(*logs)
+    assert [p.set_to for p in numbers if p.differs] == [pytest.approx(0.1)] * 3
+
+
 def test_a_rest_of_a_second_tells_the_noise_and_not_what_shakes_the_way():
     """Its noise was that of all of the log, ten times as large."""
     values = np.random.default_rng(3).standard_normal((1500, 3))
