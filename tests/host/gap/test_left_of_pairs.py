@@ -40,6 +40,19 @@ def test_an_asymmetry_of_the_axis_that_is_turned_has_its_name_beside_a_bias():
     assert found["verdict"] == "explained"
 
 
+def test_axes_that_have_none_of_an_effect_are_not_named_by_chance():
+    """Beside 2.04 deg/s of y the other axes had 0.001 and 0.004, by two of their errors."""
+    cause = {"axes": ["y"], "class": ["quadratic"], "value": {}, "interval_90": {}}
+    effect = SimpleNamespace(
+        effect="quadratic", unit="deg/s", shape={}, value={"x": 0.0012, "y": 2.044, "z": 0.0036},
+        interval={"x": (0.0001, 0.0023), "y": (2.038, 2.05), "z": (0.0008, 0.0064)})
+    said = answer._by_both_logs(cause, effect)
+    assert said["axes"] == ["y"] and said["value"] == {"y": 2.044}
+    faint = SimpleNamespace(**{**vars(effect), "interval": {
+        key: (low, 40.0) for key, (low, _) in effect.interval.items()}})
+    assert answer._by_both_logs(cause, faint)["axes"] == ["x", "y", "z"]
+
+
 def squared(rate):
     """Rates with 2 deg/s more at 100 deg/s of each axis, whichever way it turns."""
     return rate + 2e-4 * rate ** 2

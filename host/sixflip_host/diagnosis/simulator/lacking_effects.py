@@ -20,7 +20,7 @@ from ..effect_estimates import believable
 from ..hypotheses import Form
 from . import alignment as align_by
 from . import conventions, effects_beside, hypotheses, remaining_gap
-from .parameters import MG
+from .parameters import DIFFERS, MG
 
 # Effects that are functions of what acts while a thing moves.
 OF_MOTION = ("quadratic", "cubic", "cross_quadratic", "asymmetry", "g_sensitivity",
@@ -229,10 +229,12 @@ def _finding(kind, best, nothing, chances, share, blocks, logs, diagnosis):
         for r, (sensor_fit, _) in zip(best, logs)], 0, 1)
     weights = sigmas ** -2.0
     mean = (weights * sizes).sum(axis=0) / weights.sum(axis=0)
-    value = dict(zip(keys, mean.tolist()))
-    sigma = dict(zip(keys, (weights.sum(axis=0) ** -0.5).tolist()))
-    interval = {k: (v - odds.Z_90 * sigma[k], v + odds.Z_90 * sigma[k]) for k, v in value.items()}
-    axes = sorted({k[0] for k, (low, high) in interval.items() if low > 0.0 or high < 0.0})
+    # An axis that has none of it is off by more than a 90 % interval once in ten.
+    of_keys = zip(keys, mean.tolist(), (weights.sum(axis=0) ** -0.5).tolist())
+    shown = [(k, v, s) for k, v, s in of_keys if abs(v) > DIFFERS * s]
+    value, sigma = {k: v for k, v, _ in shown}, {k: s for k, _, s in shown}
+    interval = {k: (v - odds.Z_90 * s, v + odds.Z_90 * s) for k, v, s in shown}
+    axes = sorted({k[0] for k in value})
     kept, total = {}, 0.0
     for other, chance in chances.items():
         if total < odds.HOLDS:
