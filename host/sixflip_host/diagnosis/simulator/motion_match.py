@@ -71,6 +71,8 @@ def by_directions(real, sim):
     slow in both says no more than it should [Knapp & Carter, IEEE Trans. ASSP 24 (1976) 320, the
     smoothed coherence transform]. How far the best of many lags is by chance, the other lags say;
     how far by a schedule, what it is with each piece of the log turned in a way of its own."""
+    if min(real.seconds, sim.seconds) < align_by.LEAST_S:
+        return 0.0, 0.0
     band_hz = min(align_by.BAND_HZ, 0.4 * real.rate_hz, 0.4 * sim.rate_hz)
     lengths = [int(LAGS_HZ * log.seconds) for log in (real, sim)]
     number = 1 << (sum(lengths) + 1).bit_length()
