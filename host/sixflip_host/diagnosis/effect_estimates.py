@@ -120,6 +120,7 @@ LOOSE = {"warm_up": 10.0, "dead_band": 1e9, "vibration_rectification": 1e9,
          "box_tilt": 20.0, "lever_arm": 10.0, "filter_lag": 20.0}
 
 
+ONE_SIDED = ("dead_band",)  # a width below nothing is another cause's
 # What a part's drift with temperature amounts to while it warms up, and in what follows the
 # thermometer by a minute: no data sheet gives these two by themselves.
 BY_TEMPERATURE = {"warm_up": 10.0, "thermal_rate": 1.0}  # degC, minutes
@@ -140,12 +141,15 @@ def limit(effect, chip, kind, key):
 
 
 def believable(effect, chip, sensor, values, sigmas=None):
-    """True when no coefficient exceeds TAIL times its limit by more than twice its own
-    uncertainty: of parts beyond the limit, as rough as typical sizes are, half have more than that
-    [a Cauchy tail, as in evidence.score]. Below, what the prior says is in the score already."""
+    """True when no coefficient exceeds TAIL times its limit, or lies below nothing where none can,
+    by more than twice its own uncertainty: of parts beyond the limit, as rough as typical sizes
+    are, half have more than that [a Cauchy tail, as in evidence.score]. Below, what the prior says
+    is in the score already."""
     for key, value in values.items():
         top = limit(effect, chip, sensor, key)
         slack = 2.0 * sigmas[key] if sigmas else 0.0
+        if effect in ONE_SIDED and value + slack < 0.0:
+            return False
         if top is not None and abs(value) - slack > TAIL * top:
             return False
     return True

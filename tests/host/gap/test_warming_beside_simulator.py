@@ -83,3 +83,10 @@ def test_the_size_that_is_told_lies_within_its_interval():
     low, high = effect_estimates.ends(
         np.array([0.05, 0.95]), np.array([0.060, 0.069]), np.array([0.0002, 0.0002]))
     assert low == 0.060 and 0.069 < high < 0.070
+
+
+@pytest.mark.parametrize("counts, said", [(160.0, True), (-10.0, True), (-160.0, False)])
+def test_a_dead_band_is_no_narrower_than_none(counts, said):
+    """One of -164 counts explained a gyro whose scales up and down differ."""
+    assert effect_estimates.believable("dead_band", "mpu6050", "gyro", {"x": counts},
+                                       {"x": 10.0}) is said
