@@ -190,8 +190,12 @@ def in_step(fitted, kind, real, sim, alignment):
     late = float(alignment.of_simulator(0.5 * sim.seconds) - own.of_simulator(0.5 * sim.seconds))
     if not own.same or abs(late) < IN_STEP_S:
         return found
-    found = fitted(replace(alignment, offset_s=alignment.offset_s - late))
-    return replace(found, fit=replace(found.fit, delay_s=found.fit.delay_s + late))
+    moved = fitted(replace(alignment, offset_s=alignment.offset_s - late))
+    # Of readings that stop somewhere the lag is one of what is left of them: with it they have no
+    # name any more.
+    if found.fit.name and not moved.fit.name:
+        return found
+    return replace(moved, fit=replace(moved.fit, delay_s=moved.fit.delay_s + late))
 
 
 def _foretold(signal, measured):
