@@ -226,24 +226,20 @@ def _drowned(trace):
 
 def said_of(real, sim, aligned):
     """Sentences on the two logs."""
-    sentences = []
-    if aligned.same:
-        sentences.append(
-            "%s and %s are of one motion (correlation of the %s %.3f): offset %.3f ± %.3f s, "
-            "%.0f s together" % (sim.name, real.name, aligned.by, aligned.correlation,
-                                 aligned.offset_s, 1.645 * aligned.offset_sigma_s,
-                                 aligned.overlap_s))
-    else:
-        sentences.append(
-            "%s and %s are of different motions (correlation of the %s %.2f): each was held "
-            "against its own rests and moves" % (sim.name, real.name, aligned.by,
-                                                 aligned.correlation))
+    logs = sim.name, real.name, aligned.by, aligned.correlation
+    sentences = [
+        "%s and %s are of one motion (correlation of the %s %.3f): offset %.3f ± %.3f s, "
+        "%.0f s together" % (*logs, aligned.offset_s, 1.645 * aligned.offset_sigma_s,
+                             aligned.overlap_s) if aligned.same else
+        "%s and %s are of different motions (correlation of the %s %.2f): each was held "
+        "against its own rests and moves" % logs]
     for trace in (real, sim):
         if not trace.rests:
             sentences.append("no rest in %s: gravity and the gyro's bias are known in it on "
                              "average alone, and its noise by the quick end of its spectrum%s" % (
                                  trace.name, _drowned(trace)))
-        sentences += ["no gyro in %s" % trace.name] * (trace.rate is None)
+        if trace.rate is None:
+            sentences.append("no gyro in %s" % trace.name)
     if abs(real.rate_hz / sim.rate_hz - 1.0) > 0.02:
         sentences.append("%s has %.4g rows a second, %s %.4g: compared on one grid" % (
             sim.name, sim.rate_hz, real.name, real.rate_hz))
