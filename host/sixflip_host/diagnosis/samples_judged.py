@@ -98,9 +98,11 @@ def judge(sessions, settings=ALONE, damages=()):
     findings = [f for f in sum(found, []) + lines if f.effect not in without]
     findings, uneven = codes.uneven(sessions, findings, {sensor for sensor, *_ in whole[2]})
     coarse = {(f.sensor, axis) for f in findings if f.effect in COARSE for axis in f.axes}
-    stuck = stuck_axes.stuck_for_a_while(sessions, coarse)
     held, scales, bits = whole
-    left = [*held, *stuck, *scales]
+    slow = stuck_axes.read_slower(sessions)
+    coarse |= {(damage.sensor, axis) for damage in slow for axis in damage.axes}
+    stuck = stuck_axes.stuck_for_a_while(sessions, coarse)
+    left = [*held, *slow, *stuck, *scales]
     damages = [*damages, *left]
     leaping = {sensor for sensor, *_ in [*bits, *uneven]} | {
         f.sensor for f in findings if f.effect == "dead_band"}

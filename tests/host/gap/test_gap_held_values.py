@@ -233,3 +233,28 @@ def test_a_sensor_is_read_so_many_times_as_fast_as_the_file_has_rows():
     capture = held_values.without_rows(capture, np.arange(1, 16000, 2))
     damage, = held_values.findings([SimpleNamespace(capture=capture)])
     assert damage.sensor == "accel" and "each value four times" in damage.words
+
+
+def test_one_axis_that_is_measured_less_often_gives_each_value_twice():
+    """Its chip's other axes go on: no row repeats, and no value stays for long. What creeps by a
+    count in every other row is not held, nor does an axis that is read at random times give its
+    values equally often."""
+    generator = np.random.default_rng(31)
+    level = np.cumsum(generator.standard_normal((8000, 3)), axis=0)
+    counts = np.rint(level + 10.0 * generator.standard_normal((8000, 3))).astype(np.int16)
+
+    def slower(values):
+        return [(d.sensor, d.axes, d.value["times"]) for d in stuck_axes.read_slower(
+            [SimpleNamespace(capture=SimpleNamespace(accel=values, gyro=counts))])]
+
+    assert slower(counts) == []
+    for times in (2, 4):
+        held = counts.copy()
+        held[:, 2] = counts[np.arange(8000) // times * times, 2]
+        assert slower(held) == [("accel", ("z",), times)]
+    at_random = counts.copy()
+    now = np.maximum.accumulate(np.where(generator.random(8000) < 0.5, np.arange(8000), 0))
+    at_random[:, 2] = counts[now, 2]
+    creeps = counts.copy()
+    creeps[:, 2] = np.arange(8000) // 2
+    assert slower(at_random) == slower(creeps) == []

@@ -1,5 +1,5 @@
-"""One axis that keeps its value while the others of its sensor change is stuck; how often a code
-is read once more by chance."""
+"""One axis that keeps its value while the others of its sensor change is stuck, or is read faster
+than it measures; how often a code is read once more by chance."""
 import math
 
 import numpy as np
@@ -16,6 +16,10 @@ WINDOW, QUIETEST, LEAST_NOISE = 64, 0.1, 0.5
 # in the quiet of which half of them are (the rests of imucal_ferraris).
 BY_CHANCE = 0.6
 ORDERS = (1, 2, 3, 4)  # of differences
+# Of an axis that gives each value the same number of times: share of its values, where a log that
+# is read at random times has 0.25 of them twice at the most and recordings to 0.3; counts that it
+# changes by, where half of the changes of what creeps are of a count, at times that look even.
+EQUAL, FAR = 0.6, 3.0
 NEAR_END = 0.97  # of the largest reading: beyond it a soft limit keeps a reading as well
 
 
@@ -46,6 +50,44 @@ def stuck_for_a_while(sessions, coarse=()):
                 damages.append(Damage("repeats", sensor, (letter,), "timing", said, nats,
                                       {"rows": longest + 1}))
     return damages
+
+
+def read_slower(sessions):
+    """[Damage] of single axes that give each value the same number of times, which the others do
+    not. By chance, whatever it is and however it comes and goes, a value stays for k rows with
+    p^(k - 1) (1 - p), which is (1 - 1/k)^(k - 1) / k at the most; of a rate of its own an axis
+    has nearly all its values for k."""
+    damages = []
+    for sensor, words in SENSORS.items():
+        columns = [getattr(s.capture, sensor) for s in sessions]
+        if any(c is None or len(c) < FEWEST for c in columns):
+            continue
+        for axis, letter in enumerate("xyz"):
+            stays, far = (np.concatenate(v) for v in zip(*(_stays(c, axis) for c in columns)))
+            if len(stays) < FEWEST or np.median(far) < FAR:
+                continue
+            times = int(np.median(stays))
+            equal, number = int((stays == times).sum()), len(stays)
+            if times < 2 or equal < EQUAL * number:
+                continue
+            chance, share = (1.0 - 1.0 / times) ** (times - 1) / times, equal / (number + 1.0)
+            nats = equal * math.log(share / chance) + (number - equal) * math.log(
+                (1.0 - share) / (1.0 - chance)) - 0.5 * math.log(number)
+            if present(nats):
+                said = ("the %s axis of the %s gives each value %d times, the others do not: it "
+                        "is measured less often") % (letter, words, times)
+                damages.append(Damage("repeats", sensor, (letter,), "timing", said, nats,
+                                      {"times": times}))
+    return damages
+
+
+def _stays(counts, axis):
+    """(rows (k,) that an axis of counts (n, 3) keeps each value, counts (k,) that it changes by
+    then), of the rows in which an axis changes."""
+    fresh = counts[np.append(True, (counts[1:] != counts[:-1]).any(axis=1))].astype(np.int64)
+    steps_away = np.diff(fresh[:, axis]) / max(int(steps(counts)[axis]), 1)
+    changes = np.flatnonzero(steps_away)
+    return np.diff(changes), np.abs(steps_away[changes[1:]])
 
 
 def _kept(counts, axis):
