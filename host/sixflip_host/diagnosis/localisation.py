@@ -30,7 +30,12 @@ class Place:
 
 
 def places(gap):
-    """list of Place of a SensorGap, the largest share first; those of its causes lead."""
+    """list of Place of a SensorGap, the largest share first; those of its causes lead. One in a
+    hundred of the tests finds something by chance: where no set of hypotheses is likelier than
+    none, and what is left is noise, there is nothing to be looked for."""
+    something = gap.causes or gap.posterior.best.forms or not gap.adequacy.ok
+    if not something:
+        return across(gap)
     tested = [_tested(gap, option) for option in gap.options if option.generic
               and option.axis is not None]
     tested += across(gap) + along(gap) + session(gap)

@@ -94,6 +94,17 @@ def test_what_is_left_of_turns_and_nowhere_more_than_elsewhere_is_said_in_motion
     assert place.p == gap.adequacy.p < 1e-6
 
 
+def test_what_a_test_of_a_domain_finds_by_chance_is_no_place_of_a_quiet_sensor(monkeypatch):
+    """Where everything passes as a discovery: of what is noise nothing is where a gap lies, of
+    what is not all of it."""
+    monkeypatch.setattr(localisation, "FALSE_DISCOVERIES", 1e6)
+    monkeypatch.setattr(localisation, "LEAST_SHARE", 0.0)
+    gap = turned_by(1.6)
+    assert localisation.places(gap) == []
+    left = replace(gap, adequacy=replace(gap.adequacy, ok=False))
+    assert len(localisation.places(left)) > 3
+
+
 def test_noise_near_the_edge_of_a_page_is_no_torn_read():
     """A page of four standard deviations, its edge 1.8 off the level: a level known by six
     samples only made twice as many samples look torn as can be."""
