@@ -123,3 +123,23 @@ def test_a_rate_that_a_motor_goes_to_again_is_no_peak_cut_off():
         x = np.rint(rates + rng.normal(0.0, 2.5, len(rates))).astype(int)
         assert not present(saturation.cut_off_nats(x)), seed
         assert present(saturation.cut_off_nats(np.minimum(x, 2941))), seed
+
+
+def test_gravity_in_a_log_of_attitudes_ends_at_no_level():
+    """A robot that leans now and then and is level in between: no axis reads more than the whole
+    of gravity, most samples read it, and no reading is any shorter there. Cut off at nine tenths
+    it is."""
+    t = np.arange(6000) / 100.0
+    lean = 0.3 * np.clip(np.sin(0.6 * t), 0.0, None) * np.sin(2.3 * t)
+    force = 16384.0 * np.stack([np.sin(lean), 0.0 * t, np.cos(lean)], 1)
+
+    def cut(read):
+        read = np.rint(read).astype(np.int16)
+        capture = Capture({"sensor": "other", "rate_hz": 100.0, "imported_from": "log.csv",
+                           "accel_lsb_per_g": 16384.0, "gyro_lsb_per_dps": 100.0},
+                          10_000 * np.arange(6000), read, read)
+        found = saturation.saturation([SimpleNamespace(capture=capture)], "accel", [read])
+        return [axis for finding in found for axis in finding.axes]
+
+    assert cut(force) == []
+    assert cut(np.minimum(force, 0.98 * 16384.0)) == ["z"]

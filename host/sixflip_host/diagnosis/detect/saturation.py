@@ -23,6 +23,7 @@ STEADY = 0.01
 # Share of the span of the readings just inside their largest one, in which peaks that are not cut
 # off end as well: less holds too few of them, in more they thin out by themselves.
 SPREAD_SHARE = 0.02
+ONE_LENGTH = 0.005  # of a reading, by which the lengths of all differ that are gravity alone
 
 
 def saturation(sessions, sensor, columns):
@@ -43,6 +44,8 @@ def saturation(sessions, sensor, columns):
                 nats, level = max(((cut_off_nats(y, span), (y, y == y.max()))
                                    for y in (x, -x)), key=lambda pair: pair[0])
                 size = int(np.abs(level[0].max()))
+                if sensor == "accel" and _all_of_it(counts, size):
+                    continue
                 limit, said = _cut_off(session, sensor, "xyz"[i], size)
             if present(nats):
                 value["xyz"[i]] = max(value.get("xyz"[i], 0), size)
@@ -59,6 +62,14 @@ def saturation(sessions, sensor, columns):
                     {k: (v, v) for k, v in value.items()},
                     share=1.0, number=number, limits=limits,
                     levels=levels)]  # a peak that ends inside is sound
+
+
+def _all_of_it(counts, size):
+    """Whether all readings (n, 3) are of one length, and the largest of an axis as long: gravity
+    in a log of attitudes alone, of which an upright axis reads all. Where an axis is cut off the
+    reading is shorter."""
+    length = np.linalg.norm(counts.astype(float), axis=1)
+    return np.ptp(length) <= ONE_LENGTH * size and size >= (1.0 - ONE_LENGTH) * length.max()
 
 
 def _cut_off(session, sensor, axis, size):
