@@ -129,11 +129,14 @@ MG_A_DEG = 1000.0 * np.radians(1.0)  # of gravity, across a face that leans
 
 @dataclass(frozen=True)
 class Crooked:
-    """deg {face name: degrees off}, p, flipped: True when the table's tilt is not in it."""
+    """deg {face name: degrees off}, p, flipped: True when the table's tilt is not in it; leaning:
+    True when poses beside the faces would tell a sensor that bends, which a box that is not square
+    spans on the faces alone (GAP 1)."""
 
     deg: dict
     p: float
     flipped: bool
+    leaning: bool
 
     @property
     def worst(self):
@@ -144,8 +147,10 @@ class Crooked:
         if self.worst < WORTH_DEG or self.p > 1e-3:
             return ""
         face = max(self.deg, key=self.deg.get)
-        return ("face %s lies %.1f deg off the others: a crooked box%s or placement, not the "
-                "sensor" % (face, self.deg[face], "" if self.flipped else ", a tilted table"))
+        return "face %s lies %.1f deg off the others: a crooked box%s or placement, %s" % (
+            face, self.deg[face], "" if self.flipped else ", a tilted table",
+            "not the sensor" if self.leaning else
+            "or a sensor that bends: faces alone do not tell which")
 
 
 def squareness(session, nominal):
@@ -174,4 +179,4 @@ def squareness(session, nominal):
     deg = np.linalg.norm(size.reshape(-1, 2), axis=1) / MG_A_DEG
     chi2 = float((size ** 2).sum()) / PLACEMENT_MG ** 2
     return Crooked({faces.pose_name(2 * f + 1)[:2]: float(d) for f, d in zip(seen_faces, deg)},
-                   float(special.chdtrc(rank, chi2)), flipped)
+                   float(special.chdtrc(rank, chi2)), flipped, bool((~on).any()))
