@@ -79,8 +79,9 @@ class Cause:
         return odds.nameless(self.place)
 
 
-def causes(posterior, units, forms):
-    """list of Cause of the named members of a Posterior's best set, largest score first."""
+def causes(posterior, units, forms, thermometer=True):
+    """list of Cause of the named members of a Posterior's best set, largest score first;
+    thermometer: there is one, else what goes as a warm-up may go with the temperature."""
     best = posterior.best
     shared = best.shared
     if not len(shared):
@@ -96,6 +97,8 @@ def causes(posterior, units, forms):
                   for name in posterior.alternatives(form.effect)
                   if name not in ("", form.effect, "drift") and not is_stranger(name)}
         alike = _aliases(form, theta[place], likely, forms, best.forms, grams, each)
+        if form.effect == "warm_up" and not thermometer:
+            alike["thermal_bias"] = "no temperature was recorded"
         of_members.append(Cause(
             form.effect, (form,), posterior.gains[form.effect], posterior.places[form.effect],
             {**likely, **alike}, frozenset(alike), theta[place],

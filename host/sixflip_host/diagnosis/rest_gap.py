@@ -149,8 +149,8 @@ def _sensor(rest, kind, chip, settings, jumps):
     strange = [(f, ["xyz"[axis] for axis, _ in members.axes_of(model, posterior, f)])
                for f in posterior.best.forms
                if f.generic and not _settled(f, units, fits, levels, rest, kind)]
-    causes = [members.in_full(model, forms, posterior, cause)
-              for cause in aliases.causes(posterior, units, forms)]
+    causes = [members.in_full(model, forms, posterior, cause) for cause in aliases.causes(
+        posterior, units, forms, rest.temperature is not None)]
     told = [_told(c, data, fits, chip, kind, chosen, rest_forms.place(
         c, model, forms, posterior, rest)) for c in causes]
     beaten = [c for c, rest_cause in zip(causes, told) if _beaten(rest_cause, strange, posterior)]

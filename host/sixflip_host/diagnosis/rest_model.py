@@ -59,7 +59,8 @@ class RestModel:
         units, data, options, noise, forms, cost, model, posterior = searched
         best = posterior.best
         causes = [members.in_full(model, forms, posterior, cause)
-                  for cause in aliases.causes(posterior, units, forms)]
+                  for cause in aliases.causes(posterior, units, forms, all(
+                      session.thermometer for session, _ in parts))]
         fitted = adequacy.goodness_of_fit(
             units, data.statistics, best, noise, self.conditions.shaken.get(self.kind, ()),
             self.kind == "accel")

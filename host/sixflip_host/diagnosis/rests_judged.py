@@ -3,7 +3,7 @@ be left out of them; and the third, what the rests, the turns between them and t
 both sensors.
 """
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from ..capture.registers import SENSORS
 from ..experiment import attitude_fit, thermometer
 from . import adequacy, localisation, motion_model, odds, stray_turns, turn_model
 from .detect import saturation
-from .detect.detection import present
+from .detect.detection import RANGE, present
 from .rest_model import RestModel
 
 FEWEST_PLACEMENTS = 6  # an axis' bias and scale, and one more to tell an effect by
@@ -33,6 +33,14 @@ class UsableRests:
     nominal: tuple = ()
     reference_c: float = 25.0
     remarks: tuple = ()
+
+    def read_as(self, parts):
+        """The same with other readings of the sessions, and attitudes by them: [(Session,
+        NominalSensor)]."""
+        sessions, nominal = zip(*parts)
+        others = dict(zip(self.sessions, sessions))
+        return replace(self, everything=tuple(others.get(s, s) for s in self.everything),
+                       sessions=sessions, nominal=nominal)
 
 
 def usable_rests(sessions, findings, stuck, scaled=False):
@@ -124,6 +132,10 @@ def judge(rests, findings, settings, conditions):
     if turned:
         turns, motion = found.pop(0)
     gaps = dict(zip(("accel", "gyro"), found))
+    if turned and gaps["accel"].posterior.best.forms:
+        upright = rests.read_as(gaps["accel"].upright())
+        if _leans(nominal, upright.nominal):
+            turns, motion = _of_turns(upright, gyro)
     new_findings, nameless, remarks = [], [], []
     if swapped is not None and swapped.effect not in settings.without:
         new_findings.append(swapped)
@@ -138,7 +150,8 @@ def judge(rests, findings, settings, conditions):
     elif motion and any(cause.domain == "orientation" for cause in gaps["accel"].causes):
         motion = motion.beside_a_bend()
     if motion and not any(gap.unexplained and not (
-            gap is gaps.get("gyro") and harmless(gap, motion)) for gap in carried):
+            gap is gaps["accel"] and gap.lasting
+            or gap is gaps.get("gyro") and harmless(gap, motion)) for gap in carried):
         new_findings += motion.findings
         remarks += motion.remarks
         if not turns.posterior.best.forms:  # a gyro that bends carries gravity wrongly, too
@@ -150,6 +163,13 @@ def judge(rests, findings, settings, conditions):
         said = [squareness.remark() for squareness in gaps["accel"].crooked if squareness]
         remarks += dict.fromkeys(sentence for sentence in said if sentence)
     return RestsJudged(gaps, turns, motion, tuple(new_findings), tuple(nameless), tuple(remarks))
+
+
+def _leans(nominal, without):
+    """Whether NominalSensors know gravity's direction worse than the turns take it to be known by
+    what an accelerometer `without` that has not."""
+    angles = [np.degrees(np.linalg.norm(a.up - b.up, axis=1)) for a, b in zip(nominal, without)]
+    return bool(np.sqrt(np.mean(np.concatenate(angles) ** 2)) > turn_model.ATTITUDE_DEG)
 
 
 def harmless(gap, motion):
@@ -171,9 +191,11 @@ def unsized(finding):
 
 
 def _turn(rests, findings):
-    """True when the gyro of UsableRests tells how they turn from one to the next."""
+    """True when the gyro of UsableRests tells how they turn from one to the next. Moves with a
+    sample at the end of a range that is known are no turns anyhow; else nobody knows where it
+    bends."""
     bent = any(f.sensor == "gyro" and f.effect in ("dead_band", "saturation") and not unsized(f)
-               for f in findings)
+               and (f.levels or set(f.limits.values()) != {RANGE}) for f in findings)
     return not bent and all(
         turn_model.usable(s, m) for s, m in zip(rests.sessions, rests.nominal))
 

@@ -1,7 +1,11 @@
 """What was found in one sensor at rest, or in its turns, and what can be asked of it."""
+import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import numpy as np
+
+from ..experiment import attitude_fit
 from . import (
     adequacy,
     effect_estimates,
@@ -17,6 +21,7 @@ from . import (
 )
 from .elimination import NONE
 
+LASTING = ("time", "temperature")  # domains of what changes more slowly than a move takes
 DOUBT = 0.5  # probability of something nameless, above which a cause is none that is named
 
 
@@ -79,6 +84,13 @@ class SensorGap:
         return self.model.chip
 
     @property
+    def lasting(self):
+        """Whether all that was found changes more slowly than a move takes, and is all there is:
+        with a name or not, upright() has nothing of it."""
+        return self.adequacy.ok and all(hypotheses.domain(form.effect) in LASTING
+                                        for form in self.posterior.best.forms)
+
+    @property
     def sessions(self):
         return [session for session, _ in self.parts]
 
@@ -95,6 +107,31 @@ class SensorGap:
     def shared(self):
         """elimination.Columns of the chosen Forms."""
         return hypotheses.columns_of(self.chosen)
+
+    def upright(self):
+        """[(Session, NominalSensor)] of the accelerometer without what was found in it, with a
+        name or not: what an axis reads too much leans the box as far as it knows. What goes with
+        time is taken off the samples between the rests as well."""
+        best, parts = self.posterior.best, []
+        lasting = hypotheses.columns_of([form for form in best.forms if hypotheses.domain(
+            form.effect) in LASTING]).index
+        for (session, sensor), unit, point, own in zip(self.parts, self.units, self.adequacy.index,
+                                                       best.private):
+            columns = best.shared + own
+            known = unit.gram.at(point, columns.index) + np.diag(columns.prior ** -2.0)
+            sizes = np.linalg.solve(known, unit.inner[point][columns.index])
+            of_each = unit.raw(columns.index) * sizes
+            measured = np.linalg.inv(sensor.matrix).T
+            added, lasts = ((of_each[:, some].sum(axis=1)).reshape(-1, 3) @ measured for some in (
+                slice(None), np.isin(columns.index, lasting)))
+            nominal = attitude_fit.fit(session, added)
+            if lasts.any():
+                read, lsb = copy.copy(session.capture), session.capture.meta["accel_lsb_per_g"]
+                read.accel = read.accel - 1e-3 * lsb * np.stack(
+                    [np.interp(session.t_s, session.t, column) for column in lasts.T], 1)
+                session = session.reading(read)
+            parts.append((session, nominal))
+        return parts
 
     def coefficients(self, held=None):
         """(k,) of the chosen Forms' columns, by all units or by those but one that is held out."""

@@ -1,0 +1,36 @@
+"""What the accelerometer reads too much leans the box as far as it knows, and is none of the
+gyro's, nor of what moves between the rests; what no thermometer saw may be the temperature's."""
+import pytest
+
+from sixflip_host.diagnosis import answer, diagnosis
+from sixflip_host.experiment import blocks
+from sixflip_host.simulation import scenario, simulated_session
+
+
+def diagnosed(effects, seed, thermometer=True):
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": seed,
+                               "world": {"placement_scatter_deg": 0.05, "tilt_deg": 1.0},
+                               "effects": effects})
+    captures = [simulated_session.session(plan, k) for k in range(len(plan.worlds))]
+    for capture in captures:
+        capture.temp = capture.temp if thermometer else None
+    return diagnosis.diagnose_sessions([blocks.session_of(str(k), c)
+                                        for k, c in enumerate(captures)],
+                                       diagnosis.Settings(jobs=1))
+
+
+@pytest.mark.parametrize("effects", [
+    [{"effect": "warm_up", "sensor": "accel", "x": 14.0, "tau_s": 90.0},
+     {"effect": "quadratic", "sensor": "accel", "y": 8.0}],
+    [{"effect": "warm_up", "sensor": "accel", "z": 9.0, "tau_s": 120.0},
+     {"effect": "filter_lag", "sensor": "gyro", "tau": 10.0}]])
+def test_a_bias_that_lasts_turns_no_gyro_and_hides_nothing_in_motion(effects):
+    """Half a degree that gravity seemed to lean was a gyro that does something in motion, or made
+    all that moves unfit to be judged."""
+    found = diagnosed(effects, seed=8)
+    assert found.turns.adequacy.ok and not found.turns.posterior.best.forms
+    causes = {(c["sensor"], name) for c in answer.as_dict(found)["causes"] for name in c["class"]}
+    assert causes >= {(e["sensor"], e["effect"]) for e in effects}
+    assert not [place for place in found.where if place.domain == "motion" and not any(
+        e["effect"] == "filter_lag" for e in effects)]
+    assert found.verdict == "explained"
