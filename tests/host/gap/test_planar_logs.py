@@ -108,3 +108,16 @@ def test_a_noise_by_the_root_of_the_rate_is_asked_of_the_sensors_that_there_are(
     found = convention_findings.finding("noise_per_sample", "accel", 0.97, 4.0,
                                         value={"factor": 10.0}, unit="1")
     assert bool(noise_and_registers.merged_noise([found], asked)) is told
+
+
+@pytest.mark.parametrize("accel, gyro, name", [
+    ([-1.0, -1.0, -1.0], [1.0, 1.0, 1.0], ("force_sign", "accel")),
+    ([1.0, 1.0, 1.0], [1.0, 1.0, -1.0], ("gyro_axes", "gyro")),
+    ([1.0, -1.0, -1.0], [1.0, -1.0, -1.0], ("both_axes", "device"))])
+def test_a_sign_is_no_scale_of_less_than_nothing_and_no_bias_of_twice_gravity(accel, gyro, name):
+    """A yaw turned over was a scale that is off by -200 %, an upright axis turned over a bias of
+    2 g: x forward, y left and z up read as forward, right and down is the commonest of them."""
+    t, force, rate = driven()
+    found = compared(read(t, force * accel, rate * gyro, 9))
+    assert named(found) == {name} and closed(found)
+    assert not [p for p in found.differs if p.name in ("scale", "bias")]

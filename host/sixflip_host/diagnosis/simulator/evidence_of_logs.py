@@ -20,7 +20,7 @@ HEARD = 2.0  # times what is left of a channel, above which its own motion would
 # Nats that a heading costs, which may be any: 4 % of misalignment tell so many of them apart.
 HEADING = float(np.log(2.0 * np.pi / (np.sqrt(2.0 * np.pi) * SHAPE)))
 NOTHING = 0.5  # of a channel's power, from which on it says nothing of the motion
-LEAST_FACTOR = 1e-3  # of a channel: it reads nothing, with whatever sign
+LEAST_FACTOR = 1e-3  # of a channel: it reads nothing; with the other sign it is another axis
 ODD = 0.01  # share of the logs whose header says another full scale than the part has, or none
 POINTS = 6  # off by 1e-3 at the end of the widest band, eight rows a period
 
@@ -116,7 +116,7 @@ def with_strays(near, strays, kind):
     for i in [*(i for i in rows if i in free), *(i for i in rows if i not in free)]:
         if free:
             near[i, free.pop(free.index(i) if i in free else 0)] = 1.0
-    moved = [i for i in rows if near[i].any() and not near[i, i]]
+    moved = [i for i in rows if near[i].any() and (kind == "accel" or not near[i, i])]
     signed = [near]
     for i in moved:
         signed += [np.where(np.arange(3)[:, None] == i, -s, s) for s in signed]
@@ -184,11 +184,12 @@ def of_factors(scale, width, odd):
     time step that the scale takes back would lie within some widths of it otherwise, whatever the
     factor. odd: the part may read any factor of all that it went through, as one whose full scale
     or header is wrong does, where nothing of the simulator's is."""
-    factor = np.log(np.maximum(np.abs(1.0 + scale), LEAST_FACTOR))
+    factor = np.log(np.maximum(1.0 + scale, LEAST_FACTOR))
     known = width ** -2.0
-    sound, common = -0.5 * float(factor ** 2 @ known), float(factor @ known) / known.sum()
+    sound, widest = -0.5 * float(factor ** 2 @ known), np.log(WIDEST)
     if odd:
-        wide = np.sqrt(2.0 * np.pi / known.sum()) / (2.0 * np.log(WIDEST))
+        common = np.clip(float(factor @ known) / known.sum(), -widest, widest)
+        wide = np.sqrt(2.0 * np.pi / known.sum()) / (2.0 * widest)
         sound = float(np.logaddexp(np.log(1.0 - ODD) + sound, np.log(ODD * wide) - 0.5 * float(
             (factor - common) ** 2 @ known)))
     return sound + 0.5 * float(scale ** 2 @ known)
