@@ -118,7 +118,7 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, full_scale, s
 
     def judged(inflation, rows=None):
         return [f for h in tried for f in evidence_of_logs.fits(
-            h, measured, kind, pairing.GRID_HZ, inflation, own, live, rows, noise_bends)]
+            h, measured, kind, pairing.GRID_HZ, inflation, own, live, rows, noise_bends, swapped)]
 
     def whole(fit, inflation, rows=None, sizes=None, left=True):
         return evidence_of_logs.fit_one(

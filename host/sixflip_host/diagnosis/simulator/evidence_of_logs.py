@@ -52,21 +52,21 @@ class Fit:
 
 
 def fits(hypothesis, measured, kind, grid_hz, inflation=1.0, own=None, live=None,
-         rows=None, noise_bends=(0.0, 0.0)):
-    """Fits of a Hypothesis, one for each S that may be: none, and the nearest signed permutation
-    and unit, without what they leave; measured (n, 3); own (columns (n, q), sizes (q,)): what
+         rows=None, noise_bends=(0.0, 0.0), swapped=None):
+    """Fits of a Hypothesis, one for each S that may be: none, the nearest signed permutation and
+    unit, and that of the other sensor, swapped (3, 3) or None, without what they leave; measured (n, 3); own (columns (n, q), sizes (q,)): what
     the real sensor adds of itself to each channel; live (3,): channels that are not constant;
     rows (n,): the noise of each sample, in units of the average; noise_bends: bends() of the
     noise, none where no smoother fit is weighed for what it takes away."""
     live = np.ones(3, bool) if live is None else live
     every_fit = []
-    for axes, unit in candidates(hypothesis, measured, kind, live):
+    for axes, unit in candidates(hypothesis, measured, kind, live, swapped):
         every_fit.append(fit_one(hypothesis, measured, axes, unit, grid_hz, kind, inflation, own,
                                  live, rows, left=False, noise_bends=noise_bends))
     return every_fit
 
 
-def candidates(hypothesis, measured, kind, live):
+def candidates(hypothesis, measured, kind, live, swapped=None):
     """[(S (3, 3), unit)]"""
     y = hypothesis.signal
     design = np.column_stack([y, np.ones(len(y))])
@@ -104,6 +104,8 @@ def candidates(hypothesis, measured, kind, live):
             once = np.abs(own[live]).sum(axis=0).max() < 2
             if once and not np.array_equal(own[live], np.eye(3)[live]):
                 tried += [(own, unit) for unit in units]
+        if swapped is not None and not any(np.array_equal(swapped, s) for s, _ in tried):
+            tried.append((swapped, 1.0))
     return tried
 
 
