@@ -182,7 +182,9 @@ def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), d
         if moving and not rest:
             remarks.append("no rest of %g s: a robot that settles is not told from sensors that "
                            "drift" % rest_gap.SETTLES_S)
-        if not (beside or comparisons or "axis_swap" in settings.without):
+        # Beside an accelerometer whose axes are swapped the gyro's seem to be.
+        swapped = any(f.effect == "axis_swap" for f in findings)
+        if not (beside or comparisons or swapped or "axis_swap" in settings.without):
             findings += stray_turns.swapped_on_the_way(sessions)
         if not any(s.runs for s in sessions):
             remarks.append("no rest found: only what shows in motion can be judged")

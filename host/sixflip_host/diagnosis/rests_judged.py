@@ -193,8 +193,9 @@ def unsized(finding):
 def _turn(rests, findings):
     """True when the gyro of UsableRests tells how they turn from one to the next. Moves with a
     sample at the end of a range that is known are no turns anyhow; else nobody knows where it
-    bends."""
-    bent = any(f.sensor == "gyro" and f.effect in ("dead_band", "saturation") and not unsized(f)
+    bends. An accelerometer with a dead band knows no direction of gravity."""
+    bent = any(f.effect == "dead_band" and f.sensor == "accel" or f.sensor == "gyro" and f.effect
+               in ("dead_band", "saturation") and not unsized(f)
                and (f.levels or set(f.limits.values()) != {RANGE}) for f in findings)
     return not bent and all(
         turn_model.usable(s, m) for s, m in zip(rests.sessions, rests.nominal))

@@ -1,5 +1,6 @@
 """What the accelerometer reads too much leans the box as far as it knows, and is none of the
 gyro's, nor of what moves between the rests; what no thermometer saw may be the temperature's."""
+import numpy as np
 import pytest
 
 from sixflip_host.diagnosis import answer, diagnosis
@@ -7,18 +8,19 @@ from sixflip_host.experiment import blocks
 from sixflip_host.simulation import scenario, simulated_session
 
 
-def diagnosed(effects, seed, thermometer=True):
-    plan = scenario.from_dict({"sensor": "mpu6050", "scene": "recommended", "seed": seed,
+def diagnosed(effects, seed, change=lambda capture: None, scene="recommended"):
+    plan = scenario.from_dict({"sensor": "mpu6050", "scene": scene, "seed": seed,
                                "world": {"placement_scatter_deg": 0.05, "tilt_deg": 1.0},
                                "effects": effects})
     captures = [simulated_session.session(plan, k) for k in range(len(plan.worlds))]
     for capture in captures:
-        capture.temp = capture.temp if thermometer else None
+        change(capture)
     return diagnosis.diagnose_sessions([blocks.session_of(str(k), c)
                                         for k, c in enumerate(captures)],
                                        diagnosis.Settings(jobs=1))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("effects", [
     [{"effect": "warm_up", "sensor": "accel", "x": 14.0, "tau_s": 90.0},
      {"effect": "quadratic", "sensor": "accel", "y": 8.0}],
@@ -34,3 +36,37 @@ def test_a_bias_that_lasts_turns_no_gyro_and_hides_nothing_in_motion(effects):
     assert not [place for place in found.where if place.domain == "motion" and not any(
         e["effect"] == "filter_lag" for e in effects)]
     assert found.verdict == "explained"
+
+
+def swapped(capture):
+    capture.accel = capture.accel[:, [1, 0, 2]]
+
+
+def deaf(capture):
+    capture.accel = (np.sign(capture.accel) * np.maximum(np.abs(capture.accel) - 600, 0)).astype(
+        np.int16)
+
+
+def no_thermometer(capture):
+    capture.temp = None
+
+
+@pytest.mark.parametrize("change, effect", [(swapped, "axis_swap"), (deaf, "dead_band")])
+def test_where_the_accelerometer_says_nothing_of_gravity_the_gyro_is_not_accused(change, effect):
+    """Beside x and y swapped the gyro seemed to be swapped as well; by what a dead band leaves
+    of gravity its turns ended degrees off."""
+    found = diagnosed([], 8, change, "paper")
+    causes = answer.as_dict(found)["causes"]
+    assert [(c["sensor"], c["effect"]) for c in causes] == [("accel", effect)]
+    assert not [place for place in found.where if place.sensor == "gyro"]
+
+
+@pytest.mark.long
+def test_a_warm_up_that_no_thermometer_saw_may_be_the_temperature_s():
+    found = diagnosed([{"effect": "thermal_bias", "sensor": "accel", "z": 1.5}], 8,
+                      no_thermometer, "paper")
+    assert all(set(c["class"]) != {"warm_up"} for c in answer.as_dict(found)["causes"])
+    seen = diagnosed([{"effect": "warm_up", "sensor": "accel", "z": 12.0, "tau_s": 120.0}], 8,
+                     no_thermometer)
+    cause, = answer.as_dict(seen)["causes"]
+    assert {"warm_up", "thermal_bias"} <= set(cause["class"]) and cause["effect"] is None

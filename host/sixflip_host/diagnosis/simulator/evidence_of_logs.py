@@ -54,10 +54,11 @@ class Fit:
 def fits(hypothesis, measured, kind, grid_hz, inflation=1.0, own=None, live=None,
          rows=None, noise_bends=(0.0, 0.0), swapped=None):
     """Fits of a Hypothesis, one for each S that may be: none, the nearest signed permutation and
-    unit, and that of the other sensor, swapped (3, 3) or None, without what they leave; measured (n, 3); own (columns (n, q), sizes (q,)): what
-    the real sensor adds of itself to each channel; live (3,): channels that are not constant;
-    rows (n,): the noise of each sample, in units of the average; noise_bends: bends() of the
-    noise, none where no smoother fit is weighed for what it takes away."""
+    unit, and swapped (3, 3), that of the other sensor or None, without what they leave; measured
+    (n, 3); own (columns (n, q), sizes (q,)): what the real sensor adds of itself to each channel;
+    live (3,): channels that are not constant; rows (n,): the noise of each sample, in units of the
+    average; noise_bends: bends() of the noise, none where no smoother fit is weighed for what it
+    takes away."""
     live = np.ones(3, bool) if live is None else live
     every_fit = []
     for axes, unit in candidates(hypothesis, measured, kind, live, swapped):
