@@ -86,7 +86,7 @@ def paired(real, sim, alignment, motion, band_hz=BANDS[0]):
     for periods in (1.0, 0.5):
         wide = max(1, int(periods * GRID_HZ / band_hz))
         near = np.convolve(cut, np.ones(2 * wide + 1), "same") > 0
-        if near.mean() <= 0.5:
+        if near.mean() <= 1.0 - align_by.KNOWN:
             bad = near
             break
     keep = ~bad
