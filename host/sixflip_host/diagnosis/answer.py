@@ -111,10 +111,7 @@ def _by_both_logs(cause, effect):
     rests of a short log hardly tell a bend from where the box lay."""
     if effect is None:
         return cause
-    # An axis that has none of it is off by more than a 90 % interval once in ten.
-    far = parameters.DIFFERS / odds.Z_90
-    there = [key for key, (low, high) in effect.interval.items()
-             if abs(high + low) > far * (high - low)] or list(effect.interval)
+    there = parameters.told(effect.interval)
     axes = sorted({key[0] for key in there if not effect.interval[key][0] <= 0.0
                    <= effect.interval[key][1]}) or cause["axes"]
     named = {"value_of": effect.effect} if len(cause["class"]) > 1 else {}

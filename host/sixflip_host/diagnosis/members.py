@@ -108,7 +108,8 @@ def _told_axes(model, forms, posterior, cause):
 def _needed_axes(model, forms, posterior, others, alike):
     """The set of axes (0..2) without which the best of Forms of one effect, on all axes, is
     likelier no more: where a pose's attitude is free, x: f_y f_z and y: f_z f_x add the same along
-    gravity, and neither is needed."""
+    gravity, and neither is needed. Of a form that is not the library's more is left to the other
+    axes, whose readings it is no function of, but which are free to be what makes up for it."""
     if not alike:
         return set()
     best = max(alike, key=lambda form: model.extended(others, form).score)
@@ -119,7 +120,8 @@ def _needed_axes(model, forms, posterior, others, alike):
         fewer = hypotheses.on_axes(full, set(full.axes) - {axis})
         loss[axis] = score - (others if fewer is None else model.extended(others, fewer)).score
     most = max(loss.values(), default=0.0)
-    least = AS_WELL + posterior.cost.form * max(most, 0.0)
+    share = max(posterior.cost.form, discrepancy.MOVED if best.discrepancy else 0.0)
+    least = AS_WELL + share * max(most, 0.0)
     return {axis for axis in loss if loss[axis] > least} or (
         {max(loss, key=loss.get)} if model.units[0].apart else set())
 

@@ -1,6 +1,7 @@
 """The search over sets of hypotheses, on sets whose scores are known: what stands in the place of
 what, and what stands beside it."""
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -141,3 +142,17 @@ def test_what_differs_from_session_to_session_leaves_nothing_to_a_name_within_th
     assert members._unknown(named, level, cost) == 0.0
     assert members._unknown(named, nameless, cost) == 0.5
     assert members._unknown(named, named, cost) == cost.form
+
+
+@pytest.mark.parametrize("of_another_form, axes", [(False, {0, 2}), (True, {2})])
+def test_what_a_form_that_is_not_the_library_s_leaves_to_other_axes_names_none(
+        of_another_form, axes):
+    """6 mg that went as a sine along z were "cubic" on x as well, where nothing was."""
+    gains = {0: 11.7, 1: -1.1, 2: 154.4}
+    form = hypotheses.Form("cubic", "", None, tuple("xyz"), (0, 1, 2), Columns(
+        np.arange(3), np.ones(3)), powers=(1, 1, 1), discrepancy=of_another_form)
+    model = SimpleNamespace(units=[SimpleNamespace(apart=False)], extended=lambda others, added:
+                            SimpleNamespace(score=sum(gains[axis] for axis in added.axes)))
+    posterior = SimpleNamespace(cost=SimpleNamespace(form=0.02))
+    assert members._needed_axes(model, [form], posterior, SimpleNamespace(score=0.0),
+                                [form]) == axes

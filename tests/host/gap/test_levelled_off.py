@@ -98,6 +98,17 @@ def test_a_register_that_is_full_is_a_range_and_nothing_shakes():
     assert found.gap["gyro"][1] < 2.0 * found.gap["gyro"][2]
 
 
+def test_a_register_that_is_full_half_of_the_time_is_a_range_and_nothing_else():
+    """Clocks were matched by what was cut off, and nothing of that was left out: a time step, or
+    scales, beside the range."""
+    t, force, rate = tumbled(1, 60.0)
+    simulated = read(t, force, rate, 101)
+    simulated.gyro = np.clip(simulated.gyro, -3930, 3930).astype(np.int16)  # 60 deg/s
+    found = comparison.compare([("real", read(t, force, rate, 1))], "sim", simulated)
+    assert not found.conventions and {p.name for p in found.differs} == {"range"}
+    assert found.gap["gyro"][1] < 0.05  # deg/s
+
+
 def test_a_steady_rate_of_another_size_is_no_range():
     """What little an axis reads of a table's rates rose with nothing but its noise: 1.4 deg/s."""
     rng, t = np.random.default_rng(1), np.arange(0.0, 60.0, 0.02)

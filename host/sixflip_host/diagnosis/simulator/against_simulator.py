@@ -15,12 +15,12 @@ from scipy import ndimage, special
 
 from ...experiment import terms
 from ...planning import detectable
+from .. import adequacy, odds
 from .. import diagnosis as stages
-from .. import odds
 from ..detect import rest_spectra
 from ..hypotheses import columns_of
 from . import hypotheses
-from .effects_beside import design, fit_with
+from .effects_beside import design, fit_with, of_fit
 
 # Standard errors between two sizes from which on they are two effects: two of one size are as far
 # apart in one of 370 pairs (normal).
@@ -163,9 +163,10 @@ def _is_in_both(kind, sensor_fit, cause, diagnosis):
         return False
     acting = design(kind, cause.effect, cause, sensor_fit.pair, diagnosis)
     added = acting.columns @ [cause.value.get(key, 0.0) for key in acting.keys]
-    fit = fit_with(sensor_fit, [replace(
-        acting, keys=["share"], columns=added[:, None], prior=np.ones(1))])
-    share, sigma = fit.extra[-1], fit.extra_sigma[-1]
+    whole = replace(acting, keys=["share"], columns=added[:, None], prior=np.ones(1))
+    level = np.sqrt(2.0) * adequacy.usual(diagnosis.sessions[0].capture.meta["sensor"], kind)
+    (share,), (sigma,) = of_fit(fit_with(sensor_fit, [whole]), [whole], 0, level,
+                                sensor_fit.pair.t)
     return bool(abs(share) < BOTH * sigma < abs(1.0 - share))
 
 

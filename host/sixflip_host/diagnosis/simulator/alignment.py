@@ -29,6 +29,7 @@ DRIFTS = np.linspace(-0.03, 0.03, 61)
 THINNED = 4  # of so many steps one will do for that: four a period of the band
 MOST_ROWS = 3.0  # periods between two rows, from which on some are missing or came very late
 FADED = 2.0  # periods of the band's end in which what lies beyond the ends has faded to 1e-4
+KNOWN = 0.25  # of a log, that is neither missing nor cut off: less says little of its clock
 LEAST_S = 8.0  # of a log: its turn rate has a hundred independent values in BAND_HZ
 
 
@@ -114,7 +115,7 @@ def force_size(trace):
 def _on_grid(trace, size):
     t = np.arange(0.0, trace.seconds, 1.0 / GRID_HZ)
     row = np.minimum(np.searchsorted(trace.t, t, "right"), len(trace.t) - 1)
-    unread = trace.put_in[row] | trace.put_in[row - 1] | (
+    unread = trace.put_in[row] | trace.put_in[row - 1] | trace.railed[row] | (
         trace.t[row] - trace.t[row - 1] > MOST_ROWS / trace.rate_hz)
     near = np.convolve(unread, np.ones(2 * int(GRID_HZ / BAND_HZ) + 1), "same") > 0.0
     return t, smooth(np.interp(t, trace.t, size), GRID_HZ), near
@@ -167,7 +168,8 @@ def refined(a, b, offset, drift):
         t = offset + (1.0 + drift) * b[0]
         inside = (t >= 0.0) & (t <= a[0][-1])
         known = inside & ~b[2] & (np.interp(t, a[0], a[2]) < 0.5)
-        inside = known if known.sum() > 0.5 * inside.sum() else inside
+        enough = max(KNOWN * inside.sum(), LEAST_S * GRID_HZ)
+        inside = known if known.sum() > enough else inside
         if inside.sum() < LEAST_S * GRID_HZ:
             return Alignment(False, 0.0, offset, np.inf, drift, np.inf, inside.sum() / GRID_HZ)
         x = np.interp(t[inside], a[0], a[1])

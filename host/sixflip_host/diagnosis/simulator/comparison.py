@@ -40,13 +40,14 @@ class Comparison:
     remarks; unseen; motion_judged: lever arm and delay of the two logs were compared, or what is
     wrong with the simulator's hides them; reference_c: mean temperature of the real log or None;
     effects (tuple of effects_beside.Beside): those found, as far as two logs of one motion show
-    their size; wanders: sensors of which what is left of one motion goes on for seconds: it is no
-    shaking, which each log has of its own; lacks_delay: of two motions, the real one shows a delay
-    between its sensors that the simulator's does not; bands (dead_zone.Band, ...): of slow turns
-    that the real log lacks, and with which the fits have the simulator's; of_gyro: nats by which
-    it is the gyro that does not answer them, and not what turns it; otherwise: of two motions, at
-    rest they differ by a bias or by how the sensor lies; put_right (clock_course.PutRight): both
-    captures with their times put right, where those do not go alike, or None."""
+    their size; wanders: sensors of which what is left of one motion goes on for seconds, or
+    follows from both logs: it is no shaking, which each has of its own; lacks_delay: of two
+    motions, the real one shows a delay between its sensors that the simulator's does not; bands
+    (dead_zone.Band, ...): of slow turns that the real log lacks, and with which the fits have the
+    simulator's; of_gyro: nats by which it is the gyro that does not answer them, and not what
+    turns it; otherwise: of two motions, at rest they differ by a bias or by how the sensor lies;
+    put_right (clock_course.PutRight): both captures with their times put right, where those do
+    not go alike, or None."""
 
     log: str
     against: str

@@ -8,8 +8,6 @@ from itertools import islice, product
 
 import numpy as np
 
-from sixflip import STANDARD_G
-from sixflip.poses import faces
 from sixflip_sim.effects.library import EFFECTS
 
 from ...experiment import noise_arrays, session_terms, terms
@@ -19,11 +17,9 @@ from ..hypotheses import Form
 from . import conventions, hypotheses, numbers_told, pairing, parameters, remaining_gap
 from .parameters import MG
 
-FLAT, RESTS_DPS = 0.966, 2.0  # cosine of 15 deg, as the simulator has a face; slower is a rest
 MOST_SETS = 16  # of names that classes may stand for, tried: each takes a fit of the whole log
 SCALE = {"accel": MG, "gyro": hypotheses.DEG}  # mg to a m/s2, deg/s to a rad/s
 SELDOM = 0.01  # probability below which a form changes no interval
-WARMING_S = 10.0  # over which the temperature's rate is taken: a thermometer has steps
 
 
 @dataclass(frozen=True)
@@ -178,29 +174,8 @@ def _shape(name, cause, diagnosis):
 def design(kind, name, cause, pair, diagnosis):
     """terms.Design of an effect on a Pair's samples."""
     chip = diagnosis.sessions[0].capture.meta["sensor"]
-    return terms.of_terms(name, kind, moment(pair), len(pair.t), chip=chip,
+    return terms.of_terms(name, kind, pairing.moment(pair), len(pair.t), chip=chip,
                           shape=_shape(name, cause, diagnosis))
-
-
-def moment(pair):
-    """Moment of arrays: what the real log of a Pair says, rates without the bias at its stills."""
-    m = noise_arrays.moment()
-    m.t, m.f = pair.t, tuple(pair.force.T / STANDARD_G)
-    m.up = tuple(pair.motion.up.T)
-    resting = np.linalg.norm(pair.motion.rate, axis=1) < np.radians(RESTS_DPS)
-    m.face = -1 + sum((face + 1) * (resting & (sign * m.up[axis] > FLAT))
-                      for face, (axis, sign) in enumerate(zip(faces.AXIS, faces.SIGN)))
-    bias = (pair.rate - pair.motion.rate)[resting if resting.any() else slice(None)].mean(axis=0)
-    m.w = tuple(np.degrees(pair.rate - bias).T)
-    if pair.celsius is None:
-        m.temperature, m.temperature_rate = np.full(len(pair.t), 25.0), np.zeros(len(pair.t))
-    else:
-        m.temperature = pair.celsius
-        rows = max(1, int(WARMING_S * pairing.GRID_HZ))
-        smooth = np.convolve(np.pad(pair.celsius, rows, "edge"), np.hanning(2 * rows + 1) / rows,
-                             "valid")
-        m.temperature_rate = np.gradient(smooth, pair.t)
-    return m
 
 
 def fit_with(sensor_fit, designs):
@@ -234,17 +209,26 @@ def _sizes(kind, sensor_fit, fit, designs, names, others, own, diagnosis):
         interval = {key: effect_estimates.ends(np.array([p for p, _, _ in parts]),
                                                *sizes[:, :, k].T)
                     for k, key in enumerate(one.keys)}
+        value, keys = dict(zip(one.keys, sizes[0, 0].tolist())), parameters.told(interval)
         effects.append(Beside(
-            name, kind, dict(zip(one.keys, sizes[0, 0].tolist())), interval,
+            name, kind, {key: value[key] for key in keys}, {key: interval[key] for key in keys},
             EFFECTS[name].units[kind], _shape(name, cause, diagnosis),
             tuple(cause.probabilities)))
     return tuple(effects)
 
 
 def of_fit(fit, designs, place, level, t):
-    """((k,) sizes, (k,) standard deviations with flicker) of one of a Fit's designs."""
+    """((k,) sizes, (k,) standard deviations with flicker, and with what an axis reads of the
+    others' effects as far as its own readings go in proportion to theirs) of one of a Fit's
+    designs."""
     after = sum(len(design.keys) for design in designs[place:])
     part = slice(len(fit.extra) - after, len(fit.extra) - after + len(designs[place].keys))
-    wander = level * noise_arrays.flicker_of_sizes(
-        t, designs[place].columns.reshape(len(t), 3, -1))
-    return fit.extra[part], np.hypot(fit.extra_sigma[part], wander)
+    columns, sizes = designs[place].columns.reshape(len(t), 3, -1), fit.extra[part]
+    wander = level * noise_arrays.flicker_of_sizes(t, columns)
+    own = columns - columns.mean(axis=0)
+    added = own @ sizes
+    across = np.einsum("nck,nd->kcd", own, added) * (1.0 - np.eye(3))
+    crooked = np.sqrt((across ** 2).sum(axis=(1, 2))) / np.maximum(
+        (own ** 2).sum(axis=(0, 1)), 1e-12)
+    return sizes, np.sqrt(fit.extra_sigma[part] ** 2 + wander ** 2
+                          + (hypotheses.SHAPE * crooked) ** 2)

@@ -10,6 +10,10 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.signal import coherence
 
+from sixflip import STANDARD_G
+from sixflip.poses import faces
+
+from ...experiment import noise_arrays
 from . import alignment as align_by
 from . import row_times
 from .row_times import increasing
@@ -20,6 +24,8 @@ EDGE_S = 0.4  # left out at both ends, where the low-pass (alignment.smooth) has
 COHERENT = 0.9  # of a frequency that is used: noise is then a tenth of the power there at most
 BANDS = (align_by.BAND_HZ, 4.0, 2.5, 1.6, 1.0, 0.7)  # Hz, each two thirds of the one before
 SEGMENT_S = 6.0  # of which the coherence is a mean: four periods of the narrowest band
+FLAT, RESTS_DPS = 0.966, 2.0  # cosine of 15 deg, as the simulator has a face; slower is a rest
+WARMING_S = 10.0  # over which the temperature's rate is taken: a thermometer has steps
 FORETOLD = 0.5  # of what a simulator reads is not, where it does something else than the sensor
 
 
@@ -80,7 +86,7 @@ def paired(real, sim, alignment, motion, band_hz=BANDS[0]):
     for periods in (1.0, 0.5):
         wide = max(1, int(periods * GRID_HZ / band_hz))
         near = np.convolve(cut, np.ones(2 * wide + 1), "same") > 0
-        if near.mean() <= 0.5:
+        if near.mean() <= 1.0 - align_by.KNOWN:
             bad = near
             break
     keep = ~bad
@@ -97,6 +103,27 @@ def paused(trace, at):
     for k in np.flatnonzero(np.diff(trace.t) > max(row_times.PUT_IN_S, 2.0 / trace.rate_hz)):
         out |= (at > trace.t[k] - EDGE_S) & (at < trace.t[k + 1] + EDGE_S)
     return out
+
+
+def moment(pair):
+    """Moment of arrays: what the real log of a Pair says, rates without the bias at its stills."""
+    m = noise_arrays.moment()
+    m.t, m.f = pair.t, tuple(pair.force.T / STANDARD_G)
+    m.up = tuple(pair.motion.up.T)
+    resting = np.linalg.norm(pair.motion.rate, axis=1) < np.radians(RESTS_DPS)
+    m.face = -1 + sum((face + 1) * (resting & (sign * m.up[axis] > FLAT))
+                      for face, (axis, sign) in enumerate(zip(faces.AXIS, faces.SIGN)))
+    bias = (pair.rate - pair.motion.rate)[resting if resting.any() else slice(None)].mean(axis=0)
+    m.w = tuple(np.degrees(pair.rate - bias).T)
+    if pair.celsius is None:
+        m.temperature, m.temperature_rate = np.full(len(pair.t), 25.0), np.zeros(len(pair.t))
+    else:
+        m.temperature = pair.celsius
+        rows = max(1, int(WARMING_S * GRID_HZ))
+        smooth = np.convolve(np.pad(pair.celsius, rows, "edge"), np.hanning(2 * rows + 1) / rows,
+                             "valid")
+        m.temperature_rate = np.gradient(smooth, pair.t)
+    return m
 
 
 def at_times(trace, values, at, band_hz, slope=False):

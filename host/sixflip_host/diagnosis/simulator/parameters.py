@@ -197,6 +197,14 @@ def _across(hypothesis):
     return np.zeros(3, bool) if sd is None else sd.max(axis=0) < ALONG * SHAPE
 
 
+def told(interval):
+    """The keys of {key: 90 % interval} that differ from none, all where none does. An axis that
+    has none of an effect is off by more than such an interval once in ten."""
+    far = DIFFERS / odds.Z_90
+    return [key for key, (low, high) in interval.items()
+            if abs(high + low) > far * (high - low)] or list(interval)
+
+
 def alone(parameter, difference, sigma):
     """The Parameter with the difference that it has where others are equal."""
     sigma = float(np.hypot(sigma, parameter.least))

@@ -20,6 +20,10 @@ UNSEEN = 1e6  # noise of a sample that a fit must not see, in units of the avera
 # Times slow() of noise, of what is left of two logs of one motion and is no shaking: bumps that
 # shake a rover otherwise in each leave 1.1 to 1.8 (`make zoo`).
 SLOW = 3.0
+# s by which what is left may be late, or early, of what is read: a quarter of a second is half a
+# period of the narrowest band, and a second a time constant that shows in a block; and the rows
+# beside (pairing.GRID_HZ). Share of the largest course of such readings from which on one is used.
+LAGS_S, LEAST_COURSE = (-1.0, -0.75, -0.5, -0.25, -0.08, 0.0, 0.08, 0.25, 0.5, 0.75, 1.0), 1e-4
 # Chance of blocks of noise alone to be foretold as well as those that an effect is believed by
 # [Student's t, one side].
 CHANCE = 0.001
@@ -92,9 +96,34 @@ def size(kind, values):
 
 
 def wandering(fits, not_explained):
-    """frozenset of the sensors of which what is left goes on for seconds."""
+    """frozenset of the sensors of which what is left is no noise, and no shaking that each log has
+    of its own: it goes on for seconds, or follows from what both logs read."""
     return frozenset(kind for kind, sensor_fit in fits.items()
-                     if slow(not_explained[kind], sensor_fit.pair.band_hz) > SLOW)
+                     if slow(not_explained[kind], sensor_fit.pair.band_hz) > SLOW
+                     or follows(sensor_fit, not_explained[kind]) > 1.0 - odds.CLOSED)
+
+
+def follows(sensor_fit, left):
+    """Share of the power of what is left (n, 3) that each of the two logs foretells by what its
+    sensor reads now, before and after, of blocks that the regression has not seen, and that both
+    foretell alike. What one log alone has, as noise or bumps, follows from its own readings; from
+    the other's it does not, or with the other sign."""
+    pair, said = sensor_fit.pair, []
+    left = left[:, sensor_fit.live]
+    fold = ((pair.t - pair.t[0]) / FOLD_S).astype(int) % 2
+    for readings in (pair.real(sensor_fit.kind), pair.simulated(sensor_fit.kind)):
+        columns = np.stack([np.interp(pair.t - lag, pair.t, own) for own in readings.T
+                            for lag in LAGS_S] + [np.ones(len(pair.t))], 1)
+        columns /= np.maximum(np.sqrt((columns ** 2).mean(axis=0)), 1e-12)
+        foretold = np.zeros_like(left)
+        for k in (0, 1):
+            seen = fold != k
+            foretold[~seen] = columns[~seen] @ np.linalg.lstsq(
+                columns[seen], left[seen], rcond=LEAST_COURSE)[0]
+        said.append(foretold)
+    power = max(float((left ** 2).sum()), 1e-30)
+    return min(float((said[0] * said[1]).sum()), *(
+        power - float(((left - x) ** 2).sum()) for x in said)) / power
 
 
 def earned(blocks, noises):
