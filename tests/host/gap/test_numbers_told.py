@@ -1,5 +1,7 @@
 """What is left of the gap of two logs of one motion is what the numbers told leave, and no other
 numbers that a fit may have besides."""
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -152,3 +154,16 @@ def test_what_moves_two_axes_more_than_gravity_does_is_no_scale_of_the_third():
     told, = [p for p in found.differs if p.sensor == "accel"]
     assert (told.name, told.axis) == ("bias", "z")
     assert told.difference == pytest.approx(-50.0, abs=5.0)
+
+
+@pytest.mark.parametrize("scales, bias, doubted", [
+    ([0.02, -0.03, 0.01], [0.3, -0.2, 0.5], False), ([-0.5, -0.51, -0.5], [0.0, 0.0, 0.0], False),
+    ([0.0, 0.0, -0.2], [0.0, 0.0, -7.8], True), ([-0.78, -0.78, -0.17], [0.0, 0.0, 0.0], True),
+    ([0.0, 0.0, -2.0], [0.0, 0.0, 0.0], True)])
+def test_numbers_that_no_two_parts_differ_by_are_something_else(scales, bias, doubted):
+    """Gravity that is left out on a floor was a bias of most of it, a unit three scales that no
+    full scale has: half of all is one."""
+    fit = SimpleNamespace(shape=np.diag(scales), bias=np.array(bias), unit=1.0)
+    found = numbers_told.doubted(SimpleNamespace(
+        conventions=(), fit=fit, live=np.ones(3, bool), kind="accel"), 0.0)
+    assert bool(found) is doubted and (not found or found[0] > 0.99)

@@ -11,6 +11,7 @@ from . import (
     gravity_directions,
     hypotheses,
     motion_match,
+    numbers_told,
     pairing,
     remaining_gap,
     single_log,
@@ -146,9 +147,8 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, full_scale, s
         own = sized(effects, lambda s, f=likely: whole(f, inflation, rows, s, left=False).log)
         fits = [gravity_directions.beside(kind, fit, real, sim) for fit in judged(inflation, rows)]
         best = best_of(fits)
-        if best.fit.name and best.conventions and not remaining_gap.closes(best, known):
-            named = best.conventions[0]
-            return kept((convention_findings.one_of(kind, (), named.probability, named.nats),),
+        if doubt := best.fit.name and numbers_told.doubted(best, known):
+            return kept((convention_findings.one_of(kind, (), *doubt),),
                         max((f for f in fits if not f.name), key=lambda f: f.log))
         if best.fit.name:
             return best

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from .. import odds
-from . import hypotheses, parameters, remaining_gap
+from . import evidence_of_logs, hypotheses, parameters, remaining_gap
 from .alignment import errors, independent
 from .hypotheses import DEG
 from .parameters import MG
@@ -16,6 +16,9 @@ from .parameters import MG
 SAME = 1e-5  # of a scale that does not differ: a tenth of a count at 1 g
 NEAR = 1.1  # times the least left: what of several numbers leaves as little is told by evidence
 SAME_BIAS = 1e-6  # m/s2 and rad/s, of a bias that does not: less than a count of any chip
+# Standard deviations of what data sheets have, beyond which two parts do not differ: a fifth in
+# scale between the axes of one, half of gravity in bias.
+IMPOSSIBLE = 6.0
 
 
 def told(sensor_fit, numbers, flicker):
@@ -142,3 +145,17 @@ def _regressed(off, columns, given, keys):
             for key, x, s in zip(mine, size, sigma):
                 sizes[key] = columns[key][2] * x, columns[key][2] * s
     return left, sizes
+
+
+def doubted(sensor_fit, noise2):
+    """(probability, nats) that what a SensorFit says is something else, or None: it names a
+    convention and does not close the gap, or needs numbers that no two parts differ by. A factor
+    that all its axes have in common is a full scale, how they lie a mounting."""
+    if sensor_fit.conventions and not remaining_gap.closes(sensor_fit, noise2):
+        return sensor_fit.conventions[0].probability, sensor_fit.conventions[0].nats
+    fit, live = sensor_fit.fit, sensor_fit.live
+    factors = np.log(np.maximum(1.0 + np.diag(fit.shape)[live], evidence_of_logs.LEAST_FACTOR))
+    beyond = max(np.abs(factors - np.median(factors)).max() / hypotheses.SHAPE,
+                 np.abs(fit.bias[live] / fit.unit).max() / hypotheses.BIAS[sensor_fit.kind])
+    nats = 0.5 * float(beyond) ** 2
+    return (odds.probability(nats), nats) if beyond > IMPOSSIBLE else None
