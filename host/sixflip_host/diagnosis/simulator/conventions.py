@@ -17,8 +17,7 @@ from . import (
     single_log,
 )
 
-# Before looking: nine simulators in ten are right about each sensor, and every single thing that
-# public reports name is one in some fifty of them.
+# Before looking: nine in ten are right about each sensor, one in fifty has each thing reported.
 PRIOR_HEALTHY, PRIOR_EACH, PRIOR_NAMELESS = 0.9, 0.02, 0.005
 # Of a gyro whose axes are swapped as its accelerometer's are: the two are one part more often than
 # not, and the half of it is left to a simulator that swaps one of them.
@@ -153,7 +152,8 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, full_scale, s
         if best.fit.name:
             return best
     other = best_of([f for f in fits if f.name])
-    return other if remaining_gap.explains(other, best) else best
+    sound = not numbers_told.doubted(other, known)
+    return other if sound and remaining_gap.explains(other, best) else best
 
 
 def without_smoothing(sensor_fit, rows):
