@@ -67,8 +67,8 @@ def proposed(diagnosis):
     if not diagnosis.gaps:
         unresolved = [[c.effect, other] for gap in diagnosis.rest.values() for c in gap.causes
                       for other in c.names[1:]]
-        return [{"capture": WORDS["cooling"], "minutes": 4.0, "resolves": unresolved}] \
-            if unresolved else []
+        return [{"capture": WORDS["cooling"] + _with(diagnosis), "minutes": 4.0,
+                 "resolves": unresolved}] if unresolved else []
     wanted = pairs(diagnosis)
     if not wanted:
         return _unseen_help(diagnosis)
@@ -91,8 +91,15 @@ def _by_design(diagnosis, wanted):
         for kind in sorted({kind for kind, _, _ in wanted}):
             design = alias.PlannedModel(rows, kind, diagnosis.settings.certified)
             resolves += resolved(design, kind, [p for p in wanted if p[0] == kind])
-        captures.append((WORDS[name], plan.minutes, resolves))
+        captures.append((WORDS[name] + _with(diagnosis), plan.minutes, resolves))
     return captures
+
+
+def _with(diagnosis):
+    """What a capture has to have beside its poses: without a thermometer a cooling session tells
+    no more than a warming one."""
+    measured = all(session.thermometer for session in diagnosis.sessions)
+    return "" if measured else ", with its temperature"
 
 
 def _by_hand(wanted):

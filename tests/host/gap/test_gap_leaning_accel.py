@@ -68,5 +68,7 @@ def test_a_warm_up_that_no_thermometer_saw_may_be_the_temperature_s():
     assert all(set(c["class"]) != {"warm_up"} for c in answer.as_dict(found)["causes"])
     seen = diagnosed([{"effect": "warm_up", "sensor": "accel", "z": 12.0, "tau_s": 120.0}], 8,
                      no_thermometer)
-    cause, = answer.as_dict(seen)["causes"]
+    told = answer.as_dict(seen)
+    cause, = told["causes"]
+    assert told["next"][0]["capture"].endswith("with its temperature")
     assert {"warm_up", "thermal_bias"} <= set(cause["class"]) and cause["effect"] is None
