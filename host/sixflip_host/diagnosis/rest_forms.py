@@ -109,10 +109,13 @@ def _nameless(rest, sensor):
 def place(cause, model, forms, posterior, rest):
     """{name: probability} of what stands where a cause (aliases.Cause) does; model: a
     scored_sets.Model. Of a decay of which a rest shows so little that a straight line says as much
-    of it, to within what tells two names apart, nobody can tell whether it is a walk's course."""
+    of it, to within what tells two names apart, nobody can tell whether it is a walk's course; of
+    any without a thermometer not whether it goes with the temperature."""
     known, name = posterior.places[cause.effect], cause.effect
     if name != "warm_up":
         return known
+    if rest.temperature is None:
+        known = {**known, name: 0.5 * known[name], "thermal_bias": 0.5 * known[name]}
     others = [form for form in posterior.best.forms if form.effect != name]
 
     def change(form):
@@ -123,8 +126,8 @@ def place(cause, model, forms, posterior, rest):
     lines = [model.scored((*others, line)).score for line in lines]
     if max(lines, default=-np.inf) < posterior.best.score - odds.PRESENT:
         return known
-    each = 0.5 * (known[name] + known.get("drift", 0.0))
-    return {**known, name: each, "drift": each}
+    alike = [name, "drift", *(["thermal_bias"] if rest.temperature is None else [])]
+    return {**known, **dict.fromkeys(alike, sum(known.get(n, 0.0) for n in alike) / len(alike))}
 
 
 def _as_large(form, times):

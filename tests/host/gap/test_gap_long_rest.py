@@ -75,10 +75,12 @@ def test_a_decay_is_a_warm_up_and_no_temperature():
 
 
 @pytest.mark.parametrize("course, names", [
-    (6.0 * (T - 8.0) / 16.0, ["drift", "warm_up"]), (8.0 * np.exp(-T / 3.0), ["warm_up"])])
+    (6.0 * (T - 8.0) / 16.0, ["drift", "thermal_bias", "warm_up"]),
+    (8.0 * np.exp(-T / 3.0), ["thermal_bias", "warm_up"])])
 def test_a_straight_course_is_a_warm_up_or_a_walk(course, names):
     """A quarter of a minute of a drone that stands was a warm-up by 91 %, of three times what is
-    seen to change; only a course that bends is one that decays."""
+    seen to change; only a course that bends is one that decays, with the temperature or without:
+    there is no thermometer."""
     whole = rest((course, -0.6 * course, 0.0), noise=0.3)
     few = int(16.0 * RATE)
     capture = Capture(whole.capture.meta, *(column[:few] for column in (

@@ -163,7 +163,8 @@ def test_what_moves_two_axes_more_than_gravity_does_is_no_scale_of_the_third():
 def test_numbers_that_no_two_parts_differ_by_are_something_else(scales, bias, doubted):
     """Gravity that is left out on a floor was a bias of most of it, a unit three scales that no
     full scale has: half of all is one."""
-    fit = SimpleNamespace(shape=np.diag(scales), bias=np.array(bias), unit=1.0)
+    fit = SimpleNamespace(shape=np.diag(scales), bias=np.array(bias), unit=1.0,
+                          hypothesis=SimpleNamespace(bias_sd=None))
     found = numbers_told.doubted(SimpleNamespace(
         conventions=(), fit=fit, live=np.ones(3, bool), kind="accel"), 0.0)
     assert bool(found) is doubted and (not found or found[0] > 0.99)

@@ -154,8 +154,11 @@ def doubted(sensor_fit, noise2):
     if sensor_fit.conventions and not remaining_gap.closes(sensor_fit, noise2):
         return sensor_fit.conventions[0].probability, sensor_fit.conventions[0].nats
     fit, live = sensor_fit.fit, sensor_fit.live
+    usual = hypotheses.BIAS[sensor_fit.kind]
+    if fit.hypothesis.bias_sd is not None:
+        usual = np.maximum(usual, fit.hypothesis.bias_sd)
     factors = np.log(np.maximum(1.0 + np.diag(fit.shape)[live], evidence_of_logs.LEAST_FACTOR))
     beyond = max(np.abs(factors - np.median(factors)).max() / hypotheses.SHAPE,
-                 np.abs(fit.bias[live] / fit.unit).max() / hypotheses.BIAS[sensor_fit.kind])
+                 np.abs((fit.bias / fit.unit / usual)[live]).max())
     nats = 0.5 * float(beyond) ** 2
     return (odds.probability(nats), nats) if beyond > IMPOSSIBLE else None
