@@ -1,9 +1,12 @@
 """What the accelerometer reads too much leans the box as far as it knows, and is none of the
 gyro's, nor of what moves between the rests; what no thermometer saw may be the temperature's."""
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from sixflip_host.diagnosis import answer, diagnosis
+from sixflip_host.diagnosis import answer, diagnosis, rests_judged, turn_model
+from sixflip_host.diagnosis.detect.detection import BELOW, RANGE
 from sixflip_host.experiment import blocks
 from sixflip_host.simulation import scenario, simulated_session
 
@@ -72,3 +75,14 @@ def test_a_warm_up_that_no_thermometer_saw_may_be_the_temperature_s():
     cause, = told["causes"]
     assert told["next"][0]["capture"].endswith("with its temperature")
     assert {"warm_up", "thermal_bias"} <= set(cause["class"]) and cause["effect"] is None
+
+
+@pytest.mark.parametrize("limit, levels, usable", [
+    (RANGE, {}, True), (RANGE, {"x": 250.0}, False), (BELOW, {}, False)])
+def test_a_few_samples_at_the_end_of_a_known_range_leave_the_other_turns(
+        limit, levels, usable, monkeypatch):
+    """21 samples at 500 deg/s hid that the scales up and down differ by 2 %."""
+    monkeypatch.setattr(turn_model, "usable", lambda session, nominal: True)
+    rests = SimpleNamespace(sessions=[None], nominal=[None])
+    cut = SimpleNamespace(sensor="gyro", effect="saturation", limits={"x": limit}, levels=levels)
+    assert rests_judged._turn(rests, [cut]) is usable
