@@ -62,6 +62,7 @@ def test_its_width_and_form_are_found_and_no_scale_is_wrong(change, monkeypatch)
     assert found.gap["gyro"][0] == without.gap["gyro"][0]
 
 
+@pytest.mark.long
 def test_it_is_a_cause_in_counts_that_explains_the_gap():
     real, simulated = logs(soft)
     found = answer.as_dict(diagnose([("real", real)], [("sim", simulated)], jobs=1))
@@ -108,6 +109,7 @@ def averaged(rate):
     return np.stack([np.convolve(x, np.ones(30) / 30.0, "same") for x in rate.T], 1)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("change", [
     np.copy, curved, bent_widely, one_sided, coarse, shaken, limited, averaged],
     ids=lambda change: change.__name__)

@@ -62,6 +62,7 @@ def diagnosed(capsys, *words):
     return json.loads(capsys.readouterr().out)
 
 
+@pytest.mark.long
 def test_two_causes_are_named_with_size_axis_and_share(
         two_sessions, made_once, capsys, tmp_path):
     junit = tmp_path / "checks.xml"

@@ -205,6 +205,7 @@ def driving(seed, rate_hz=100.0):
     return t, force, rate
 
 
+@pytest.mark.long
 def test_a_robot_that_never_leaves_its_wheels_is_not_in_poses(tmp_path, capsys):
     """However many rests it has: what its body does in them is no drift of its gyro."""
     answer = diagnosed(capsys, capture(tmp_path / "real.csv", *driving(1)),
@@ -213,6 +214,7 @@ def test_a_robot_that_never_leaves_its_wheels_is_not_in_poses(tmp_path, capsys):
     assert any("settles" in said for said in answer["remarks"])
 
 
+@pytest.mark.long
 def test_a_bump_that_one_log_is_cut_off_at_is_no_gap(tmp_path):
     """The other one stops at no other range: it has not been there."""
     logs = []

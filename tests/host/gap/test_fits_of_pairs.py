@@ -33,6 +33,7 @@ def test_clocks_apart_make_no_log_the_smoother():
     assert clock.name == "clock" and clock.difference == pytest.approx(2.0, abs=0.05)
 
 
+@pytest.mark.long
 def test_a_pendulum_s_noise_is_no_scale():
     """Of a swing of one frequency a smoother log is one of less scale: what a fit took off a noisy
     gyro by the one it put back by the other, 0.1 % of three times its standard error."""

@@ -222,6 +222,7 @@ def test_a_hands_spectrum_is_that_of_its_moves():
     assert np.sqrt(found[0]) == pytest.approx(sizes, rel=0.12)
 
 
+@pytest.mark.long
 def test_the_verb_says_it_in_json_and_words_and_writes_the_scenario(tmp_path, capsys):
     paths = [str(tmp_path / "one.csv"), str(tmp_path / "two.csv")]
     for path, capture in zip(paths, captures([ARM], sessions=2)):

@@ -71,6 +71,7 @@ def product(force):
     return bent
 
 
+@pytest.mark.long
 def test_a_product_that_levels_off_is_one_and_nothing_of_time():
     """What it left of a plain product was a jump, a course in time and hysteresis."""
     assert said(found(Bent(5, product), 22, 8.0)) == ("explained", [("accel", "cross_quadratic")])

@@ -113,6 +113,7 @@ def test_a_gap_that_no_curve_is_drawn_through_is_no_range(longest):
     assert not [p for p in found.differs if p.name in ("range", "step", "shaking")]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("slower", [0.018, -0.018])
 def test_a_gait_seen_by_a_clock_that_runs_slow_is_the_same_motion(slower):
     """It matched itself a step further on, and that was another motion."""
@@ -124,6 +125,7 @@ def test_a_gait_seen_by_a_clock_that_runs_slow_is_the_same_motion(slower):
     assert [p.name for p in found.differs if p.sensor == "device"] == ["clock"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind, sign", [("no_gravity", 0.0), ("gravity_sign", -1.0)])
 def test_a_car_whose_simulator_leaves_gravity_out(kind, sign):
     """Its gyro's cross axes make a degree of tilt of each turn: what is without gravity by the

@@ -43,6 +43,7 @@ def test_a_bias_that_flickers_is_no_gap():
     assert not [p for p in found.differs if p.sensor == "gyro"]
 
 
+@pytest.mark.long
 def test_the_scale_of_the_one_axis_that_is_turned_is_told():
     """It did not differ by itself, and yet the gap was said to be closed: by a bias that did. What
     little another axis has of the turn would do it as well, with five times as much."""
@@ -66,6 +67,7 @@ def test_a_gyro_s_bias_is_told_by_the_motion_as_well():
     assert low < 0.3 < high and high - low < 0.1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("off_mg", [0.0, 40.0])
 def test_a_bias_that_no_attitude_tells_from_a_scale_is_no_no_gap(off_mg):
     """A table that stays level: 23 mg of gap, all of it put right, and no number differed."""
@@ -78,6 +80,7 @@ def test_a_bias_that_no_attitude_tells_from_a_scale_is_no_no_gap(off_mg):
         assert low < off_mg < high and high - low < 2.0
 
 
+@pytest.mark.long
 def test_what_shakes_each_log_keeps_no_number_from_being_told():
     """Bumps left three times the noise, and what closed all the rest of 26 mg was not said."""
     t, force, rate = on_a_table(60.0)
@@ -93,6 +96,7 @@ def test_what_shakes_each_log_keeps_no_number_from_being_told():
     assert told == {"x", "z"}
 
 
+@pytest.mark.long
 def test_a_drift_of_what_stays_level_is_no_bias_of_many_times_its_size():
     """30 mg that come and go, and nothing that tells a scale: it followed the drift, and gravity,
     moved by it, made a bias of 220 mg of a gap of 14."""

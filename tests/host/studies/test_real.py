@@ -29,6 +29,7 @@ def test_every_claim_stands_beside_a_plain_figure(recording, recordings, judged)
     assert not wrong, "\n".join(wrong)
 
 
+@pytest.mark.long
 def test_temperature_takes_the_sweep_to_what_a_cubic_leaves_or_less(recordings, judged):
     answer, _ = judged(real_run.BY_NAME["tofupilot, one rest"], recordings)
     names = {(c["sensor"], name) for c in answer["causes"] for name in c["class"]}

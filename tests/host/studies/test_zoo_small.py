@@ -68,6 +68,7 @@ def test_a_rover_on_another_way_shows_what_needs_no_motion(name, wanted):
 NUMBERED = [n for n, d in defects.DEFECTS.items() if d[2]]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", NUMBERED)
 def test_a_defect_is_named_in_its_layer(name):
     _, _, right, layer, _ = defects.DEFECTS[name]
@@ -83,6 +84,7 @@ def test_a_defect_is_named_in_its_layer(name):
         assert {p.name for p in found.differs} == {wanted[0]}
 
 
+@pytest.mark.long
 def test_a_step_of_time_and_a_lever_arm_have_their_sizes():
     factor = compared("motion_times_4").conventions[0].value["factor"]
     assert factor == pytest.approx(4.0, rel=0.05)
