@@ -131,6 +131,26 @@ def test_a_rest_of_a_second_tells_the_noise_and_not_what_shakes_the_way():
     assert noise.density == pytest.approx(0.01, rel=1.0) and not noise.moving
 
 
+@pytest.mark.parametrize("times", [3.0, 0.1])
+def test_a_short_rest_tells_a_noise_that_is_another(times):
+    """It was known to a third by means over quarters of a second: of six numbers one differed."""
+    rng = np.random.default_rng(5)
+    logs = [made_of(size * rng.standard_normal((1500, 3)), ((0, 1500),))
+            for size in (0.1, 0.1 * times)]
+    numbers, _ = noise_and_registers.noises(*logs)
+    assert sum(p.differs for p in numbers) == 6
+
+
+def test_what_a_filter_takes_away_is_not_taken_off_the_density():
+    """A pole of 5 Hz leaves a tenth of a sample's power, and all of the density at 1 Hz."""
+    white = np.random.default_rng(6).standard_normal((1500, 3))
+    leak = np.exp(-2.0 * np.pi * 5.0 / 100.0)
+    values = lfilter([1.0 - leak], [1.0, -leak], white, axis=0)
+    noise = single_log.noise(made_of(values, ((0, 1500),)), values)
+    assert noise.density == pytest.approx(0.1, rel=2.0 * noise.relative_sigma)
+    assert noise.relative_sigma < 0.2
+
+
 def test_the_noise_of_what_moves_is_an_upper_bound():
     rng = np.random.default_rng(4)
     still, shaken = (made_of(size * rng.standard_normal((1500, 3)), rests) for size, rests in (

@@ -28,6 +28,9 @@ OFTEN = 10
 # Chance of noise to have a line in one channel of a rest; hertz below which what warms up or what
 # settles has as much: of a rest of ten seconds the first four ordinates.
 NO_LINE, SLOWEST_LINE_HZ = 1e-4, 0.5
+# Chi squared of three axes that are as loud in an octave as below, in 99 of 100: what a filter
+# takes away it takes from all of them.
+FLAT = 11.3
 DROWNED = 0.3  # of a count: noise below it hardly ever crosses one
 
 
@@ -113,19 +116,46 @@ def noise(trace, values):
     quick end of their spectrum, or None where that does not show it."""
     for parts in (1, 2, 4):  # of shorter means where the rests are too short for four others
         m = max(SHORTEST_MEAN, int(SUBMEAN_S * trace.rate_hz / parts))
-        # A line leaks into plain means by as much as their noise, now more and now less.
-        window = np.hanning(m + 2)[1:-1]
-        window /= window.sum()
-        squares, sample = _squares(trace, values, window)
-        if len(squares) >= 4:
-            # By the median: in a part of a rest one axis may still be moved.
-            per_mean = np.median(squares, axis=0) / MEDIAN_OF_SQUARE / 2.0
-            return Noise(np.sqrt(per_mean / (window ** 2).sum() / trace.rate_hz),
-                         float(MEDIAN_SIGMA / np.sqrt(len(squares) / 1.5)),
-                         np.sqrt(sample.mean(axis=0) / 2.0), NEIGHBOURS / np.sqrt(len(sample)))
+        level = _level(trace, values, m)
+        if level is not None:
+            power, sigma = _as_far_as_flat(trace, values, m, *level[:2])
+            return Noise(np.sqrt(power), sigma, np.sqrt(level[2].mean(axis=0) / 2.0),
+                         NEIGHBOURS / np.sqrt(len(level[2])))
     known = log_rests.white(values[~trace.put_in])
     return None if known is None else Noise(
         known[0] / np.sqrt(trace.rate_hz), known[1], known[0], known[1], moving=True)
+
+
+def _level(trace, values, m):
+    """((3,) power of the density of values (n, 3) by means over m samples, the relative standard
+    error of its root, squared differences of neighbouring samples (j, 3)) at the Trace's rests;
+    None of fewer than four differences."""
+    # A line leaks into plain means by as much as their noise, now more and now less.
+    window = np.hanning(m + 2)[1:-1]
+    window /= window.sum()
+    squares, sample = _squares(trace, values, window)
+    if len(squares) < 4:
+        return None
+    # By the median: in a part of a rest one axis may still be moved.
+    power = np.median(squares, axis=0) / MEDIAN_OF_SQUARE / 2.0
+    return (power / (window ** 2).sum() / trace.rate_hz,
+            float(MEDIAN_SIGMA / np.sqrt(len(squares) / 1.5)), sample)
+
+
+def _as_far_as_flat(trace, values, m, power, sigma):
+    """(power, relative standard error) of _level() of means over m samples, sharpened by means
+    over half as many and so on for as long as each octave is as loud as those below it: of the
+    long ones a short rest has few. Where one is not, a filter begins, or what shakes the robot."""
+    longest, low = sigma, np.log(np.maximum(power, 1e-300))
+    while m > 1 and sigma > log_rests.UNTOLD:
+        m //= 2
+        power, own, _ = _level(trace, values, m)
+        octave = np.log(np.maximum(power, 1e-300))
+        if 0.25 * ((octave - low) ** 2).sum() > FLAT * (sigma ** 2 + own ** 2):
+            break
+        share = own ** -2.0 / (own ** -2.0 + sigma ** -2.0)
+        low, sigma = low + share * (octave - low), sigma * np.sqrt(1.0 - share)
+    return np.exp(low), min(longest, float(np.hypot(sigma, log_rests.UNTOLD)))
 
 
 def _squares(trace, values, window):
