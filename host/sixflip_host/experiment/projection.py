@@ -24,6 +24,8 @@ MOST_ROWS = 4000  # of a log that a fit looks at; each stands for those around i
 # Stretches of a log, each of them one observation of what its coefficients are worth: a standard
 # error by twenty is known to a sixth, and of a minute's log each holds about one move.
 STRETCHES = 20
+UNEVEN = 2.0  # standard errors that octaves are apart by chance in one of twenty
+SEGMENT = 512  # rows whose spectrum is taken at once: ten seconds of a grid of 50 Hz
 
 
 def lateral_basis(axis):
@@ -115,7 +117,7 @@ def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,
     """
     n, p = own.shape
     k = columns.shape[2]
-    weight = np.ones(n) if rows is None else 1.0 / rows
+    weight = every_weight = np.ones(n) if rows is None else 1.0 / rows
     raw, fewer = (y, own, columns), max(1, n // MOST_ROWS) if every == 1 else 1
     weight, y, own, columns = (x[::fewer] for x in (weight, y, own, columns))
     n, k_rows = n * every, every * fewer
@@ -166,16 +168,18 @@ def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,
     sigma = np.sqrt(np.maximum(np.diag(inverse), 0.0))
     shared = shared + mean
     if residuals:
-        sigma = np.maximum(sigma, scattered(inverse, left, own, columns, k_rows / (
-            variance * inflation), live))
+        weights = live / (variance * inflation)
+        sigma = np.maximum(sigma, scattered(inverse, left, own, columns, k_rows * weights))
         y, own, columns = raw
         left = y - own @ beta.T - columns @ shared
+        sigma = np.hypot(sigma, uneven(solved, left, own, columns, every_weight, every * weights,
+                                       prior))
     result = (log, beta, shared, sigma[3 * p:], left if residuals else None,
               sigma[:3 * p].reshape(3, p))
     return result + (inverse[3 * p:, 3 * p:],) if covariance else result
 
 
-def scattered(inverse, left, own, columns, weights, live):
+def scattered(inverse, left, own, columns, weights):
     """Standard errors (3 p + k,) of the coefficients by how much stretches of the log disagree on
     them: what a robot does besides is another thing in each of its moves, of no steady size
     [Liang & Zeger, Biometrika 73 (1986), 13, equation 8]. weights (3,): of a channel's samples."""
@@ -184,8 +188,45 @@ def scattered(inverse, left, own, columns, weights, live):
     parts = []
     shared = 0.0
     for c in range(3):
-        score = weights[c] * left[:, c:c + 1] * live[c]
+        score = weights[c] * left[:, c:c + 1]
         parts.append(np.add.reduceat(own * score, edges, axis=0))
         shared = shared + np.add.reduceat(columns[c] * score, edges, axis=0)
     pulls = np.concatenate([*parts, shared], 1) @ inverse
     return np.sqrt(STRETCHES / (STRETCHES - 1.0) * (pulls ** 2).sum(axis=0))
+
+
+def uneven(sizes, left, own, columns, rows, weights, prior):
+    """Standard deviations (3 p + k,) that coefficients of such sizes (3 p + k,) have from one
+    octave of frequencies to another: what bends between two sensors shakes them unlike near a
+    frequency of its own, which is the scale of neither. It is what is said without an octave, less
+    what its noise and the priors make of the same sizes there, as of a jackknife [Efron, The
+    Jackknife, the Bootstrap (1982)]. rows (n,) weigh the samples, weights (3,) the channels'
+    squares; prior (3 p + k,)."""
+    n, p = own.shape
+    long = min(n, SEGMENT)
+    window = np.hanning(long + 2)[1:-1] * np.sqrt(8.0 / 3.0)  # has the power of none
+    number = np.log2((long // 2 + 1) / np.maximum(np.arange(long // 2 + 1), 0.5)).astype(int)
+    size = 3 * p + columns.shape[2]
+    grams, pulls = np.zeros((2, number.max() + 1, size, size))
+    pulls = pulls[:, 0]
+    every = np.concatenate([own, columns.reshape(n, -1), left], 1) * rows[:, None]
+    for first in range(0, n - long + 1, long):
+        spectra = np.fft.rfft(every[first:first + long] * window[:, None], axis=0)
+        for octave in range(len(grams)):
+            some = spectra[number == octave]
+            some = np.concatenate([some.real, some.imag]) * np.sqrt(2.0 / long)
+            shared = some[:, p:-3].reshape(len(some), 3, -1)
+            for c in range(3):
+                of_channel = np.concatenate([some[:, :p], shared[:, c]], 1)
+                place = np.r_[c * p:(c + 1) * p, 3 * p:size]
+                grams[octave][np.ix_(place, place)] += weights[c] * of_channel.T @ of_channel
+                pulls[octave][place] += weights[c] * of_channel.T @ some[:, c - 3]
+    whole, far = grams.sum(axis=0), 0.0
+    scale = np.sqrt(np.diag(whole) + prior ** -2.0)
+    for gram, pull in zip(grams, pulls):
+        others = (whole - gram + np.diag(prior ** -2.0)) / np.outer(scale, scale)
+        covariance = np.linalg.inv(others + ROUNDED * np.eye(size)) / np.outer(scale, scale)
+        apart = covariance @ (sizes / prior ** 2 - pull)
+        noise = np.diag(covariance) - (covariance ** 2) @ prior ** -2.0
+        far = far + np.maximum(apart ** 2 - UNEVEN ** 2 * np.maximum(noise, 0.0), 0.0)
+    return np.sqrt((1.0 - 1.0 / len(grams)) * far)
