@@ -223,10 +223,15 @@ def uneven(sizes, left, own, columns, rows, weights, prior):
                 pulls[octave][place] += weights[c] * of_channel.T @ some[:, c - 3]
     whole, far = grams.sum(axis=0), 0.0
     scale = np.sqrt(np.diag(whole) + prior ** -2.0)
+
+    def inverse(gram):
+        return np.linalg.inv((gram + np.diag(prior ** -2.0)) / np.outer(scale, scale)
+                             + ROUNDED * np.eye(size)) / np.outer(scale, scale)
+    # What the windows weigh is fitted best by sizes that are a little off.
+    more = inverse(whole) @ (pulls.sum(axis=0) - sizes / prior ** 2)
     for gram, pull in zip(grams, pulls):
-        others = (whole - gram + np.diag(prior ** -2.0)) / np.outer(scale, scale)
-        covariance = np.linalg.inv(others + ROUNDED * np.eye(size)) / np.outer(scale, scale)
-        apart = covariance @ (sizes / prior ** 2 - pull)
+        covariance = inverse(whole - gram)
+        apart = covariance @ ((sizes + more) / prior ** 2 - pull + gram @ more)
         noise = np.diag(covariance) - (covariance ** 2) @ prior ** -2.0
         far = far + np.maximum(apart ** 2 - UNEVEN ** 2 * np.maximum(noise, 0.0), 0.0)
     return np.sqrt((1.0 - 1.0 / len(grams)) * far)
