@@ -101,7 +101,8 @@ def candidates(hypothesis, measured, kind, live, swapped=None):
         # What is made of several readings has the noise of all, and none to be missed.
         dead = live & heard & strays & (size < DEAD * gain) & ~near.any(axis=0) & (
             hypothesis.name == "healthy")
-        for own in with_strays(near, strays & ~dead, kind):
+        signs = kind == "accel" and np.abs(y.mean(axis=0)) > BIAS[kind]
+        for own in with_strays(near, strays & ~dead, np.broadcast_to(signs, 3)):
             once = np.abs(own[live]).sum(axis=0).max() < 2
             if once and not np.array_equal(own[live], np.eye(3)[live]):
                 tried += [(own, unit) for unit in units]
@@ -110,21 +111,22 @@ def candidates(hypothesis, measured, kind, live, swapped=None):
     return tried
 
 
-def with_strays(near, strays, kind):
+def with_strays(near, strays, signs):
     """[S (3, 3)]: near (3, 3) with the rows of strays (3,), which follow nothing, answering to
-    axes that no other row does: each to its own where that is free. An accelerometer's sign
-    gravity tells; of a gyro a turn is likelier than a mirror."""
+    axes that no other row does: each to its own where that is free. signs (3,): axes whose sign
+    gravity tells, as it does an accelerometer's; of others a turn is likelier than a mirror."""
     near, rows = near.copy(), np.flatnonzero(strays)
     free = [int(j) for j in np.flatnonzero(~near.any(axis=0))]
     for i in [*(i for i in rows if i in free), *(i for i in rows if i not in free)]:
         if free:
             near[i, free.pop(free.index(i) if i in free else 0)] = 1.0
-    moved = [i for i in rows if near[i].any() and (kind == "accel" or not near[i, i])]
+    told = [i for i in rows if signs[near[i] != 0.0].any()]
+    moved = [i for i in rows if i in told or near[i].any() and not near[i, i]]
     signed = [near]
     for i in moved:
         signed += [np.where(np.arange(3)[:, None] == i, -s, s) for s in signed]
     signed.sort(key=np.linalg.det, reverse=True)
-    return signed if kind == "accel" else signed[:1]
+    return signed if told else signed[:1]
 
 
 def left_of(values, design):

@@ -37,7 +37,7 @@ OWN = {"accel": {"celsius": 0.03, "fading": 0.3, "line": 0.15, "pairs": 0.15, "s
 FADES_S = (30.0, 120.0)  # time constants of what fades: of a minute's log, and of warming up
 # Slower than that a gyro's tilt between two rests is its own: a cross axis of 1 % of a robot that
 # turns to one side, or a tenth of a deg/s of bias, make a degree in ten seconds.
-WANDERS_HZ = 0.05
+WANDERS_HZ = (.05,.1,.2,.4,.8,1.6)
 KNOTS = 8  # of the bent line of an axis: four a side, a front end that levels off has one or two
 BENT = 0.03  # of a reading, by which such a line may be off: a bend of 3 % (SHAPE)
 UPRIGHT = 0.05  # cosine of the pitch from which on roll and yaw are one: 87 degrees
@@ -90,7 +90,10 @@ def accelerometer(force, motion, g):
     world = np.einsum("nij,nj->ni", motion.turn, force)
     # What a gyro says of the tilt wanders between rests; of a thing that stays level its fast part
     # and the mean say more.
-    level = up.mean(axis=0) + up - alignment.smooth(up, GRID_HZ, WANDERS_HZ)
+    level = up.mean(axis=0)
+    slower = [alignment.smooth(up, GRID_HZ, hz) for hz in WANDERS_HZ]
+    tilt = np.stack([b - a for a, b in zip(slower, [*slower[1:], up])], 2)
+    half = np.full(tilt.shape[2], 0.5)
     tried = [
         Hypothesis("healthy", force, *none(n)),
         # What moves it in another proportion to gravity than a scale has, as of two logs one of
@@ -98,9 +101,9 @@ def accelerometer(force, motion, g):
         Hypothesis("healthy", force, moved[:, :, None] * np.eye(3), np.zeros(3),
                    np.full(3, SHAPE), scaled=3),
         Hypothesis("no_gravity", moved, *none(n)),
-        Hypothesis("no_gravity", force - level, *none(n)),
+        Hypothesis("no_gravity", force - level, -tilt, half, half),
         Hypothesis("gravity_sign", moved - up, *none(n)),
-        Hypothesis("gravity_sign", force - 2.0 * level, *none(n)),
+        Hypothesis("gravity_sign", force - 2.0 * level, -2.0 * tilt, half, half),
         Hypothesis("gravity_after_rotation", moved, *none(n), bias_sd=g),
         Hypothesis("world_frame_forces", world, *none(n), heading=True),
         Hypothesis("no_centripetal_term", force, transport, np.ones(1), np.full(1, 0.1)),

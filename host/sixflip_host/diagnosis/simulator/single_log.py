@@ -20,6 +20,7 @@ DEAD, ALIVE = 0.03, 0.15
 # hundred independent samples errs by 14 %), and what moves a robot moves its other channels by
 # MORE.
 SAME, MORE = 1.3, 10.0
+CROOKED = 0.08  # of another axis, in a channel: twice a cross axis (hypotheses.SHAPE)
 SHORTEST_MEAN = 2  # samples
 FULL = 32767.0 / 32768.0  # of a limit: 32767 counts are as far as -32768
 # Times as often as any value next to a limit a channel reads the limit: a sine, which slows down
@@ -73,10 +74,19 @@ def dead(real, sim):
         if alive[0].sum() > alive[1].sum():
             channels[kind] |= alive[0] & (shares[1] < DEAD)
         if still[0] is not None and still[1] is not None:
-            alive = ours > MORE * np.maximum(*still), theirs > MORE * still[1]
+            own = beyond_cross_axes(getattr(real, name)).var(axis=0)
+            alive = own > MORE * np.maximum(*still), theirs > MORE * still[1]
             if alive[0].sum() > alive[1].sum():
                 channels[kind] |= alive[0] & (theirs < SAME * still[1]) & alive[1].any()
     return channels
+
+
+def beyond_cross_axes(values):
+    """values (n, 3) without what each has of the others by how askew a sensor may be."""
+    x = values - values.mean(axis=0)
+    others = [np.delete(x, i, axis=1) for i in range(3)]
+    return np.stack([own - other @ np.clip(np.linalg.lstsq(other, own, rcond=None)[0], -CROOKED,
+                                           CROOKED) for own, other in zip(x.T, others)], 1)
 
 
 def constant_channels(real, sim):
