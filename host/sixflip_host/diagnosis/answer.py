@@ -58,7 +58,7 @@ def gaps(diagnosis):
 def held_out(diagnosis):
     """What the figures of the gap were checked on."""
     if diagnosis.rest:
-        return "pieces of the rest, each by the others"
+        return "pieces of the time, each by the others"
     if not diagnosis.gaps:
         return None
     if any(g.same_session for g in diagnosis.gaps.values()):

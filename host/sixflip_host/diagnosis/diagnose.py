@@ -71,7 +71,13 @@ def diagnose(captures, simulator=(), reference=(), certified_box=False, without=
 def _beyond(result, own, sessions, damages):
     """The Diagnosis without what two logs of one motion show to be in both, with what they alone
     show, and with the simulator's parameters beside the effects that it lacks."""
-    from .simulator import against_simulator, dead_zone, effects_beside, lacking_effects
+    from .simulator import (
+        against_simulator,
+        dead_zone,
+        effects_beside,
+        lacking_courses,
+        lacking_effects,
+    )
     progress.doing("parameters beside the effects")
     for _ in range(MOST_ROUNDS):
         both = against_simulator.in_both(result)
@@ -82,7 +88,8 @@ def _beyond(result, own, sessions, damages):
             **known, **{kind: [*known.get(kind, ()), *more] for kind, more in both.items()}})
         result = diagnosis.diagnose_sessions(sessions, settings, own, result.comparisons, damages)
     progress.doing("effects that the motion shows")
-    return effects_beside.beyond(lacking_effects.added(dead_zone.added(result)))
+    result = lacking_courses.added(dead_zone.added(result))
+    return effects_beside.beyond(lacking_effects.added(result))
 
 
 def flicker_levels(capture, path):

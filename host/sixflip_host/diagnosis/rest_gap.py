@@ -116,7 +116,7 @@ def gaps_by_sensor(sessions, settings, lines=(), least_s=0.0, tones=()):
     if rest is None or rest.n < MEANS or np.bincount(rest.rest, rest.seconds).max() < least_s:
         return {}
     chip = sessions[0].capture.meta["sensor"]
-    return {kind: _sensor(rest, kind, chip, settings, _jumps(sessions, kind, tones))
+    return {kind: of_one_sensor(rest, kind, chip, settings, _jumps(sessions, kind, tones))
             for kind in rest.values}
 
 
@@ -131,12 +131,12 @@ def _jumps(sessions, kind, tones):
             for axis, x in zip("xyz", rest.T)]
 
 
-def _sensor(rest, kind, chip, settings, jumps):
-    """RestGap: posterior, classes, adequacy, held-out figures."""
+def of_one_sensor(rest, kind, chip, settings, jumps=(1.0, 1.0, 1.0), flickers=1.0):
+    """RestGap of a LongRest; flickers: times that of one log that it has."""
     progress.doing("the %s at rest" % ("gyro" if kind == "gyro" else "accelerometer"))
     units = rest_units.axis_units(rest, kind, chip, settings)
     data = gap_figures.data_of(units)
-    flicker, reference = adequacy.usual(chip, kind), settings.reference.get(kind)
+    flicker, reference = flickers * adequacy.usual(chip, kind), settings.reference.get(kind)
     levels = rest_units.levels(rest, kind, flicker if reference is None else max(
         reference, flicker / 4.0), reference is not None)
     several = int(rest.rest.max()) > 0

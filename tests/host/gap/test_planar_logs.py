@@ -137,3 +137,17 @@ def test_a_robot_on_springs_whose_simulator_gets_gravity_wrong(name, times):
     real = read(t, moved + up, turns @ crooked.T, 1)
     found = comparison.compare([("real", real)], "sim", read(t, moved + times * up, turns, 9))
     assert named(found) == {(name, "accel")}
+
+
+def test_a_floor_that_slopes_is_no_fault_of_a_simulator_whose_floor_is_level():
+    """Two degrees of a yard: its gravity was added after the rotation, with certainty."""
+    t, force, rate = driven()
+    heading = np.radians(np.cumsum(rate[:, 2]) / RATE_HZ)
+    along = np.stack([np.cos(heading), -np.sin(heading), 0.0 * t], 1)
+    sloping = force + np.sin(np.radians(2.0)) * along
+    found = comparison.compare([("real", read(t, sloping, rate, 1))], "sim",
+                               read(t, force, rate, 9))
+    assert not found.conventions and closed(found)
+    slope, = found.differs
+    assert slope.name == "slope" and slope.difference == pytest.approx(2.0, abs=0.05)
+    assert "2.0" in slope.how

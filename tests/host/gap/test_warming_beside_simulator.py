@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from sixflip_host.diagnosis import effect_estimates
+from sixflip_host.diagnosis import answer, diagnose, effect_estimates
 from sixflip_host.diagnosis.aliases import Cause
 from sixflip_host.diagnosis.hypotheses import Form
 from sixflip_host.diagnosis.simulator import (
@@ -123,3 +123,27 @@ def test_a_dead_band_is_no_narrower_than_none(counts, said):
     """One of -164 counts explained a gyro whose scales up and down differ."""
     assert effect_estimates.believable("dead_band", "mpu6050", "gyro", {"x": counts},
                                        {"x": 10.0}) is said
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("simulated, verdict", [(0.0, "explained"), (0.15, "no gap")])
+def test_what_follows_the_temperature_all_the_way_has_its_name(simulated, verdict):
+    """Four seconds of each rest showed nothing of it, and of the way nobody asked: a bias of one
+    temperature was to be set, and ten times the noise were left."""
+    t, force, rate = tumbled(5, 140.0)
+    celsius, captures = 30.0 + 6.0 * np.sin(2.0 * np.pi * t / 110.0), []
+    for number, slope in enumerate((0.15, simulated)):
+        capture = read(t, force, rate + np.outer(slope * (celsius - 30.0), [0.0, 0.0, 1.0]),
+                       60 + number)
+        capture.meta.update(temp_lsb_per_c=340, temp_offset_c=36.53)
+        capture.temp = np.rint((celsius - 36.53) * 340).astype(np.int16)
+        captures.append(capture)
+    found = answer.as_dict(diagnose.diagnose([("real", captures[0])], [("sim", captures[1])],
+                                             jobs=1))
+    assert found["verdict"] == verdict
+    assert [c["class"][0] for c in found["causes"]] == ["thermal_bias"][:verdict == "explained"]
+    for cause in found["causes"]:
+        assert list(cause["value"]) == ["z"]
+        assert cause["value"]["z"] == pytest.approx(0.15, rel=0.03)
+        assert found["simulator"]["gap"]["gyro"]["after"] < 0.05 < 0.3 < found["simulator"][
+            "gap"]["gyro"]["before"]

@@ -207,8 +207,9 @@ def _of_range_and_time(logs, together, numbers, findings):
             if (p.sensor, p.axis) not in cut]
     if len(fits) == 2 and not findings:
         more += shaking.shaking(real, dead_zone.taken_off(sim, together.bands), logs.aligned)
-    return more + own_motion.timing(together.late, together.late_sigma, fits, logs.aligned,
-                                {kind: logs.smoothing_s2(kind) for kind in fits})
+    return more + own_motion.slope(fits) + own_motion.timing(
+        together.late, together.late_sigma, fits, logs.aligned,
+        {kind: logs.smoothing_s2(kind) for kind in fits})
 
 
 def numbers_of(real, sim, mended, own, fits, findings):

@@ -18,6 +18,7 @@ from .traces import spinning
 SHAPE = 0.04
 BIAS = {"accel": 0.8, "gyro": 0.35}
 FREE = 0.3  # of the nameless one's coefficients: a third of a signal where it should not be
+SLOPES = 0.035  # of gravity along a floor: two degrees, as roads and yards have
 LEVER_M = 0.1  # m: a sensor sits somewhere in a robot of some tens of centimetres
 DELAY_S = 0.05  # s: GAP has 1 to 19 ms of chips; logs made elsewhere had 40 to 80 ms
 SMOOTH_S2 = 2e-4  # half the square of a pole of 8 Hz
@@ -58,7 +59,8 @@ class Hypothesis:
     with prior FREE; bias_sd: one, or (3,), None for BIAS; copies: the first so many triples of
     free, and the first scaled of columns, carry the signal's noise; shape_sd (3, 3): of E, None
     for SHAPE; smooth_sd: s2, of how much smoother it is, see Fit;
-    full_scale: how many times the signal the real one reads by a full scale that is not stated."""
+    full_scale: how many times the signal the real one reads by a full scale that is not stated;
+    slopes: the columns are the world's two level axes, times gravity."""
 
     name: str
     signal: np.ndarray
@@ -73,6 +75,7 @@ class Hypothesis:
     shape_sd: np.ndarray = None
     smooth_sd: float = SMOOTH_S2
     full_scale: float = 1.0
+    slopes: bool = False
 
 
 def none(n):
@@ -100,6 +103,9 @@ def accelerometer(force, motion, g):
         # which is smoother: no wrong time step, and no reason to tell a scale.
         Hypothesis("healthy", force, moved[:, :, None] * np.eye(3), np.zeros(3),
                    np.full(3, SHAPE), scaled=3),
+        # A floor that slopes and a simulator's that does not: each heading has another share.
+        Hypothesis("healthy", force, g * motion.turn[:, :2].transpose(0, 2, 1), np.zeros(2),
+                   np.full(2, SLOPES), slopes=True),
         Hypothesis("no_gravity", moved, *none(n)),
         Hypothesis("no_gravity", force - level, -tilt, half, half),
         Hypothesis("gravity_sign", moved - up, *none(n)),

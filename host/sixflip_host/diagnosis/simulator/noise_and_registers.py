@@ -141,9 +141,9 @@ def registers(real, sim):
                      for v, x in ((a, real), (b, sim))]
             if steps[0] > 0 and steps[1] > 0:
                 coarse = steps[0] > COARSER * max(steps[1], real.quantum[index] * scale)
-                # A simulator's may be its printed digits, which matter where noise does not
-                # drown them.
-                coarse |= steps[1] > COARSER * steps[0] and steps[1] > scale * (
+                # A simulator's may be its printed digits, and a chip's counts are finer than
+                # most simulators': they matter where noise does not drown them.
+                coarse |= max(steps) > COARSER * min(steps) and max(steps) > scale * (
                     noises[kind][i] if kind in noises else np.inf)
                 numbers.append(Parameter("step", kind, axis, unit, steps[0], None, steps[1], None,
                                          steps[0] - steps[1], None, bool(coarse),

@@ -180,6 +180,18 @@ def timing(late, late_sigma, fits, alignment, freed=None):
     return numbers
 
 
+def slope(fits):
+    """[Parameter]: degrees by which the floor of one log slopes more than the other's."""
+    fit = fits["accel"].fit if "accel" in fits else None
+    if fit is None or not fit.hypothesis.slopes:
+        return []
+    size = float(np.hypot(*fit.extra))
+    sigma = float(np.hypot(*(fit.extra * fit.extra_sigma))) / max(size, 1e-12)
+    return [with_how(parameters.compared(
+        "slope", "device", "", "°", None, np.inf, None, np.inf, np.degrees(np.arctan(size)),
+        np.degrees(sigma)), "lean its floor, or its gravity, by {:.2f}° otherwise".format)]
+
+
 def with_how(parameter, how):
     """The Parameter with what to do where it differs."""
     return replace(parameter, how=how(parameter.difference)) if parameter.differs else parameter

@@ -58,9 +58,8 @@ def live(trace):
 def dead(real, sim):
     """{sensor: (3,) bool}: channels of the simulator that hardly change where the real ones do,
     and no other does in their place: of what turns about one axis another one may answer."""
-    channels = {}
+    channels = {"accel": np.zeros(3, bool), "gyro": np.zeros(3, bool)}
     for kind, name in (("accel", "force"), ("gyro", "rate")):
-        channels[kind] = np.zeros(3, bool)
         if getattr(real, name) is None or getattr(sim, name) is None:
             continue
         still = [at_rest(x, getattr(x, name), x.quantum[kind == "gyro"]) for x in (real, sim)]
@@ -84,7 +83,7 @@ def dead(real, sim):
 def beyond_cross_axes(values):
     """values (n, 3) without what each has of the others by how askew a sensor may be."""
     x = values - values.mean(axis=0)
-    others = [np.delete(x, i, axis=1) for i in range(3)]
+    others = (np.delete(x, i, axis=1) for i in range(3))
     return np.stack([own - other @ np.clip(np.linalg.lstsq(other, own, rcond=None)[0], -CROOKED,
                                            CROOKED) for own, other in zip(x.T, others)], 1)
 
