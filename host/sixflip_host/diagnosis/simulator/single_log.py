@@ -156,7 +156,7 @@ def _as_far_as_flat(trace, values, m, power, sigma):
     over half as many and so on for as long as each octave is as loud as those below it: of the
     long ones a short rest has few. Where one is not, a filter begins, or what shakes the robot."""
     longest, low = sigma, np.log(np.maximum(power, 1e-300))
-    while m > 1 and sigma > log_rests.UNTOLD:
+    while m > 1 and longest > log_rests.UNTOLD:
         m //= 2
         power, own, _ = _level(trace, values, m)
         octave = np.log(np.maximum(power, 1e-300))
