@@ -27,7 +27,7 @@ TIMES_USUAL = 1.6  # of the usual levels, that a null has at most
 SMALLEST_SCALE = 1e-6  # nats: all nulls gain the same
 MARGIN_NATS = 1.0  # noise is not quite what it is simulated as
 LEAST_NATS = 4.0  # GAP: 95 % of the prototype's nulls in one search with the noise known exactly
-FORMAT = 60  # of the cache: another one where what is kept, or how it is made, has changed
+FORMAT = 61  # of the cache: another one where what is kept, or how it is made, has changed
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,8 @@ from .thermometer import MOVES_C, moved_c
 from .way_memory import FRICTION, UNMOVED_G, levelling
 
 LAGS_S = (0.0, 15.0, 30.0, 60.0, -30.0)  # GAP: a neighbouring thermometer, 10-60 s
-WARM_UP_S = (30.0, 60.0, 120.0, 240.0, 480.0)  # GAP: 60-300 s, and an octave to both sides
+# GAP: 60-300 s, and an octave to both sides; of a strong one the time constant shows to a tenth.
+WARM_UP_S = (30.0, 42.0, 60.0, 85.0, 120.0, 170.0, 240.0, 340.0, 480.0)
 STARTED_S = (60.0, 240.0)  # a short one and a long one: how warm each session started
 # Sessions that have columns of their own: of more each is a small part of all, and the columns of
 # all together would grow with the square of their number.

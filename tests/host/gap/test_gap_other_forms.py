@@ -165,3 +165,14 @@ def test_a_bend_is_no_alias_of_a_memory_that_bends_as_well():
     def bent(force):
         return np.eye(3)[2] * 4.0 * np.tanh(1.2 * force ** 3)
     assert said(found(Bent(5, bent), 18, 6.0)) == ("explained", [("accel", "cubic")])
+
+
+def test_a_strong_warm_up_between_two_time_constants_has_its_name():
+    """Of 0.3 deg/s within 90 s what 60 and 120 s left of each other had no name."""
+    def warming(force, rate):
+        t = np.arange(len(force)) / 100.0
+        return np.outer(0.3 * np.exp(-t / 90.0), [0.0, 1.0, 0.0])
+    result = found(Bent(3, gyro=warming), 6, 6.0)
+    (sensor, cause), = result.causes
+    assert (sensor, cause.effect) == ("gyro", "warm_up") and result.verdict != "unexplained"
+    assert result.gaps["gyro"].causes[0].value["y"] == pytest.approx(0.3, rel=0.1)
