@@ -151,3 +151,17 @@ def test_a_floor_that_slopes_is_no_fault_of_a_simulator_whose_floor_is_level():
     slope, = found.differs
     assert slope.name == "slope" and slope.difference == pytest.approx(2.0, abs=0.05)
     assert "2.0" in slope.how
+
+
+@pytest.mark.parametrize("kind", ["gyro", "accel"])
+def test_another_unit_of_what_stays_level_is_no_scale_and_no_time_step(kind):
+    """What a unit takes off the noise was held against it, as if a fit had: rates in rad/s were a
+    time step of .0487, and forces in g a gravity that a bias made."""
+    simulated = read(*driven(), 9)
+    per, factor = {"gyro": ("gyro_lsb_per_dps", 180.0 / np.pi),
+                   "accel": ("accel_lsb_per_g", 9.80665)}[kind]
+    simulated.meta[per] *= factor
+    found = compared(simulated)
+    assert named(found) == {(kind + "_unit", kind)}
+    before, after, _ = found.gap[kind]
+    assert after < 0.05 * before

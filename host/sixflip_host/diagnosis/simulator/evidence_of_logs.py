@@ -170,7 +170,7 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
     log, beta, shared, sigma, rest, beta_sigma = result
     # Of a channel that reads a part of the signal only, the smoothing is that of the part.
     part = np.maximum(1.0 + np.diag(beta[:, :3]) + (shared[:h.scaled] if h.scaled else 0.0), DEAD)
-    for weaker in (gains(h, beta, shared, unit), smoothed(shared[k + 1] / part, noise_bends)):
+    for weaker in (gains(h, beta, shared), smoothed(shared[k + 1] / part, noise_bends)):
         log += 0.5 * n / inflation * np.minimum(0.0, np.log(weaker))[live].sum()
     log -= live.sum() * n / inflation * np.log(unit) + HEADING * h.heading
     if h.name:
@@ -200,18 +200,18 @@ def of_factors(scale, width, odd):
     return sound + 0.5 * float(scale ** 2 @ known)
 
 
-def gains(h, beta, shared, unit):
-    """(3,): by how much the real log's own noise would be in the prediction, as power. Where that
-    is less than in the reading itself, the fit may only have weakened a signal that is noisy in
-    the real log; whether it has cannot be told from two logs [Fuller, Measurement Error Models
-    (1987), section 1.1], so the better fit is not believed."""
+def gains(h, beta, shared):
+    """(3,): by how much the real log's own noise would be in the prediction, as power, in its
+    unit. Where that is less than in the reading itself, the fit may only have weakened a signal
+    that is noisy in the real log; whether it has cannot be told from two logs [Fuller, Measurement
+    Error Models (1987), section 1.1], so the better fit is not believed."""
     whole = np.eye(3) + beta[:, :3]
     if h.scaled:
         whole = whole + np.eye(3) * shared[:h.scaled]
     if h.copies and h.name == "":
         whole = whole + beta[:, 4:7]
     turned = beta[:, 7:10] if h.copies > 1 else np.zeros((3, 3))
-    return np.maximum(unit ** 2 * ((whole ** 2).sum(axis=1) + (turned ** 2).sum(axis=1)), 1e-12)
+    return np.maximum((whole ** 2).sum(axis=1) + (turned ** 2).sum(axis=1), 1e-12)
 
 
 def bends(noise, grid_hz):
