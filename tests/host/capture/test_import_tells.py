@@ -279,7 +279,8 @@ def test_a_columns_name(name, sensor, axis, unit):
 
 
 @pytest.mark.parametrize("name", [
-    "field.orientation.x", "linear_acceleration_covariance[0]", "accel_mag", "pos_x", "loop_us",
+    "field.orientation.x", "linear_acceleration_covariance[0]", "linear_acceleration_covariance2",
+    "accel_mag", "pos_x", "loop_us",
     "motionUserAccelerationX(G)", "axisP[0]", "debug[0]", "status", "max"])
 def test_a_name_that_is_no_reading(name):
     assert column_names.column(name) is None

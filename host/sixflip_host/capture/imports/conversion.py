@@ -200,8 +200,8 @@ class Conversion:
             if signed:
                 self.assumed.append("%s counts have no sign: taken as %s" % (
                     WHAT[group], signed))
-        told = ToldUnits(path, options, self.named_units, self.rows, self._sizes,
-                         meta["rate_hz"], self.assumed, self.remarks)
+        told = ToldUnits(path, options, self.columns, self.named_units, self.rows,
+                         self._sizes, meta["rate_hz"], self.assumed, self.remarks)
         accel_unit, accel_lsb = told.of_accelerometer(accel)
         gyro_unit, gyro_lsb = told.of_gyro(gyro, accel_unit)
         if accel is not None and gyro is not None:

@@ -22,11 +22,13 @@ class ToldUnits:
 
     named   {sensor: unit} in the columns' names, or of the format; rows: of the table
     sizes   {group of columns: units.Sizes}; rate_hz: of the rows
+    columns {our name: column of the table}
     """
 
-    def __init__(self, path, options, named, rows, sizes, rate_hz, assumed, remarks):
+    def __init__(self, path, options, columns, named, rows, sizes, rate_hz, assumed, remarks):
         self.path, self.options, self.named_units = path, options, named
         self.rows, self.sizes, self.rate_hz = rows, sizes, rate_hz
+        self.size_of = "|a| of %s" % " ".join(columns.get(name, name) for name in ACCEL)
         self.assumed, self.remarks = assumed, remarks
         self.by_step = {group: chip_steps.told(group, one.step()) for group, one in sizes.items()}
         self.is_gone = False            # gravity, by gravity.stays, where nothing rests
@@ -105,8 +107,9 @@ class ToldUnits:
 
     def _gone(self, size, unit, said):
         """BadFile for values without gravity, unless someone said their unit, who is told."""
-        words = "|a| is %.2g g%s: gravity has been taken out of it, and no scale, offset or " \
-            "face can be told from what is left" % (size, NOTHING_STAYS * self.is_gone)
+        words = "%s is %.2g g%s: gravity has been taken out of it, and no scale, offset or " \
+            "face can be told from what is left" % (
+                self.size_of, size, NOTHING_STAYS * self.is_gone)
         if not said:
             raise BadFile("%s: %s; expected the acceleration with gravity, which phones keep as "
                           "another sensor, or --units %s to take it as it is" % (
@@ -130,13 +133,15 @@ class ToldUnits:
             raise BadFile("%s: the accelerometer is in counts, |a| is %s: expected --accel-lsb, "
                           "counts per g" % (path, size))
         if seen and seen.size < GRAVITY_FREE and not whole:
-            raise BadFile("%s: |a| is %s: gravity has been taken out of it, expected the "
-                          "acceleration with gravity, or --units with its unit" % (path, size))
+            raise BadFile("%s: %s is %s: gravity has been taken out of it, expected the "
+                          "acceleration with gravity, or --units with its unit" % (
+                              path, self.size_of, size))
         if self.is_gone:
-            raise BadFile("%s: |a| is %s%s, as gravity does: expected the acceleration with "
-                          "gravity, or --units with its unit" % (path, size, NOTHING_STAYS))
-        raise BadFile("%s: |a| is %s, which is no gravity in g, m/s2, mm/s2, mg or counts: "
-                      "expected --units, such as g,dps" % (path, size))
+            raise BadFile("%s: %s is %s%s, as gravity does: expected the acceleration with "
+                          "gravity, or --units with its unit" % (
+                              path, self.size_of, size, NOTHING_STAYS))
+        raise BadFile("%s: %s is %s, which is no gravity in g, m/s2, mm/s2, mg or counts: "
+                      "expected --units, such as g,dps" % (path, self.size_of, size))
 
     def of_gyro(self, values, accel_unit):
         """(unit, counts per deg/s or None) of the gyro: said, in its name, by its values or by the
