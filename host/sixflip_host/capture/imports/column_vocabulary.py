@@ -3,9 +3,10 @@
 ACCEL, GYRO, MAG, TEMP = "a", "g", "m", "t"
 WORDS = {
     ACCEL: {"a", "f", "acc", "acce", "accel", "accelerometer", "acceleration", "accelerations",
-            "accels", "accelerometers", "linacc", "gf"},     # the last one: g-force
+            "accels", "accelerometers", "linacc", "gf",
+            "fb"},      # the last two: g-force, and NaveGo's force in the body's frame
     GYRO: {"g", "w", "gyr", "gyro", "gyros", "gyroscope", "gyroscopes", "omega", "angvel",
-           "rotationrate", "angrate"},
+           "rotationrate", "angrate", "wb"},        # the last one: NaveGo's
     MAG: {"m", "mag", "magnetometer", "magnetic"},
 }
 PAIRS = {ACCEL: (("lin", "acc"), ("linear", "acceleration"), ("linear", "accel"),
