@@ -14,8 +14,9 @@ from . import units
 COUNTS = 32768          # of a full scale, by which many loggers divide it
 TELLS = 1e-4            # of a step: data sheets round 250 / 32768 to 1 / 131, which is five of it
 # Different values of an axis, at most, whose grid is looked for: 16 bits have room for eight times
-# as many. Values beyond the first ones, at least: each lies on a grid by chance
-# with twice units.ON_GRID. Parts of a step, at least and at most, in which an offset is kept.
+# as many. Values beyond the first ones, at least: each lies on a grid by chance with twice
+# units.ON_GRID. Parts of a step, at least and at most, in which an offset is kept: a mean is off
+# by half of one.
 MOST_CODES, FEWEST_ON_GRID, PARTS = 4096, 8, (64, 1024)
 LOGGERS_G = (STANDARD_G, 9.81, 9.8)     # m/s² that loggers make of 1 g
 

@@ -22,7 +22,8 @@ RESTS = 0.02            # of the windows, that rest where anything does
 # by at least that of three like axes, Maxwell's sqrt(3 pi / 8 - 1). In the logs of three phones
 # without gravity 0.06 to 0.19 of the force stays and its size varies by 1.4 or more; in those of
 # some twenty sensors with it, in which nothing rests, 0.36 or more stays, in most 0.8, and the
-# size varies by 0.25, of a rocket in flight by 0.5.
+# size varies by 0.25, of a rocket in flight by 0.5. Fewer spans than FEWEST_STAYS have no median
+# that one move would not shift.
 STAYS_S, STAYS, MAXWELL, FEWEST_STAYS = 4.0, 0.3, math.sqrt(3.0 * math.pi / 8.0 - 1.0), 3
 MOST_TURNS = 20_000     # twentieths of a second in which gravity is seen to turn: the first ones
 LAG = 4                 # of those, over which it is
