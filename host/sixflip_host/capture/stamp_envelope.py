@@ -48,7 +48,8 @@ def first_guess(t_us, known):
     usual = float(np.median(gaps))
     if usual > 0:
         whole = np.rint(gaps / usual)
-        near = (whole >= 1) & (np.abs(gaps / usual - whole) < ON_GRID)
+        near = ((whole >= 1) | _not_renewed(gaps, whole)) & (
+            np.abs(gaps / usual - whole) < ON_GRID)
         if near.mean() >= MOSTLY and (whole.mean() < MOST_WHOLE
                                       or step < ON_GRID * usual and _loses_rows(gaps, whole)):
             return _pace(gaps, whole == 1), 1, True
@@ -61,6 +62,15 @@ def first_guess(t_us, known):
         if middle > 0 and 1.4826 * np.median(np.abs(spans - middle)) < EVEN * middle:
             return middle / rows, rows, False
     return float(t_us[-1] - t_us[0]) / (len(t_us) - 1), max(1, len(t_us) // 8), False
+
+
+def _not_renewed(gaps, whole):
+    """bool (n,): intervals, gaps (n,) µs, of nothing beside one that is several periods, whole
+    (n,), long: a row has the stamp of the one before it, or came late and with the next one. Where
+    a link hands rows over by twos such intervals are as many as those of a period."""
+    several = np.concatenate([[False], whole >= 2, [False]])
+    again = (gaps == 0) & (several[:-2] | several[2:])
+    return again & (again.sum() < (whole == 1).sum())
 
 
 def _loses_rows(gaps, whole):
@@ -94,7 +104,8 @@ def renewed(t_us, period):
     """(n,) t_us with stamps that are one of a row before, as where a recorder did not renew it,
     where their rows were: those of FORGOTTEN rows at most between others that came on time. (Of
     rows that were handed over together the first comes late, and the next at once.) Where that is
-    not the exception the stamps tell something else, and stay."""
+    not the exception the stamps tell something else, and stay; one that equals the stamp before it
+    is no other row's, and up to a quarter of the rows may have one."""
     beyond = (t_us - t_us[0]) - np.arange(len(t_us)) * period
     raised, steps = beyond.copy(), np.diff(beyond)
     near = ON_GRID * period
@@ -106,7 +117,8 @@ def renewed(t_us, period):
             if len(back):
                 end = first + 1 + int(back[0])
                 raised[first:end], on_time[first:end + 1] = raised[first - 1], True
-    rare = (raised != beyond).mean() < 1.0 - MOSTLY
+    others = (raised != beyond) & np.append(True, np.diff(t_us) != 0)
+    rare = others.mean() < 1.0 - MOSTLY and (raised != beyond).mean() < ON_GRID
     return t_us + (raised - beyond) if rare else t_us
 
 

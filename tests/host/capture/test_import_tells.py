@@ -268,29 +268,6 @@ def test_counts_without_a_sign(tmp_path, capsys, encode, words):
     assert (capture.accel == COUNTS).all() and words in said
 
 
-def test_acceleration_without_gravity_asks_for_its_unit(tmp_path, capsys):
-    values = np.random.default_rng(12).normal(0, 0.05, (ROWS, 3))
-    text = table(["%.2f" % t for t in SECONDS], accel=values, form="%.9f")
-    assert "gravity has been taken out" in refused(tmp_path, capsys, text)
-    found = open_recording.read(tmp_path / "in.csv", gravity=False)
-    assert "m/s2: gravity does not tell" in " ".join(found.assumed)
-
-
-def test_acceleration_without_gravity_whose_unit_its_name_says(tmp_path, capsys):
-    """A phone's linear acceleration was taken for an accelerometer that lies on its faces."""
-    rng = np.random.default_rng(12)
-    values = rng.normal(0, 0.05, (ROWS, 3)) + [0.02, 0.0, 0.3]
-    names = ",".join("Linear Acceleration %s (m/s^2)" % axis for axis in "xyz")
-    text = table(["%.2f" % t for t in SECONDS], accel=values, form="%.9f").replace(
-        "ax,ay,az", names)
-    told = refused(tmp_path, capsys, text)
-    assert "gravity has been taken out" in told and "--units m/s2" in told
-    (tmp_path / "in.csv").write_text(text)
-    capture, said = imported(tmp_path, capsys, text, "--units", "m/s2")
-    assert "gravity has been taken out" in said
-    assert capture.pose is None or not capture.pose.any()
-
-
 @pytest.mark.parametrize("name, sensor, axis, unit", [
     ("field.linear_acceleration.x", "a", "x", ""), ("gyro_rad[2]", "g", "2", "rad/s"),
     ("accelerometer_m_s2[0]", "a", "0", "m/s2"), ("AccX", "a", "x", ""),
@@ -302,7 +279,8 @@ def test_a_columns_name(name, sensor, axis, unit):
 
 
 @pytest.mark.parametrize("name", [
-    "field.orientation.x", "linear_acceleration_covariance[0]", "accel_mag", "pos_x", "loop_us",
+    "field.orientation.x", "linear_acceleration_covariance[0]", "linear_acceleration_covariance2",
+    "accel_mag", "pos_x", "loop_us",
     "motionUserAccelerationX(G)", "axisP[0]", "debug[0]", "status", "max"])
 def test_a_name_that_is_no_reading(name):
     assert column_names.column(name) is None

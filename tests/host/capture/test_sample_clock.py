@@ -329,6 +329,21 @@ def test_rows_that_are_lost_on_the_way_are_told_though_the_recorder_paused_for_l
     assert found.losses == pytest.approx(lost, rel=0.01) and found.late < 0.01 * ROWS
 
 
+def test_rows_that_are_lost_are_told_beside_stamps_that_were_not_renewed():
+    """A phone gave every third row the stamp and the values of the one before, which is left out,
+    and at times its stamp alone: a tenth of the intervals last nothing."""
+    generator = np.random.default_rng(22)
+    rows = np.arange(3000)
+    t = np.rint(195.5 * rows + generator.normal(0.0, 4.0, len(rows))) * 1000.0
+    stale = rows % 3 == 2
+    t[stale] = t[np.flatnonzero(stale) - 1]
+    kept = ~stale | (generator.random(len(rows)) < 0.28)
+    found = measured(t[kept])
+    assert found.rate_hz == pytest.approx(1e6 / 195_500.0, rel=0.003)
+    assert found.losses == pytest.approx((~kept).sum(), rel=0.03)
+    assert found.late < 0.05 * kept.sum()
+
+
 def test_what_pauses_every_second_had_no_rows_ready_when_it_began():
     """As fast at first as ever: nothing came late."""
     t = np.cumsum(np.random.default_rng(23).normal(2541.0, 8.0, 3960))

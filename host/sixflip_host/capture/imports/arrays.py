@@ -1,6 +1,7 @@
 """Tables that are in memory already: arrays out of NumPy's .npz and MATLAB's .mat files."""
 
 import math
+import zipfile
 
 import numpy as np
 
@@ -13,6 +14,10 @@ from .csv_table import Block
 
 ROWS = 1 << 16
 MATLAB_5, MATLAB_HDF5 = b"MATLAB 5.0 MAT-file", b"MATLAB 7.3 MAT-file"
+ZIP, OLD_SPREADSHEET = b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
+SHEETS = ("xl/workbook.xml", "xl/workbook.bin", "content.xml")      # of .xlsx, .xlsb, .ods
+TABLES = {"timetable": "writetimetable", "table": "writetable"}     # and what writes them
+EXPECTED = "such as accel (n, 3), gyro (n, 3) and t (n,)"
 RATES = ("fs", "samplerate", "sample_rate", "rate", "rate_hz")
 
 
@@ -64,6 +69,17 @@ class ArrayTable:
             yield Block([0] * len(values), values, None)
 
 
+def is_spreadsheet(path, head):
+    """Whether a file that begins with head is a workbook of Excel or LibreOffice."""
+    if not head.startswith(ZIP):
+        return head.startswith(OLD_SPREADSHEET)
+    try:
+        with zipfile.ZipFile(path) as file:
+            return not {*file.namelist()}.isdisjoint(SHEETS)
+    except (OSError, ValueError, zipfile.BadZipFile):
+        return False
+
+
 def read_npz(path):
     """ArrayTable of an .npz with arrays (n,) and (n, 3)."""
     try:
@@ -82,10 +98,15 @@ def read_mat(path):
     """ArrayTable of a .mat of MATLAB's format 5 (save -v6 or -v7)."""
     try:
         data = b"".join(Source(path).pieces())
-        arrays = mat_file.arrays(data, sample_limit.memory())
+        arrays, objects = mat_file.arrays(data, sample_limit.memory())
     except (ValueError, MemoryError) as error:
         raise BadFile("%s: cannot be read as a MAT-file: %s" % (path, _first_line(error))) \
             from None
+    if objects and not any(value.size > 1 for value in arrays.values()):
+        writer = next((TABLES[one] for one in objects if one in TABLES), None)
+        raise BadFile("%s: holds nothing but objects of MATLAB's own (%s), expected %s" % (
+            path, " ".join(sorted(set(objects))), "a CSV of one, as %s(NAME, 'FILE.csv') writes "
+            "it" % writer if writer else EXPECTED))
     return _table(path, arrays)
 
 
@@ -104,7 +125,7 @@ def _table(path, arrays):
     for name, value in arrays.items():
         if not isinstance(value, np.ndarray) or value.dtype.kind not in "iuf":
             continue
-        if value.size == 1 and name.lower() in RATES:
+        if value.size == 1 and name.lower().rpartition(".")[2] in RATES:
             rate = float(value.ravel()[0])
             continue
         value = np.squeeze(value)
@@ -115,8 +136,8 @@ def _table(path, arrays):
         elif value.ndim == 2 and value.shape[1] == 3:
             columns.update({"%s[%d]" % (name, axis): value[:, axis] for axis in range(3)})
     if not columns:
-        raise BadFile("%s: no array of (n,) or (n, 3) numbers in it, expected such as accel "
-                      "(n, 3), gyro (n, 3) and t (n,)" % path)
+        raise BadFile("%s: no array of (n,) or (n, 3) numbers in it, expected %s" % (
+            path, EXPECTED))
     if rate is not None and not (math.isfinite(rate) and 0 < rate < 1e6):
         rate = None
     return ArrayTable(path, columns, rate_hz=rate)

@@ -1,6 +1,7 @@
 """The unit of a sensor's values by their step: a logger that multiplied a chip's counts leaves one
 of the few numbers that chips have for a count, in the unit it multiplied them to."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +13,11 @@ from . import units
 
 COUNTS = 32768          # of a full scale, by which many loggers divide it
 TELLS = 1e-4            # of a step: data sheets round 250 / 32768 to 1 / 131, which is five of it
+# Different values of an axis, at most, whose grid is looked for: 16 bits have room for eight times
+# as many. Values beyond the first ones, at least: each lies on a grid by chance with twice
+# units.ON_GRID. Parts of a step, at least and at most, in which an offset is kept: a mean is off
+# by half of one.
+MOST_CODES, FEWEST_ON_GRID, PARTS = 4096, 8, (64, 1024)
 LOGGERS_G = (STANDARD_G, 9.81, 9.8)     # m/s² that loggers make of 1 g
 
 
@@ -34,6 +40,59 @@ SIZES = {ACCEL: ("g", _chips("ACCEL_RANGES")), GYRO: ("deg/s", _chips("GYRO_RANG
 PER_UNIT = {ACCEL: [("g", 1.0), ("mg", 1e-3), *(("m/s2", 1 / g) for g in LOGGERS_G),
                     ("mm/s2", 1e-3 / STANDARD_G)],
             GYRO: [(unit, units.GYRO_UNITS[unit]) for unit in ("dps", "rad/s", "mdps")]}
+
+
+class Sizes(units.Sizes):
+    """units.Sizes that also keeps the different values of each axis, as long as they are few."""
+
+    def __init__(self):
+        super().__init__()
+        self._codes = None
+
+    def add(self, values):
+        super().add(values)
+        known = self._codes or [np.zeros(0)] * values.shape[1]
+        self._codes = [axis if len(axis) > MOST_CODES else np.union1d(axis, column)
+                       for axis, column in zip(known, values.T)]
+
+    def grid(self):
+        """(step, offsets (k,)) of the grid that the values of each axis lie on, or None."""
+        axes = self._codes or []
+        gaps = np.concatenate([np.diff(axis) for axis in axes] or [np.zeros(0)])
+        if len(gaps) < FEWEST_ON_GRID or max(map(len, axes)) > MOST_CODES:
+            return None
+        step = float(gaps.min())
+        for near in (8, 50, 1000, math.inf):
+            number = np.rint(gaps / step)
+            few = number <= near
+            step = float((gaps[few] * number[few]).sum() / (number[few] ** 2).sum())
+        offsets, off = [], 0.0
+        for axis in axes:
+            offsets.append(float(np.median(axis - np.rint((axis - axis[0]) / step) * step)))
+            whole = (axis - offsets[-1]) / step
+            off = max(off, float(np.abs(whole - np.rint(whole)).max()))
+        return (step, np.array(offsets)) if off < units.ON_GRID else None
+
+
+def counts_of(sensor, path, what, values, unit, lsb, per_unit, sizes):
+    """units.counts_of values, in parts of a chip's step where that has an offset on each axis;
+    sizes: their Sizes."""
+    step = sizes.step()
+    grid = sizes.grid() if step is None and lsb is None and per_unit is not None else None
+    if grid is not None and _is_a_chips(sensor, grid[0] * per_unit):
+        size, offsets = grid
+        parts = units.ROOM * size / max(float(np.abs(values).max()), size)
+        parts = 2 ** int(math.log2(min(max(parts, 1.0), PARTS[1])))
+        if parts >= PARTS[0]:
+            part = size / parts
+            whole = np.rint((values - offsets) / size) * parts + np.rint(offsets / part)
+            return units.Counts(whole.astype(np.int16), 1 / (part * per_unit), "float", [])
+    return units.counts_of(path, what, values, unit, lsb, per_unit, step)
+
+
+def _is_a_chips(sensor, size):
+    """Whether a size, in g or deg/s, is that of a chip's count."""
+    return any(abs(size / one - 1) < TELLS for one in SIZES[sensor][1])
 
 
 def told(sensor, step):
@@ -62,14 +121,16 @@ def of_header(sensor, counts):
     they are the file's own; and the chip's step where it is a multiple of theirs, as where an
     offset that is none of the chip's counts was taken off."""
     name = {ACCEL: "accel", GYRO: "gyro"}[sensor]
-    if counts.kind == "float":
-        return {name + "_values": "float"}, []
+    more = {name + "_values": "float"} if counts.kind == "float" else {}
     own = int(np.gcd.reduce(np.diff(np.sort(counts.counts.astype(np.int64), axis=0), axis=0),
                             axis=None))
-    of, sizes = SIZES[sensor]
-    if own < 2 or not (counts.counts % own).any() or not any(
-            abs(own / counts.lsb / size - 1) < TELLS for size in sizes):
-        return {}, []
+    of = SIZES[sensor][0]
+    if own < 2 or not (counts.counts % own).any() or not _is_a_chips(sensor, own / counts.lsb):
+        return more, []
+    if more:
+        return {**more, name + "_own_step": own}, [
+            "all %s values of an axis are whole steps of 1/%.6g %s apart: an offset was taken off"
+            % (name, counts.lsb / own, of)]
     return {name + "_own_step": own}, [
         "all %s counts of an axis are multiples of %d apart: its own step is 1/%.6g %s, and an "
         "offset was taken off" % (name, own, counts.lsb / own, of)]

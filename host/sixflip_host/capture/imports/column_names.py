@@ -6,8 +6,10 @@ from typing import NamedTuple
 from .column_vocabulary import (
     ACCEL,
     ARRIVALS,
+    AXIS_FIRST,
     DEGREES,
     DERIVED,
+    ESTIMATES,
     FILLERS,
     FUSED_TIMES,
     GYRO,
@@ -38,7 +40,7 @@ def column(name):
     """The Column that a name says, or None."""
     bare, unit = _without_unit(name)
     words = _words(bare)
-    if not words or set(words) & DERIVED:
+    if not words or {word.rstrip("0123456789") for word in words} & DERIVED:
         return None
     if _is_temperature(words):
         said = unit.lower() or (words[-1] if len(words) > 1 else "")
@@ -94,14 +96,13 @@ def _fused(words):
         match = re.match(r"([a-z]+?)_?([xyz])\Z", word)
         if match and word not in FILLERS:
             for sensor, names in WORDS.items():
-                known = match.group(1) in names
-                single = len(match.group(1)) == 1
-                rest = set(words) - {word}
-                if known and (not single or rest <= BESIDE or number == len(words) - 1):
+                single, rest = len(match.group(1)) == 1, set(words) - {word}
+                if match.group(1) in names and (
+                        not single or rest <= BESIDE or number == len(words) - 1):
                     return sensor, match.group(2), " ".join(
                         words[:number] + [match.group(1)] + words[number + 1:])
-        if word in ("gfx", "gfy", "gfz"):       # g-force
-            return ACCEL, word[-1], "gf"
+        if word[0] in "xyz" and word[1:] in AXIS_FIRST:
+            return AXIS_FIRST[word[1:]], word[0], word[1:]
     return None
 
 
@@ -143,17 +144,16 @@ def _by_unit(words, unit):
 
 
 def readings(names, file_name=""):
-    """({ax … gz, mx … mz, temp: column name}, {ACCEL, GYRO: unit}, remarks) of a table's columns.
-
-    The first whole set of three of a sensor is taken; remarks name what was left out. Columns
-    that are called x, y and z and nothing else are what the file's own name says they are.
-    """
+    """({ax … gz, mx … mz, temp: column name}, {ACCEL, GYRO: unit}, {sensor: what was left out}) of
+    a table's columns. The first whole set of three of a sensor is taken that has the fewest words
+    of an estimate. Columns that are called x, y and z and nothing else are what the file's own
+    name says they are."""
     if not any(column(name) for name in names):
         lower = {name.strip().lower(): name for name in names}
         sensor = next((sensor for sensor, part in ((GYRO, "gyr"), (ACCEL, "acc"))
                        if part in file_name.lower()), None)
         if sensor and set("xyz") <= set(lower):
-            return {sensor + axis: lower[axis] for axis in "xyz"}, {}, []
+            return {sensor + axis: lower[axis] for axis in "xyz"}, {}, {}
     columns, sets = {}, {}
     for name in names:
         told = column(name)
@@ -163,10 +163,10 @@ def readings(names, file_name=""):
             columns.setdefault("temp", name)
         else:
             sets.setdefault((told.sensor, told.group), {}).setdefault(told.axis, (name, told.unit))
-    units, remarks = {}, []
+    units, remarks = {}, {}
+    best = sorted(sets, key=lambda one: len(ESTIMATES.intersection(one[1].split())))
     for sensor in (ACCEL, GYRO, MAG):
-        whole = [axes for (kind, _), axes in sets.items() if kind == sensor
-                 and _axes(axes) is not None]
+        whole = [sets[one] for one in best if one[0] == sensor and _axes(sets[one]) is not None]
         if not whole:       # what there is of it shows what is missing
             for (kind, _), axes in sets.items():
                 for axis in set("xyz") & set(axes) if kind == sensor else ():
@@ -178,9 +178,9 @@ def readings(names, file_name=""):
         if len(said) == 1 and "" not in said:
             units[sensor] = said.pop()
         if len(whole) > 1:
-            remarks.append("columns %s are taken, %s are left out" % (
-                " ".join(name for name, _ in whole[0].values()),
-                " ".join(name for other in whole[1:] for name, _ in other.values())))
+            remarks[sensor] = "columns %s are taken, %s are left out" % tuple(
+                " ".join(name for other in some for name, _ in other.values())
+                for some in (whole[:1], whole[1:]))
     return columns, units, remarks
 
 

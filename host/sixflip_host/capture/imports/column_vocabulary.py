@@ -3,9 +3,10 @@
 ACCEL, GYRO, MAG, TEMP = "a", "g", "m", "t"
 WORDS = {
     ACCEL: {"a", "f", "acc", "acce", "accel", "accelerometer", "acceleration", "accelerations",
-            "accels", "accelerometers", "linacc"},
+            "accels", "accelerometers", "linacc", "gf",
+            "fb"},      # the last two: g-force, and NaveGo's force in the body's frame
     GYRO: {"g", "w", "gyr", "gyro", "gyros", "gyroscope", "gyroscopes", "omega", "angvel",
-           "rotationrate", "angrate"},
+           "rotationrate", "angrate", "wb"},        # the last one: NaveGo's
     MAG: {"m", "mag", "magnetometer", "magnetic"},
 }
 PAIRS = {ACCEL: (("lin", "acc"), ("linear", "acceleration"), ("linear", "accel"),
@@ -17,6 +18,12 @@ DERIVED = {"covariance", "cov", "orientation", "quaternion", "quat", "bias", "of
            "sigma", "var", "variance", "magnitude", "norm", "abs", "total", "user", "cmd",
            "setpoint", "error", "reference", "world", "enu", "ned", "clipping", "debug", "motor",
            "calibrated", "corrected", "integral", "peak", "max", "min", "mean"}
+# What is read from the sensor is better than what a filter made of it, which a phone calls linear
+# acceleration where it has taken gravity out, and ROS where it has not.
+ESTIMATES = {"est", "estimated", "estimate", "filtered", "filt", "ekf", "fused", "linear", "lin",
+             "linacc", "free", "comp", "compensated"}
+# The axis before the sensor, linear acceleration and angular velocity, as mavros' topics in a CSV.
+AXIS_FIRST = {"la": ACCEL, "av": GYRO}
 FILLERS = {"raw", "lsb", "counts", "count", "b", "body", "imu", "field", "data", "readings",
            "reading", "values", "value", "sensor", "measured", "meas", "x", "y", "z", "chip",
            "mps2", "ms2", "radps", "rps", "dps", "mdps", "mg",

@@ -82,7 +82,7 @@ class Conversion:
         names = [name for columns in groups.values() for name in columns]
         names += list(self.time or ())
         grown = {group: Growing(np.float32, len(columns)) for group, columns in groups.items()}
-        self._sizes = {group: units.Sizes() for group in (ACCEL, GYRO) if group in groups}
+        self._sizes = {group: chip_steps.Sizes() for group in (ACCEL, GYRO) if group in groups}
         times = Growing(float)
         self._lines, self._label_number, self._label_of = [], Growing(np.int32), {}
         rows = 0
@@ -200,8 +200,8 @@ class Conversion:
             if signed:
                 self.assumed.append("%s counts have no sign: taken as %s" % (
                     WHAT[group], signed))
-        told = ToldUnits(path, options, self.named_units, self.rows, self._sizes,
-                         self.assumed, self.remarks)
+        told = ToldUnits(path, options, self.columns, self.named_units, self.rows,
+                         self._sizes, meta["rate_hz"], self.assumed, self.remarks)
         accel_unit, accel_lsb = told.of_accelerometer(accel)
         gyro_unit, gyro_lsb = told.of_gyro(gyro, accel_unit)
         if accel is not None and gyro is not None:
@@ -210,8 +210,8 @@ class Conversion:
         if accel is not None:
             per_unit = {"si": 1 / options.g, "m/s2": 1 / options.g, "mm/s2": 1e-3 / options.g}.get(
                 accel_unit, units.ACCEL_UNITS[accel_unit])
-            counts[ACCEL] = units.counts_of(path, "accelerometer", accel, accel_unit,
-                                            accel_lsb, per_unit, self._sizes[ACCEL].step())
+            counts[ACCEL] = chip_steps.counts_of(ACCEL, path, "accelerometer", accel, accel_unit,
+                                                 accel_lsb, per_unit, self._sizes[ACCEL])
             meta["accel_lsb_per_g"] = counts[ACCEL].lsb
             del accel
             step = units.common_step(counts[ACCEL].counts)
@@ -220,9 +220,8 @@ class Conversion:
                                     "resolution is %.2f mg" % (step, 1e3 * step
                                                                / counts[ACCEL].lsb))
         if gyro is not None:
-            counts[GYRO] = units.counts_of(path, "gyro", gyro, gyro_unit, gyro_lsb,
-                                           units.GYRO_UNITS[gyro_unit],
-                                           self._sizes[GYRO].step())
+            counts[GYRO] = chip_steps.counts_of(GYRO, path, "gyro", gyro, gyro_unit, gyro_lsb,
+                                                units.GYRO_UNITS[gyro_unit], self._sizes[GYRO])
             meta["gyro_lsb_per_dps"] = counts[GYRO].lsb
             del gyro
         if MAG in values:

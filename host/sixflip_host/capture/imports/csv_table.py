@@ -119,10 +119,9 @@ class Table:
         """(number of the first line, text) of the file, without NULs, with decimal points."""
         for line, text in csv_text.texts(self.path, self._source, self.said,
                                            self._first):
-            if "\0" in text:
-                self._pass_over("NUL bytes",
-                                sum("\0" in one for one in text.split("\n")))
-                text = text.replace("\0", "")
+            text, left_out = csv_text.plain(text)
+            for why, number in left_out.items():
+                self._pass_over(why, number)
             if self._dress is not None:
                 text = self._dress.plain(text)
                 self.said.update(dict.fromkeys(self._dress.said, True))
@@ -169,6 +168,9 @@ class Table:
             cells = cells_of(text, self._separator)
             if len(cells) != self.width:
                 raise BadFile.at(self.path, number, "%d values" % len(cells), str(self.width))
+            if csv_text.has_only_times([cells[place] for place in places]):
+                self._pass_over("rows without a reading")
+                continue
             rows.append([self._number(number, column, cells[place])
                          for column, place in zip(columns, places)])
             lines.append(number)
@@ -181,13 +183,11 @@ class Table:
         """True for a blank line, a comment, the column names once more."""
         if not text.strip():
             return True
-        if text.startswith(COMMENT):
-            self._pass_over("comments")
-            return True
-        if self.names and cells_of(text, self._separator) == self.names:
-            self._pass_over("the column names once more")
-            return True
-        return False
+        names = self.names and cells_of(text, self._separator) == self.names
+        why = "comments" if text.startswith(COMMENT) else names and "the column names once more"
+        if why:
+            self._pass_over(why)
+        return bool(why)
 
     def _last(self, line, text, columns, places, word):
         """The Block of a last line without newline: None where it is no whole row."""
@@ -207,9 +207,9 @@ class Table:
             if wall_clock.is_ambiguous(cell):
                 raise BadFile.at(self.path, line, "%s is %s, whose day and month cannot be told"
                                  % (column, quoted(cell)), wall_clock.EXPECTED) from None
-            seen = "%s is missing" % column if not cell.strip() else \
-                "%s is %s" % (column, quoted(cell))
-            raise BadFile.at(self.path, line, seen, "a number") from None
+            seen = quoted(cell) if cell.strip() else "missing"
+            raise BadFile.at(self.path, line, "%s is %s" % (column, seen),
+                             "a number" + csv_text.IN_TURN * (not cell.strip())) from None
         if not math.isfinite(value):
             raise BadFile.at(self.path, line, "%s is %s" % (column, quoted(cell)),
                              "a finite number")
@@ -239,10 +239,10 @@ def read_table(path, delimiter="auto", skip=None, names=None, is_header=None):
         titles, cells_of(lines[first], separator))
     if told:
         titles, first = told, first + 1
-    names = names or titles
-    row = next((text for text in lines[first:] if text.strip()
-                and not text.startswith(COMMENT)), "")
-    width = len(names) if names else len(cells_of(row, separator))
+    row = next((lines[first + place] for place in csv_text.filled(lines[first:])), "")
+    cells = cells_of(row, separator)
+    names = csv_text.of_the_rows(names or titles, cells)
+    width = len(names or cells)
     comma = separator != "," and bool(DECIMAL_COMMA.search(row))
     table = Table(path, source, names, width, separator, first,
                   lines[:first if head is None else head], comma, dress)

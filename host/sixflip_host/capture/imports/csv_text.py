@@ -23,9 +23,13 @@ DELIMITERS = (",", ";", "\t", None)     # None: any run of blanks
 SEARCH = 200            # lines in which the column names must appear
 DECIMAL = re.compile(r"(?<=\d),(?=\d)")
 COMMENT = ("#", "//")
+# The exclusive or of a sentence's characters behind a star, as receivers and VectorNav's sensors
+# write it [NMEA 0183, 5.3].
+CHECKSUM = re.compile(r"^([ \t]*\$[^\n]*)\*[0-9A-Fa-f]{2}[ \t\r]*$", re.MULTILINE)
 # A cell in quotes, from where a cell begins to where one ends, and a line's end within it.
 QUOTED = re.compile(r'(?:(?<=[,;\t])|^) *"(?:[^"]|"")*"(?= *(?:[,;\t]|$))', re.MULTILINE)
 INSIDE = "\v"
+IN_TURN = " in each row, or a file for each sensor where they have rows in turn"
 
 
 def texts(path, source, said=None, head=0):
@@ -153,6 +157,36 @@ def _before_rows(lines, separator):
     units = named and first > 1 and not numbers[first - 2] and column_names.with_units(
         cells[first - 2], cells[first - 1])
     return places[first - named - bool(units)]
+
+
+def of_the_rows(names, row):
+    """The names of the columns that a row, a list of cells, has: in somebody's tables each row
+    ends with a delimiter, or the line of names alone does."""
+    if not names:
+        return names
+    if len(row) == len(names) + 1 and not row[-1]:
+        return [*names, "-"]
+    return names[:-1] if len(row) == len(names) - 1 and not names[-1].strip() else names
+
+
+def has_only_times(cells):
+    """Whether the cells of a row that are wanted are blank but for its time, one cell or two: of
+    several sensors' rows in one table that of another one."""
+    blanks = sum(not cell for cell in cells)
+    return blanks >= 3 and blanks >= len(cells) - 2
+
+
+def plain(text):
+    """(text, {what it is now without: lines}): NULs, and the checksums of sentences."""
+    left_out = {}
+    if "\0" in text:
+        left_out["NUL bytes"] = sum("\0" in one for one in text.split("\n"))
+        text = text.replace("\0", "")
+    if "$" in text:
+        text, number = CHECKSUM.subn(r"\1", text)
+        if number:
+            left_out["a checksum at the end"] = number
+    return text, left_out
 
 
 def filled(lines):

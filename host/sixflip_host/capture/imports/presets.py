@@ -51,7 +51,9 @@ def open_table(options):
     if head.startswith(arrays.MATLAB_5):
         _is(preset, "matlab", path)
         return arrays.read_mat(path)
-    if head.startswith(b"PK\x03\x04"):
+    if arrays.is_spreadsheet(path, head):
+        raise BadFile("%s: a spreadsheet, expected one of its sheets saved as CSV" % path)
+    if head.startswith(arrays.ZIP):
         table = arrays.read_npz(path)
         if preset is not None:
             _is(preset, "isaac", path)

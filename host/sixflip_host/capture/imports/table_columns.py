@@ -45,8 +45,16 @@ def readings(options, table):
             raise UsageError("--map %s: expected one of %s" % (
                 name, " ".join(csv_mapping.TARGETS)))
         table.index(given[name])
-    columns, named, remarks = column_names.readings(table.names or (),
-                                                    os.path.basename(str(table.path)))
+    columns, named, left = column_names.readings(table.names or (),
+                                                 os.path.basename(str(table.path)))
+    mapped = [sensor for sensor in (column_names.ACCEL, column_names.GYRO, column_names.MAG)
+              if {sensor + axis for axis in "xyz"} <= set(given)]
+    remarks = [words for sensor, words in left.items() if sensor not in mapped]
+    for sensor in mapped:       # the unit is that of the columns that were said
+        told = [column_names.column(table.names[table.index(given[sensor + axis])])
+                for axis in "xyz" if table.names]
+        said = {one.unit if one and one.sensor == sensor else "" for one in told}
+        named[sensor] = said.pop() if len(said) == 1 else ""
     used = set(given.values())
     chosen = {ours: name for ours, name in columns.items()
               if ours not in given and name not in used}
@@ -65,6 +73,7 @@ def readings(options, table):
             _no_column(table, next(name for name in group if name not in chosen))
     if "ax" not in chosen and "gx" not in chosen:
         _no_column(table, "ax")
+    named = {sensor: unit for sensor, unit in named.items() if unit}
     return Readings(chosen, {**named, **table.units}, remarks)
 
 

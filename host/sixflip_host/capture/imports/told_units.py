@@ -12,6 +12,7 @@ from .options import gyro_is_implied, said_units
 GRAVITY_FREE = 0.3              # of what gravity would be: it has been taken out
 NO_GRAVITY = 0.05               # g, in a known unit: no offset of a part leaves so little of it
 TURNS_ALIKE = 0.6               # correlation from which gyro and accelerometer turn together
+NOTHING_STAYS = " in the median and no part of it stays for seconds"
 FEW_ROWS = 40                   # too few to contradict what was said of a unit
 
 
@@ -20,14 +21,17 @@ class ToldUnits:
     and what is odd into `remarks`.
 
     named   {sensor: unit} in the columns' names, or of the format; rows: of the table
-    sizes   {group of columns: units.Sizes}
+    sizes   {group of columns: units.Sizes}; rate_hz: of the rows
+    columns {our name: column of the table}
     """
 
-    def __init__(self, path, options, named, rows, sizes, assumed, remarks):
+    def __init__(self, path, options, columns, named, rows, sizes, rate_hz, assumed, remarks):
         self.path, self.options, self.named_units = path, options, named
-        self.rows, self.sizes = rows, sizes
+        self.rows, self.sizes, self.rate_hz = rows, sizes, rate_hz
+        self.size_of = "|a| of %s" % " ".join(columns.get(name, name) for name in ACCEL)
         self.assumed, self.remarks = assumed, remarks
         self.by_step = {group: chip_steps.told(group, one.step()) for group, one in sizes.items()}
+        self.is_gone = False            # gravity, by gravity.stays, where nothing rests
         self._assumed_gyro = None       # where in `assumed` the gyro's unit stands
 
     def of_accelerometer(self, values):
@@ -44,6 +48,9 @@ class ToldUnits:
         if unit is None and options.accel_lsb is not None and whole:
             unit = "counts"
         told = gravity.unit(seen.size, whole) if seen else None
+        step = self.by_step[ACCEL]
+        self.is_gone = bool(seen) and not seen.rests and not gravity.stays(
+            values, self.rate_hz, self._one_g(unit or step and step.unit))
         if unit is not None:
             self._contradicted(unit, seen, told, said)
             if unit == "counts" and options.accel_lsb is None and told and told[0] == "counts":
@@ -51,18 +58,22 @@ class ToldUnits:
                     told[1], seen.size))
                 return unit, told[1]
             return unit, options.accel_lsb
-        step = self.by_step[ACCEL]
         if told is None and step is not None and self._may_be(step.unit, seen):
             self.assumed.append("the accelerometer is in %s: %s" % step)
             self._contradicted(step.unit, seen, told, step.unit)
             return step.unit, options.accel_lsb
-        if told is None:
+        if told is None or self.is_gone and options.gravity:
             return self._without_gravity(seen, whole), options.accel_lsb
         self.assumed.append("the accelerometer is in %s: |a| is %.4g%s" % (
             told[0], seen.size, " at rest" if seen.rests else " in the median"))
         if told[0] == "counts":
             self.assumed.append("it has %d counts per g" % told[1])
         return told[0], options.accel_lsb or told[1]
+
+    def _one_g(self, unit):
+        """What 1 g is in a unit, or infinite where nobody knows."""
+        per_unit = units.ACCEL_UNITS.get(unit)
+        return 1.0 / per_unit if per_unit else self.options.accel_lsb or math.inf
 
     def _may_be(self, unit, seen):
         """False where gravity is off by a factor from what it is in a unit."""
@@ -78,7 +89,7 @@ class ToldUnits:
             return
         if per_unit is None or seen is None or self.rows < FEW_ROWS:
             return
-        if told is None and unit != "counts" and seen.size * per_unit < (
+        if self.is_gone or told is None and unit != "counts" and seen.size * per_unit < (
                 NO_GRAVITY if seen.rests else GRAVITY_FREE):
             self._gone(seen.size * per_unit, unit, said)
             return
@@ -96,8 +107,9 @@ class ToldUnits:
 
     def _gone(self, size, unit, said):
         """BadFile for values without gravity, unless someone said their unit, who is told."""
-        words = "|a| is %.2g g: gravity has been taken out of it, and no scale, offset or face " \
-            "can be told from what is left" % size
+        words = "%s is %.2g g%s: gravity has been taken out of it, and no scale, offset or " \
+            "face can be told from what is left" % (
+                self.size_of, size, NOTHING_STAYS * self.is_gone)
         if not said:
             raise BadFile("%s: %s; expected the acceleration with gravity, which phones keep as "
                           "another sensor, or --units %s to take it as it is" % (
@@ -121,10 +133,15 @@ class ToldUnits:
             raise BadFile("%s: the accelerometer is in counts, |a| is %s: expected --accel-lsb, "
                           "counts per g" % (path, size))
         if seen and seen.size < GRAVITY_FREE and not whole:
-            raise BadFile("%s: |a| is %s: gravity has been taken out of it, expected the "
-                          "acceleration with gravity, or --units with its unit" % (path, size))
-        raise BadFile("%s: |a| is %s, which is no gravity in g, m/s2, mm/s2, mg or counts: "
-                      "expected --units, such as g,dps" % (path, size))
+            raise BadFile("%s: %s is %s: gravity has been taken out of it, expected the "
+                          "acceleration with gravity, or --units with its unit" % (
+                              path, self.size_of, size))
+        if self.is_gone:
+            raise BadFile("%s: %s is %s%s, as gravity does: expected the acceleration with "
+                          "gravity, or --units with its unit" % (
+                              path, self.size_of, size, NOTHING_STAYS))
+        raise BadFile("%s: %s is %s, which is no gravity in g, m/s2, mm/s2, mg or counts: "
+                      "expected --units, such as g,dps" % (path, self.size_of, size))
 
     def of_gyro(self, values, accel_unit):
         """(unit, counts per deg/s or None) of the gyro: said, in its name, by its values or by the
