@@ -9,8 +9,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import fft
 
-from ...capture.registers import SENSORS
-
 GRID_HZ = 100.0  # sixteen steps in a period of the band: the first offset, before it is refined
 BAND_HZ = 6.0  # of what is compared: beyond it a simulator's contacts are not repeatable
 # Correlation from which on two logs are of one motion. Less takes two runs of one schedule for one
@@ -80,7 +78,7 @@ def _by_turns_or_forces(real, sim):
 
 
 def _aligned(a, b):
-    """Alignment of two courses on their grids, (times, values, unread) each."""
+    """Alignment of two courses on their grids, (times, values, unread, railed) each."""
     if a[1].std() <= 0 or b[1].std() <= 0:
         return Alignment(False, 0.0, 0.0, np.inf, 0.0, np.inf, 0.0)
     best = coarse(a, b, 0.0) + (0.0,)
@@ -91,8 +89,8 @@ def _aligned(a, b):
 
 
 def turn_rate(trace):
-    """(times of a grid, turn rate in rad/s, smooth, where rows are missing within a period of the
-    band)."""
+    """(times of a grid, turn rate in rad/s, smooth, where rows within a period of the band are
+    missing or at the end of a range, where they are at the end of a range)."""
     size = np.linalg.norm(trace.rate - np.median(trace.rate, axis=0)
                           if not trace.rests else trace.rate - trace.rest_means(
                               trace.rate).mean(axis=0), axis=1)
@@ -115,10 +113,12 @@ def force_size(trace):
 def _on_grid(trace, size):
     t = np.arange(0.0, trace.seconds, 1.0 / GRID_HZ)
     row = np.minimum(np.searchsorted(trace.t, t, "right"), len(trace.t) - 1)
-    unread = trace.put_in[row] | trace.put_in[row - 1] | trace.railed[row] | (
+    railed = trace.railed[row]
+    unread = railed | trace.put_in[row] | trace.put_in[row - 1] | (
         trace.t[row] - trace.t[row - 1] > MOST_ROWS / trace.rate_hz)
-    near = np.convolve(unread, np.ones(2 * int(GRID_HZ / BAND_HZ) + 1), "same") > 0.0
-    return t, smooth(np.interp(t, trace.t, size), GRID_HZ), near
+    near = (np.convolve(x, np.ones(2 * int(GRID_HZ / BAND_HZ) + 1), "same") > 0.0
+            for x in (unread, railed))
+    return t, smooth(np.interp(t, trace.t, size), GRID_HZ), *near
 
 
 def smooth(x, rate_hz, band_hz=BAND_HZ):
@@ -163,15 +163,13 @@ def coarse(a, b, drift):
 
 def refined(a, b, offset, drift):
     """Gauss-Newton on offset and drift, the simulator's rate scaled freely."""
-    sigma = np.full(2, np.inf)
     for _ in range(6):
         t = offset + (1.0 + drift) * b[0]
         inside = (t >= 0.0) & (t <= a[0][-1])
-        known = inside & ~b[2] & (np.interp(t, a[0], a[2]) < 0.5)
-        enough = max(KNOWN * inside.sum(), LEAST_S * GRID_HZ)
-        inside = known if known.sum() > enough else inside
+        together = inside.sum() / GRID_HZ
+        inside = known_where(a, b, t, inside)
         if inside.sum() < LEAST_S * GRID_HZ:
-            return Alignment(False, 0.0, offset, np.inf, drift, np.inf, inside.sum() / GRID_HZ)
+            return Alignment(False, 0.0, offset, np.inf, drift, np.inf, together)
         x = np.interp(t[inside], a[0], a[1])
         slope = np.interp(t[inside], a[0], np.gradient(a[1], a[0]))
         y = b[1][inside]
@@ -183,10 +181,26 @@ def refined(a, b, offset, drift):
         offset, drift = offset + step[0], drift + step[1]
         sigma = errors(columns, left - columns @ step)
     if not min(x.std(), y.std()) > 0.0:  # where they overlap one of them does not move
-        return Alignment(False, 0.0, 0.0, np.inf, 0.0, np.inf, inside.sum() / GRID_HZ)
+        return Alignment(False, 0.0, 0.0, np.inf, 0.0, np.inf, together)
     correlation = float(np.corrcoef(x, y)[0, 1])
     return Alignment(correlation >= ALIKE, correlation, float(offset), float(sigma[0]),
-                     float(drift), float(sigma[1]), inside.sum() / GRID_HZ)
+                     float(drift), float(sigma[1]), together)
+
+
+def known_where(a, b, t, inside):
+    """Those of the times t of a grid inside which two courses, as of turn_rate(), are known: not
+    beside missing rows, where that leaves enough, and enough of what moves as well."""
+    enough = max(KNOWN * inside.sum(), LEAST_S * GRID_HZ)
+    masks = [inside & ~b[k] & (np.interp(t, a[0], a[k]) < 0.5) for k in (2, 3)]
+    for known in masks:
+        if known.sum() > enough and power(b[1][known]) >= KNOWN * power(b[1][masks[1]]):
+            return known
+    return inside
+
+
+def power(values):
+    """Sum of the squares of values (n, ...) about their mean."""
+    return float(((values - values.mean(axis=0)) ** 2).sum()) if len(values) else 0.0
 
 
 def errors(columns, left):
@@ -217,32 +231,3 @@ def independent(x):
     auto = auto / auto[0]
     below = np.flatnonzero(auto <= 0.0)
     return float(1.0 + 2.0 * auto[1:below[0] if len(below) else len(auto)].sum())
-
-
-def _drowned(trace):
-    """Of which sensors of a Trace the noise is not known, in words."""
-    kinds = [SENSORS[kind] for kind, noise in trace.noise.items() if noise is None]
-    return ": that of the %s is not told from what shakes it" % " and the ".join(kinds) \
-        if kinds else ""
-
-
-def said_of(real, sim, aligned):
-    """Sentences on the two logs."""
-    logs = sim.name, real.name, aligned.by, aligned.correlation
-    sentences = [
-        "%s and %s are of one motion (correlation of the %s %.3f): offset %.3f ± %.3f s, "
-        "%.0f s together" % (*logs, aligned.offset_s, 1.645 * aligned.offset_sigma_s,
-                             aligned.overlap_s) if aligned.same else
-        "%s and %s are of different motions (correlation of the %s %.2f): each was held "
-        "against its own rests and moves" % logs]
-    for trace in (real, sim):
-        if not trace.rests:
-            sentences.append("no rest in %s: gravity and the gyro's bias are known in it on "
-                             "average alone, and its noise by the quick end of its spectrum%s" % (
-                                 trace.name, _drowned(trace)))
-        if trace.rate is None:
-            sentences.append("no gyro in %s" % trace.name)
-    if abs(real.rate_hz / sim.rate_hz - 1.0) > 0.02:
-        sentences.append("%s has %.4g rows a second, %s %.4g: compared on one grid" % (
-            sim.name, sim.rate_hz, real.name, real.rate_hz))
-    return sentences
