@@ -36,7 +36,8 @@ class Alignment:
     """same: one motion; correlation of the turn rates; time of the real log = offset_s + (1 +
     drift) · time of the simulator's; offset_sigma_s, drift_sigma: standard errors; overlap_s; by:
     "turn rates" or "forces", which it is told by; turning: whether either log turns; nats: that
-    the directions of what is read tell of it (motion_match)."""
+    the directions of what is read tell of it (motion_match); moving: whether either log moves, so
+    that there is a motion to be compared."""
 
     same: bool
     correlation: float
@@ -48,6 +49,7 @@ class Alignment:
     by: str = "turn rates"
     turning: bool = True
     nats: float = 0.0
+    moving: bool = True
 
     def of_simulator(self, t):
         """Times of the real log at times of the simulator's."""
@@ -66,13 +68,18 @@ def _by_turns_or_forces(real, sim):
     none = Alignment(False, 0.0, 0.0, np.inf, 0.0, np.inf, 0.0)
     if min(real.seconds, sim.seconds) < LEAST_S:
         return none
-    # A channel that says nothing makes the size of the turn another one.
-    turns = all(x.rate is not None and np.ptp(x.rate, axis=0).all() for x in (real, sim))
+    changes = [np.zeros(1, bool) if x.rate is None else np.ptp(x.rate, axis=0) > 0.0
+               for x in (real, sim)]
+    turns = all(x.any() for x in changes)
     by_turns = _aligned(turn_rate(real), turn_rate(sim)) if turns else none
+    if not all(x.all() for x in changes):
+        # Of what turns about one axis the others say nothing in a simulator, and all of it is in
+        # the size; where they would, the size is another one, and the forces may tell better.
+        by_force = replace(_aligned(force_off(real), force_off(sim)), by="forces")
+        return by_turns if by_turns.same and not (
+            by_force.same and by_force.offset_sigma_s < by_turns.offset_sigma_s) else by_force
     if by_turns.same:
         return by_turns
-    if not turns:
-        return replace(_aligned(force_off(real), force_off(sim)), by="forces")
     by_force = replace(_aligned(force_size(real), force_size(sim)), by="forces")
     return by_force if by_force.correlation >= ALIKE_FORCES else by_turns
 

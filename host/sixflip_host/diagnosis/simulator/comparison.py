@@ -192,7 +192,8 @@ def _conventions(logs):
         unseen.append("other conventions of %s: a channel of it says nothing" % sim.name)
     else:
         more, unseen, judged, lacks_delay = own_motion.different_motion(
-            logs.real_free, logs.sim_free, logs.own_real if real.rests else None, logs.row_s)
+            logs.real_free, logs.sim_free, logs.own_real if real.rests else None, logs.row_s,
+            logs.aligned.moving)
         findings += more
         if logs.aligned.same and not real.rests:
             unseen = ["conventions and parameters of %s, but for what its own rests show: there "
