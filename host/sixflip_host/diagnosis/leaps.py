@@ -107,8 +107,8 @@ def across_gravity(kind, parts):
 
 def goes_straight(rest, kind, usual):
     """{axis letter: probability that it wanders} of a long_rest.LongRest: that its reading does
-    not go on in a straight line in the longest of its rests, by any slope, beside flicker. Of noise
-    that wanders, flicker or a walk of any size, each step is another one."""
+    not go on in a straight line in the longest of its rests, by any slope, beside flicker. Of
+    noise that wanders, flicker or a walk of any size, each step is another one."""
     of = rest.rest == np.bincount(rest.rest, rest.seconds).argmax()
     if of.sum() < FEWEST_MEANS:
         return {}
