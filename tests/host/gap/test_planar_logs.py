@@ -152,7 +152,7 @@ def test_what_turns_about_one_axis_all_the_time_is_compared_by_how_it_turns():
     5 deg/s, and z of the accelerometer, which reads gravity alone, was constant."""
     found = comparison.compare([("real", always_turning(3))], "sim", always_turning())
     assert found.alignment.same and found.alignment.by == "turn rates"
-    assert not found.conventions and not log_rests.of_capture(always_turning(), 12.5)[0]
+    assert not found.conventions and not log_rests.of_capture(always_turning(3), 12.5)[0]
     numbers = {(p.name, p.axis): p.difference for p in found.differs if p.sensor == "gyro"}
     assert numbers["scale", "z"] == pytest.approx(3.0, abs=0.4)
     assert numbers["bias", "z"] == pytest.approx(0.45, abs=0.1)
