@@ -107,8 +107,8 @@ class ToldUnits:
     def _far_from_1_g(self, size):
         """Says so where rests read farther from 1 g than any part that is whole."""
         if abs(size - 1) > gravity.ZERO_G:
-            self.remarks.append("gravity is %.3g g where this file is calmest: its scale is off, "
-                                "or its unit is another one, if nothing drives it there" % size)
+            self.remarks.append("gravity is %.3g g in the rests of this file: its scale is off, "
+                                "or its unit is another one" % size)
 
     def _without_gravity(self, seen, whole):
         """The unit of values that gravity does not tell; BadFile where it was to be told."""
