@@ -1,4 +1,5 @@
-"""What passes for noise that wanders and is none: leaps between levels, and what leans.
+"""What passes for noise that wanders and is none: leaps between levels, what leans, and what goes
+straight on.
 
 A random walk is as large from rest to rest as a telegraph, and the blocks of the rests are too few
 to tell them apart. Short means within the rests are many.
@@ -18,6 +19,10 @@ OF_SPREAD = 6.0  # times the variance about its mean, that a random walk has at 
 # Of gravity along an axis: a box on a face, 18 degrees off at most; differences within the rests
 # that it is upright in, of an axis.
 ON_FACE, FEWEST_OF_AXIS = 0.95, 6
+# A reading that goes on in a straight line: means of a rest that show one; flicker beside it, and
+# noise that wanders, times what is usual; mg and deg/s that a reading may be, and change by: any.
+FEWEST_MEANS, BESIDE, WANDERING = 8, (1.0, 4.0, 16.0), 2.0 ** np.arange(16)
+ANY = {"accel": 1e3, "gyro": 1e2}
 
 
 def no_drift(kind, parts, found):
@@ -98,3 +103,30 @@ def across_gravity(kind, parts):
     along, across = map(np.concatenate, (along, across))
     enough = min(len(along), len(across)) >= adequacy.FEWEST
     return adequacy.louder(across, along) if enough else 1.0
+
+
+def goes_straight(rest, kind, usual):
+    """{axis letter: probability that it wanders} of a long_rest.LongRest: that its reading does
+    not go on in a straight line in the longest of its rests, by any slope, beside flicker. Of
+    noise that wanders, flicker or a walk of any size, each step is another one."""
+    of = rest.rest == np.bincount(rest.rest, rest.seconds).argmax()
+    if of.sum() < FEWEST_MEANS:
+        return {}
+    t, span = rest.t[of] - rest.t[of].min(), float(np.ptp(rest.t[of]))
+    line = (t - t.mean()) / span
+    flicker = flicker_kernel(t, rest.seconds[of])
+    walk = np.minimum(t[:, None], t) / span
+
+    def nats(y, covariance):
+        lower = np.linalg.cholesky(covariance)
+        return -0.5 * (np.linalg.solve(lower, y) ** 2).sum() - np.log(np.diag(lower)).sum()
+    found = {}
+    for letter, values, noise in zip("xyz", rest.values[kind][of].T, rest.noise[kind][of].T):
+        y = values - values.mean()
+        known = np.diag(np.maximum(noise, 1e-6 * ANY[kind]) ** 2) + ANY[kind] ** 2
+        wanders = max(nats(y, known + (size * usual) ** 2 * kernel) for size in WANDERING
+                      for kernel in (flicker, walk))
+        straight = max(nats(y, known + ANY[kind] ** 2 * np.outer(line, line)
+                            + (size * usual) ** 2 * flicker) for size in BESIDE)
+        found[letter] = float(np.exp(min(wanders - straight, 0.0)))
+    return found

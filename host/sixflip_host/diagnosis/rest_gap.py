@@ -156,21 +156,24 @@ def of_one_sensor(rest, kind, chip, settings, jumps=(1.0, 1.0, 1.0), flickers=1.
     beaten = [c for c, rest_cause in zip(causes, told) if _beaten(rest_cause, strange, posterior)]
     chosen = [f for f in chosen if not any(f in c.chosen for c in beaten)]
     told = [rest_cause for c, rest_cause in zip(causes, told) if c not in beaten]
-    # What goes to and fro between levels wanders, but is no drift, however little it wanders.
-    leaps = {"xyz"[axis]: p for axis, p in enumerate(jumps) if p < odds.CHANCE}
-    told += _drift(posterior, units, data, levels, kind, chosen, fits.index, leaps)
+    # What goes to and fro between levels, or straight on, is no drift, however little it wanders.
+    other = {k: p for k, p in zip("xyz", jumps) if p < odds.CHANCE}
+    if "drift" in posterior.best.names:
+        straight = leaps.goes_straight(rest, kind, flicker)
+        other |= {k: p for k, p in straight.items() if p < odds.CHANCE}
+        told += _drift(posterior, units, data, levels, kind, chosen, fits.index, other)
     places = [Place(kind, letter, c.domain, 1.0 if c.share is None else c.share,
                     np.exp(-min(c.score, 600.0))) for c in told for letter in c.letters]
     for form, letters in strange:
         gain = np.exp(-min(posterior.gains[form.effect], 600.0))
         places += [Place(kind, k, hypotheses.domain(form.effect), 1.0, gain)
                    for k in letters or [None]]
-    places += [Place(kind, letter, "time", 1.0, p) for letter, p in leaps.items()]
+    places += [Place(kind, letter, "time", 1.0, p) for letter, p in other.items()]
     if not fits.ok and not places:
         places = [Place(kind, None, "time", 1.0, fits.p)]
     return RestGap(kind, rest, tuple(told), tuple(places),
                    (*(1.0 - posterior.places[f.effect].get("", 0.0) for f, _ in strange),
-                    *([] if fits.ok else [1.0 - fits.p]), *(1.0 - p for p in leaps.values())),
+                    *([] if fits.ok else [1.0 - fits.p]), *(1.0 - p for p in other.values())),
                    tuple(rest_units.held_out(rest, unit, chosen, point, levels)
                          for unit, point in zip(units, fits.index)),
                    frozenset(f.effect for f in forms))
@@ -179,8 +182,7 @@ def of_one_sensor(rest, kind, chip, settings, jumps=(1.0, 1.0, 1.0), flickers=1.
 def _settled(form, units, fits, levels, rest, kind):
     """Whether a member of the set is no more than what switching on again, or putting down
     again, does to a reading; a gyro that stays on reads the same again."""
-    again = kind == "accel" or np.ptp(rest.session) > 0
-    return form.effect == SETTLED and again and all(
+    return form.effect == SETTLED and (kind == "accel" or np.ptp(rest.session) > 0) and all(
         u.grid[k][0] <= max(between_sessions.UNUSUAL["bias"][kind], levels.usual(u)[0])
         for u, k in zip(units, fits.index))
 
@@ -230,17 +232,15 @@ def _with_bent(cause, data, index):
                        for key in half}}, letters=sorted({*cause.letters, *half}))
 
 
-def _drift(posterior, units, data, levels, kind, chosen, index, leaps):
+def _drift(posterior, units, data, levels, kind, chosen, index, other):
     """[RestCause] of a drift in the likeliest set: its Allan floor on the axes that wander more
-    than is usual and do not leap, with a 90 % interval by the profile of the likelihood."""
-    if "drift" not in posterior.best.names:
-        return []
+    than is usual and do nothing other, with a 90 % interval by the profile of the likelihood."""
     value, interval, free = {}, {}, frozenset(["flicker"])
     for key, unit, statistics in zip("xyz", units, data.statistics):
         course = wandering.by_flicker(unit, statistics, posterior.best.shared,
                                             levels.prior(unit, free))
         level, low, high = wandering.profile(sorted({b for _, b in unit.grid}), course)
-        if low > levels.flicker and key not in leaps:
+        if low > levels.flicker and key not in other:
             value[key] = level * FLOOR_OF_KERNEL
             interval[key] = (low * FLOOR_OF_KERNEL, high * FLOOR_OF_KERNEL)
     if not value:

@@ -153,8 +153,10 @@ def _beside_simulators(diagnosis):
                 "of them had" % (" and ".join(registers.SENSORS[k] for k in x.shaken), between), (
                     "both in one motion, the real one with its motors off or on softer ground")
     if diagnosis.comparisons and not any(x.alignment.same for x in diagnosis.comparisons):
-        return "the two logs are of different motions, and what each shows by itself is not " \
-            "enough", "the simulator in the motion of the real log, with rests of some seconds"
+        moving = any(x.alignment.moving for x in diagnosis.comparisons)
+        return "%s, and what each shows by itself is not enough" % (
+            "the two logs are of different motions" if moving else "neither log moves"), \
+            "the simulator in the motion of the real log, with rests of some seconds"
     return None
 
 

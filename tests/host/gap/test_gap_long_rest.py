@@ -236,3 +236,19 @@ def test_rests_of_one_mean_each_have_figures():
     judged = accel(blocks.session_of("rests", whole.capture))
     assert not judged.causes and not judged.nameless
     assert all(judged.by_axis[axis].before > 0.0 for axis in "xyz")
+
+
+def test_a_gyro_that_goes_straight_on_is_no_drift_that_explains_a_gap_which_stays():
+    """0.57 deg/s more each second, ten times what a drift of 0.5 deg/s is, was "explained"."""
+    t = np.arange(0.0, 10.0, 0.01)
+    rng = np.random.default_rng(2)
+    gyro = rng.normal(0.0, 0.02, (len(t), 3)) - 0.57 * t[:, None]
+    accel_counts = np.rint(16384 * (rng.normal(0.0, 0.003, gyro.shape) + [0.0, 0.0, 1.0]))
+    meta = {"sensor": "mpu6050", "rate_hz": 100.0, "accel_lsb_per_g": 16384,
+            "gyro_lsb_per_dps": 131}
+    session = blocks.session_of("ramp", Capture(
+        meta, np.rint(t * 1e6).astype(np.int64), accel_counts.astype(np.int16),
+        np.rint(131.0 * gyro).astype(np.int16), None, None, np.ones(len(t), np.int16)))
+    found = rest_gap.gaps_by_sensor([session], Settings())["gyro"]
+    assert not found.causes and max(found.nameless) > 0.99
+    assert {place.axis for place in found.places} == set("xyz")

@@ -11,6 +11,7 @@ from sixflip_host.diagnosis.simulator import (
     alignment,
     comparison,
     evidence_of_logs,
+    pairing,
     simulator_answer,
     traces,
 )
@@ -99,6 +100,20 @@ def test_rows_that_are_lost_are_put_in_where_it_moves_and_known():
     assert len(lacking.rests) == len(true.rests)
     for first, end in lacking.rests:
         assert not lacking.put_in[first:end].any()
+
+
+def test_rows_that_are_lost_all_along_a_motion_leave_more_than_its_rests_to_be_compared():
+    """Every fifth row was beside all of the motion: of a gyro that reads otherwise in it the rests
+    alone were compared, and they were 20 of 50 s together."""
+    t, force, rate = trotting(50.0)
+    stands = (t < 4.0) | (t > 30.0)
+    rate[t > 28.0], force[t > 28.0] = 0.0, [0.0, 0.0, G]
+    real, sim = (traces.trace_from_capture(str(seed), read(
+        t, force, rate, seed, stands | (np.arange(len(t)) % 5 > 0))) for seed in (3, 53))
+    aligned = alignment.align(real, sim)
+    pair = pairing.paired(real, sim, aligned, traces.motion(real))
+    assert aligned.same and aligned.by == "turn rates" and aligned.overlap_s > 49.0
+    assert np.ptp(pair.t) > 48.0 and (pair.rate.std(axis=0) > 0.9 * rate.std(axis=0))[2]
 
 
 @pytest.mark.parametrize("longest", [25, 50])

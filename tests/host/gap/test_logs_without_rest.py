@@ -7,6 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from sixflip_host.capture.capture import Capture
+from sixflip_host.diagnosis.detect import wrong_scale
 from sixflip_host.diagnosis.simulator import (
     comparison,
     log_rests,
@@ -14,6 +15,7 @@ from sixflip_host.diagnosis.simulator import (
     simulator_answer,
     traces,
 )
+from sixflip_host.experiment import blocks
 
 G = 9.80665
 ACCEL_G, GYRO_DPS = 0.002, 0.05  # noise of a sample
@@ -159,3 +161,16 @@ def test_what_two_restless_logs_differ_by_is_told_and_an_unknown_floor_closes_no
     for left, said in ((0.5, "partly explained"), (0.05, "explained")):
         unknown = dataclasses.replace(found, wanders=frozenset(), gap={"gyro": (1.0, left, 0.0)})
         assert simulator_answer.verdict("cannot tell", [unknown]) == said
+
+
+@pytest.mark.parametrize("seconds, said", [(10.0, False), (120.0, True)])
+def test_a_rocket_s_thrust_is_no_wrong_scale_at_rest(seconds, said):
+    """1.54 g without a rest were "at rest"; for two minutes nothing has such thrust."""
+    rng, t = np.random.default_rng(4), np.arange(0.0, seconds, 0.01)
+    turns = 40.0 * np.sin(np.outer(t, [1.3, 0.9, 0.4]))
+    force = np.stack([0.3 * np.sin(1.1 * t), 0.2 * np.cos(0.8 * t), 1.5 + 0.1 * np.sin(t)], 1)
+    session = blocks.session_of("flight", read(
+        t, G * (force + 0.02 * rng.standard_normal(force.shape)), np.radians(turns), 4))
+    damage = wrong_scale.accelerometer([session])
+    assert not session.runs and (damage is not None) == said
+    assert not said or "at rest" not in damage.words

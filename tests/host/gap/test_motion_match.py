@@ -123,7 +123,7 @@ def test_a_thing_that_is_laid_down_again_as_it_lay_has_no_gravity_along_one_axis
     assert own_consistency.conventions_of(*logs)[0] == []
 
 
-@pytest.mark.parametrize("scatter_us, alike", [(900.0, True), (0.0, False)])
+@pytest.mark.parametrize("scatter_us, alike", [(900.0, True), (90.0, True), (0.0, False)])
 def test_stamps_that_scatter_alike_in_both_logs_are_of_one_clock(scatter_us, alike):
     """Two sensors that one program read in turn were set 0.77 s apart by the course of gravity."""
     rate, force = handled(8, 20.0)

@@ -32,6 +32,9 @@ DISAGREES = 2.0         # factor from 1 g beyond which what was said of the unit
 # are 57; a fifth apart, then a fiftieth; twentieths of a second that are looked at; of |a|, what
 # knocks have more of.
 FACTORS, FINER, MOST_MOVED, KNOCKS = np.geomspace(1 / 64, 64, 47), 11, 5000, 0.3
+# m/s that what never rests may gain while |a| is not 1 g, a rocket on its way up for instance:
+# sound's. In ten seconds that is 3.5 g, in a minute 0.6 g.
+FASTEST_MS = 340.0
 
 
 class Gravity(NamedTuple):
@@ -48,6 +51,11 @@ class Turn(NamedTuple):
     factor: float
     alike: float
     number: int
+
+
+def may_be_thrust(size, seconds):
+    """Whether |a| of so many g for so many seconds may be what drives a thing that never rests."""
+    return abs(size - 1.0) * STANDARD_G * seconds < FASTEST_MS
 
 
 def seen(values, usual=USUAL):

@@ -57,10 +57,11 @@ def accelerometer(sessions):
     sizes = [seen for seen in map(at_rest, sessions) if seen]
     if not sizes:
         return None
-    size = float(np.median([size for size, _ in sizes]))
+    size, moving = float(np.median([size for size, _ in sizes])), not any(s.runs for s in sessions)
     width = SOUND_ACCEL * (1.0 if all(rests for _, rests in sizes) else MOVING)
     factor, nats = competed([size], [width])
-    if not present(nats):
+    if not present(nats) or not factor and moving and size > NO_GRAVITY and (
+            gravity.may_be_thrust(size, min(s.t_s[-1] - s.t_s[0] for s in sessions))):
         return None
     if factor:
         words = ("the accelerometer reads %g times gravity: its full scale is not the one the "
@@ -69,7 +70,8 @@ def accelerometer(sessions):
         words = ("|a| is %.2g g at rest: gravity has been taken off the accelerometer's readings, "
                  "as off a phone's linear acceleration" % size)
     else:
-        words = "|a| is %.3g g at rest: the accelerometer's scale is not that of the header" % size
+        words = "|a| is %.3g g%s: the accelerometer's scale is not that of the header" % (
+            size, "" if moving else " at rest")
     return Damage("full_scale" if factor else "gravity", "accel", (), "amplitude", words, nats,
                   {"factor": round(size, 4)})
 

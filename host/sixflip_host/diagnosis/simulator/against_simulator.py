@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import ndimage, special
 
+from ...capture import registers
 from ...experiment import terms
 from ...planning import detectable
 from .. import adequacy, odds
@@ -97,7 +98,7 @@ def read(sessions, settings):
     """Simulator from its Sessions."""
     diagnosis = stages.diagnose_sessions(sessions, settings, beside=True)
     known = {kind: _known(gap) for kind, gap in diagnosis.gaps.items() if gap.chosen}
-    return Simulator(diagnosis, known, tuple(_remarks(diagnosis)))
+    return Simulator(diagnosis, known, tuple(_remarks(diagnosis, registers.stuck(sessions))))
 
 
 def _known(gap):
@@ -106,18 +107,18 @@ def _known(gap):
     return [(*every[column], float(t)) for column, t in zip(gap.shared.index, gap.coefficients())]
 
 
-def _remarks(diagnosis):
-    """Sentences on what the simulator's Diagnosis shows, and cannot show."""
+def _remarks(diagnosis, constant):
+    """Sentences on what the simulator's Diagnosis shows, and cannot show, but for those on its
+    constant axes: one without noise is constant where nothing moves, which both logs tell."""
     remarks = [] if diagnosis.gaps else ["the simulator's capture holds too few poses: of the "
                                          "effects, only steps, lines and timing are compared"]
-    names = sorted({c.effect for _, c in diagnosis.causes})
-    if names:
+    if diagnosis.causes:
+        names = sorted({c.effect for _, c in diagnosis.causes})
         remarks.append("the simulator already has: " + ", ".join(names))
-    remarks += ["the simulator's log: " + said for said in diagnosis.remarks]
+    remarks += ["the simulator's log: " + x for x in diagnosis.remarks if x not in constant]
     silent = sorted({u["effect"] for u in detectable.listed(diagnosis)})
-    if silent and diagnosis.gaps:
-        remarks.append("effects that the simulator's log cannot show: " + ", ".join(silent))
-    return remarks
+    return remarks + ["effects that the simulator's log cannot show: " + ", ".join(silent)] * bool(
+        silent and diagnosis.gaps)
 
 
 def in_both(diagnosis):

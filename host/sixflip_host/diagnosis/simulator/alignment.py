@@ -9,8 +9,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import fft
 
-from ...capture.registers import SENSORS
-
 GRID_HZ = 100.0  # sixteen steps in a period of the band: the first offset, before it is refined
 BAND_HZ = 6.0  # of what is compared: beyond it a simulator's contacts are not repeatable
 # Correlation from which on two logs are of one motion. Less takes two runs of one schedule for one
@@ -38,7 +36,8 @@ class Alignment:
     """same: one motion; correlation of the turn rates; time of the real log = offset_s + (1 +
     drift) · time of the simulator's; offset_sigma_s, drift_sigma: standard errors; overlap_s; by:
     "turn rates" or "forces", which it is told by; turning: whether either log turns; nats: that
-    the directions of what is read tell of it (motion_match)."""
+    the directions of what is read tell of it (motion_match); moving: whether either log moves, so
+    that there is a motion to be compared."""
 
     same: bool
     correlation: float
@@ -50,6 +49,7 @@ class Alignment:
     by: str = "turn rates"
     turning: bool = True
     nats: float = 0.0
+    moving: bool = True
 
     def of_simulator(self, t):
         """Times of the real log at times of the simulator's."""
@@ -68,19 +68,24 @@ def _by_turns_or_forces(real, sim):
     none = Alignment(False, 0.0, 0.0, np.inf, 0.0, np.inf, 0.0)
     if min(real.seconds, sim.seconds) < LEAST_S:
         return none
-    # A channel that says nothing makes the size of the turn another one.
-    turns = all(x.rate is not None and np.ptp(x.rate, axis=0).all() for x in (real, sim))
+    changes = [np.zeros(1, bool) if x.rate is None else np.ptp(x.rate, axis=0) > 0.0
+               for x in (real, sim)]
+    turns = all(x.any() for x in changes)
     by_turns = _aligned(turn_rate(real), turn_rate(sim)) if turns else none
+    if not all(x.all() for x in changes):
+        # Of what turns about one axis the others say nothing in a simulator, and all of it is in
+        # the size; where they would, the size is another one, and the forces may tell better.
+        by_force = replace(_aligned(force_off(real), force_off(sim)), by="forces")
+        return by_turns if by_turns.same and not (
+            by_force.same and by_force.offset_sigma_s < by_turns.offset_sigma_s) else by_force
     if by_turns.same:
         return by_turns
-    if not turns:
-        return replace(_aligned(force_off(real), force_off(sim)), by="forces")
     by_force = replace(_aligned(force_size(real), force_size(sim)), by="forces")
     return by_force if by_force.correlation >= ALIKE_FORCES else by_turns
 
 
 def _aligned(a, b):
-    """Alignment of two courses on their grids, (times, values, unread) each."""
+    """Alignment of two courses on their grids, (times, values, unread, railed) each."""
     if a[1].std() <= 0 or b[1].std() <= 0:
         return Alignment(False, 0.0, 0.0, np.inf, 0.0, np.inf, 0.0)
     best = coarse(a, b, 0.0) + (0.0,)
@@ -91,8 +96,8 @@ def _aligned(a, b):
 
 
 def turn_rate(trace):
-    """(times of a grid, turn rate in rad/s, smooth, where rows are missing within a period of the
-    band)."""
+    """(times of a grid, turn rate in rad/s, smooth, where rows within a period of the band are
+    missing or at the end of a range, where they are at the end of a range)."""
     size = np.linalg.norm(trace.rate - np.median(trace.rate, axis=0)
                           if not trace.rests else trace.rate - trace.rest_means(
                               trace.rate).mean(axis=0), axis=1)
@@ -115,10 +120,12 @@ def force_size(trace):
 def _on_grid(trace, size):
     t = np.arange(0.0, trace.seconds, 1.0 / GRID_HZ)
     row = np.minimum(np.searchsorted(trace.t, t, "right"), len(trace.t) - 1)
-    unread = trace.put_in[row] | trace.put_in[row - 1] | trace.railed[row] | (
+    railed = trace.railed[row]
+    unread = railed | trace.put_in[row] | trace.put_in[row - 1] | (
         trace.t[row] - trace.t[row - 1] > MOST_ROWS / trace.rate_hz)
-    near = np.convolve(unread, np.ones(2 * int(GRID_HZ / BAND_HZ) + 1), "same") > 0.0
-    return t, smooth(np.interp(t, trace.t, size), GRID_HZ), near
+    near = (np.convolve(x, np.ones(2 * int(GRID_HZ / BAND_HZ) + 1), "same") > 0.0
+            for x in (unread, railed))
+    return t, smooth(np.interp(t, trace.t, size), GRID_HZ), *near
 
 
 def smooth(x, rate_hz, band_hz=BAND_HZ):
@@ -163,15 +170,13 @@ def coarse(a, b, drift):
 
 def refined(a, b, offset, drift):
     """Gauss-Newton on offset and drift, the simulator's rate scaled freely."""
-    sigma = np.full(2, np.inf)
     for _ in range(6):
         t = offset + (1.0 + drift) * b[0]
         inside = (t >= 0.0) & (t <= a[0][-1])
-        known = inside & ~b[2] & (np.interp(t, a[0], a[2]) < 0.5)
-        enough = max(KNOWN * inside.sum(), LEAST_S * GRID_HZ)
-        inside = known if known.sum() > enough else inside
+        together = inside.sum() / GRID_HZ
+        inside = known_where(a, b, t, inside)
         if inside.sum() < LEAST_S * GRID_HZ:
-            return Alignment(False, 0.0, offset, np.inf, drift, np.inf, inside.sum() / GRID_HZ)
+            return Alignment(False, 0.0, offset, np.inf, drift, np.inf, together)
         x = np.interp(t[inside], a[0], a[1])
         slope = np.interp(t[inside], a[0], np.gradient(a[1], a[0]))
         y = b[1][inside]
@@ -183,10 +188,26 @@ def refined(a, b, offset, drift):
         offset, drift = offset + step[0], drift + step[1]
         sigma = errors(columns, left - columns @ step)
     if not min(x.std(), y.std()) > 0.0:  # where they overlap one of them does not move
-        return Alignment(False, 0.0, 0.0, np.inf, 0.0, np.inf, inside.sum() / GRID_HZ)
+        return Alignment(False, 0.0, 0.0, np.inf, 0.0, np.inf, together)
     correlation = float(np.corrcoef(x, y)[0, 1])
     return Alignment(correlation >= ALIKE, correlation, float(offset), float(sigma[0]),
-                     float(drift), float(sigma[1]), inside.sum() / GRID_HZ)
+                     float(drift), float(sigma[1]), together)
+
+
+def known_where(a, b, t, inside):
+    """Those of the times t of a grid inside which two courses, as of turn_rate(), are known: not
+    beside missing rows, where that leaves enough, and enough of what moves as well."""
+    enough = max(KNOWN * inside.sum(), LEAST_S * GRID_HZ)
+    masks = [inside & ~b[k] & (np.interp(t, a[0], a[k]) < 0.5) for k in (2, 3)]
+    for known in masks:
+        if known.sum() > enough and power(b[1][known]) >= KNOWN * power(b[1][masks[1]]):
+            return known
+    return inside
+
+
+def power(values):
+    """Sum of the squares of values (n, ...) about their mean."""
+    return float(((values - values.mean(axis=0)) ** 2).sum()) if len(values) else 0.0
 
 
 def errors(columns, left):
@@ -217,32 +238,3 @@ def independent(x):
     auto = auto / auto[0]
     below = np.flatnonzero(auto <= 0.0)
     return float(1.0 + 2.0 * auto[1:below[0] if len(below) else len(auto)].sum())
-
-
-def _drowned(trace):
-    """Of which sensors of a Trace the noise is not known, in words."""
-    kinds = [SENSORS[kind] for kind, noise in trace.noise.items() if noise is None]
-    return ": that of the %s is not told from what shakes it" % " and the ".join(kinds) \
-        if kinds else ""
-
-
-def said_of(real, sim, aligned):
-    """Sentences on the two logs."""
-    logs = sim.name, real.name, aligned.by, aligned.correlation
-    sentences = [
-        "%s and %s are of one motion (correlation of the %s %.3f): offset %.3f ± %.3f s, "
-        "%.0f s together" % (*logs, aligned.offset_s, 1.645 * aligned.offset_sigma_s,
-                             aligned.overlap_s) if aligned.same else
-        "%s and %s are of different motions (correlation of the %s %.2f): each was held "
-        "against its own rests and moves" % logs]
-    for trace in (real, sim):
-        if not trace.rests:
-            sentences.append("no rest in %s: gravity and the gyro's bias are known in it on "
-                             "average alone, and its noise by the quick end of its spectrum%s" % (
-                                 trace.name, _drowned(trace)))
-        if trace.rate is None:
-            sentences.append("no gyro in %s" % trace.name)
-    if abs(real.rate_hz / sim.rate_hz - 1.0) > 0.02:
-        sentences.append("%s has %.4g rows a second, %s %.4g: compared on one grid" % (
-            sim.name, sim.rate_hz, real.name, real.rate_hz))
-    return sentences

@@ -20,6 +20,7 @@ from . import (
     parameters,
     remaining_gap,
     shaking,
+    simulator_answer,
     single_log,
     traces,
 )
@@ -162,7 +163,7 @@ def compare_traces(real, sim, aligned):
         numbers = [p for p in numbers if p.name != "noise_density"]
     task, why_not = remaining_gap.tried(logs.real_free, mended, *own, {
         kind: replace(fit, fit=fit.refitted(None)) for kind, fit in of_told.items()})
-    remarks = (*alignment.said_of(real, sim, logs.aligned),
+    remarks = (*simulator_answer.said_of(real, sim, logs.aligned),
                *dead_zone.said_of(together.bands, together.of_gyro), *why_not)
     return Comparison(sim.name, real.name, logs.aligned, tuple(findings), tuple(numbers), task,
                       gap, fits, *own, remarks, tuple(unseen),
@@ -191,7 +192,8 @@ def _conventions(logs):
         unseen.append("other conventions of %s: a channel of it says nothing" % sim.name)
     else:
         more, unseen, judged, lacks_delay = own_motion.different_motion(
-            logs.real_free, logs.sim_free, logs.own_real if real.rests else None, logs.row_s)
+            logs.real_free, logs.sim_free, logs.own_real if real.rests else None, logs.row_s,
+            logs.aligned.moving)
         findings += more
         if logs.aligned.same and not real.rests:
             unseen = ["conventions and parameters of %s, but for what its own rests show: there "

@@ -10,8 +10,8 @@ import numpy as np
 
 from sixflip.poses import faces
 
+from ...capture import find_poses, rests_by_variance
 from ...capture import rests as rest_finder
-from ...capture import rests_by_variance
 from ...capture.attitude import carried, rotations
 from ...experiment.block_measures import EDGE_S
 from .. import adequacy
@@ -57,7 +57,8 @@ FLAT_SIGMAS, UNTOLD = 4.0, 0.1
 
 def of_capture(capture, rate_hz):
     """(rests, the axis of each that a label says is up, (3,) or None, calm stretches) of a
-    Capture, spans (first, end) of samples: by the labels where there are any, else those found.
+    Capture, spans (first, end) of samples: by the labels that a person gave, else those found
+    here: what turns steadily, at 5 deg/s for instance, was labelled a rest when it was imported.
     In a calm stretch a robot drives slowly, as level as to a few degrees, or rests."""
     edge, least = int(EDGE_S * rate_hz), max(FEWEST, int(SHORTEST_REST_S * rate_hz))
 
@@ -65,7 +66,7 @@ def of_capture(capture, rate_hz):
         return [run._replace(first=int(run.first + edge), end=int(run.end - edge)) for run in runs
                 if run.end - run.first - 2 * edge >= least]
 
-    if capture.pose is not None and (capture.pose > 0).any():
+    if find_poses.by_a_person(capture):
         rests = inside(rest_finder.labelled(capture.pose))
         spans = tuple((run.first, run.end) for run in rests)
         return spans, tuple(_up(int(run.code)) for run in rests), spans

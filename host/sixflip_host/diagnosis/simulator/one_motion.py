@@ -106,6 +106,8 @@ def logs_of(real, sim, aligned):
         live = {**live, "gyro": np.zeros(3, bool)}  # noise says nothing of the other log's
         unseen = ("%s of %s: nothing turns" % (", ".join(
             name.replace("_", " ") for name in hypotheses.IN_TURNS), sim.name),)
+    aligned = replace(aligned, moving=aligned.same or not (
+        single_log.lies_still(real) and single_log.lies_still(sim)))
     own_real, motion = own_calibration.fitted(real_free), None
     if aligned.same and own_real is not None:
         motion = traces.motion(own_real.applied(real_free))

@@ -43,8 +43,9 @@ class Reading:
     nameless: bool = False
 
 
-def conventions_of(real, sim):
-    """(Conventions, sentences on what could not be seen) of the simulator's Trace."""
+def conventions_of(real, sim, moving=True):
+    """(Conventions, sentences on what could not be seen) of the simulator's Trace; moving: either
+    log moves. Of two that lie still, each somewhere, how they lie is no convention of either."""
     unseen = ["time step, centripetal term and lever arm of the simulator: they need a log of the "
               "same motion"]
     if not sim.rests:
@@ -68,6 +69,9 @@ def conventions_of(real, sim):
         if chance > convention_findings.CERTAIN:
             findings.append(convention_findings.other_unit(
                 "accel", chance, -np.log(max(1.0 - chance, 1e-300)), unit))
+    if not moving and not any(face is not None for face in sim.faces):
+        return findings, unseen + ["axes and frame of %s: neither log moves, and nothing says how "
+                                   "either lies" % sim.name]
     ups = sim.rest_means(sim.force)
     ups = ups / np.maximum(np.linalg.norm(ups, axis=1), 1e-12)[:, None]
     ways = directions.moves(sim)

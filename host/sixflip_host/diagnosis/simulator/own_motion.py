@@ -135,14 +135,14 @@ def shown_late(sim, late):
     return moved is not None and late_itself(moved, late)
 
 
-def different_motion(real, sim, own_real, row_s):
+def different_motion(real, sim, own_real, row_s, moving=True):
     """(Conventions, sentences on what cannot be seen, whether what shows in motion was compared,
-    whether the simulator lacks a delay) of logs of two motions."""
+    whether the simulator lacks a delay) of logs of two motions, or of none (moving)."""
     if sim.rate is None or real.rate is None:
         return [], ["conventions of %s: they need a gyro in both logs" % sim.name], False, False
     # Where it drives slowly gravity is known as well as a direction has to be here.
     findings, unseen = own_consistency.conventions_of(*(
-        replace(log, rests=log.calm) for log in (real, sim)))
+        replace(log, rests=log.calm) for log in (real, sim)), moving)
     if findings or own_real is None or not sim.rests:
         return findings, unseen, False, False
     moved = fitted(real, own_real), fitted(sim, own_calibration.fitted(sim))

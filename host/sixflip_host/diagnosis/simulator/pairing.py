@@ -77,23 +77,33 @@ def paired(real, sim, alignment, motion, band_hz=BANDS[0]):
     # percent too small, which an arm makes a force of. Its square has what is beyond the band.
     fields["rate_dot"] = onto(real, motion.rate, there, slope=True)
     fields["spin"] = onto(real, spinning(motion.rate), there)
-    bad = np.zeros(len(t), bool)
-    for log, at in ((real, there), (sim, t)):
-        bad |= np.interp(at, log.t, (log.railed | log.put_in).astype(float)) > 0
-    # In a period of the band the low-pass has forgotten all but a hundredth of what was cut off,
-    # in half of one a tenth; of a log that is cut most of the time nothing better is known.
-    cut, bad = bad, np.zeros_like(bad)
-    for periods in (1.0, 0.5):
-        wide = max(1, int(periods * GRID_HZ / band_hz))
-        near = np.convolve(cut, np.ones(2 * wide + 1), "same") > 0
-        if near.mean() <= 1.0 - align_by.KNOWN:
-            bad = near
-            break
-    keep = ~bad
+    railed, put_in = (sum(np.interp(at, log.t, getattr(log, name).astype(float)) for log, at in (
+        (real, there), (sim, t))) > 0 for name in ("railed", "put_in"))
+    keep = ~_near(railed, put_in, (fields["rate"], onto(real, real.force, there)), band_hz)
     return Pair(t[keep], onto(real, real.force, there)[keep], onto(real, real.rate, there)[keep],
                 None if real.celsius is None else np.interp(there, real.t, real.celsius)[keep],
                 Motion(**{k: v[keep] for k, v in fields.items()}),
                 onto(sim, sim.force, t)[keep], onto(sim, sim_rate, t)[keep], band_hz)
+
+
+def _near(railed, put_in, moves, band_hz):
+    """(n,) True at times beside readings that are not to be compared: in a period of the band the
+    low-pass has forgotten all but a hundredth of what was cut off, in half of one a tenth; of a
+    log that is cut most of the time nothing better is known. Nor is it where rows were put in so
+    often that what is left hardly moves, by what either sensor reads, moves [(n, 3)]: every fifth
+    row of a motion, and none at rest, leave the rest alone to be compared."""
+    def beside(bad, periods):
+        wide = max(1, int(periods * GRID_HZ / band_hz))
+        return np.convolve(bad, np.ones(2 * wide + 1), "same") > 0
+
+    for cut in (railed | put_in, railed):
+        for periods in (1.0, 0.5):
+            near, without = beside(cut, periods), beside(railed, periods)
+            if near.mean() <= 1.0 - align_by.KNOWN and all(
+                    align_by.power(x[~near]) >= align_by.KNOWN * align_by.power(x[~without])
+                    for x in moves):
+                return near
+    return np.zeros(len(railed), bool)
 
 
 def paused(trace, at):

@@ -1,4 +1,6 @@
-"""The comparison with a simulator as JSON, and what it makes of the verdict."""
+"""The comparison with a simulator as JSON, what is said of its logs, and what it makes of the
+verdict."""
+from ...capture.registers import SENSORS
 from ...json_numbers import number, spelled
 
 
@@ -113,3 +115,34 @@ def verdict(effects, comparisons, named_effects=False):
     if effects == "no gap" and not any(x.fits or _known(x) for x in comparisons):
         return "cannot tell"  # neither compared, nor is what each sensor is known by itself
     return effects
+
+
+def _drowned(trace):
+    """Of which sensors of a Trace the noise is not known, in words."""
+    kinds = [SENSORS[kind] for kind, noise in trace.noise.items() if noise is None]
+    return ": that of the %s is not told from what shakes it" % " and the ".join(kinds) \
+        if kinds else ""
+
+
+def said_of(real, sim, aligned):
+    """Sentences on the two logs."""
+    logs = sim.name, real.name, aligned.by, aligned.correlation
+    sentences = [
+        "%s and %s are of one motion (correlation of the %s %.3f): offset %.3f ± %.3f s, "
+        "%.0f s together" % (*logs, aligned.offset_s, 1.645 * aligned.offset_sigma_s,
+                             aligned.overlap_s) if aligned.same else
+        "%s and %s are of different motions (correlation of the %s %.2f): each was held "
+        "against its own rests and moves" % logs if aligned.moving else
+        "neither %s nor %s turns more than its noise, and both rest nearly all the time: there is "
+        "no motion to be compared, each was held against its own rests" % logs[:2]]
+    for trace in (real, sim):
+        if not trace.rests:
+            sentences.append("no rest in %s: gravity and the gyro's bias are known in it on "
+                             "average alone, and its noise by the quick end of its spectrum%s" % (
+                                 trace.name, _drowned(trace)))
+        if trace.rate is None:
+            sentences.append("no gyro in %s" % trace.name)
+    if abs(real.rate_hz / sim.rate_hz - 1.0) > 0.02:
+        sentences.append("%s has %.4g rows a second, %s %.4g: compared on one grid" % (
+            sim.name, sim.rate_hz, real.name, real.rate_hz))
+    return sentences

@@ -32,6 +32,7 @@ NO_LINE, SLOWEST_LINE_HZ = 1e-4, 0.5
 # Chi squared of three axes that are as loud in an octave as below, in 99 of 100: what a filter
 # takes away it takes from all of them.
 FLAT = 11.3
+STILL = 0.9  # of a log: what rests for longer, and does not turn besides, was not moved
 DROWNED = 0.3  # of a count: noise below it hardly ever crosses one
 
 
@@ -64,10 +65,12 @@ def dead(real, sim):
             continue
         still = [at_rest(x, getattr(x, name), x.quantum[kind == "gyro"]) for x in (real, sim)]
         ours, theirs = (getattr(x, name).var(axis=0) for x in (real, sim))
-        # What the real one has at rest, too, is noise, which a simulator may lack.
-        moved, moves = ours, np.ones(3, bool)
-        if still[0] is not None:
-            moved, moves = np.maximum(ours - still[0], 0.0), ours > SAME * still[0]
+        # What the real one has at rest, too, is noise, which a simulator may lack; of what never
+        # rests it is no more than what changes from row to row.
+        quiet = still[0]
+        if quiet is None:
+            quiet = 0.5 * (np.diff(getattr(real, name), axis=0) ** 2).mean(axis=0)
+        moved, moves = np.maximum(ours - quiet, 0.0), ours > SAME * quiet
         shares = [np.sqrt(x / max(x.max(), 1e-24)) for x in (moved, theirs)]
         alive = moves & (shares[0] > ALIVE), shares[1] > ALIVE
         if alive[0].sum() > alive[1].sum():
@@ -118,6 +121,12 @@ def turns(trace):
         return False
     still = at_rest(trace, trace.rate, trace.quantum[1])
     return still is None or bool((trace.rate.var(axis=0) > SAME * still).any())
+
+
+def lies_still(trace):
+    """Whether a Trace rests nearly all the time, and turns no more than its noise."""
+    resting = sum(end - first for first, end in trace.rests)
+    return resting > STILL * len(trace.t) and not turns(trace)
 
 
 def noise(trace, values):
