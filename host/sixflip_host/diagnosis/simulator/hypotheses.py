@@ -237,3 +237,8 @@ def pairs(x):
     """(n, k (k + 1) / 2): the products of two of the columns of x (n, k)."""
     k = x.shape[1]
     return np.stack([x[:, i] * x[:, j] for i in range(k) for j in range(i, k)], 1)
+
+
+def left_of(values, design):
+    """values (n, ...) less what the columns of a design (n, k) say of them."""
+    return values - design @ np.linalg.lstsq(design, values, rcond=None)[0]

@@ -25,8 +25,8 @@ from . import (
     single_log,
     traces,
 )
-from .evidence_of_logs import left_of, shifted
-from .hypotheses import DEG
+from .evidence_of_logs import shifted
+from .hypotheses import DEG, left_of
 from .pairing import GRID_HZ
 from .parameters import MG, Parameter
 
