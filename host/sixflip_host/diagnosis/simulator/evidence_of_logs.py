@@ -12,7 +12,8 @@ import numpy as np
 from ...experiment.projection import MOST_ROWS, regression
 from ..detect.wrong_scale import WIDEST
 from . import sensor_axes
-from .hypotheses import BIAS, DEAD, DELAY_S, FREE, SHAPE
+from .hypotheses import BIAS, DELAY_S, FREE, SHAPE
+from .sensor_axes import DEAD
 
 # Nats that a heading costs, which may be any: 4 % of misalignment tell so many of them apart.
 HEADING = float(np.log(2.0 * np.pi / (np.sqrt(2.0 * np.pi) * SHAPE)))

@@ -7,8 +7,12 @@ from scipy.spatial.transform import Rotation
 from sixflip import STANDARD_G
 
 from ..detect import axis_order
-from .hypotheses import DEAD, DEG, SHAPE, left_of
 
+# Prior standard deviation of scale and misalignment: MPU-6050 PS rev 3.4, tables 6.1 and 6.2 (3 %
+# scale, 2 % cross-axis) and ITG-3205 PS (6 % scale).
+SHAPE = 0.04
+DEAD = 0.1  # of the other channels' gain: below it a channel does not answer
+IN_DEG = 180.0 / np.pi
 HEARD = 2.0  # times what is left of a channel, above which its own motion would show in it
 NOTHING = 0.5  # of a channel's power, from which on it says nothing of the motion
 # rad about each axis by which a sensor is mounted otherwise than along an axis of the other one
@@ -26,7 +30,7 @@ def candidates(hypothesis, measured, kind, live, swapped=None):
         psi = np.arctan2(free[1, 0] - free[0, 1], free[0, 0] + free[1, 1])
         c, s = np.cos(psi), np.sin(psi)
         return [(np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]), 1.0)]
-    units = (1.0, DEG, 1.0 / DEG) if kind == "gyro" else (1.0, STANDARD_G, 1.0 / STANDARD_G)
+    units = (1.0, IN_DEG, 1.0 / IN_DEG) if kind == "gyro" else (1.0, STANDARD_G, 1.0 / STANDARD_G)
     if hypothesis.scaled and kind == "gyro":
         units = units[:1]  # any factor on all that turns it is one of time
     free[~live] = 0.0
@@ -123,6 +127,11 @@ def with_strays(near, strays, kind):
         signed += [np.where(np.arange(3)[:, None] == i, -s, s) for s in signed]
     signed.sort(key=np.linalg.det, reverse=True)
     return signed if kind == "accel" else signed[:1]
+
+
+def left_of(values, design):
+    """values (n, ...) less what the columns of a design (n, k) say of them."""
+    return values - design @ np.linalg.lstsq(design, values, rcond=None)[0]
 
 
 def signed(row):
